@@ -11,7 +11,7 @@ from scipy.optimize import brentq
 from stylobate import theory
 from stylobate.errors import ParameterError
 from stylobate.theory import free_twist_critical_frequency, free_twist_upper_frequency
-from stylobate.theory.free_twist_stability import Frictions, characteristic
+from stylobate.theory.free_twist_stability import DampedColumn, characteristic
 
 C = 0.1
 EPS = float(np.finfo(float).eps)
@@ -36,7 +36,7 @@ def test_the_polynomial_is_that_of_the_jacobian(nu, a, friction, body):
         return
     polynomial = [
         1.0,
-        *characteristic(nu, C / float(found.amplitude), Frictions(*map(np.asarray, (*friction, *body)))),
+        *characteristic(nu, C / float(found.amplitude), DampedColumn(*map(np.asarray, (*friction, *body)))),
     ]
     expected = np.poly(found.eigenvalues).real
     scale = np.poly(-np.abs(found.eigenvalues))  # what the symmetric functions are sums of

@@ -21,7 +21,7 @@ def wobbling_rates(state, nu, a0, *, c, eta, **shape):
 
 
 def slipping_rolling_rates(state, nu, a0, *, mu, c, eta, zeta, patch=0.0, **shape):
-    frictions = slipping.Frictions(eta=eta, zeta=np.asarray(zeta), mu=mu, patch=patch * np.asarray(c))
+    frictions = slipping.Resistances(eta=eta, zeta=np.asarray(zeta), mu=mu, patch=patch * np.asarray(c))
     return slipping.rates(np.asarray(state), nu, a0, frictions, body_of(c, **shape))
 
 

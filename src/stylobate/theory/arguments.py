@@ -1,4 +1,4 @@
-"""What the closed forms accept: numbers or arrays of them, finite, and of the sign that physics asks for."""
+"""Argument checks of the closed forms: finite numbers or arrays of the required sign."""
 
 from typing import TypeAlias
 
@@ -23,7 +23,7 @@ def finite(name: str, value: Real) -> FloatArray:
 
 
 def positive(name: str, value: Real) -> FloatArray:
-    """Return `value` as an array of floats, or raise ParameterError at its first entry that is not above zero."""
+    """Return `value` as an array of floats, or raise ParameterError at its first entry that is not positive."""
     array = _floats(name, value)
     bad = array[~(np.isfinite(array) & (array > 0.0))]
     if bad.size:

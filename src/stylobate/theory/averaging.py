@@ -1,6 +1,6 @@
 """Straight-line and elliptic base motion as two circular motions, each with its rolling by averaging (9), (10).
 
-Measured against the exact motion, the error of averaging is governed by a1/c alone, and does not shrink with frequency.
+Compared with the exact motion, the error of averaging depends on a1/c alone and does not shrink with frequency.
 """
 
 from dataclasses import dataclass
@@ -83,7 +83,7 @@ def averaged_rolling(nu: Real, a1: Real, a2: Real = 0.0, phi2: Real = 0.0, *, c:
     Returns
     -------
     AveragedRolling
-        Rolling in both senses, arrays of the broadcast shape. The azimuth of the contact point is, in the mean,
+        Rolling in both senses, arrays of the broadcast shape. The mean azimuth of the contact point is
         β = sense · (ντ + ψ) + azimuth_offset.
 
     Raises
@@ -94,9 +94,9 @@ def averaged_rolling(nu: Real, a1: Real, a2: Real = 0.0, phi2: Real = 0.0, *, c:
     Notes
     -----
     (10): (8) with a0 = abs(p) forward and a0 = abs(q) backward; both are a1/2 for straight-line motion. Exact for
-    circular motion. Its small parameter is a1/c at every frequency: started here, the exact motion without damping
-    strays from the averaged tilt by about 2.3 a1/c of it while a1 ≪ c. At a1 = 0.4c and 1.3c the exact critical
-    frequency lies 11 and 16 per cent above the averaged one (c = η = 0.1).
+    circular motion. The small parameter is a1/c at every frequency. For a1 ≪ c the undamped exact motion from these
+    initial conditions deviates from the averaged tilt by about 2.3 a1/c of the tilt. At a1 = 0.4c and 1.3c the exact
+    critical frequency lies 11 and 16 per cent above the averaged critical frequency (c = η = 0.1).
 
     Examples
     --------

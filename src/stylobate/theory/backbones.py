@@ -1,6 +1,6 @@
-"""The two backbones of a free-standing column: how the amplitude of its free motions depends on their frequency.
+"""Backbone curves of a free-standing column: amplitude of free motion versus frequency.
 
-A round column that rolls and a block that rocks in a plane have curves that look alike and are different: (5) and (3).
+The curve of a rolling column (5) resembles the curve of planar rocking (3) but differs from it.
 """
 
 import numpy as np
@@ -9,7 +9,7 @@ from stylobate.theory.arguments import FloatArray, Real, finite, positive
 
 
 def rolling_backbone(omega: Real, c: Real) -> FloatArray:
-    """Compute the tilt at which a free column rolls steadily round its rim.
+    """Compute the tilt of free steady rolling round the rim at a rolling rate.
 
     Parameters
     ----------
@@ -42,7 +42,7 @@ def rolling_backbone(omega: Real, c: Real) -> FloatArray:
 
 
 def planar_backbone(omega: Real, c: Real) -> FloatArray:
-    """Compute the amplitude at which a free column rocks in a plane with the frequency ω.
+    """Compute the amplitude of free planar rocking at the frequency ω.
 
     Parameters
     ----------
@@ -64,7 +64,8 @@ def planar_backbone(omega: Real, c: Real) -> FloatArray:
     Notes
     -----
     (3): θ0 = c [1 − 1/cosh(π/2ω)], written as c tanh x tanh(x/2) with x = π/2ω, which keeps its relative accuracy at
-    every frequency. Without damping, and with α kept in one plane: out of the plane this motion is unstable.
+    every frequency. Valid without damping and for motion confined to one plane; out of the plane this motion is
+    unstable.
 
     Examples
     --------

@@ -1,23 +1,23 @@
-"""A block that slides and hops on a vibrating, possibly inclined plane: its motion, piece by piece.
+"""Motion of a block that slides and flies on a vibrating, possibly inclined plane, as exact segments.
 
 The plane rises by `incline` = ψ along x; its normal is z. With the base acceleration (ax cos τ, az cos(τ + φ)) in g,
-τ = Ωt, lengths in g/Ω² and velocities in g/Ω, a point mass at the distance s above the plane that moves at the velocity
-u along it obeys
+τ = Ωt, lengths in g/Ω² and velocities in g/Ω, a point mass at the distance s above the plane with the velocity u along
+the plane obeys
 
     u̇ = T − sin ψ − ax cos τ,    s̈ = N − cos ψ − az cos(τ + φ).
 
     stick      u = 0, s = 0       T = sin ψ + ax cos τ, while |T| ≤ μs N
     slide      u ≷ 0, s = 0       T = ∓μk N, while N ≥ 0
     flight     s > 0              T = N = 0
-    landing    at the speed v     Pn = (1 + e)v, |Pt| ≤ μk Pn and no more than stops the slip
+    landing    at the speed v     Pn = (1 + e)v, |Pt| ≤ μk Pn, at most the impulse that stops the slip
 
-In every phase the forces are one harmonic and a constant, `stylobate.theory.harmonic_force`, so velocity and place are
-trigonometric functions and polynomials of τ. The next phase begins where a force changes its sign, in closed form, or
-where u or s vanishes. Between the zeros of their derivatives, known in turn, these are monotone: each root is bracketed
-and none can be stepped over. The motion is exact to rounding but for one rule. Landings with e > 0 may follow one
-another ever faster and end in a finite time. A landing that would rebound at less than `rest_speed` does not rebound
-at all if the plane then presses on the block. The bounces so left out would have lasted 2 rest_speed/((1 − e)N), see
-`stylobate.theory.bounce_time`, and have the impulse that the contact gives in that time.
+In every phase the forces are one harmonic and a constant, `stylobate.theory.harmonic_force`, so velocity and position
+are trigonometric functions and polynomials of τ. The next phase begins where a force changes its sign, in closed form,
+or where u or s vanishes. Between the zeros of their derivatives, which are known, u and s are monotone: each root is
+bracketed and no root is missed. The motion is exact to rounding except for one rule. For e > 0 infinitely many landings
+can occur in a finite time. A landing with a rebound below `rest_speed` ends in contact if the plane then presses on the
+block. The omitted bounces would last 2 rest_speed/((1 − e)N), see `stylobate.theory.bounce_time`, with the impulse of
+the contact in that time.
 """
 
 import cmath
@@ -33,9 +33,9 @@ from stylobate.theory.starting import steepness
 from stylobate.theory.throwing import below_elastic
 
 TURN = 2.0 * math.pi
-# A force that is short of its limit by less than this, relative to all forces, is at its limit.
+# Relative distance from its limit below which a force counts as at its limit.
 _FORCE_ROUNDING = 1e-13
-# A slip or flight that begins at rest and by rounding ends at once is given this time [rad]: so the motion goes on.
+# Minimum duration [rad] of a slip or flight from rest, in case rounding would end it at once.
 _LEAST_SPAN = 1e-12
 
 
@@ -44,25 +44,25 @@ class BlockPhase(IntEnum):
 
     STICK = 0
     FORWARD = 1
-    """It slides along +x, uphill."""
+    """The block slides along +x, uphill."""
     BACKWARD = 2
     FLIGHT = 3
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BlockSegment:
-    """A time in which a block stays in one phase. Velocities are relative to the plane.
+    """A time interval in which a block stays in one phase. Velocities are relative to the plane.
 
     Parameters
     ----------
     phase
-        What it does.
+        Phase of motion.
     start, end
         Ωt from the beginning of the cycle.
     velocity
-        Velocity along the plane at the start and at the end [g/Ω]. Where it jumps to the next segment the block lands.
+        Velocity along the plane at the start and at the end [g/Ω]. A jump to the next segment is a landing.
     normal_velocity
-        Velocity along the normal at the start and at the end [g/Ω]; 0 but in flight.
+        Velocity along the normal at the start and at the end [g/Ω]; 0 except in flight.
     travel
         Distance along the plane [g/Ω²].
     """
@@ -77,7 +77,7 @@ class BlockSegment:
 
 @dataclass(frozen=True, slots=True)
 class State:
-    """Where a block is in its cycle, and what it does from here on."""
+    """State of a block in its cycle, with the phase of motion that begins."""
 
     tau: float
     u: float
@@ -86,7 +86,7 @@ class State:
     phase: BlockPhase
 
     def off(self, other: "State") -> float:
-        """How far this state is from another one at the same phase of the base motion."""
+        """Compute the distance to another state at the same phase of the base motion."""
         return max(abs(self.u - other.u), abs(self.s - other.s), abs(self.rise - other.rise))
 
 
@@ -114,7 +114,7 @@ class Block:
         normal_restitution: float,
         rest_speed: float,
     ) -> "Block":
-        """Return the block, or raise ParameterError where a number of `block_cycle` is not one."""
+        """Return the block, or raise ParameterError at the first invalid argument of `block_cycle`."""
         mu_s = float(not_negative("static_friction", static_friction))
         mu_k = mu_s if kinetic_friction is None else float(not_negative("kinetic_friction", kinetic_friction))
         if mu_k > mu_s:
@@ -137,18 +137,18 @@ class Block:
         return 1.0 + abs(self.weight.swing) + abs(self.pull.swing)
 
     def margin(self, mu: float, sense: float) -> HarmonicForce:
-        """μN + sense T: what a slip in this sense begins without (μs), and is braked by (μk)."""
+        """Return μN + sense T; a slip in this sense begins when it vanishes (μs), and it brakes the slip (μk)."""
         return HarmonicForce(
             mu * self.weight.constant + sense * self.pull.constant, mu * self.weight.swing + sense * self.pull.swing
         )
 
     def lost(self, force: HarmonicForce, tau: float) -> bool:
-        """Whether a force that must not be negative is, or becomes so now."""
+        """Return whether a force that must not be negative is negative or becomes negative now."""
         value, rounding = force.at(tau), _FORCE_ROUNDING * self.scale
         return value < -rounding or (value < rounding and force.slope(tau) < 0.0)
 
     def landed(self, state: State) -> State:
-        """Return the state on the plane in the phase that begins with it."""
+        """Return the state on the plane with the phase of motion that follows."""
         if self.lost(self.weight, state.tau):
             return replace(state, phase=BlockPhase.FLIGHT)
         if state.u != 0.0:
@@ -170,7 +170,7 @@ class Block:
         return segments, replace(state, tau=0.0)
 
     def stick(self, state: State, horizon: float) -> tuple[BlockSegment, State]:
-        """Return the segment of a block that sticks, up to a slip, a lift-off or the horizon, and what follows."""
+        """Return the segment of a block that sticks, up to a slip, a lift-off or the horizon, and the next state."""
         falls = {
             BlockPhase.FLIGHT: self.weight.next_fall(state.tau),
             BlockPhase.FORWARD: self.margin(self.mu_s, 1.0).next_fall(state.tau),
@@ -182,7 +182,7 @@ class Block:
         return _segment(state, after, 0.0), after
 
     def slide(self, state: State, horizon: float) -> tuple[BlockSegment, State]:
-        """Return the segment of a block that slides, up to a stop, a lift-off or the horizon, and what follows."""
+        """Return the segment of a block that slides, up to a stop, a lift-off or the horizon, and the next state."""
         sense = 1.0 if state.phase is BlockPhase.FORWARD else -1.0
         brake, speed, tau = self.margin(self.mu_k, sense), sense * state.u, state.tau
         lifts = self.weight.next_fall(tau)
@@ -201,7 +201,7 @@ class Block:
         return _segment(state, after, sense * (speed * span - brake.travel(tau, span))), after
 
     def fly(self, state: State, horizon: float) -> tuple[BlockSegment, State]:
-        """Return the segment of a block in flight, up to a landing or the horizon, and what follows."""
+        """Return the segment of a block in flight, up to a landing or the horizon, and the next state."""
         tau, weight = state.tau, self.weight
 
         def rise(x: float) -> float:
@@ -241,7 +241,7 @@ def _later(state: State, span: float, horizon: float) -> float:
 
 
 def _first_zero(value: Callable[[float], float], slope: Callable[[float], float], marks: list[float]) -> float | None:
-    """Return the first zero of a function that begins above zero and is monotone between marks, None without one."""
+    """Return the first zero of a function that starts positive and is monotone between marks, or None."""
     low = 0.0
     for high in marks:
         if value(high) <= 0.0:

@@ -1,6 +1,6 @@
-"""The periodic motion of a block on a vibrating, possibly inclined plane, and how fast it is conveyed.
+"""Periodic motion and mean transport velocity of a block on a vibrating, possibly inclined plane.
 
-The motion is followed piece by piece, `stylobate.theory.block_motion`, until it repeats.
+`stylobate.theory.block_motion` computes the segments until the motion repeats.
 """
 
 import math
@@ -14,8 +14,8 @@ from stylobate.theory.block_motion import TURN, Block, BlockPhase, BlockSegment,
 from stylobate.theory.starting import steepness
 from stylobate.theory.throwing import below_elastic
 
-# Where a motion comes to its cycle alternating, by the factor −λ in each period of the base motion, two periods repeat
-# 1/(1 − λ) times better than one. Up to this ratio it is the shorter cycle all the same.
+# If a motion approaches its cycle by the factor −λ per period of the base motion, two periods repeat 1/(1 − λ) times
+# better than one. Up to this ratio the shorter cycle counts.
 _SLOW = 1e3
 
 
@@ -28,12 +28,12 @@ class BlockCycle:
     mean_speed
         Mean velocity along the plane [g/Ω], uphill positive; infinite if the block slides ever faster.
     period
-        Periods of the base motion after which the motion repeats; 0 if it was not seen to repeat. Then the cycle is
-        the second half of all that was computed.
+        Periods of the base motion after which the motion repeats; 0 if no repetition was found. The cycle is then the
+        second half of the computed motion.
     cycles
-        Periods of the base motion computed in all.
+        Total number of computed periods of the base motion.
     segments
-        The cycle, from a zero of Ωt mod 2π on.
+        The cycle, from a zero of Ωt mod 2π.
     """
 
     mean_speed: float
@@ -48,7 +48,7 @@ class BlockCycle:
 
     @property
     def fraction(self) -> dict[BlockPhase, float]:
-        """Part of the time spent in each phase."""
+        """Fraction of the time spent in each phase."""
         spent = dict.fromkeys(BlockPhase, 0.0)
         for segment in self.segments:
             spent[segment.phase] += segment.end - segment.start
@@ -57,7 +57,7 @@ class BlockCycle:
 
     @property
     def switches(self) -> tuple[float, ...]:
-        """Ωt at which one phase gives way to the next or a flight to another, from the beginning of the cycle."""
+        """Ωt of each change of phase and each landing that begins another flight, from the start of the cycle."""
         return tuple(segment.end for segment in self.segments[:-1])
 
 
@@ -97,20 +97,20 @@ def block_cycle(
     start_velocity, start_normal_velocity
         Velocity relative to the plane at τ = 0, along it and, zero or positive, away from it [g/Ω].
     cycles
-        Most periods of the base motion to compute.
+        Maximum number of computed periods of the base motion.
     longest_period
-        Most periods of the base motion after which it is looked for a repetition.
+        Maximum number of periods of the base motion in one repetition.
     tolerance
-        The motion repeats if both velocities [g/Ω] and the distance from the plane [g/Ω²] do so to this, in units of
-        1 + along + normal.
+        Tolerance of the repetition of both velocities [g/Ω] and the distance from the plane [g/Ω²], in units of 1 +
+        along + normal.
     rest_speed
         Rebound velocity below which a landing ends in contact [g/Ω].
 
     Returns
     -------
     BlockCycle
-        The cycle reached from this start. Where several attract, as they do with e > 0 or on a steep plane, another
-        start may reach another.
+        The cycle reached from these initial conditions. With e > 0 or on a steep plane several cycles can attract;
+        other initial conditions may then reach another cycle.
 
     Raises
     ------
@@ -121,10 +121,10 @@ def block_cycle(
 
     Notes
     -----
-    Contact in the slip that has just stopped is given static friction: it slips on or back only if abs(T) > μs N.
+    A contact whose slip has just stopped has static friction: slip resumes only if abs(T) > μs N.
 
     Averaged over a cycle that repeats, the friction carries the component sin ψ of the weight and the normal force
-    cos ψ, landings included. So with μk < abs(tan ψ) nothing holds a block that never sticks.
+    cos ψ, landings included. So with μk < abs(tan ψ) a block that never sticks slides down ever faster.
 
     Examples
     --------
@@ -181,8 +181,8 @@ def mean_block_speed(
     Returns
     -------
     numpy.ndarray
-        Mean velocity along the plane [g/Ω], of the broadcast shape, uphill positive. Where the motion was not seen to
-        repeat, that of the second half of `cycles` periods; infinite where the block slides ever faster.
+        Mean velocity along the plane [g/Ω], of the broadcast shape, uphill positive. If no repetition was found, the
+        mean of the second half of `cycles` periods; infinite if the block slides ever faster.
 
     Raises
     ------
@@ -191,7 +191,7 @@ def mean_block_speed(
 
     See Also
     --------
-    block_cycle : all that is known about the motion, for one block.
+    block_cycle : the complete cycle of one block.
 
     Examples
     --------
@@ -226,7 +226,7 @@ def mean_block_speed(
 
 
 def _repeats(seen: list[State], near: float) -> int:
-    """Return after how many periods of the base motion the last state repeats, 0 if it does not."""
+    """Return the number of periods of the base motion after which the last state repeats, or 0."""
     off = [seen[-1].off(state) for state in seen[-2::-1]]
     for period, difference in enumerate(off, 1):
         if difference <= near:
@@ -235,7 +235,7 @@ def _repeats(seen: list[State], near: float) -> int:
 
 
 def _summary(run: list[list[BlockSegment]], period: int, cycles: int) -> BlockCycle:
-    """Return a run of turns as one cycle, without the cuts between them."""
+    """Join the segments of the computed periods into one cycle."""
     joined = list[BlockSegment]()
     for turn, segments in enumerate(run):
         for number, segment in enumerate(segments):
@@ -259,7 +259,7 @@ def _joined(first: BlockSegment, second: BlockSegment) -> BlockSegment:
 
 
 def _escapes(block: Block, cycle: BlockCycle) -> bool:
-    """Whether a block that friction cannot hold never stopped sliding down."""
+    """Return whether a block that friction cannot hold never stopped sliding down."""
     down = -math.copysign(1.0, block.pull.constant)
     steep = block.mu_k * block.weight.constant < abs(block.pull.constant)
     return steep and all(down * speed > 0.0 for segment in cycle.segments for speed in segment.velocity)

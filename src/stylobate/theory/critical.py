@@ -1,4 +1,4 @@
-"""The critical frequency ν*, below which steady rolling on a circularly moving base is unstable, for any friction.
+"""Critical frequency ν* below which steady rolling on a circularly moving base is unstable, for any damping.
 
 The boundary θ = c/ξ* of `stylobate.theory.stability`, put into (8), gives the critical amplitude in closed form,
 
@@ -6,9 +6,9 @@ The boundary θ = c/ξ* of `stylobate.theory.stability`, put into (8), gives the
 
 On it a pair of eigenvalues ±iω_H crosses the imaginary axis, ω_H² = q/2. The curve begins at q = p0 = 0, on the fold at
 the lower end of the band without rolling (a Bogdanov–Takens point), where 3ν⁴ + (2 + η²)ν² = 1. From there a0* rises
-with ν without bound: observed on a fine grid for η from 0 to 100, not proved. There ν* exists, and is unique, for every
-amplitude above the one at that point. For a smaller amplitude there is none: rolling is unstable at all frequencies
-below the band without rolling and stable at all frequencies above it.
+with ν without bound: observed on a fine grid for η from 0 to 100, not proved. So ν* exists and is unique for every
+amplitude above the amplitude at that point. For a smaller amplitude no ν* exists: rolling is unstable at all
+frequencies below the band without rolling and stable at all frequencies above it.
 """
 
 import numpy as np
@@ -35,7 +35,7 @@ def critical_amplitude(nu: Real, *, c: Real, eta: Real) -> FloatArray:
     -------
     numpy.ndarray
         Amplitude a0* [g], of the broadcast shape: the upper branch of steady rolling is stable for a0 < a0*. NaN below
-        the frequency at which the curve begins; there no amplitude makes rolling stable.
+        the frequency at which the curve begins, where rolling is unstable at every amplitude.
 
     Raises
     ------
@@ -71,9 +71,9 @@ def critical_frequency(a0: Real, *, c: Real, eta: Real) -> FloatArray:
     Returns
     -------
     numpy.ndarray
-        Critical frequency, of the broadcast shape. NaN where a0 lies below the least critical amplitude: rolling then
-        changes its stability nowhere but across the band of `rolling_gap`. At amplitudes a little above the least one
-        that band is still there and interrupts the stable range.
+        Critical frequency, of the broadcast shape. NaN where a0 lies below the minimum critical amplitude: rolling then
+        changes its stability only across the band of `rolling_gap`. Slightly above the minimum amplitude that band
+        still exists and interrupts the stable range.
 
     Raises
     ------
@@ -83,7 +83,7 @@ def critical_frequency(a0: Real, *, c: Real, eta: Real) -> FloatArray:
     Notes
     -----
     The inverse of `critical_amplitude`, bisected to rounding between the start of the curve and √(1 + 2a0/c). For
-    straight-line base motion a0 = a1/2 gives the value of averaging, which the exact motion does not follow closely.
+    straight-line base motion a0 = a1/2 gives the value of averaging, which approximates the exact motion only roughly.
 
     Examples
     --------
@@ -150,7 +150,7 @@ def undamped_critical_frequency(a0: Real, *, c: Real) -> FloatArray:
     Returns
     -------
     numpy.ndarray
-        Critical frequency, of the broadcast shape: from 1/√3 as a0 → 0 upward without bound.
+        Critical frequency, of the broadcast shape: 1/√3 as a0 → 0, unbounded for large a0.
 
     Raises
     ------
@@ -160,7 +160,7 @@ def undamped_critical_frequency(a0: Real, *, c: Real) -> FloatArray:
     Notes
     -----
     ν* = (1+√σ)/√(4 − (1+√σ)²) with σ = a0/(a0 + c): two imaginary pairs of eigenvalues of (7) meet (Krein). Above ν*
-    rolling is neutrally stable. Weak friction moves ν* little: at c = η = 0.1 by a quarter to one per cent.
+    rolling is neutrally stable. Weak damping changes ν* little: at c = η = 0.1 by a quarter to one per cent.
 
     Examples
     --------

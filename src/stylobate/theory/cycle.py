@@ -1,4 +1,4 @@
-"""Limit cycles of (7): Fourier collocation, and continuation from the Hopf bifurcation of steady rolling.
+"""Limit cycles of (7) by Fourier collocation and continuation from the Hopf bifurcation of steady rolling.
 
 The tilt angle is in units of c here, and a0 stands for a0/c.
 """
@@ -15,7 +15,7 @@ from stylobate.theory.spectral import differentiation_matrix
 
 _NEWTON_STEPS = 10
 _NEWTON_TOLERANCE = 1e-10  # of the last correction, whose square is the error left
-_EASY, _HARD = 3, 6  # Newton steps below which the next step along the branch grows, above which it shrinks
+_EASY, _HARD = 3, 6  # below and above these Newton steps the next step along the branch grows and shrinks
 _FIRST_STEP, _SHORTEST_STEP, _LONGEST_STEP = 0.02, 1e-6, 0.1
 _MOST_STEPS = 500
 
@@ -40,12 +40,12 @@ class Cycle:
 
 
 class NoCycleError(Exception):
-    """The branch of cycles does not reach the wanted frequency; the message says why."""
+    """The branch of cycles does not reach the requested frequency; the message gives the reason."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CycleProblem:
-    """The collocated equations: the unknowns are the state at all points, the period and ν, as one vector.
+    """Collocation equations; the unknowns are the state at all points, the period and ν, as one vector.
 
     Parameters
     ----------
@@ -68,11 +68,11 @@ class CycleProblem:
 
     @property
     def weight(self) -> FloatArray:
-        """Weights of the norm of the unknowns: the mean square of the state, and ν; the period follows by itself."""
+        """Weights of the norm of the unknowns: mean square of the state, and ν; the period has no weight."""
         return np.concatenate([np.full(STATE_LENGTH * self.points, 1.0 / self.points), [0.01, 1.0]])
 
     def cycle(self, unknowns: FloatArray) -> Cycle:
-        """Return the cycle that a vector of unknowns stands for."""
+        """Convert a vector of unknowns to a cycle."""
         state = unknowns[:-2].reshape(STATE_LENGTH, self.points)
         return Cycle(state=state, period=float(unknowns[-2]), nu=float(unknowns[-1]))
 
@@ -89,7 +89,7 @@ class CycleProblem:
         unknowns = guess
         reference = self.cycle(guess).state
         for count in range(_NEWTON_STEPS):
-            if self.cycle(unknowns).state[2].min() <= 0.0:  # (7) knows no tilt below zero
+            if self.cycle(unknowns).state[2].min() <= 0.0:  # (7) is not defined for negative tilt
                 return None
             residual, matrix = self._equations(unknowns, reference)
             matrix[-1] = closing
@@ -104,7 +104,7 @@ class CycleProblem:
         return None
 
     def _equations(self, unknowns: FloatArray, reference: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Residual and matrix of (7) at the points, and of the phase condition: no shift along the reference."""
+        """Compute residual and matrix of (7) at the points and of the phase condition against the reference."""
         cycle, points = self.cycle(unknowns), self.points
         rates = rotating_frame_rates(cycle.state, cycle.nu, self.a0, c=1.0, eta=self.eta)
         jacobian = rotating_frame_jacobian(cycle.state, self.a0, eta=self.eta)
@@ -126,12 +126,12 @@ class CycleProblem:
 
 
 def cycle_at(nu: float, a0: float, eta: float, points: int) -> Cycle:
-    """Follow the cycles from the Hopf bifurcation down to the frequency ratio ν.
+    """Continue the cycles from the Hopf bifurcation down to the frequency ratio ν.
 
     Parameters
     ----------
     nu
-        Wanted frequency.
+        Requested frequency ratio.
     a0
         Acceleration amplitude of the base in units of c.
     eta
@@ -142,7 +142,7 @@ def cycle_at(nu: float, a0: float, eta: float, points: int) -> Cycle:
     Returns
     -------
     Cycle
-        The cycle on the branch where it first passes ν.
+        The first cycle along the branch at ν.
 
     Raises
     ------
@@ -173,7 +173,7 @@ def cycle_at(nu: float, a0: float, eta: float, points: int) -> Cycle:
 
 
 def _birth(problem: CycleProblem, nu: float) -> tuple[FloatArray, FloatArray]:
-    """Return steady rolling at ν* as a cycle of no size, and the direction in which cycles grow out of it."""
+    """Return steady rolling at ν* as a cycle of zero amplitude, and the direction of the bifurcating cycles."""
     critical = float(critical_frequency(problem.a0, c=1.0, eta=problem.eta))
     if not (problem.eta > 0.0 and nu < critical):
         message = f"modulated rolling is sought below the critical frequency only, which is {critical:.4f}"
@@ -191,9 +191,9 @@ def _birth(problem: CycleProblem, nu: float) -> tuple[FloatArray, FloatArray]:
 
 
 def _landed(problem: CycleProblem, point: FloatArray, following: FloatArray, nu: float, *, born: bool) -> Cycle:
-    """Solve at ν itself, between two points of the branch that lie either side of it."""
+    """Solve at ν itself, between two points of the branch on both sides of ν."""
     fraction = (point[-1] - nu) / (point[-1] - following[-1])
-    if born:  # out of the bifurcation cycles grow with the root of the distance
+    if born:  # near the bifurcation the amplitude grows with the square root of the distance
         fraction = np.sqrt(fraction)
     guess = point + fraction * (following - point)
     guess[-1] = nu

@@ -1,7 +1,7 @@
-"""Steady rolling of a rigid column at any tilt, on a base that moves in a circle: what its two cases share.
+"""Steady rolling of a rigid column at any tilt on a circularly moving base: shared equations and root search.
 
-What the base acceleration must give along and across the lean, a0 cos ψ and a0 sin ψ, follows from the tilt in closed
-form. That leaves one equation for the tilt, whose solutions are all sought between 0 and π/2.
+The components of the base acceleration along and across the lean, a0 cos ψ and a0 sin ψ, follow from the tilt in closed
+form. One equation for the tilt remains; its solutions are sought between 0 and π/2.
 """
 
 from collections.abc import Callable
@@ -21,8 +21,8 @@ Balance: TypeAlias = Callable[[FloatArray, Rows], tuple[FloatArray, FloatArray]]
 class FiniteTiltRolling:
     """All steady rolling at finite tilt: arrays of the broadcast shape and a last axis for the branches.
 
-    The branches are in the order of rising tilt. The axis is as long as the most of them anywhere, and at least 1; NaN
-    (and False) where there are fewer.
+    The branches are in the order of increasing tilt. The axis has the maximum number of branches, at least 1; NaN (and
+    False) where there are fewer.
 
     Parameters
     ----------
@@ -33,9 +33,9 @@ class FiniteTiltRolling:
     spin
         Axial angular velocity w3, in units of ω0.
     friction_demand
-        Horizontal over vertical force of the contact: the coefficient of friction that it takes not to slip.
+        Horizontal over vertical force of the contact: the coefficient of friction below which the contact slips.
     friction_moment
-        Moment about the vertical, over m g r, that the spin damping takes up, or what forbids the twist.
+        Moment about the vertical, over m g r, of the spin damping or of the constraint that excludes rotation.
     exists
         Whether there is such a solution.
     stable
@@ -54,36 +54,36 @@ class FiniteTiltRolling:
     eigenvalues: ComplexArray
 
 
-# Points of the scan over the tilt; a zero is lost only where the balance bends back and forth between two of them.
+# Points of the scan over the tilt; a zero is missed only if the balance oscillates between two points.
 _POINTS = 256
 
-# The scan begins at this part of the minimum tilt at which anything happens, and ends this far [rad] below π/2.
+# The scan begins at this fraction of the minimum relevant tilt and ends this far [rad] below π/2.
 _LEAST, _MARGIN = 1e-9, 1e-9
 
-# Sets of parameters that are scanned at once, for the sake of memory.
+# Sets of parameters scanned at once; limits the memory.
 _AT_ONCE = 4096
 
 
 def steady_tilts(balance: Balance, a0: FloatArray, scale: FloatArray, lossless: BoolArray) -> FloatArray:
-    """Return the tilts at which steady rolling is possible.
+    """Find the tilts at which steady rolling is possible.
 
     Parameters
     ----------
     balance
-        What is needed along and across the lean, at a tilt and for the parameters of given rows.
+        Required base acceleration along and across the lean, from a tilt and the rows of the parameters.
     a0
         Acceleration amplitude of the base [g], shape (rows,).
     scale
         Tilt at which the balance bends, shape (rows,); NaN where there is no solution.
     lossless
-        Whether nothing is needed across the lean, shape (rows,).
+        Whether no acceleration is required across the lean, shape (rows,).
 
     Returns
     -------
     numpy.ndarray
-        Tilts [rad], rising, shape (rows, branches), NaN where there are fewer than the most.
+        Tilts [rad], increasing, shape (rows, branches), padded with NaN.
     """
-    # Without damping X² = a0² is taken apart, or its double zeros at a0 = 0 would be lost.
+    # Without damping X² = a0² is factored; otherwise its double zeros at a0 = 0 would be missed.
     possible = np.isfinite(scale)
     rows, sides = [], []
     for chosen, side in ((~lossless, 0.0), (lossless, 1.0), (lossless & (a0 > 0.0), -1.0)):
@@ -130,24 +130,24 @@ def _by_row(rows: Rows, tilts: FloatArray, count: int) -> FloatArray:
     return out
 
 
-# Eigenvalues with no more than this real part, of the largest one, count as imaginary where there is no friction: a
-# double one, as the freedom of the spin makes it, is found to the root of the rounding error.
+# Without damping, eigenvalues with a real part below this fraction of the largest eigenvalue count as imaginary: the
+# double eigenvalue of the free spin is accurate to the root of the rounding error only.
 _NEUTRAL = 1e-7
 
 
 def no_deviation_grows(eigenvalues: ComplexArray, eta: FloatArray) -> BoolArray:
-    """Return whether all of the last axis decay or, without damping, none grows."""
+    """Return whether all deviations along the last axis decay or, without damping, none grows."""
     growth = eigenvalues.real.max(axis=-1)
     size = np.abs(np.where(np.isfinite(eigenvalues), eigenvalues, 0.0)).max(axis=-1)
     return np.asarray(np.where(eta > 0.0, growth < 0.0, growth <= _NEUTRAL * size))
 
 
-# So small a step leaves no error but rounding: nothing is subtracted.
+# A complex step subtracts nothing, so a step this small leaves only rounding error.
 _STEP = 1e-30
 
 
 def eigenvalues(rates: Callable[[Numbers], Numbers], state: FloatArray) -> ComplexArray:
-    """Return the eigenvalues of the Jacobian of `rates` at states along the first axis, along the last axis."""
+    """Return the eigenvalues, along the last axis, of the Jacobian of `rates` at states along the first axis."""
     count = len(state)
     offsets = (1.0j * _STEP * np.eye(count)).reshape(count, count, *(1 for _ in state.shape[1:]))
     columns = rates(state[:, np.newaxis] + offsets).imag / _STEP

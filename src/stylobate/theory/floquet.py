@@ -1,4 +1,4 @@
-"""Floquet multipliers of a periodic solution of (7) that is known on equally spaced points."""
+"""Floquet multipliers of a periodic solution of (7) given on equally spaced points."""
 
 import numpy as np
 
@@ -22,14 +22,14 @@ _STAGES = np.array(
 
 
 def floquet_multipliers(state: FloatArray, period: float, a0: float, eta: float) -> ComplexArray:
-    """Compute the multipliers of a periodic solution of (7), the largest first.
+    """Compute the Floquet multipliers of a periodic solution of (7), the largest first.
 
     Parameters
     ----------
     state
         (θ̇, β̇, θ, ψ) on equally spaced points of one period, shape (4, points).
     period
-        Its period.
+        Period of the solution.
     a0
         Acceleration amplitude of the base [g].
     eta
@@ -38,12 +38,13 @@ def floquet_multipliers(state: FloatArray, period: float, a0: float, eta: float)
     Returns
     -------
     numpy.ndarray
-        Four complex multipliers. One of them is 1, the shift along the solution.
+        Four complex multipliers; one is 1, the shift along the solution.
 
     Notes
     -----
     The variational equation is integrated with the Gauss–Legendre method of order 6 along the trigonometric
-    interpolant. Their product is e^{−2ηT} (Liouville): the base motion and the weight do not contract.
+    interpolant. The product of the multipliers is e^{−2ηT} (Liouville): base motion and weight do not contract the
+    state space.
     """
     steps = _STEPS_PER_POINT * state.shape[-1]
     fraction = ((np.arange(steps)[:, np.newaxis] + _NODES) / steps).ravel()
@@ -56,7 +57,7 @@ def floquet_multipliers(state: FloatArray, period: float, a0: float, eta: float)
 
 
 def _step_matrices(jacobian: FloatArray, step: float) -> FloatArray:
-    """Return the matrices that carry a deviation over each step, from the Jacobian at its stages (steps, 3, 4, 4)."""
+    """Return the propagation matrix of each step, from the Jacobian at its stages (steps, 3, 4, 4)."""
     stages = _WEIGHTS.size
     size = stages * STATE_LENGTH
     coupling = np.einsum("ij,nipq->nipjq", _STAGES, jacobian).reshape(-1, size, size)

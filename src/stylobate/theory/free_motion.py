@@ -1,4 +1,4 @@
-"""Free motion without damping between its turning points: the tilt oscillates while the contact point runs on (11)."""
+"""Free motion without damping between its turning points: the tilt oscillates while the contact point rolls on (11)."""
 
 from dataclasses import dataclass
 
@@ -7,7 +7,7 @@ import numpy as np
 from stylobate.theory.arguments import FloatArray, Real, finite, positive
 from stylobate.theory.quadrature import quarter_turn
 
-_NEWTON_STEPS = 64  # a double root is approached by halving: enough to go from 1 to rounding
+_NEWTON_STEPS = 64  # each step halves the distance to a double root: enough to go from 1 to rounding
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -25,7 +25,7 @@ class FreeMotion:
     period
         Time τ from one peak tilt to the next.
     azimuth_advance
-        How far the contact point travels round the rim in that time [rad], with the sign of the rolling rate.
+        Angle of travel of the contact point round the rim in one period [rad], with the sign of the rolling rate.
     """
 
     smallest_tilt: FloatArray
@@ -62,12 +62,12 @@ def free_motion(tilt: Real, rolling_rate: Real, c: Real) -> FreeMotion:
     -----
     From (11), θ̈ = ℓ²/θ³ + θ − c and β̇ = ℓ/θ². In units of c the turning points are roots of the quartic
     θ⁴ − 2θ³ + 2Eθ² − ℓ² = (θ − θ1)(θ − θ2)(θ − θ3)(θ − θ4) with θ4 < 0 < θ1 ≤ θ2 < θ3, and
-    ℓ² = θ1²θ2²(2 − θ1 − θ2)/(θ1 + θ2). The motion is bounded if the start lies below θ3. A start on the separatrix
-    θ2 = θ3, which includes steady rolling at ω² ≤ 1/3, counts as overturning.
+    ℓ² = θ1²θ2²(2 − θ1 − θ2)/(θ1 + θ2). The motion is bounded if the initial tilt lies below θ3. An initial condition on
+    the separatrix θ2 = θ3, which includes steady rolling at ω² ≤ 1/3, counts as overturning.
 
-    One period contains one passage near the vertical. As ℓ → 0 the azimuth turns by π in the passage, so its limit is
-    the jump from one side of the vertical to the other, and `planar_free_period` is two of these periods. At a rolling
-    rate of zero the advance is reported as +π.
+    One period contains one passage near the vertical. As ℓ → 0 the azimuth turns by π in the passage, so the limit of
+    the advance is the jump from one side of the vertical to the other, and `planar_free_period` is two of these
+    periods. At a rolling rate of zero the advance is reported as +π.
 
     Examples
     --------
@@ -92,11 +92,11 @@ def free_motion(tilt: Real, rolling_rate: Real, c: Real) -> FreeMotion:
 
 
 def _partner_turning_point(start: FloatArray, rate: FloatArray) -> FloatArray:
-    """Return the other turning point in units of c, NaN where the motion is unbounded.
+    """Compute the other turning point in units of c, NaN where the motion is unbounded.
 
     θ' is a turning point if θ'²(2 − θ0 − θ') = θ0²w²(θ0 + θ'). With θ' = θ0 w/Z that is the convex cubic
-    F(Z) = Z³ + wZ² − gZ + w = 0, g = 2/θ0 − 1, for Z > 0: the partner belongs to its larger root, θ3 to the smaller,
-    and the start itself stands at Z = w. Newton from above the larger root descends to it without fail.
+    F(Z) = Z³ + wZ² − gZ + w = 0, g = 2/θ0 − 1, for Z > 0: the other turning point belongs to the larger root, θ3 to the
+    smaller, and the initial tilt is Z = w. Newton's method from above the larger root always converges to it.
     """
     slope = 2.0 / start - 1.0
 
@@ -118,11 +118,11 @@ def _partner_turning_point(start: FloatArray, rate: FloatArray) -> FloatArray:
 
 
 def _period_and_advance(a1: FloatArray, a2: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return the period and the advance of the azimuth between the turning points a1 ≤ a2 in units of c.
+    """Compute the period and the advance of the azimuth between the turning points a1 ≤ a2 in units of c.
 
     With θ² = θ1²cos²φ + θ2²sin²φ the half period is the integral over a quarter turn of
-    √[(θ + θ1)(θ + θ2) / ((θ3 − θ)(θ − θ4))]; with 1/θ² = cos²χ/θ1² + sin²χ/θ2², which undoes the peak of β̇ = ℓ/θ²
-    at the passage near the vertical, half the advance is ℓ/(θ1 θ2) times the integral of the same root over χ.
+    √[(θ + θ1)(θ + θ2) / ((θ3 − θ)(θ − θ4))]; with 1/θ² = cos²χ/θ1² + sin²χ/θ2², which removes the peak of β̇ = ℓ/θ² at
+    the passage near the vertical, half the advance is ℓ/(θ1 θ2) times the integral of the same root over χ.
     """
     others = 2.0 - a1 - a2  # θ3 + θ4
     product = a1 * a2 * others / (a1 + a2)  # −θ3 θ4
@@ -138,13 +138,13 @@ def _period_and_advance(a1: FloatArray, a2: FloatArray) -> tuple[FloatArray, Flo
 
     upright = a1 == 0.0
     half_period, half_advance = np.zeros_like(a1), np.zeros_like(a1)
-    for sine, cosine, weight in quarter_turn():  # one node at a time: memory stays that of the arguments
+    for sine, cosine, weight in quarter_turn():  # one node at a time, to limit memory
         a = np.hypot(a1 * cosine, a2 * sine)
         half_period = half_period + weight * root(a, spread * sine**2, spread * cosine**2)
         squeeze = np.hypot(a2 * cosine, a1 * sine)  # θ1 θ2 / θ
         a = np.where(upright, a2, a2 * (a1 / squeeze))
         rise, fall = spread * (sine * a1 / squeeze) ** 2, spread * (cosine * a2 / squeeze) ** 2
-        with np.errstate(divide="ignore", invalid="ignore"):  # θ1 = 0, whose limit is put in below
+        with np.errstate(divide="ignore", invalid="ignore"):  # the limit for θ1 = 0 is inserted below
             half_advance = half_advance + weight * root(a, rise, fall)
     advance = np.where(upright, np.pi, 2.0 * np.sqrt(others / (a1 + a2)) * half_advance)
     return 2.0 * half_period, advance

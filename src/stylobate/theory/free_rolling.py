@@ -18,16 +18,16 @@ class FreeRolling:
     Parameters
     ----------
     rate
-        Rolling rate β̇ of the contact point [ω0], the greater first.
+        Rolling rate β̇ of the contact point [ω0], the larger first.
     friction_demand
-        Horizontal over vertical force of the contact: the coefficient of friction that it takes not to slip.
+        Horizontal over vertical force of the contact: the coefficient of friction below which the contact slips.
     exists
         Whether there is such a solution.
     stable
-        Whether no deviation grows: the tilt then oscillates about its value, without decay.
+        Whether no deviation grows: the tilt then oscillates without decay.
     eigenvalue
-        Growth rate of a deviation of the tilt, complex: imaginary where stable, the frequency of the nutation, else
-        real and positive. Its negative and three zeros are the other four eigenvalues.
+        Growth rate of a deviation of the tilt, complex: imaginary where stable (frequency of the nutation), otherwise
+        real and positive. The other four eigenvalues are its negative and three zeros.
     """
 
     rate: FloatArray
@@ -40,7 +40,7 @@ class FreeRolling:
 def free_rolling(
     tilt: Real, spin: Real = 0.0, *, c: Real, inertia_ratio: Real = 0.75, axial_ratio: Real = 0.5
 ) -> FreeRolling:
-    r"""Compute free steady rolling of a column round its rim at a given tilt and spin.
+    r"""Compute free steady rolling of a column round its rim from tilt and spin.
 
     Parameters
     ----------
@@ -63,13 +63,13 @@ def free_rolling(
     Raises
     ------
     ParameterError
-        If `tilt` is not between 0 and π/2, `spin` is not finite, a number of the body is not positive, or no body has
-        these numbers.
+        If `tilt` is not between 0 and π/2, `spin` is not finite, a number of the body is not positive, or no body can
+        have these numbers.
 
     See Also
     --------
-    free_rolling_spin : the spin that goes with a tilt and a rolling rate.
-    rolling_backbone : the limit of small tilts, without spin.
+    free_rolling_spin : the spin from tilt and rolling rate.
+    rolling_backbone : the limit of small tilts without spin.
 
     Notes
     -----
@@ -77,9 +77,9 @@ def free_rolling(
 
         sin θ (κp + (1 − κ) cos θ) β̇² − κc w3 (p + c i_a sin θ) β̇ + sin θ − c cos θ = 0,
 
-    two of opposite sign below the tipping angle, and above it, where the column would fall without spin, two of the
-    sign of w3 if that is large enough. Deviations from steady rolling keep two linear combinations of w1 and w3 that
-    depend on the tilt alone, so that the tilt moves as by a spring: it is stable where that spring is one.
+    two of opposite sign below the tipping angle. Above the tipping angle the column would fall without spin; if w3 is
+    large enough, two roots of its sign exist. Deviations from steady rolling conserve two linear combinations of w1 and
+    w3 that depend on the tilt alone. So the tilt moves as on a spring and is stable if the stiffness is positive.
 
     Examples
     --------
@@ -116,7 +116,7 @@ def free_rolling(
 def free_rolling_spin(
     tilt: Real, rate: Real, *, c: Real, inertia_ratio: Real = 0.75, axial_ratio: Real = 0.5
 ) -> FloatArray:
-    """Compute the spin with which a column rolls freely at a given tilt and rate.
+    """Compute the spin of free steady rolling from tilt and rolling rate.
 
     Parameters
     ----------
@@ -135,8 +135,8 @@ def free_rolling_spin(
     Raises
     ------
     ParameterError
-        If `tilt` is not between 0 and π/2, `rate` is not finite, a number of the body is not positive, or no body has
-        these numbers.
+        If `tilt` is not between 0 and π/2, `rate` is not finite, a number of the body is not positive, or no body can
+        have these numbers.
 
     Examples
     --------
@@ -161,14 +161,14 @@ def _inclined(tilt: Real) -> FloatArray:
 
 
 def _coefficients(tilt: FloatArray, body: RigidBody) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return what stands before β̇² and before −w3 β̇, and the constant, in the balance of tilting."""
+    """Return the coefficients of β̇² and of −w3 β̇, and the constant, in the balance of tilting."""
     s, cosine, height = np.sin(tilt), np.cos(tilt), body.height(tilt)
     square = s * (body.kappa * height + body.transverse * cosine)
     return square, body.kappa * body.c * (height + body.c * body.axial_ratio * s), body.overhang(tilt)
 
 
 def _roots(square: FloatArray, linear: FloatArray, constant: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return the greater and the lesser real root; the smaller in size from their product."""
+    """Return the larger and the smaller real root; the one of smaller modulus from their product."""
     discriminant = linear**2 - 4.0 * square * constant
     root = np.sqrt(np.where(discriminant >= 0.0, discriminant, np.nan))
     far = -0.5 * (linear + np.where(linear < 0.0, -root, root))
@@ -182,7 +182,7 @@ _STEP = 1e-30
 
 
 def _stiffness(tilt: FloatArray, rate: FloatArray, spin: FloatArray, body: RigidBody) -> FloatArray:
-    """Return −K dθ̈/dθ, with w1 and w3 following the tilt as they do without couples."""
+    """Return −K dθ̈/dθ, where w1 and w3 change with the tilt as without couples."""
     s, cosine = np.sin(tilt), np.cos(tilt)
     w1 = -rate * s
     inertia = body.axial / body.transverse

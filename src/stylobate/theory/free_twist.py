@@ -1,9 +1,8 @@
-"""Steady rolling of a slender column that is free to spin about its axis.
+"""Steady rolling of a slender column with free spin.
 
-The paper excludes rotation about the vertical. Damping makes a column that is free to spin lag behind the base. The lag
-leaves a part of the base acceleration across the lean, and this part spins the column up until the spin damping ζ
-balances it. The equations are those of rolling without slip in the limit of small tilts, seen from the frame that turns
-with the base.
+The paper excludes rotation about the vertical. Damping makes a column with free spin lag behind the base. The lag
+leaves a component of the base acceleration across the lean, which spins the column up until the spin damping ζ balances
+it. The equations describe rolling without slip in the limit of small tilts, in the frame that turns with the base.
 """
 
 from dataclasses import dataclass
@@ -32,15 +31,15 @@ class FreeTwistRolling:
     spin
         Axial angular velocity σ, in units of ω0.
     friction_moment
-        Moment about the vertical that the spin damping takes up, over m g r; with infinite `zeta` the one that the
-        paper's assumption needs.
+        Moment of the spin damping about the vertical, over m g r; with infinite `zeta` the moment that excludes
+        rotation.
     exists
         Whether there is such a solution.
     stable
         Whether all deviations decay; without damping, whether none grows.
     eigenvalues
         The five eigenvalues of the Jacobian, complex, along a last axis of length 5. For infinite `zeta` the spin
-        follows at once: the four of the paper's column, and −∞.
+        follows at once: the four eigenvalues of the paper's column, and −∞.
     """
 
     amplitude: FloatArray
@@ -75,8 +74,8 @@ def free_twist_rolling(
     eta
         Damping η, a couple against the rate of tilt.
     zeta
-        Spin damping ζ, a moment about the vertical that lets a free spin decay at the rate ζω0. Infinite, it forbids
-        the twist, as the paper does. Zero, with damping η, it leaves no steady rolling.
+        Spin damping ζ, a moment about the vertical by which a free spin decays at the rate ζω0. An infinite ζ excludes
+        the rotation, as the paper does. ζ = 0 with damping η allows no steady rolling.
     inertia_ratio
         κ = m h²/J0; ¾ for a solid cylinder, as by default.
     axial_ratio
@@ -95,7 +94,7 @@ def free_twist_rolling(
 
     See Also
     --------
-    steady_rolling : the same without twist.
+    steady_rolling : the same without spin.
 
     Notes
     -----
@@ -103,9 +102,9 @@ def free_twist_rolling(
 
         a0 cos ψ = θ(1 + ν²(1 + η/(ζΛ))) − c,   a0 sin ψ = ηνθ,   σ = −ηνθ/(cζκΛ):
 
-    the paper's solution (8) with ν² replaced by ν²(1 + η/(ζΛ)) in the first. The column rolls at a smaller tilt, spins
-    against its rolling, and the contact bears the moment m r a_n about the vertical, a_n = g ηνθ being the base
-    acceleration across the lean. At η = ζ = 0 the spin is arbitrary, and taken as 0.
+    the paper's solution (8) with ν² replaced by ν²(1 + η/(ζΛ)) in the first balance. The column rolls at a smaller tilt
+    and spins against its rolling. The contact bears the moment m r a_n about the vertical, where a_n = g ηνθ is the
+    base acceleration across the lean. At η = ζ = 0 the spin is arbitrary and set to 0.
 
     Examples
     --------
@@ -224,7 +223,7 @@ def checked_numbers(
 
 
 def _eigenvalues(state: FloatArray, exists: BoolArray, numbers: tuple[FloatArray, ...]) -> ComplexArray:
-    """Return the eigenvalues where there is a solution, NaN elsewhere; −∞ for a spin that follows at once."""
+    """Return the eigenvalues of each solution, NaN elsewhere; −∞ for a spin that follows at once."""
     _, a0, c, eta, zeta, ratio, axial = numbers
     out = np.full((*exists.shape, _STATES), np.nan, dtype=np.complex128)
     held = np.isinf(zeta)

@@ -1,4 +1,4 @@
-"""Stability of steady rolling with free spin, from the characteristic polynomial of its five states.
+"""Stability of steady rolling with free spin from the characteristic polynomial of its five states.
 
 With b = η/(ζΛ), Λ = 1 + i_a − κ, k = 1 + ν²(1 + b), ξ = c/θ, f = a0 cos ψ/θ = k − ξ, κ' = κ/Λ and i' = i_a/Λ, small
 deviations from steady rolling grow as e^{λτ} where λ⁵ + p1 λ⁴ + p2 λ³ + p3 λ² + p4 λ + p5 = 0,
@@ -9,7 +9,7 @@ deviations from steady rolling grow as e^{λτ} where λ⁵ + p1 λ⁴ + p2 λ³
     p4 = η²ν²(1 + κ') + ηζ(3ν² − 1 + bν²) + f(2ν² + i'(1 − ν²) − ηζ)
     p5 = ζ(η²ν² + fk).
 
-On the upper branch p5 = ζξ√((a0/c)²(k² + η²ν²) − η²ν²) > 0: no real eigenvalue changes its sign there but at a fold. So
+On the upper branch p5 = ζξ√((a0/c)²(k² + η²ν²) − η²ν²) > 0: a real eigenvalue changes its sign only at a fold. So
 stability is lost by a pair ±iω_H, where the fourth Hurwitz determinant vanishes,
 
     (p1p2 − p3)(p3p4 − p2p5) = (p1p4 − p5)²,    ω_H² = (p1p4 − p5)/(p1p2 − p3).
@@ -22,7 +22,7 @@ from typing import NamedTuple
 from stylobate.theory.arguments import BoolArray, FloatArray
 
 
-class Frictions(NamedTuple):
+class DampedColumn(NamedTuple):
     """Damping and shape of the column: η, ζ, κ and i_a, arrays that broadcast."""
 
     eta: FloatArray
@@ -41,8 +41,8 @@ class Frictions(NamedTuple):
         return self.eta / (self.zeta * self.freedom)
 
 
-def characteristic(nu: FloatArray, x: FloatArray, column: Frictions) -> tuple[FloatArray, ...]:
-    """Return p1 to p5 at ξ = c/θ; a0 does not enter, since ν, θ and the damping fix it."""
+def characteristic(nu: FloatArray, x: FloatArray, column: DampedColumn) -> tuple[FloatArray, ...]:
+    """Return p1 to p5 at ξ = c/θ; ν, θ and the damping determine a0."""
     eta, zeta = column.eta, column.zeta
     epsilon, axial_share, lag = column.kappa / column.freedom, column.axial / column.freedom, column.lag
     square = nu**2
@@ -63,7 +63,7 @@ def characteristic(nu: FloatArray, x: FloatArray, column: Frictions) -> tuple[Fl
     )
 
 
-def deviations_decay(nu: FloatArray, x: FloatArray, column: Frictions) -> BoolArray:
+def deviations_decay(nu: FloatArray, x: FloatArray, column: DampedColumn) -> BoolArray:
     """Return whether steady rolling of the upper branch, where p5 > 0, is stable (Liénard–Chipart)."""
     p1, p2, p3, p4, p5 = characteristic(nu, x, column)
     second = p1 * p2 - p3

@@ -28,7 +28,7 @@ def full_rolling(
     inertia_ratio: Real = 0.75,
     axial_ratio: Real = 0.5,
 ) -> FiniteTiltRolling:
-    """Compute all steady rolling of a rigid column without slip on a circling base, at any tilt.
+    """Compute all branches of steady rolling without slip of a rigid column on a circling base, at any tilt.
 
     Parameters
     ----------
@@ -41,10 +41,10 @@ def full_rolling(
     eta
         Damping η, a couple against the rate of tilt.
     zeta
-        Spin damping ζ, a moment against rotation about the vertical. Infinite, it forbids that. Zero, with friction
-        η, it leaves no steady rolling.
+        Spin damping ζ, a moment against rotation about the vertical. An infinite ζ excludes this rotation. ζ = 0 with
+        damping η allows no steady rolling.
     spin
-        Axial angular velocity [ω0] where there is no friction at all and nothing decides it; not used elsewhere.
+        Axial angular velocity [ω0], used only without any damping, when the spin is arbitrary.
     inertia_ratio
         κ = m h²/J0; ¾ for a slender solid cylinder, as by default.
     axial_ratio
@@ -59,30 +59,30 @@ def full_rolling(
     Raises
     ------
     ParameterError
-        If `nu` or a number of the body is not positive, no body has these numbers, `spin` is not finite, or another
-        argument is negative.
+        If `nu` or a number of the body is not positive, no body can have these numbers, `spin` is not finite, or
+        another argument is negative.
 
     See Also
     --------
     free_twist_rolling : the limit of small tilts.
-    wobbling_rolling : the same for pure tilting, without twist.
+    wobbling_rolling : the same for pure tilting, without rotation about the vertical.
 
     Notes
     -----
-    In steady rolling the two couples about the lean and about the axis leave of the contact force and the spin
+    In steady rolling the balances of the couples about the lean and about the axis give contact force and spin,
 
         a0 sin ψ = ην sin θ cos θ/p,   w3 = −ν sin θ (sin θ + η/(ζκcΛp))/cos θ,   p = cos θ + c sin θ
 
-    with Λ = 1 + i_a − κ, and tilting is in balance where
+    with Λ = 1 + i_a − κ, and the balance of tilting is
 
         p a0 cos ψ = sin θ − c cos θ + ν² sin θ (κp + (1 − κ) cos θ) − νκc w3 (p + c i_a sin θ).
 
-    The amplitudes are the zeros of (a0 cos ψ)² + (a0 sin ψ)² − a0²: with friction there have been two at most among
-    100 000 random columns, one for a0 > c. They are those of the slender column but for a part of the order c². A
-    column that rolls against its spin may lean beyond its tipping angle and be stable. Infinite spin damping leaves
-    the spin w3 = −ν sin θ tan θ, since it forbids rotation about the vertical and not about the axis.
+    The amplitudes are the zeros of (a0 cos ψ)² + (a0 sin ψ)² − a0²: with damping, 100 000 random columns had at most
+    two, and one for a0 > c. They differ from the amplitudes of the slender column by a relative amount of order c². A
+    column that rolls against its spin may lean beyond its tipping angle and be stable. Infinite spin damping gives the
+    spin w3 = −ν sin θ tan θ, since it excludes rotation about the vertical, not about the axis.
 
-    Stability is that of all five states, from the exact Jacobian. Without damping and base motion the phase is
+    Stability follows from the exact Jacobian of all five states. Without damping and base motion the phase is
     arbitrary.
 
     Examples

@@ -1,4 +1,4 @@
-"""Rolling of a rigid column without slip, at any tilt and with free spin, seen from the frame of a turning base."""
+"""Rates of rolling without slip of a rigid column, at any tilt and with free spin, in the rotating frame."""
 
 import numpy as np
 
@@ -11,7 +11,7 @@ STATES = 5
 def rates(
     state: Numbers, nu: FloatArray, a0: FloatArray, eta: FloatArray, zeta: FloatArray, body: RigidBody
 ) -> Numbers:
-    """Return the right-hand side of rolling without slip at finite tilt, in the frame of the circular base motion.
+    """Evaluate the right-hand side of rolling without slip at finite tilt, in the frame of the circular base motion.
 
     Parameters
     ----------
@@ -25,8 +25,8 @@ def rates(
     eta
         Damping η, a couple against the rate of tilt.
     zeta
-        Spin damping ζ, a moment against rotation about the vertical. Infinite, it forbids that; the state must then
-        have σ cos θ + β̇ sin²θ = 0.
+        Spin damping ζ, a moment against rotation about the vertical. An infinite ζ excludes this rotation; the state
+        must then have σ cos θ + β̇ sin²θ = 0.
     body
         The column.
 
@@ -45,7 +45,7 @@ def rates(
         σ̇ = (cT + M3)/I_a
         K θ̈ = s − c cos θ − p a0 cos ψ − κpβ̇(cσ + w1) + I_t β̇²s cos θ − I_a β̇sσ − ηθ̇
 
-    T is the force of the contact across the lean, over m g.
+    T is the contact force across the lean, over m g.
     """
     mu, omega, tilt, psi, spin = state
     s, cosine, height = np.sin(tilt), np.cos(tilt), body.height(tilt)
@@ -84,7 +84,7 @@ def _vertical_moment(
     mu: Numbers, w1: Numbers, spin: Numbers, tilt: Numbers, drive: Numbers, eta: FloatArray, zeta: FloatArray,
     body: RigidBody,
 ) -> Numbers:  # fmt: skip
-    """Return the moment of the spin damping or, where that is infinite, the one that keeps ω·Z as it is."""
+    """Return the moment of the spin damping or, if ζ is infinite, the moment that keeps ω·Z constant."""
     s, cosine = np.sin(tilt), np.cos(tilt)
     held = np.isinf(zeta)
     coefficient = np.where(held, 0.0, zeta) * body.kappa * body.c**2 * body.freedom

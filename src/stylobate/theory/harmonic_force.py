@@ -1,4 +1,4 @@
-"""A force that is a constant and one harmonic: when it changes sign, and what it does to a mass until then."""
+"""Constant force plus one harmonic: sign changes, and velocity and distance that it gives a unit mass."""
 
 import cmath
 import math
@@ -6,11 +6,11 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 _TURN = 2.0 * math.pi
-# Instants nearer than this [rad] to the last one are the last one.
+# Instants closer than this [rad] to the previous one count as the same.
 _INSTANT = 1e-14
-# A zero a rounding ago counts as now.
+# A zero this close before τ, by rounding, counts as a zero at τ.
 _BEHIND = 1e-12
-# Steps of a root: Newton's need some ten, halving a bracket to rounding fewer than these.
+# Limit of the steps to a root: Newton needs about ten, bisection to rounding fewer than this limit.
 _STEPS = 120
 _ROUNDING = 4.0 * 2.0**-52
 
@@ -22,9 +22,9 @@ class HarmonicForce:
     Parameters
     ----------
     constant
-        Its mean.
+        Mean of the force.
     swing
-        Complex amplitude of its harmonic part.
+        Complex amplitude of the harmonic part.
     """
 
     constant: float
@@ -32,25 +32,25 @@ class HarmonicForce:
 
     @property
     def angle(self) -> float:
-        """Phase of its harmonic part."""
+        """Phase of the harmonic part."""
         return math.atan2(self.swing.imag, self.swing.real)
 
     def at(self, tau: float) -> float:
-        """Value at τ."""
+        """Evaluate the force at τ."""
         return self.constant + (self.swing * cmath.exp(1j * tau)).real
 
     def slope(self, tau: float) -> float:
-        """Rate of change at τ."""
+        """Evaluate the rate of change at τ."""
         return -(self.swing * cmath.exp(1j * tau)).imag
 
     def gain(self, tau: float, span: float) -> float:
-        """Velocity it gives between τ and τ + span."""
+        """Compute the velocity gained between τ and τ + span."""
         turned = self.swing * cmath.exp(1j * tau)
         half = math.sin(0.5 * span)
         return self.constant * span + turned.real * math.sin(span) - turned.imag * 2.0 * half * half
 
     def travel(self, tau: float, span: float) -> float:
-        """Distance it gives between τ and τ + span, right to rounding of span² for short ones."""
+        """Compute the distance gained between τ and τ + span, accurate to rounding of span² for short spans."""
         turned = self.swing * cmath.exp(1j * tau)
         half = math.sin(0.5 * span)
         return (
@@ -58,7 +58,7 @@ class HarmonicForce:
         )
 
     def next_fall(self, tau: float) -> float:
-        """Phase from τ to where it next falls below zero: 0 if it does so now, infinite if it never does."""
+        """Compute the phase from τ to the next fall below zero: 0 if it falls now, infinite if it never falls."""
         size = abs(self.swing)
         if size <= abs(self.constant):
             return math.inf
@@ -66,7 +66,7 @@ class HarmonicForce:
         return 0.0 if span > _TURN - _BEHIND else span
 
     def zeros(self, tau: float, span: float) -> list[float]:
-        """Phases from τ to its zeros, rising, between now and `span`, at most a period."""
+        """Compute the phases from τ to the zeros within `span`, at most a period, in increasing order."""
         size = abs(self.swing)
         if size <= abs(self.constant):
             return []
@@ -78,7 +78,7 @@ class HarmonicForce:
 def root(value: Callable[[float], float], slope: Callable[[float], float], low: float, high: float) -> float:
     """Find the zero of a function that is monotone between `low` and `high` and changes its sign.
 
-    Newton's steps while they stay in the bracket, halving it otherwise; to rounding.
+    Newton steps while they stay in the bracket, bisection otherwise; accurate to rounding.
     """
     rises = value(high) > 0.0
     x = 0.5 * (low + high)

@@ -1,7 +1,7 @@
-"""Fast straight-line base motion: the limit ν → ∞, a problem of its own with a1/c as its one parameter.
+"""High-frequency limit ν → ∞ of straight-line base motion; a1/c is the only parameter.
 
-With θ = c y/ν² and s = ντ, (1) becomes y″ = y/ν² − ŷ − (η/ν) y′ − (a1/c) cos s e1. The limit drops the overturning
-part of the weight and the friction, and keeps the base motion in full: raising ν does not make averaging better.
+With θ = c y/ν² and s = ντ, (1) becomes y″ = y/ν² − ŷ − (η/ν) y′ − (a1/c) cos s e1. The limit omits the overturning part
+of the weight and the damping and keeps the full base motion: a higher ν does not make averaging more accurate.
 """
 
 from dataclasses import dataclass
@@ -26,7 +26,7 @@ class HighFrequencyRolling:
         The two frequencies, per unit of s, of small oscillations about the upper branch, along a last axis of length 2,
         the slower first.
     stable
-        Whether the upper branch is stable, neutrally: no deviation grows and none decays.
+        Whether the upper branch is neutrally stable: no deviation grows and none decays.
     """
 
     upper: FloatArray
@@ -38,7 +38,7 @@ class HighFrequencyRolling:
 def high_frequency_rates(
     s: Real, state: Real, ratio: Real, transverse_ratio: Real = 0.0, phi2: Real = 0.0
 ) -> FloatArray:
-    """Right-hand side of the equations of motion in the limit of fast base motion.
+    """Evaluate the right-hand side of the equations of motion in the limit of fast base motion.
 
     Parameters
     ----------
@@ -65,7 +65,7 @@ def high_frequency_rates(
 
     Notes
     -----
-    y″ = −ŷ − (a1 cos s, a2 cos(s + φ2))/c, from (1). Holds while y ≪ ν²: nothing overturns in this limit.
+    y″ = −ŷ − (a1 cos s, a2 cos(s + φ2))/c, from (1). Valid for y ≪ ν²: no column overturns in this limit.
     """
     y = np.asarray(state, dtype=np.float64)
     if y.ndim == 0 or len(y) != _STATE_LENGTH:
@@ -84,8 +84,8 @@ def high_frequency_rolling(ratio: Real) -> HighFrequencyRolling:
     Parameters
     ----------
     ratio
-        a1/c, acceleration amplitude of the base against the slenderness. Circular motion of amplitude a0 is the case
-        2a0/c, and there the result is exact.
+        a1/c, acceleration amplitude of the base against the slenderness. For circular motion of amplitude a0 pass
+        2a0/c; the result is then exact.
 
     Returns
     -------
@@ -101,8 +101,8 @@ def high_frequency_rolling(ratio: Real) -> HighFrequencyRolling:
     -----
     The limit of (8), (10) for ν → ∞: y± = 1 ± a1/2c. Deviations e^{σs} obey σ⁴ + (2 + ξ)σ² + 1 − ξ = 0, ξ = 1/y, so
     σ² = −½[2 + ξ ± √(ξ² + 8ξ)]: both negative on the upper branch, ξ < 1, and of opposite sign on the lower. The
-    critical frequency is below √(1 + 2a0/c), hence every amplitude ends up stable. Friction damps as e^{−ητ/2}, which
-    is e^{−ηs/2ν} here: not in the limit.
+    critical frequency is below √(1 + 2a0/c), so every amplitude is stable in the limit. The damping factor e^{−ητ/2} =
+    e^{−ηs/2ν} tends to 1.
 
     Examples
     --------

@@ -1,13 +1,14 @@
-"""A block that bounces once in each period of a vibrating plane, in closed form.
+"""Block that bounces once per period of a vibrating plane, in closed form.
 
-The bouncing ball's simplest motion: it is thrown with the absolute normal velocity π cos ψ in g/Ω, flies for one period
-and lands with −π cos ψ on the plane whose velocity w then obeys π cos ψ − w = e(π cos ψ + w). With the throw number Γ,
+In the simplest motion of a bouncing ball the block leaves with the absolute normal velocity π cos ψ in g/Ω, flies for
+one period and lands with −π cos ψ. The velocity w of the plane then obeys π cos ψ − w = e(π cos ψ + w). With the throw
+number Γ,
 
     sin θ = π(1 − e)/((1 + e)Γ),  cos θ < 0,
 
-where θ is the phase at which it lands of the base acceleration cos ψ Γ cos θ. A landing disturbed by δt and δv is
-followed by one with the determinant e² and the trace 1 + e² + (1 + e)²Γ cos θ. So it is stable from where it begins,
-at cos θ = 0, to where the period doubles, at −Γ cos θ = 2(1 + e²)/(1 + e)² (Holmes 1982).
+where θ is the phase of the base acceleration cos ψ Γ cos θ at the landing. The map of deviations δt and δv from one
+landing to the next has the determinant e² and the trace 1 + e² + (1 + e)²Γ cos θ. So the motion is stable between its
+onset at cos θ = 0 and the period doubling at −Γ cos θ = 2(1 + e²)/(1 + e)² (Holmes 1982).
 """
 
 import numpy as np
@@ -16,7 +17,7 @@ from stylobate.theory.arguments import BoolArray, FloatArray, Real, finite, not_
 from stylobate.theory.starting import steepness
 from stylobate.theory.throwing import below_elastic
 
-# Nodes at which the flight is looked at for a contact in between: it comes early, if at all.
+# Nodes that check the flight for an intermediate contact, which comes early.
 _NODES, _FIRST = 1024, 1e-4
 
 
@@ -29,7 +30,7 @@ def hopping_speed(
     phase: Real = 0.0,
     incline: Real = 0.0,
 ) -> FloatArray:
-    """Compute the mean transport velocity of a block that bounces once in each period of the base motion.
+    """Compute the mean transport velocity of a block that bounces once per period of the base motion.
 
     Parameters
     ----------
@@ -39,8 +40,8 @@ def hopping_speed(
     Returns
     -------
     numpy.ndarray
-        Mean velocity along the plane [g/Ω], of the broadcast shape, uphill positive; NaN where this motion does not
-        exist or is not stable, or friction does not hold the block on the incline.
+        Mean velocity along the plane [g/Ω], of the broadcast shape, uphill positive; NaN if this motion does not exist
+        or is unstable, or if friction does not hold the block on the incline.
 
     Raises
     ------
@@ -50,19 +51,19 @@ def hopping_speed(
 
     See Also
     --------
-    block_cycle : the motion reached from a given start, which often is another.
+    block_cycle : the motion from given initial conditions, often a different one.
 
     Notes
     -----
-    A landing has the normal impulse 2π cos ψ. It can stop a slip of 2π sin ψ, what gravity gives in a flight, if
-    μk ≥ abs(tan ψ): the block is thrown without slip and, whatever the friction, moves at
+    A landing has the normal impulse 2π cos ψ. It can stop the slip 2π sin ψ, which gravity adds in a flight, if μk ≥
+    abs(tan ψ). Then the block is thrown without slip and moves, for any friction, at
 
         along sin(θ − phase) − π sin ψ
 
-    on average, on a horizontal plane in line with its vibration π(1 − e)/(1 + e) along/normal.
+    on average. On a horizontal plane that vibrates along a line this is π(1 − e)/(1 + e) along/normal.
 
-    Exact. That the block does not touch the plane between its landings is looked at on 1024 nodes: it matters for small
-    e. With e = 0 this motion begins only at Γ = √(1 + π²).
+    Exact. An intermediate contact, possible for small e, is checked on 1024 nodes. With e = 0 this motion exists only
+    from Γ = √(1 + π²).
 
     Examples
     --------
@@ -87,7 +88,7 @@ def hopping_speed(
 
 
 def _clear(e: FloatArray, rising: FloatArray, falling: FloatArray) -> BoolArray:
-    """Whether a flight of one period stays above the plane."""
+    """Return whether a flight of one period stays above the plane."""
     e, rising, falling = (number[..., np.newaxis] for number in (e, rising, falling))
     x = np.geomspace(_FIRST, 2.0 * np.pi, _NODES, endpoint=False)
     thrown = 2.0 * np.pi * e / (1.0 + e)

@@ -1,4 +1,4 @@
-"""The planar impact of a rocking column on the other side of its base, and the friction that loses as much energy."""
+"""Planar impact of a rocking column: restitution, and the viscous damping with the same energy loss."""
 
 import numpy as np
 
@@ -30,16 +30,16 @@ def housner_restitution(c: Real, *, inertia_ratio: Real = 0.75) -> FloatArray:
     See Also
     --------
     block_restitution : the same for a rectangular block.
-    required_friction : below which the contact slips in the impact.
+    required_friction : friction below which the contact slips in the impact.
 
     Notes
     -----
-    The moment of momentum about the new contact point is kept (Housner 1963): with J0 − m r² about it before, and
-    K = J0 + m r² after,
+    The moment of momentum about the new contact point is conserved (Housner 1963): with J0 − m r² before and K = J0 + m
+    r² after the impact,
 
         e = 1 − 2 m r²/K = (1 − κc²)/(1 + κc²).
 
-    So flat a body that κc² ≥ 1 stays down: e = 0. Columns have been found to lose more as well as less.
+    A body with κc² ≥ 1 is so flat that it does not rebound: e = 0. Measured losses of columns were larger or smaller.
 
     Examples
     --------
@@ -62,7 +62,7 @@ def block_restitution(c: Real) -> FloatArray:
     Returns
     -------
     numpy.ndarray
-        e = 1 − (3/2) sin²α_c with tan α_c = c; 0 for blocks so flat that they stay down, c ≥ √2.
+        e = 1 − (3/2) sin²α_c with tan α_c = c; 0 for c ≥ √2, blocks so flat that they do not rebound.
 
     Raises
     ------
@@ -75,7 +75,7 @@ def block_restitution(c: Real) -> FloatArray:
 
     Notes
     -----
-    Housner (1963): the moment of momentum about the new edge is kept, and J0 = m h² (4 + c²)/3.
+    Housner (1963): the moment of momentum about the new edge is conserved, and J0 = m h² (4 + c²)/3.
 
     Examples
     --------
@@ -87,7 +87,7 @@ def block_restitution(c: Real) -> FloatArray:
 
 
 def equivalent_viscous_damping(amplitude: Real, *, c: Real, restitution: Real) -> FloatArray:
-    """Compute the damping that takes as much energy from planar rocking per cycle as impacts do.
+    """Compute the damping that dissipates as much energy per cycle of planar rocking as impacts do.
 
     Parameters
     ----------
@@ -101,7 +101,7 @@ def equivalent_viscous_damping(amplitude: Real, *, c: Real, restitution: Real) -
     Returns
     -------
     numpy.ndarray
-        Friction η, of the broadcast shape; NaN where θ ≥ c: the column does not come back.
+        Damping η, of the broadcast shape; NaN where θ ≥ c: the column does not return.
 
     Raises
     ------
@@ -110,12 +110,13 @@ def equivalent_viscous_damping(amplitude: Real, *, c: Real, restitution: Real) -
 
     Notes
     -----
-    For the slender column. Its free motion (2), φ = θ/c, hits the base at the rate cv with v² = 2φ − φ² and loses
-    (1 − e²) of its energy; friction takes 2ηc²S in the same half cycle, S = ∫₀^φ √(v² − 2x + x²) dx:
+    For the slender column. Its free motion (2), φ = θ/c, hits the base at the rate cv with v² = 2φ − φ² and loses (1 −
+    e²) of its energy; damping dissipates 2ηc²S in the same half cycle, S = ∫₀^φ √(v² − 2x + x²) dx:
 
         η = (1 − e²) v²/(4S),   S = ½[v − (1 − v²) artanh v].
 
-    η falls with the amplitude, as ¾(1 − e²)/v from small ones, to ½(1 − e²) at θ = c: no one η fits a decay.
+    η decreases with the amplitude, from ¾(1 − e²)/v at small amplitudes to ½(1 − e²) at θ = c: no single η fits a
+    decay.
 
     Examples
     --------
@@ -126,7 +127,7 @@ def equivalent_viscous_damping(amplitude: Real, *, c: Real, restitution: Real) -
         positive("amplitude", amplitude), positive("c", c), not_negative("restitution", restitution)
     )
     if np.any(e > 1.0):
-        message = f"restitution must be at most 1, got {float(np.max(e))!r}: an impact gives no energy"
+        message = f"restitution must be at most 1, got {float(np.max(e))!r}: an impact adds no energy"
         raise ParameterError(message)
     ratio = amplitude / c
     inside = ratio < 1.0
@@ -135,7 +136,7 @@ def equivalent_viscous_damping(amplitude: Real, *, c: Real, restitution: Real) -
     return np.where(inside, (1.0 - e) * (1.0 + e) * speed**2 / (4.0 * _action(speed, 1.0 - ratio)), np.nan)
 
 
-# Below this both terms of S nearly cancel, and it is taken from its series, to a relative v^(2 · terms) = 1e-16 here.
+# Below this limit the terms of S nearly cancel; its series has the relative error v^(2 · terms) = 1e-16.
 _SMALL_SPEED = 0.1
 _TERMS = 8
 

@@ -1,7 +1,7 @@
-"""How steady rolling loses its stability at ν*: softly, into a modulated rolling, or hard.
+"""First Lyapunov coefficient of steady rolling at ν*: supercritical or subcritical Hopf bifurcation.
 
-The first Lyapunov coefficient of the Hopf bifurcation of (7), from its second and third derivatives in closed form. The
-state is (θ̇/c, β̇, θ/c, ψ) and the amplitude a = a0/c; at steady rolling θ̇ = 0 and β̇ = ν.
+The coefficient of the Hopf bifurcation of (7) follows from second and third derivatives in closed form. The state is
+(θ̇/c, β̇, θ/c, ψ) and the amplitude a = a0/c; at steady rolling θ̇ = 0 and β̇ = ν.
 """
 
 from dataclasses import dataclass
@@ -29,9 +29,9 @@ def first_lyapunov_coefficient(a0: Real, *, c: Real, eta: Real) -> FloatArray:
     Returns
     -------
     numpy.ndarray
-        The coefficient, of the broadcast shape: negative where a stable modulated rolling is born below ν*. NaN where
-        there is no ν*, at the very start of its curve, and without damping, where the loss of stability is no Hopf
-        bifurcation.
+        The coefficient, of the broadcast shape: negative if a stable modulated rolling bifurcates below ν*
+        (supercritical). NaN if no ν* exists, at the start of its curve, and without damping, when the loss of stability
+        is no Hopf bifurcation.
 
     Raises
     ------
@@ -41,9 +41,9 @@ def first_lyapunov_coefficient(a0: Real, *, c: Real, eta: Real) -> FloatArray:
     Notes
     -----
     l1 = Re[⟨p, C(q, q, q̄)⟩ − 2⟨p, B(q, J⁻¹B(q, q̄))⟩ + ⟨p, B(q̄, (2iΩ − J)⁻¹B(q, q))⟩] / (2Ω) with Jq = iΩq, Jᵀp = −iΩp,
-    ⟨q, q⟩ = 1 and ⟨p, q⟩ = 1, in the state (θ̇/c, β̇, θ/c, ψ), so that it depends on a0/c and η alone. The sign is what
-    has a meaning; the size goes with the scales of the state. Negative wherever it was looked for: a0/c from 0.001 to
-    100 and η from 0.001 to 20.
+    ⟨q, q⟩ = 1 and ⟨p, q⟩ = 1, in the state (θ̇/c, β̇, θ/c, ψ), so that l1 depends on a0/c and η alone. Only the sign
+    has a meaning; the size depends on the scales of the state. l1 was negative in all cases computed: a0/c from 0.001
+    to 100 and η from 0.001 to 20.
 
     References
     ----------
@@ -84,7 +84,7 @@ def _solve(matrices: ComplexArray, vectors: ComplexArray) -> ComplexArray:
 def _critical_vectors(
     nu: FloatArray, tilt: FloatArray, eta: FloatArray, frequency: FloatArray
 ) -> tuple[ComplexArray, ComplexArray]:
-    """Return q and p of the eigenvalue iω_H, by hand from the sparse Jacobian, where a0 sin ψ = ηνθ."""
+    """Return q and p of the eigenvalue iω_H in closed form from the sparse Jacobian, with a0 sin ψ = ηνθ."""
     s = 1.0j * frequency
     turn, detuning = nu * (2.0 * s + eta), s**2 + eta * s - 1.0 - nu**2
     q = np.stack([s * turn * tilt, s * detuning, turn * tilt, detuning], axis=-1)
@@ -140,7 +140,7 @@ class _Expansion:
         return _rates(tilting, turning)
 
     def _moment_1(self, m: ComplexArray, p: ComplexArray) -> ComplexArray:
-        """First derivative of −2θ̇β̇ + a sin ψ, which is θ times the turning acceleration but for friction."""
+        """Return the first derivative of −2θ̇β̇ + a sin ψ, θ times the turning acceleration without damping."""
         return -2.0 * self.nu * m + self.push * p
 
     def _moment_2(
@@ -152,11 +152,11 @@ class _Expansion:
         yw: ComplexArray,
         yp: ComplexArray,
     ) -> ComplexArray:
-        """Second derivative of −2θ̇β̇ + a sin ψ."""
+        """Return the second derivative of −2θ̇β̇ + a sin ψ."""
         return -2.0 * (xm * yw + xw * ym) - self.drive * xp * yp
 
 
 def _rates(tilting: ComplexArray, turning: ComplexArray) -> ComplexArray:
-    """Put the derivatives of θ̈ and β̈ beside those of θ̇ and ψ̇, which are linear."""
+    """Combine the derivatives of θ̈ and β̈ with the derivatives of θ̇ and ψ̇, which are linear."""
     none = np.zeros_like(tilting)
     return np.stack([tilting, turning, none, none], axis=-1)

@@ -1,4 +1,4 @@
-"""Modulated rolling: below ν* the column still rolls with the base motion, at a tilt that swings for ever."""
+"""Modulated rolling below ν*: rolling at the mean rate of the base motion with an oscillating tilt."""
 
 from dataclasses import dataclass
 
@@ -17,14 +17,14 @@ _FEWEST_POINTS = 15
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ModulatedRolling:
-    """A modulated rolling, or the reason why none was found (NaN then stands in every number).
+    """A modulated rolling, or the reason why none was found (all numbers are then NaN).
 
     Parameters
     ----------
     found
-        Whether there is one.
+        Whether a modulated rolling was found.
     reason
-        Why not; empty if found.
+        Reason of the failure; empty if found.
     tau
         Times of one period of the modulation, equally spaced, shape (points,).
     amplitude, phase
@@ -36,9 +36,9 @@ class ModulatedRolling:
     multipliers
         The four Floquet multipliers, complex, the largest first; one of them is 1.
     stable
-        Whether the others lie within the unit circle.
+        Whether the other three multipliers lie within the unit circle.
     amplitude_range
-        Least and peak tilt angle at these times, against that of the unstable steady rolling θ+.
+        Minimum and peak tilt angle at these times, over the tilt θ+ of the unstable steady rolling.
     """
 
     found: bool
@@ -84,10 +84,10 @@ def modulated_rolling(nu: float, a0: float, *, c: float, eta: float, points: int
 
     Notes
     -----
-    A limit cycle of (7) born in the Hopf bifurcation of steady rolling at ν*, found by Fourier collocation and followed
-    from there. At c = η = 0.1 and a0 = 0.065 it is stable from ν* = 1.3971 down to 1.3224, where a multiplier
-    leaves through −1: the modulation doubles its period. Integration then shows a cascade of doublings, which ends
-    near 1.313 with the column overturning. The unstable cycle itself goes on to lower frequencies.
+    The motion is a limit cycle of (7) that bifurcates from steady rolling at ν* (Hopf), computed by Fourier collocation
+    and continuation. At c = η = 0.1 and a0 = 0.065 it is stable from ν* = 1.3971 down to 1.3224, where a multiplier
+    passes −1: the modulation doubles its period. Integration then shows a cascade of period doublings, which ends near
+    1.313 with overturning. The unstable cycle continues to lower frequencies.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""A column that passes near the vertical: how far the contact point runs round the rim, and what friction it needs."""
+"""Passage near the vertical: angle of travel of the contact point round the rim, and required friction."""
 
 import numpy as np
 
@@ -7,7 +7,7 @@ from stylobate.theory.rigid_body import below_one
 
 
 def angle_of_turn(c: Real, *, inertia_ratio: Real = 0.75, spin_ratio: Real = 0.0) -> FloatArray:
-    """Compute the angle by which the contact point runs round the rim in a passage near the vertical.
+    """Compute the angle of travel of the contact point round the rim in a passage near the vertical.
 
     Parameters
     ----------
@@ -16,13 +16,13 @@ def angle_of_turn(c: Real, *, inertia_ratio: Real = 0.75, spin_ratio: Real = 0.0
     inertia_ratio
         κ = m h²/J0; ¾ for a slender solid cylinder, as by default, and 1/(4/3 + c²/4) for one of slenderness c.
     spin_ratio
-        Axial angular velocity w3 over the rate |θ̇| at which the tilt falls on approach; positive where the contact
-        point turns in the sense of w3.
+        Axial angular velocity w3 over the tilt rate |θ̇| on approach; positive if the contact point turns in the sense
+        of w3.
 
     Returns
     -------
     numpy.ndarray
-        Angle |Δβ| [rad], of the broadcast shape, in the limit of a passage that misses the vertical by nothing.
+        Angle |Δβ| [rad], of the broadcast shape, in the limit of zero distance from the vertical.
 
     Raises
     ------
@@ -31,21 +31,21 @@ def angle_of_turn(c: Real, *, inertia_ratio: Real = 0.75, spin_ratio: Real = 0.0
 
     See Also
     --------
-    required_friction : below which the contact slips in such a passage.
+    required_friction : friction below which the contact slips in such a passage.
 
     Notes
     -----
-    Near the upright ℓ = θ²β̇ and w3 stay what they are, and
+    Near the vertical ℓ = θ²β̇ and w3 are constant, and
 
         K θ̈ = J0 ℓ²/θ³ − m h r w3 ℓ/θ²,
 
-    which as an equation for 1/θ against β is a harmonic oscillator under a constant force. It gives
+    which is, for 1/θ as a function of β, a harmonic oscillator under a constant force. The solution gives
 
         |Δβ| = [π + 2 atan(m h r w3 / (√(K J0) |θ̇|))] √(K/J0),   K/J0 = 1 + κc².
 
-    Without spin that is π for a slender column: it falls to the opposite side, as if it rocked in a plane. A solid
-    cylinder turns farther the flatter it is, up to √5 π for a disk; Srinivasan and Ruina (2008) describe it. A disk has
-    h = 0 and so no c: its K/J0 is approached as c grows and κ falls.
+    Without spin the angle is π for a slender column, which falls to the opposite side as in planar rocking. The angle
+    of a solid cylinder grows with its flatness, up to √5 π for a disk (Srinivasan and Ruina 2008). A disk has h = 0 and
+    no finite c: its K/J0 is the limit of large c and small κ.
 
     Examples
     --------
@@ -83,10 +83,10 @@ def required_friction(c: Real, *, inertia_ratio: Real = 0.75) -> FloatArray:
     Notes
     -----
     m h r/J0 = κc is the ratio of the horizontal to the vertical force, or impulse, of the contact in three events on a
-    base at rest: when the column is let go at a small tilt, where it accelerates about the tangent of the rim; when it
-    passes close to the vertical without spin, where the force runs round with the contact point; and in the planar
-    impact on the other side of the base. A base that sets the column in motion from rest asks for more: its
-    acceleration is c g by then, and the coefficient of friction must be c at least.
+    base at rest: release at a small tilt, when the column accelerates about the tangent of the rim; a passage close to
+    the vertical without spin, when the force turns with the contact point; and the planar impact on the other side of
+    the base. Uplift from rest by the base needs more: the base acceleration is then c g, so the friction coefficient
+    must be at least c.
 
     Examples
     --------

@@ -1,8 +1,8 @@
-"""Rocking in a plane under straight-line base motion: the symmetric orbits of the forcing period, in closed form.
+"""Planar rocking under straight-line base motion: symmetric orbits of the forcing period, in closed form.
 
-Between two passages of the vertical the equation (1) is linear. Consider a motion that leaves the vertical at the speed
-v0, comes back after half a forcing period T = π/ν at −v0 and repeats with the opposite sign. It obeys, with the rates
-d = (η + √(η² + 4))/2 of decay and 1/d of growth,
+Between two passages of the vertical the equation (1) is linear. A motion that leaves the vertical at the speed v0,
+returns after half a forcing period T = π/ν at −v0 and repeats with the opposite sign obeys, with the rates d = (η +
+√(η² + 4))/2 of decay and 1/d of growth,
 
     θ_f = c [tanh(dT/2) − d² tanh(T/2d)] / (1 + d²),                 the forced part of θ at the passage,
     v0 = cd [tanh(dT/2) + tanh(T/2d)] / (1 + d²) ± ν√(θ_a² − θ_f²),  θ_a = a1/√((1 + ν²)² + η²ν²).
@@ -17,7 +17,7 @@ import numpy.typing as npt
 
 from stylobate.theory.arguments import BoolArray, ComplexArray, FloatArray, Real, not_negative, positive
 
-_NODES = 256  # Chebyshev intervals over half a period; they crowd where the exponentials live
+_NODES = 256  # Chebyshev intervals over half a period; dense where the exponentials vary
 _BISECTIONS = 60
 
 
@@ -30,15 +30,15 @@ class PlanarOrbit:
     amplitude
         Peak tilt angle [rad].
     phase
-        Phase of the base acceleration a1 cos(ντ + phase) when the column passes the upright towards positive tilt at
-        τ = 0 [rad], in (−π, π].
+        Phase of the base acceleration a1 cos(ντ + phase) when the column passes the vertical towards positive tilt at τ
+        = 0 [rad], in (−π, π].
     crossing_velocity
         Tilt rate v0 at that passage.
     exists
         Whether there is such an orbit.
     multipliers
-        The two multipliers of the half-period map within the plane, complex, along a last axis of length 2; squared
-        they are those of the period. Out of the plane there are none, see `planar_kick_slope`.
+        The two multipliers of the half-period map within the plane, complex, along a last axis of length 2; their
+        squares are the multipliers of the period. None exist out of the plane, see `planar_kick_slope`.
     stable_in_plane
         Whether no deviation within the plane grows. Without damping nothing decays either: True then means neutrally
         stable.
@@ -52,7 +52,7 @@ class PlanarOrbit:
     stable_in_plane: BoolArray
 
     def start(self) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Tilt angle, tilt rate and phase of the base acceleration from which the orbit can be integrated."""
+        """Return tilt angle, tilt rate and phase of the base acceleration as initial conditions of the orbit."""
         return np.zeros_like(self.phase), self.crossing_velocity, self.phase
 
 
@@ -63,9 +63,10 @@ class PlanarForcedResponse:
     Parameters
     ----------
     fast
-        The orbit that passes the upright at the higher speed, + in the formula for v0: tilt against base acceleration.
+        The orbit with the higher speed at the vertical, + in the formula for v0: tilt opposite to the base
+        acceleration.
     slow
-        The orbit that passes it at the lower speed.
+        The orbit with the lower speed at the vertical.
     """
 
     fast: PlanarOrbit
@@ -99,8 +100,8 @@ def planar_forced_response(nu: Real, a1: Real, *, c: Real, eta: Real) -> PlanarF
     Notes
     -----
     From (1) with θ_y = 0; derivation in the module's notes. An orbit exists if abs(θ_f) ≤ θ_a, v0 > 0 and the column
-    stays on its side for the whole half period. The last is checked at the minimum tilt between two maxima, which is
-    searched on 257 Chebyshev nodes and then refined. Orbits with other periods or without the symmetry are not found.
+    stays on its side for the whole half period. The last condition is checked at the minimum tilt between two maxima,
+    searched on 257 Chebyshev nodes and refined. Orbits with other periods or without the symmetry are not found.
 
     Without damping and as a1 → 0 both orbits become the free rocking (2), (3). At a1 = 0 their phase is arbitrary.
 
@@ -117,7 +118,7 @@ def planar_forced_response(nu: Real, a1: Real, *, c: Real, eta: Real) -> PlanarF
 
 
 def planar_kick_slope(crossing_velocity: Real, c: Real) -> FloatArray:
-    """Compute how the kick out of the plane at a passage near the vertical depends on the distance from it.
+    """Compute the slope of the kick out of the plane versus the distance from the vertical at a passage.
 
     Parameters
     ----------
@@ -139,9 +140,9 @@ def planar_kick_slope(crossing_velocity: Real, c: Real) -> FloatArray:
 
     Notes
     -----
-    From (1): Δẏ = −(2c/v) y0 [ln(1/y0) + O(1)] as y0 → 0. The relative kick grows without bound the smaller the offset,
-    so the passage has no linearisation across the plane, the orbit no finite multiplier there, and rocking in a plane
-    is unstable with damping and forcing too.
+    From (1): Δẏ = −(2c/v) y0 [ln(1/y0) + O(1)] as y0 → 0. The relative kick grows without bound as the offset
+    decreases. So the passage has no linearisation across the plane, the orbit has no finite multiplier there, and
+    planar rocking is unstable even with damping and forcing.
 
     Examples
     --------
@@ -170,7 +171,7 @@ def _orbit(nu: FloatArray, a1: FloatArray, c: FloatArray, eta: FloatArray, branc
 class _Arc:
     """The half period on the positive side: θ = c + C1 e^{(τ−T)/d} + C2 e^{−dτ} + θ_a cos(ντ + lag).
 
-    The growing exponential is counted from its end, so that nothing overflows however long the half period is.
+    The growing exponential is scaled to 1 at the end, so that no half period overflows.
     """
 
     nu: FloatArray
@@ -184,12 +185,12 @@ class _Arc:
     speed: FloatArray
 
     def tilt(self, tau: FloatArray) -> FloatArray:
-        """Tilt angle at the times τ along a leading axis."""
+        """Evaluate the tilt angle at the times τ along a leading axis."""
         growing, decaying = self._exponentials(tau)
         return self.c + growing + decaying + self.size * np.cos(self.nu * tau + self.lag)
 
     def tilt_rate(self, tau: FloatArray) -> FloatArray:
-        """Tilt rate at the times τ along a leading axis."""
+        """Evaluate the tilt rate at the times τ along a leading axis."""
         growing, decaying = self._exponentials(tau)
         harmonic = -self.nu * self.size * np.sin(self.nu * tau + self.lag)
         return growing / self.decay - self.decay * decaying + harmonic
@@ -212,7 +213,7 @@ class _Arc:
         return top, bottom
 
     def _refined(self, tau: FloatArray, index: npt.NDArray[np.intp], direction: float) -> FloatArray:
-        """Bisect the tilt rate between two nodes, falling through zero if `direction` is +1, and return the tilt."""
+        """Bisect the tilt rate between two nodes (decreasing through zero if `direction` is +1); return the tilt."""
         low = np.take_along_axis(tau, index[np.newaxis], axis=0)[0]
         high = np.take_along_axis(tau, index[np.newaxis] + 1, axis=0)[0]
         for _ in range(_BISECTIONS):
@@ -245,9 +246,9 @@ def _arc(nu: FloatArray, a1: FloatArray, c: FloatArray, eta: FloatArray, branch:
 
 
 def _in_plane(nu: FloatArray, c: FloatArray, eta: FloatArray, speed: FloatArray) -> tuple[ComplexArray, BoolArray]:
-    """Multipliers of the half-period map, its smooth part followed by the jump of the weight at the passage.
+    """Compute the multipliers of the half-period map: its smooth part, then the jump of the weight at the passage.
 
-    At the passage the acceleration jumps by 2c while the tilt falls at the speed v0, so the map of (θ, θ̇) is
+    At the passage the acceleration jumps by 2c while the tilt decreases at the rate v0, so the map of (θ, θ̇) is
     −[[1, 0], [−2c/v0, 1]] e^{MH}: determinant e^{−ηH}, trace as below. The sign is the symmetry of the orbit.
     """
     half_period, width = np.pi / nu, np.hypot(eta, 2.0)

@@ -1,4 +1,4 @@
-"""Free rocking in a plane without damping: (2) and the period that belongs to it."""
+"""Free planar rocking without damping: (2) and its period."""
 
 import numpy as np
 
@@ -18,7 +18,7 @@ def planar_free_period(amplitude: Real, c: Real) -> FloatArray:
     Returns
     -------
     numpy.ndarray
-        Period in the time τ, of the broadcast shape; NaN where θ0 ≥ c: the column does not come back.
+        Period in the time τ, of the broadcast shape; NaN where θ0 ≥ c: the column does not return.
 
     Raises
     ------
@@ -65,8 +65,8 @@ def planar_free_motion(tau: Real, amplitude: Real, c: Real) -> tuple[FloatArray,
 
     Notes
     -----
-    (2): θ = c − (c − θ0) cosh τ for a quarter period either side of the peak tilt. The same arc with the opposite
-    sign follows on the next half period (the printed formula lacks that sign), and so on in turn.
+    (2): θ = c − (c − θ0) cosh τ for a quarter period on both sides of the peak tilt. The next half period has the same
+    arc with the opposite sign (the printed formula lacks that sign), and so on.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""The amplitudes of one pulse of the base that overturn a slender column or block at rest."""
+"""Overturning amplitudes of a single base pulse for a slender column or block at rest."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -10,9 +10,9 @@ from stylobate.errors import ParameterError
 from stylobate.theory.arguments import BoolArray, FloatArray, Real, positive
 
 _HALVINGS = 60
-# A golden section narrows its bracket by 0.618 a step: 75 steps leave 2e-16 of it.
+# A golden section shrinks its bracket by 0.618 per step: to 2e-16 after 75 steps.
 _GOLDEN, _SECTIONS = 0.5 * (np.sqrt(5.0) - 1.0), 75
-# Below it exp(3π/2ν), by which rounding grows during the pulse, is as large as what the band is computed from.
+# Below this frequency the growth exp(3π/2ν) of rounding errors exceeds the terms that define the interval.
 _LEAST_FREQUENCY = 0.1
 
 
@@ -29,7 +29,7 @@ def half_sine_overturning(nu: Real, c: Real) -> FloatArray:
     Returns
     -------
     numpy.ndarray
-        Least acceleration a0 in g, of the broadcast shape. A weaker pulse never overturns, whatever the restitution.
+        Minimum acceleration a0 in g, of the broadcast shape. A weaker pulse never overturns, whatever the restitution.
 
     Raises
     ------
@@ -42,16 +42,16 @@ def half_sine_overturning(nu: Real, c: Real) -> FloatArray:
 
     Notes
     -----
-    For small tilt and slenderness, in the plane. The column is released where a0 sin ντ = c. With u the tilt over c and
-    a = a0/c, the growing part z = u − 1 + u̇ of its motion obeys ż = z + a sin ντ from z = −1. It overturns if z > 0 at
-    the end of the pulse, from where z grows by itself, and with s = √(a² − 1) z vanishes there for
+    For small tilt and slenderness and planar motion. Uplift occurs when a0 sin ντ = c. With u the tilt over c and
+    a = a0/c, the growing part z = u − 1 + u̇ of its motion obeys ż = z + a sin ντ from z = −1. The column overturns if
+    z > 0 at the end of the pulse, after which z grows by itself. With s = √(a² − 1), z vanishes at the end for
 
         s + √(1 + s²) exp[−(π/2 + arctan s)/ν] = ν,
 
     whose left side grows with s. G. W. Housner (Bulletin of the Seismological Society of America 53, 1963) gives
-    √(1 + ν²), 5.10 at ν = 5, on the assumption that the column stands at its balance when the pulse ends. A column that
-    leans less than that and still moves outwards overturns too, from 3.289 on: J. Zhang and N. Makris, "Rocking
-    response of free-standing blocks under cycloidal pulses", Journal of Engineering Mechanics 127 (2001).
+    √(1 + ν²), 5.10 at ν = 5, if the column reaches its unstable balance when the pulse ends. A column with a smaller
+    tilt that still moves outwards also overturns, from 3.289: J. Zhang and N. Makris, "Rocking response of
+    free-standing blocks under cycloidal pulses", Journal of Engineering Mechanics 127 (2001).
 
     Examples
     --------
@@ -65,8 +65,8 @@ def half_sine_overturning(nu: Real, c: Real) -> FloatArray:
 def one_sine_overturning_without_impact(nu: Real, c: Real) -> FloatArray:
     """Compute the minimum one-sine pulse that overturns a column at rest without an impact and without damping.
 
-    This is mode 2 of Zhang and Makris (2001), and often not the least amplitude that overturns: weaker pulses may
-    overturn the column on its other side, after an impact.
+    This is mode 2 of Zhang and Makris (2001), often not the minimum overturning amplitude: weaker pulses may overturn
+    the column on its other side, after an impact.
 
     Parameters
     ----------
@@ -78,7 +78,7 @@ def one_sine_overturning_without_impact(nu: Real, c: Real) -> FloatArray:
     Returns
     -------
     numpy.ndarray
-        Least acceleration a0 in g, of the broadcast shape.
+        Minimum acceleration a0 in g, of the broadcast shape.
 
     Raises
     ------
@@ -92,11 +92,11 @@ def one_sine_overturning_without_impact(nu: Real, c: Real) -> FloatArray:
 
     Notes
     -----
-    As for half a sine, now with a whole sine at the end of which z vanishes:
+    As for half a sine, with z = 0 at the end of a whole sine:
 
         s − √(1 + s²) exp[−(3π/2 + arctan s)/ν] = ν.
 
-    The column overturns the way that the first half pushes it.
+    The column overturns in the direction of the push of the first half.
 
     Examples
     --------
@@ -108,10 +108,10 @@ def one_sine_overturning_without_impact(nu: Real, c: Real) -> FloatArray:
 
 
 def one_sine_overturning_after_impact(nu: Real, c: Real, *, restitution: Real) -> tuple[FloatArray, FloatArray]:
-    """Compute the band of one-sine pulses that overturn a column at rest after one impact.
+    """Compute the interval of one-sine amplitudes that overturn a column at rest after one impact.
 
-    This is mode 1 of Zhang and Makris (2001). Where the band is not empty, its lower end is the least amplitude that
-    overturns. Between its upper end and `one_sine_overturning_without_impact` the column survives.
+    This is mode 1 of Zhang and Makris (2001). If the interval is not empty, its lower end is the minimum overturning
+    amplitude. Between its upper end and `one_sine_overturning_without_impact` the column survives.
 
     Parameters
     ----------
@@ -125,8 +125,8 @@ def one_sine_overturning_after_impact(nu: Real, c: Real, *, restitution: Real) -
     Returns
     -------
     lowest, highest : numpy.ndarray
-        Ends of the band of a0 in g, of the broadcast shape; NaN where no pulse overturns after one impact. Below
-        ν = 0.1 they are NaN too: the band is there narrower than 1e-7 of its amplitude, and rounding hides it.
+        Ends of the interval of a0 in g, of the broadcast shape; NaN if no pulse overturns after one impact. Also NaN
+        below ν = 0.1, where the interval is narrower than 1e-7 of its amplitude and below the rounding error.
 
     Raises
     ------
@@ -139,16 +139,16 @@ def one_sine_overturning_after_impact(nu: Real, c: Real, *, restitution: Real) -
 
     Notes
     -----
-    As for half a sine up to the impact at τ1, where u = 0 and u̇ = −v. After it the column leans to the other side,
-    ü = u + 1 + a sin ντ, and its growing part y = u + 1 + u̇ obeys ẏ = y + a sin ντ from y = 1 − ev. It overturns if
-    y < 0 when the pulse ends, at ντ2 = 2π, which it does if
+    As for half a sine until the impact at τ1, with u = 0 and u̇ = −v. After the impact the column leans to the other
+    side, ü = u + 1 + a sin ντ, and its growing part y = u + 1 + u̇ obeys ẏ = y + a sin ντ from y = 1 − ev. The column
+    overturns if y < 0 when the pulse ends, at ντ2 = 2π, that is if
 
         ev > 1 + a [sin ντ1 + ν cos ντ1 − ν exp(τ1 − τ2)]/(1 + ν²),
 
-    and, for an impact after the pulse, if ev > 1. The least e that a pulse needs falls and then rises to 1 with the
-    amplitude, so that the pulses that overturn form one band. At its ends the column takes infinite time to reach
-    its balance. See also E. G. Dimitrakopoulos and M. J. DeJong, "Revisiting the rocking block: closed-form solutions
-    and similarity laws", Proceedings of the Royal Society A 468 (2012).
+    and, for an impact after the pulse, if ev > 1. With increasing amplitude the minimum e of overturning decreases and
+    then rises to 1, so the overturning pulses form one interval. At its ends the column takes infinite time to reach
+    its unstable balance. See also E. G. Dimitrakopoulos and M. J. DeJong, "Revisiting the rocking block: closed-form
+    solutions and similarity laws", Proceedings of the Royal Society A 468 (2012).
 
     Examples
     --------
@@ -173,11 +173,11 @@ def one_sine_overturning_after_impact(nu: Real, c: Real, *, restitution: Real) -
 
 
 def _least_restitution(a: FloatArray, nu: FloatArray) -> FloatArray:
-    """Return the least e with which a pulse too weak to overturn without an impact overturns after one."""
+    """Return the minimum e of overturning after one impact, for a pulse too weak to overturn without an impact."""
     motion = _Arc.of(a, nu)
     end = 2.0 * np.pi / nu
     before, after = motion.start, end
-    for _ in range(_HALVINGS):  # once it is back it stays below
+    for _ in range(_HALVINGS):  # below zero it stays below zero
         middle = 0.5 * (before + after)
         stands = motion.tilt(middle) > 0.0
         before, after = np.where(stands, middle, before), np.where(stands, after, middle)
@@ -190,7 +190,7 @@ def _least_restitution(a: FloatArray, nu: FloatArray) -> FloatArray:
 
 @dataclass(frozen=True, slots=True)
 class _Arc:
-    """The tilt u over c from the release at `start` on: u = 1 − A cosh s − B sinh s − C sin ντ, s = τ − start."""
+    """The tilt u over c after uplift at `start`: u = 1 − A cosh s − B sinh s − C sin ντ, s = τ − start."""
 
     nu: FloatArray
     start: FloatArray
@@ -198,7 +198,7 @@ class _Arc:
 
     @classmethod
     def of(cls, a: FloatArray, nu: FloatArray) -> Self:
-        """Return the motion under a pulse of amplitude a, over c, from rest where a sin ντ = 1."""
+        """Return the motion after uplift at a sin ντ = 1 under a pulse of amplitude a over c."""
         angle = np.arcsin(1.0 / a)
         share = a / (1.0 + nu**2)
         return cls(nu, angle / nu, (1.0 - share / a, -nu * share * np.cos(angle), share))
@@ -216,13 +216,13 @@ class _Arc:
 
 
 def _without_impact(nu: FloatArray) -> FloatArray:
-    """Return the least amplitude over c of a whole sine that overturns without an impact."""
+    """Return the minimum amplitude over c of a whole sine that overturns without an impact."""
     longest = np.exp(-1.5 * np.pi / nu)  # √(1 + s²) ≤ 1 + s
     return _least(nu, lambda s: s - _left(s, 1.5, nu), (nu + longest) / (1.0 - longest))
 
 
 def _least_of(valley: Callable[[FloatArray], FloatArray], low: FloatArray, high: FloatArray) -> FloatArray:
-    """Return where a function that falls and then rises between `low` and `high` is least, by golden sections."""
+    """Return the minimiser of a function that falls and then rises between `low` and `high`, by golden sections."""
     for _ in range(_SECTIONS):
         left, right = high - _GOLDEN * (high - low), low + _GOLDEN * (high - low)
         falls = valley(right) < valley(left)
@@ -231,7 +231,7 @@ def _least_of(valley: Callable[[FloatArray], FloatArray], low: FloatArray, high:
 
 
 def _edge(inside: Callable[[FloatArray], BoolArray], beyond: FloatArray, within: FloatArray) -> FloatArray:
-    """Return the end of a band between a value `beyond` it and one `within` it, by halving."""
+    """Bisect to the end of an interval between a value `beyond` and a value `within` the interval."""
     for _ in range(_HALVINGS):
         middle = 0.5 * (beyond + within)
         hit = inside(middle)
@@ -240,12 +240,12 @@ def _edge(inside: Callable[[FloatArray], BoolArray], beyond: FloatArray, within:
 
 
 def _left(s: FloatArray, turns: float, nu: FloatArray) -> FloatArray:
-    """Return √(1 + s²) exp(−Δτ), Δτ from the release at ντ = arctan(1/s) to the end at ντ = (`turns` + ½)π."""
+    """Return √(1 + s²) exp(−Δτ), Δτ from the uplift at ντ = arctan(1/s) to the end at ντ = (`turns` + ½)π."""
     return np.asarray(np.sqrt(1.0 + s**2) * np.exp(-(turns * np.pi + np.arctan(s)) / nu))
 
 
 def _least(nu: FloatArray, growing: Callable[[FloatArray], FloatArray], high: FloatArray) -> FloatArray:
-    """Return √(1 + s²) where a function of s that grows from below ν at 0 to above it at `high` is ν."""
+    """Return √(1 + s²) at the s where a growing function, below ν at 0 and above ν at `high`, equals ν."""
     low = np.zeros_like(nu)
     for _ in range(_HALVINGS):
         s = 0.5 * (low + high)

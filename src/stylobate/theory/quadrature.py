@@ -1,8 +1,7 @@
-"""Tanh–sinh quadrature over a quarter turn, for integrands with layers at its ends however thin.
+"""Tanh–sinh quadrature over a quarter turn, for integrands with thin boundary layers.
 
-The nodes crowd towards both ends double-exponentially, so a layer of width 1e-10 costs no more points than a smooth
-integrand does. What makes that useful in double precision is that sine and cosine are both formed from the distance to
-the end at which they vanish.
+The nodes approach both ends double-exponentially, so a layer of width 1e-10 needs no more points than a smooth
+integrand. For double precision, sine and cosine are formed from the distance to the end at which they vanish.
 """
 
 import numpy as np

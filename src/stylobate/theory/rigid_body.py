@@ -1,7 +1,7 @@
-"""A rigid column of any proportions: its shape and inertia over J0, and the geometry of standing on its rim.
+"""Rigid column of any proportions: shape, inertia over J0, and geometry on its rim.
 
-All moments of inertia are over J0, that about a diameter of the base, all lengths over the height h of the centre of
-mass; then gravity, m g h over J0 ω0², is 1.
+Moments of inertia are over J0, the moment about a diameter of the base, and lengths over the height h of the centre of
+mass; gravity, m g h over J0 ω0², is then 1.
 """
 
 from dataclasses import dataclass
@@ -14,15 +14,15 @@ from stylobate.errors import ParameterError
 from stylobate.theory.arguments import FloatArray, Real, positive
 
 Numbers: TypeAlias = npt.NDArray[Any]
-"""Real numbers, or complex ones on the way to a derivative."""
+"""Real numbers, or complex numbers of a complex-step derivative."""
 
-# Relative slack for a body that meets the bound on its inertias with equality, and rounding misses it.
+# Relative tolerance of the bound on the inertias, which rounding may violate at equality.
 _ROUNDING = 1e-12
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RigidBody:
-    """The three numbers that say how a rigid column of revolution moves, arrays of one shape.
+    """Slenderness and inertia ratios of a rigid column of revolution, arrays of one shape.
 
     Parameters
     ----------
@@ -40,7 +40,7 @@ class RigidBody:
 
     @classmethod
     def checked(cls, c: Real, inertia_ratio: Real, axial_ratio: Real) -> Self:
-        """Return the body, or raise ParameterError where no body of revolution has these numbers."""
+        """Return the body, or raise ParameterError if no body of revolution can have these numbers."""
         slender, kappa, axial = np.broadcast_arrays(
             positive("c", c), below_one("inertia_ratio", inertia_ratio), positive("axial_ratio", axial_ratio)
         )
@@ -75,19 +75,19 @@ class RigidBody:
 
     @property
     def freedom(self) -> FloatArray:
-        """D = 1 + i_a − κ, by which a free twist weakens what acts across the lean."""
+        """D = 1 + i_a − κ, by which free spin reduces the effect of forces across the lean."""
         return 1.0 + self.axial_ratio - self.kappa
 
     def reach(self, tilt: Numbers) -> Numbers:
-        """ρ/h, by which the centre of mass has moved from the axis of the column at rest."""
+        """Compute ρ/h, the horizontal distance of the centre of mass from the axis of the column at rest."""
         return np.sin(tilt) + self.c * (1.0 - np.cos(tilt))
 
     def height(self, tilt: Numbers) -> Numbers:
-        """ρ'/h = z/h, the height of the centre of mass."""
+        """Compute ρ'/h = z/h, the height of the centre of mass."""
         return np.cos(tilt) + self.c * np.sin(tilt)
 
     def overhang(self, tilt: Numbers) -> Numbers:
-        """−z'/h, by which the centre of mass stands out over the contact point; negative below the tipping angle."""
+        """Compute −z'/h, the overhang of the centre of mass over the contact point; negative below α_c."""
         return np.sin(tilt) - self.c * np.cos(tilt)
 
 

@@ -1,4 +1,4 @@
-"""Steady rolling on a circularly moving base, the exact solution (8) of (7), and the frequencies it leaves out."""
+"""Steady rolling on a circularly moving base: exact solution (8) of (7), and its frequency gap."""
 
 from dataclasses import dataclass
 
@@ -21,8 +21,8 @@ class RollingBranch:
     exists
         Whether there is such a solution.
     stable
-        Whether no deviation grows (Routh–Hurwitz). Without damping nothing decays either: True then means neutrally
-        stable, all eigenvalues imaginary and distinct.
+        Whether no deviation grows (Routh–Hurwitz). Without damping True means neutrally stable: all eigenvalues are
+        imaginary and distinct, and no deviation decays.
     eigenvalues
         The four eigenvalues of the Jacobian of (7), complex, along a last axis of length 4.
     """
@@ -47,7 +47,7 @@ class SteadyRolling:
     sense
         +1 anticlockwise, −1 clockwise.
     azimuth_offset
-        Where the driving circular motion points at τ = 0 [rad].
+        Direction of the driving circular motion at τ = 0 [rad].
     """
 
     upper: RollingBranch
@@ -57,7 +57,7 @@ class SteadyRolling:
 
 
 def steady_rolling(nu: Real, a0: Real, *, c: Real, eta: Real) -> SteadyRolling:
-    """Compute steady rolling of the column round its rim on a base that moves in a circle.
+    """Compute steady rolling of a column round its rim on a circularly moving base.
 
     Parameters
     ----------
@@ -82,17 +82,17 @@ def steady_rolling(nu: Real, a0: Real, *, c: Real, eta: Real) -> SteadyRolling:
 
     See Also
     --------
-    rolling_gap : where neither branch exists.
-    critical_frequency : where the upper branch becomes stable.
+    rolling_gap : frequencies at which neither branch exists.
+    critical_frequency : frequency above which the upper branch is stable.
 
     Notes
     -----
     (8): with D = (1+ν²)² + η²ν² the amplitudes are the roots of D θ² − 2c(1+ν²) θ + c² − a0² = 0, the lower from their
-    product, since it is a small difference when a0 is near c. The lower branch exists for a0 < c only. The phase
-    follows from a0 cos ψ = θ(1+ν²) − c and a0 sin ψ = ηνθ; it is arbitrary (returned as 0 and π) at a0 = 0, where both
-    branches are the backbone (5) and exist only without damping.
+    product, since it is a small difference if a0 is near c. The lower branch exists for a0 < c only. The phase follows
+    from a0 cos ψ = θ(1+ν²) − c and a0 sin ψ = ηνθ; it is arbitrary (returned as 0 and π) at a0 = 0, where both branches
+    are the backbone (5) and exist only without damping.
 
-    Stability is decided in closed form, see `stylobate.theory.stability`, and needs no eigenvalues.
+    Stability is known in closed form, see `stylobate.theory.stability`, without eigenvalues.
 
     Examples
     --------
@@ -116,10 +116,10 @@ def steady_rolling(nu: Real, a0: Real, *, c: Real, eta: Real) -> SteadyRolling:
 def rolling_amplitudes(k: FloatArray, drag: FloatArray, a: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return the roots θ of (kθ − 1)² + (drag θ)² = a², upper and lower, and √(a²D − drag²) with D = k² + drag².
 
-    Only positive ones; NaN for the others. All in units of c.
+    Roots that are not positive are NaN. All values are in units of c.
     """
     d = k**2 + drag**2
-    # a²D − η²ν² as a product, or the folds would be lost in rounding
+    # a²D − η²ν² as a product keeps the folds accurate
     square = (a * np.sqrt(d) - drag) * (a * np.sqrt(d) + drag)
     root = np.sqrt(np.where(square >= 0.0, square, np.nan))
     upper = (k + root) / d  # (8)
@@ -145,7 +145,7 @@ def _branch(
 
 
 def rolling_gap(a0: Real, *, c: Real, eta: Real) -> tuple[FloatArray, FloatArray]:
-    """Compute the band of frequency ratios in which damping leaves no steady rolling.
+    """Compute the band of frequency ratios in which damping excludes steady rolling.
 
     Parameters
     ----------
@@ -160,7 +160,7 @@ def rolling_gap(a0: Real, *, c: Real, eta: Real) -> tuple[FloatArray, FloatArray
     -------
     tuple of numpy.ndarray
         Lower and upper end of the band, the folds at which both branches meet; NaN where rolling exists at every
-        frequency, a0 ≥ ηc/√(4 + η²). With friction and no base motion the band is (0, ∞).
+        frequency, a0 ≥ ηc/√(4 + η²). With damping and no base motion the band is (0, ∞).
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""The friction that steady rolling on a circularly moving base needs if the contact is not to slip."""
+"""Friction required for steady rolling without slip on a circularly moving base."""
 
 from dataclasses import dataclass
 
@@ -11,14 +11,14 @@ from stylobate.theory.rolling import rolling_amplitudes
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RollingFriction:
-    """Least coefficient of friction on each branch of steady rolling, arrays of one shape; NaN where there is none.
+    """Required friction coefficient on each branch of steady rolling, arrays of one shape; NaN where no branch exists.
 
     Parameters
     ----------
     upper
         On the branch of the larger tilt.
     lower
-        On that of the smaller one.
+        On the branch of the smaller tilt.
     """
 
     upper: FloatArray
@@ -48,11 +48,11 @@ def rolling_required_friction(
     eta
         Damping η, a couple against the rate of tilt.
     zeta
-        Spin damping ζ. Infinite, as by default, it forbids the twist, as the paper does.
+        Spin damping ζ. An infinite ζ, the default, excludes rotation about the vertical, as the paper does.
     inertia_ratio
         κ = m h²/J0; ¾ for a solid cylinder, as by default.
     axial_ratio
-        i_a = I_a/(m r²); ½ for a solid cylinder. Of no effect where ζ is infinite.
+        i_a = I_a/(m r²); ½ for a solid cylinder. No effect if ζ is infinite.
 
     Returns
     -------
@@ -67,21 +67,21 @@ def rolling_required_friction(
 
     See Also
     --------
-    full_rolling : whose `friction_demand` is the same at any tilt.
-    slipping_rolling : the steady rolling that has slip.
-    required_friction : near the vertical, on a base at rest.
+    full_rolling : `friction_demand` is the same quantity at any tilt.
+    slipping_rolling : steady rolling with slip.
+    required_friction : required friction near the vertical, on a base at rest.
 
     Notes
     -----
-    The moments about the centre of mass, and not the motion of the base, decide the force: over m g it is
+    The moments about the centre of mass, not the motion of the base, determine the force. Over m g it is
 
         T_d = θ(1 + (1 − κ)ν²) − c,   T_n = −ηνθ
 
-    along the lean and across it, whether the column turns or not; the twist counts by θ, which is that of
-    `steady_rolling` or `free_twist_rolling`. Without damping T_d on the upper branch falls from a0 at low frequency to
-    (1 − κ)a0 − κc at high frequency. It vanishes at ν² = a0/(κc − (1 − κ)a0), where friction is least, and there is no
-    such frequency for a0 ≥ κc/(1 − κ). A column that is not to slip at any high frequency needs κc − (1 − κ)a0, less
-    the harder the base shakes. For a smaller μ rolling without slip ends at
+    along the lean and across it, with or without spin; the spin enters only by the tilt θ of `steady_rolling` or
+    `free_twist_rolling`. Without damping T_d on the upper branch decreases from a0 at low frequency to (1 − κ)a0 − κc
+    at high frequency. T_d and the required friction vanish at ν² = a0/(κc − (1 − κ)a0); no such frequency exists for a0
+    ≥ κc/(1 − κ). Rolling without slip at all high frequencies requires μ ≥ κc − (1 − κ)a0, which decreases with a0. For
+    a smaller μ rolling without slip ends at
 
         ν² = (a0 + μ)/(κ(a0 + c) − a0 − μ).
 

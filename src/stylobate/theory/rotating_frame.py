@@ -1,6 +1,6 @@
-"""Circular base motion seen from the frame that turns with it: an autonomous system of four equations (7).
+"""Circular base motion in the rotating frame: autonomous system of four equations (7).
 
-The same equations with a0 = a1/2 are the averaged slow flow of straight-line base motion (10).
+With a0 = a1/2 the same equations are the averaged slow flow of straight-line base motion (10).
 """
 
 import numpy as np
@@ -30,8 +30,8 @@ def rotating_frame_rates(state: Real, nu: Real, a0: Real, *, c: Real, eta: Real)
     Returns
     -------
     numpy.ndarray
-        Rates of the state in the same order, shape (4, ...). Nothing is checked but the length of the first axis: this
-        is what an integrator calls. Not defined at θ = 0.
+        Rates of the state in the same order, shape (4, ...). Only the length of the first axis is checked, since
+        integrators call this function. Not defined at θ = 0.
 
     Raises
     ------

@@ -1,16 +1,16 @@
-"""A block on a horizontal plane that shakes along itself: how it sticks and slides, in closed form.
+"""Stick and slip of a block on a horizontally vibrating plane, in closed form.
 
-The base acceleration is a0 cos τ in g, τ = Ωt, velocities are in g/Ω, and the block slips relative to the plane at the
-velocity u, u̇ = −a0 cos τ ∓ μk. Both half cycles are alike.
+The base acceleration is a0 cos τ in g, τ = Ωt, velocities are in g/Ω, and the slip velocity u of the block obeys u̇ =
+−a0 cos τ ∓ μk. Both half cycles are alike.
 
-Up to a0 = μs it sticks. Beyond, it breaks away at cos τ1 = −μs/a0. A slip that begins at τ0 and lasts for all of the
-half cycle ends there with u = 2a0 sin τ0 − πμk = 0; at that instant the plane pulls it back with a0 abs(cos τ0) and no
-static friction holds it if this exceeds μs. So the block never sticks for
+Up to a0 = μs the block sticks. Above, slip begins at cos τ1 = −μs/a0. A slip that begins at τ0 and lasts for the whole
+half cycle ends with u = 2a0 sin τ0 − πμk = 0. At that instant the plane pulls the block back with a0 abs(cos τ0); the
+block does not stick if this exceeds μs. So the block never sticks for
 
     a0 > a* = √(μs² + (πμk/2)²),
 
-with μs = μk = μ for μ/a0 < 2/√(4 + π²) = 0.5370. This is the classical condition of motion without stops under dry
-friction (Den Hartog 1931), for a mass without a spring. Where it sticks, all but the end of the slip is explicit.
+with μs = μk = μ for μ/a0 < 2/√(4 + π²) = 0.5370. This is the condition of motion without stops under dry friction (Den
+Hartog 1931), for a mass without a spring. In stick–slip motion all quantities except the end of the slip are explicit.
 """
 
 from dataclasses import dataclass
@@ -22,38 +22,38 @@ import numpy.typing as npt
 from stylobate.errors import ParameterError
 from stylobate.theory.arguments import FloatArray, Real, not_negative
 
-_BISECTIONS = 60  # of an interval shorter than π down to rounding
+_BISECTIONS = 60  # from an interval shorter than π down to rounding
 
 
 class SlidingRegime(IntEnum):
-    """How a block moves on a plane that shakes along itself."""
+    """Regime of a block on a horizontally vibrating plane."""
 
     STICKS = 0
-    """It moves with the plane."""
+    """The block moves with the plane."""
     STICK_SLIP = 1
-    """It slips, stops and sticks twice in each period."""
+    """The block slips, stops and sticks twice per period."""
     SLIDES = 2
-    """It slips to and fro without sticking."""
+    """The block slips to and fro without sticking."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class HorizontalSliding:
-    """The periodic motion of a block on a plane that shakes along itself, arrays of one shape.
+    """The periodic motion of a block on a horizontally vibrating plane, arrays of one shape.
 
     Parameters
     ----------
     regime
         Values of `SlidingRegime`.
     onset
-        Ωt at which the block begins to slip forward, in (π/2, π); NaN where it sticks.
+        Ωt at which the block begins to slip forward, in (π/2, π); NaN if the block sticks.
     slip_duration
-        Time of one of the two slips of a period [1/Ω], at most π; 0 where it sticks.
+        Duration of each of the two slips per period [1/Ω], at most π; 0 if the block sticks.
     peak_velocity
-        Largest velocity of the block relative to the plane [g/Ω].
+        Peak velocity of the block relative to the plane [g/Ω].
     stroke
-        Distance it slips to and fro on the plane [g/Ω²].
+        Distance of each slip on the plane [g/Ω²].
     dissipation
-        Energy it loses in a period, over its mass [g²/Ω²].
+        Energy loss per period, over the mass of the block [g²/Ω²].
     """
 
     regime: npt.NDArray[np.int64]
@@ -65,7 +65,7 @@ class HorizontalSliding:
 
 
 def horizontal_sliding(a0: Real, *, static_friction: Real, kinetic_friction: Real | None = None) -> HorizontalSliding:
-    """Compute how a block sticks and slides on a horizontal plane that shakes harmonically along itself.
+    """Compute the stick and slip of a block on a horizontal plane with harmonic base motion.
 
     Parameters
     ----------
@@ -88,13 +88,14 @@ def horizontal_sliding(a0: Real, *, static_friction: Real, kinetic_friction: Rea
 
     Notes
     -----
-    Peak velocity and onset are closed forms in both regimes that slip,
+    Peak velocity and onset are closed forms in both regimes with slip,
 
         slides:      √(a0² − μk²) + μk [arcsin(μk/a0) − arcsin(πμk/2a0)],              sin τ0 = πμk/2a0,
         stick–slip:  √(a0² − μk²) + √(a0² − μs²) − μk [arccos(μk/a0) + arccos(μs/a0)],  cos τ1 = −μs/a0.
 
-    The slip lasts π in the one; in the other its end is the root of sin τ1 − sin τ = (μk/a0)(τ − τ1), bisected to
-    rounding. The stroke in the one is √(4a0² − π²μk²); the dissipation in both 2μk times the stroke.
+    A sliding block slips for π; in stick–slip motion the slip ends at the root of sin τ1 − sin τ = (μk/a0)(τ − τ1),
+    bisected to rounding. The stroke of a sliding block is √(4a0² − π²μk²); the dissipation is 2μk times the stroke in
+    both regimes.
 
     Examples
     --------
@@ -169,7 +170,7 @@ def _require_ordered(mu_s: FloatArray, mu_k: FloatArray) -> None:
 
 
 def _slip_duration(onset: FloatArray, kinetic: FloatArray) -> FloatArray:
-    """Return when a slip that begins at rest ends: the root between the peak of its velocity and half a period."""
+    """Return the duration of a slip from rest: the root between its peak velocity and half a period."""
     low, high = np.pi + np.arccos(kinetic) - onset, np.full_like(onset, np.pi)
     for _ in range(_BISECTIONS):
         middle = 0.5 * (low + high)

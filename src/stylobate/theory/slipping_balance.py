@@ -1,8 +1,8 @@
-"""Steady rolling with slip on a circularly moving base: its balances, and all solutions of them.
+"""Balances of steady rolling with slip on a circularly moving base, and all their solutions.
 
-In the frame that turns with the lean nothing changes, so the contact bears the weight and the moments about the centre
-of mass give T_d, T_n and the moment about the vertical from tilt and spin. The friction law and the motion of the
-centre of mass in its circle decide tilt and slip.
+In the frame that turns with the lean the motion is steady. So the contact bears the weight, and the moments about the
+centre of mass give T_d, T_n and the moment about the vertical from tilt and spin. The friction law and the circular
+motion of the centre of mass determine tilt and slip.
 """
 
 from dataclasses import dataclass
@@ -13,7 +13,7 @@ from stylobate.theory.arguments import BoolArray, FloatArray
 from stylobate.theory.finite_tilt import tilt_grid
 from stylobate.theory.rigid_body import Numbers, RigidBody
 from stylobate.theory.slipping_pairs import common_zeros
-from stylobate.theory.slipping_rolling_rates import EASED, EXPONENT, SLOWED, TWISTING, Frictions
+from stylobate.theory.slipping_rolling_rates import EASED, EXPONENT, SLOWED, TWISTING, Resistances
 from stylobate.theory.zeros import Rows, zeros
 
 # Points of the scan over the tilt.
@@ -22,16 +22,16 @@ _POINTS = 512
 
 @dataclass(frozen=True, slots=True)
 class Forced:
-    """Columns that roll and slip on bases that move in circles: arrays of one length.
+    """Columns that roll and slip on circularly moving bases: arrays of one length.
 
     Parameters
     ----------
     nu, a0
         Frequency ν and acceleration amplitude of the base [g].
     spin
-        w3 [ω0] where nothing decides it.
+        w3 [ω0], used if the spin is arbitrary.
     friction
-        What resists.
+        Damping and friction.
     body
         The columns.
     """
@@ -39,7 +39,7 @@ class Forced:
     nu: FloatArray
     a0: FloatArray
     spin: FloatArray
-    friction: Frictions
+    friction: Resistances
     body: RigidBody
 
     def __getitem__(self, rows: Rows) -> "Forced":
@@ -47,13 +47,13 @@ class Forced:
 
     @property
     def undecided(self) -> BoolArray:
-        """Whether nothing decides the spin."""
+        """Whether the spin is arbitrary."""
         free = (self.friction.eta == 0.0) & (self.friction.zeta == 0.0) & (self.friction.patch == 0.0)
         return np.asarray(free)
 
     @property
     def pivots(self) -> BoolArray:
-        """Whether a patch turns on the base, by a rate that is not known beforehand."""
+        """Whether a patch turns on the base at an unknown rate."""
         turns = (self.friction.eta > 0.0) & np.isfinite(self.friction.zeta) & (self.friction.patch > 0.0)
         return np.asarray(turns)
 
@@ -64,22 +64,22 @@ class Forced:
         return self.friction.zeta * body.kappa * body.c**2 * body.freedom
 
     def moment(self, tilt: Numbers) -> Numbers:
-        """Moment about the vertical that rolling takes at a tilt."""
+        """Compute the moment about the vertical of rolling at a tilt."""
         return np.asarray(self.friction.eta * self.nu * self.body.c * np.sin(tilt) / self.body.height(tilt))
 
     def turn(self, tilt: FloatArray) -> FloatArray:
-        """ω_z where the patch has no part in it."""
+        """Compute ω_z without the patch."""
         s, cosine = np.sin(tilt), np.cos(tilt)
         with np.errstate(divide="ignore", invalid="ignore"):
             needed = np.where(self.friction.eta > 0.0, self.moment(tilt) / self.resistance, 0.0)
         return np.where(self.undecided, self.spin * cosine + self.nu * s**2, -needed)
 
     def axial_spin(self, tilt: Numbers, turn: Numbers) -> Numbers:
-        """w3, from ω_z = w3 cos θ + ν sin²θ."""
+        """Compute w3 from ω_z = w3 cos θ + ν sin²θ."""
         return np.asarray((turn - self.nu * np.sin(tilt) ** 2) / np.cos(tilt))
 
     def force(self, tilt: Numbers, turn: Numbers) -> tuple[Numbers, Numbers]:
-        """T_d and T_n over m g that keep the tilt and the rolling as they are."""
+        """Compute T_d and T_n over m g of steady tilt and rolling."""
         s, cosine, p = np.sin(tilt), np.cos(tilt), self.body.height(tilt)
         gyration = self.nu * s * (
             self.body.transverse * self.nu * cosine - self.body.axial * self.axial_spin(tilt, turn)
@@ -87,7 +87,7 @@ class Forced:
         return (self.body.overhang(tilt) + gyration) / p, -self.friction.eta * self.nu * s * cosine / p
 
     def carried(self, tilt: Numbers, turn: Numbers) -> Numbers:
-        """κνw, over g the acceleration of the centre of mass as it circles without slip."""
+        """Compute κνw, the acceleration of the centre of mass over g in its circle without slip."""
         w = self.body.c * self.axial_spin(tilt, turn) - self.nu * np.sin(tilt)
         return np.asarray(self.body.kappa * self.nu * w)
 
@@ -101,7 +101,7 @@ def solutions(forced: Forced) -> tuple[Rows, FloatArray, FloatArray, FloatArray]
 
 
 def _known_turn(forced: Forced) -> tuple[Rows, FloatArray, FloatArray, FloatArray]:
-    """Solutions where ω_z follows from the tilt: one equation for the tilt, and a quadratic one for the slip."""
+    """Return the solutions if ω_z follows from the tilt: one equation for the tilt, a quadratic for the slip."""
     possible = np.flatnonzero(~forced.pivots & ((forced.friction.eta == 0.0) | (forced.friction.zeta > 0.0)))
 
     def excess(tilt: FloatArray, at: Rows) -> FloatArray:  # |T|² − μ²
@@ -125,13 +125,13 @@ def _known_turn(forced: Forced) -> tuple[Rows, FloatArray, FloatArray, FloatArra
     return possible[at[slips]], tilt[slips], turn[slips], speed
 
 
-# The scan of a patch that turns: points of ln |ω_z| and of ln |v|, and their reach below and above their scales.
+# Scan of a patch that turns: points of ln |ω_z| and of ln |v|, and their range below and above their scales.
 _TURNS, _SPEEDS = 120, 120
 _LEAST_TURN, _MOST_TURN, _LEAST_SPEED, _MOST_SPEED = 1e-7, 1e4, 1e-7, 1e2
 
 
 def _pivoting(forced: Forced) -> tuple[Rows, FloatArray, FloatArray, FloatArray]:
-    """Solutions where a patch slips and turns: the moments give the tilt, two equations are left."""
+    """Return the solutions of a patch that slips and turns: the moments give the tilt, two equations remain."""
     possible = np.flatnonzero(forced.pivots)
     some = forced[possible]
     across = (some.a0 + some.friction.mu + some.body.c) / (some.body.kappa * some.nu)
@@ -150,7 +150,7 @@ def _pivoting(forced: Forced) -> tuple[Rows, FloatArray, FloatArray, FloatArray]
 
 
 def _pivoted(here: Forced, turn: Numbers, speed: Numbers) -> tuple[Numbers, Numbers]:
-    """Return the tilt at which the moments balance, with ω_z = −`turn`, NaN if there is none, and |T|/N."""
+    """Return the tilt at which the moments balance with ω_z = −`turn`, NaN without solution, and |T|/N."""
     pivot = here.friction.patch * turn
     drag = here.friction.mu * speed / (speed**EXPONENT + (SLOWED * pivot) ** EXPONENT) ** (1.0 / EXPONENT)
     twist = here.friction.mu * pivot / (pivot**EXPONENT + (EASED * speed) ** EXPONENT) ** (1.0 / EXPONENT)
@@ -163,7 +163,7 @@ def _pivoted(here: Forced, turn: Numbers, speed: Numbers) -> tuple[Numbers, Numb
 
 
 def _two_balances(here: Forced, turn: Numbers, speed: Numbers) -> tuple[Numbers, Numbers]:
-    """Return what friction lacks of the force across the base, and the base motion of what moves the column."""
+    """Return the residuals of the force across the lean and of the base acceleration."""
     tilt, drag = _pivoted(here, turn, speed)
     along, across = here.force(tilt, -turn)
     fling = here.body.kappa * here.nu * speed / drag  # κνv = −fling T

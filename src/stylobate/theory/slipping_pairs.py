@@ -1,4 +1,4 @@
-"""Common zeros of two functions of two variables, for many sets of parameters: a scan, then Newton's method."""
+"""Common zeros of two functions of two variables for many sets of parameters: scan and Newton's method."""
 
 from collections.abc import Callable
 from typing import TypeAlias
@@ -11,27 +11,27 @@ from stylobate.theory.zeros import Rows
 
 Functions: TypeAlias = Callable[[Numbers, Numbers, Rows], tuple[Numbers, Numbers]]
 
-# Steps of Newton's method, none longer than this many cells; the last one shorter than this part of one.
+# Steps of Newton's method; maximum length of a step, and of the last step, in cells.
 _STEPS, _LONGEST, _SETTLED = 40, 3.0, 1e-10
 
-# Parts of a step of which the one that leaves least is taken.
+# Fractions of a step; the fraction with the smallest residual is taken.
 _PARTS = np.array([1.0, 0.3, 0.1, 0.01])
 
-# Zeros nearer to each other than this part of a cell are one.
+# Zeros closer than this fraction of a cell count as one.
 _SAME = 1e-6
 
-# So small a step leaves no error but rounding: nothing is subtracted.
+# A complex step subtracts nothing, so a step this small leaves only rounding error.
 _STEP = 1e-30
 
 
 def common_zeros(functions: Functions, first: FloatArray, second: FloatArray) -> tuple[Rows, FloatArray, FloatArray]:
-    """Find where two functions vanish together.
+    """Find the common zeros of two functions.
 
     Parameters
     ----------
     functions
-        Both values, from the two variables, for the parameters of given rows: arrays that broadcast, real or complex.
-        NaN where there is nothing.
+        Both values, from the two variables and the rows of the parameters: arrays that broadcast, real or complex; NaN
+        where undefined.
     first, second
         Evenly spaced values of the variables, one row for each set of parameters, shape (rows, points).
 
@@ -42,9 +42,8 @@ def common_zeros(functions: Functions, first: FloatArray, second: FloatArray) ->
 
     Notes
     -----
-    Newton's method starts in each cell of the grid that has among itself and its neighbours one at whose corners the
-    first function changes its sign, and one where the second does. So a pair that is about to vanish is found, unless
-    it has come nearer together than a small part of a cell.
+    Newton's method starts in each grid cell if both functions change their sign in the cell or its neighbours. So a
+    pair of zeros near a fold is found, unless their distance is a small fraction of a cell.
     """
     found = [(np.zeros(0, dtype=np.intp), np.zeros(0), np.zeros(0))]
     for row in range(len(first)):
@@ -58,7 +57,7 @@ def common_zeros(functions: Functions, first: FloatArray, second: FloatArray) ->
 
 
 def _starts(functions: Functions, row: int, first: FloatArray, second: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return the middles of the cells in or next to which both may vanish."""
+    """Return the centres of the cells in or next to which both functions may vanish."""
     every = np.full((len(first), len(second)), row, dtype=np.intp)
     near = np.ones((len(first) - 1, len(second) - 1), dtype=np.bool_)
     for values in functions(first[:, np.newaxis], second[np.newaxis, :], every):
@@ -77,7 +76,7 @@ def _with_neighbours(cells: BoolArray) -> BoolArray:
 def _newton(
     functions: Functions, row: int, u: FloatArray, v: FloatArray, cells: tuple[float, float]
 ) -> tuple[FloatArray, FloatArray]:
-    """Return where Newton's method has settled."""
+    """Return the points at which Newton's method has converged."""
     rows = np.full(u.shape, row, dtype=np.intp)
     longest = np.full(u.shape, np.inf)
     with np.errstate(invalid="ignore", divide="ignore", over="ignore"):

@@ -1,4 +1,4 @@
-"""Steady rolling of a rigid column whose contact slips, on a base that moves in a circle."""
+"""Steady rolling with slip of a rigid column on a circularly moving base."""
 
 from dataclasses import dataclass
 
@@ -8,16 +8,16 @@ from stylobate.theory.arguments import BoolArray, ComplexArray, FloatArray, Real
 from stylobate.theory.finite_tilt import eigenvalues
 from stylobate.theory.rigid_body import Numbers, RigidBody
 from stylobate.theory.slipping_balance import Forced, solutions
-from stylobate.theory.slipping_rolling_rates import STATES, Frictions, rates
+from stylobate.theory.slipping_rolling_rates import STATES, Resistances, rates
 from stylobate.theory.zeros import Rows
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SlippingRolling:
-    """All steady rolling with slip: arrays of the broadcast shape and a last axis for the branches.
+    """All branches of steady rolling with slip: arrays of the broadcast shape and a last axis for the branches.
 
-    The branches are in the order of rising tilt. The axis is as long as the most of them anywhere, and at least 1; NaN
-    (and False) where there are fewer. The normal force is the weight in all of them.
+    The branches are in the order of increasing tilt. The axis has the maximum number of branches, at least 1; NaN (and
+    False) where there are fewer. The normal force equals the weight in all branches.
 
     Parameters
     ----------
@@ -30,11 +30,11 @@ class SlippingRolling:
     slip_along, slip_across
         Velocity of the contact point of the body on the base, along the lean and across it, in units of hω0.
     slip_power
-        Power that slip takes, pivoting on a patch included, over m g h ω0; positive.
+        Power dissipated by slip, including pivoting on a patch, over m g h ω0; positive.
     exists
         Whether there is such a solution.
     stable
-        Whether all deviations decay; without any friction but that of slip, all but that of the spin, which is
+        Whether all deviations decay; with slip friction alone, all except the deviation of the spin, which is
         arbitrary.
     eigenvalues
         Eigenvalues of the Jacobian, complex, along one more axis of length 7 after that of the branches; with infinite
@@ -65,7 +65,7 @@ def slipping_rolling(
     inertia_ratio: Real = 0.75,
     axial_ratio: Real = 0.5,
 ) -> SlippingRolling:
-    """Compute all steady rolling with slip of a rigid column on a circling base, at any tilt.
+    """Compute all branches of steady rolling with slip of a rigid column on a circling base, at any tilt.
 
     Parameters
     ----------
@@ -80,14 +80,14 @@ def slipping_rolling(
     eta
         Damping η, a couple against the rate of tilt.
     zeta
-        Spin damping ζ, a moment against rotation about the vertical. Infinite, it forbids that. Zero, with friction
-        η, it leaves no steady rolling but on a patch.
+        Spin damping ζ, a moment against rotation about the vertical. An infinite ζ excludes this rotation. ζ = 0 with
+        damping η allows steady rolling only on a patch.
     patch
-        Radius of the contact, in units of the radius of the base, whose friction resists pivoting (Coulomb and
-        Contensou, after Zhuravlev, for a pressure after Hertz); 0 is a point, which does not.
+        Radius of the contact patch, in units of the radius of the base, whose friction resists pivoting (Coulomb and
+        Contensou, after Zhuravlev, for Hertz pressure); 0 is a point contact without this resistance.
     spin
-        Axial angular velocity [ω0] where there is no friction but that of the slip of a point and nothing decides it;
-        not used elsewhere.
+        Axial angular velocity [ω0], used only if slip of a point contact is the only resistance and the spin is
+        arbitrary.
     inertia_ratio
         κ = m h²/J0; ¾ for a slender solid cylinder, as by default.
     axial_ratio
@@ -101,59 +101,61 @@ def slipping_rolling(
     Raises
     ------
     ParameterError
-        If `nu`, `mu` or a number of the body is not positive, no body has these numbers, `spin` is not finite, or
+        If `nu`, `mu` or a number of the body is not positive, no body can have these numbers, `spin` is not finite, or
         another argument is negative.
 
     See Also
     --------
-    full_rolling : the same without slip, with the friction that it needs.
-    rolling_required_friction : that friction for a slender column, in closed form.
+    full_rolling : the same without slip, with its friction demand.
+    rolling_required_friction : this friction demand of a slender column, in closed form.
 
     Notes
     -----
-    The contact bears the weight, and the moments about the centre of mass give its friction, with p = cos θ + c sin θ
+    The contact bears the weight, and the moments about the centre of mass give the friction force, with p = cos θ + c
+    sin θ
 
         pT_d = sin θ − c cos θ + ν sin θ ((1 − κ)ν cos θ − I_a w3),   pT_n = −ην sin θ cos θ,
 
-    and its moment about the vertical, ηνc sin θ/p, as if there were no slip. On a point |T| = μ then is an equation for
-    the tilt alone: **the base acceleration has no part in it**. To leading order in c, without damping η,
+    and the moment about the vertical, ηνc sin θ/p, as without slip. For a point contact |T| = μ is an equation for the
+    tilt alone: **the tilt does not depend on the base acceleration**. To leading order in c, without damping η,
 
         θ = (c ± μ)/(1 + (1 − κ)ν²),   T_d = ±μ,
 
-    and the velocity of slip is against T, with U = κν|v| and w = c w3 − ν sin θ
+    and the slip velocity is opposite to T, with U = κν|v| and w = c w3 − ν sin θ
 
         U² + 2Uκνw T_n/μ + (T_d − κνw)² + T_n² = a0².
 
-    There is one such U > 0, or none: a0 must be more than what rolling at that tilt without slip would need. Without η
-    there is no T_n, the contact point slips along the lean, and the solution with T_d = ±μ exists where its tilt lies
-    between those of the two branches without slip, (c ± a0)/(1 + ν²).
+    One or no such U > 0 exists: a0 must exceed the base acceleration of rolling without slip at that tilt. Without η,
+    T_n = 0, the contact point slips along the lean, and the solution with T_d = ±μ exists where its tilt lies between
+    those of the two branches without slip, (c ± a0)/(1 + ν²).
 
-    So where `friction_demand` of rolling without slip passes μ it meets a branch with slip, for weak η in one of two
+    So a branch without slip meets a branch with slip when its `friction_demand` passes μ, for weak η in one of two
     ways.
 
-    * T_d < 0, the contact pulls the column inwards, at high frequency for a0 < κc/(1 − κ): the branch lies at *larger*
-      μ, a saddle, and ends on the lower branch without slip. At the friction demand both vanish. Below it there is no
-      steady rolling near by: the column slips, and those that were followed came down flat on their base.
-    * T_d > 0, pushed outwards, under strong shaking: rolling with slip goes on at smaller μ. It begins unstable, by an
-      oscillation, and is stable from some percent below the friction demand, up to a fifth, in the cases looked at.
+    * T_d < 0, the contact pulls the column inwards, at high frequency for a0 < κc/(1 − κ): the branch with slip is a
+      saddle at *larger* μ and ends on the lower branch without slip. Both vanish at the friction demand. For smaller μ
+      no steady rolling exists nearby: the column slips, and all integrated columns landed flat on their base.
+    * T_d > 0, the contact pushes outwards, under strong shaking: rolling with slip continues at smaller μ. It begins
+      with an oscillatory instability and is stable from some percent, up to a fifth, below the friction demand.
 
-    With c = 0.1, η = 0.1 and a0 = 0.065 rolling without slip is stable from ν = 1.40 on, the twist held, and takes a
-    friction of 0.022 at ν = 1.5, 0.047 at 3, 0.057 at 8: μ = 0.05 ends it at ν = 3.58. With ζ = 0.1 it is stable from
-    1.04 on and takes 0.059, 0.076 and 0.081: μ = 0.05 ends it at 1.23. No rolling with slip is stable in either case.
+    With c = 0.1, η = 0.1 and a0 = 0.065 rolling without slip and without spin is stable from ν = 1.40 and needs a
+    friction of 0.022 at ν = 1.5, 0.047 at 3, 0.057 at 8: for μ = 0.05 it ends at ν = 3.58. With ζ = 0.1 it is stable
+    from 1.04 and needs 0.059, 0.076 and 0.081: for μ = 0.05 it ends at 1.23. No rolling with slip is stable in either
+    case.
 
-    **Slip isolates.** Where a0 is large against μ and c the column is that of the paper on a base of acceleration μ,
-    but turns about its centre of mass: `steady_rolling` with ν√(1 − κ), μ and η/√(1 − κ) for ν, a0 and η, and with
-    `critical_frequency` of those over √(1 − κ). A solid cylinder rolls stably, with θ = (c + μ)/(1 + ν²/4), from about
-    ν = 2ν*(μ) upwards, however hard the base shakes, also where rolling without slip would be unstable. At finite a0
-    slip changes its direction as the column moves, and without η, the twist held, stability begins at ν² = (1 + 2μ/c)/
-    (1 − κ), where θ = c/2, for every a0 (found numerically).
+    **Slip isolates.** For a0 ≫ μ and a0 ≫ c the column moves like the paper's column on a base of acceleration μ, but
+    turns about its centre of mass: `steady_rolling` with ν√(1 − κ), μ and η/√(1 − κ) for ν, a0 and η. Its critical
+    frequency is `critical_frequency` of these values over √(1 − κ). A solid cylinder rolls stably, with θ = (c + μ)/(1
+    + ν²/4), from about ν = 2ν*(μ) upwards for any a0, even if rolling without slip would be unstable. At finite a0 slip
+    changes its direction as the column moves; without η and without spin, stability begins at ν² = (1 + 2μ/c)/(1 − κ),
+    where θ = c/2, for every a0 (found numerically).
 
-    A patch that turns has no threshold of slip. It creeps: slow slip next to the turn leaves it nearly all of its
-    moment, and with it rolling is near that without slip, and stable for ζ = 0 too, as long as μ is neither so large
-    that the patch sticks (`full_rolling` with infinite ζ is what is left) nor below a fold with the branch that slips.
+    A patch that turns has no threshold of slip: it slips slowly and keeps nearly all of its pivoting moment. Rolling is
+    then close to rolling without slip, and stable even for ζ = 0, within two limits of μ. For too large μ the patch
+    sticks (`full_rolling` with infinite ζ); below a fold with the slipping branch no such rolling exists.
 
-    On a patch two equations in ω_z and |v| are left, solved by a scan and Newton's method. A pair of solutions next to
-    a fold may be missed there, two or three in a thousand columns, and nowhere else.
+    On a patch two equations in ω_z and |v| remain, solved by a scan and Newton's method. This may miss a pair of
+    solutions next to a fold, for two or three columns in a thousand.
 
     Examples
     --------
@@ -178,7 +180,7 @@ def slipping_rolling(
     )
     shape = numbers[0].shape
     nu, a0, mu, eta, free, radius, spin, c, kappa, axial = (number.ravel() for number in numbers)
-    frictions = Frictions(eta=eta, zeta=free, mu=mu, patch=radius)
+    frictions = Resistances(eta=eta, zeta=free, mu=mu, patch=radius)
     forced = Forced(nu, a0, spin, frictions, RigidBody(c=c, kappa=kappa, axial_ratio=axial))
     return _described(shape, forced, *solutions(forced))
 
@@ -220,7 +222,7 @@ def _described(
 
 
 def _placed(rows: Rows, count: int) -> tuple[BoolArray, Rows]:
-    """Return where among the branches solutions are, and the place of each among those of its row."""
+    """Return the mask of solutions among the branches, and the index of each solution in its row."""
     many = np.bincount(rows, minlength=count)
     place = np.arange(len(rows)) - (np.cumsum(many) - many)[rows]
     exists: BoolArray = np.arange(max(1, int(many.max(initial=0)))) < many[:, np.newaxis]
@@ -228,7 +230,7 @@ def _placed(rows: Rows, count: int) -> tuple[BoolArray, Rows]:
 
 
 def _decays(growth: ComplexArray, undecided: BoolArray) -> BoolArray:
-    """Whether all of the last axis decay, but for the one next to zero where the spin is undecided."""
+    """Return whether all deviations decay, except the deviation of an arbitrary spin, whose growth is next to zero."""
     order = np.argsort(np.abs(growth), axis=-1)
     parts = np.take_along_axis(growth.real, order, axis=-1)
     parts[undecided, 0] = -1.0

@@ -1,4 +1,4 @@
-"""A rigid column whose contact slips, at any tilt, seen from the frame that turns with its lean on a circling base."""
+"""Rates of a rigid column with slip, at any tilt on a circling base, in the frame that turns with the lean."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -10,12 +10,12 @@ from stylobate.theory.rigid_body import Numbers, RigidBody
 
 STATES = 7
 
-# Friction on a patch (Coulomb–Contensou) after Zhuravlev: exponent p, and numbers of a pressure after Hertz.
+# Friction on a patch (Coulomb–Contensou) after Zhuravlev: exponent p, and coefficients of Hertz pressure.
 EXPONENT, SLOWED, TWISTING, EASED = 3, 8.0 / (3.0 * np.pi), 3.0 * np.pi / 16.0, 15.0 * np.pi / 16.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Frictions:
+class Resistances:
     """Resistances to the motion, arrays of one shape: η, ζ, μ and the radius ε of the contact over h."""
 
     eta: FloatArray
@@ -23,12 +23,12 @@ class Frictions:
     mu: FloatArray
     patch: FloatArray
 
-    def __getitem__(self, cells: Any) -> "Frictions":
-        return Frictions(eta=self.eta[cells], zeta=self.zeta[cells], mu=self.mu[cells], patch=self.patch[cells])
+    def __getitem__(self, cells: Any) -> "Resistances":
+        return Resistances(eta=self.eta[cells], zeta=self.zeta[cells], mu=self.mu[cells], patch=self.patch[cells])
 
 
-def rates(state: Numbers, nu: FloatArray, a0: FloatArray, friction: Frictions, body: RigidBody) -> Numbers:
-    """Return the right-hand side of a column that slips on its base, in the frame of the circular base motion.
+def rates(state: Numbers, nu: FloatArray, a0: FloatArray, friction: Resistances, body: RigidBody) -> Numbers:
+    """Evaluate the right-hand side of a column that slips on its base, in the frame of the circular base motion.
 
     Parameters
     ----------
@@ -41,7 +41,7 @@ def rates(state: Numbers, nu: FloatArray, a0: FloatArray, friction: Frictions, b
     a0
         Acceleration amplitude of the base [g].
     friction
-        What resists. Infinite spin damping ζ forbids rotation about the vertical; the state must then have
+        Damping and friction. An infinite ζ excludes rotation about the vertical; the state must then have
         σ cos θ + β̇ sin²θ = 0.
     body
         The column.
@@ -59,8 +59,8 @@ def rates(state: Numbers, nu: FloatArray, a0: FloatArray, friction: Frictions, b
         N = [1 + κ(z'G2/I_t − pθ̇²)]/[1 + (κ/I_t) z'(z' + pT_d/N)]
         I_t θ̈ = G2 − N z' − p T_d,   ẇ1 = β̇θ̇ cos θ − (I_a/I_t)θ̇σ + (T_n + M1)/I_t,   σ̇ = (c T_n + M3)/I_a
 
-    M1 = −ηw1 − Ms, M3 = M cos θ, M the moment about the vertical: −ζκc²Λω_z of the spin damping, and that of the
-    patch. The centre of mass has the velocity V = (v_d + pθ̇, v_n − cσ − w1) and the acceleration T/κ − a.
+    M1 = −ηw1 − Ms, M3 = M cos θ, and M is the moment about the vertical: −ζκc²Λω_z of the spin damping plus the moment
+    of the patch. The centre of mass has the velocity V = (v_d + pθ̇, v_n − cσ − w1) and the acceleration T/κ − a.
     """
     w2, omega, tilt, psi, w3, along, across = state
     s, cosine, p = np.sin(tilt), np.cos(tilt), body.height(tilt)
@@ -105,7 +105,7 @@ def rates(state: Numbers, nu: FloatArray, a0: FloatArray, friction: Frictions, b
     )
 
 
-def contact(along: Numbers, across: Numbers, turn: Numbers, friction: Frictions) -> tuple[Numbers, Numbers, Numbers]:
+def contact(along: Numbers, across: Numbers, turn: Numbers, friction: Resistances) -> tuple[Numbers, Numbers, Numbers]:
     """Return T_d, T_n and M_z over N, the moment also over h, of a contact that slips and turns at ω_z = `turn`."""
     speed = np.sqrt(along**2 + across**2)
     pivot = np.sqrt((friction.patch * turn) ** 2)

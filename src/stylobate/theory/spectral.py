@@ -1,4 +1,4 @@
-"""Periodic functions on an odd number of equally spaced points: their derivative, and their values in between."""
+"""Spectral differentiation and interpolation of periodic functions on an odd number of equally spaced points."""
 
 import numpy as np
 
@@ -37,7 +37,7 @@ def interpolated(values: FloatArray, fraction: FloatArray) -> FloatArray:
     values
         Values at j/points along the last axis, an odd number of them, shape (m, points).
     fraction
-        Where to evaluate, shape (n,).
+        Fractions of the period, shape (n,).
 
     Returns
     -------
@@ -51,6 +51,6 @@ def interpolated(values: FloatArray, fraction: FloatArray) -> FloatArray:
 
 
 def unresolved(values: FloatArray) -> float:
-    """Return the size of the highest harmonics against the largest, the error left by too few points."""
+    """Return the highest harmonics over the largest harmonic, an estimate of the truncation error."""
     size = np.abs(np.fft.rfft(values, axis=-1)).max(axis=0)
     return float(size[-3:].max() / size.max())

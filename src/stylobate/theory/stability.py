@@ -4,17 +4,17 @@ With ξ = c/θ, k = 1 + ν² and D = k² + η²ν², small deviations from stead
 
     (λ² + ηλ)² + q (λ² + ηλ) + p0 = 0,    q = 2ν² − 2 + ξ,    p0 = D − kξ.
 
-The quartic of the Jacobian of (7) is thus a quadratic in λ² + ηλ. Routh–Hurwitz asks for η > 0, q > 0, p0 > 0 and
-q² + 2η²q > 4p0. The last expression is the difference ξ² + 2wξ − 4w with w = 4ν² + η², so it says no more than
+The quartic of the Jacobian of (7) is thus a quadratic in λ² + ηλ. Routh–Hurwitz requires η > 0, q > 0, p0 > 0 and q² +
+2η²q > 4p0. The last difference is ξ² + 2wξ − 4w with w = 4ν² + η², so the condition is
 
     ξ > ξ* = 4 / (1 + √(1 + 4/w)),    that is    θ < c/ξ*.
 
 On the branches of (8) p0 = ±ξ√(a0²D/c² − η²ν²): positive on the upper branch, negative on the lower. The lower branch
-is therefore a saddle wherever it exists, with exactly one positive eigenvalue: p0 < 0 makes the two roots λ² + ηλ real
-and of opposite sign, and only the positive one gives a positive λ.
+is therefore always a saddle with exactly one positive eigenvalue: for p0 < 0 the two roots λ² + ηλ are real and of
+opposite sign, and only the positive root gives a positive λ.
 
-Without damping an equilibrium can at best be neutrally stable. There the same inequalities say that all four
-eigenvalues are imaginary and distinct: deviations stay small in the linear sense, none decays.
+Without damping an equilibrium can at best be neutrally stable. The same inequalities then mean that all four
+eigenvalues are imaginary and distinct: deviations neither grow nor decay in the linear approximation.
 """
 
 import numpy as np
@@ -33,7 +33,7 @@ def satisfies_routh_hurwitz(nu: FloatArray, x: FloatArray, eta: FloatArray, q: F
 
 
 def rolling_eigenvalues(eta: FloatArray, q: FloatArray, p0: FloatArray) -> ComplexArray:
-    """Return the four roots λ along the last axis; each product is used for the root that would cancel."""
+    """Return the four roots λ along the last axis; roots that would cancel follow from the products."""
     with np.errstate(invalid="ignore"):  # NaN, where there is no rolling, passes through
         return _roots(eta.astype(np.complex128), q.astype(np.complex128), p0.astype(np.complex128))
 

@@ -1,14 +1,14 @@
-"""When a column that stands on a moving, possibly inclined plane begins to slide, to rock or to lift off.
+"""Onset of sliding, rocking or lift-off of a column that stands on a moving, possibly inclined plane.
 
 The plane rises by `incline` = ψ along x. With the base acceleration ax uphill along the plane and az along its normal,
-in g, a column that stays is held by the friction T and the normal force N, in units of its weight,
+in g, a column at rest on the plane needs the friction T and the normal force N, in units of its weight,
 
     T = sin ψ + ax,    N = cos ψ + az.
 
-It does not slide while |T| ≤ μN, and it does not rock while the line of T and N, drawn from the mass centre, meets the
-base inside its rim, |T| ≤ cN. Both limits scale with N. So which one is met first does not depend on N, the vertical
-acceleration or the incline: the column rocks if c < μ and slides if μ < c. It cannot lift off before it does either:
-at N = 0 the cone has shrunk to T = 0. The only exception is a base motion that never loads the friction.
+The column does not slide while |T| ≤ μN. It does not rock while the line of T and N through the centre of mass meets
+the base inside its rim, |T| ≤ cN. Both limits scale with N, so their order does not depend on N, the vertical
+acceleration or the incline: the column rocks if c < μ and slides if μ < c. Lift-off cannot come first, since at N = 0
+both limits are T = 0. The only exception is a base motion that needs no friction.
 """
 
 from dataclasses import dataclass
@@ -20,7 +20,7 @@ import numpy.typing as npt
 from stylobate.errors import ParameterError
 from stylobate.theory.arguments import ComplexArray, FloatArray, Real, finite, not_negative, positive
 
-# Relative difference, a few roundings, below which lifting off and leaving the friction cone are the same instant.
+# Relative difference, a few roundings, below which lift-off and leaving the friction cone coincide.
 _SAME = 8.0 * float(np.finfo(float).eps)
 
 
@@ -28,29 +28,29 @@ class FirstMotion(IntEnum):
     """The first motion of a standing column."""
 
     NONE = 0
-    """It stays."""
+    """The column stays at rest."""
     SLIDE = 1
-    """Its base slips."""
+    """The base slips."""
     ROCK = 2
-    """It tilts over its rim."""
+    """The column tilts about its rim."""
     LIFT_OFF = 3
-    """It is thrown without either."""
+    """The column lifts off without slip or tilt."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StartOfMotion:
-    """The least base motion that moves a standing column, arrays of one shape.
+    """The minimum base motion that moves a standing column, arrays of one shape.
 
     Parameters
     ----------
     amplitude
-        Factor on the base motion above which the column does not stay: the least of the three below. 0 where it does
-        not stay on the plane at rest, infinite where it always stays.
+        Factor on the base motion above which the column moves: the minimum of the three factors below. 0 if the column
+        does not stay on the plane at rest, infinite if it always stays.
     first
-        What it then does, values of `FirstMotion`.
+        First motion, values of `FirstMotion`.
     phase
-        Ωt at which it begins, in [0, 2π); NaN where `amplitude` is 0 or infinite. If it may begin at two instants
-        because uphill and downhill are alike, the one at which the base accelerates uphill.
+        Ωt of the onset, in [0, 2π); NaN where `amplitude` is 0 or infinite. If uphill and downhill are alike, the onset
+        while the base accelerates uphill.
     slide
         Factor above which abs(T) ≤ μN fails.
     rock
@@ -70,14 +70,14 @@ class StartOfMotion:
 def start_of_motion(
     along: Real = 1.0, normal: Real = 0.0, *, c: Real, friction: Real, phase: Real = 0.0, incline: Real = 0.0
 ) -> StartOfMotion:
-    """Compute the minimum harmonic base motion at which a standing column slides, rocks or lifts off.
+    """Compute the minimum harmonic base motion that makes a standing column slide, rock or lift off.
 
     Parameters
     ----------
     along, normal
         Shape of the base motion: its acceleration is s·along·cos Ωt uphill along the plane and
-        s·normal·cos(Ωt + phase) along its normal. Sought is the factor s; for a shape of unit size it is the amplitude
-        [g]. So `normal` is the ratio of vertical to horizontal if `along` is left at 1.
+        s·normal·cos(Ωt + phase) along its normal. The result is the factor s; for a shape of unit size s is the
+        amplitude [g]. With along = 1, `normal` is the ratio of vertical to horizontal.
     c
         Slenderness r/h.
     friction
@@ -104,11 +104,11 @@ def start_of_motion(
 
         s = min over ± of (k cos ψ ∓ sin ψ)/√(along² ∓ 2k along normal cos(phase) + k² normal²).
 
-    Where k ≤ abs(tan ψ) the numerator says that the column does not stay on the plane at rest. N ≥ 0 holds up to
-    cos ψ/normal. For c = μ sliding and rocking begin together; ROCK is named.
+    For k ≤ abs(tan ψ) the column does not stay on the plane at rest. N ≥ 0 holds up to cos ψ/normal. For c = μ sliding
+    and rocking begin together; the result is ROCK.
 
-    The vertical acceleration in phase with the horizontal one takes k·normal from `along` in one sense of T and adds it
-    in the other; so with an incline it may help.
+    A vertical acceleration in phase with the horizontal acceleration subtracts k·normal from `along` for one sense of T
+    and adds it for the other; so with an incline it may stabilise the column.
 
     Examples
     --------
@@ -172,9 +172,9 @@ def first_motion(
 
     Notes
     -----
-    NONE while abs(T) ≤ min(μ, c) N; LIFT_OFF where N < 0, or N = 0 and T is not: there is no contact to slide or rock
-    on. Between them it depends on which limit is met first if the acceleration grows to its value. An acceleration put
-    on at once, well above both limits, may make the column slide and rock together.
+    NONE while abs(T) ≤ min(μ, c) N; LIFT_OFF if N < 0, or if N = 0 and T ≠ 0, since no contact remains. Otherwise the
+    result is the limit that a growing acceleration reaches first. A sudden acceleration well above both limits may make
+    the column slide and rock together.
 
     Examples
     --------
@@ -205,7 +205,7 @@ def steepness(incline: Real) -> FloatArray:
 
 
 def _leaves_cone(x: FloatArray, z: ComplexArray, k: FloatArray, psi: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return the factor above which |T| ≤ kN fails, and Ωt at which it does."""
+    """Return the factor above which |T| ≤ kN fails, and Ωt of the failure."""
     factor, phase = [], []
     for sense in (1.0, -1.0):
         swing = sense * x - k * z  # sense T − kN = Re(swing exp iΩt) − room

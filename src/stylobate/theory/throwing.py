@@ -1,4 +1,4 @@
-"""How far a base that shakes along its normal throws what lies on it: throw number, length of a flight, bouncing."""
+"""Throw number, flight duration and bouncing of a body on a base that vibrates along its normal."""
 
 import numpy as np
 
@@ -6,7 +6,7 @@ from stylobate.errors import ParameterError
 from stylobate.theory.arguments import FloatArray, Real, not_negative, positive
 from stylobate.theory.starting import steepness
 
-# Below this angle 2πn the quotient of the throw number is taken from its series: its parts vanish as the third power.
+# Below this angle 2πn the quotient of the throw number comes from its series, since both terms vanish as x³.
 _SMALL_ANGLE = 0.3
 _TERMS = 8
 
@@ -59,13 +59,13 @@ def flight_throw_number(duration: Real) -> FloatArray:
 
     Notes
     -----
-    For a block that lies on the base when the normal force cos ψ (1 + Γ cos Ωt) falls through zero. A phase x later
-    its distance from the base is cos ψ/Ω² times √(Γ² − 1)(x − sin x) − (½x² + cos x − 1). It lands at x = 2πn:
+    The block leaves the base when the normal force cos ψ (1 + Γ cos Ωt) falls through zero. A phase x later its
+    distance from the base is cos ψ/Ω² times √(Γ² − 1)(x − sin x) − (½x² + cos x − 1). It lands at x = 2πn:
 
         Γ² = 1 + [(½x² + cos x − 1)/(x − sin x)]².
 
-    Exact. With e = 0 that is all the flight there is, and below Γ = √(1 + π²) = 3.297 there is one in each period; with
-    e > 0 it is the first one of a throw, if the bouncing after the last throw has ended.
+    Exact. With e = 0 this is the only flight per period for Γ below √(1 + π²) = 3.297. With e > 0 it is the first
+    flight of a throw, if the bouncing after the last throw has ended.
 
     Examples
     --------
@@ -93,8 +93,7 @@ def bounce_time(speed: Real, *, normal_restitution: Real, weight: Real = 1.0) ->
     normal_restitution
         Normal restitution e, below 1.
     weight
-        Acceleration N with which the block falls back on its base: cos ψ plus the base acceleration along the normal
-        [g].
+        Acceleration N of the block towards its base: cos ψ plus the base acceleration along the normal [g].
 
     Returns
     -------
@@ -108,8 +107,8 @@ def bounce_time(speed: Real, *, normal_restitution: Real, weight: Real = 1.0) ->
 
     Notes
     -----
-    The bounces last 2eᵏv/N, a geometric series. Exact for a constant N only: on a vibrating base it is the limit of
-    small v, in which N does not change before the bouncing is over.
+    The bounces last 2eᵏv/N, a geometric series. Exact only for constant N: on a vibrating base this is the limit of
+    small v, in which N is constant during the bouncing.
 
     Examples
     --------

@@ -1,7 +1,7 @@
-"""Steady rolling of a rigid column that only tilts, at any tilt: the paper's column without the small angles.
+"""Steady rolling of a rigid column without twist at any tilt: the paper's column beyond small angles.
 
-Rotation about the vertical is forbidden as ω·(e3 + Z) = 0, for the axis e3 and the vertical Z: the column gets from
-upright to where it is by a turn about a horizontal line. The circle on which the base stood stays where it was.
+The constraint ω·(e3 + Z) = 0, for the axis e3 and the vertical Z, excludes twist: a rotation about a horizontal line
+takes the upright column to its position. The circle of the upright base stays fixed.
 """
 
 import numpy as np
@@ -21,7 +21,7 @@ from stylobate.theory.zeros import Rows
 def wobbling_rolling(
     nu: Real, a0: Real, *, c: Real, eta: Real, inertia_ratio: Real = 0.75, axial_ratio: Real = 0.5
 ) -> FiniteTiltRolling:
-    r"""Compute all steady rolling of a column without twist on a circling base, at any tilt.
+    r"""Compute all branches of steady rolling of a column without twist on a circling base, at any tilt.
 
     Parameters
     ----------
@@ -46,7 +46,8 @@ def wobbling_rolling(
     Raises
     ------
     ParameterError
-        If `nu` or a number of the body is not positive, no body has these numbers, or another argument is negative.
+        If `nu` or a number of the body is not positive, no body can have these numbers, or another argument is
+        negative.
 
     See Also
     --------
@@ -55,13 +56,13 @@ def wobbling_rolling(
 
     Notes
     -----
-    Of the balances along and across the lean, with P = sin θ + c(1 − cos θ), p = dP/dθ and
+    The balances along and across the lean are, with P = sin θ + c(1 − cos θ), p = dP/dθ and
     M = κP² + (1 − κ) sin²θ + κ i_a c²(1 − cos θ)²,
 
         p a0 cos ψ = ½ν² dM/dθ + sin θ − c cos θ,   P a0 sin ψ = ην sin²θ,
 
-    the paper's solution (8) is the limit; its amplitudes differ by a part of the order c². Wobbling spins the column
-    about its axis, at w3 = −ν(1 − cos θ), but not about the vertical.
+    with the paper's solution (8) as the limit; the amplitudes differ by a relative amount of order c². Wobbling rotates
+    the column about its axis, at w3 = −ν(1 − cos θ), but does not let it twist.
 
     Examples
     --------
@@ -86,7 +87,7 @@ def wobbling_rolling(
 
 
 def rates(state: Numbers, nu: FloatArray, a0: FloatArray, eta: FloatArray, body: RigidBody) -> Numbers:
-    """Return the right-hand side of pure tilting at finite tilt, in the frame of the circular base motion.
+    """Evaluate the right-hand side of pure tilting at finite tilt, in the frame of the circular base motion.
 
     Parameters
     ----------
@@ -122,7 +123,7 @@ def rates(state: Numbers, nu: FloatArray, a0: FloatArray, eta: FloatArray, body:
 
 
 def _about_vertical(tilt: Numbers, body: RigidBody) -> tuple[Numbers, Numbers]:
-    """Return M, the moment of inertia of a change of azimuth, and dM/dθ."""
+    """Return M, the moment of inertia of a change of the azimuth, and dM/dθ."""
     s, fall, reach = np.sin(tilt), 1.0 - np.cos(tilt), body.reach(tilt)
     inertia = body.kappa * reach**2 + body.transverse * s**2 + body.axial * fall**2
     slope = body.kappa * reach * body.height(tilt) + body.transverse * s * np.cos(tilt) + body.axial * fall * s

@@ -1,4 +1,4 @@
-"""All zeros of a function of one variable, for many sets of parameters at once: a scan, then bisection."""
+"""All zeros of a function of one variable for many sets of parameters: scan and bisection."""
 
 from collections.abc import Callable
 from typing import TypeAlias
@@ -11,8 +11,7 @@ from stylobate.theory.arguments import FloatArray
 Rows: TypeAlias = npt.NDArray[np.intp]
 Function: TypeAlias = Callable[[FloatArray, Rows], FloatArray]
 
-# Halvings that bring a cell of a scan down to neighbouring floats, and thirds cut off it that find a minimum as well
-# as its values show.
+# Halvings that reduce a cell to neighbouring floats, and trisection steps that find a minimum to rounding of its value.
 _HALVINGS = 64
 _CUTS = 60
 
@@ -23,19 +22,19 @@ def zeros(function: Function, grid: FloatArray) -> tuple[Rows, FloatArray]:
     Parameters
     ----------
     function
-        Values at points x for the parameters of given rows, both arrays that broadcast.
+        Values from points x and the rows of the parameters, both arrays that broadcast.
     grid
-        Rising points, one row for each set of parameters, shape (rows, points).
+        Increasing points, one row for each set of parameters, shape (rows, points).
 
     Returns
     -------
     tuple of numpy.ndarray
-        Row and place of each zero, by rows and then rising.
+        Row and position of each zero, in increasing order within each row.
 
     Notes
     -----
-    Pairs of zeros between two points are found too, as long as the grid sees the function bend towards zero there: its
-    value nearest to zero is sought wherever a point lies nearer to zero than its neighbours.
+    Pairs of zeros between two grid points are found if the function bends towards zero on the grid: the search
+    minimises the distance to zero near each point that is closer to zero than its neighbours.
     """
     row = np.arange(len(grid))
     values = function(grid, row[:, np.newaxis])
@@ -50,7 +49,7 @@ def zeros(function: Function, grid: FloatArray) -> tuple[Rows, FloatArray]:
 
 
 def _around_dips(function: Function, grid: FloatArray, values: FloatArray) -> list[tuple[Rows, FloatArray, FloatArray]]:
-    """Return the two brackets of each dip towards zero that the grid has stepped over."""
+    """Return the two brackets of each pair of zeros between grid points."""
     size, above = np.abs(values), values > 0.0
     same = (above[:, 1:-1] == above[:, :-2]) & (above[:, 1:-1] == above[:, 2:])
     at, i = np.nonzero(same & (size[:, 1:-1] <= size[:, :-2]) & (size[:, 1:-1] <= size[:, 2:]))
