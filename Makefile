@@ -4,6 +4,8 @@ VENV   := .venv
 BIN    := $(VENV)/bin
 
 .DEFAULT_GOAL := help
+# Without files of bytecode, each process that a test starts compiles all modules again.
+unexport PYTHONDONTWRITEBYTECODE
 .PHONY: help demo lab page test test-all test-lowest test-newest coverage lint docs figures bench clean
 
 help:  ## list the targets

@@ -1,11 +1,9 @@
 """An option that is given is used or refused, whatever the command: nothing is dropped without a word."""
 
-import functools
 from typing import get_args
 
 import pytest
 
-from stylobate.base_motions.records import samples
 from stylobate.cli.command import Command
 from stylobate.cli.commands import COMMANDS
 from stylobate.cli.main import run
@@ -112,12 +110,8 @@ class ComputedError(Exception):
 
 
 @pytest.fixture(autouse=True, scope="module")
-def parsers_and_records_are_kept():
-    """Make options and parser of a command once for each choice of kinds, and read a record once.
-
-    They are asked for a thousand times.
-    """
-    read = functools.cache(lambda paths, units, plain=samples.read_records: plain(list(paths), units=units))
+def parsers_are_kept():
+    """Make options and parser of a command once for each choice of kinds: they are asked for a thousand times."""
     kept, made, parsers, parser = {}, Command.options, {}, Command.program
 
     def options(self, chosen):
@@ -133,7 +127,6 @@ def parsers_and_records_are_kept():
         return parsers[key]
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(samples, "read_records", lambda paths, *, units: read(tuple(paths), units))
         patch.setattr(Command, "options", options)
         patch.setattr(Command, "program", program)
         yield

@@ -1,6 +1,7 @@
 """Records that come with the package."""
 
 from dataclasses import replace
+from functools import cache
 from importlib.resources import as_file, files
 
 from stylobate.base_motions.records.grouping import read_records
@@ -55,6 +56,11 @@ def sample_record(name: str = "el centro 1940") -> Record:
     if key not in sample_names():
         message = f"name must be one of {', '.join(map(repr, sample_names()))}, got {name!r}"
         raise ParameterError(message)
+    return _read(key)
+
+
+@cache
+def _read(key: str) -> Record:
     folder = files("stylobate.base_motions.records") / "data"
     with as_file(folder) as here:
         (record,) = read_records([here / file for file in _FILES], units="g")

@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Callable, Sequence
+from functools import cache
 
 import numpy as np
 import numpy.typing as npt
@@ -15,6 +16,7 @@ from stylobate.errors import NoOrbitError
 from stylobate.models import Model
 from stylobate.orbits import Branch, continue_branch
 from stylobate.orbits.arguments import require_subject
+from stylobate.orbits.multipliers import is_stable
 from stylobate.studies.ranges import require_rising_frequencies, require_values
 from stylobate.studies.responses.first_orbit import first_orbit
 from stylobate.studies.responses.orbit_families import between_bifurcations
@@ -78,7 +80,7 @@ def averaging_map(
         averaged[row] = np.where(np.isfinite(amplitude), upper["stable"].to_numpy(), _NONE)
         branch = _followed(*changed, frequencies, sense)
         if branch is not None:
-            at = branch.points["angular_frequency"].to_numpy()
+            at = np.array([point.value for point in branch.path])
             of_theory = response_curves(*changed, angular_frequency=at)["amplitude"].sel(sense=name, branch="upper")
             exact[row], error[row], swing[row] = _at(branch, of_theory.to_numpy(), frequencies)
         if progress is not None:
@@ -120,10 +122,14 @@ def _at(branch: Branch, amplitude: Floats, frequencies: Floats) -> tuple[npt.NDA
     Stability changes at bifurcations only, which are points of the branch; ratios to the averaged amplitude, which
     change slowly, are interpolated between points. Where a branch is folded, its first orbit counts.
     """
-    points = branch.points
-    at, stable = points["angular_frequency"].to_numpy(), points["stable"].to_numpy()
-    ratios = [points[name].to_numpy() / amplitude for name in ("mean_tilt", "peak_tilt")]
-    found = [np.full(frequencies.size, np.nan) for _ in ratios]
+    at, stable = (np.array(of) for of in zip(*((p.value, is_stable(p.multipliers)) for p in branch.path), strict=True))
+
+    @cache  # the mean tilt takes an integration, and few points may have a frequency beside them
+    def ratios(index: int) -> Floats:
+        orbit = branch.orbit(index)
+        return np.asarray([orbit.mean_tilt, orbit.peak_tilt]) / float(amplitude[index])
+
+    found = np.full((2, frequencies.size), np.nan)
     codes = np.full(frequencies.size, _NONE, dtype=np.int8)
     for index in range(at.size - 1):
         low, high = sorted(at[index : index + 2])
@@ -131,7 +137,6 @@ def _at(branch: Branch, amplitude: Floats, frequencies: Floats) -> tuple[npt.NDA
         if not inside.any() or low == high:
             continue
         share = (frequencies[inside] - at[index]) / (at[index + 1] - at[index])
-        for ratio, into in zip(ratios, found, strict=True):
-            into[inside] = ratio[index] + share * (ratio[index + 1] - ratio[index])
+        found[:, inside] = ratios(index)[:, np.newaxis] + np.outer(ratios(index + 1) - ratios(index), share)
         codes[inside] = _STABLE if stable[index] or stable[index + 1] else _UNSTABLE
     return codes, found[0] - 1.0, found[1]
