@@ -1,6 +1,6 @@
-"""Records: base motions given by accelerations at equal steps, read, processed, measured, synthesized.
+"""Ground-motion records: reading, processing, intensity measures and synthesis.
 
-The public names, imported when they are first used, are those of `__init__.pyi`.
+`__init__.pyi` lists the public names; each is imported at its first use.
 """
 
 import lazy_loader

@@ -1,6 +1,6 @@
-"""Files of the Engineering Strong Motion database (ESM) and of ITACA, ASC, with headers of DYNA 1.x.
+"""ASC files of the Engineering Strong Motion database (ESM) and of ITACA, with headers of DYNA 1.x.
 
-Lines `KEY: value`, then one acceleration on a line:
+Lines `KEY: value`, then one acceleration per line:
 
     STREAM: HNE
     UNITS: cm/s^2
@@ -44,11 +44,11 @@ class _Header:
 
     @property
     def last(self) -> int:
-        """Index of its last line."""
+        """Index of the last line of the header."""
         return max(self.places.values())
 
     def get(self, key: str) -> str:
-        """Return the value of a key, empty where it is missing."""
+        """Return the value of a key, empty if the key is missing."""
         return self.values.get(key, "")
 
 
@@ -58,12 +58,13 @@ def is_asc(text: Text) -> bool:
 
 
 def read_asc(text: Text) -> Component:
-    """Return the component of an ASC file.
+    """Read the component of an ASC file.
 
     Raises
     ------
     FileError
-        If the header or a number is wrong, there are more or fewer numbers than it says, or it is no acceleration.
+        If the header or a number is wrong, the count of numbers differs from the header, or the data are no
+        acceleration.
     """
     header = _Header.of(text)
     for key in _NEEDED:
@@ -88,7 +89,7 @@ def read_asc(text: Text) -> Component:
 
 
 def direction_of_channel(code: str) -> Direction | None:
-    """Return the direction of a channel by its code, or by the last letter of its code, or None: HNE, HNN, HNZ.
+    """Return the direction of a channel such as HNE from its code or the last letter of its code, or None.
 
     >>> direction_of_channel("HNE").azimuth, direction_of_channel("HGZ").vertical, direction_of_channel("HN3")
     (90.0, 1, None)

@@ -1,6 +1,6 @@
-"""Files of the PEER strong-motion databases, AT2.
+"""AT2 files of the PEER strong-motion databases.
 
-Four lines of header, then the accelerations, several on a line. The fourth line is `NPTS=   4000, DT=   .0050 SEC` in
+Four lines of header, then the accelerations, several per line. The fourth line is `NPTS=   4000, DT=   .0050 SEC` in
 newer files and `4000    0.0050    NPTS, DT` in older ones.
 """
 
@@ -15,7 +15,7 @@ _NEW = re.compile(rf"NPTS\s*=\s*(?P<count>\S+?)\s*,\s*DT\s*=\s*(?P<step>{_NUMBER
 _OLD = re.compile(rf"\s*(?P<count>\d+)\s+(?P<step>{_NUMBER})?\s*NPTS\s*,\s*DT", re.IGNORECASE)
 _UNITS = re.compile(r"UNITS?\s+OF\s+(?P<unit>[^\s,.;]+)", re.IGNORECASE)
 _OTHERS = re.compile(r"^\s*(VELOCITY|DISPLACEMENT)\b", re.IGNORECASE)
-# The line with the count is the fourth; a blank or a remark more is tolerated.
+# The line with the count is the fourth; an additional blank or comment line is tolerated.
 _HEADER = 8
 _TIME_AND_ACCELERATION = 2
 
@@ -26,19 +26,19 @@ def is_at2(text: Text) -> bool:
 
 
 def read_at2(text: Text, step: float | None = None) -> Component:
-    """Return the component of an AT2 file.
+    """Read the component of an AT2 file.
 
     Parameters
     ----------
     text
         The file.
     step
-        Time step [s], of a file whose header lacks the line with NPTS and DT.
+        Time step [s], for a file whose header lacks the line with NPTS and DT.
 
     Raises
     ------
     FileError
-        If the header or a number is wrong, or there are more or fewer numbers than it says.
+        If the header or a number is wrong, or the count of numbers differs from the header.
     """
     at = _counting_line(text)
     if at is None:
@@ -55,7 +55,7 @@ def read_at2(text: Text, step: float | None = None) -> Component:
 
 
 def is_wrapped(text: Text) -> bool:
-    """Return whether the numbers stand as in the body of an AT2 file: several on a line, fewer on the last."""
+    """Return whether the numbers are laid out as in an AT2 file: several per line, fewer on the last line."""
     rows = [row for row in map(str.split, text.lines[_first_row(text) :]) if row]
     return bool(rows) and _TIME_AND_ACCELERATION < len(rows[0]) >= len(rows[-1])
 
@@ -70,7 +70,7 @@ def _without_count(text: Text, step: float | None) -> Component:
 
 
 def _component(text: Text, last: int, count: int | None, step: float) -> Component:
-    """Return the component below the header, which ends with the line at the index `last`."""
+    """Read the component below the header, whose last line has the index `last`."""
     return Component(
         samples=text.series(last, count),
         step=step,
@@ -81,7 +81,7 @@ def _component(text: Text, last: int, count: int | None, step: float) -> Compone
 
 
 def _first_row(text: Text) -> int:
-    """Return the index of the first line of numbers alone."""
+    """Return the index of the first line that holds only numbers."""
     rows = (at for at, line in enumerate(text.lines) if line.strip() and all(map(is_number, line.split())))
     return next(rows, len(text.lines))
 

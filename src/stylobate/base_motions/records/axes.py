@@ -1,4 +1,4 @@
-"""Components of known directions, along the axes x, y and z of a record."""
+"""Rotation of components with known directions to the axes x, y and z of a record."""
 
 import math
 from collections.abc import Sequence
@@ -8,14 +8,14 @@ from stylobate.base_motions.records.component import Direction
 from stylobate.base_motions.records.record import Floats
 from stylobate.errors import FileError
 
-# Azimuths of sensors at right angles, as rounded in names of files, may differ from 90° by so much [degrees].
+# Tolerance of a right angle between azimuths that are rounded in file names [degrees].
 _RIGHT_ANGLE_TOLERANCE = 2.0
-# Horizontal components nearer to one line than this do not determine the motion.
+# Minimum sine of the angle between horizontal components that determine the motion.
 _LEAST_SINE = 0.5
 
 
 class Directed(NamedTuple):
-    """Accelerations of shape (n,) that are positive in this direction, and the file or column that holds them."""
+    """Accelerations of shape (n,) that are positive in this direction, with their file or column."""
 
     label: str
     direction: Direction
@@ -23,7 +23,7 @@ class Directed(NamedTuple):
 
 
 def is_one_set(directions: Sequence[Direction]) -> bool:
-    """Return whether components in these directions can be of one event: one vertical, two perpendicular ones at most.
+    """Return whether one event can have these directions: at most one vertical and two perpendicular horizontal ones.
 
     >>> is_one_set([Direction(azimuth=0.0), Direction(azimuth=90.0)]), is_one_set([Direction(axis="x")] * 2)
     (True, False)
@@ -45,7 +45,7 @@ def are_perpendicular(first: Direction, second: Direction) -> bool:
 
 
 def along_axes(event: str, components: Sequence[Directed]) -> tuple[dict[str, Floats], str]:
-    """Return the accelerations along x, y and z by name, and in a line where they come from.
+    """Rotate components to x, y and z; return the accelerations by axis, and their origin as a line of text.
 
     Raises
     ------
@@ -54,8 +54,8 @@ def along_axes(event: str, components: Sequence[Directed]) -> tuple[dict[str, Fl
 
     Notes
     -----
-    x points along the lower azimuth θ1 of two, y 90° anticlockwise from it, z up, see `read_records`. Two components
-    that are only known to be perpendicular are x and y, in the order of their axes.
+    x points along the lower azimuth θ1 of two, y 90° anticlockwise from x, z up, see `read_records`. Two perpendicular
+    components of unknown azimuth are x and y, in the order of their axes.
     """
     up = [one for one in components if one.direction.vertical]
     flat = sorted((one for one in components if not one.direction.vertical), key=_order)
@@ -81,7 +81,7 @@ def _listed(components: Sequence[Directed]) -> str:
 
 
 def _sine(first: Direction, second: Direction) -> float:
-    """Return the sine of the angle between two horizontal directions; 0 where they are not independent."""
+    """Return the sine of the angle between two horizontal directions; 0 if they are not independent."""
     if first.azimuth is None or second.azimuth is None:
         return float(None not in (first.axis, second.axis) and first.axis != second.axis)
     sine = math.sin(math.radians(second.azimuth - first.azimuth))
@@ -108,7 +108,7 @@ def _horizontal(event: str, flat: list[Directed]) -> tuple[dict[str, Floats], li
         ]
         return {"x": first.samples, "y": second.samples}, lines
     turn = math.radians(second.direction.azimuth - first.direction.azimuth)
-    # right angles exactly: cos 90° is not to mix 1e-17 of one component into the other
+    # exact right angles: the rounding error of cos 90° must not mix the components
     across = abs(math.cos(turn)) < 1e-12  # noqa: PLR2004
     cos, sin = (0.0, math.copysign(1.0, math.sin(turn))) if across else (math.cos(turn), math.sin(turn))
     lines = [

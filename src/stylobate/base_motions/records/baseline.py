@@ -1,4 +1,4 @@
-"""Correction of the baseline: drift of the velocity that no ground has."""
+"""Baseline correction: removal of spurious drift of the velocity."""
 
 import numpy as np
 import numpy.typing as npt
@@ -10,7 +10,7 @@ Floats = npt.NDArray[np.float64]
 
 
 def baseline_corrected(samples: Floats, step: float, degree: int = 1) -> tuple[Floats, str]:
-    """Return `samples` less the derivative of a polynomial fitted to their velocity, and a note about it.
+    """Subtract the derivative of a polynomial fitted to the velocity; return samples and a log line.
 
     Parameters
     ----------
@@ -19,13 +19,13 @@ def baseline_corrected(samples: Floats, step: float, degree: int = 1) -> tuple[F
     step
         Time step [s].
     degree
-        Degree of the polynomial, 1 or more. It is zero at the first sample, where the velocity is; degree 1 takes a
-        constant off the acceleration.
+        Degree of the polynomial, 1 or more. The polynomial and the velocity are zero at the first sample; degree 1
+        subtracts a constant from the acceleration.
 
     Notes
     -----
-    Least squares over the velocities at the samples, each component for itself. The remaining velocity is small but not
-    zero; a high-pass filter (`Record.filtered`) removes drift that is no polynomial.
+    Least squares over the velocities at the samples, for each component separately. The remaining velocity is small but
+    not zero; a high-pass filter (`Record.filtered`) removes drift that is no polynomial.
     """
     degree = require_whole("degree", degree, least=1)
     time = np.linspace(0.0, 1.0, len(samples))[:, np.newaxis]

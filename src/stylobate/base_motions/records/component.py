@@ -1,4 +1,4 @@
-"""One component as a file gives it, and which way it points."""
+"""Component of a ground motion as read from a file, and its direction."""
 
 import re
 from dataclasses import dataclass
@@ -105,7 +105,7 @@ class Direction:
         return found
 
     def agrees_with(self, other: "Direction") -> bool:
-        """Return whether both can be of one component: a name may leave open which way along a line it is positive."""
+        """Return whether both can describe one component; a name may leave the sign along a line open."""
         if self.azimuth is None or other.azimuth is None:
             return bool(self.vertical) == bool(other.vertical)
         return (self.azimuth - other.azimuth) % _HALF_TURN == 0.0

@@ -1,4 +1,4 @@
-"""Which files belong to one event."""
+"""Grouping of record files into events."""
 
 import re
 import warnings
@@ -15,7 +15,7 @@ from stylobate.base_motions.records.sources import RecordSource, find_files, is_
 from stylobate.errors import ParameterError, StylobateError, UnlikelyInputWarning
 
 _LONGEST = 3
-# A common part of names this short is no name.
+# Maximum length of a common part of names that is too short for a name.
 _SHORTEST_NAME = 3
 _DATE = re.compile(r"\d{1,4}[-/.]\d{1,2}[-/.]\d{1,4}|\b(?:19|20)\d\d\b")
 
@@ -24,26 +24,26 @@ Read = Callable[[Path], Component]
 
 @dataclass(frozen=True, slots=True)
 class EventFile:
-    """A file of an event: its component, or why it cannot be read, and what its name and its header state.
+    """A file of an event: its component or reading error, and the data in its name and header.
 
     Parameters
     ----------
     path
         The file.
     content
-        The component, or the error of reading it.
+        The component, or the error raised while reading.
     event
         The name without format and direction.
     direction
-        As stated by the user, else by the header, else by the name; None if unknown.
+        The direction from the user, otherwise from the header or the name; None if unknown.
     number
         Number of the record in a PEER database.
     title
-        Event, date and station in the header; empty if it has none.
+        Event, date and station in the header; empty if missing.
     remark
-        What marks the name as that of a processed copy, such as "_scaled".
+        Suffix of the name that marks a processed copy, such as "_scaled".
     guessed
-        Whether three digits at the end of the name are all that states the direction: they may be a serial number.
+        Whether only three digits at the end of the name state the direction; the digits may be a serial number.
     """
 
     path: Path
@@ -57,7 +57,7 @@ class EventFile:
 
     @classmethod
     def of(cls, path: Path, read: Read, given: Direction | None) -> Self:
-        """Return what is known of a file, whose component `read` returns."""
+        """Describe a file by its name and header and by the component that `read` returns."""
         stem = stem_of(path)
         number = record_number(stem)
         try:
@@ -73,13 +73,13 @@ class EventFile:
         return cls(path, content, event, given or header or named, number, title, remark_of(stem), guessed)
 
     def among_others(self) -> "EventFile":
-        """Return this file as one of several of one event: the least sign in its name states its direction."""
+        """Return this file as one of several of one event: a weak sign in its name suffices for its direction."""
         event, direction = split_name(stem_of(self.path), unsure=True)
         return self if self.direction or not direction else replace(self, event=event, direction=direction)
 
     @property
     def key(self) -> tuple[object, ...]:
-        """What all files of one event have in common: number and remark, else title and name, else folder and name."""
+        """Key that all files of one event share: number and suffix, otherwise title and name, or folder and name."""
         if self.number is not None:
             return ("number", self.number, self.remark)
         return ("title", self.title, self.event) if self.title else ("name", self.path.parent, self.event)
@@ -87,7 +87,7 @@ class EventFile:
 
 @dataclass(frozen=True, slots=True)
 class Event:
-    """Files of one event, and its name; `stated` if the user says that they belong together."""
+    """Files of one event, and the name of the event; `stated` if the user lists the files together."""
 
     name: str
     files: tuple[EventFile, ...]
@@ -95,12 +95,12 @@ class Event:
 
     @property
     def paths(self) -> tuple[Path, ...]:
-        """The files."""
+        """Paths of the files."""
         return tuple(file.path for file in self.files)
 
     @classmethod
     def of(cls, files: Sequence[EventFile], name: str | None = None, *, stated: bool = False) -> Self:
-        """Return the event of these files, called by what their names have in common."""
+        """Return the event of these files, named by the common part of their names."""
         if len(files) > 1:
             files = [file.among_others() for file in files]
         elif files[0].guessed:
@@ -111,29 +111,29 @@ class Event:
 def find_events(
     source: RecordSource, read: Read, directions: Mapping[str, float | str] | None = None
 ) -> tuple[Event, ...]:
-    """Find out which files belong together.
+    """Group files into events.
 
     Parameters
     ----------
     source
         Folders, patterns, files; lists of the files of one event.
     read
-        What reads a file.
+        Function that reads the component of a file.
     directions
-        By name of a file: azimuth [degrees], "up", or another name of a direction.
+        Directions by file name: azimuth [degrees], "up", or another name of a direction.
 
     Returns
     -------
     tuple
-        Events in the order of their names. Files are joined that the user lists as one event, or all of whose
-        directions are stated; else those of one record number, in one folder unless their headers have one title;
-        else those whose headers name one event, date and station; else those in one folder. Names of the last two
-        differ by the direction only. No processed copy, such as `_scaled`, is joined with an original.
+        Events in the order of their names. Listed files are joined if the user lists them as one event or states all
+        directions. The others are joined by record number, in one folder or under one title; else by event, date and
+        station in the headers; else by folder. In the last two cases the names differ by the direction only. A
+        processed copy, such as `_scaled`, is not joined with an original.
 
     Raises
     ------
     FileError
-        If there are no files. What is wrong with a file is raised where the event is put together.
+        If there are no files. Errors in a file are raised when the event is assembled.
     ParameterError
         If `directions` names no file.
 
@@ -164,7 +164,7 @@ def find_events(
 
 
 def _are_one_event(paths: Sequence[Path], given: Mapping[str, Direction]) -> bool:
-    """Return whether the stated directions of files are those of one event."""
+    """Return whether the stated directions of files fit one event."""
     ways = [given[path.name] for path in paths if path.name in given]
     return 1 < len(paths) <= _LONGEST and len(ways) == len(paths) and is_one_set(ways)
 
@@ -173,7 +173,7 @@ def _grouped(files: Iterable[EventFile]) -> Iterable[list[EventFile]]:
     for group in _by(lambda file: file.key, files):
         places = _by(lambda file: file.path.parent, group)
         titles = {file.title for file in group}
-        # one number of two databases: headers of one title alone join files across folders
+        # the same number in two databases: only headers with one title join files across folders
         apart = places if len(titles) > 1 or "" in titles else [group]
         for one in apart:
             for copy in _copies([file.among_others() for file in one] if len(one) > 1 else one):
@@ -181,7 +181,7 @@ def _grouped(files: Iterable[EventFile]) -> Iterable[list[EventFile]]:
 
 
 def _by(sign: Callable[[EventFile], object], files: Iterable[EventFile]) -> list[list[EventFile]]:
-    """Return the files grouped by a sign of each, in the order of its first appearance."""
+    """Group the files by a key, in the order of first appearance."""
     groups: dict[object, list[EventFile]] = {}
     for file in files:
         groups.setdefault(sign(file), []).append(file)
@@ -189,7 +189,7 @@ def _by(sign: Callable[[EventFile], object], files: Iterable[EventFile]) -> list
 
 
 def _confirmed(group: list[EventFile]) -> Iterable[list[EventFile]]:
-    """Return a group; if digits alone join it, a perpendicular pair with a warning, and other files each alone."""
+    """Yield a group; if only digits join it, a perpendicular pair with a warning, and other files separately."""
     if len(group) == 1 or not all(file.guessed for file in group):
         return [group]
     ways = [file.direction for file in group if file.direction]
@@ -205,7 +205,7 @@ def _confirmed(group: list[EventFile]) -> Iterable[list[EventFile]]:
 
 
 def _copies(group: list[EventFile]) -> Iterable[list[EventFile]]:
-    """Return a group; if it holds copies of one set, in other folders or with other names, each set."""
+    """Yield a group; if it holds copies of one set, in other folders or with other names, each set."""
     for copies in (_by(lambda file: file.path.parent, group), _by(lambda file: file.event, group)):
         ways = {tuple(sorted(str(file.direction) for file in copy)) for copy in copies}
         if len(copies) > 1 and len(ways) == 1 and all(file.direction for file in group):
@@ -214,7 +214,7 @@ def _copies(group: list[EventFile]) -> Iterable[list[EventFile]]:
 
 
 def _named(path: Path, stem: str, header: Direction | None) -> tuple[str, Direction | None]:
-    """Return event and direction of a name; where the header contradicts, the ending is no direction."""
+    """Return event and direction of a name; if the header contradicts, the ending is no direction."""
     if (whole := Direction.parse(stem)) and not stem[0].isdigit():  # NS.txt, in a folder of the event
         return path.absolute().parent.name or stem, whole
     event, named = split_name(stem)

@@ -1,4 +1,4 @@
-"""Synthetic accelerograms: white noise through a filter that changes with time, modulated, high-passed.
+"""Synthetic ground motions: modulated, high-passed white noise through a time-varying filter.
 
 The model of S. Rezaeian and A. Der Kiureghian, "A stochastic ground motion model with separable temporal and spectral
 nonstationarity", Earthquake Engng Struct. Dyn. 37, 2008, and "Simulation of synthetic ground motions for specified
@@ -10,7 +10,7 @@ earthquake and site characteristics", 39, 2010::
     q(t) = α1 t^(α2 − 1) exp(−α3 t)                                                      (4)
     z̈ + 2 ω_c ż + ω_c² z = x(t)                                                          (5)
 
-The accelerogram is z̈: (5), a critically damped oscillator, takes off what would leave a velocity in the end.
+The accelerogram is z̈: the critically damped oscillator (5) removes the residual velocity.
 """
 
 import math
@@ -25,15 +25,15 @@ from stylobate.base_motions.records.record import AXES, Floats, Record
 from stylobate.column import STANDARD_GRAVITY
 from stylobate.errors import ParameterError, require_finite, require_positive, require_whole
 
-# The parts of the Arias intensity between which the motion is strong, and in the middle of it.
+# Fractions of the Arias intensity at the start, end and middle of the strong motion.
 _BEGIN, _MIDDLE, _END = 0.05, 0.45, 0.95
-# q² is the density of a gamma distribution of the shape 2α2 − 1; beyond these none has such a middle.
+# q² is the density of a gamma distribution of the shape 2α2 − 1; these bounds limit its middle time.
 _SHAPES = (1.0, 1e4)
-# Noise goes on until so little of the intensity is to come, the high-pass until so little of its motion is left.
+# Remaining fraction of the intensity at which the noise ends, and of the motion at which the high-pass ends.
 _REST_OF_INTENSITY, _REST_OF_SWING = 1e-5, 1e-5
-# The filter forgets noise that it has damped so far.
+# Damping factor below which the filter neglects earlier noise.
 _FORGOTTEN = 1e-12
-# The filter's frequency stays above this part of its middle, rad/s.
+# Minimum of the filter frequency [rad/s], as a fraction of its value at t_mid.
 _LEAST_FREQUENCY = 0.05
 _ROWS = 256
 
@@ -45,15 +45,15 @@ class EvolvingNoise:
     Parameters
     ----------
     arias
-        Expected Arias intensity of x [m/s], before the high-pass, which takes a little off.
+        Expected Arias intensity of x [m/s], before the high-pass, which reduces it slightly.
     duration_5_95
-        Expected time between 5 % and 95 % of it [s].
+        Expected time between 5 % and 95 % of the Arias intensity [s].
     middle_time
-        Expected time of 45 % of it, t_mid [s].
+        Expected time t_mid of 45 % of the Arias intensity [s].
     frequency
         Frequency of the filter at t_mid, ω_mid/2π [Hz].
     frequency_rate
-        ω'/2π, negative as a rule [Hz/s]; the frequency stays above a twentieth of that at t_mid.
+        ω'/2π, usually negative [Hz/s]; the frequency stays above a twentieth of its value at t_mid.
     bandwidth
         Damping ratio ζ_f of the filter, below 1.
     corner
@@ -103,11 +103,11 @@ class EvolvingNoise:
         Parameters
         ----------
         rng
-            Where the white noise comes from.
+            Generator of the white noise.
         step
             Time between samples [s].
         components
-            1, 2 or 3 independent ones of the same model, along x, y and z: x and y are the principal axes.
+            Number of independent components along x, y and z: 1, 2 or 3; x and y are the principal axes.
         name
             Name of the record; by default "synthetic" and six digits of its digest, so that realizations differ in
             name.
@@ -115,7 +115,7 @@ class EvolvingNoise:
         Returns
         -------
         Record
-            Long enough for all but 1e-5 of the intensity, then as much of rest as (5) takes to forget it.
+            Contains all but 1e-5 of the intensity, then rest until the motion of (5) has decayed.
         """
         step = require_positive("step", step, "s")
         components = require_whole("components", components, least=1)
@@ -155,7 +155,7 @@ class EvolvingNoise:
         return shape, float(self.middle_time / gammaincinv(shape, _MIDDLE))
 
     def _unit_process(self, time: Floats, noise: Floats) -> Floats:
-        """Return what stands behind q in (1): unit variance at every time but the first, shape of `noise`."""
+        """Compute the factor of q in (1): unit variance at every time but the first, shape of `noise`."""
         omega = self.angular_frequency(time)
         memory = math.ceil(-math.log(_FORGOTTEN) / (self.bandwidth * omega.min()) / float(time[1]))
         process = np.zeros_like(noise)
@@ -163,7 +163,7 @@ class EvolvingNoise:
             rows = slice(begin, min(begin + _ROWS, len(time)))
             past = slice(max(0, begin - memory), rows.stop)
             since = np.maximum(time[rows, np.newaxis] - time[np.newaxis, past], 0.0)
-            # (2), but for a factor that σ takes out where ω_f does not change; zero for noise yet to come
+            # (2), without a factor that σ cancels for constant ω_f; zero for future noise
             damped = math.sqrt(1.0 - self.bandwidth**2) * omega[past]
             weight = omega[past] * np.exp(-self.bandwidth * omega[past] * since) * np.sin(damped * since)
             deviation = np.sqrt(np.sum(weight**2, axis=1, keepdims=True))
@@ -171,7 +171,7 @@ class EvolvingNoise:
         return process
 
     def _without_drift(self, x: Floats, step: float) -> Floats:
-        """Return z̈ of (5)."""
+        """Compute z̈ of (5)."""
         omega = 2.0 * math.pi * self.corner
         z, rate = oscillator_response(-x, step, 1.0 / self.corner, 1.0)
         return np.asarray(x - 2.0 * omega * rate - omega**2 * z)
@@ -184,5 +184,5 @@ def _spread(shape: float) -> float:
 
 
 def _swing_forgotten() -> float:
-    """Return ω_c t at which (1 + ω_c t) exp(−ω_c t) is small."""
+    """Return the ω_c t at which (1 + ω_c t) exp(−ω_c t) is negligible."""
     return float(brentq(lambda u: math.log1p(u) - u - math.log(_REST_OF_SWING), 1.0, 100.0))

@@ -10,7 +10,7 @@ from stylobate.errors import ParameterError, require_positive, require_whole
 
 Floats = npt.NDArray[np.float64]
 
-# Zeros beside a record filtered in both directions: 1.5 times the order over the corner (Boore 2005).
+# Length of the zeros around a record filtered in both directions: 1.5 times the order over the corner (Boore 2005).
 _PAD = 1.5
 
 
@@ -23,7 +23,7 @@ def filtered(
     order: int = 4,
     causal: bool = False,
 ) -> tuple[Floats, str]:
-    """Return `samples` through a Butterworth filter, and a note about it.
+    """Filter `samples` by a Butterworth filter; return the result and a log line.
 
     Parameters
     ----------
@@ -36,10 +36,10 @@ def filtered(
     lowpass
         Corner above which motion is removed [Hz].
     order
-        Order of each flank.
+        Order of each corner.
     causal
-        Whether to filter forwards only: no motion before its cause, but phases shift. Otherwise forwards and backwards:
-        no shift, twice the order, a quarter of the power (−6 dB) at a corner.
+        Whether to filter forwards only: no motion before its cause, but a phase shift. Otherwise forwards and
+        backwards: no phase shift, twice the order, a quarter of the power (−6 dB) at a corner.
 
     Raises
     ------
@@ -48,9 +48,9 @@ def filtered(
 
     Notes
     -----
-    Both-way filtering is done between zeros of 1.5·order/corner seconds (D. M. Boore, "On pads and filters", BSSA 95,
-    745-750, 2005), then cut back to the length of the record. To keep the filter's transients, as displacement wants,
-    pad the record first: `record.padded(before=…, after=…).filtered(…)`.
+    Filtering in both directions pads the record with zeros of 1.5·order/corner seconds (D. M. Boore, "On pads and
+    filters", BSSA 95, 745-750, 2005) and removes the padding afterwards. To keep the filter's transients, which the
+    displacement needs, pad the record first: `record.padded(before=…, after=…).filtered(…)`.
     """
     order = require_whole("order", order, least=1)
     corners = {name: value for name, value in (("highpass", highpass), ("lowpass", lowpass)) if value is not None}
@@ -79,7 +79,7 @@ def filtered(
 
 
 def _sections(edges: list[float], order: int, *, lowest: bool, rate: float) -> Floats:
-    """Return the filter between two corners, or below (`lowest`) or above one, as second-order sections."""
+    """Design the band-pass between two corners, or low-pass (`lowest`) or high-pass, as second-order sections."""
     if len(edges) > 1:
         return butter(order, edges, btype="bandpass", fs=rate, output="sos")
     return butter(order, edges[0], btype="lowpass" if lowest else "highpass", fs=rate, output="sos")

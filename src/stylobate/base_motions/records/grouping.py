@@ -1,4 +1,4 @@
-"""Files of one event put together: two horizontal components and a vertical one."""
+"""Assembly of records from the files of an event: two horizontal components and a vertical one."""
 
 import re
 import warnings
@@ -57,32 +57,31 @@ def read_records(
 ) -> tuple[Record, ...]:
     """Read records and join the components of each event.
 
-    Files belong together, in this order: if the user lists them as one event; if they have one PEER record number
-    (`RSN143_…`) and are in one folder or have headers of one title; if their headers name one event, date and station
-    and their names differ by the direction only; if they are in one folder and their names differ by the direction
-    only: `CLS000`, `CLS090`, `CLS-UP`; `site_NS`, `site_EW`; `TAB-L1`, `TAB-T1`; `q_HNE`, `q_HNN`.
-    The direction of a component is the one in `directions`, else in the header, else in the name. Files with a remark
-    such as `_scaled` are not joined with files without it.
+    Files are joined by the first rule that applies: the user lists them as one event; they have one PEER record number
+    (`RSN143_…`) and one folder or one title in their headers; their headers name one event, date and station and their
+    names differ by the direction only; they are in one folder and their names differ by the direction only: `CLS000`,
+    `CLS090`, `CLS-UP`; `site_NS`, `site_EW`; `TAB-L1`, `TAB-T1`; `q_HNE`, `q_HNN`. The direction of a component comes
+    from `directions`, else from the header, else from the name. Files with a suffix such as `_scaled` are not joined
+    with files without it.
 
     Parameters
     ----------
     source
-        A folder, a pattern such as `quakes/*.AT2`, or a file; or a list of these. A list in this list, or each value
-        of a mapping from names, holds the files of one event. Of a folder all files are read, except
-        hidden ones and those that by their names hold velocities, displacements or the search results of a PEER
-        download.
+        A folder, a pattern such as `quakes/*.AT2`, or a file; or a list of these. A list in this list, or each value of
+        a mapping from names, holds the files of one event. A folder stands for all its files, except hidden files and
+        files whose names denote velocities, displacements or the search results of a PEER download.
     units, step, columns, format
-        As in `read_record`, of all files.
+        As in `read_record`, for all files.
     directions
-        By name of a file, with its ending: the azimuth, clockwise from north [degrees], "up", "down", or another name
-        of a direction, such as "N10E" or "L". Two or three listed files, all of whose directions are given and fit
-        together, are one event.
+        Directions by file name with suffix: the azimuth, clockwise from north [degrees], "up", "down", or another name
+        of a direction, such as "N10E" or "L". Two or three listed files with given directions that fit together are one
+        event.
     lengths
-        How components of different lengths are made alike.
+        Treatment of components of different lengths.
     steps
         Whether components of different steps are resampled.
     single
-        Whether a component alone is meant; else it is remarked on.
+        Whether single components are intended; otherwise a warning is issued.
 
     Returns
     -------
@@ -99,21 +98,21 @@ def read_records(
     Warns
     -----
     UnlikelyInputWarning
-        Of a record with one horizontal component, with a vertical one alone, or without acceleration, unless `single`;
-        of files listed as one event whose headers name several; of two files that are joined only because the numbers
-        at the end of their names look like perpendicular azimuths;
-        of a component that is trimmed to the length of the shortest and loses more than 1 % of its Arias intensity.
+        If a record has one horizontal component, only a vertical component, or no acceleration, unless `single`; if
+        files are listed as one event but their headers name several; if two files are joined only because the numbers
+        at the end of their names look like perpendicular azimuths; if trimming to the shortest component removes more
+        than 1 % of the Arias intensity of a component.
 
     Notes
     -----
     Azimuths run clockwise seen from above, x to y anticlockwise. x points along the lower azimuth θ1 of two, y 90°
-    anticlockwise from it, z up. With Δ = θ2 − θ1 the components a1 and a2 give::
+    anticlockwise from x, z up. With Δ = θ2 − θ1 the components a1 and a2 give::
 
         x = a1,    y = (a1 cos Δ − a2)/sin Δ
 
-    so that azimuths 0° and 90° make x point north and y west; 90° and 360° make x point east and y north. Components
-    that are only known to be perpendicular (L and T, H1 and H2, X and Y) are x and y, in this order. A single
-    horizontal component acts along x.
+    so that azimuths 0° and 90° make x point north and y west; 90° and 360° make x point east and y north. Perpendicular
+    components of unknown azimuth (L and T, H1 and H2, X and Y) are x and y, in this order. A single horizontal
+    component acts along x.
     """
     reading = {
         "single": True,
@@ -138,7 +137,7 @@ def reader(
     columns: Mapping[str, str] | None = None,
     format: RecordFormat | None = None,  # noqa: A002
 ) -> Read:
-    """Return what reads the component in a file, with these arguments of `read_record`."""
+    """Return a function that reads the component in a file, with these arguments of `read_record`."""
     step = None if step is None else require_positive("step", step, "s")
     return lambda path: read_component(path, step, columns, format)
 
@@ -181,7 +180,7 @@ def join_event(
 
 
 def remark_on_missing_components(record: Record) -> None:
-    """Warn with UnlikelyInputWarning of a record without acceleration, or without two horizontal components."""
+    """Issue an UnlikelyInputWarning for a record without acceleration or without two horizontal components."""
     flat = [axis for axis in record.axes if axis != "z"]
     if len(flat) > 1:
         return
@@ -198,7 +197,7 @@ def remark_on_missing_components(record: Record) -> None:
 
 
 def _order(file: EventFile) -> tuple[bool, float, str]:
-    """Return what sorts the files of an event: azimuths, x before y, the vertical last."""
+    """Return the sort key of a file of an event: azimuths, x before y, the vertical last."""
     way = file.direction or Direction()
     return way.vertical != 0, way.azimuth or 0.0, way.axis or ""
 
@@ -227,7 +226,7 @@ def _require_one_title(event: Event) -> None:
 
 
 def _alike(event: str, parts: list[_Part], lengths: Lengths, steps: Steps) -> tuple[list[Record], list[str]]:
-    """Return the records of the parts with one step, start and length, and what was done for it."""
+    """Convert the records of the parts to one step, start and length; return them and log lines."""
     records = [part.record for part in parts]
     finest = min(record.step for record in records)
     if any(abs(record.step / finest - 1.0) > _SAME_STEP for record in records):

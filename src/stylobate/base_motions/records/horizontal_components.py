@@ -1,4 +1,4 @@
-"""One number from two horizontal components: the definitions in which intensities and hazard curves are given."""
+"""Definitions of the horizontal component of intensity measures and hazard curves, such as RotD50."""
 
 import math
 from enum import Enum
@@ -84,11 +84,11 @@ _ALIASES = {
 
 
 def over_directions(x: Floats, y: Floats, percentiles: tuple[float, ...]) -> Floats:
-    """Return `percentiles` over the directions, 1° apart, of the largest projection of (x, y)."""
+    """Return `percentiles` over the directions, 1° apart, of the peak projection of (x, y)."""
     from scipy.spatial import ConvexHull, QhullError  # noqa: PLC0415  the names above come without SciPy
 
     points = np.stack([x, y], axis=-1)
-    try:  # only corners of the hull are ever farthest
+    try:  # only corners of the hull can be farthest
         corners = points[ConvexHull(points).vertices]
     except QhullError:  # all on one line: its ends
         corners = points[[x.argmin(), x.argmax(), y.argmin(), y.argmax()]]

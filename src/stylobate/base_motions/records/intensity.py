@@ -1,4 +1,4 @@
-"""Intensity measures of records: peaks, energy, duration, and those that speak of rocking."""
+"""Intensity measures of records: peaks, energy, duration, and measures for rocking."""
 
 import math
 
@@ -21,18 +21,17 @@ def intensity_measures(record: Record) -> xr.Dataset:
     Returns
     -------
     xarray.Dataset
-        Along `axis`, those of x, y and z along which the record accelerates: `pga` [m/s²], `pgv` [m/s], `pgd` [m], the
-        largest absolute values; `pgv_over_pga` [s]; `residual_velocity` [m/s], at the last sample, and
-        `residual_velocity_ratio`, its absolute value over `pgv`; `arias` [m/s]; `cav` [m/s]; `duration_5_75`,
-        `duration_5_95` [s]. Along `component`, the definitions of `HorizontalComponent`: `horizontal_pga` [m/s²],
-        `horizontal_pgv` [m/s].
+        Along `axis`, the axes x, y and z with acceleration: `pga` [m/s²], `pgv` [m/s], `pgd` [m], the peak absolute
+        values; `pgv_over_pga` [s]; `residual_velocity` [m/s] at the last sample, and `residual_velocity_ratio`, the
+        absolute residual velocity over `pgv`; `arias` [m/s]; `cav` [m/s]; `duration_5_75`, `duration_5_95` [s]. Along
+        `component`, the definitions of `HorizontalComponent`: `horizontal_pga` [m/s²], `horizontal_pgv` [m/s].
 
     Notes
     -----
     Exact for accelerations linear between samples, from the first sample to the last. Arias intensity is
     I = π/(2g) ∫ a² dt (Arias 1970), g standard gravity; cumulative absolute velocity ∫ |a| dt (EPRI 1988, without
-    threshold); significant duration runs from 5 % of I to 75 % or 95 % of it (Trifunac and Brady 1975). A
-    `residual_velocity_ratio` above about 0.05 is drift of the record: filter it before its PGV or PGD are used.
+    threshold); significant duration is the time from 5 % to 75 % or 95 % of I (Trifunac and Brady 1975). A
+    `residual_velocity_ratio` above about 0.05 indicates drift: filter the record before you use its PGV or PGD.
 
     Examples
     --------
@@ -91,7 +90,7 @@ def cumulative_absolute_velocity(record: Record) -> Floats:
     left, right = np.abs(record.samples[:-1]), np.abs(record.samples[1:])
     size = left + right
     crosses = record.samples[:-1] * record.samples[1:] < 0.0
-    # two triangles where a changes its sign, else a trapezium
+    # two triangles if a changes its sign, otherwise a trapezium
     twice = np.where(crosses, (left**2 + right**2) / np.where(size > 0.0, size, 1.0), size)
     return np.asarray(0.5 * record.step * twice.sum(axis=0))
 
@@ -99,7 +98,7 @@ def cumulative_absolute_velocity(record: Record) -> Floats:
 def significant_duration(record: Record, begin: float = _ONSET, end: float = _END) -> Floats:
     """Compute the time in which ∫ a² dt grows from the fraction `begin` to `end` of its total, shape (3,) [s].
 
-    Zero where there is no acceleration.
+    Zero without acceleration.
     """
     grown = energy(record.samples, record.step)
     return np.array(
@@ -113,7 +112,7 @@ def significant_duration(record: Record, begin: float = _ONSET, end: float = _EN
 
 
 def _reached(record: Record, grown: Floats, axis: int, part: float) -> float:
-    """Return when ∫ a² dt along an axis reaches a part of its total: the root of a cubic within a step [s]."""
+    """Return the time at which ∫ a² dt along an axis reaches a fraction of its total: root of a cubic in a step [s]."""
     target = part * grown[-1]
     knot = min(max(int(np.searchsorted(grown, target)) - 1, 0), len(grown) - 2)
     a, b = (float(record.samples[at, axis]) for at in (knot, knot + 1))
@@ -131,8 +130,8 @@ def rocking_measures(record: Record, column: Column) -> xr.Dataset:
     Returns
     -------
     xarray.Dataset
-        `acceleration_ratio` = PGA/(g tan α): above 1 the motion can set the column rocking; `velocity_ratio` =
-        p PGV/(g tan α); `duration_ratio` = p D5-95. Along `axis`, of the horizontal components.
+        `acceleration_ratio` = PGA/(g tan α): above 1 the motion can cause uplift; `velocity_ratio` = p PGV/(g tan α);
+        `duration_ratio` = p D5-95. Along `axis`, the horizontal components.
 
     Notes
     -----

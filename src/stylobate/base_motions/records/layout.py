@@ -1,4 +1,4 @@
-"""How a text table is laid out: its decimal sign, what stands between its columns, its lines of header."""
+"""Layout of a text table: decimal sign, column separator and header lines."""
 
 import csv
 import io
@@ -27,27 +27,27 @@ Rows = list[tuple[int, str]]
 
 @dataclass(frozen=True, slots=True)
 class PlainTable:
-    """A table with points in its numbers; its line of names, if it has one, is the first that is no remark."""
+    """A table with decimal points; the line of names, if any, is the first line that is no comment."""
 
     text: Text
     named: bool
 
 
 def plain_table(text: Text, *, named: bool = False) -> PlainTable:
-    """Rewrite a text table with decimal points and without lines above its names; the lines keep their numbers.
+    """Rewrite a text table with decimal points and without lines above its names; line numbers stay.
 
     Parameters
     ----------
     text
-        The file. Commas are decimal where no number has a point and semicolons, tabs or spaces stand between the
-        columns. Lines of words above the first line of numbers are a header: titles, names, units in brackets.
+        The file. Commas are decimal if no number has a point and semicolons, tabs or spaces separate the columns. Lines
+        of words above the first line of numbers are a header: titles, names, units in brackets.
     named
         Whether the last line of the header must hold names, one for each column.
 
     Raises
     ------
     FileError
-        If commas may be decimal as well as between columns.
+        If commas may be decimal signs or column separators.
     """
     lines = [(at, line) for at, line in enumerate(text.lines) if line.strip() and not line.lstrip().startswith(REMARKS)]
     begin = next((place for place, (_, line) in enumerate(lines) if _is_row(line)), None)
@@ -78,7 +78,7 @@ def has_decimal_commas(text: Text, rows: Rows) -> bool:
     Raises
     ------
     FileError
-        If they may be decimal as well as between columns, or some numbers have points.
+        If commas may be decimal signs or column separators, or some numbers have points.
     """
     with_commas = [(at, line) for at, line in rows if "," in line]
     if not with_commas:
@@ -100,7 +100,7 @@ def has_decimal_commas(text: Text, rows: Rows) -> bool:
     running = all(before < after for before, after in itertools.pairwise(times))
     zeros = any(_LEADING_ZERO.match(piece) for row in pieces for piece in row[1:])
     single = len(tokens) == len(rows) and all(map(_WITHOUT_POINT.fullmatch, tokens))
-    if single and zeros and not running:  # no two columns of whole numbers look like that
+    if single and zeros and not running:  # two columns of whole numbers never look like this
         return True
     if zeros or (single and not running):
         raise text.fault(at, f"a decimal comma, or a comma between columns: {first.strip()[:40]!r}. {_WRITE_POINTS}")
@@ -117,14 +117,14 @@ def _is_row(line: str) -> bool:
 
 
 def _is_header(line: str, width: int) -> bool:
-    """Return whether a line above the numbers is words, and not a row with a mistake in it."""
+    """Return whether a line above the numbers is a header and not a faulty row of numbers."""
     pieces = _pieces(line)
     spoilt = len(pieces) == width and any(map(_DIGITS.match, pieces))
     return bool(_HAS_LETTER.search(line)) and not spoilt
 
 
 def _fields(line: str, separator: str | None) -> list[str]:
-    """Return the fields of a line; `separator` None is white space. Separators at the end of the line do not count."""
+    """Split a line into fields; `separator` None is white space. Trailing separators do not count."""
     fields = [field.strip() for field in line.split(separator)]
     while fields and not fields[-1]:
         fields.pop()
@@ -132,7 +132,7 @@ def _fields(line: str, separator: str | None) -> list[str]:
 
 
 def _names(header: list[str], width: int, separator: str | None, *, named: bool) -> list[str] | None:
-    """Return the names of the columns with their units in brackets; None where the header has none."""
+    """Return the names of the columns with their units in brackets; None if the header has no names."""
     names = _header_fields(header[-1], width, separator)
     if names and len(header) > 1 and all(map(_BRACKETED.fullmatch, names)):
         above = _header_fields(header[-2], width, separator)

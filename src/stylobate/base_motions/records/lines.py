@@ -1,4 +1,4 @@
-"""Text files of records: opened, decoded, and read as numbers; faults name file and line."""
+"""Text files of records: decoding and parsing; error messages name file and line."""
 
 import gzip
 import math
@@ -16,12 +16,12 @@ from stylobate.errors import FileError
 Floats = npt.NDArray[np.float64]
 
 REMARKS = ("#", "%", "!", "//")
-"""What a line of remarks begins with."""
+"""Prefixes of comment lines."""
 
 _GZIP = b"\x1f\x8b"
 _UTF_16 = (b"\xff\xfe", b"\xfe\xff")
 _EXCEL = b"\xd0\xcf\x11\xe0"
-# What files begin with that hold records, but not as text.
+# First bytes of archives and documents that may hold records, but not as text.
 _PACKED = {
     b"PK\x03\x04": "a zip archive. Unpack it and read the files in it",
     b"Rar!": "a rar archive. Unpack it and read the files in it",
@@ -35,7 +35,7 @@ _DECIMAL_COMMA = re.compile(r"[-+]?\d*[.,]?\d*,\d+([EeDd][-+]?\d+)?")
 
 
 def read_bytes(path: Path) -> bytes:
-    """Return what the file holds, unpacked if it is gzip.
+    """Read the bytes of a file; decompress gzip.
 
     Raises
     ------
@@ -62,12 +62,12 @@ def read_bytes(path: Path) -> bytes:
 
 
 def is_binary(content: bytes) -> bool:
-    """Return whether this is no text: bytes that no text file holds."""
+    """Return whether the content has bytes that no text file holds."""
     return any(byte < 0x20 and byte not in b"\t\n\r\f\x1a" for byte in content[:4096])  # noqa: PLR2004  a space
 
 
 def is_number(token: str) -> bool:
-    """Return whether a token spells a number; a number need not be finite."""
+    """Return whether a token is a number, finite or not."""
     try:
         float(token)
     except ValueError:
@@ -76,20 +76,20 @@ def is_number(token: str) -> bool:
 
 
 def begins_with_a_number(line: str) -> bool:
-    """Return whether a line, without blanks before it, is neither a remark nor names of columns."""
+    """Return whether a line without leading blanks is neither a comment nor column names."""
     return line[:1].isdigit() or line.startswith(("+", "-", "."))
 
 
 @dataclass(frozen=True, slots=True)
 class Text:
-    """The lines of a text file, without their ends; line numbers in messages begin at 1."""
+    """Lines of a text file without line ends; line numbers in messages begin at 1."""
 
     path: Path
     lines: tuple[str, ...]
 
     @classmethod
     def of(cls, path: Path, content: bytes) -> "Text":
-        """Return the lines of `content`: UTF-8, else Latin-1, ends of any system."""
+        """Decode `content` to lines: UTF-8, otherwise Latin-1, with any line ends."""
         try:
             text = content.decode("utf-8-sig")
         except UnicodeDecodeError:
@@ -97,11 +97,11 @@ class Text:
         return cls(path, tuple(text.rstrip("\x1a\x00").replace("\r\n", "\n").replace("\r", "\n").split("\n")))
 
     def fault(self, index: int, what: str) -> FileError:
-        """Return the error that the line at `index` deserves."""
+        """Return a FileError that names the file and the line at `index`."""
         return FileError(f"{self.path}, line {index + 1}: {what}")
 
     def number(self, index: int, token: str) -> float:
-        """Return the finite number that a token of the line at `index` spells."""
+        """Parse a token of the line at `index` as a finite number."""
         try:
             value = float(token)
         except ValueError:
@@ -112,7 +112,7 @@ class Text:
         return value
 
     def count(self, index: int, name: str, token: str) -> int:
-        """Return the number of samples, two at least, that a token of the line at `index` spells."""
+        """Parse a token of the line at `index` as a number of samples, at least two."""
         if not _WHOLE.fullmatch(token):
             raise self.fault(index, f"{name} must be a whole number, got {token!r}")
         if int(token) < 2:  # noqa: PLR2004  a step has two ends
@@ -120,7 +120,7 @@ class Text:
         return int(token)
 
     def rows(self, tokens: Sequence[tuple[int, list[str]]]) -> Floats:
-        """Return rows of equally many tokens, each with the index of its line, as numbers of shape (rows, columns)."""
+        """Parse rows of equally many tokens, each with its line index, to numbers of shape (rows, columns)."""
         try:
             values = np.array([row for _, row in tokens], dtype=float)
         except ValueError:
@@ -132,12 +132,12 @@ class Text:
         return values
 
     def series(self, after: int, count: int | None) -> Floats:
-        """Return all numbers below the line at index `after`, `count` of them, or as many as there are.
+        """Parse all numbers below the line at index `after`, `count` of them if given.
 
         Raises
         ------
         FileError
-            If a token is no finite number, or there are more or fewer.
+            If a token is no finite number, or the count differs.
         """
         tokens = [(at, line.split()) for at, line in enumerate(self.lines[after + 1 :], start=after + 1)]
         tokens = [(at, row) for at, row in tokens if row]

@@ -1,4 +1,4 @@
-"""Records in numbers: for each component its file, peaks, energy, duration and residual velocity."""
+"""Summary rows of records: file, peaks, energy, duration and residual velocity of each component."""
 
 import re
 from typing import NamedTuple
@@ -10,12 +10,12 @@ from stylobate.column import STANDARD_GRAVITY
 _CLAUSE = re.compile(r"(?:^|; |: )([xyz]) (.*?from [^;]*)")
 _FILE = re.compile(r"read from (.*?), in ")
 _DONE = re.compile(r"trimmed to|padded with zeros to|resampled from")
-# A record whose velocity ends above this fraction of its peak has a baseline error, or was cut.
+# Final velocity over peak velocity above which a record has a baseline error or was cut.
 _RESIDUAL = 0.05
 
 
 class ComponentRow(NamedTuple):
-    """The numbers of one component of a record, in SI units but for `pga_g` [g]; `origin` is its file and direction."""
+    """Values of one component of a record in SI units, except `pga_g` [g]; `origin` is its file and direction."""
 
     record: str
     axis: str
@@ -35,7 +35,7 @@ _MEASURES = ("pga", "pgv", "pgd", "arias", "duration_5_95", "residual_velocity")
 
 
 def component_rows(record: Record) -> list[ComponentRow]:
-    """Return the numbers of each component of a record, x, y and z, along which it accelerates.
+    """Compute the values of each component of a record with acceleration.
 
     Examples
     --------
@@ -64,7 +64,7 @@ def component_rows(record: Record) -> list[ComponentRow]:
 
 
 def origins_of(record: Record) -> dict[str, str]:
-    """Return by axis from which file, in which direction, a component of a record comes, as its provenance states."""
+    """Return file and direction of each component by axis, from the provenance of a record."""
     found = {axis: clause for line in record.provenance for axis, clause in _CLAUSE.findall(line)}
     files = files_of(record)
     return found or dict.fromkeys(record.axes, f"from {files[0]}" if files else "")
@@ -76,13 +76,13 @@ def files_of(record: Record) -> list[str]:
 
 
 def drifts(record: Record) -> list[tuple[str, float]]:
-    """Return the axes along which the velocity after the last sample is more than 5 % of PGV, with this fraction."""
+    """Return the axes whose velocity after the last sample exceeds 5 % of PGV, with this fraction."""
     shares = [(row.axis, abs(row.residual_velocity) / row.pgv) for row in component_rows(record) if row.pgv]
     return [(axis, share) for axis, share in shares if share > _RESIDUAL]
 
 
 def notes_on(record: Record) -> list[str]:
-    """Return in a line each how components were made alike, and where much velocity is left at the end."""
+    """Return one line for each adjustment of components and for each large residual velocity."""
     notes = [f"{record.name}: {line}" for line in record.provenance if _DONE.search(line)]
     notes += [
         f"{record.name}: along {axis} the velocity after the last sample is {100.0 * share:.0f} % of PGV. Correct the "

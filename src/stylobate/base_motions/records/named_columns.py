@@ -1,4 +1,4 @@
-"""CSV files: columns with names, perhaps with units in brackets."""
+"""CSV files with column names and optional units in brackets."""
 
 import csv
 import re
@@ -21,24 +21,24 @@ _SAME = {name: name for name in ("time", *AXES)}
 
 
 def is_csv(text: Text) -> bool:
-    """Return whether the first line that is no remark names columns, with commas or semicolons between."""
+    """Return whether the first line that is no comment names columns, separated by commas or semicolons."""
     line = next((line for line in text.lines if line.strip() and not line.lstrip().startswith("#")), "")
     return ("," in line or ";" in line) and not any(map(is_number, re.split(r"[,;]", line)))
 
 
 def read_csv(text: Text, columns: Mapping[str, str] | None, step: float | None) -> Component:
-    """Return the component or components of a CSV file.
+    """Read the component or components of a CSV file.
 
     Parameters
     ----------
     text
-        The file: names in its first line, such as `time [s],x [m/s²],y [m/s²]`.
+        The file, with names in its first line, such as `time [s],x [m/s²],y [m/s²]`.
     columns
-        Which column is "time", "x", "y", "z", by the names of the file, units apart; None looks for columns named so,
-        or for names of directions such as NS, EW and UD, or for one acceleration beside the time. One that is named
-        acceleration wins over single letters, which may be a velocity V or a length L.
+        Columns of "time", "x", "y", "z" by their names in the file, without units. None looks for columns with these
+        names, for names of directions such as NS, EW and UD, or for one acceleration beside the time. A column named
+        acceleration takes precedence over single letters, which may be a velocity V or a length L.
     step
-        Time step [s]; only needed without a column of times.
+        Time step [s]; needed only without a column of times.
 
     Raises
     ------
@@ -72,7 +72,7 @@ def read_csv(text: Text, columns: Mapping[str, str] | None, step: float | None) 
 
 
 def _components(text: Text, columns: Mapping[str, Floats]) -> tuple[Floats, Direction | None, str]:
-    """Return accelerations of shape (n,) or (n, 3), the direction of one alone, and where several come from."""
+    """Return accelerations of shape (n,) or (n, 3), the direction of a single one, and the origin of several."""
     axes, title = dict(columns), ""
     if not columns.keys() <= set(AXES):
         directed = [Directed(name, _direction(name) or Direction(), values) for name, values in columns.items()]
@@ -118,7 +118,7 @@ def _chosen(text: Text, line: int, names: list[str], columns: Mapping[str, str] 
 def _directed(names: list[str], places: list[int]) -> dict[str, int]:
     """Return the columns at `places` whose names state a direction.
 
-    A single letter such as V does so only where it fits the other directions, or is the name of the only column.
+    A single letter such as V counts only if it fits the other directions or names the only column.
     """
     found = {names[place]: place for place in places if _direction(names[place])}
     if len(places) == 1 or (len(found) > 1 and is_one_set([one for one in map(_direction, found) if one])):

@@ -1,4 +1,4 @@
-"""Names of files: which part is common to the components of an event, and which states the direction."""
+"""Parsing of file names: common part of an event and direction of a component."""
 
 import re
 from pathlib import Path
@@ -6,7 +6,7 @@ from pathlib import Path
 from stylobate.base_motions.records.component import CHANNEL, QUADRANT, WORDS, Direction
 
 _ENDINGS = {".at2", ".txt", ".csv", ".dat", ".asc", ".acc"}
-# What is appended to a processed copy stays in the name of the event: a copy is another event than its original.
+# The suffix of a processed copy stays in the name of the event: copy and original are different events.
 _REMARK = (
     r"(?P<remark>(?i:[-_. ](?:scaled|filtered|corrected|corr?|uncorrected|matched|processed|proc|raw|resampled|trimmed"
     r"|accel|acceleration|acc))*)"
@@ -24,13 +24,13 @@ _UNSURE_TAIL = re.compile(rf"(?P<event>.+?){_UNSURE}{_REMARK}")
 _HEAD = re.compile(r"(?P<apart>(?i:NS|EW|UD|UP|N-S|E-W|U-D|DWN|VER|VERT|H1|H2))[-_. ]+(?P<event>.+)")
 _NUMBERED = re.compile(rf".+?(?:[-_. ]|(?<!\d{{3}}))\d{{3}}{_REMARK}")
 _FIELD = re.compile(rf"(?P<event>.+[-_. ])(?P<apart>{CHANNEL})(?P<remark>[-_. ].+)")
-# K-NET and KiK-net: AKT0239608110312.EW, …EW1 below the ground and …EW2 on it.
+# K-NET and KiK-net: AKT0239608110312.EW, …EW1 below and …EW2 on the ground.
 _KIK_NET = re.compile(r"(?P<event>.+)\.(?P<apart>NS|EW|UD)(?P<remark>[12])")
 _NUMBER = re.compile(r"(?:^|[-_. ])(?:RSN|NGA[-_]no)[-_]?0*(\d+)(?!\d)", re.IGNORECASE)
 
 
 def stem_of(path: Path) -> str:
-    """Return the name of a file without the endings that name its format; `.EW` and the like stay.
+    """Return the name of a file without the suffixes of its format; suffixes such as `.EW` stay.
 
     >>> stem_of(Path("a/PAE000.AT2.txt")), stem_of(Path("AKT023.EW")), stem_of(Path("IU.ANMO.00.HNE"))
     ('PAE000', 'AKT023.EW', 'IU.ANMO.00.HNE')
@@ -45,15 +45,15 @@ def stem_of(path: Path) -> str:
 
 
 def split_name(stem: str, *, unsure: bool = False) -> tuple[str, Direction | None]:
-    """Return the part of a file's name that its components share, and the direction that the rest states.
+    """Split the name of a file into the common part of its event and the direction of its component.
 
     Parameters
     ----------
     stem
-        The name without the ending of its format.
+        The name without the suffix of its format.
     unsure
-        Whether a single letter, or digits behind many digits, count too, as in PRPCS, PRPCW: only where it is known
-        from elsewhere that the files belong to one event.
+        Whether a single letter, or digits after many digits, also count, as in PRPCS, PRPCW; use this only if the files
+        are known to belong to one event.
 
     Examples
     --------
@@ -83,7 +83,7 @@ def is_numbered(stem: str) -> bool:
 
 
 def remark_of(stem: str) -> str:
-    """Return the remark at the end of a name that marks a processed copy, or nothing.
+    """Return the suffix of a name that marks a processed copy, or an empty string.
 
     >>> remark_of("CLS090_scaled"), remark_of("CLS090_Filtered-raw"), remark_of("CLS090")
     ('_scaled', '_filtered-raw', '')
@@ -93,7 +93,7 @@ def remark_of(stem: str) -> str:
 
 
 def record_number(stem: str) -> int | None:
-    """Return the number of a record of the PEER databases, of which each has one set of components, or None.
+    """Return the record number of the PEER databases, one per set of components, or None.
 
     >>> record_number("RSN0753_LOMAP_CLS000"), record_number("NGA_no_1106_KJM000"), record_number("CLS000")
     (753, 1106, None)

@@ -1,4 +1,4 @@
-"""Origin of a record: the reading of its files and the processing since, by which it can be made again."""
+"""Origin of a record: reading arguments and processing steps that reproduce it."""
 
 import hashlib
 from collections.abc import Iterable, Mapping
@@ -9,14 +9,14 @@ from typing import Any, Self
 
 @dataclass(frozen=True, slots=True)
 class RecordOrigin:
-    """The files or the sample of a record, and the methods of `Record` applied since.
+    """The files or the sample of a record, and the methods of `Record` applied to it.
 
     Parameters
     ----------
     reading
         Arguments of the reading as plain values: `path` or `sample`, `units`, `directions` and others.
     processing
-        For each method in order: its name as `method`, and its arguments.
+        Name (`method`) and arguments of each method, in order.
     """
 
     reading: Mapping[str, Any]
@@ -24,14 +24,14 @@ class RecordOrigin:
 
     @classmethod
     def of_files(cls, paths: Path | Iterable[Path], **arguments: Any) -> Self:
-        """Make the origin of a record that is read now from one file, or from the files of one event.
+        """Create the origin of a record read from one file or from the files of one event.
 
         Parameters
         ----------
         paths
             The file or the files.
         **arguments
-            Arguments of the reading as plain values; None for those not given.
+            Arguments of the reading as plain values; None for arguments not given.
         """
         one = isinstance(paths, Path)
         files = [paths] if isinstance(paths, Path) else list(paths)
@@ -41,6 +41,6 @@ class RecordOrigin:
         return cls({"path": names[0] if one else tuple(names), **given, "file_sha256": digests})
 
     def then(self, method: str, **arguments: Any) -> Self:
-        """Add a method of `Record` and its arguments; None for an argument not given."""
+        """Append a method of `Record` and its arguments; None for an argument not given."""
         given = {name: value for name, value in arguments.items() if value is not None}
         return replace(self, processing=(*self.processing, {"method": method, **given}))

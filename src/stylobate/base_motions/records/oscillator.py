@@ -1,10 +1,10 @@
-"""The linear oscillator on a moving base, exactly: accelerations linear between samples (Nigam and Jennings 1969).
+"""Exact response of a linear oscillator to piecewise linear base acceleration (Nigam and Jennings 1969).
 
 With displacement d relative to the base, natural frequency ω and damping ratio ζ::
 
     d̈ + 2ζω ḋ + ω² d = −a(t)                                                       (1)
 
-Over a step, state (d, ḋ) and ends (a0, a1) of the acceleration give the next state linearly, by one matrix exponential.
+Over a step, the next state is linear in the state (d, ḋ) and the accelerations (a0, a1), by one matrix exponential.
 """
 
 import math
@@ -28,12 +28,12 @@ def oscillator_response(acceleration: Floats, step: float, period: float, dampin
     period
         Natural period 2π/ω [s].
     damping
-        Damping ratio ζ, of zero or above.
+        Damping ratio ζ, zero or above.
 
     Returns
     -------
     tuple
-        Displacements [m] and velocities [m/s] of the shape of `acceleration`.
+        Displacements [m] and velocities [m/s], shape of `acceleration`.
     """
     a, b0, b1 = _transition(2.0 * math.pi / period, damping, step)
     denominator = [1.0, -np.trace(a), np.linalg.det(a)]
@@ -44,7 +44,7 @@ def oscillator_response(acceleration: Floats, step: float, period: float, dampin
 
 def _transition(omega: float, damping: float, step: float) -> tuple[Floats, Floats, Floats]:
     """Return A, B0, B1 of (d, ḋ)_{i+1} = A (d, ḋ)_i + B0 a_i + B1 a_{i+1}."""
-    # d, ḋ, a and its slope as one linear system: its exponential is exact for a linear acceleration
+    # one linear system of d, ḋ, a and the slope of a: its exponential is exact for a linear acceleration
     system = np.array(
         [
             [0.0, 1.0, 0.0, 0.0],
@@ -59,14 +59,14 @@ def _transition(omega: float, damping: float, step: float) -> tuple[Floats, Floa
 
 
 def _filtered(a: Floats, b0: Floats, b1: Floats, denominator: list[float], row: int, acceleration: Floats) -> Floats:
-    """Return one row of the state, from rest, by the recursion of second order (z − A)⁻¹ (B0 + B1 z)."""
+    """Compute one row of the state, from rest, by the recursion of second order (z − A)⁻¹ (B0 + B1 z)."""
     other = 1 - row
     numerator = [
         b1[row],
         b0[row] - a[other, other] * b1[row] + a[row, other] * b1[other],
         a[row, other] * b0[other] - a[other, other] * b0[row],
     ]
-    # the filter's memory for which output 0 is zero and output 1 is B0 a0 + B1 a1
+    # filter state that makes output 0 zero and output 1 equal to B0 a0 + B1 a1
     first = acceleration[0]
     memory = np.stack([-b1[row] * first, (b0[row] - numerator[1]) * first])
     response, _ = lfilter(numerator, denominator, acceleration, axis=0, zi=memory)
@@ -76,7 +76,7 @@ def _filtered(a: Floats, b0: Floats, b1: Floats, denominator: list[float], row: 
 def free_vibration(
     displacement: Floats, velocity: Floats, times: Floats, period: float, damping: float
 ) -> tuple[Floats, Floats]:
-    """Return displacement and velocity at `times`, shape (n, …), after a start with these, on a base at rest."""
+    """Compute displacement and velocity at `times`, shape (n, …), from initial values on a base at rest."""
     omega = 2.0 * math.pi / period
     damped = omega * math.sqrt(1.0 - damping**2)
     t = times.reshape(-1, *(1 for _ in np.shape(displacement)))

@@ -1,4 +1,4 @@
-"""Largest acceleration, velocity and displacement of a record, exact for its linear interpolation."""
+"""Peak acceleration, velocity and displacement of a record, exact for linear interpolation."""
 
 import math
 
@@ -10,17 +10,17 @@ from stylobate.base_motions.records.record import Floats, Record
 
 
 def peak_acceleration(record: Record) -> Floats:
-    """Return sup |a| along x, y and z, shape (3,) [m/s²]."""
+    """Compute sup |a| along x, y and z, shape (3,) [m/s²]."""
     return np.asarray(np.abs(record.samples).max(axis=0))
 
 
 def peak_velocity(record: Record) -> Floats:
-    """Return sup |v| along x, y and z up to the last sample, shape (3,) [m/s]: at its ends or where a = 0."""
+    """Compute sup |v| along x, y and z up to the last sample, shape (3,) [m/s]: at the ends or where a = 0."""
     return np.array([_largest(record, axis, VELOCITY, _rests(record, axis)) for axis in range(3)])
 
 
 def peak_displacement(record: Record) -> Floats:
-    """Return sup |d| along x, y and z up to the last sample, shape (3,) [m]: at its ends or where v = 0."""
+    """Compute sup |d| along x, y and z up to the last sample, shape (3,) [m]: at the ends or where v = 0."""
     return np.array([_largest(record, axis, DISPLACEMENT, _turns(record, axis)) for axis in range(3)])
 
 
@@ -30,13 +30,13 @@ def horizontal_peak(record: Record, order: int, component: HorizontalComponent, 
     Parameters
     ----------
     record
-        The record. One along a straight line has one horizontal component, whose peak counts in every definition.
+        The record. A record along a straight line has one horizontal component, whose peak counts in every definition.
     order
-        ACCELERATION, exact; or VELOCITY, from eight values a step, between which it rises by step·sup |a|/256 at most.
+        ACCELERATION, exact; or VELOCITY, from eight values per step, with an error of at most step·sup |a|/256.
     component
-        How one number is made of two components.
+        Definition of the horizontal component.
     since
-        Time from which on it counts [s].
+        Start of the time interval of the peak [s].
     """
     if len(record.directions()) < 2:  # noqa: PLR2004  along one line
         component = HorizontalComponent.ROTD100

@@ -1,4 +1,4 @@
-"""One file, one record."""
+"""Reading of a record from one file: formats, units and checks."""
 
 import os
 import warnings
@@ -25,9 +25,9 @@ from stylobate.base_motions.records.waveforms import read_waveform
 from stylobate.column import STANDARD_GRAVITY
 from stylobate.errors import FileError, ParameterError, UnlikelyInputWarning, require_positive
 
-# Horizontal and vertical peaks of strong earthquakes are below, but for a few close to the fault [g].
+# Horizontal and vertical peaks of earthquakes are below, except a few close to the fault [g].
 _LARGEST_PEAK = 3.0
-# Steps of records that can be read [s], and what no acceleration reaches in any unit.
+# Range of steps of readable records [s], and a bound on accelerations in any unit.
 _STEPS = (1e-9, 1e6)
 _BEYOND_ALL = 1e30
 
@@ -58,17 +58,17 @@ def read_record(
     path
         The file; gzip is unpacked.
     units
-        Unit of the accelerations: "g", "m/s²" (m/s2), "cm/s²" (cm/s2, gal) or "mm/s²". Only to be left out where the
-        file states: it is never guessed.
+        Unit of the accelerations: "g", "m/s²" (m/s2), "cm/s²" (cm/s2, gal) or "mm/s²". Optional only if the file states
+        the unit, which is never guessed.
     step
-        Time step [s], of a file that has none: a single column, or an AT2 file without the line of NPTS and DT.
+        Time step [s], for a file without step: a single column, or an AT2 file without the line of NPTS and DT.
     columns
-        Which column of a CSV file is "time", "x", "y" and "z", by name.
+        Names of the columns "time", "x", "y" and "z" of a CSV file.
     axis
-        Axis of the record along which a single component acts: "x", "y" or "z". None is z where the file says up or
-        down (then the sign is turned), else x.
+        Axis of the record along which a single component acts: "x", "y" or "z". None is z if the file states up or down
+        (for down with reversed sign), otherwise x.
     format
-        How the file is written; None finds out.
+        Format of the file; None detects it.
 
     Raises
     ------
@@ -83,7 +83,7 @@ def read_record(
     Warns
     -----
     UnlikelyInputWarning
-        If the peak is beyond 3 g, as that of a file in cm/s² that is read in g.
+        If the peak exceeds 3 g, for example because a file in cm/s² is read in g.
     """
     path = require_path("path", path)
     step = None if step is None else require_positive("step", step, "s")
@@ -98,7 +98,7 @@ def plain_reading(
     columns: Mapping[str, str] | None,
     format: RecordFormat | None,  # noqa: A002
 ) -> dict[str, Any]:
-    """Return arguments of the reading as plain values, as the origin of a record has them."""
+    """Convert the arguments of the reading to plain values for the origin of a record."""
     return {
         "units": units,
         "step": step,
@@ -113,7 +113,7 @@ def read_component(
     columns: Mapping[str, str] | None,
     format: RecordFormat | None,  # noqa: A002
 ) -> Component:
-    """Return what the file gives, in its own units."""
+    """Read the component of a file in the units of the file."""
     content = read_bytes(path)
     if is_binary(content) and format in (None, RecordFormat.AT2) and _is_called_at2(path):
         message = f"{path}: no AT2 file: it is no text, and has no header with NPTS and DT"
@@ -153,7 +153,7 @@ def _is_called_at2(path: Path) -> bool:
 
 
 def as_record(component: Component, path: Path, units: str | None, axis: str | None) -> Record:
-    """Return the record of one file's content, in SI units."""
+    """Convert the component of a file to a record in SI units."""
     factor, unit_text = _scale(component, path, units)
     _require_possible(component, path)
     provenance: tuple[str, ...] = (
@@ -181,7 +181,7 @@ def as_record(component: Component, path: Path, units: str | None, axis: str | N
 
 
 def _require_possible(component: Component, path: Path) -> None:
-    """Refuse numbers with which floating-point arithmetic overflows; no record has them."""
+    """Raise FileError at numbers that overflow in floating-point arithmetic; no record has such numbers."""
     for what, value, least, most in (
         ("a time step [s]", component.step, *_STEPS),
         ("a peak", float(np.abs(component.samples).max()), 0.0, _BEYOND_ALL),
@@ -202,7 +202,7 @@ def _remark_on_the_peak(samples: Floats, path: Path, unit_text: str) -> None:
 
 
 def name_of(path: Path) -> str:
-    """Return the name of a file without its folder and endings."""
+    """Return the name of a file without folder and suffixes."""
     name = path.name.removesuffix(".gz")
     return name.rpartition(".")[0] or name
 

@@ -1,4 +1,4 @@
-"""A recorded base motion: accelerations at equal steps, linear in between."""
+"""Ground-motion record: accelerations at equal steps with linear interpolation."""
 
 import hashlib
 import math
@@ -17,9 +17,9 @@ from stylobate.errors import ParameterError, require_finite, require_not_negativ
 Floats = npt.NDArray[np.float64]
 
 AXES = ("x", "y", "z")
-# Horizontal accelerations this near to one line, in ulp of the largest, lie on it but for rounding.
+# Distance from a line, in ulp of the largest, at which horizontal accelerations count as on the line.
 _ON_LINE_ULP = 8.0
-# A time this part of a step away from a knot is the knot.
+# Distance from a knot, as a fraction of a step, at which a time counts as the knot.
 _KNOT_SLACK = 1e-6
 
 
@@ -30,19 +30,19 @@ class Record(BaseMotion):
     Parameters
     ----------
     samples
-        Accelerations [m/s²]: shape (n,) along x, or (n, 1), (n, 2), (n, 3) along x, y (horizontal) and z (up); at
-        least two. Kept as (n, 3).
+        Accelerations [m/s²]: shape (n,) along x, or (n, 1), (n, 2), (n, 3) along x, y (horizontal) and z (up); at least
+        two. Stored as (n, 3).
     step
         Time between samples [s].
     start
-        Time of the first sample [s]; what lies before t = 0 never acts.
+        Time of the first sample [s]; samples before t = 0 have no effect.
     name
-        What the record is called.
+        Name of the record.
     provenance
-        Where it comes from and what was done to it, one line each, in order.
+        Source and processing steps, one line each, in order.
     origin
-        How it can be made again; None if it was made from samples. Reading a file sets it, and each method of
-        processing adds to it.
+        Instructions that reproduce the record; None if it was created from samples. Reading a file sets the origin, and
+        each processing method extends it.
 
     Raises
     ------
@@ -51,9 +51,9 @@ class Record(BaseMotion):
 
     Notes
     -----
-    Velocity and displacement are the exact integrals of that acceleration from rest. After the last sample the
-    acceleration is zero: the base goes on at the velocity it has then, as if at rest for the column. A record whose
-    `residual_velocity` is large wants `baseline_corrected` or `filtered`.
+    Velocity and displacement are the exact integrals of the acceleration from rest. After the last sample the
+    acceleration is zero: the base keeps its velocity, which has no effect on the column. If `residual_velocity` is
+    large, use `baseline_corrected` or `filtered`.
 
     Examples
     --------
@@ -89,7 +89,7 @@ class Record(BaseMotion):
         object.__setattr__(self, "_velocity", velocity)
         object.__setattr__(self, "_displacement", displacement)
         object.__setattr__(self, "_largest", largest_from_each(np.hypot(samples[:, 0], samples[:, 1])))
-        # the base stands still in the end: zero is always among what follows
+        # the acceleration ends at zero, so zero is always among the later values
         object.__setattr__(self, "_lowest", -largest_from_each(np.maximum(-samples[:, 2], 0.0)))
         object.__setattr__(self, "_highest", largest_from_each(np.maximum(samples[:, 2], 0.0)))
 
@@ -103,7 +103,7 @@ class Record(BaseMotion):
         step: float,
         **more: Any,
     ) -> Self:
-        """Make a record from accelerations along x, y and z, shape (n,) each [m/s²]; missing components are zero.
+        """Create a record from accelerations along x, y and z, shape (n,) each [m/s²]; missing components are zero.
 
         Raises
         ------
@@ -145,7 +145,7 @@ class Record(BaseMotion):
 
     @property
     def digest(self) -> str:
-        """Identity of its numbers: SHA-256 of samples, step and start, in hexadecimal digits."""
+        """SHA-256 of samples, step and start, in hexadecimal digits."""
         numbers = np.array([self.step, self.start]).tobytes()
         return hashlib.sha256(self.samples.tobytes() + numbers).hexdigest()
 
@@ -200,7 +200,7 @@ class Record(BaseMotion):
         return min(max(0, math.ceil((time - self.start) / self.step)), len(self.samples) - 1)
 
     def directions(self) -> tuple[tuple[float, float], ...]:
-        """Return one horizontal sample if all lie on one line, else two that do not; none if all are zero."""
+        """Return one horizontal sample if all lie on one line, else two independent samples; none if all are zero."""
         x, y = self.samples[:, 0], self.samples[:, 1]
         longest = int(np.argmax(np.hypot(x, y)))
         size = float(np.hypot(x[longest], y[longest]))
@@ -220,12 +220,12 @@ class Record(BaseMotion):
 
     @property
     def highest_frequency(self) -> float:
-        """2/step [rad/s]: with it |ȧ| ≤ ω sup |a|, as in a harmonic motion; half a period is longer than a step."""
+        """2/step [rad/s]: then |ȧ| ≤ ω sup |a|, as in a harmonic motion; half a period is longer than a step."""
         return 2.0 / self.step if np.any(self.samples) else 0.0
 
     @property
     def mean_frequency(self) -> float:
-        """Root mean square of ȧ over that of a, all components together [rad/s]; a passes zero at this rate over π.
+        """Ratio of root mean squares of ȧ and a over all components [rad/s]; a crosses zero at this rate over π.
 
         S. O. Rice, "Mathematical analysis of random noise", Bell Syst. Tech. J. 23 (1944).
         """
@@ -241,7 +241,7 @@ class Record(BaseMotion):
         """Times of the samples at which the slope changes [s]."""
         return tuple(self.times[corners(self.samples)].tolist())
 
-    # A record that was scaled, turned or delayed is a record still: it can be filtered and measured.
+    # A scaled, rotated or delayed record remains a record, which can be filtered and measured.
 
     def scaled(self, factor: float, *, vertical: float | None = None) -> "Record":  # type: ignore[override]
         """Scale this record by `factor`; the vertical component by `vertical`, if given."""
@@ -257,7 +257,7 @@ class Record(BaseMotion):
         Raises
         ------
         ParameterError
-            If it has no horizontal acceleration, or the peak is not positive.
+            If the record has no horizontal acceleration, or the peak is not positive.
         """
         largest = float(self._largest[0])
         if largest == 0.0:
@@ -285,7 +285,7 @@ class Record(BaseMotion):
         return self.changed("polarity reversed", samples=samples, origin=self._then("inverted"))
 
     def trimmed(self, begin: float | None = None, end: float | None = None) -> "Record":
-        """Keep the samples from time `begin` to `end` [s]; the first of them is at `start`.
+        """Keep the samples from time `begin` to `end` [s]; the first sample is at `start`.
 
         Raises
         ------
@@ -312,7 +312,7 @@ class Record(BaseMotion):
     def with_tail(self, length: float) -> "Record":
         """Append `length` [s] of zeros: a free-vibration tail in which the column may overturn or come to rest.
 
-        Run to its `duration`: whether a column survived is known after the tail, not at the last sample.
+        Run to the `duration` of the result: survival is known after the tail, not at the last original sample.
         """
         count = self._steps("length", length)
         samples = np.pad(self.samples, ((0, count), (0, 0)))
@@ -349,11 +349,11 @@ class Record(BaseMotion):
         return self.changed(note, samples=samples, origin=self._then("baseline_corrected", degree=degree))
 
     def changed(self, note: str, *, origin: RecordOrigin | None = None, **changes: Any) -> "Record":
-        """Replace fields of this record and add a `note` to its provenance; without an `origin` it has none."""
+        """Replace fields of this record and add a `note` to its provenance; without `origin` the result has none."""
         return replace(self, provenance=(*self.provenance, note), origin=origin, **changes)
 
     def _then(self, method: str, **arguments: Any) -> RecordOrigin | None:
-        """Return the origin of this record after one more method."""
+        """Return the origin of this record extended by one method."""
         return None if self.origin is None else self.origin.then(method, **arguments)
 
 

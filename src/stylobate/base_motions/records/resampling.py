@@ -1,4 +1,4 @@
-"""A record at another step."""
+"""Band-limited resampling of a record to another step."""
 
 from fractions import Fraction
 
@@ -16,9 +16,9 @@ Floats = npt.NDArray[np.float64]
 
 
 def resampled(samples: Floats, before: float, step: float) -> tuple[Floats, str]:
-    """Return `samples` of the step `before` at another `step` [s], and a note; the note is empty if both are equal.
+    """Resample `samples` from the step `before` to `step` [s]; return them and a log line, empty if both are equal.
 
-    The result is band-limited: what the coarser of the two steps cannot carry is removed.
+    The result is band-limited: frequencies above the limit of the coarser step are removed.
 
     Raises
     ------
@@ -28,7 +28,7 @@ def resampled(samples: Floats, before: float, step: float) -> tuple[Floats, str]
     Notes
     -----
     Polyphase resampling with SciPy's zero-phase low-pass filter (`scipy.signal.resample_poly`, Kaiser window β = 5,
-    zeros beyond the ends). The motion between the old samples is no longer linear: peaks may change a little.
+    zeros beyond the ends). The motion between the old samples is no longer linear, so peaks may change slightly.
     """
     step = require_positive("step", step, "s")
     ratio = Fraction(before / step).limit_denominator(_LARGEST_FACTOR)

@@ -1,4 +1,4 @@
-"""Times that were printed in few digits, and the even steps from which they were rounded."""
+"""Recovery of equal time steps from times that were printed with few digits."""
 
 from collections.abc import Iterator
 from decimal import Decimal
@@ -8,37 +8,36 @@ import numpy.typing as npt
 
 Floats = npt.NDArray[np.float64]
 
-# Two missing samples can pass for a rounded grid; three must lie at equal distances to within a sample.
+# Two missing samples can look like a rounded grid; three must lie at equal distances to within a sample.
 _LEAST_EXCEPTIONS = 3
-# Rarer gaps of two steps are missing samples too, though they lie at equal distances: buffers lose samples so.
+# Less frequent gaps of two steps are also missing samples, even at equal distances: buffers lose samples in this way.
 _RARE = 0.05
-# Room for the rounding of the differences themselves, relative to the last printed digit.
+# Tolerance for rounding of the differences, relative to the last printed digit.
 _SLACK = 1e-6
 _LONGEST_DECIMAL = 12
 _HALVINGS = 60
 
 
 def even_grid(times: Floats, step: float | None = None) -> tuple[float, float] | None:
-    """Find the even grid of which `times` are the rounded values.
+    """Find the even grid whose rounded values are `times`.
 
     Parameters
     ----------
     times
-        Times as printed, in their order, two at least [s].
+        Times as printed, in order, at least two [s].
     step
-        Step that the grid must have [s]; None searches for the shortest decimal, or one over a whole number.
+        Required step of the grid [s]; None searches for the shortest decimal, or one over a whole number.
 
     Returns
     -------
     tuple
-        First time and step [s], or None if no even grid lies within half a unit of the last digit of every time.
+        First time and step [s], or None if no even grid lies within half a unit of the last digit of all times.
 
     Notes
     -----
-    Without `step`, three steps at least must differ from the commonest one: where a single step does, a sample is
-    missing rather than rounded. Where less than one step in twenty is two of the commonest or more, and none is
-    shorter, samples are missing as well: rounding to the step itself does so only for unusual steps, such as
-    0.01002 s.
+    Without `step`, at least three steps must differ from the most frequent step: a single different step means a
+    missing sample. If less than one step in twenty is at least twice the most frequent step, and none is shorter,
+    samples are missing as well: rounding to the step itself has this effect only for unusual steps, such as 0.01002 s.
     """
     half = _last_digits(times) / 2.0
     places = np.arange(len(times))
@@ -59,14 +58,14 @@ def even_grid(times: Floats, step: float | None = None) -> tuple[float, float] |
 
 
 def _gap(step: float, times: Floats, half: Floats, places: npt.NDArray[np.int_]) -> tuple[float, float, int]:
-    """Return between which first times an even grid agrees with all times, and to which side its step is wrong."""
+    """Return the interval of first times of an even grid that agrees with all times, and the sign of the step error."""
     rest = times - step * places
     low, high = int(np.argmax(rest - half)), int(np.argmin(rest + half))
     return float(rest[low] - half[low]), float(rest[high] + half[high]), low - high
 
 
 def _middle_step(times: Floats, half: Floats, places: npt.NDArray[np.int_]) -> float:
-    """Return the step of the even grid that is nearest to all times: the least of a convex function, by bisection."""
+    """Return the step of the even grid closest to all times: the minimum of a convex function, by bisection."""
     mean = float(times[-1] - times[0]) / (len(times) - 1)
     reach = 2.0 * float(half.max()) / (len(times) - 1)
     low, high = max(0.0, mean - reach), mean + reach
@@ -78,13 +77,13 @@ def _middle_step(times: Floats, half: Floats, places: npt.NDArray[np.int_]) -> f
 
 
 def _last_digits(times: Floats) -> Floats:
-    """Return the unit of the last digit of each time [s]; trailing zeros show in the times that follow."""
+    """Return the unit of the last digit of each time [s]; later times reveal trailing zeros."""
     exponents = [min(0, int(Decimal(repr(time)).normalize().as_tuple().exponent)) for time in times.tolist()]
     return np.asarray(10.0 ** np.minimum.accumulate(exponents[::-1])[::-1].astype(float))
 
 
 def _simplest(step: float) -> Iterator[float]:
-    """Return steps near one, the simplest first: decimals, and a rate such as 128 Hz before a step of 0.00781 s."""
+    """Yield steps close to `step`, the simplest first: decimals, and a rate such as 128 Hz before 0.00781 s."""
     for digits in range(1, _LONGEST_DECIMAL):
         if short := float(f"{step:.{digits}g}"):
             yield short

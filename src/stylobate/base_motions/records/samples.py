@@ -1,4 +1,4 @@
-"""Records that come with the package."""
+"""Sample records of the package."""
 
 from dataclasses import replace
 from functools import cache
@@ -15,17 +15,17 @@ _SOURCE = (
     "after the U.S. strong-motion archives; public domain)"
 )
 _EL_CENTRO, _WITHOUT_DRIFT = "el centro 1940", "el centro 1940 corrected"
-# Rest before and after [s], for the transients of the filter, and its corner [Hz] and order.
+# Rest before and after [s] for the transients of the filter; corner [Hz] and order of the filter.
 _REST, _CORNER, _ORDER = 20.0, 0.1, 2
 
 
 def sample_names() -> tuple[str, ...]:
-    """Return the names of the records that come with the package."""
+    """Return the names of the sample records of the package."""
     return _EL_CENTRO, _WITHOUT_DRIFT
 
 
 def sample_record(name: str = "el centro 1940") -> Record:
-    """Load a record that comes with the package.
+    """Load a sample record of the package.
 
     Parameters
     ----------
@@ -36,15 +36,15 @@ def sample_record(name: str = "el centro 1940") -> Record:
     Raises
     ------
     ParameterError
-        If there is none of that name.
+        If the name is unknown.
 
     Notes
     -----
-    There are several digitizations of this record. The peaks of this one are 0.3487 g (north-south), 0.2141 g
-    (east-west) and 0.2101 g (up); the version of textbooks with 0.319 g is another.
+    Several digitizations of this record exist. The peaks of this version are 0.3487 g (north-south), 0.2141 g
+    (east-west) and 0.2101 g (up); textbooks use another version with 0.319 g.
 
-    As published it drifts: integrated, it moves the ground by 6.3 m along y and leaves it at 0.11 m/s. The column does
-    not feel that, but PGV, PGD and drawings do. The corrected record is that one after
+    The published record drifts: integration moves the ground by 6.3 m along y and leaves a velocity of 0.11 m/s. The
+    drift does not affect the column, but PGV, PGD and figures. The corrected record is the published record after
     `padded(before=20.0, after=20.0).filtered(highpass=0.1, order=2)`; its peak accelerations differ by less than 0.5 %.
 
     Examples

@@ -1,19 +1,19 @@
-"""Which files of a folder hold accelerations."""
+"""Selection of acceleration files in a folder of records."""
 
 import re
 from collections.abc import Iterable
 from pathlib import Path
 
-# Beside the accelerations of a download: velocities, displacements, the list of what was searched for.
+# Other files of a download: velocities, displacements and search results.
 _OTHER = re.compile(r".*\.[VD]T2|.*\.(?:VEL|DIS)\.(?:.*\.)?ASC|_SearchResults\.csv", re.IGNORECASE)
 
 
 def accelerations_among(files: Iterable[Path]) -> list[Path]:
-    """Return the files of a folder without those whose names say that they hold no accelerations.
+    """Return the files of a folder except files whose names denote other data than accelerations.
 
-    Left out are the velocities, displacements and search results of a PEER download (`.VT2`, `.DT2`,
-    `_SearchResults.csv`), those of ESM and ITACA (`….VEL.MP.ASC`, `….DIS.MP.ASC`), and hidden files. Where nothing
-    else is there, all are returned that are not hidden.
+    The result excludes velocities, displacements and search results of a PEER download (`.VT2`, `.DT2`,
+    `_SearchResults.csv`), velocities and displacements of ESM and ITACA (`….VEL.MP.ASC`, `….DIS.MP.ASC`), and hidden
+    files. If nothing else remains, all files that are not hidden are returned.
 
     >>> names = ["RSN1_A000.AT2", "RSN1_A000.VT2", "RSN1_A000.DT2.gz", "_SearchResults.csv", ".DS_Store"]
     >>> [path.name for path in accelerations_among(map(Path, names))]

@@ -1,4 +1,4 @@
-"""Where records come from: folders, patterns and files, and lists of the files of one event."""
+"""Sources of records: folders, patterns, files, and lists of the files of one event."""
 
 import os
 from collections.abc import Iterable, Mapping
@@ -19,19 +19,19 @@ _SIGNS = "*?["
 
 @dataclass(frozen=True, slots=True)
 class StatedEvent:
-    """Files that belong to one event because the user says so, and perhaps its name."""
+    """Files that the user lists as one event, and the optional name of the event."""
 
     files: tuple[Path, ...]
     name: str | None = None
 
 
 def find_files(source: RecordSource) -> tuple[list[StatedEvent], list[Path]]:
-    """Return the events that are listed, and the other files, each once.
+    """Find the listed events and the other files, each once.
 
     Raises
     ------
     FileError
-        If there are none, or a pattern or a folder has none.
+        If there are no files, or a pattern or a folder has none.
     ParameterError
         If something in `source` is no path.
     """
@@ -54,7 +54,7 @@ def find_files(source: RecordSource) -> tuple[list[StatedEvent], list[Path]]:
 
 
 def require_path(name: str, value: object) -> Path:
-    """Return the path that `value` is, or raise ParameterError."""
+    """Convert `value` to a path, or raise ParameterError."""
     if isinstance(value, (str, os.PathLike)):
         return Path(value)
     message = f"{name}: must be a path (got {value!r}). Give a string or a pathlib.Path."
@@ -85,7 +85,7 @@ def _each(source: Iterable[_T]) -> Iterable[_T]:
 
 
 def _expanded(source: OnePath) -> list[Path]:
-    """Return the files in a folder or of a pattern that can hold accelerations, sorted; any other path as it is."""
+    """Return the sorted acceleration files of a folder or pattern; any other path unchanged."""
     path = require_path("source", source)
     if path.is_dir():
         return _in_folder(path)
@@ -100,7 +100,7 @@ def _expanded(source: OnePath) -> list[Path]:
 
 
 def _in_folder(folder: Path) -> list[Path]:
-    """Return the files of a folder that can hold accelerations."""
+    """Return the acceleration files of a folder."""
     files = sorted(accelerations_among(path for path in folder.iterdir() if path.is_file()))
     if not files:
         message = f"{folder}: the folder has no files"

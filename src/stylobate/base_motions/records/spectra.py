@@ -1,4 +1,4 @@
-"""Elastic response spectra, of components and independent of the orientation of the instrument."""
+"""Elastic response spectra of components, and RotD spectra independent of the sensor orientation."""
 
 import math
 from typing import Any
@@ -12,7 +12,7 @@ from stylobate.base_motions.records.oscillator import free_vibration, oscillator
 from stylobate.base_motions.records.record import AXES, Floats, Record
 from stylobate.errors import ParameterError, require_not_negative, require_positive
 
-# Responses are computed so many times a period at least, and so densely by cubics through values and slopes.
+# Minimum number of values per period of the response, and after interpolation by cubics.
 _PER_PERIOD, _DENSELY = 20, 200
 _PERCENTILES = {"rotd00": 0.0, "rotd50": 50.0, "rotd100": 100.0}
 
@@ -32,10 +32,10 @@ def response_spectra(record: Record, periods: npt.ArrayLike, *, damping: float =
     Returns
     -------
     xarray.Dataset
-        Along `period` and `axis`, those of x, y and z along which the record accelerates: `sd` = sup |d| [m] and
-        `sv` = sup |ḋ| [m/s], d relative to the base; `psa` = ω² SD [m/s²]. Along `period`, if it moves along x and y:
-        `rotd00`, `rotd50`, `rotd100` [m/s²], the least, median and largest PSA over all horizontal directions, in
-        steps of 1°; `geometric_mean` of the PSA along x and y [m/s²].
+        Along `period` and `axis`, the axes x, y and z with acceleration: `sd` = sup |d| [m] and
+        `sv` = sup |ḋ| [m/s], d relative to the base; `psa` = ω² SD [m/s²]. Along `period`, if the record has
+        accelerations along x and y: `rotd00`, `rotd50`, `rotd100` [m/s²], the minimum, median and maximum PSA over all
+        horizontal directions, in steps of 1°; `geometric_mean` of the PSA along x and y [m/s²].
 
     Raises
     ------
@@ -44,10 +44,10 @@ def response_spectra(record: Record, periods: npt.ArrayLike, *, damping: float =
 
     Notes
     -----
-    Exact for accelerations linear between samples (`records.oscillator`), the swing after the last sample included;
-    peaks are those of values two hundred times a period or more, low by 0.02 % or less. RotD after
-    D. M. Boore, "Orientation-independent, nongeometric-mean measures of seismic intensity from two horizontal
-    components of motion", BSSA 100, 2010.
+    Exact for accelerations linear between samples (`records.oscillator`), including the response after the last sample.
+    Peaks come from at least 200 values per period and are low by at most 0.02 %. RotD after D. M. Boore,
+    "Orientation-independent, nongeometric-mean measures of seismic intensity from two horizontal components of motion",
+    BSSA 100, 2010.
 
     Examples
     --------
@@ -97,7 +97,7 @@ def _attributes(units: str, long_name: str) -> dict[str, str]:
 
 
 def _peaks(samples: Floats, step: float, period: float, damping: float) -> tuple[Floats, Floats, Floats]:
-    """Return sup |d| and sup |ḋ| for each column of `samples`, and (n, axes) values of d from which they are."""
+    """Compute sup |d| and sup |ḋ| for each column of `samples`, and their values of d, shape (n, axes)."""
     parts = max(1, math.ceil(_PER_PERIOD * step / period))
     if parts > 1:
         fine, coarse = np.arange((len(samples) - 1) * parts + 1) / parts, np.arange(len(samples))
@@ -114,11 +114,11 @@ def _peaks(samples: Floats, step: float, period: float, damping: float) -> tuple
 
 
 def _largest(values: Floats, slopes: Floats, step: float) -> Floats:
-    """Return the largest |value| of each column, between samples too, where it may be: by cubics."""
+    """Return the maximum |value| of each column, also between samples, by cubics."""
     found = np.abs(values).max(axis=0)
     for axis in range(values.shape[1]):
         size, steep = np.abs(values[:, axis]), step * np.abs(slopes[:, axis])
-        # no cubic rises by more than 4/27 of its slopes above its ends
+        # a cubic exceeds its ends by at most 4/27 of its slopes
         bound = np.maximum(size[:-1], size[1:]) + 4.0 / 27.0 * (steep[:-1] + steep[1:])
         for at in np.flatnonzero(bound > found[axis]):
             pair = slice(at, at + 2)
@@ -128,7 +128,7 @@ def _largest(values: Floats, slopes: Floats, step: float) -> Floats:
 
 
 def _denser(values: Floats, slopes: Floats, step: float, times: int) -> Floats:
-    """Return values so many `times` as dense, shape (m, axes), by cubics with these values and slopes at the ends."""
+    """Refine values by the factor `times`, shape (m, axes), by cubics with these values and slopes at the ends."""
     s = (np.arange(times) / times)[:, np.newaxis]
     left, right = values[:-1, np.newaxis], values[1:, np.newaxis]
     rising, leaving = step * slopes[:-1, np.newaxis], step * slopes[1:, np.newaxis]

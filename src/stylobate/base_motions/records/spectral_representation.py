@@ -1,4 +1,4 @@
-"""Random vibration of a given power spectral density, by spectral representation."""
+"""Random vibration with a given power spectral density, by spectral representation."""
 
 import math
 from collections.abc import Callable
@@ -15,9 +15,9 @@ Density = Callable[[Floats], Floats]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CloughPenzien:
-    """The one-sided power spectral density of Kanai and Tajimi, with the high-pass of Clough and Penzien.
+    """One-sided power spectral density of Kanai and Tajimi, with the high-pass of Clough and Penzien.
 
-    With f_g, ζ_g of the ground and f_c, ζ_c of the high-pass::
+    With f_g and ζ_g of the ground and f_c and ζ_c of the high-pass::
 
         G(f) = G0 (1 + (2ζ_g f/f_g)²)/((1 − (f/f_g)²)² + (2ζ_g f/f_g)²) · (f/f_c)⁴/((1 − (f/f_c)²)² + (2ζ_c f/f_c)²)
 
@@ -52,7 +52,7 @@ class CloughPenzien:
             object.__setattr__(self, name, require_positive(name, getattr(self, name)))
 
     def __call__(self, frequency: Floats) -> Floats:
-        """Return G at frequencies [Hz] of any shape, [(m/s²)²/Hz]."""
+        """Compute G at frequencies [Hz] of any shape, [(m/s²)²/Hz]."""
         u, w = np.asarray(frequency) / self.ground_frequency, np.asarray(frequency) / self.high_pass_frequency
         soft, slow = (2.0 * self.ground_damping * u) ** 2, (2.0 * self.high_pass_damping * w) ** 2
         ground = (1.0 + soft) / ((1.0 - u**2) ** 2 + soft)
@@ -73,11 +73,11 @@ def random_vibration(
     step
         Time between samples [s].
     rng
-        Where the phases come from.
+        Generator of the phases.
     components
-        1, 2 or 3 independent ones, along x, y and z.
+        Number of independent components along x, y and z: 1, 2 or 3.
     name
-        What the record is called.
+        Name of the record.
 
     Raises
     ------
@@ -91,10 +91,10 @@ def random_vibration(
 
         a(t) = Σ_{k=1}^{N/2−1} √(2 G(f_k) Δf) cos(2π f_k t + φ_k),    f_k = k Δf,  Δf = 1/(N step)
 
-    Its mean square is Σ G(f_k) Δf in every sample, and so is its periodogram at f_k; it repeats after N steps. It is
-    Gaussian in the limit of many frequencies. Linear interpolation between samples takes some power off near half the
-    sampling rate: choose steps that carry more than the highest frequency of interest. It begins at full strength:
-    a column meets a jump at the start.
+    The mean square of every realization is Σ G(f_k) Δf, its periodogram at f_k is G(f_k), and it repeats after N steps.
+    The motion is Gaussian in the limit of many frequencies. Linear interpolation between samples reduces the power near
+    half the sampling rate: choose steps that resolve more than the highest frequency of interest. The motion begins at
+    full strength, with a jump of the acceleration.
     """
     step = require_positive("step", step, "s")
     components = require_whole("components", components, least=1)

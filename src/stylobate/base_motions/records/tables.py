@@ -6,19 +6,19 @@ from stylobate.base_motions.records.component import Component
 from stylobate.base_motions.records.lines import REMARKS, Floats, Text
 from stylobate.base_motions.records.rounded_times import even_grid
 
-# Times may be printed in a few digits: each may be this part of a step beside its place.
+# Tolerance of times that are printed with few digits, as a fraction of a step.
 _TIME_SLACK = 0.02
 _TIME_AND_ACCELERATION = 2
 
 
 def read_table(text: Text, step: float | None) -> Component:
-    """Return the component of a text file with one or two columns; remarks begin with #, %, ! or //.
+    """Read the component of a text file with one or two columns; comments begin with #, %, ! or //.
 
     Raises
     ------
     FileError
-        If a token is no number, lines differ in length, times are not in equal steps, or a single column comes
-        without `step` [s].
+        If a token is no number, lines differ in length, times are not in equal steps, or a single column lacks `step`
+        [s].
     """
     tokens = [(at, line.replace(",", " ").replace(";", " ").split()) for at, line in enumerate(text.lines)]
     tokens = [(at, row) for at, row in tokens if row and not row[0].startswith(REMARKS)]
@@ -45,14 +45,14 @@ def read_table(text: Text, step: float | None) -> Component:
 
 
 def equal_steps(text: Text, times: Floats, places: list[int], step: float | None) -> tuple[float, float]:
-    """Return the first of equally spaced `times` and their step [s]; `step` is the one that was given, or None.
+    """Return first time and step [s] of equally spaced `times`; `step` is the given step, or None.
 
-    The times may be rounded to the digits that are printed. `places` are the indices of their lines.
+    The times may be rounded to the printed digits. `places` are the indices of their lines.
 
     Raises
     ------
     FileError
-        If the steps are not equal, or not the one that was given.
+        If the steps are not equal, or differ from the given step.
     """
     _require_two(text, places)
     own = float(times[-1] - times[0]) / (len(times) - 1)
@@ -67,7 +67,7 @@ def equal_steps(text: Text, times: Floats, places: list[int], step: float | None
 
 
 def _rounded(text: Text, times: Floats, places: list[int], step: float | None) -> tuple[float, float]:
-    """Return first time and step of times that are not in equal steps, but may be rounded from such."""
+    """Return first time and step of unequal times that may be rounded from equal steps."""
     if (grid := even_grid(times, step)) is not None:
         return grid
     steps = np.diff(times)
@@ -86,6 +86,6 @@ def _require_two(text: Text, places: list[int]) -> None:
 
 
 def _as_printed(step: float) -> float:
-    # A quotient of sums is 0.02 but for rounding; the step that was meant has few digits.
+    # A quotient of sums is 0.02 except for rounding; the intended step has few digits.
     short = float(f"{step:.9g}")
     return short if abs(short - step) <= 1e-9 * step else step

@@ -1,11 +1,11 @@
-"""Units of acceleration, as files and people spell them."""
+"""Units of acceleration and their spellings."""
 
 from stylobate.column import STANDARD_GRAVITY
 from stylobate.errors import ParameterError
 
 _FACTORS = {"g": STANDARD_GRAVITY, "m/s²": 1.0, "cm/s²": 0.01, "mm/s²": 0.001}
 KNOWN = '"g", "m/s²" (m/s2), "cm/s²" (cm/s2, gal) or "mm/s²"'
-"""The units, as messages list them."""
+"""List of the units for messages."""
 
 _SPELLINGS = {
     "g": "g",
@@ -23,7 +23,7 @@ _SPELLINGS = {
 
 
 def unit_of(text: str) -> str | None:
-    """Return the unit that `text` spells, as "g", "m/s²", "cm/s²" or "mm/s²", or None.
+    """Parse a unit to "g", "m/s²", "cm/s²" or "mm/s²", or None.
 
     >>> unit_of("CM/SEC**2"), unit_of("gal"), unit_of("volt")
     ('cm/s²', 'cm/s²', None)
@@ -33,12 +33,12 @@ def unit_of(text: str) -> str | None:
 
 
 def require_unit(text: str) -> str:
-    """Return the unit that `text` spells.
+    """Parse a unit, or raise ParameterError.
 
     Raises
     ------
     ParameterError
-        If it spells none that is known.
+        If the unit is unknown.
     """
     unit = unit_of(text) if isinstance(text, str) else None
     if unit is None:
@@ -48,5 +48,5 @@ def require_unit(text: str) -> str:
 
 
 def in_si(unit: str) -> float:
-    """Return how many m/s² a `unit` returned by `unit_of` is; g is standard gravity, 9.80665 m/s²."""
+    """Return the factor from a `unit` of `unit_of` to m/s²; g is standard gravity, 9.80665 m/s²."""
     return _FACTORS[unit]

@@ -1,4 +1,4 @@
-"""Every other format, through ObsPy where it is installed: miniSEED, SAC, K-NET and the like."""
+"""Waveform formats read by ObsPy if installed: miniSEED, SAC, K-NET and others."""
 
 import io
 from pathlib import Path
@@ -15,14 +15,14 @@ _IN_SI = ("KNET",)
 
 
 def read_waveform(path: Path, content: bytes) -> Component:
-    """Return the component in a file that ObsPy reads.
+    """Read the component in a waveform file with ObsPy.
 
     Raises
     ------
     UnsupportedError
         If ObsPy is not installed.
     FileError
-        If ObsPy cannot read it, or it holds no trace or several.
+        If ObsPy cannot read the file, or the file holds no trace or several.
 
     Notes
     -----
@@ -38,7 +38,7 @@ def read_waveform(path: Path, content: bytes) -> Component:
         raise UnsupportedError(message) from None
     try:
         stream = obspy.read(io.BytesIO(content))
-    except Exception as error:  # ObsPy's readers raise whatever they meet
+    except Exception as error:  # ObsPy's readers raise exceptions of any type
         message = f"{path}: ObsPy cannot read it: {error}"
         raise FileError(message) from error
     if len(stream) != 1:

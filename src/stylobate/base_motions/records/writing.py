@@ -1,4 +1,4 @@
-"""Records written to files."""
+"""Writing of records to CSV and AT2 files."""
 
 import os
 from pathlib import Path
@@ -32,7 +32,7 @@ def write_at2(record: Record, path: str | os.PathLike[str], *, axis: str) -> Pat
     FileError
         If the file cannot be written.
     ParameterError
-        If the axis is none of "x", "y" and "z".
+        If the axis is not "x", "y" or "z".
     """
     if axis not in AXES:
         message = f'axis must be "x", "y" or "z", got {axis!r}'
