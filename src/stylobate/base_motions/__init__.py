@@ -1,4 +1,4 @@
-"""Base motions: the acceleration of the base against time."""
+"""Base motions: acceleration of the base as a function of time."""
 
 from stylobate.base_motions.combined import BASE_AT_REST, BaseMotion, Delayed, Rotated, Scaled, Sum
 from stylobate.base_motions.harmonic import Harmonic, as_harmonic

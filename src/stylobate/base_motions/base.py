@@ -1,4 +1,4 @@
-"""The contract of a base motion: an acceleration against time, and its properties for integrators and criteria."""
+"""Interface of a base motion: acceleration over time, and properties for integrators and criteria."""
 
 import math
 from abc import ABC, abstractmethod
@@ -23,13 +23,13 @@ class MotionContract(Declared, ABC):
     __slots__ = ()
 
     ends: ClassVar[bool] = False
-    """Whether each motion of the class comes to an end, so that a run under it needs no duration."""
+    """Whether all motions of the class end, so that a run under them needs no duration."""
 
     responds: ClassVar[bool] = False
     """Whether response curves can be computed for motions of the class: harmonic motions that can be horizontal."""
 
     def __init_subclass__(cls, **options: Any) -> None:
-        """Refuse fields that would take the place of a method, or have it for a default."""
+        """Reject fields that would replace a method or have a method as default."""
         super().__init_subclass__(**options)
         for name in vars(cls).get("__annotations__", {}):
             if isfunction(getattr(super(cls, cls), name, None)):
@@ -63,9 +63,9 @@ class MotionContract(Declared, ABC):
 
     @abstractmethod
     def directions(self) -> tuple[tuple[float, float], ...]:
-        """Return horizontal vectors that span every horizontal acceleration of this motion [m/s²].
+        """Return horizontal vectors that span all horizontal accelerations of this motion [m/s²].
 
-        Parallel vectors (or none) mean a motion along one straight line, in which a column can rock in a plane.
+        Parallel vectors (or none) mean a motion along one straight line, which allows planar rocking.
         """
 
     @property
@@ -75,24 +75,24 @@ class MotionContract(Declared, ABC):
 
     @property
     def period(self) -> float | None:
-        """Common period of the steady motion [s]; None where there is none."""
+        """Common period of the steady motion [s]; None without period."""
         return None
 
     @property
     def highest_frequency(self) -> float:
-        """Highest angular frequency in the acceleration [rad/s]; 0 for one that is constant between its breaks.
+        """Highest angular frequency in the acceleration [rad/s]; 0 if the acceleration is constant between its breaks.
 
-        Releases are sought on 64 samples to its period, and no step is longer than half of it. A motion of your own
-        whose acceleration changes must give it: runs refuse one that changes faster.
+        Uplift is searched on 64 samples per period of this frequency, and no step exceeds half of this period. A custom
+        motion with varying acceleration must define it; runs reject a motion that varies faster.
         """
         return 0.0
 
     @property
     def mean_frequency(self) -> float:
-        """Mean angular frequency of the acceleration [rad/s]: with it peaks rise and fall; by default the highest.
+        """Mean angular frequency of the peaks of the acceleration [rad/s]; by default the highest frequency.
 
-        How long the base motion pushes a column that it releases, and so how small an energy counts as rest, is judged
-        by it.
+        It estimates the duration of the push after uplift, and with it the energy below which a column counts as at
+        rest.
         """
         return self.highest_frequency
 
@@ -103,9 +103,9 @@ class MotionContract(Declared, ABC):
 
     @property
     def degree(self) -> int | None:
-        """Degree of the polynomials that the acceleration is between its breaks; None where it is none.
+        """Degree of the acceleration as a polynomial between its breaks; None if it is no polynomial.
 
-        What is linear between breaks, as a record is, is tabulated exactly.
+        A motion that is linear between breaks, such as a record, is tabulated exactly.
         """
         return None
 

@@ -15,7 +15,7 @@ from stylobate.base_motions.numbers import Angle, Delay, Factor, VerticalFactor
 from stylobate.errors import ParameterError
 from stylobate.quantities import parameters_of
 
-# Frequencies whose ratio is n/d to this relative accuracy, d up to the limit, share a period.
+# Frequencies share a period if their ratio is n/d to this relative accuracy, with d up to the limit.
 _RATIO_TOLERANCE = 1e-12
 _LARGEST_DENOMINATOR = 64
 
@@ -28,7 +28,7 @@ class BaseMotion(MotionContract):
 
     Notes
     -----
-    For developers: a motion of your own implements `derivative`, `peak_horizontal`, `vertical_range` and
+    For developers: a custom motion implements `derivative`, `peak_horizontal`, `vertical_range` and
     `directions`; `duration`, `period`, `highest_frequency`, `mean_frequency`, `breaks` and `degree` have defaults.
     """
 
@@ -37,7 +37,7 @@ class BaseMotion(MotionContract):
     def made_by(self) -> tuple[Callable[..., "BaseMotion"], Mapping[str, Any]]:
         """Return the constructor of this motion and its arguments: by default its class and its declared numbers.
 
-        A class that overrides this method does so for itself, not for its subclasses.
+        An override applies to its class only, not to subclasses.
         """
         return type(self), {name: getattr(self, name) for name in parameters_of(type(self))}
 
@@ -72,7 +72,7 @@ class Sum(BaseMotion):
 
     @classmethod
     def at_rest(cls) -> Self:
-        """Make a base that does not move: the sum of no motions."""
+        """Create a base at rest: the sum of no motions."""
         return cls()
 
     def made_by(self) -> tuple[Callable[..., BaseMotion], Mapping[str, Any]]:
@@ -114,7 +114,7 @@ class Sum(BaseMotion):
 
     @property
     def period(self) -> float | None:
-        """The least common period of the parts [s], where their frequencies are in a simple ratio."""
+        """The least common period of the parts [s], if their frequencies are in a simple ratio."""
         periods = [motion.period for motion in self.motions if motion.duration > 0.0]
         if not periods or periods[0] is None:
             return None
@@ -214,16 +214,16 @@ class Transformed(Following):
     motion: BaseMotion
 
     def validate(self) -> None:
-        """Raise ParameterError unless `motion` is one."""
+        """Raise ParameterError unless `motion` is a base motion."""
         require_motion("motion", self.motion)
 
     @property
     def followed(self) -> BaseMotion:
-        """The motion of which it is a copy."""
+        """The original motion."""
         return self.motion
 
     def changed(self, x: Any, y: Any, z: Any) -> tuple[Any, Any, Any]:
-        """Return a vector of the motion as it is in the copy: of floats, complex amplitudes or arrays."""
+        """Transform a vector of the motion to the copy: floats, complex amplitudes or arrays."""
         return x, y, z
 
     def derivative(self, time: npt.ArrayLike, order: int) -> Components:
@@ -307,13 +307,13 @@ class Delayed(Transformed):
         return self.motion.peak_horizontal(max(0.0, since - self.delay))
 
     def vertical_range(self, since: float = 0.0) -> tuple[float, float]:
-        """Return the bounds of the motion from the delayed time on [m/s²], 0 included while it waits."""
+        """Return the bounds of the motion from the delayed time on [m/s²], including 0 before the start."""
         low, high = self.motion.vertical_range(max(0.0, since - self.delay))
         return (min(low, 0.0), max(high, 0.0)) if since < self.delay else (low, high)
 
     @property
     def duration(self) -> float:
-        """The duration of the motion, the delay added [s]; 0 for a base that never moves."""
+        """The duration of the motion plus the delay [s]; 0 for a base that never moves."""
         return max(0.0, self.motion.duration + self.delay) if self.motion.duration > 0.0 else 0.0
 
     @property
@@ -324,7 +324,7 @@ class Delayed(Transformed):
 
 
 BASE_AT_REST = Sum()
-"""A base that does not move."""
+"""A base at rest."""
 
 
 def require_motion(name: str, motion: object) -> None:

@@ -1,4 +1,4 @@
-"""The base motions of the package, by their kind in files and on the command line."""
+"""Base motions of the package by kind, for description files and the command line."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -52,9 +52,9 @@ MOTIONS = Kinds(
 
 @cache
 def motion_quantities() -> Mapping[str, Quantity]:
-    """Return the quantity of each number by which these base motions can be described.
+    """Return the quantity of each number that describes these base motions.
 
-    A name that has different units in different kinds has none here.
+    A name with different units in different kinds is omitted.
     """
     found: dict[str, Quantity] = {}
     for make in MOTIONS.values():
@@ -80,7 +80,7 @@ def kinds_with_response() -> tuple[str, ...]:
 
 @cache
 def kinds_by_acceleration() -> tuple[str, ...]:
-    """Return those kinds with response that are horizontal, and whose acceleration does not follow from a path."""
+    """Return the horizontal kinds with response whose acceleration does not follow from a path."""
 
     def fits(quantity: Quantity) -> bool:
         return quantity.unit != "m" and quantity.components <= len("xy")

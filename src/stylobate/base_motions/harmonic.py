@@ -1,4 +1,4 @@
-"""Harmonic base motion: an ellipse in general, a circle or a straight line as special cases."""
+"""Harmonic base motion: elliptic, circular, straight, vertical or oblique."""
 
 import cmath
 import math
@@ -54,7 +54,7 @@ class Harmonic(BaseMotion):
 
     Notes
     -----
-    Velocity and displacement are those of the steady motion, without drift.
+    Velocity and displacement follow the steady motion, without drift.
 
     Raises
     ------
@@ -93,7 +93,7 @@ class Harmonic(BaseMotion):
         start_phase: StartPhase = 0.0,
         ramp: Ramp = 0.0,
     ) -> Self:
-        """Make a motion on an ellipse: amplitudes (a1, a2) [m/s²], `phase` φ2 of the second axis to the first."""
+        """Create an elliptic motion: amplitudes (a1, a2) [m/s²], `phase` φ2 of axis 2 relative to axis 1."""
         a1, a2 = amplitude
         return cls(
             amplitude=(a1, a2, 0.0),
@@ -114,7 +114,7 @@ class Harmonic(BaseMotion):
         start_phase: StartPhase = 0.0,
         ramp: Ramp = 0.0,
     ) -> Self:
-        """Make a motion on a circle with constant `acceleration` [m/s²]; `sense` +1 anticlockwise, −1 clockwise."""
+        """Create a circular motion with constant `acceleration` [m/s²]; `sense` +1 anticlockwise, −1 clockwise."""
         return cls.elliptic(
             amplitude=(acceleration, acceleration),
             phase=-sense * math.pi / 2.0,
@@ -134,7 +134,7 @@ class Harmonic(BaseMotion):
         start_phase: StartPhase = 0.0,
         ramp: Ramp = 0.0,
     ) -> Self:
-        """Make a motion along a horizontal line at `direction` [rad] from x, amplitude `acceleration` [m/s²]."""
+        """Create a motion along a horizontal line at `direction` [rad] from x, amplitude `acceleration` [m/s²]."""
         return cls.elliptic(
             amplitude=(acceleration * math.cos(direction), acceleration * math.sin(direction)),
             phase=0.0,
@@ -154,7 +154,7 @@ class Harmonic(BaseMotion):
         start_phase: StartPhase = 0.0,
         ramp: Ramp = 0.0,
     ) -> Self:
-        """Make a vertical motion of amplitude `acceleration` [m/s²]; add it to a horizontal motion with `+`."""
+        """Create a vertical motion of amplitude `acceleration` [m/s²]; add it to a horizontal motion with `+`."""
         return cls(
             amplitude=(0.0, 0.0, acceleration),
             angular_frequency=angular_frequency,
@@ -175,9 +175,10 @@ class Harmonic(BaseMotion):
         start_phase: StartPhase = 0.0,
         ramp: Ramp = 0.0,
     ) -> Self:
-        """Make a motion along a line that rises at `angle` [rad] towards `direction` [rad], as of a conveyor.
+        """Create a motion along a line that rises at `angle` [rad] towards `direction` [rad], as of a conveyor.
 
-        As in all studies `acceleration` is the horizontal amplitude [m/s²]; the vertical one is tan(angle) times it.
+        As in all studies `acceleration` is the horizontal amplitude [m/s²]; the vertical amplitude is tan(angle) times
+        as large.
         """
         if not abs(angle) < math.pi / 2.0:
             message = f"angle must lie between -pi/2 and pi/2 rad, got {angle!r}; see Harmonic.vertical"
@@ -204,7 +205,7 @@ class Harmonic(BaseMotion):
         start_phase: StartPhase = 0.0,
         ramp: Ramp = 0.0,
     ) -> Self:
-        """Make a motion with the displacement d_i cos(Ωt + start_phase + φ_i), d = `amplitude` (x, y, z) [m]."""
+        """Create a motion with the displacement d_i cos(Ωt + start_phase + φ_i), d = `amplitude` (x, y, z) [m]."""
         square = angular_frequency**2
         x, y, z = (-square * number for number in amplitude)
         return cls(
@@ -227,7 +228,7 @@ class Harmonic(BaseMotion):
         start_phase: StartPhase = 0.0,
         ramp: Ramp = 0.0,
     ) -> Self:
-        """Make a straight motion by its `stroke` from peak to peak [m] and its `frequency` [Hz].
+        """Create a straight motion from its `stroke` from peak to peak [m] and its `frequency` [Hz].
 
         The line rises at `angle` [rad] above the horizontal, as of a conveyor, towards `direction` [rad]. The stroke is
         measured along the line.
@@ -252,7 +253,7 @@ class Harmonic(BaseMotion):
         start_phase: StartPhase = 0.0,
         ramp: Ramp = 0.0,
     ) -> Self:
-        """Make a circular motion by the `diameter` of its path [m] and turns per minute, as of an orbital shaker."""
+        """Create a circular motion from the path `diameter` [m] and turns per minute, as of an orbital shaker."""
         radius = diameter / 2.0
         return cls.displacement_amplitude(
             amplitude=(radius, radius, 0.0),
@@ -280,7 +281,7 @@ class Harmonic(BaseMotion):
         return x, y, z
 
     def peak_horizontal(self, since: float = 0.0) -> float:
-        """Compute sup |a_h| = |p| + |q| [m/s²], where p and q are the circular motions that make the ellipse."""
+        """Compute sup |a_h| = |p| + |q| [m/s²], where p and q are the circular components of the ellipse."""
         del since
         p, q = self._circular_parts()
         return abs(p) + abs(q)
@@ -320,8 +321,8 @@ class Harmonic(BaseMotion):
         return 0.5 * (x + 1j * y), 0.5 * (x.conjugate() + 1j * y.conjugate())
 
     def _ramped(self, t: npt.NDArray[np.float64], order: int, a: float, phase: float) -> npt.NDArray[np.float64]:
-        # ½(1 − cos νt) cos(Ωt + φ) is a sum of three harmonics, each integrated back from the end of the ramp,
-        # where the steady motion takes over.
+        # ½(1 − cos νt) cos(Ωt + φ) is a sum of three harmonics, each integrated back from the end of the ramp, where
+        # the steady motion begins.
         end, s = self.ramp, np.minimum(t, self.ramp) - self.ramp
         slow = math.pi / end
         angle = self.angular_frequency * end + self.start_phase + phase
@@ -356,7 +357,7 @@ def _integral_of_exp(z: npt.NDArray[np.complexfloating], times: int) -> npt.NDAr
 
 
 def _exact(ratio: float) -> float:
-    """Return a sine or cosine, 0 where only the rounding of the angle keeps it from that."""
+    """Return a sine or cosine, 0 if it differs from 0 only by rounding of the angle."""
     return 0.0 if abs(ratio) < 8.0 * np.finfo(float).eps else ratio
 
 

@@ -1,4 +1,4 @@
-"""The numbers by which base motions are described."""
+"""Declared parameters of base motions: symbols, units and ranges."""
 
 from collections.abc import Sequence
 from typing import Annotated
@@ -13,13 +13,13 @@ Frequency = Annotated[float, Quantity(symbol="f", unit="Hz", text="frequency", g
 Velocity = Annotated[float, Quantity(symbol="v", unit="m/s", text="amplitude of the velocity")]
 Phase = Annotated[float, Quantity(unit="rad", text="phase", slider=(-3.142, 3.142))]
 StartPhase = Annotated[float, Quantity(unit="rad", text="phase at the start", slider=(0.0, 6.283))]
-Ramp = Annotated[float, Quantity(unit="s", text="time in which it grows to its amplitude", ge=0.0)]
+Ramp = Annotated[float, Quantity(unit="s", text="time of growth to the full amplitude", ge=0.0)]
 Direction = Annotated[
     float, Quantity(unit="rad", text="direction in the plane, from x towards y", slider=(-3.142, 3.142))
 ]
 Rise = Annotated[float, Quantity(unit="rad", text="rise above the horizontal", slider=(-1.5, 1.5))]
 Sense = Annotated[int, Quantity(text="+1 anticlockwise, −1 clockwise", choices=(1, -1))]
-Start = Annotated[float, Quantity(unit="s", text="when it begins", ge=0.0)]
+Start = Annotated[float, Quantity(unit="s", text="start of the motion", ge=0.0)]
 VerticalRatio = Annotated[float, Quantity(text="vertical acceleration over the horizontal one", slider=(-1.0, 1.0))]
 Cycles = Annotated[float, Quantity(text="cycles", gt=0.0, le=1000.0, note=_SHORT, slider=(1.0, 6.0))]
 WholeCycles = Annotated[int, Quantity(text="cycles", ge=1.0, slider=(1.0, 6.0))]

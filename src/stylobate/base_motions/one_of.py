@@ -1,4 +1,4 @@
-"""One of several motions, selected by its number: runs under different records become one ensemble."""
+"""Selection of one of several motions by number: one ensemble for runs under different records."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
@@ -16,7 +16,7 @@ class OneOf(Following):
     Parameters
     ----------
     motions
-        At least one.
+        Base motions, at least one.
     chosen
         Number of the motion.
 
@@ -39,7 +39,7 @@ class OneOf(Following):
     chosen: Chosen = 0
 
     def validate(self) -> None:
-        """Raise ParameterError unless there is a motion of the number `chosen`."""
+        """Raise ParameterError unless a motion with the number `chosen` exists."""
         object.__setattr__(self, "motions", tuple(self.motions))
         for motion in self.motions:
             require_motion("motions", motion)
@@ -50,21 +50,21 @@ class OneOf(Following):
         object.__setattr__(self, "chosen", int(number))
 
     def made_by(self) -> tuple[Callable[..., BaseMotion], Mapping[str, Any]]:
-        """Return that it is one of its motions."""
+        """Return the constructor: the selection by number, with its arguments."""
         return OneOf, {"motions": self.motions, "chosen": self.chosen}
 
     def choose(self, number: float) -> Self:
         """Choose the motion with another `number`."""
-        return replace(self, chosen=number)  # type: ignore[arg-type]  # checked where it is made
+        return replace(self, chosen=number)  # type: ignore[arg-type]  # checked at construction
 
     @property
     def followed(self) -> BaseMotion:
-        """The motion that is chosen."""
+        """The chosen motion."""
         return self.motions[self.chosen]
 
 
 def members_of(motion: BaseMotion) -> tuple[BaseMotion, ...]:
-    """Return the motions of which `motion` is one, each scaled, turned and delayed as it is; it alone if of none."""
+    """Return all motions that `motion` selects from, transformed like `motion`; only `motion` without selection."""
     if isinstance(motion, OneOf):
         return motion.motions
     if isinstance(motion, Transformed):
@@ -73,7 +73,7 @@ def members_of(motion: BaseMotion) -> tuple[BaseMotion, ...]:
 
 
 def number_of(motion: BaseMotion) -> int:
-    """Return which of `members_of` the `motion` is."""
+    """Return the index of `motion` in `members_of`."""
     if isinstance(motion, OneOf):
         return motion.chosen
     return number_of(motion.motion) if isinstance(motion, Transformed) else 0

@@ -28,16 +28,16 @@ from stylobate.quantities import Quantity, checked_arguments, parameters_of
 Floats = npt.NDArray[np.float64]
 
 MOST_CYCLES = 1e5
-"""Of a sweep: its integrals are stored cycle by cycle."""
+"""Maximum number of cycles of a sweep, whose integrals are stored per cycle."""
 
 
 class SweepLaw(StrEnum):
     """Law of the frequency of a sweep from its first to its last value."""
 
     LINEAR = "linear"
-    """By as many hertz in any second."""
+    """Constant rate in hertz per second."""
     LOGARITHMIC = "logarithmic"
-    """By as many octaves in any second."""
+    """Constant rate in octaves per second."""
 
 
 class SweepQuantity(StrEnum):
@@ -51,24 +51,25 @@ class SweepQuantity(StrEnum):
 class SineSweep(BaseMotion):
     """A sine sweep along a line: constant amplitude of acceleration or displacement, and varying frequency.
 
-    `linear` and `logarithmic` make one by `acceleration` or by `displacement`.
+    `linear` and `logarithmic` create a sweep from `acceleration` or `displacement`.
 
     Parameters
     ----------
     amplitude
         Amplitude of the constant quantity [m/s²] or [m].
     quantity
-        Acceleration: it is A cos ψ(t). Displacement: it is D cos ψ(t), and the acceleration −D(ψ̇² cos ψ + ψ̈ sin ψ).
+        ACCELERATION: the acceleration is A cos ψ(t). DISPLACEMENT: the displacement is D cos ψ(t), and the acceleration
+        −D(ψ̇² cos ψ + ψ̈ sin ψ).
     law
-        ψ̇/2π goes from the first frequency to the last linearly, or exponentially.
+        Linear or exponential change of ψ̇/2π from the first to the last frequency.
     frequencies
-        First and last frequency [Hz], rising or falling.
+        First and last frequency [Hz], increasing or decreasing.
     length
         Duration of the sweep [s].
     direction
         Azimuth of the line [rad] from x.
     start_phase
-        ψ at the beginning [rad]; with 0 the acceleration (displacement) starts at its peak.
+        ψ at the start [rad]; with 0 the acceleration (displacement) starts at its peak.
     start
         Time at which the sweep begins [s].
     vertical
@@ -76,10 +77,10 @@ class SineSweep(BaseMotion):
 
     Notes
     -----
-    ψ is closed: 2π(f₁t + ½(f₂ − f₁)t²/T), or 2πf₁T (rᵗ⁄ᵀ − 1)/ln r with r = f₂/f₁. By displacement all is closed. By
-    acceleration velocity and displacement (Fresnel and exponential integrals) are integrated by Gauss quadrature, to
-    1e-12 of A/(2πf) and A T/(2πf) with the lower of the frequencies. They begin with those of the steady motion at the
-    first frequency. After the end the base moves on uniformly; before the beginning it moved so.
+    ψ has a closed form: 2π(f₁t + ½(f₂ − f₁)t²/T), or 2πf₁T (rᵗ⁄ᵀ − 1)/ln r with r = f₂/f₁. A sweep by displacement has
+    closed forms. For a sweep by acceleration, velocity and displacement (Fresnel and exponential integrals) come from
+    Gauss quadrature, to 1e-12 of A/(2πf) and A T/(2πf) with the lower frequency f. Their initial values are those of
+    the steady motion at the first frequency. Before the start and after the end the base moves uniformly.
 
     Raises
     ------
@@ -96,9 +97,9 @@ class SineSweep(BaseMotion):
 
     ends: ClassVar[bool] = True
 
-    amplitude: Annotated[float, Quantity(text="amplitude of what is constant")]
-    quantity: Annotated[SweepQuantity, Quantity(text="what is constant")] = SweepQuantity.ACCELERATION
-    law: Annotated[SweepLaw, Quantity(text="how the frequency changes")] = SweepLaw.LINEAR
+    amplitude: Annotated[float, Quantity(text="amplitude of the constant quantity")]
+    quantity: Annotated[SweepQuantity, Quantity(text="quantity of constant amplitude")] = SweepQuantity.ACCELERATION
+    law: Annotated[SweepLaw, Quantity(text="law of the frequency")] = SweepLaw.LINEAR
     frequencies: Frequencies
     length: Length
     direction: Direction = 0.0
@@ -130,7 +131,7 @@ class SineSweep(BaseMotion):
         start: Start = 0.0,
         vertical: VerticalRatio = 0.0,
     ) -> Self:
-        """Make a linear sweep (constant hertz per second) by `acceleration` [m/s²] or `displacement` [m]."""
+        """Create a linear sweep (constant hertz per second) by `acceleration` [m/s²] or `displacement` [m]."""
         amplitude, quantity = _given_amplitude(acceleration, displacement)
         return cls(
             amplitude=amplitude,
@@ -158,7 +159,7 @@ class SineSweep(BaseMotion):
         start: Start = 0.0,
         vertical: VerticalRatio = 0.0,
     ) -> Self:
-        """Make a logarithmic sweep (constant octaves per second) by `acceleration` [m/s²] or `displacement` [m]."""
+        """Create a logarithmic sweep (constant octaves per second) by `acceleration` [m/s²] or `displacement` [m]."""
         amplitude, quantity = _given_amplitude(acceleration, displacement)
         return cls(
             amplitude=amplitude,
@@ -173,14 +174,14 @@ class SineSweep(BaseMotion):
         )
 
     def made_by(self) -> tuple[Callable[..., BaseMotion], Mapping[str, Any]]:
-        """Return the constructor of its law, and the amplitude of what it keeps constant by that name."""
+        """Return the constructor of the law, and the amplitude by the name of its constant quantity."""
         shared = [name for name in parameters_of(SineSweep.linear) if name in parameters_of(SineSweep)]
         numbers = {name: getattr(self, name) for name in shared}
         make = SineSweep.linear if self.law is SweepLaw.LINEAR else SineSweep.logarithmic
         return make, {self.quantity.value: self.amplitude, **numbers}
 
     def frequency(self, time: npt.ArrayLike) -> Floats:
-        """Return the frequency at `time` [Hz], that of the ends outside."""
+        """Compute the frequency at `time` [Hz]; before and after the sweep it is the frequency at the end."""
         since = np.clip(np.asarray(time, dtype=float) - self.start, 0.0, self.length)
         return self._rates(since)[1] / (2.0 * math.pi)
 
@@ -197,18 +198,18 @@ class SineSweep(BaseMotion):
         return math.cos(self.direction) * along, math.sin(self.direction) * along, self.vertical * along
 
     def peak_horizontal(self, since: float = 0.0) -> float:
-        """Return a bound of |a_h| from `since` on [m/s²]: A, or D√(ψ̇⁴ + ψ̈²) at its largest; 0 after the end."""
+        """Return a bound of |a_h| from `since` on [m/s²]: A, or the maximum of D√(ψ̇⁴ + ψ̈²); 0 after the end."""
         if since >= self.duration:
             return 0.0
         if self.quantity is SweepQuantity.ACCELERATION:
             return abs(self.amplitude)
-        # ψ̇ and |ψ̈| rise or fall together, or one is constant.
+        # ψ̇ and |ψ̈| increase or decrease together, or one is constant.
         times = np.array([min(max(since - self.start, 0.0), self.length), self.length])
         _, rate, change = self._rates(times)
         return float(abs(self.amplitude) * np.hypot(rate**2, change).max())
 
     def vertical_range(self, since: float = 0.0) -> tuple[float, float]:
-        """Return bounds of a_z from `since` on [m/s²]: `vertical` times that of |a_h|, either way."""
+        """Return bounds of a_z from `since` on [m/s²]: ± `vertical` times the bound of |a_h|."""
         largest = abs(self.vertical) * self.peak_horizontal(since)
         return -largest, largest
 
@@ -219,7 +220,7 @@ class SineSweep(BaseMotion):
 
     @property
     def duration(self) -> float:
-        """When it ends [s]."""
+        """End of the sweep [s]."""
         return self.start + self.length
 
     @property
@@ -229,11 +230,11 @@ class SineSweep(BaseMotion):
 
     @property
     def breaks(self) -> tuple[float, ...]:
-        """Beginning, where that is not at once, and end [s]."""
+        """Start, unless zero, and end [s]."""
         return (self.start, self.duration) if self.start > 0.0 else (self.duration,)
 
     def _along(self, since: Floats, order: int) -> Floats:
-        """Return the derivative along the line between beginning and end."""
+        """Return the derivative along the line between start and end."""
         a = self.amplitude
         if self.quantity is SweepQuantity.DISPLACEMENT:
             phase, rate, change = self._rates(since)

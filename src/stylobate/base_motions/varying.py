@@ -1,4 +1,4 @@
-"""The declared numbers of a base motion, by name: studies and ensembles vary them, also in scaled and turned copies."""
+"""Declared numbers of a base motion by name, which studies and ensembles vary, also in scaled and rotated copies."""
 
 import math
 from collections.abc import Callable, Mapping
@@ -16,10 +16,10 @@ _FREQUENCY = Parameter("angular_frequency", AngularFrequency.__metadata__[0], fl
 
 
 def numbers_of(motion: BaseMotion) -> Mapping[str, Parameter]:
-    """Return the declared numbers of `motion`, of what it is a copy of, and of its waveform, by name.
+    """Return the declared numbers of `motion`, of its original if it is a copy, and of its waveform, by name.
 
-    A motion with a `frequency` [Hz] has an `angular_frequency` [rad/s] too. `Scaled`, `Rotated` and `Delayed` have none
-    of their own: they are the changes that every motion takes.
+    A motion with a `frequency` [Hz] also has an `angular_frequency` [rad/s]. `Scaled`, `Rotated` and `Delayed` have no
+    numbers of their own, since they apply to every motion.
     """
     found = {name: one for part in _parts(motion) for name, one in _declared(part).items() if _is_number(one)}
     return {"angular_frequency": _FREQUENCY, **found} if "frequency" in found else found
@@ -39,9 +39,9 @@ def with_numbers(motion: BaseMotion, values: Mapping[str, float]) -> BaseMotion:
     Raises
     ------
     ParameterError
-        If it cannot have one of the `values`.
+        If a value is out of range.
     UnsupportedError
-        If it has no number of this name.
+        If the motion has no number of this name.
     """
     known = numbers_of(motion)
     for name in values:
@@ -56,12 +56,12 @@ def with_numbers(motion: BaseMotion, values: Mapping[str, float]) -> BaseMotion:
 
 
 def frequency_of(motion: BaseMotion) -> float:
-    """Return the angular frequency of a motion that has one [rad/s], turned, chosen or not; else NaN."""
+    """Return the angular frequency of a motion, also of a rotated or chosen one [rad/s], or NaN."""
     return frequency_of(motion.followed) if isinstance(motion, Following) else value_of(motion, "angular_frequency")
 
 
 def is_pulse(motion: BaseMotion) -> bool:
-    """Return whether `motion` is one pulse, scaled or turned or not."""
+    """Return whether `motion` is one pulse, also scaled or rotated."""
     return is_pulse(motion.motion) if isinstance(motion, Transformed) else isinstance(motion, AlongLine)
 
 
@@ -72,7 +72,7 @@ def _changed(part: Any, values: Mapping[str, float]) -> Any:
 
 
 def _parts(motion: BaseMotion) -> tuple[Any, ...]:
-    """Return what has the numbers of a motion: its waveform, itself, and what it is a copy of."""
+    """Return the objects with numbers of a motion: its waveform, the motion, and its original."""
     inner = _parts(motion.motion) if isinstance(motion, Transformed) else ()
     waveform = (motion.waveform,) if isinstance(motion, AlongLine) else ()
     return (*inner, *waveform, *([motion] if _is_own(motion) else []))

@@ -1,6 +1,6 @@
 """Sliding, lift-off and conveying: contact maps, mean drift, limits of slip and onset of motion.
 
-The public names, imported when they are first used, are those of `__init__.pyi`.
+`__init__.pyi` lists the public names; each is imported at its first use.
 """
 
 import lazy_loader

@@ -1,4 +1,4 @@
-"""Describe a drift: the case that all runs share, and one or two quantities with their values."""
+"""Configuration of a drift: shared case, and one or two quantities with their values."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any, Self
@@ -9,7 +9,7 @@ from stylobate.config.many_runs import ManyRuns, common_values, name_of, refuse_
 from stylobate.config.simulation import Setup
 
 _PERIODS = 60.0
-"""How many periods of its base motion a column is followed by default."""
+"""Default duration of a run in periods of its base motion."""
 
 
 class Varied(Config):
@@ -18,7 +18,7 @@ class Varied(Config):
     Parameters
     ----------
     x
-        Values of a quantity: a table as below.
+        Values of a quantity.
     y
         Values of a second quantity.
     late
@@ -31,7 +31,7 @@ class Varied(Config):
 
 
 class DriftConfig(ManyRuns):
-    """A drift: `column`, `model`, `motion`, numbers of all runs, and the table `drift`."""
+    """Configuration of a drift: `column`, `model`, `motion`, options of all runs, and the table `drift`."""
 
     drift: Varied
 
@@ -45,7 +45,7 @@ class DriftConfig(ManyRuns):
 
     @classmethod
     def of_saved(cls, provenance: Mapping[str, Any], axes: Mapping[str, Sequence[float]]) -> Self:
-        """Make the description that repeats a saved drift.
+        """Create the configuration that repeats a saved drift.
 
         Parameters
         ----------
@@ -73,7 +73,7 @@ class DriftConfig(ManyRuns):
         Raises
         ------
         ConfigError
-            With one line for each invalid part.
+            With one line per invalid part.
         """
         axes = {place: axis for place, axis in (("x", self.drift.x), ("y", self.drift.y)) if axis is not None}
         problems: list[str] = []
@@ -81,7 +81,7 @@ class DriftConfig(ManyRuns):
         if len(over) < len(axes):
             problems.append(f"drift.x and drift.y must differ, got {self.drift.x.name!r} in both")
         if self.duration is not None or self.periods is None:
-            problems.append("duration is not known of a drift: give periods, of its base motion")
+            problems.append("duration: a drift lasts a number of periods. Set `periods` of its base motion instead.")
         if self.rules:
             problems.append(
                 "rules: a drift has none. Set `late`, the number of last periods over which means are taken."

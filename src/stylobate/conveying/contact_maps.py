@@ -1,4 +1,4 @@
-"""Contact maps: over two parameters a column stays, slides, rocks or rolls, flies or overturns."""
+"""Contact maps: regions of sticking, sliding, rocking, flight and overturning over two parameters."""
 
 from collections.abc import Mapping
 from enum import IntEnum
@@ -40,7 +40,7 @@ class ContactClass(IntEnum):
 
 
 CONTACT_CLASSES = ("stays", "slides", "rocks or rolls", "slides and rocks", "flies", "overturns", "failed")
-"""Their names, in the order of their codes."""
+"""Names of the classes, in the order of their codes."""
 
 
 def contact_map(
@@ -66,7 +66,7 @@ def contact_map(
     motion, over, duration, periods, store, executor, resume, progress, **options
         As for `overturning_map`.
     least_share
-        Smallest fraction of a run; a kind of contact with a smaller one does not count.
+        Minimum fraction of a run for a kind of contact to count.
 
     Returns
     -------
@@ -100,7 +100,7 @@ def contact_map(
 
 
 def class_shares(runs: xr.Dataset, least_share: float = 1e-3) -> xr.Dataset:
-    """Return `runs` as a contact map: with the class of each, and the count and share of each class."""
+    """Convert `runs` to a contact map: add the class of each run, and count and share of each class."""
     classes = contact_classes(runs, least_share)
     count = np.array([int((classes == kind).sum()) for kind in ContactClass], dtype=np.int64)
     computed = int((classes != NOT_COMPUTED).sum())
@@ -134,4 +134,4 @@ def contact_classes(runs: xr.Dataset, least_share: float = 1e-3) -> xr.DataArray
         classes = classes.where(~where, int(kind))
     classes = classes.where(outcome != NOT_COMPUTED, NOT_COMPUTED).astype(np.int8)
     meanings = ["NOT_COMPUTED", *(kind.name for kind in ContactClass)]
-    return classes.assign_attrs(flag_attributes("what the column did", meanings, first=NOT_COMPUTED))
+    return classes.assign_attrs(flag_attributes("contact of the column", meanings, first=NOT_COMPUTED))

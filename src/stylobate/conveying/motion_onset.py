@@ -17,10 +17,10 @@ from stylobate.theory import FirstMotion, start_of_motion
 Floats = npt.NDArray[np.float64]
 
 _LONG_NAMES = {
-    "acceleration": "least acceleration of the base that moves the column",
-    "slide": "acceleration from which it slides",
-    "rock": "acceleration from which it rocks",
-    "lift_off": "acceleration from which it is lifted",
+    "acceleration": "minimum base acceleration that moves the column",
+    "slide": "acceleration at the onset of sliding",
+    "rock": "acceleration at the onset of rocking",
+    "lift_off": "acceleration at lift-off",
 }
 _ATTRIBUTES = {
     "slenderness": {"units": "1", "long_name": "slenderness c"},
@@ -40,7 +40,7 @@ def start_boundary(
     vertical_phase: float = 0.0,
     incline: npt.ArrayLike | None = None,
 ) -> xr.Dataset:
-    """Compute the smallest base acceleration that moves a standing column, and the motion that begins first.
+    """Compute the minimum base acceleration that moves a standing column, and the motion that begins first.
 
     The base vibrates harmonically along a line and along the normal of the plane. The frequency does not matter: the
     onset follows from forces alone. On an incline the line is the line of steepest descent.
@@ -48,7 +48,7 @@ def start_boundary(
     Parameters
     ----------
     model
-        A `Sliding` model. Its gravity is used, and its values of the parameters that are not given below.
+        A `Sliding` model. Supplies gravity and all parameters not given below.
     slenderness
         Values of c.
     friction_coefficient
@@ -64,10 +64,10 @@ def start_boundary(
     -------
     xarray.Dataset
         Of kind "start boundary". Over `slenderness`, `friction_coefficient`, `vertical_ratio` and `incline`:
-        `acceleration`, the smallest amplitude along the line that moves the column [m/s²]. It is 0 if the column does
-        not stay on the plane at rest, and infinite if it always stays. `first_motion` is a `theory.FirstMotion`. The
-        amplitudes `slide`, `rock` and `lift_off` [m/s²] are those at which friction is exceeded, at which the resultant
-        force leaves the base, and at which the normal force vanishes.
+        `acceleration`, the minimum amplitude along the line that moves the column [m/s²]. It is 0 if the column does
+        not stay on the plane at rest, and infinite if the column always stays. `first_motion` is a
+        `theory.FirstMotion`. At the amplitudes `slide`, `rock` and `lift_off` [m/s²] friction is exceeded, the
+        resultant force leaves the base, and the normal force vanishes, respectively.
 
     Raises
     ------
@@ -83,9 +83,9 @@ def start_boundary(
 
     Notes
     -----
-    The smaller of μ and c decides which motion begins. The two cases then differ. If μ < c, the column slides from
-    rest, and |T| ≤ μN < cN holds for every base motion: it never tips as long as it stays on the plane. If c < μ, the
-    column rocks; its contact demand grows while it falls and spins, so it may slip on its rim.
+    The smaller of μ and c determines the first motion. If μ < c, the column slides from rest, and |T| ≤ μN < cN holds
+    for every base motion: the column never tips while it stays on the plane. If c < μ, the column rocks; its contact
+    demand grows during fall and spin, so it may slip on its rim.
 
     Examples
     --------
@@ -112,7 +112,7 @@ def start_boundary(
     start = start_of_motion(1.0, ratio, c=c, friction=mu, phase=phase, incline=slope)
     gravity = model.column.gravity
     amplitudes = {"acceleration": start.amplitude, "slide": start.slide, "rock": start.rock, "lift_off": start.lift_off}
-    flags = flag_attributes("what it does first", [kind.name for kind in FirstMotion])
+    flags = flag_attributes("first motion", [kind.name for kind in FirstMotion])
     return xr.Dataset(
         {
             **{

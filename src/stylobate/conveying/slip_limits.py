@@ -1,4 +1,4 @@
-"""Friction and steady rolling under circular base motion: the onset of slip, and rolling with slip."""
+"""Slip limits of steady rolling under circular base motion: onset of slip, and rolling with slip."""
 
 import json
 from collections.abc import Callable, Sequence
@@ -32,9 +32,9 @@ Variables = dict[str, tuple[tuple[str, ...], npt.NDArray[Any], dict[str, str]]]
 
 _PLANE = ("friction_coefficient", "angular_frequency")
 
-# Borders are found by halving this often the step of the frequencies in which they lie.
+# Bisections of a frequency step that contains a border.
 _HALVINGS = 30
-# Both axes of a circle are as long, and a quarter of a turn apart, to this part.
+# Relative tolerance of equal axes and a quarter turn between them, for a circle.
 _ROUND = 1e-9
 
 
@@ -44,7 +44,7 @@ class RollingRegime(IntEnum):
     NONE = 0
     """No steady rolling exists."""
     UNSTABLE = 1
-    """Steady rolling exists, with or without slip; none of it is stable."""
+    """Steady rolling exists, with or without slip, but is unstable."""
     WITHOUT_SLIP = 2
     """Rolling without slip is stable."""
     WITH_SLIP = 3
@@ -54,19 +54,19 @@ class RollingRegime(IntEnum):
 
 
 STEADY_ROLLING = ("no steady rolling", "none stable", "stable without slip", "stable with slip", "both stable")
-"""Their names, in the order of their codes."""
+"""Names of the regimes, in the order of their codes."""
 
 
 def slipping_boundary(
     model: Model, motion: BaseMotion, *, friction_coefficient: npt.ArrayLike, angular_frequency: Sequence[float]
 ) -> xr.Dataset:
-    """Compute where steady rolling is stable, with and without slip, over friction coefficient and frequency.
+    """Compute the stability of steady rolling with and without slip over friction coefficient and frequency.
 
     Parameters
     ----------
     model
-        `Sliding` or `Rolling`, which can spin, or `Wobbling` with the constraint "rubber", which cannot. It needs
-        damping, a point contact and a level plane. Its own friction coefficient is not used.
+        `Sliding` or `Rolling`, which can spin, or `Wobbling` with the constraint "rubber", which cannot. The model
+        needs damping, a point contact and a level plane. Its own friction coefficient is not used.
     motion
         A horizontal circular motion; its acceleration is used, its frequency is replaced.
     friction_coefficient
@@ -82,20 +82,20 @@ def slipping_boundary(
         * Over `angular_frequency` and `branch`: `rolling_amplitude` [rad], `rolling_stable` and `required_friction` of
           steady rolling without slip.
         * Over `friction_coefficient`, `angular_frequency` and `branch`: `slips`, whether rolling needs more friction
-          than there is.
-        * With `slipping_branch` instead: `slipping_amplitude` [rad], `slip_speed` [m/s], `slip_power` [W] and
-          `slipping_stable` of steady rolling with slip, NaN where there is none.
+        than available. * With `slipping_branch` instead: `slipping_amplitude` [rad], `slip_speed` [m/s], `slip_power`
+        [W] and
+          `slipping_stable` of steady rolling with slip, NaN without such rolling.
         * Over the two: `steady_rolling`, a `RollingRegime`.
         * Over `friction_coefficient`: `rolling_from`, `rolling_to`, `slipping_from` and `slipping_to` [rad/s], the
-          lowest and the highest frequency at which rolling without and with slip is stable. They are NaN if it is
-          stable nowhere, and the end of the given frequencies if it remains stable there. A stable interval between
-          two neighbouring frequencies is missed.
+          lowest and the highest frequency at which rolling without and with slip is stable. They are NaN if rolling is
+          stable nowhere, and the end of the given frequencies if rolling is stable there. A stable interval between two
+          neighbouring frequencies is missed.
 
     Raises
     ------
     ParameterError
-        If friction coefficients or frequencies are not increasing positive numbers. If the model has no damping, or
-        can spin and has no spin damping: then no steady rolling is asymptotically stable.
+        If friction coefficients or frequencies are not increasing positive numbers. If the model has no damping, or can
+        spin and has no spin damping, since no steady rolling is then asymptotically stable.
     UnsupportedError
         If the theory does not cover steady rolling with slip for the model, or the motion is not circular.
 
@@ -133,7 +133,7 @@ def slipping_boundary(
     return xr.Dataset(
         {
             **_without_slip(held),
-            "slips": ((*_PLANE, "branch"), slips, _attributes("1", "needs more friction than there is")),
+            "slips": ((*_PLANE, "branch"), slips, _attributes("1", "needs more friction than available")),
             **_with_slip(slipping, model),
             "steady_rolling": (_PLANE, _classes(exists, rolls, slides), flags),
             **{
@@ -160,7 +160,7 @@ def _without_slip(held: theory.FiniteTiltRolling) -> Variables:
     return {
         "rolling_amplitude": (over, held.amplitude, _attributes("rad", "tilt of rolling without slip")),
         "rolling_stable": (over, held.stable, _attributes("1", "rolling without slip is stable")),
-        "required_friction": (over, held.friction_demand, _attributes("1", "friction that rolling without slip needs")),
+        "required_friction": (over, held.friction_demand, _attributes("1", "friction required without slip")),
     }
 
 
@@ -172,21 +172,21 @@ def _with_slip(slipping: theory.SlippingRolling, model: Model) -> Variables:
     return {
         "slipping_amplitude": (over, slipping.amplitude, _attributes("rad", "tilt of rolling with slip")),
         "slip_speed": (over, speed, _attributes("m s-1", "speed of slip")),
-        "slip_power": (over, power, _attributes("W", "power that slip takes")),
+        "slip_power": (over, power, _attributes("W", "power dissipated by slip")),
         "slipping_stable": (over, slipping.stable, _attributes("1", "rolling with slip is stable")),
     }
 
 
 @dataclass(frozen=True, slots=True)
 class _Case:
-    """A column and a circular base motion, as theory takes them, at any frequency and friction."""
+    """Column and circular base motion in the units of the theory, for any frequency and friction."""
 
     a0: float
     column: dict[str, float]
 
     @classmethod
     def of(cls, model: Model, motion: BaseMotion) -> "_Case":
-        """Return the case, or raise an error unless theory knows steady rolling with slip of it."""
+        """Create the case, or raise an error unless the theory covers steady rolling with slip of the model."""
         form = _closed_form(model)
         if not isinstance(motion, Harmonic) or not _is_circle(motion):
             message = f"motion must be a horizontal circular motion, such as Harmonic.circular(...), got {motion!r}"
@@ -210,17 +210,17 @@ class _Case:
         return theory.slipping_rolling(nu, self.a0, mu=mu, **self.column)
 
     def rolls(self, nu: Floats, mu: Floats) -> Flags:
-        """Whether rolling without slip is stable."""
+        """Return whether rolling without slip is stable."""
         found = self.held(nu)
         return _any(found.stable & (found.friction_demand <= mu[..., np.newaxis]))
 
     def slips(self, nu: Floats, mu: Floats) -> Flags:
-        """Whether rolling with slip is stable."""
+        """Return whether rolling with slip is stable."""
         return _any(self.slipping(nu, mu).stable)
 
 
 def _closed_form(model: Model) -> ClosedForm:
-    """Return the closed form of steady rolling with slip of a model, or raise an error where it does not hold."""
+    """Return the closed form of steady rolling with slip for a model, or raise an error if none applies."""
     form = closed_form_of(model)
     if form is None or form.law not in (RollingLaw.SLIPPING, RollingLaw.FULL):
         message = (
@@ -268,7 +268,7 @@ def _classes(exists: Flags, rolls: Flags, slips: Flags) -> npt.NDArray[np.int8]:
 
 
 def _ends(name: str, inside: Flags, nu: Floats, mu: Floats, predicate: Predicate) -> dict[str, Floats]:
-    """Return for each μ the lowest and the highest ν at which the predicate holds, which on the grid is `inside`."""
+    """Return the lowest and highest ν of the predicate for each μ; `inside` is the predicate on the grid."""
     return {
         f"{name}_from": _first(inside, nu, mu, predicate),
         f"{name}_to": _first(inside[:, ::-1], nu[::-1], mu, predicate),
@@ -276,19 +276,19 @@ def _ends(name: str, inside: Flags, nu: Floats, mu: Floats, predicate: Predicate
 
 
 def _first(inside: Flags, nu: Floats, mu: Floats, predicate: Predicate) -> Floats:
-    """Return for each μ the first ν inside, halved between the first of the grid and the one before; NaN for none."""
+    """Return the first ν inside for each μ, bisected between the first grid value and the one before; NaN for none."""
     first = inside.argmax(axis=1)
     within, beyond = nu[first], nu[np.maximum(first - 1, 0)]
     for _ in range(_HALVINGS):
         middle = 0.5 * (within + beyond)
         holds = predicate(middle, mu)
         within, beyond = np.where(holds, middle, within), np.where(holds, beyond, middle)
-    # Where the grid begins inside there is nothing to halve.
+    # A grid that begins inside needs no bisection.
     return np.where(inside.any(axis=1), np.where(first > 0, within, nu[0]), np.nan)
 
 
 def _any(branches: Flags) -> Flags:
-    """Return whether it is so of any branch."""
+    """Return whether any branch fulfils the condition."""
     return np.asarray(branches.any(axis=-1))
 
 

@@ -40,7 +40,7 @@ def drift(
 ) -> xr.Dataset:
     """Compute the mean transport velocity of a column on a vibrating base, and its mean rate of rotation.
 
-    Both are means over the last periods of the base motion, a whole number of them.
+    Both are means over a whole number of last periods of the base motion.
 
     Parameters
     ----------
@@ -61,9 +61,9 @@ def drift(
     -------
     xarray.Dataset
         Of kind "drift": the runs over the names, with `mean_velocity` (axis) and `transport_speed` [m/s],
-        `mean_twist_rate` [rad/s], `contact_class`, `throw_number` and all variables of ensembles. Velocities are NaN
-        for a column that did not move on to the end, such as one that overturned, and 0 for one that came to rest
-        for good. A column that accelerates down a slope has the mean velocity of these periods, which grows with them.
+        `mean_twist_rate` [rad/s], `contact_class`, `throw_number` and all variables of ensembles. Velocities are NaN if
+        the motion ended early, for example by overturning, and 0 if the column came to permanent rest. The mean
+        velocity of a column that accelerates down a slope depends on the number of periods.
 
     Raises
     ------
@@ -107,8 +107,8 @@ def drift(
 
 
 def walked(runs: xr.Dataset, model: Model, motion: BaseMotion) -> xr.Dataset:
-    """Return `runs` of this `model` and `motion` as a drift: with speeds, classes and throw numbers."""
-    # A run that stands for good ends early in its last periods' stead: it goes nowhere.
+    """Convert `runs` of this `model` and `motion` to a drift: add speeds, classes and throw numbers."""
+    # A run at permanent rest ends before its last periods: its mean velocity is zero.
     stands = (runs["outcome"] == Outcome.AT_REST) & runs["mean_twist_rate"].isnull()
     velocity = runs["mean_velocity"].where(~stands, 0.0).assign_attrs(runs["mean_velocity"].attrs)
     turning = runs["mean_twist_rate"].where(~stands, 0.0).assign_attrs(runs["mean_twist_rate"].attrs)

@@ -1,4 +1,4 @@
-"""Pulses: motions of the base along one line that begin and end."""
+"""Pulses: base motions of finite duration along one line."""
 
 from stylobate.base_motions.pulses.gabor import Gabor
 from stylobate.base_motions.pulses.mavroeidis_papageorgiou import MavroeidisPapageorgiou

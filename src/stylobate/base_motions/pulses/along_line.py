@@ -1,4 +1,4 @@
-"""A base motion along one line: a waveform, from a time on."""
+"""Base motion along one line with a waveform and a start time."""
 
 import math
 from dataclasses import dataclass, field
@@ -16,7 +16,7 @@ from stylobate.errors import ParameterError
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AlongLine(BaseMotion):
-    """What a `Pulse` does, whose named constructors make the waveforms."""
+    """Base class of `Pulse`, without its named constructors."""
 
     ends: ClassVar[bool] = True
 
@@ -27,7 +27,7 @@ class AlongLine(BaseMotion):
     _turning_points: tuple[tuple[float, float], ...] = field(init=False, repr=False, compare=False)
 
     def validate(self) -> None:
-        """Raise ParameterError unless `waveform` is one; find the turning points of one that is."""
+        """Raise ParameterError unless `waveform` is a Waveform; find its turning points."""
         if not isinstance(self.waveform, Waveform):
             message = f"waveform must be a Waveform such as Ricker(...), got {self.waveform!r}"
             raise ParameterError(message)
@@ -62,17 +62,17 @@ class AlongLine(BaseMotion):
 
     @property
     def duration(self) -> float:
-        """When it ends [s]; the base then moves on uniformly, if at all."""
+        """End of the pulse [s]; the base then moves uniformly or rests."""
         return self.start + self.waveform.duration
 
     @property
     def highest_frequency(self) -> float:
-        """That of the waveform [rad/s]."""
+        """Highest angular frequency of the waveform [rad/s]."""
         return self.waveform.highest_frequency
 
     @property
     def breaks(self) -> tuple[float, ...]:
-        """Beginning, where that is not at once, and end [s]."""
+        """Start, unless zero, and end [s]."""
         return (self.start, self.duration) if self.start > 0.0 else (self.duration,)
 
     def _range(self, since: float) -> tuple[float, float]:

@@ -1,4 +1,4 @@
-"""The phase at which a sinusoidal pulse of several cycles leaves the base where it found it."""
+"""Phase of a sinusoidal pulse of several cycles without residual displacement."""
 
 import math
 
@@ -6,7 +6,7 @@ _HALVINGS = 60
 
 
 def closing_phase(cycles: int) -> float:
-    """Return φ [rad] of the pulse Cₙ, n = `cycles`: its displacement ends with 0.
+    """Compute φ [rad] of the pulse Cₙ, n = `cycles`: its displacement ends with 0.
 
     Notes
     -----

@@ -1,4 +1,4 @@
-"""The Gabor wavelet: a harmonic velocity under a Gaussian bell."""
+"""Gabor wavelet: harmonic velocity with a Gaussian envelope."""
 
 import math
 from dataclasses import dataclass
@@ -15,18 +15,18 @@ from stylobate.base_motions.pulses.waveform import Floats, Waveform, found_turni
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Gabor(Waveform):
-    """The velocity A exp(−u²/2) cos(γu + ν) with u = 2πft/γ from its middle.
+    """The velocity A exp(−u²/2) cos(γu + ν) with u = 2πft/γ and t from the middle.
 
     Parameters
     ----------
     velocity
-        A, the height of the bell [m/s].
+        A, the height of the envelope [m/s].
     frequency
         f [Hz].
     phase
-        ν [rad]: 0 for a velocity with a peak in the middle, ±π/2 for one that passes zero there.
+        ν [rad]: 0 for a velocity peak in the middle, ±π/2 for a zero in the middle.
     oscillations
-        γ, at most 100: one standard deviation of the bell is γ/(2πf).
+        γ, at most 100: the standard deviation of the envelope is γ/(2πf).
 
     Raises
     ------
@@ -35,9 +35,9 @@ class Gabor(Waveform):
 
     Notes
     -----
-    D. Gabor, "Theory of communication", Journal of the IEE 93 (1946); as a velocity of the ground G. P. Mavroeidis and
-    A. S. Papageorgiou (2003), see `MavroeidisPapageorgiou`. The displacement is integrated from the velocity by Gauss
-    quadrature, to 1e-13 of A/f. Over all of it the base moves by √(2π) γ/(2πf) exp(−γ²/2) cos ν A.
+    D. Gabor, "Theory of communication", Journal of the IEE 93 (1946); as ground velocity: G. P. Mavroeidis and A. S.
+    Papageorgiou (2003), see `MavroeidisPapageorgiou`. The displacement is integrated from the velocity by Gauss
+    quadrature, to 1e-13 of A/f. The residual displacement of the base is √(2π) γ/(2πf) exp(−γ²/2) cos ν A.
     """
 
     constructor: ClassVar[str] = "gabor"
@@ -49,17 +49,17 @@ class Gabor(Waveform):
 
     @property
     def deviation(self) -> float:
-        """Standard deviation of the bell, γ/(2πf) [s]."""
+        """Standard deviation of the envelope, γ/(2πf) [s]."""
         return self.oscillations / (2.0 * math.pi * self.frequency)
 
     @property
     def duration(self) -> float:
-        """16 standard deviations of the bell [s]."""
+        """16 standard deviations of the envelope [s]."""
         return 2.0 * CUT * self.deviation
 
     @property
     def highest_frequency(self) -> float:
-        """2πf and the width of the spectrum, five times its standard deviation [rad/s]."""
+        """2πf plus the width of the spectrum, five times its standard deviation [rad/s]."""
         return (self.oscillations + BAND) / self.deviation
 
     def derivative(self, time: Floats, order: int) -> Floats:
@@ -72,14 +72,14 @@ class Gabor(Waveform):
         return integral(lambda t: self.derivative(t, VELOCITY), time, self.duration, cycles)
 
     def turning_points(self) -> tuple[tuple[float, float], ...]:
-        """Return where the slope of the acceleration changes sign."""
+        """Return time and acceleration at each sign change of the slope of the acceleration."""
         return found_turning_points(
             lambda t: self._velocity(t, 1), lambda t: self._velocity(t, 2), self.duration, self.highest_frequency
         )
 
     @property
     def margin(self) -> float:
-        """What turning points in one cell could add [m/s²], below 1e-8 A√(1 + γ²)/σ."""
+        """Maximum excess from two turning points in one cell [m/s²], below 1e-8 A√(1 + γ²)/σ."""
         # The fourth derivative is He4(z) exp(−u²/2) times a phase, |z|² = u² + γ² and |He4| ≤ |z|⁴ + 6|z|² + 3.
         square = self.oscillations**2
         bounds = [
@@ -91,7 +91,7 @@ class Gabor(Waveform):
         return unseen(third, self.duration, self.highest_frequency)
 
     def _velocity(self, time: Floats, times: int) -> Floats:
-        """Return the uncut velocity differentiated so many `times`."""
+        """Differentiate the untruncated velocity `times` times."""
         u = time / self.deviation - CUT
         z = u - 1j * self.oscillations
         # d/du exp(−z²/2) = −z exp(−z²/2), and exp(−u²/2 + iγu) is that up to a constant.

@@ -1,4 +1,4 @@
-"""The velocity pulse of Mavroeidis and Papageorgiou: a harmonic under one bell of a cosine."""
+"""Velocity pulse of Mavroeidis and Papageorgiou: a harmonic with a cosine envelope."""
 
 import math
 from dataclasses import dataclass
@@ -13,16 +13,16 @@ from stylobate.base_motions.pulses.waveform import Floats, Waveform, found_turni
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MavroeidisPapageorgiou(Waveform):
-    """The velocity ½A [1 + cos(2πft/γ)] cos(2πft + ν) at times t within ±γ/(2f) of its middle.
+    """The velocity ½A [1 + cos(2πft/γ)] cos(2πft + ν) at times t within ±γ/(2f) of the middle.
 
     Parameters
     ----------
     velocity
-        A, the height of the bell [m/s].
+        A, the height of the envelope [m/s].
     frequency
         f, prevailing frequency [Hz].
     phase
-        ν [rad]: 0 for a velocity with a peak in the middle, ±π/2 for one that passes zero there.
+        ν [rad]: 0 for a velocity peak in the middle, ±π/2 for a zero in the middle.
     oscillations
         γ, above 1 and at most 100: about the number of oscillations.
 
@@ -34,8 +34,8 @@ class MavroeidisPapageorgiou(Waveform):
     Notes
     -----
     G. P. Mavroeidis and A. S. Papageorgiou, "A mathematical representation of near-fault ground motions", Bulletin of
-    the Seismological Society of America 93 (2003). Their velocity, acceleration and displacement, the constant of the
-    last such that it begins with 0. The acceleration has no jumps; its slope jumps at both ends.
+    the Seismological Society of America 93 (2003). Velocity, acceleration and displacement follow this paper, with zero
+    initial displacement. The acceleration has no jumps; its slope jumps at both ends.
     """
 
     constructor: ClassVar[str] = "mavroeidis_papageorgiou"
@@ -52,7 +52,7 @@ class MavroeidisPapageorgiou(Waveform):
 
     @property
     def highest_frequency(self) -> float:
-        """2πf (1 + 1/γ) [rad/s], the highest of the three of which it is made."""
+        """2πf (1 + 1/γ) [rad/s], the highest of its three harmonics."""
         return self._harmonics()[2][1]
 
     def derivative(self, time: Floats, order: int) -> Floats:
@@ -61,7 +61,7 @@ class MavroeidisPapageorgiou(Waveform):
         return values if order == ACCELERATION else values - self._differentiated(np.array(0.0), order - VELOCITY)
 
     def turning_points(self) -> tuple[tuple[float, float], ...]:
-        """Return where the slope of the acceleration changes sign."""
+        """Return time and acceleration at each sign change of the slope of the acceleration."""
         return found_turning_points(
             lambda t: self._differentiated(t, 1),
             lambda t: self._differentiated(t, 2),
@@ -71,7 +71,7 @@ class MavroeidisPapageorgiou(Waveform):
 
     @property
     def margin(self) -> float:
-        """What turning points in one cell could add [m/s²], below 1e-7 of 2πfA."""
+        """Maximum excess from two turning points in one cell [m/s²], below 1e-7 of 2πfA."""
         third = math.fsum(abs(amplitude) * rate**4 for amplitude, rate in self._harmonics())
         return unseen(third, self.duration, self.highest_frequency)
 
@@ -83,7 +83,7 @@ class MavroeidisPapageorgiou(Waveform):
         return (half, carrier - bell), (whole, carrier), (half, carrier + bell)
 
     def _differentiated(self, time: Floats, times: int) -> Floats:
-        """Return the velocity differentiated so many `times`; −1 is its integral."""
+        """Differentiate the velocity `times` times; −1 integrates."""
         since_middle = time - 0.5 * self.duration
         total = np.zeros_like(since_middle)
         for amplitude, rate in self._harmonics():

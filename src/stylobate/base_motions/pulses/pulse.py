@@ -1,4 +1,4 @@
-"""The pulses of the literature as base motions."""
+"""Pulses of the literature as base motions: sinusoidal, Ricker, Gabor, Mavroeidis–Papageorgiou."""
 
 import math
 from collections.abc import Callable, Mapping
@@ -31,9 +31,9 @@ from stylobate.quantities import checked_arguments, parameters_of
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Pulse(AlongLine):
-    """A pulse along a line: a `waveform` from the time `start` on.
+    """A pulse along a line: a `waveform` that begins at the time `start`.
 
-    The named constructors make the pulses of the literature. All take `direction`, `start` and `vertical`.
+    The named constructors create the pulses of the literature. All take `direction`, `start` and `vertical`.
 
     Parameters
     ----------
@@ -42,14 +42,14 @@ class Pulse(AlongLine):
     direction
         Azimuth of the line [rad] from x.
     start
-        Time at which the pulse begins [s]. The peak of a wavelet in its middle follows half its duration later.
+        Time at which the pulse begins [s]. The middle of a wavelet follows half its duration later.
     vertical
         Vertical acceleration over the horizontal one.
 
     Notes
     -----
     The base is at rest until the pulse begins: velocity and displacement are the integrals of the acceleration. A pulse
-    that leaves a velocity, as half a sine does, is followed by a uniform motion, to which the column does not respond.
+    with residual velocity, such as half a sine, is followed by uniform motion, which does not affect the column.
 
     Ricker and Gabor wavelets never end. They are cut 8 standard deviations of their envelope from the middle, where
     the envelope is 1.3e-14 of its height. The acceleration there is below 1e-11 of its peak, and the remaining
@@ -89,7 +89,7 @@ class Pulse(AlongLine):
         start: Start = 0.0,
         vertical: VerticalRatio = 0.0,
     ) -> Self:
-        """Make the acceleration A sin(ωt + φ) over `cycles` periods; A [m/s²], ω [rad/s], φ = `phase` [rad]."""
+        """Create the acceleration A sin(ωt + φ) over `cycles` periods; A [m/s²], ω [rad/s], φ = `phase` [rad]."""
         waveform = Sinusoid(acceleration=acceleration, angular_frequency=angular_frequency, phase=phase, cycles=cycles)
         return cls(waveform=waveform, direction=direction, start=start, vertical=vertical)
 
@@ -104,7 +104,7 @@ class Pulse(AlongLine):
         start: Start = 0.0,
         vertical: VerticalRatio = 0.0,
     ) -> Self:
-        """Make half a sine of acceleration, A sin ωt over π/ω (Housner 1963); it leaves the velocity 2A/ω."""
+        """Create half a sine of acceleration, A sin ωt over π/ω (Housner 1963); it leaves the velocity 2A/ω."""
         return cls.sinusoidal(
             acceleration=acceleration,
             angular_frequency=angular_frequency,
@@ -125,7 +125,7 @@ class Pulse(AlongLine):
         start: Start = 0.0,
         vertical: VerticalRatio = 0.0,
     ) -> Self:
-        """Make half a cosine of acceleration, A cos ωt over π/ω: half a sine of velocity; the base moves by 2A/ω²."""
+        """Create half a cosine of acceleration, A cos ωt over π/ω: half a sine of velocity; the base moves by 2A/ω²."""
         return cls.sinusoidal(
             acceleration=acceleration,
             angular_frequency=angular_frequency,
@@ -147,7 +147,7 @@ class Pulse(AlongLine):
         start: Start = 0.0,
         vertical: VerticalRatio = 0.0,
     ) -> Self:
-        """Make one sine of acceleration, A sin ωt over 2π/ω (Zhang and Makris 2001); the base moves by 2πA/ω²."""
+        """Create one sine of acceleration, A sin ωt over 2π/ω (Zhang and Makris 2001); the base moves by 2πA/ω²."""
         return cls.sinusoidal(
             acceleration=acceleration,
             angular_frequency=angular_frequency,
@@ -167,7 +167,7 @@ class Pulse(AlongLine):
         start: Start = 0.0,
         vertical: VerticalRatio = 0.0,
     ) -> Self:
-        """Make one cosine of acceleration, A cos ωt over 2π/ω (Zhang and Makris 2001): forward and back."""
+        """Create one cosine of acceleration, A cos ωt over 2π/ω (Zhang and Makris 2001): forward and back."""
         return cls.sinusoidal(
             acceleration=acceleration,
             angular_frequency=angular_frequency,
@@ -188,7 +188,7 @@ class Pulse(AlongLine):
         start: Start = 0.0,
         vertical: VerticalRatio = 0.0,
     ) -> Self:
-        """Make the forward pulse of velocity ½V(1 − cos ωt), one sine of acceleration ½ωV (Makris 1997)."""
+        """Create the forward pulse of velocity ½V(1 − cos ωt), one sine of acceleration ½ωV (Makris 1997)."""
         return cls.one_sine(
             acceleration=0.5 * angular_frequency * velocity,
             angular_frequency=angular_frequency,
@@ -208,7 +208,7 @@ class Pulse(AlongLine):
         start: Start = 0.0,
         vertical: VerticalRatio = 0.0,
     ) -> Self:
-        """Make the forward-and-back pulse of velocity V sin ωt, one cosine of acceleration ωV (Makris 1997)."""
+        """Create the forward-and-back pulse of velocity V sin ωt, one cosine of acceleration ωV (Makris 1997)."""
         return cls.one_cosine(
             acceleration=angular_frequency * velocity,
             angular_frequency=angular_frequency,
@@ -229,7 +229,7 @@ class Pulse(AlongLine):
         start: Start = 0.0,
         vertical: VerticalRatio = 0.0,
     ) -> Self:
-        """Make the pulse Cₙ of velocity V[sin(ωt + φ) − sin φ], n = `cycles` ≥ 1, over (n + ½ − φ/π) periods.
+        """Create the pulse Cₙ of velocity V[sin(ωt + φ) − sin φ], n = `cycles` ≥ 1, over (n + ½ − φ/π) periods.
 
         φ is such that the base ends where it began, without velocity (Makris 1997; Zhang and Makris 2001): 0.0697 π
         for n = 1, 0.0410 π for n = 2.
@@ -256,7 +256,7 @@ class Pulse(AlongLine):
         start: Start = 0.0,
         vertical: VerticalRatio = 0.0,
     ) -> Self:
-        """Make a symmetric Ricker wavelet with this peak [m/s²]; see `stylobate.base_motions.pulses.Ricker`."""
+        """Create a symmetric Ricker wavelet with this peak [m/s²]; see `stylobate.base_motions.pulses.Ricker`."""
         waveform = Ricker(acceleration=acceleration, angular_frequency=angular_frequency)
         return cls(waveform=waveform, direction=direction, start=start, vertical=vertical)
 
@@ -271,7 +271,7 @@ class Pulse(AlongLine):
         start: Start = 0.0,
         vertical: VerticalRatio = 0.0,
     ) -> Self:
-        """Make an antisymmetric Ricker wavelet; see `stylobate.base_motions.pulses.AntisymmetricRicker`."""
+        """Create an antisymmetric Ricker wavelet; see `stylobate.base_motions.pulses.AntisymmetricRicker`."""
         waveform = AntisymmetricRicker(acceleration=acceleration, angular_frequency=angular_frequency)
         return cls(waveform=waveform, direction=direction, start=start, vertical=vertical)
 
@@ -288,7 +288,7 @@ class Pulse(AlongLine):
         start: Start = 0.0,
         vertical: VerticalRatio = 0.0,
     ) -> Self:
-        """Make a Gabor wavelet of `velocity` [m/s] and `frequency` [Hz]; see `base_motions.pulses.Gabor`."""
+        """Create a Gabor wavelet of `velocity` [m/s] and `frequency` [Hz]; see `base_motions.pulses.Gabor`."""
         waveform = Gabor(velocity=velocity, frequency=frequency, phase=phase, oscillations=oscillations)
         return cls(waveform=waveform, direction=direction, start=start, vertical=vertical)
 
@@ -305,7 +305,7 @@ class Pulse(AlongLine):
         start: Start = 0.0,
         vertical: VerticalRatio = 0.0,
     ) -> Self:
-        """Make a near-fault pulse by its `velocity` A [m/s], `frequency` f [Hz], `phase` ν and `oscillations` γ > 1.
+        """Create a near-fault pulse by its `velocity` A [m/s], `frequency` f [Hz], `phase` ν and `oscillations` γ > 1.
 
         See `stylobate.base_motions.pulses.MavroeidisPapageorgiou`.
         """

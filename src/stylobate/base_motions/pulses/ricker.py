@@ -1,4 +1,4 @@
-"""Ricker wavelets: the second and the third derivative of a Gaussian bell."""
+"""Ricker wavelets: second and third derivative of a Gaussian."""
 
 import math
 from dataclasses import dataclass
@@ -11,9 +11,9 @@ from stylobate.base_motions.base import ACCELERATION, DISPLACEMENT
 from stylobate.base_motions.numbers import Acceleration, AngularFrequency
 from stylobate.base_motions.pulses.waveform import Floats, Waveform
 
-# The bell is cut where it is e⁻³² = 1.3e-14 of its height, so many standard deviations from its middle.
+# Distance from the middle in standard deviations at which the Gaussian, e⁻³² = 1.3e-14 of its height, is cut.
 CUT = 8.0
-# Above this angular frequency [1/standard deviation] a spectrum falls below 1/2000 of its largest value.
+# Above this angular frequency [1/standard deviation] a spectrum falls below 1/2000 of its peak.
 BAND = 5.0
 
 
@@ -29,7 +29,7 @@ class _BellDerivative(Waveform):
 
     @property
     def deviation(self) -> float:
-        """σ [s]: the spectrum ωⁿ exp(−ω²σ²/2) of the n-th derivative is largest at ω = √n/σ."""
+        """σ [s]: the spectrum ωⁿ exp(−ω²σ²/2) of the n-th derivative has its peak at ω = √n/σ."""
         return math.sqrt(self.degree) / self.angular_frequency
 
     @property
@@ -39,7 +39,7 @@ class _BellDerivative(Waveform):
 
     @property
     def highest_frequency(self) -> float:
-        """5/σ [rad/s], above which the spectrum is below 1/2000 of its largest value."""
+        """5/σ [rad/s], above which the spectrum is below 1/2000 of its peak."""
         return BAND / self.deviation
 
     def derivative(self, time: Floats, order: int) -> Floats:
@@ -51,7 +51,7 @@ class _BellDerivative(Waveform):
         return np.asarray(self.acceleration / self._height * self.deviation ** (ACCELERATION - order) * values)
 
     def turning_points(self) -> tuple[tuple[float, float], ...]:
-        """Return where the next derivative of the bell vanishes."""
+        """Return time and acceleration at each zero of the next derivative of the Gaussian."""
         heights = self._bell(np.array(self.turns), ACCELERATION) / self._height
         return tuple(
             (self.deviation * (x + CUT), self.acceleration * float(height))
@@ -60,7 +60,7 @@ class _BellDerivative(Waveform):
 
     @property
     def _height(self) -> float:
-        """Peak of the derivative of the bell that is the acceleration."""
+        """Peak of the derivative of the Gaussian that gives the acceleration."""
         return float(np.abs(self._bell(np.array(self.turns), ACCELERATION)).max())
 
     def _bell(self, x: Floats, order: int) -> Floats:
@@ -76,9 +76,9 @@ class Ricker(_BellDerivative):
     Parameters
     ----------
     acceleration
-        Peak A in the middle [m/s²]; two troughs of −2e^(−3/2) A = −0.446 A stand beside it.
+        Peak A in the middle [m/s²], between two troughs of −2e^(−3/2) A = −0.446 A.
     angular_frequency
-        ω at which its spectrum is largest [rad/s], 2π over its period in the literature.
+        ω at the peak of the spectrum [rad/s], 2π over the period of the literature.
 
     Raises
     ------
@@ -87,9 +87,9 @@ class Ricker(_BellDerivative):
 
     Notes
     -----
-    N. Ricker, "The form and laws of propagation of seismic wavelets", Geophysics 18 (1953); in rocking M. F. Vassiliou
-    and N. Makris, "Estimating time scales and length scales in pulselike earthquake acceleration records with wavelet
-    analysis", Bulletin of the Seismological Society of America 101 (2011).
+    N. Ricker, "The form and laws of propagation of seismic wavelets", Geophysics 18 (1953); for rocking: M. F.
+    Vassiliou and N. Makris, "Estimating time scales and length scales in pulselike earthquake acceleration records with
+    wavelet analysis", Bulletin of the Seismological Society of America 101 (2011).
     """
 
     constructor: ClassVar[str] = "ricker"
@@ -104,9 +104,9 @@ class AntisymmetricRicker(_BellDerivative):
     Parameters
     ----------
     acceleration
-        Largest value A [m/s²], at x = −√(3 − √6); β = 1.380 makes it that. As deep a trough follows behind the middle.
+        Peak A [m/s²], at x = −√(3 − √6), with β = 1.380. A trough of the same depth follows after the middle.
     angular_frequency
-        ω at which its spectrum is largest [rad/s].
+        ω at the peak of the spectrum [rad/s].
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""A part of a sinusoid, half a period or some."""
+"""Sinusoidal waveform of any number of cycles."""
 
 import math
 from dataclasses import dataclass
@@ -13,7 +13,7 @@ from stylobate.base_motions.pulses.waveform import Floats, Waveform
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Sinusoid(Waveform):
-    """The acceleration A sin(ωt + φ) from t = 0 to n periods later.
+    """The acceleration A sin(ωt + φ) from t = 0 over n periods.
 
     Parameters
     ----------
@@ -24,7 +24,7 @@ class Sinusoid(Waveform):
     phase
         φ [rad]; π/2 for a cosine.
     cycles
-        n, whole or not; at most 1000.
+        Number n of periods, integer or not; at most 1000.
 
     Raises
     ------
@@ -59,7 +59,7 @@ class Sinusoid(Waveform):
         return np.asarray(a / w**2 * (w * time * math.cos(phase) + math.sin(phase) - np.sin(w * time + phase)))
 
     def turning_points(self) -> tuple[tuple[float, float], ...]:
-        """Return where ωt + φ is an odd number of quarter turns: the acceleration is ±A."""
+        """Return the times at which ωt + φ is an odd multiple of π/2, with the acceleration ±A."""
         first = math.ceil(self.phase / math.pi - 0.5)
         last = math.floor((self.phase + 2.0 * math.pi * self.cycles) / math.pi - 0.5)
         return tuple(

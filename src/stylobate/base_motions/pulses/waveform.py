@@ -1,4 +1,4 @@
-"""What a waveform is: how a pulse goes along its line, from its beginning to its end."""
+"""Interface of a waveform: acceleration of a pulse along its line, with integrals and extremes."""
 
 import math
 from abc import ABC, abstractmethod
@@ -12,7 +12,7 @@ from stylobate.quantities import Declared
 
 Floats = npt.NDArray[np.float64]
 
-# Cells to the shortest period in which turning points are looked for, and halvings of a cell that has one.
+# Cells per shortest period in the search of turning points, and bisections of a cell with a turning point.
 _CELLS_PER_PERIOD = 1024
 _HALVINGS = 60
 
@@ -22,14 +22,14 @@ class Waveform(Declared, ABC):
 
     Notes
     -----
-    For developers: a waveform of your own is a frozen dataclass that implements `duration`, `highest_frequency`,
-    `derivative` and `turning_points`. Pulse(waveform=…) then makes a base motion of it.
+    For developers: a custom waveform is a frozen dataclass that implements `duration`, `highest_frequency`,
+    `derivative` and `turning_points`. Pulse(waveform=…) then converts it to a base motion.
     """
 
     __slots__ = ()
 
     constructor: ClassVar[str] = ""
-    """The constructor of `Pulse` that takes its numbers; empty for a waveform of the user's own."""
+    """The constructor of `Pulse` with the parameters of this waveform; empty for a custom waveform."""
 
     @property
     @abstractmethod
@@ -55,20 +55,20 @@ class Waveform(Declared, ABC):
 
     @abstractmethod
     def turning_points(self) -> tuple[tuple[float, float], ...]:
-        """Return the time [s] and the acceleration [m/s²] of its extremes between beginning and end, in order."""
+        """Return time [s] and acceleration [m/s²] of the extremes between start and end, in order."""
 
     @property
     def margin(self) -> float:
-        """By how much the acceleration may pass those of `turning_points` and the ends [m/s²]."""
+        """Maximum excess of the acceleration over its values at `turning_points` and the ends [m/s²]."""
         return 0.0
 
 
 def found_turning_points(
     acceleration: Callable[[Floats], Floats], slope: Callable[[Floats], Floats], duration: float, frequency: float
 ) -> tuple[tuple[float, float], ...]:
-    """Return time and acceleration where its `slope` changes sign, by bisection of 1024 cells in the shortest period.
+    """Find time and acceleration at sign changes of the `slope`, by bisection of 1024 cells per shortest period.
 
-    Two turning points in one cell are not seen; see `unseen`.
+    Two turning points in one cell are missed; see `unseen`.
     """
     edges = np.linspace(0.0, duration, _cells(duration, frequency) + 1)
     rising = slope(edges) > 0.0
@@ -83,9 +83,10 @@ def found_turning_points(
 
 
 def unseen(third: float, duration: float, frequency: float) -> float:
-    """Return by how much two turning points in one cell of width h can pass its ends: h³/12 sup |d³a/dt³|.
+    """Return the maximum excess of two turning points in a cell of width h over its ends: h³/12 sup |d³a/dt³|.
 
-    Between them the slope is bounded by ½(t − t1)(t2 − t) times `third` = sup |d³a/dt³|, since it vanishes at both.
+    Between the turning points t1 and t2 the slope is bounded by ½(t − t1)(t2 − t) times `third` = sup |d³a/dt³|, since
+    it vanishes at both.
     """
     return third * (duration / _cells(duration, frequency)) ** 3 / 12.0
 

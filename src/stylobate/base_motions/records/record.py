@@ -323,7 +323,7 @@ class Record(BaseMotion):
 
     def resampled(self, step: float) -> "Record":
         """Resample this record to another `step` [s], band-limited (see `records.resampling`)."""
-        from stylobate.base_motions.records.resampling import resampled  # noqa: PLC0415  takes SciPy
+        from stylobate.base_motions.records.resampling import resampled  # noqa: PLC0415  imports SciPy
 
         samples, note = resampled(self.samples, self.step, step)
         if not note:

@@ -30,7 +30,7 @@ def read_waveform(path: Path, content: bytes) -> Component:
     removed.
     """
     try:
-        import obspy  # noqa: PLC0415  an extra, slow to import
+        import obspy  # noqa: PLC0415  optional, slow to import
     except ImportError:
         message = (
             f'{path}: no text. To read a waveform such as miniSEED, install ObsPy: pip install "stylobate[records]"'

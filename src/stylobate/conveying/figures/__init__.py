@@ -1,1 +1,1 @@
-"""Figures of contact and of conveying."""
+"""Figures of contact maps, slip limits and conveying."""

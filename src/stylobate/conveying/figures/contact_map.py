@@ -17,7 +17,7 @@ Floats = npt.NDArray[np.float64]
 
 _HEIGHT, _TALL, _LOW = 4.6, 5.4, 3.6
 _PLANE = 2
-# A column whose rate of twist is less does not turn [rad/s].
+# Minimum mean twist rate of a column that counts as turning [rad/s].
 _STILL = 1e-9
 
 
@@ -38,7 +38,7 @@ def plot_contact_map(found: xr.Dataset) -> Figure:
 def plot_drift(found: xr.Dataset) -> Figure:
     """Draw mean transport velocity and rate of rotation over one parameter, or the speed over two.
 
-    A dotted line marks the throw number 1, above which a standing column hops.
+    A dotted line marks the throw number 1, above which a standing column leaves the base.
     """
     if found["outcome"].ndim == _PLANE:
         figure = new_figure(_HEIGHT)
@@ -79,13 +79,13 @@ def _draw_velocity(axes: Axes, x: Floats, mean: xr.DataArray) -> None:
     axes.plot(x, velocity[:, 0], color=BLUE, marker=".", label="along x")
     axes.plot(x, velocity[:, 1], color=VERMILION, linestyle="--", marker=".", label="along y")
     if np.isnan(velocity).any():
-        axes.plot([], [], linestyle="none", label="gaps: it does not move on to the end")
+        axes.plot([], [], linestyle="none", label="gaps: motion ends before the last period")
     axes.set_ylabel(axis_label(mean, "mean velocity"))
     axes.legend()
 
 
 def _where_thrown(x: Floats, throw: Floats) -> float | None:
-    """Return where the throw number first passes 1, if it does."""
+    """Return the first x at which the throw number passes 1, or None."""
     passed = np.flatnonzero((throw[:-1] < 1.0) & (throw[1:] >= 1.0))
     if not passed.size:
         return None
@@ -106,6 +106,6 @@ def _draw_speed(figure: Figure, axes: Axes, found: xr.Dataset) -> None:
         axes.contour(ordered[x], ordered[y], throw, levels=[1.0], colors="white", linestyles=":")
         axes.set_title("dotted: throw number 1", fontsize=8.5)
     if speed.mask.any():
-        axes.set_title("hatched: it does not move on to the end", loc="right", fontsize=8.5)
+        axes.set_title("hatched: motion ends before the last period", loc="right", fontsize=8.5)
     axes.set_xlabel(axis_label(found[x]))
     axes.set_ylabel(axis_label(found[y]))

@@ -27,10 +27,10 @@ from stylobate.plots.style import (
 )
 
 _HEIGHT, _WIDTH = 7.0, 8.4
-# Markers repeat what colours show.
+# Markers repeat the information of colours.
 _MARKED = ((BLUE, "o"), (VERMILION, "s"), (GREEN, "^"), (PURPLE, "D"))
 _DASHED = (0, (4, 2))
-# None, none stable, stable without slip, with it, both.
+# No steady rolling, none stable, stable without slip, stable with slip, both stable.
 _LOOKS = (
     UNFINISHED,
     OUTCOME_LOOKS[Outcome.STILL_MOVING],
@@ -46,9 +46,9 @@ def plot_slipping_boundary(found: xr.Dataset, *, friction_coefficient: Sequence[
     """Draw steady rolling with slip: tilt over frequency above, regions of stability below.
 
     Above: rolling without slip in black, rolling with slip in colours for a few friction coefficients. Stable parts are
-    bold, unstable ones thin and dashed. A marker on the black line shows where that coefficient no longer suffices.
-    Below: regions of stability over frequency and friction coefficient, with the friction that stable rolling without
-    slip needs. Markers at the right show the coefficients of the curves above.
+    bold, unstable ones thin and dashed. A marker on the black line shows the limit of each coefficient.
+    Below: regions of stability over frequency and friction coefficient, with the required friction of stable rolling
+    without slip. Markers at the right show the coefficients of the curves above.
 
     Parameters
     ----------
@@ -88,7 +88,7 @@ def plot_slipping_boundary(found: xr.Dataset, *, friction_coefficient: Sequence[
 
 
 def _nearest(found: xr.Dataset, wanted: Sequence[float] | None) -> list[int]:
-    """Return the places of the frictions that are nearest to those wanted, or of some spread over all."""
+    """Return the indices of the frictions nearest to the requested ones, or of some spread over all."""
     values, most = found["friction_coefficient"].to_numpy(), len(_MARKED)
     if wanted is not None:
         return [int(np.abs(values - one).argmin()) for one in wanted][:most]
@@ -108,7 +108,7 @@ def _draw_held(axes: Axes, found: xr.Dataset) -> None:
 def _draw_slipping(axes: Axes, part: xr.Dataset, colour: str) -> None:
     x, tilt, stable = (part[name].to_numpy() for name in ("angular_frequency", "slipping_amplitude", "slipping_stable"))
     count = np.isfinite(tilt).sum(axis=-1)
-    # Branches are counted from the lowest: where their number changes another one may have the place.
+    # Branches are numbered from the lowest: when their count changes, a number may mean another branch.
     for first, last in _stretches(count):
         for index in range(int(count[first])):
             some = slice(first, last)
@@ -121,13 +121,13 @@ def _stretches(count: npt.NDArray[np.integer]) -> list[tuple[int, int]]:
 
 
 def _draw(axes: Axes, x: np.ndarray, y: np.ndarray, stable: np.ndarray, colour: str) -> None:
-    bold = stable.astype(bool)  # a file holds numbers
+    bold = stable.astype(bool)  # a file stores numbers
     axes.plot(x, np.where(bold, np.nan, y), color=colour, linewidth=UNSTABLE_WIDTH, linestyle=_DASHED)
     axes.plot(x, np.where(bold, y, np.nan), color=colour, linewidth=STABLE_WIDTH)
 
 
 def _mark_ends(axes: Axes, part: xr.Dataset, colour: str, marker: str) -> None:
-    """Mark where friction ends stable rolling without slip: inside of what is stable for any friction."""
+    """Mark the limits that friction sets to stable rolling without slip, inside the range stable for any friction."""
     x, stable = part["angular_frequency"].to_numpy(), part["rolling_stable"].to_numpy().astype(bool)
     slips = part["slips"].to_numpy().astype(bool)
     for index in range(part.sizes["branch"]):

@@ -28,9 +28,9 @@ from stylobate.plots.style import (
 
 _HEIGHT = 4.4
 _DASHED = (0, (4, 2))
-# Largest number of frictions, and of panels.
+# Maximum number of frictions and of panels.
 _COLOURS, _MOST = (BLUE, VERMILION, GREEN, PURPLE), 4
-# In parts of the largest threshold that is not lift-off the axis ends beyond it.
+# End of the axis over the largest threshold other than lift-off.
 _ROOM = 1.25
 
 _STAYS, _SLIDES, _ROCKS = OUTCOME_LOOKS[Outcome.AT_REST], OUTCOME_LOOKS[Outcome.SLID], KIND_LOOKS["rocking"]
@@ -43,8 +43,8 @@ def plot_start_boundary(found: xr.Dataset) -> Figure:
     """Draw the onset of motion over slenderness, with one panel for each vertical ratio and incline.
 
     The black line is the onset of rocking, coloured lines are the onset of sliding for each friction coefficient. A
-    line is bold where its motion begins first, thin and dashed elsewhere. With one coefficient the regions are filled.
-    A dash-dotted line, if in range, is the acceleration at which the normal force vanishes.
+    line is bold if its motion begins first, otherwise thin and dashed. With one coefficient the regions are filled. A
+    dash-dotted line, if in range, is the acceleration at which the normal force vanishes.
 
     Raises
     ------
@@ -98,7 +98,7 @@ def _fill(axes: Axes, case: xr.Dataset) -> None:
     least = np.minimum(least, top)
     axes.fill_between(c, 0.0, least, **fill_options(_STAYS))
     inside = slides < rocks
-    # The regions meet between two samples: one of them is drawn up to the other's first.
+    # The regions meet between two samples: each region extends to the first sample of the next.
     touching = inside | np.append(inside[1:], False) | np.append(False, inside[:-1])
     for where, look in ((touching, _SLIDES), (~inside, _ROCKS)):
         axes.fill_between(c, least, top, where=where, **fill_options(look))
@@ -130,7 +130,7 @@ def _legend(found: xr.Dataset) -> list[Line2D | Patch]:
     if (found["lift_off"] < _top(found)).any():
         entries.append(Line2D([], [], color=GREY, linestyle="-.", linewidth=1.2, label="is lifted"))
     entries.append(
-        Line2D([], [], color=BLACK, linewidth=UNSTABLE_WIDTH, linestyle=_DASHED, label="not what happens first")
+        Line2D([], [], color=BLACK, linewidth=UNSTABLE_WIDTH, linestyle=_DASHED, label="not the first motion")
     )
     if frictions.size == 1:
         entries += [Patch(label=name, **fill_options(look)) for name, look in _REGIONS.items()]
