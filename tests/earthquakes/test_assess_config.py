@@ -240,7 +240,7 @@ def test_a_design_spectrum_in_another_unit_or_with_unclear_commas_is_refused(tmp
         ({"design_spectrum": {}}, "design_spectrum: give points or file, one of the two."),
         ({"design_spectrum": {**SPECTRUM, "units": None}}, "design_spectrum.units: the unit of the accelerations is"),
         ({"design_spectrum": {**SPECTRUM, "units": "furlong"}}, "design_spectrum.units: unknown unit (got 'furlong')."),
-        ({"design_spectrum": {**SPECTRUM, "points": [[0.0, 1.0]]}}, "design_spectrum: two points at least are needed"),
+        ({"design_spectrum": {**SPECTRUM, "points": [[0.0, 1.0]]}}, "design_spectrum: at least two points are needed"),
         (
             {"design_spectrum": {**SPECTRUM, "points": [[0.5, 1.0], [0.5, 2.0]]}},
             "design_spectrum: periods must increase (got 0.5 s after 0.5 s).",

@@ -62,7 +62,7 @@ def test_a_file_that_holds_no_orbit_is_told_in_one_line(tmp_path):
     words = {
         "nofile.nc": "there is no such file",
         "": "it is a folder",
-        "text.nc": "it is no netCDF file",
+        "text.nc": "it is not a netCDF file",
         "run.nc": "a run; stylobate.load reads it",
         "map.nc": "a table of kind 'map'; xarray.open_dataset reads it",
         "other.nc": "other data; xarray.open_dataset reads them",

@@ -204,7 +204,7 @@ def test_a_run_says_what_became_of_the_column(run):
 def test_the_result_of_a_study_is_told_from_a_run(tmp_path):
     path = tmp_path / "map.nc"
     xr.Dataset({"outcome": ("run", [0])}, attrs={"kind": "overturning map"}).to_netcdf(path, engine="h5netcdf")
-    with pytest.raises(FileError, match=r"of kind 'overturning map'; stylobate\.load reads it$"):
+    with pytest.raises(FileError, match=r"of kind 'overturning map', not a run; stylobate\.load reads it$"):
         sb.Response.load(path)
 
 

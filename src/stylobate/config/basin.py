@@ -25,7 +25,7 @@ class Starts(Config):
     seed
         Seed of the draw.
     over
-        Range of each initial condition that is drawn: lowest and highest value.
+        Range of each initial condition that is drawn: minimum and maximum.
     """
 
     x: Axis | None = None

@@ -31,7 +31,7 @@ def describe_column(column: Column) -> DescribedColumn:
 
 
 def implied_shape(names: Iterable[str]) -> str | None:
-    """Return the only shape that has one of the numbers of these `names`, or None."""
+    """Return the shape to which one of these `names` belongs exclusively, or None."""
     given = set(names)
     for shape, make in SHAPES.items():
         others = {name for other in SHAPES.values() if other is not make for name in parameters_of(other)}
@@ -51,4 +51,4 @@ else:
     ColumnConfig = Annotated[one_of(_BY_SHAPE.values(), "shape"), BeforeValidator(_with_shape)]
 
 ANY_COLUMN = Column.dimensionless(0.1)
-"""Stands in for a column that cannot be built, so that mistakes in the model are reported with it."""
+"""Substitute for a column that cannot be built, so that mistakes in the model are reported too."""

@@ -1,4 +1,4 @@
-"""Descriptions made from declared numbers: of each kind its name, what makes it, and the numbers that it takes."""
+"""Descriptions made from declared numbers: the kind, its class or constructor, and the numbers that it takes."""
 
 from collections.abc import Callable, Iterable, Mapping
 from typing import Annotated, Any, Literal, TypeVar, Union
@@ -13,19 +13,18 @@ _D = TypeVar("_D", bound=Config)
 
 
 def config_of_kind(base: type[_D], tag: str, kind: str, make: Callable[..., Any]) -> type[_D]:
-    """Return the description of a kind, by the declared numbers of what makes it.
+    """Create the description class of a kind from the declared numbers of its class or constructor.
 
     Parameters
     ----------
     base
-        What descriptions of all kinds share, with a `build` that calls `make`.
+        Base class of the descriptions of all kinds, with a `build` that calls `make`.
     tag
-        The key that holds the kind.
+        Key that holds the kind.
     kind
-        Its value: a name, or the place of a class of the user's own.
+        Value of the key: a name, or the place of a user's own class.
     make
-        The class or named constructor whose declared numbers are described. Their bounds are checked when the thing is
-        built.
+        Class or named constructor whose declared numbers are described. `build` checks their bounds.
     """
     numbers = {name: (_type_of(one), ... if one.required else one.default) for name, one in parameters_of(make).items()}
     fields: dict[str, Any] = {tag: (Literal[str(kind)], str(kind)), **numbers}
@@ -38,16 +37,16 @@ def config_of_kind(base: type[_D], tag: str, kind: str, make: Callable[..., Any]
 
 
 def configs_of(base: type[_D], tag: str, kinds: Mapping[str, Callable[..., Any]]) -> Mapping[str, type[_D]]:
-    """Return a description for each of the `kinds`, told apart by the value of the key `tag`."""
+    """Create a description class for each of the `kinds`, told apart by the value of the key `tag`."""
     return {kind: config_of_kind(base, tag, kind, make) for kind, make in kinds.items()}
 
 
 def one_of(descriptions: Iterable[type[Config]], tag: str, own: Callable[[Place], type[Config]] | None = None) -> Any:
     """Return the annotation of a field that holds one of the `descriptions`, told apart by the key `tag`.
 
-    With `own`, which describes a class of the user's own, the key can hold the place of one too.
+    With `own`, which describes a user's own class, the key can also hold the place of such a class.
     """
-    union: Any = Union[tuple(descriptions)]  # noqa: UP007  the members are not known before
+    union: Any = Union[tuple(descriptions)]  # noqa: UP007  the members are known only at run time
 
     def read(value: Any, registered: Callable[[Any], Any]) -> Any:
         kind = value.get(tag) if isinstance(value, Mapping) else None
@@ -62,7 +61,7 @@ def one_of(descriptions: Iterable[type[Config]], tag: str, own: Callable[[Place]
 
 
 def _under(kind: str, error: ValidationError) -> ValidationError:
-    """Return the error with its lines under the kind, as those of a registered kind are."""
+    """Return the error with its lines under the kind, as for a registered kind."""
     lines: list[Any] = [
         {"type": one["type"], "loc": (kind, *one["loc"]), "input": one["input"], "ctx": one.get("ctx", {})}
         for one in error.errors()

@@ -11,11 +11,11 @@ from stylobate.errors import ConfigError, ParameterError
 
 _T = TypeVar("_T")
 
-# Fields whose value is one of several descriptions, told apart by a tag; so is each element of a list.
+# Fields whose value, or each element of whose list, is one of several descriptions, told apart by a tag.
 _UNION_FIELDS = ("column", "model", "motion")
-# Fields that are tables of such, by names of the user's.
+# Fields that are tables of such descriptions, by names that the user chooses.
 _UNION_TABLES = ("columns",)
-# What is to be said of a part that is missing.
+# Explanation of a missing part, added to its message.
 _WANTED = {
     "duration": ": how long to follow a run [s], such as 60; only under a motion that ends may it be left out",
     "motion.velocity": ": velocity of the pulse [m/s]; on the command line --pulse-velocity",
@@ -28,7 +28,7 @@ class Config(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True)
 
     make: ClassVar[Callable[..., Any]]
-    """Class or named constructor that is described; only for a kind of column, model or motion."""
+    """Described class or named constructor; only for a kind of column, model or motion."""
 
     @classmethod
     def parse(cls, values: Mapping[str, Any]) -> Self:
@@ -56,7 +56,7 @@ def built(name: str, build: Callable[[], _T], problems: list[str]) -> _T | None:
     except ParameterError as error:
         problems.append(f"{name}: {error}")
     except ArithmeticError:
-        # Each number can be; what follows from all of them is beyond the numbers a machine has.
+        # Each number is valid, but a result of them overflows.
         problems.append(f"{name}: its numbers are too large or too small to compute with; check their units")
     return None
 
@@ -81,7 +81,7 @@ def _line(problem: Any) -> str:
 
 
 def _meant(context: Mapping[str, Any]) -> str:
-    """Return what an unknown kind may have meant."""
+    """Suggest a known kind for an unknown one."""
     if ":" in context["tag"]:
         return "; a class of your own is read from a TOML file or a saved result only"
     question = did_you_mean(context["tag"], re.findall(r"'(\w+)'", context["expected_tags"]))
@@ -104,5 +104,5 @@ def _without_tags(loc: tuple[int | str, ...]) -> list[str]:
 
 
 def _in_table(loc: tuple[int | str, ...], place: int) -> bool:
-    """Return whether the part at this `place` states which member of a union a named one is."""
+    """Return whether the part at this `place` is the tag of a union in a table of named descriptions."""
     return place == 2 and loc[0] in _UNION_TABLES and len(loc) > 3  # noqa: PLR2004  columns, name, shape, number

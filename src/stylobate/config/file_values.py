@@ -1,4 +1,4 @@
-"""Check the values of a file before anything reads them: depth, kinds that are no words, and NUL characters."""
+"""Check the values of a file before they are parsed: depth, kinds that are not words, and NUL characters."""
 
 from collections.abc import Iterator, Mapping
 from itertools import islice
@@ -7,16 +7,15 @@ from typing import Any
 from stylobate.errors import ConfigError
 
 DEEPEST = 60
-"""How deep tables and lists may lie within each other: each level of a motion takes several calls, of which Python
-allows 1000."""
+"""Maximum depth of nested tables and lists: each level of a motion takes several calls, and Python allows 1000."""
 
-# Words that choose one of several descriptions.
+# Keys whose word chooses one of several descriptions.
 _CHOOSING = ("kind", "shape", "method")
 _SHOWN, _LONGEST = 4, 60
 
 
 def check_file_values(values: Mapping[str, Any]) -> None:
-    """Raise ConfigError, one line for each mistake, for values that no description can have."""
+    """Raise ConfigError for values that no description can have, with one line for each mistake."""
     problems = list(islice(_problems(values), _SHOWN))
     if problems:
         raise ConfigError(problems)

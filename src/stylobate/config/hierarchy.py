@@ -23,7 +23,7 @@ from stylobate.config.simulation import (
 from stylobate.errors import ConfigError, require_positive
 from stylobate.models.declared import MODELS, dissipation_of
 
-# The most general model: it declares every dissipation parameter that another one has.
+# The most general model declares the dissipation parameters of all other models.
 _MOST_GENERAL = "rolling"
 
 
@@ -72,7 +72,7 @@ class HierarchyConfig(OneRun, _HierarchyCase):
 
     @classmethod
     def parse(cls, values: Mapping[str, Any]) -> Self:
-        """Validate these `values`; the kind of the model and unchanged defaults of it are ignored."""
+        """Validate these `values`; the kind of the model and its unchanged defaults are ignored."""
         of_others = {*OF_OTHER_COMMANDS, *SimulationConfig.model_fields} - set(cls.model_fields)
         kept = {name: value for name, value in values.items() if name not in of_others}
         described = kept.get("model")

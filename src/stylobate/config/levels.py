@@ -1,4 +1,4 @@
-"""The levels of dissipation of an assessment, and what may be wrong with them."""
+"""Dissipation levels of an assessment, and checks of their numbers."""
 
 from collections.abc import Mapping
 
@@ -8,7 +8,7 @@ from stylobate.errors import ParameterError, require_not_negative
 from stylobate.models.declared import dissipation_names
 
 LEVELS = ("low", "central", "high")
-"""The levels that are needed."""
+"""Required levels."""
 
 OF_DISSIPATION = dissipation_names()
 """The numbers of a model that dissipate."""
@@ -20,9 +20,9 @@ def problems_of_the_levels(levels: Mapping[str, Mapping[str, float]], model: typ
     Parameters
     ----------
     levels
-        Low, central and high, and perhaps others.
+        Low, central and high, and optionally others.
     model
-        The description of the model whose numbers they are.
+        Description of the model to which the numbers belong.
     """
     problems = []
     for level, numbers in levels.items():
@@ -44,7 +44,7 @@ def problems_of_the_levels(levels: Mapping[str, Mapping[str, float]], model: typ
 
 
 def _differing(levels: Mapping[str, Mapping[str, float]]) -> list[str]:
-    """Return a line where not all levels name the same numbers, or name none."""
+    """Return a line if the levels do not name the same numbers, or name none."""
     names = set(levels["central"])
     if names and all(set(level) == names for level in levels.values()):
         return []
@@ -53,7 +53,7 @@ def _differing(levels: Mapping[str, Mapping[str, float]]) -> list[str]:
 
 
 def _falling(levels: Mapping[str, Mapping[str, float]]) -> list[str]:
-    """Return a line where a level loses less than one that is called lower."""
+    """Return a line if the damping of a level is below that of a lower level."""
     dampings = [levels[name]["damping"] for name in LEVELS if "damping" in levels[name]]
     if len(dampings) < len(LEVELS) or dampings == sorted(dampings):
         return []

@@ -92,13 +92,13 @@ _SHARED = (*numbers_of(SharedByRuns), "demands", "recheck")
 
 
 def with_numbers_that_vary(values: Mapping[str, Any], names: tuple[str, ...]) -> dict[str, Any]:
-    """Return `values` with a number in the motion for each that it needs and that varies anyway, if it lacks one."""
+    """Return `values` with a number for each missing required number of the motion that varies over the runs."""
     motion = values.get("motion")
     make = made_by(motion.get("kind")) if isinstance(motion, Mapping) else None
     if make is None:
         return dict(values)
     declared = parameters_of(make)
-    # By a path or a velocity the acceleration depends on the frequency, which can then not stay away.
+    # If the motion has a path or a velocity, the acceleration depends on the frequency, which is then required.
     by_path = any(one.quantity.unit in ("m", "m/s") for one in declared.values())
     needed = [name for name in names if name in declared and declared[name].required]
     # With an amplitude of 1 m/s² scaling to an acceleration is exact.

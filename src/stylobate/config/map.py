@@ -75,7 +75,7 @@ class MapConfig(ManyRuns):
         model, motion, options = self.common(problems, (x.name, y.name))
         frequencies = over.get("angular_frequency")
         if frequencies is not None and self.duration is None and self.periods is None and is_pulse(motion):
-            # Each to the end of its own pulse: that of the lowest frequency lasts longest.
+            # Each run lasts to the end of its pulse; the pulse of the lowest frequency is the longest.
             options["duration"] = duration_with_tail(
                 model, with_numbers(motion, {"angular_frequency": float(frequencies.min())})
             )

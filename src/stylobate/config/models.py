@@ -32,12 +32,12 @@ DESCRIBED_MODELS: tuple[type[Config], ...] = tuple(_BY_KIND.values())
 
 
 def _with_kind(described: Any) -> Any:
-    """Return the values of a model with its kind; it is the slender one if none is stated."""
+    """Return the values of a model with its kind; the default is the slender model."""
     return {"kind": "slender", **described} if isinstance(described, dict) else described
 
 
 def _of_own(place: Place) -> type[DescribedModel]:
-    """Return the description of a model of the user's own."""
+    """Return the description class of a user's own model."""
     return config_of_kind(DescribedModel, "kind", place, MODELS[place])
 
 
@@ -48,17 +48,17 @@ else:
 
 
 def described_model(kind: str, **values: Any) -> DescribedModel:
-    """Return the description of a model of this `kind`, with defaults for what is not given."""
+    """Return the description of a model of this `kind`, with defaults for missing values."""
     return _BY_KIND[kind](**{"kind": kind, **values})
 
 
 def default_values(kind: str) -> dict[str, Any]:
-    """Return what a description of this `kind` has where nothing is given; nothing if there is no such kind."""
+    """Return the default values of a description of this `kind`; empty if there is no such kind."""
     return described_model(kind).model_dump() if kind in MODELS else {}
 
 
 def describe_model(model: Model) -> Config:
-    """Return the description of `model`, its column apart.
+    """Return the description of `model` without its column.
 
     Raises
     ------

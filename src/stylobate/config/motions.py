@@ -40,7 +40,7 @@ class MotionOfMotions(DescribedMotion):
 
 
 class ChangedMotion(DescribedMotion):
-    """Another motion, and numbers by which it is changed: by a method that it has, or by a class of the user's own."""
+    """Another motion, and numbers of its change: by a method of the motion, or by a user's own class."""
 
     motion: "MotionConfig"
 
@@ -54,7 +54,7 @@ class ChangedMotion(DescribedMotion):
 
 
 def _config(kind: str, make: Callable[..., Any]) -> type[Config]:
-    """Return the description of a kind of motion; that of a record reads files."""
+    """Return the description class of a kind of motion; that of a record reads files."""
     if make is Record:
         return RecordMotion
     arguments = inspect.signature(make).parameters
@@ -64,7 +64,7 @@ def _config(kind: str, make: Callable[..., Any]) -> type[Config]:
 
 
 def _of_own(place: Place) -> type[Config]:
-    """Return the description of a motion of the user's own."""
+    """Return the description class of a user's own motion."""
     return _config(place, MOTIONS[place])
 
 
@@ -83,9 +83,9 @@ AT_REST: Any = _BY_KIND["rest"].parse({"kind": "rest"})
 
 
 def is_to_end(motion: object) -> bool:
-    """Return whether a `motion`, described or in plain values, is one that ends.
+    """Return whether a `motion`, described or in plain values, ends.
 
-    Its class says so by `ends`; what is made of motions ends if all of them do.
+    Its class states so by `ends`; a motion made of motions ends if all of them end.
     """
     values = dict(motion) if isinstance(motion, (Mapping, Config)) else {}
     members = values.get("motions", [values["motion"]] if "motion" in values else None)
@@ -96,7 +96,7 @@ def is_to_end(motion: object) -> bool:
 
 
 def made_by(kind: object) -> Callable[..., Any] | None:
-    """Return what makes motions of a kind in plain values; None for one that is not known."""
+    """Return the class or constructor of a kind of motion in plain values; None for an unknown kind."""
     return MOTIONS[kind] if isinstance(kind, Place) or (isinstance(kind, str) and kind in MOTIONS) else None
 
 
@@ -132,7 +132,7 @@ def _described_record(record: Record) -> Config:
 
 
 def _described(value: Any) -> Any:
-    """Return the plain values of a motion, or of several; another value as it is."""
+    """Return the plain values of one or several motions; other values are unchanged."""
     if isinstance(value, BaseMotion):
         return with_places(describe_motion(value).values())
     if isinstance(value, tuple) and value and isinstance(value[0], BaseMotion):

@@ -1,4 +1,4 @@
-"""Describe the records of a study: folders, patterns, files, and the files of stated events."""
+"""Describe the records of a study: folders, patterns, files, and files of one event."""
 
 from collections.abc import Callable, Iterable, Sequence
 from functools import partial
@@ -59,7 +59,7 @@ class RecordsConfig(Reading):
     directions: dict[str, float | str] = Field(default_factory=dict)
 
     def build(self) -> dict[str, Record]:
-        """Read the records by name, in the order of their names; each keeps its description.
+        """Read the records, sorted by name; each keeps its description.
 
         Raises
         ------
@@ -85,7 +85,7 @@ class RecordsConfig(Reading):
         return {record.name: record for record in found if not self.only or record.name in self.only}
 
     def _builders(self, problems: list[str]) -> list[Callable[[], Record]]:
-        """Return a function for each record that builds it; a line in `problems` where files are not found."""
+        """Return a function for each record that builds it; add a line to `problems` for files that are not found."""
         samples = [RecordMotion(sample=name, processing=self.processing).build for name in self.samples]
         files = [(one, _collected(partial(_files_of, one), problems)) for one in self.event]
         listed = [(one, paths) for one, paths in files if paths]
@@ -95,7 +95,7 @@ class RecordsConfig(Reading):
         return [*samples, *stated, *(partial(self._found, event) for event in found or ())]
 
     def _events(self, listed: Sequence[tuple[Path, ...]]) -> list[Event]:
-        """Return the events in `source`, but for those that are listed."""
+        """Return the events in `source` without those that are listed."""
         source = (self.source,) if isinstance(self.source, str) else self.source
         events = self.find((*source, *listed), self.directions)
         return [event for event in events if event.paths not in listed]

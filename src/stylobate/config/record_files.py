@@ -1,4 +1,4 @@
-"""Files of records that a saved result names, found again where the result and they were moved together."""
+"""Search for the record files of a saved result after result and files were moved together."""
 
 import hashlib
 from collections.abc import Mapping
@@ -7,17 +7,17 @@ from typing import Any
 
 
 def relocated(values: Any, folder: Path) -> Any:
-    """Return the plain values of a saved result with its missing files of records found beside it.
+    """Return the plain values of a saved result with the new paths of missing record files.
 
-    A file is looked for by its name, and by the last of the folders it was in, from `folder` and the folders above it
-    on, and is taken only if its SHA-256 is that of the file the result was made with.
+    The search uses the name of the file and the last parts of its old path, below `folder` and the folders above it. A
+    file must have the SHA-256 of the file with which the result was made.
 
     Parameters
     ----------
     values
-        Of a provenance or a description: tables, lists and plain values.
+        Values of a provenance or a description: tables, lists and plain values.
     folder
-        Where the result lies.
+        Folder of the result.
     """
     if isinstance(values, list):
         return [relocated(value, folder) for value in values]
@@ -33,7 +33,7 @@ def relocated(values: Any, folder: Path) -> Any:
 
 
 def _place(path: str, digest: str, folder: Path) -> str:
-    """Return where a file is now; where it was if it is there, or nowhere."""
+    """Return the present path of a file; its old path if it is there, or if it is not found."""
     old = Path(path)
     if old.is_file():
         return path

@@ -116,7 +116,7 @@ RecordStep = Annotated[AnyStep, Field(discriminator="method")]
 
 
 def processed(record: Record, steps: Iterable[AnyStep]) -> Record:
-    """Apply these steps to the record, in their order."""
+    """Apply these steps to the record in order."""
     for step in steps:
         record = step.apply(record)
     return record

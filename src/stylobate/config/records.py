@@ -166,7 +166,7 @@ class RecordMotion(Reading):
         return last
 
     def _checked_files(self) -> None:
-        """Raise ParameterError if no files are named, or a file is not what it was."""
+        """Raise ParameterError if no files are named, or a file has changed."""
         if (self.path is None) == (self.sample is None):
             message = "path (one file, or those of one event) or sample must be given, one of them"
             raise ParameterError(message)
@@ -227,9 +227,9 @@ def anchored(values: Any, folder: Path) -> Any:
     Parameters
     ----------
     values
-        As read from a file: tables, lists and plain values.
+        Values from a file: tables, lists and plain values.
     folder
-        Where that file lies.
+        Folder of that file.
     """
     if isinstance(values, list):
         return [anchored(value, folder) for value in values]

@@ -42,14 +42,14 @@ class ResponseConfig(Config):
         motion = values.get("motion")
         kind = motion.get("kind") if isinstance(motion, Mapping) else None
         if isinstance(motion, Mapping) and kind in kinds_by_acceleration():
-            # A mistake in the range is one mistake: the motion is built with a frequency that can be.
+            # A mistake in the range is reported once: the motion is built with a valid frequency.
             given = {"angular_frequency": _possible(values.get("angular_frequency_range"))}
             values = {**values, "motion": {**given, **motion}}
         make = made_by(kind)
         if make is not None and not states(make, "responds"):
             message = f"motion.kind must be a horizontal harmonic motion for response curves, got {kind!r}"
             raise ConfigError([message])
-        # What a description of runs says besides is of no concern here.
+        # Keys that only descriptions of runs use are ignored.
         of_runs = {*SimulationConfig.model_fields, *OF_OTHER_COMMANDS} - set(cls.model_fields)
         return super().parse({name: value for name, value in values.items() if name not in of_runs})
 
@@ -73,6 +73,6 @@ class ResponseConfig(Config):
 
 
 def _possible(frequencies: Any) -> float:
-    """Return the first frequency that is above zero of what is given as a range; of none, 1 rad/s."""
+    """Return the first frequency above zero of the given range; 1 rad/s without one."""
     given = frequencies if isinstance(frequencies, (list, tuple)) else ()
     return next((float(one) for one in given if isinstance(one, (int, float)) and 0.0 < one < math.inf), 1.0)

@@ -42,7 +42,7 @@ Confidence = Annotated[float, Quantity(text="confidence level of intervals", gt=
 
 
 class Start:
-    """The initial state that all models have."""
+    """The initial conditions that all models share."""
 
     tilt: Tilt = (0.0, 0.0)
     tilt_rate: TiltRate = (0.0, 0.0)
@@ -50,7 +50,7 @@ class Start:
 
 
 class Accuracy:
-    """How closely a run is integrated, and when it ends."""
+    """Tolerances of a run, and conditions of its end."""
 
     rtol: RelativeTolerance = 1e-8
     atol: AbsoluteTolerance | None = None
@@ -107,7 +107,7 @@ def run_numbers() -> Mapping[str, Parameter]:
 
 
 def problems_of_the_numbers(values: object) -> list[str]:
-    """Check the numbers of a run that `values` has as attributes; one line for each that cannot be."""
+    """Check the numbers of a run that `values` has as attributes; return one line for each invalid number."""
     problems: list[str] = []
     for name, parameter in run_numbers().items():
         value = getattr(values, name, None)

@@ -31,7 +31,7 @@ from stylobate.results import OutcomeRules
 
 @dataclass(frozen=True, slots=True)
 class Setup:
-    """Objects that a description describes: model, motion and keyword arguments of the study."""
+    """Objects built from a description: model, motion and keyword arguments of the study."""
 
     model: Model
     motion: BaseMotion
@@ -100,7 +100,7 @@ def built_parts(
     """
     found: list[str] = []
     if isinstance(motion, RecordMotion) and model.kind == "planar_rocking":
-        motion = motion.model_copy(update={"single": True})  # one component is all that a planar column follows
+        motion = motion.model_copy(update={"single": True})  # a planar column uses one component
     made = built("column", column.build, found)
     moved = built("motion", motion.build, found)
     modelled = built("model", lambda: model.build(made or ANY_COLUMN), found)
@@ -110,11 +110,11 @@ def built_parts(
 
 
 FREE_TAIL = 20.0
-"""Default free-vibration time after the base motion, in 1/`column.frequency_parameter`; deviations grow by e²⁰."""
+"""Default free-vibration time in 1/`column.frequency_parameter`; deviations grow by up to e²⁰ meanwhile."""
 
 
 def with_default_duration(values: Mapping[str, Any]) -> dict[str, Any]:
-    """Return `values` without a `duration` that is not given, or with None for it if the motion ends."""
+    """Return `values` with `duration` None if it is missing and the motion ends; without `duration` otherwise."""
     if values.get("duration") is not None:
         return dict(values)
     others = {name: value for name, value in values.items() if name != "duration"}
@@ -130,7 +130,7 @@ OF_OTHER_COMMANDS = (
     *("map", "basin", "spectrum", "fragility", "records", "hierarchy", "periods"),
     *("method", "strobes", "confidence", "angular_frequency_range", "points", "end_converged"),
 )
-"""Keys of a description that are no arguments of a single run."""
+"""Keys of a description that are not arguments of a single run."""
 
 
 def read_config(path: str | Path) -> dict[str, Any]:
@@ -171,7 +171,7 @@ def built_rules(rules: Mapping[str, Any]) -> OutcomeRules:
 
 
 def provenance_of_run(model: Model, motion: BaseMotion, **options: Any) -> dict[str, Any]:
-    """Return the provenance of a run as plain values: those of `SimulationConfig`, and the version."""
+    """Return the provenance of a run as plain values: the values of `SimulationConfig` and the version."""
     return {
         "version": _version(),
         "column": describe_column(model.column).values(),
@@ -220,7 +220,7 @@ def _described(describe: Callable[[], Config], thing: object) -> dict[str, Any]:
 
 
 def _identity_of_record(thing: object) -> dict[str, Any]:
-    """Return the identity of a record that was made from samples."""
+    """Return name, digest and processing of a record that was made from samples."""
     if not isinstance(thing, Record):
         return {}
     return {"record": thing.name, "digest": thing.digest, "processing": list(thing.provenance)}

@@ -1,4 +1,4 @@
-"""Write a description as TOML, and as the Python program that does the same."""
+"""Write a description as TOML, and as the equivalent Python program."""
 
 from collections.abc import Iterable, Mapping
 from typing import Any
@@ -28,10 +28,10 @@ def as_toml(values: Mapping[str, Any]) -> str:
 
 
 def as_python(description: SimulationConfig) -> str:
-    """Write a Python program that makes the described run with public names, and draws it.
+    """Write a Python program that computes and plots the described run with public names.
 
-    Values equal to their defaults are left out. A record that is joined or processed otherwise than by scale,
-    rotation and tail is written as a description.
+    Values equal to their defaults are left out. A record that is joined, or processed by other steps than scale,
+    rotation and tail, is written as a description.
 
     Examples
     --------
@@ -60,7 +60,7 @@ def as_python(description: SimulationConfig) -> str:
 
 
 def _run(description: SimulationConfig, *, moved: bool) -> Iterable[str]:
-    """Return the call of `simulate`; the rules are an object of their own."""
+    """Return the call of `simulate`, with the rules as an object."""
     options = description.model_dump(exclude={"column", "model", "motion", "rules"}, exclude_defaults=True)
     if options.get("duration", 0.0) is None:  # as long as the record
         del options["duration"]
@@ -71,7 +71,7 @@ def _run(description: SimulationConfig, *, moved: bool) -> Iterable[str]:
 
 
 def _motion(motion: Any) -> str:
-    """Return the Python of a described motion."""
+    """Return the Python expression of a described motion."""
     kind = str(motion.kind)
     numbers = motion.model_dump(exclude={"kind", "motion", "motions"}, exclude_defaults=True, exclude_none=True)
     if kind == "record":
@@ -87,7 +87,7 @@ def _motion(motion: Any) -> str:
 
 
 def _maker(kinds: Kinds, kind: str) -> str:
-    """Return the Python of what makes a kind: by its public name, or from the place of a class of the user's own."""
+    """Return the Python expression of the class or constructor of a kind: its public name, or its place."""
     if kind not in kinds:
         return f"sb.kinds.loaded({kind!r})"
     name = kinds.places[kind].rpartition(":")[2]
@@ -116,10 +116,10 @@ def _record(motion: Any, numbers: Mapping[str, Any]) -> str:
 
 
 def _changed(kind: str, numbers: Mapping[str, Any]) -> str:
-    """Return the call that changes a motion; none where its number leaves all as it is."""
+    """Return the call that changes a motion; empty if its number changes nothing."""
     name, neutral = _CHANGES[kind]
     change = numbers[name]
-    # A vertical component is scaled as the others are, if nothing else is stated.
+    # By default the vertical component is scaled with the horizontal ones.
     apart = {other: value for other, value in numbers.items() if other != name and value != change}
     if change == neutral and not apart:
         return ""
@@ -148,10 +148,10 @@ _CHANGES = {
     "delayed": ("delay", 0.0),
     "with_tail": ("length", 0.0),
 }
-"""Of each change of a motion its number, and that which changes nothing."""
+"""Number of each change of a motion, and the value of the number that changes nothing."""
 
 _LAST = {"scale": "scaled", "rotation": "rotated", "tail": "with_tail"}
-"""The changes that a record may have at last, in their order."""
+"""Last changes of a record, in their order."""
 
 _SHOWN = ('print(run.outcome.name, "-", run.reason)', 'sb.plot(run).savefig("run.png")')
-"""The end of each program: the outcome, and its history as a figure."""
+"""Last lines of each program: the outcome and a figure of the history."""

@@ -1,4 +1,4 @@
-"""What a misspelt name in a description may have meant."""
+"""Suggestions for misspelt names in a description."""
 
 import re
 from collections.abc import Iterable, Sequence
@@ -12,7 +12,7 @@ _LIKENESS = 0.7
 
 
 def did_you_mean(name: str, known: Iterable[str]) -> str:
-    """Return a question after the most alike of the names that are `known`; nothing where none is.
+    """Return a question that suggests the most similar of the `known` names; empty without a similar name.
 
     >>> did_you_mean("dampign", ["damping", "restitution"])
     'did you mean damping?'
@@ -22,14 +22,14 @@ def did_you_mean(name: str, known: Iterable[str]) -> str:
 
 
 def with_suggestions(description: type[BaseModel], problems: Sequence[str]) -> list[str]:
-    """Return the lines on mistakes, those on names that are not known with the one that was perhaps meant.
+    """Return the lines on mistakes, with a suggestion in each line on an unknown name.
 
     Parameters
     ----------
     description
-        The class of what was described.
+        Class of the description.
     problems
-        A line for each mistake.
+        One line for each mistake.
     """
     return [_suggesting(description, line) for line in problems]
 
@@ -44,7 +44,7 @@ def _suggesting(description: type[BaseModel], line: str) -> str:
 
 
 def _names(annotation: Any, path: Sequence[str]) -> set[str]:
-    """Return the names that may stand at a path below what is annotated so; none where the path leads nowhere."""
+    """Return the allowed names at a path below a field with this annotation; empty for an unknown path."""
     found: set[str] = set()
     for one in _alternatives(annotation):
         if get_origin(one) is dict and path:
@@ -60,7 +60,7 @@ def _names(annotation: Any, path: Sequence[str]) -> set[str]:
 
 
 def _alternatives(annotation: Any) -> list[Any]:
-    """Return the types of which a value may be one."""
+    """Return the alternative types of an annotation."""
     origin = get_origin(annotation)
     if origin is dict or not get_args(annotation):
         return [annotation]

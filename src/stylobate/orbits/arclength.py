@@ -1,4 +1,4 @@
-"""A family of periodic orbits over one parameter: points, tangents, and the way from one point to the next."""
+"""A family of periodic orbits over one parameter: points, tangents and Newton's method for the next point."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -19,10 +19,9 @@ _CLOSE, _MOST_STEPS = 1e-11, 12
 
 @dataclass(frozen=True, slots=True)
 class Family:
-    """Periodic orbits of one system, of one length, against the parameter `name`.
+    """Periodic orbits of one system and one length over the parameter `name`.
 
-    Along it a point is measured by u: states in units of c, and the parameter in units of `span`, the width of what is
-    looked at.
+    The vector u of a point has the states in units of c, and the parameter in units of `span`, the width of its range.
     """
 
     system: PeriodicSystem
@@ -33,7 +32,7 @@ class Family:
 
     @property
     def covered(self) -> float:
-        """Periods that are shot over: half of them with `sense` −1, which keeps to orbits with the inversion."""
+        """Periods over which shooting integrates: half of them with `sense` −1, for orbits with the inversion only."""
         return 0.5 * self.periods if self.sense < 0.0 else float(self.periods)
 
     def at(self, value: float) -> PeriodicSystem:
@@ -55,7 +54,7 @@ class Point:
 
     @property
     def u(self) -> Floats:
-        """Where it lies, in the units of the family."""
+        """Vector u of the point, in the units of the family."""
         states = self.chain.states.ravel()
         return np.asarray(np.append(states, self.value) / self.family.units(states.size))
 
@@ -67,7 +66,7 @@ class Point:
 
     @cached_property
     def tangent(self) -> Floats:
-        """Unit vector along the family; `along` gives its sense."""
+        """Unit vector along the family; `along` chooses its sense."""
         return np.asarray(np.linalg.svd(self.jacobian)[2][-1])
 
     def along(self, direction: Floats) -> Floats:
@@ -76,12 +75,12 @@ class Point:
 
     @cached_property
     def map_derivative(self) -> Floats:
-        """Derivative of the map of which the first state is a fixed point."""
+        """Derivative of the map that has the first state as a fixed point."""
         return self.chain.map_derivative
 
     @cached_property
     def map_multipliers(self) -> Complexes:
-        """Eigenvalues of the map's derivative, the largest first; of a half orbit their squares are multipliers."""
+        """Eigenvalues of the map's derivative, the largest first; for a half orbit the squares are multipliers."""
         found = np.linalg.eigvals(self.map_derivative).astype(complex)
         return found[np.argsort(-np.abs(found), kind="stable")]
 
@@ -92,12 +91,12 @@ class Point:
 
 
 def corrected(family: Family, u: Floats, normal: Floats) -> tuple[Point, int] | Status:
-    """Return the point of the family in the plane through `u` across `normal`, and how many steps led there.
+    """Return the point of the family in the plane through `u` across `normal`, and the number of Newton steps.
 
     Returns
     -------
     tuple or Status
-        LOST or GONE where the orbit comes to the upright or leaves for good, FAILED where no point was reached.
+        LOST if the orbit reaches the vertical, GONE if it leaves for good, FAILED if no point was reached.
     """
     order = family.system.order
     arcs = (u.size - 1) // order
@@ -107,14 +106,14 @@ def corrected(family: Family, u: Floats, normal: Floats) -> tuple[Point, int] | 
         try:
             value = float(here[-1] * units[-1])
             system, change = family.at(value), family.system.derivative(family.name, value)
-        except StylobateError:  # the parameter has left what can be
+        except StylobateError:  # the parameter has left its range
             return Status.FAILED
         states = (here[:-1] * units[:-1]).reshape(arcs, order)
         chain = shots(system, states, family.covered, sense=family.sense, change=change)
         if chain.status is not Status.DONE:
             return chain.status
         point = Point(family, value, chain)
-        # What is left to the plane is zero but for the first steps.
+        # The distance from the plane is zero after the first steps.
         matrix = np.vstack([point.jacobian, normal])
         residual = np.append(chain.residual.ravel(), normal @ (here - u))
         try:

@@ -1,4 +1,4 @@
-"""Checks of what orbits, branches and curves are asked for with."""
+"""Checks of the arguments for orbits, branches and curves."""
 
 import math
 from collections.abc import Sequence
@@ -35,14 +35,14 @@ def require_orbit(orbit: PeriodicOrbit) -> None:
 
 
 def require_bifurcation(bifurcation: Bifurcation) -> None:
-    """Raise ParameterError unless `bifurcation` is one."""
+    """Raise ParameterError unless `bifurcation` is a Bifurcation."""
     if not isinstance(bifurcation, Bifurcation):
         message = f"bifurcation must be one of a branch, such as branch.bifurcations[0]; got {bifurcation!r}"
         raise ParameterError(message)
 
 
 def control_of(control: StepControl | None) -> StepControl:
-    """Return the control of the steps, the usual one for None."""
+    """Return the control of the steps; the default control for None."""
     if control is None:
         return StepControl()
     if not isinstance(control, StepControl):
@@ -52,7 +52,7 @@ def control_of(control: StepControl | None) -> StepControl:
 
 
 def require_followed(parameter: str) -> None:
-    """Raise ParameterError if `parameter` changes no orbit."""
+    """Raise ParameterError if `parameter` does not change orbits."""
     if parameter == "delay":
         message = (
             "parameter must be a number that changes the orbit, got 'delay': a delay shifts the base motion in time, "
@@ -62,7 +62,7 @@ def require_followed(parameter: str) -> None:
 
 
 def enclosing(system: PeriodicSystem, bounds: Sequence[float], parameter: str, value: float) -> tuple[float, float]:
-    """Return the bounds, or raise ParameterError unless they are two possible numbers that enclose `value`."""
+    """Return the bounds, or raise ParameterError unless they are two valid numbers that enclose `value`."""
     try:
         low, high = (float(bound) for bound in bounds)
     except (TypeError, ValueError):
@@ -72,7 +72,7 @@ def enclosing(system: PeriodicSystem, bounds: Sequence[float], parameter: str, v
         raise ParameterError(message)
     for bound in (low, high):
         try:
-            # A negative one is the same motion at another phase.
+            # A negative acceleration is the same motion at another phase.
             if parameter == "acceleration":
                 require_not_negative(parameter, bound)
             system.changed(**{parameter: bound})

@@ -20,9 +20,9 @@ from stylobate.orbits.normal_forms import (
 from stylobate.orbits.orbit import PeriodicOrbit
 from stylobate.orbits.shooting import shots
 
-# Along the family, in its units: the parameter is located better than this times the width of its bounds.
+# Accuracy of the location along the family, in its units; for the parameter, times the width of its bounds.
 _LOCATED = 1e-13
-# A multiplier this near to the unit circle is the critical one.
+# A multiplier within this distance of the unit circle is critical.
 _CRITICAL = 1e-4
 
 
@@ -37,7 +37,7 @@ class Kind(Enum):
     """Another branch crosses this one."""
     PERIOD_DOUBLING = "period doubling"
     NEIMARK_SACKER = "Neimark-Sacker"
-    """A modulated motion branches off; not located without damping, where pairs stay on the unit circle."""
+    """A modulated motion branches off; not located without damping, because pairs then stay on the unit circle."""
 
 
 @dataclass(frozen=True)
@@ -58,7 +58,7 @@ class Bifurcation:
         Coefficient of the normal form; NaN if it decides nothing. The bifurcation is supercritical if it is negative
         (Neimark-Sacker) or positive (pitchfork, period doubling).
     supercritical
-        Whether the loss of stability is supercritical (soft): stable motions branch off. None if the orbit is unstable
+        Whether the loss of stability is supercritical: stable motions branch off. None if the orbit is unstable
         on both sides, at folds and branch points, and without damping: there the coefficient decides nothing.
     critical_vector
         Disturbance of the state that neither grows nor decays (real part), of length 1.
@@ -88,7 +88,7 @@ class Bifurcation:
 
 
 def between(first: Point, second: Point, sense: Floats) -> tuple[Bifurcation, ...]:
-    """Return the bifurcations between two points that follow each other, in their order."""
+    """Return the bifurcations between two consecutive points, in their order."""
     found = []
     for name, condition in conditions_between(first, second).items():
         if not condition(first, sense) * condition(second, sense) < 0.0:
@@ -107,7 +107,7 @@ def _located(first: Point, second: Point, sense: Floats, condition: Condition) -
 
     def value(at: float) -> float:
         if at not in points:
-            # Between the two points the family is followed from the chord.
+            # Between the two points the first guess lies on the chord.
             guess = first.u + (second.u - first.u) * (at / length)
             guess = guess + sense * (at - float((guess - first.u) @ sense))
             found = corrected(first.family, guess, sense)
@@ -134,7 +134,7 @@ def orbit_at(point: Point) -> PeriodicOrbit:
 
 
 def _classified(point: Point, sense: Floats, name: str) -> Bifurcation | None:
-    """Return the bifurcation at a zero of this condition; None if it is none."""
+    """Return the bifurcation at a zero of this condition; None if the zero is not a bifurcation."""
     orbit, family = orbit_at(point), point.family
     values = point.map_multipliers
     period_map = PeriodMap(orbit.system, orbit.state, family.covered, family.sense)

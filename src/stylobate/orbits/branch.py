@@ -1,4 +1,4 @@
-"""Branches: families of periodic orbits with what happens on them."""
+"""Branches: continuation of families of periodic orbits with their bifurcations."""
 
 import json
 import math
@@ -66,7 +66,7 @@ class Branch:
         Raises
         ------
         ParameterError
-            If the value is no finite number.
+            If the value is not a finite number.
         """
         value = require_finite("value", value)
         found = list[tuple[float, Point]]()
@@ -83,7 +83,7 @@ class Branch:
 
     @cached_property
     def points(self) -> xr.Dataset:
-        """The points as data over `point`: the parameter, tilts [rad], multipliers, stability, turns a period."""
+        """The points as data over `point`: parameter, tilts [rad], multipliers, stability, turns per period."""
         orbits = [orbit_at(point) for point in self.path]
         multipliers = np.stack([point.multipliers for point in self.path])
         first = orbits[0]
@@ -92,7 +92,7 @@ class Branch:
             "minimum_tilt": ([orbit.minimum_tilt for orbit in orbits], "rad", "minimum tilt angle"),
             "peak_tilt": ([orbit.peak_tilt for orbit in orbits], "rad", "peak tilt angle"),
             "phase": ([phase_of(orbit) for orbit in orbits], "rad", "phase of the lean to the base acceleration"),
-            "turns": ([orbit.turns for orbit in orbits], "1", "turns of the contact point a period"),
+            "turns": ([orbit.turns for orbit in orbits], "1", "turns of the contact point per period"),
         }
         data = {
             name: ("point", np.array(values), {"units": units, "long_name": long_name})
@@ -131,7 +131,7 @@ class Branch:
         return write(self._data(), path)
 
     def _data(self) -> xr.Dataset:
-        """Return the points and bifurcations from which it is shot again."""
+        """Return the states of points and bifurcations, from which shooting recovers the branch."""
         family, found = self.path[0].family, self.bifurcations
         located = [one.point for one in found]
         shape = (len(found), *self.path[0].chain.states.shape)
@@ -171,7 +171,7 @@ class Branch:
         )
 
     def __repr__(self) -> str:
-        """Describe it in one line."""
+        """Describe the branch in one line."""
         values = [point.value for point in self.path]
         kinds = ", ".join(f"{one.kind.value} at {one.parameter:.8g}" for one in self.bifurcations)
         return f"Branch({len(values)} orbits, {self.parameter} {min(values):.6g}…{max(values):.6g}; {kinds})"
@@ -190,9 +190,9 @@ def _table_of(bifurcations: tuple[Bifurcation, ...]) -> dict[str, tuple[str, lis
 
 
 def phase_of(orbit: PeriodicOrbit) -> float:
-    """Return the phase of the part of the lean that turns once a period with the base acceleration [rad].
+    """Return the phase between lean and base acceleration [rad], from their components that turn once per period.
 
-    NaN where the contact point does not turn so, or no part of the acceleration does.
+    The result is NaN if the contact point does not turn once per period, or the acceleration has no such component.
     """
     sense = round(orbit.turns)
     if abs(sense) != 1 or orbit.planar:
@@ -266,9 +266,9 @@ def continue_branch(
     control = control_of(control)
     value = present_value(orbit.model, orbit.motion, parameter)
     low, high = enclosing(orbit.system, bounds, parameter, value)
-    start = taken_up(orbit, parameter, value, high - low)
+    start = point_of(orbit, parameter, value, high - low)
     if isinstance(start, Status):
-        message = f"the orbit could not be taken up at {parameter} = {value!r}: {WHY_LOST[start]}"
+        message = f"the continuation could not start at {parameter} = {value!r}: {WHY_LOST[start]}"
         raise NoOrbitError(message)
     up = np.zeros_like(start.u)
     up[-1] = 1.0
@@ -276,12 +276,12 @@ def continue_branch(
 
 
 def seen_by(progress: Callable[[float], None] | None) -> Callable[[Point], None] | None:
-    """Return what hears of points, if `progress` is to hear of their parameters."""
+    """Return a callback for points that passes their parameter to `progress`; None without `progress`."""
     return None if progress is None else (lambda point: progress(point.value))
 
 
-def taken_up(orbit: PeriodicOrbit, parameter: str, value: float, span: float) -> Point | Status:
-    """Return the orbit as a point of its family: by half of it where it has the inversion, which the family keeps."""
+def point_of(orbit: PeriodicOrbit, parameter: str, value: float, span: float) -> Point | Status:
+    """Return the orbit as a point of its family, which covers half the orbit if the orbit has the inversion."""
     states = orbit.chain.states
     if orbit.inversion:
         family = Family(orbit.system, orbit.periods, parameter, span, sense=-1.0)
@@ -301,7 +301,7 @@ def branch_through(
     *,
     both_ways: bool = True,
 ) -> Branch:
-    """Return the branch through a point, followed in the sense of `direction`, and the other way too."""
+    """Continue the branch through a point in the sense of `direction`, and with `both_ways` against it too."""
     forward = trace(start, direction, bounds, control, seen)
     if forward.end is End.CLOSED or not both_ways:
         return _joined(start.family.name, forward, None)
@@ -319,6 +319,6 @@ def _joined(name: str, forward: Stretch, backward: Stretch | None) -> Branch:
     for first, second, sense in zip(points, points[1:], directions, strict=False):
         located = between(first, second, sense)
         found += located
-        # Where stability changes there is a point of the path.
+        # The path has a point at each change of stability.
         path += [*(one.point for one in located), second]
     return Branch(name, tuple(path), tuple(found), (first_end, forward.end))

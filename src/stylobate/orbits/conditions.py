@@ -1,4 +1,4 @@
-"""What changes sign where the family of an orbit bifurcates; μ are the eigenvalues of the map over what is shot."""
+"""Test functions of bifurcations, which change sign there; μ are the eigenvalues of the shooting map."""
 
 from collections.abc import Callable
 from itertools import combinations
@@ -10,40 +10,40 @@ from stylobate.orbits.multipliers import least_are_rounding, without_damping
 
 
 def fold(point: Point, direction: Floats) -> float:
-    """Return the part of the tangent along the parameter: the family turns back where it is zero."""
+    """Return the component of the tangent along the parameter: the family turns back at a zero."""
     return float(point.along(direction)[-1])
 
 
 def branching(point: Point, direction: Floats) -> float:
-    """Return the determinant of the equations with the tangent: other families cross this one where it is zero.
+    """Return the determinant of the equations with the tangent: another family crosses this family at a zero.
 
-    It is that of the map over the whole period, whatever the number of arcs.
+    The determinant is that of the map over the whole period, for any number of arcs.
     """
     order = point.chain.states.shape[1]
     unit = point.family.system.scale
     rows = np.column_stack(
         [point.map_derivative - np.eye(order), point.chain.map_sensitivity * point.family.span / unit]
     )
-    # The tangent of the map's family: the same family seen at the first state.
+    # The tangent of the family at the first state.
     tangent = point.along(direction)
     first = np.append(tangent[:order], tangent[-1])
     return float(np.linalg.det(np.vstack([rows, first])))
 
 
 def period_doubling(point: Point, _: Floats) -> float:
-    """Return Π(μ + 1): at zero an orbit of double length is born; of a half orbit, one without its symmetry."""
+    """Return Π(μ + 1): at a zero an orbit of double length branches off; for a half orbit, one without its symmetry."""
     order = point.chain.states.shape[1]
     return float(np.linalg.det(point.map_derivative + np.eye(order)))
 
 
 def neimark_sacker(point: Point, _: Floats) -> float:
-    """Return Π(μ_i μ_j − 1) over pairs, zero where a complex pair is on the unit circle, or a real one reciprocal."""
+    """Return Π(μ_i μ_j − 1) over pairs: zero if a complex pair is on the unit circle, or a real pair is reciprocal."""
     pairs = combinations(point.map_multipliers, 2)
     return float(np.prod([first * second - 1.0 for first, second in pairs]).real)
 
 
 def complex_pairs(point: Point, _: Floats) -> float:
-    """Return Π(|μ|² − 1) over complex pairs, zero where one is on the unit circle."""
+    """Return Π(|μ|² − 1) over complex pairs, zero if a pair is on the unit circle."""
     return float(np.prod([abs(one) ** 2 - 1.0 for one in _upper(point)]))
 
 
@@ -62,14 +62,14 @@ CONDITIONS: dict[str, Condition] = {
 
 
 def conditions_between(first: Point, second: Point) -> dict[str, Condition]:
-    """Return the conditions whose signs reveal bifurcations between two points that follow each other."""
+    """Return the conditions whose signs show bifurcations between two consecutive points."""
     found = dict(CONDITIONS)
     ends = (first, second)
     if any(without_damping(point.multipliers) for point in ends):
-        # There 1/μ goes with each multiplier μ: Π(μ_i μ_j − 1) is zero, and its sign that of rounding.
+        # Without damping 1/μ is a multiplier too: Π(μ_i μ_j − 1) is zero, and rounding decides its sign.
         del found["Neimark-Sacker"]
     elif any(least_are_rounding(point.multipliers) for point in ends):
-        # So is the sign of the product of the largest and the least; a complex pair is known all the same.
+        # Rounding also decides the sign for the largest and the smallest multiplier, but not for a complex pair.
         del found["Neimark-Sacker"]
         if len(_upper(first)) == len(_upper(second)) > 0:
             found["Neimark-Sacker"] = complex_pairs

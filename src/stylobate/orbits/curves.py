@@ -29,10 +29,10 @@ _log = logging.getLogger("stylobate")
 Floats = npt.NDArray[np.float64]
 
 _CLOSE, _MOST_STEPS = 1e-10, 12
-# Step of the differences from which Newton's method takes the derivative of the condition; it moves no solution.
+# Step of the differences for the derivative of the condition; it does not move the solution of Newton's method.
 _STEP = 1e-6
 _LONGER, _SHORTER, _EASY, _HARD, _STRAIGHT = 1.5, 0.5, 4, 7, 0.95
-# A pair of multipliers this near to the real axis is about to leave the circle.
+# A pair of multipliers within this distance of the real axis is about to leave the circle.
 _REAL = 1e-3
 
 
@@ -82,7 +82,7 @@ class BifurcationCurve:
     ends
         Reasons why the curve ends, on either side.
     plane
-        What carries the orbits.
+        The plane of the two parameters, with the system.
     """
 
     kind: Kind
@@ -129,7 +129,7 @@ class BifurcationCurve:
         return write(self._data(), path)
 
     def _data(self) -> xr.Dataset:
-        """Return the points from which it is shot again."""
+        """Return the states of the points, from which shooting recovers the curve."""
         plane, critical = self.plane, np.array([point.multiplier for point in self.path])
         return xr.Dataset(
             {
@@ -149,7 +149,7 @@ class BifurcationCurve:
         )
 
     def __repr__(self) -> str:
-        """Describe it in one line."""
+        """Describe the curve in one line."""
         return f"BifurcationCurve({self.kind.value} over {' and '.join(self.parameters)}, {len(self.path)} points)"
 
 
@@ -191,10 +191,10 @@ def bifurcation_curve(
     control = control_of(control)
     first = bifurcation.point.family.name
     if bifurcation.kind not in _CONDITIONS:
-        message = f"bifurcation must be no branch point, which a second parameter breaks up; got {bifurcation!r}"
+        message = f"bifurcation must not be a branch point, which a second parameter breaks up; got {bifurcation!r}"
         raise ParameterError(message)
     if parameter == first:
-        message = f"parameter must be another than {first}, along which the bifurcation was found"
+        message = f"parameter must differ from {first}, over which the bifurcation was found"
         raise ParameterError(message)
     system = bifurcation.orbit.system
     at = (bifurcation.parameter, present_value(system.model, system.motion, parameter))
@@ -215,7 +215,7 @@ def bifurcation_curve(
     guess = np.concatenate([bifurcation.point.chain.states.ravel(), at])
     start = plane.corrected(guess / plane.units(guess.size - 2), None)
     if isinstance(start, End):
-        message = f"the curve could not be begun: {start.value}"
+        message = f"the curve could not start: {start.value}"
         raise NoOrbitError(message)
     forward, last = _followed(plane, start, 1.0, bounds, control)
     if last is End.CLOSED:
@@ -236,7 +236,7 @@ def _pairs(bounds: tuple[tuple[float, float], tuple[float, float]]) -> tuple[Seq
 
 @dataclass(frozen=True)
 class _Step:
-    """A corrected point with what is needed to go on."""
+    """A corrected point with the values for the next step."""
 
     point: CurvePoint
     u: Floats
@@ -246,7 +246,7 @@ class _Step:
 
 @dataclass(frozen=True)
 class Plane:
-    """The plane of two parameters, over which orbits of a system are carried."""
+    """The plane of two parameters, over which orbits of a system are continued."""
 
     system: PeriodicSystem
     names: tuple[str, str]
@@ -273,7 +273,7 @@ class Plane:
         return period_doubling_coefficient(period_map)
 
     def corrected(self, u: Floats, normal: Floats | None) -> _Step | End:
-        """Return the point of the curve in the plane through `u` across `normal`; nearest to `u` without one."""
+        """Return the point of the curve in the plane through `u` across `normal`, or without it the nearest to `u`."""
         here = u
         for steps in range(1, _MOST_STEPS + 1):
             try:
@@ -309,7 +309,7 @@ class Plane:
         return shots(system, states, self.covered, sense=self.sense, change=change)
 
     def _derivative(self, name: str, values: Floats) -> Numbers:
-        """Return how the numbers change with one parameter, the other as it is."""
+        """Return the derivative of the numbers by one parameter at a fixed value of the other."""
         place = self.names.index(name)
         other = self.names[1 - place]
         return self.system.changed(**{other: float(values[1 - place])}).derivative(name, float(values[place]))
@@ -358,7 +358,7 @@ def _followed(
         _log.info("%d points of a curve of bifurcations, at %.4g, %.4g", len(points), *points[-1].values)
         guess = here.u + length * sense
         found = plane.corrected(guess, sense)
-        # Farther off lies another curve, on which Newton's method has come by chance.
+        # A point farther away may lie on another curve.
         if not isinstance(found, End) and np.linalg.norm(found.u - guess) > ASTRAY * length:
             found = End.SHORT
         bent = not isinstance(found, End) and abs(found.tangent @ sense) < _STRAIGHT
@@ -386,7 +386,7 @@ def _followed(
 def _at_bound(
     plane: Plane, here: _Step, beyond: _Step, bounds: tuple[tuple[float, float], tuple[float, float]], which: int
 ) -> CurvePoint | None:
-    """Return the point of the curve on the bound of one parameter, between two points of it."""
+    """Return the point of the curve on the bound of one parameter, between two points of the curve."""
     low, high = bounds[which]
     bound = low if beyond.point.values[which] < low else high
     entry = which - 2  # the parameters are the last two

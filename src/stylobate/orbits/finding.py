@@ -1,4 +1,4 @@
-"""Find periodic orbits: from a guess, from theory, from a run, from random initial conditions."""
+"""Search for periodic orbits from a guess, from theory, from a run, or from random initial conditions."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -23,11 +23,11 @@ from stylobate.results.random_numbers import Rng, seed_of
 Floats = npt.NDArray[np.float64]
 
 _LEAN = 4
-# Two orbits are one if their states differ by less than this part of c, at one of the phases they can share.
+# Two orbits are the same if their states differ by less than this fraction of c, at one of their possible phases.
 _SAME = 1e-6
 _DEFLATED_STEPS = 40
 _CLOSE = 1e-10
-# Tilt and tilt rate below this part of c are none.
+# Tilt and tilt rate below this fraction of c count as zero.
 _STANDING = 1e-12
 
 
@@ -106,18 +106,18 @@ def periodic_orbit(
 
 
 def _require_moving(model: Model, lean: Floats) -> None:
-    """Raise NoOrbitError if the column is upright there and does not move."""
+    """Raise NoOrbitError if the column stands upright at the guess and does not move."""
     size = np.hypot(*lean[:2]), np.hypot(*lean[2:_LEAN]) * model.time_scale
     if max(size) < _STANDING * model.column.slenderness:
         message = (
-            "no periodic orbit was reached: at the guess the column stands upright and does not move, which is no "
-            "orbit; give a tilt, or a tilt rate, of the motion that is sought, or a run that still moves"
+            "no periodic orbit was reached: at the guess the column stands upright and does not move, which is not an "
+            "orbit. Give a tilt or a tilt rate of the motion, or a run that still moves."
         )
         raise NoOrbitError(message)
 
 
 def _start(model: Model, motion: BaseMotion, lean: Floats) -> tuple[Floats, tuple[float, float] | None]:
-    """Return the state in units of the model, along the line of a plane if it and the base motion lie in one."""
+    """Return the state in units of the model, and the line of its plane if state and base motion are planar."""
     state = np.array(model.start(tuple(lean[:2]), tuple(lean[2:_LEAN])), dtype=float)
     if model.spin_state is not None and lean.size > _LEAN:
         state[model.spin_state] = lean[_LEAN] * model.time_scale
@@ -184,13 +184,13 @@ def periodic_orbits(
                 if one is not None and not _is_known(one.state, known, system.scale):
                     found.append(one)
                     known.extend(one.states(one.periods).T)
-    # Images have the same tilts but for rounding: they stay in the order in which they were found.
+    # Symmetry-related orbits have the same tilts up to rounding: they stay in the order of the search.
     same = _SAME * system.scale
     return tuple(sorted(found, key=lambda orbit: (orbit.periods, round(orbit.peak_tilt / same))))
 
 
 def _deflated(system: PeriodicSystem, state: Floats, periods: int, known: Sequence[Floats]) -> Shots | None:
-    """Return the orbit to which the deflated method leads, or None."""
+    """Return the orbit that the deflated method finds, or None."""
     chain = shots(system, state[np.newaxis], periods)
     if chain.status is not Status.DONE:
         return None
@@ -213,11 +213,11 @@ def _is_known(state: Floats, known: Sequence[Floats], scale: float) -> bool:
 
 
 def _mirrored(orbit: PeriodicOrbit) -> PeriodicOrbit | None:
-    """Return the mirror image of an orbit under a base motion along a line; None under another, or if it is none."""
+    """Return the mirror image of an orbit under a straight base motion; None for other motions or without an orbit."""
     line = common_line(*orbit.motion.directions())
     if line is None:
         return None
-    # Twice the part along the line, less the whole.
+    # Twice the component along the line, minus the vector.
     tilt, rate = (2.0 * (vector @ line) * np.array(line) - vector for vector in (orbit.tilt, orbit.tilt_rate))
     state = np.array(orbit.model.start(tuple(tilt), tuple(rate)), dtype=float)
     try:
@@ -229,7 +229,7 @@ def _mirrored(orbit: PeriodicOrbit) -> PeriodicOrbit | None:
 
 
 def _repelled(step: Floats, states: Floats, known: Sequence[Floats], scale: float) -> Floats:
-    """Return Newton's step for the residual times Π(1 + 1/|x − x_k|²), x in units of c."""
+    """Return Newton's step for the residual times Π(1 + 1/|x − x_k|²), with x in units of c."""
     if not known:
         return step
     apart = (states[0] - np.stack(known)) / scale
@@ -237,11 +237,11 @@ def _repelled(step: Floats, states: Floats, known: Sequence[Floats], scale: floa
     # d ln(1 + 1/s)/ds = −1/(s(s + 1))
     growth = -2.0 * (apart @ step[0]) / scale / (square * (square + 1.0))
     factor = 1.0 - float(growth.sum())
-    return step / factor if abs(factor) > 1e-3 else step  # noqa: PLR2004  where it is singular, a plain step
+    return step / factor if abs(factor) > 1e-3 else step  # noqa: PLR2004  if singular, a plain step
 
 
 def _shortest(orbit: PeriodicOrbit) -> PeriodicOrbit:
-    """Return the orbit with its least period."""
+    """Return the orbit with its minimal period."""
     for periods in range(1, orbit.periods):
         if orbit.periods % periods == 0:
             flow = orbit.system.carry(orbit.state, 0.0, float(periods))
@@ -294,7 +294,7 @@ def _of_run(run: Response, model: Model, motion: BaseMotion) -> Floats:
     period = motion.period
     time = run.data["time"].to_numpy()
     if period is None or time[-1] < period:
-        message = f"guess: the run must last for a period of the base motion at least, it ends at {time[-1]:.6g} s"
+        message = f"guess: the run must last at least one period of the base motion, but ends at {time[-1]:.6g} s"
         raise ParameterError(message)
     whole = math.floor(time[-1] / period * (1.0 + 1e-12)) * period
     at = run.sample(min(whole, time[-1])) if run.sampler is not None else run.data.interp(time=[whole], method="cubic")

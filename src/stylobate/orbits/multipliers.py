@@ -1,28 +1,28 @@
-"""Floquet multipliers within rounding: stability, damping, and where rounding dominates."""
+"""Floquet multipliers within rounding: stability, damping and limits of accuracy."""
 
 import numpy as np
 import numpy.typing as npt
 
 Complexes = npt.NDArray[np.complex128]
 
-# A multiplier this near to the unit circle cannot be distinguished from one on it.
+# A multiplier within this distance of the unit circle cannot be distinguished from a multiplier on the circle.
 _NEUTRAL = 1e-9
-# Rounding of the product of all multipliers, as measured without damping, is this times the square of the largest;
-# beyond the last number it says nothing about it.
+# Rounding error of the product of all multipliers, as measured without damping, over the square of the largest; and the
+# error above which the product is unknown.
 _ROUNDING, _UNKNOWN = 1e-14, 0.1
 
 
 def without_damping(multipliers: Complexes) -> bool:
-    """Return whether volumes of states keep their size: the product of all multipliers is 1.
+    """Return whether the flow preserves volumes of states: the product of all multipliers is 1.
 
-    Each of them is known to 1e-9, and a large one leaves its rounding in the least.
+    Multipliers are accurate to 1e-9, and the smallest contains the rounding error of a large one.
     """
     allowed = len(multipliers) * _NEUTRAL + min(_rounding_of_product(multipliers), _UNKNOWN)
     return bool(abs(np.prod(multipliers) - 1.0) <= allowed)
 
 
 def least_are_rounding(multipliers: Complexes) -> bool:
-    """Return whether the least multiplier is no more than the rounding of the largest, and their product too."""
+    """Return whether rounding of the largest multiplier dominates the smallest one and the product of all."""
     return _rounding_of_product(multipliers) > _UNKNOWN
 
 

@@ -1,8 +1,8 @@
-"""Is a loss of stability supercritical or subcritical: normal-form coefficients of the map over one period.
+"""Normal-form coefficients of the map over one period: supercritical or subcritical loss of stability.
 
 Yu. A. Kuznetsov, "Elements of Applied Bifurcation Theory", 3rd ed., sections 5.4 and 8.7: coefficients of maps on the
-critical manifold. The map's first derivative is exact; its second and third ones are differences of it, right to about
-1e-8 and 1e-6 of themselves.
+critical manifold. The first derivative of the map is exact; the second and third derivatives are its differences, with
+relative errors of about 1e-8 and 1e-6.
 """
 
 from dataclasses import dataclass
@@ -17,7 +17,7 @@ from stylobate.engine.flow.tableau import Status
 Floats = npt.NDArray[Any]
 Complexes = npt.NDArray[Any]
 
-# Of the size of the state.
+# Steps of the differences, as fractions of the size of the state.
 _SECOND, _THIRD = 2e-3, 5e-3
 
 
@@ -80,7 +80,7 @@ def critical_vectors(matrix: Floats, multiplier: complex) -> tuple[Complexes, Co
     q = vectors[:, np.argmin(np.abs(values - multiplier))].astype(complex)
     left_values, left = np.linalg.eig(matrix.T)
     p = left[:, np.argmin(np.abs(left_values - np.conj(multiplier)))].astype(complex)
-    # A real vector, but for its phase, is made real.
+    # A vector that is real up to a phase becomes real.
     if abs(multiplier.imag) == 0.0:
         q, p = q.real.astype(complex), p.real.astype(complex)
     q = q / np.linalg.norm(q)
@@ -88,7 +88,7 @@ def critical_vectors(matrix: Floats, multiplier: complex) -> tuple[Complexes, Co
 
 
 def neimark_sacker_coefficient(period_map: PeriodMap, multiplier: complex) -> float:
-    """Return d, the first Lyapunov coefficient of the map: below zero a stable torus is born (supercritical)."""
+    """Return d, the first Lyapunov coefficient of the map: below zero a stable torus branches off (supercritical)."""
     matrix = period_map.derivative(np.zeros_like(period_map.state))
     q, p = critical_vectors(matrix, multiplier)
     unit = multiplier / abs(multiplier)
@@ -101,7 +101,7 @@ def neimark_sacker_coefficient(period_map: PeriodMap, multiplier: complex) -> fl
 
 
 def period_doubling_coefficient(period_map: PeriodMap) -> float:
-    """Return the cubic coefficient of the flip: above zero a stable orbit of double period is born (supercritical)."""
+    """Return the cubic coefficient of the flip: above zero a stable orbit of double period branches off."""
     matrix = period_map.derivative(np.zeros_like(period_map.state))
     q, p = critical_vectors(matrix, -1.0 + 0.0j)
     inner = np.linalg.solve(np.eye(len(matrix)) - matrix, period_map.b(q, q))

@@ -1,7 +1,7 @@
-"""Steady rolling by theory, taken from a circular base motion to an elliptic or a straight one.
+"""Steady rolling by theory, continued from a circular base motion to an elliptic or a straight one.
 
-An elliptic motion is the sum of two circular ones of opposite sense. Under one of them alone steady rolling is known
-exactly; the other is then added by and by.
+An elliptic motion is the sum of two circular motions of opposite sense. Steady rolling under one circular motion is
+known exactly; the continuation adds the other motion step by step.
 """
 
 import cmath
@@ -44,7 +44,7 @@ class _Circles:
         return cls(0.5 * (x + 1j * y), 0.5 * (x.conjugate() + 1j * y.conjugate()), motion.angular_frequency)
 
     def motion(self, part: float, sense: int) -> Harmonic:
-        """Return the motion with the circle against `sense` made smaller to this part."""
+        """Return the motion with the circle against `sense` reduced to the fraction `part`."""
         forward = self.forward * (1.0 if sense > 0 else part)
         backward = self.backward * (part if sense > 0 else 1.0)
         x, y = forward + backward.conjugate(), -1j * (forward - backward.conjugate())
@@ -58,15 +58,15 @@ class _Circles:
 def rolling_by_theory(model: Model, motion: BaseMotion, sense: int | None) -> Floats:
     """Return the state at t = 0 of rolling with the base motion in this sense, in units of the model.
 
-    Without a sense it is that of the larger of the two circles, anticlockwise if they are equal.
+    The default sense is that of the larger of the two circles, anticlockwise if they are equal.
 
     Raises
     ------
     UnsupportedError
-        If the model states no closed form of steady rolling, a number of it lies outside the closed form, or the motion
-        is no horizontal Harmonic.
+        If the model states no closed form of steady rolling, a parameter of the model lies outside the closed form, or
+        the motion is not a horizontal Harmonic.
     NoOrbitError
-        If theory has no such motion, or it is lost on the way to this base motion.
+        If theory has no such motion, or the continuation to this base motion fails.
     """
     form = _form_of(model)
     harmonic = as_harmonic(motion)
@@ -102,7 +102,7 @@ def rolling_by_theory(model: Model, motion: BaseMotion, sense: int | None) -> Fl
 
 
 def _form_of(model: Model) -> ClosedForm:
-    """Return the closed form of the steady rolling of a model, or raise UnsupportedError where it has none."""
+    """Return the closed form of the steady rolling of a model, or raise UnsupportedError without one."""
     form = rolling_form_of(model)
     if form is None:
         message = f"{_GIVE}: {type(model).__name__} states no closed form of steady rolling for its equations"
@@ -124,7 +124,7 @@ def require_sense(sense: int | None) -> None:
 
 
 def _rolling(model: Model, motion: Harmonic, guess: Floats, sense: int) -> Floats | None:
-    """Return the orbit that Newton's method finds from `guess` if it rolls in this sense, else None."""
+    """Return the orbit that Newton's method finds from `guess` if the orbit rolls in this sense, or None."""
     try:
         chain = closed(PeriodicSystem(model, motion), guess[np.newaxis], 1)
     except NoOrbitError:

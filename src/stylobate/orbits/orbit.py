@@ -20,9 +20,9 @@ Floats = npt.NDArray[np.float64]
 Complexes = npt.NDArray[np.complex128]
 
 _SAMPLES = 128
-# An orbit has a symmetry if it is its own image to this part of its size.
+# An orbit has a symmetry if it differs from its image by at most this fraction of its size.
 _SAME = 1e-7
-# A state in a plane this near to the upright [c] is in a passage of it; what is [turns] a little later.
+# Tilt [c] below which a planar state is in a passage of the vertical, and a short time after the passage [periods].
 _PASSING, _LATER = 1e-9, 0.03
 
 
@@ -87,7 +87,7 @@ class PeriodicOrbit:
 
     @cached_property
     def system(self) -> PeriodicSystem:
-        """The system of which it is an orbit."""
+        """The system of the orbit."""
         return PeriodicSystem(self.model, self.motion, self.line, self.rtol)
 
     @cached_property
@@ -98,10 +98,10 @@ class PeriodicOrbit:
 
     @property
     def _monodromy(self) -> Floats:
-        """Derivative of the state after the orbit by one at its start.
+        """Derivative of the state after the orbit by the state at its start.
 
-        Where it starts in a passage of the upright, whether that jump counts at the start or at the end is left to
-        rounding: there it is taken from a little later, with the same eigenvalues.
+        If the orbit starts in a passage of the vertical, rounding decides whether the jump counts at the start or at
+        the end. The derivative then starts a short time later; its eigenvalues are the same.
         """
         if not self.planar or abs(self.state[0]) > _PASSING * self.system.scale:
             return self.chain.monodromy
@@ -144,7 +144,7 @@ class PeriodicOrbit:
         states = np.empty((self.system.order, count))
         at, state, side = 0.0, self.state, 0.0
         for index, phase in enumerate(self.periods * np.arange(count) / count):
-            # Each arc starts on the orbit: the drift along an unstable one is left behind.
+            # Each arc starts on the orbit, so that drift along an unstable orbit does not accumulate.
             arc = int(phase * arcs / self.periods + 1e-12)
             begin = arc / arcs * self.periods
             if begin > at + 1e-12:
@@ -178,7 +178,7 @@ class PeriodicOrbit:
     def reflection(self) -> bool:
         """Whether the orbit is its own mirror image, half a period later, across the line of a straight base motion.
 
-        That is x(t + nT/2) = −x(t), y(t + nT/2) = y(t), x being along the line; False for other base motions.
+        That is x(t + nT/2) = −x(t), y(t + nT/2) = y(t), with x along the line; False for other base motions.
         """
         line = common_line(*self.motion.directions())
         if line is None:
@@ -197,14 +197,14 @@ class PeriodicOrbit:
         return write(self._data(), path)
 
     def _data(self) -> xr.Dataset:
-        """Return the states from which it is shot again."""
+        """Return the states from which shooting recovers the orbit."""
         states = (("arc", "state"), self.chain.states)
         return xr.Dataset({"states": states}, attrs=file_attributes(self.system, ORBIT, self.periods))
 
     def __repr__(self) -> str:
-        """Describe it in one line."""
+        """Describe the orbit in one line."""
         stability = "stable" if self.stable else "unstable"
-        kind = f"period {self.periods}, {self.turns:+.3g} turns a period"
+        kind = f"period {self.periods}, {self.turns:+.3g} turns per period"
         return f"PeriodicOrbit({stability}, {kind}, tilt {self.minimum_tilt:.6g}…{self.peak_tilt:.6g} rad)"
 
 

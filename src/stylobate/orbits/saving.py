@@ -1,4 +1,4 @@
-"""Orbits, branches and curves are saved with their system, from which they are shot again when they are read."""
+"""Saving of orbits, branches and curves with their system, from which shooting recovers them."""
 
 import json
 import math
@@ -14,10 +14,10 @@ from stylobate.errors import FileError, ParameterError, UnsupportedError
 from stylobate.results.storage import write_netcdf
 
 ORBIT, BRANCH, CURVE = "stylobate orbit 1", "stylobate branch 1", "stylobate bifurcation curve 1"
-"""The formats of their files."""
+"""Formats of the files of orbits, branches and curves."""
 
 SUPERCRITICAL = {True: 1, False: 0, None: -1}
-"""Code in files and tables of whether a loss of stability is supercritical; −1 if that is undecided."""
+"""Code of a supercritical loss of stability in files and tables; −1 if undecided."""
 
 SUPERCRITICAL_OF = {code: supercritical for supercritical, code in SUPERCRITICAL.items()}
 """Meaning of the code."""
@@ -37,7 +37,7 @@ def write(data: xr.Dataset, path: str | Path) -> Path:
     """
     path = path_of(path)
     if path.suffix != _SUFFIX:
-        message = f"path must end in {_SUFFIX}, which is what is written; got {str(path)!r}"
+        message = f"path must end in {_SUFFIX}, the format of the file; got {str(path)!r}"
         raise ParameterError(message)
     if not path.parent.is_dir():
         message = f"cannot write {path}: there is no folder {path.parent}"
@@ -46,7 +46,7 @@ def write(data: xr.Dataset, path: str | Path) -> Path:
 
 
 def path_of(path: str | Path) -> Path:
-    """Return `path`, or raise ParameterError if it is no name of a file."""
+    """Return `path`, or raise ParameterError if it is not the name of a file."""
     try:
         return Path(path)
     except TypeError:
@@ -55,7 +55,7 @@ def path_of(path: str | Path) -> Path:
 
 
 def file_attributes(system: PeriodicSystem, format_name: str, periods: int) -> dict[str, Any]:
-    """Return what a file states of the system and the length of an orbit.
+    """Return the attributes of a file: its format, the length of the orbit and the system.
 
     Raises
     ------

@@ -12,25 +12,25 @@ from stylobate.errors import NoOrbitError
 
 Floats = npt.NDArray[np.float64]
 
-# A state found counts as exact when Newton's step is below this part of it; rounding of the flow leaves about 1e-13.
+# A state counts as exact if Newton's step is below this fraction of it; rounding of the flow leaves about 1e-13.
 _CLOSE = 1e-10
 _MOST_STEPS, _MOST_HALVINGS = 25, 8
-# A step may make the residual grow by this much: far from an orbit Newton's way is not monotonic.
+# A step may increase the residual by this factor: far from an orbit Newton's method is not monotonic.
 _GROWTH = 2.0
 
 WHY_LOST = {
-    Status.LOST: "it comes within 1e-6 c of the upright, where its direction is lost, or so near that it loses energy",
+    Status.LOST: "it comes within 1e-6 c of the vertical, where its direction is undefined, or within the loss tilt",
     Status.GONE: "it leaves for tilts from which no motion returns",
-    Status.FAILED: "it cannot be followed with the wanted tolerance",
+    Status.FAILED: "the integration does not reach the tolerance",
 }
 
 
 @dataclass(frozen=True, slots=True)
 class Shots:
-    """A closed chain of arcs: states where arcs begin, shape (arcs, order), and how each arc was carried.
+    """A closed chain of arcs: states at the beginning of arcs, shape (arcs, order), and the flow along each arc.
 
-    With a `factor` other than ones it covers half an orbit that is its own image under x(t + nT/2) = −x(t), x being the
-    lean: the last arc ends at the opposite of the first state, which the factor makes of it.
+    With a `factor` other than ones the chain covers half an orbit with x(t + nT/2) = −x(t), where x is the lean: the
+    last arc ends at the opposite state of the first one, `factor` times the first state.
     """
 
     states: Floats
@@ -39,12 +39,12 @@ class Shots:
 
     @property
     def status(self) -> Status:
-        """DONE, or how the first arc that was not carried to its end went."""
+        """DONE, or the status of the first arc that does not reach its end."""
         return next((flow.status for flow in self.flows if flow.status is not Status.DONE), Status.DONE)
 
     @property
     def residual(self) -> Floats:
-        """Where each arc ends less where the next begins, shape (arcs, order)."""
+        """End of each arc minus the beginning of the next arc, shape (arcs, order)."""
         ends = np.stack([flow.end for flow in self.flows])
         ends[-1] *= self.factor
         return ends - np.roll(self.states, -1, axis=0)
@@ -68,7 +68,7 @@ class Shots:
 
     @property
     def map_derivative(self) -> Floats:
-        """Derivative of the closed map, of which the first state is a fixed point."""
+        """Derivative of the closed map, which has the first state as a fixed point."""
         product = np.eye(self.states.shape[1])
         for flow in self.flows:
             product = flow.by_start @ product
@@ -84,7 +84,7 @@ class Shots:
 
     @property
     def monodromy(self) -> Floats:
-        """Derivative of the state after the whole orbit by the one at its start."""
+        """Derivative of the state after the whole orbit by the state at its start."""
         once = self.map_derivative
         return once @ once if np.any(self.factor < 0.0) else once
 
@@ -93,26 +93,26 @@ class Shots:
 
     @property
     def turns(self) -> float:
-        """Turns of the lean about the upright over what is shot."""
+        """Turns of the lean about the vertical over all arcs."""
         return sum(flow.turns for flow in self.flows)
 
     @property
     def minimum_tilt(self) -> float:
-        """Minimum tilt met."""
+        """Minimum tilt of all arcs."""
         return min(flow.minimum_tilt for flow in self.flows)
 
     @property
     def peak_tilt(self) -> float:
-        """Peak tilt met."""
+        """Peak tilt of all arcs."""
         return max(flow.peak_tilt for flow in self.flows)
 
 
 def shots(
     system: PeriodicSystem, states: Floats, periods: float, *, sense: float = 1.0, change: Numbers | None = None
 ) -> Shots:
-    """Carry each of `states`, shape (arcs, order), over its arc of `periods` periods of the base motion.
+    """Integrate each of `states`, shape (arcs, order), over its arc; the arcs cover `periods` base periods.
 
-    With `sense` −1 they close at the opposite of the first state.
+    With `sense` −1 the chain closes at the opposite of the first state.
     """
     arcs = len(states)
     ends = [periods * arc / arcs for arc in range(arcs + 1)]
@@ -121,19 +121,19 @@ def shots(
         flow = system.carry(state, ends[arc], ends[arc + 1], change=change, side=side)
         flows.append(flow)
         if flow.status is not Status.DONE:
-            # The others are not looked at; their numbers stand in so that the chain is whole.
+            # The other arcs are not integrated; this flow stands in for them.
             flows.extend([flow] * (arcs - arc - 1))
             break
     return Shots(states, tuple(flows), system.image(sense))
 
 
 def closed(system: PeriodicSystem, guess: Floats, periods: int) -> Shots:
-    """Return the periodic orbit to which Newton's method leads from `guess`, shape (arcs, order).
+    """Find a periodic orbit by Newton's method from `guess`, shape (arcs, order).
 
     Raises
     ------
     NoOrbitError
-        If it leads to none.
+        If Newton's method finds no orbit.
     """
     chain = shots(system, guess, periods)
     if chain.status is not Status.DONE:
@@ -144,7 +144,7 @@ def closed(system: PeriodicSystem, guess: Floats, periods: int) -> Shots:
             break
         following = damped(system, chain, step, periods)
         if following is None:
-            raise NoOrbitError(_lost("on its way Newton's method", chain_status(system, chain, step, periods)))
+            raise NoOrbitError(_lost("Newton's method", chain_status(system, chain, step, periods)))
         close = np.abs(step).max() <= _CLOSE * np.abs(chain.states).max()
         chain = following
         if close:
@@ -154,7 +154,7 @@ def closed(system: PeriodicSystem, guess: Floats, periods: int) -> Shots:
 
 
 def newton_step(chain: Shots) -> Floats | None:
-    """Return Newton's step, shape (arcs, order), or None where its equations are singular."""
+    """Return Newton's step, shape (arcs, order), or None if its equations are singular."""
     try:
         step = np.linalg.solve(chain.matrix, -chain.residual.ravel()).reshape(chain.states.shape)
     except np.linalg.LinAlgError:
@@ -163,7 +163,7 @@ def newton_step(chain: Shots) -> Floats | None:
 
 
 def damped(system: PeriodicSystem, chain: Shots, step: Floats, periods: int) -> Shots | None:
-    """Return the chain after as much of `step` as can be made, or None."""
+    """Return the chain after the longest admissible fraction of `step`, or None."""
     before = float(np.linalg.norm(chain.residual))
     part = 1.0
     for _ in range(_MOST_HALVINGS):
@@ -176,7 +176,7 @@ def damped(system: PeriodicSystem, chain: Shots, step: Floats, periods: int) -> 
 
 
 def chain_status(system: PeriodicSystem, chain: Shots, step: Floats, periods: int) -> Status:
-    """Return how the chain after the whole `step` goes wrong."""
+    """Return the status of the chain after the whole `step`; FAILED if it is DONE."""
     status = shots(system, chain.states + step, periods).status
     return status if status is not Status.DONE else Status.FAILED
 
@@ -186,12 +186,12 @@ def _lost(what: str, status: Status) -> str:
 
 
 def arcs_of(system: PeriodicSystem, state: Floats, periods: float, arcs: int) -> Floats:
-    """Return states where arcs begin, on the run that begins in `state`.
+    """Return the states at the beginning of arcs, on the run that begins in `state`.
 
     Raises
     ------
     NoOrbitError
-        If the run does not last so long.
+        If the run ends before.
     """
     states = [np.asarray(state, dtype=float)]
     for arc in range(arcs - 1):

@@ -21,21 +21,21 @@ def rolling_form_of(model: Model) -> ClosedForm | None:
 def steady_rolling_of(
     form: ClosedForm, column: Column, nu: float, acceleration: float, branch: str = "upper"
 ) -> tuple[float, float, float]:
-    """Return tilt [rad], phase to the base acceleration [rad] and spin [ω0] of steady rolling; NaN where there is none.
+    """Return tilt [rad], phase to the base acceleration [rad] and spin [ω0] of steady rolling; NaN without it.
 
     Parameters
     ----------
     form
-        As of `rolling_form_of`, whose requirement is met.
+        Result of `rolling_form_of` for a model that meets its requirement.
     column
         The column.
     nu
         Frequency of the base [ω0], which moves anticlockwise.
     acceleration
-        Of the base [g].
+        Acceleration of the base [g].
     branch
         "upper" or "lower"; at finite tilt "upper" is the stable branch or, if none is, that of the phase nearest to 0.
-        Of slender rolling only the upper one is known.
+        For slender rolling only the upper branch is known.
     """
     c, eta, zeta = column.slenderness, form.eta, form.zeta
     shape = {"inertia_ratio": column.inertia_ratio, "axial_ratio": column.axial_ratio}
@@ -50,16 +50,16 @@ def steady_rolling_of(
         found = theory.wobbling_rolling(nu, acceleration, c=c, eta=eta, **shape)
     else:
         found = theory.full_rolling(nu, acceleration, c=c, eta=eta, zeta=zeta, **shape)
-    index = _place(found.phase, found.stable, found.exists, branch)
+    index = _index_of(found.phase, found.stable, found.exists, branch)
     if index is None:
         return math.nan, math.nan, math.nan
     return float(found.amplitude[index]), float(found.phase[index]), float(found.spin[index])
 
 
-def _place(
+def _index_of(
     phase: npt.NDArray[np.float64], stable: npt.NDArray[np.bool_], exists: npt.NDArray[np.bool_], branch: str
 ) -> int | None:
-    """Return the place of the upper branch, stable or else of the phase nearest to 0; of the lower, the farthest."""
+    """Return the index of a branch: upper, the stable one or that of the phase nearest to 0; lower, the farthest."""
     order = sorted(np.flatnonzero(exists).tolist(), key=lambda index: (not stable[index], abs(phase[index])))
     if branch == "upper":
         return order[0] if order else None

@@ -1,4 +1,4 @@
-"""Read orbits, branches and curves from netCDF files: they are shot again from their states."""
+"""Reading of orbits, branches and curves from netCDF files: shooting recovers them from their states."""
 
 import json
 import math
@@ -32,7 +32,7 @@ def load_orbits(path: str | Path) -> PeriodicOrbit | Branch | BifurcationCurve:
     Raises
     ------
     FileError
-        If the file cannot be read or holds none of them.
+        If the file cannot be read, or holds no orbit, branch or curve.
     """
     path = path_of(path)
     data = read_dataset(path)
@@ -71,7 +71,7 @@ def _read_orbit(data: xr.Dataset) -> PeriodicOrbit:
     system, periods = _system(data), int(data.attrs["periods"])
     chain = shots(system, np.ascontiguousarray(data["states"].to_numpy()), periods)
     if chain.status is not Status.DONE:
-        message = "its orbit cannot be shot again"
+        message = "its orbit cannot be recovered"
         raise ValueError(message)
     return PeriodicOrbit(system.model, system.motion, periods, chain, system.line, system.rtol)
 
@@ -111,7 +111,7 @@ def _shot(family: Family, states: Any, value: float) -> Point:
     change = family.system.derivative(family.name, value)
     chain = shots(system, np.ascontiguousarray(states), family.covered, sense=family.sense, change=change)
     if chain.status is not Status.DONE:
-        message = f"its orbit at {family.name} = {value!r} cannot be shot again"
+        message = f"its orbit at {family.name} = {value!r} cannot be recovered"
         raise ValueError(message)
     return Point(family, value, chain)
 
@@ -127,7 +127,7 @@ def _read_curve(data: xr.Dataset) -> BifurcationCurve:
     for states, values, (real, imaginary) in zip(*columns, strict=True):
         chain = shots(plane.at(values), np.ascontiguousarray(states), covered, sense=sense)
         if chain.status is not Status.DONE:
-            message = f"its orbit at {first} = {values[0]!r}, {second} = {values[1]!r} cannot be shot again"
+            message = f"its orbit at {first} = {values[0]!r}, {second} = {values[1]!r} cannot be recovered"
             raise ValueError(message)
         path.append(CurvePoint((float(values[0]), float(values[1])), chain, complex(real, imaginary)))
     begin, end = (End[name] for name in json.loads(data.attrs["ends"]))

@@ -13,7 +13,7 @@ from stylobate.orbits.branch import Branch, branch_through, seen_by
 from stylobate.orbits.shooting import arcs_of
 from stylobate.orbits.tracing import StepControl
 
-# First step off the old family, in units of c, and how often it is doubled where Newton's method falls back.
+# First step off the old family, in units of c, and maximum number of doublings if Newton's method falls back.
 _OFF, _DOUBLINGS = 2e-3, 5
 
 
@@ -67,12 +67,12 @@ def switch_branch(
     off = _OFF
     for _ in range(_DOUBLINGS):
         found = corrected(family, here + off * normal, normal)
-        # On the old family the plane across the disturbance is met at no distance from it.
+        # The old family meets the plane across the disturbance at zero distance.
         if not isinstance(found, Status) and _apart(found[0], here, normal) > 0.5 * off:
             start = found[0]
             return branch_through(start, normal, bounds, control, seen_by(progress), both_ways=False)
         off *= 2.0
-    message = f"no orbit of the family born at {old.name} = {point.value!r} was reached; give another bifurcation"
+    message = f"no orbit of the branch from {old.name} = {point.value!r} was reached; give another bifurcation"
     raise NoOrbitError(message)
 
 
@@ -81,7 +81,7 @@ def _apart(point: Point, here: np.ndarray, normal: np.ndarray) -> float:
 
 
 def arcs_of_disturbance(family: Family, states: np.ndarray, vector: np.ndarray) -> np.ndarray:
-    """Return a disturbance of the first state as it is where each arc begins."""
+    """Return a disturbance of the first state, carried to the beginning of each arc."""
     carried = [vector]
     for arc in range(len(states) - 1):
         begin, end = (family.periods * k / len(states) for k in (arc, arc + 1))

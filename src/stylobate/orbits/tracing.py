@@ -1,4 +1,4 @@
-"""Following a family of periodic orbits by pseudo-arclength."""
+"""Pseudo-arclength continuation of a family of periodic orbits."""
 
 import logging
 from collections.abc import Callable, Iterator
@@ -15,12 +15,12 @@ _log = logging.getLogger("stylobate")
 
 _EASY, _HARD = 4, 7
 _LONGER, _SHORTER = 1.5, 0.5
-# Two tangents at the ends of a step differ by no more than the angle of this cosine.
+# Minimum cosine of the angle between the tangents at the ends of a step.
 _STRAIGHT = 0.97
-# A corrected point is no farther from the predicted one than this part of the step: half of that is what a family can
-# bend off it while its tangent turns no more than that.
+# Maximum distance of the corrected from the predicted point, as a fraction of the step: twice the deviation of a family
+# whose tangent turns by the maximum angle.
 ASTRAY = 0.5
-# The family is closed when it comes back this near to its first point [steps].
+# The family is closed when it returns within this distance of its first point [steps].
 _CLOSED = 0.75
 
 
@@ -28,14 +28,14 @@ class End(Enum):
     """Reason why a branch ends."""
 
     BOUND = "the parameter reached its bound"
-    LOST = "the orbit comes within 1e-6 c of the upright"
+    LOST = "the orbit comes within 1e-6 c of the vertical"
     GONE = "the orbit leaves for tilts from which no motion returns"
     CLOSED = "the family is closed"
-    STEPS = "as many points as asked for"
+    STEPS = "the maximum number of points is reached"
     SHORT = "the steps became too short"
-    BEGUN = "it was begun here"
+    BEGUN = "the continuation began here"
     RESONANCE = "the pair of multipliers meets on the real axis"
-    MERGED = "the orbit has taken back the symmetry that it broke"
+    MERGED = "the orbit regains the symmetry that its branch had broken"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -73,7 +73,7 @@ class StepControl:
 
 @dataclass(frozen=True, slots=True)
 class Stretch:
-    """Points of a family in their order, the sense in which each was passed, and why it ended."""
+    """Points of a family in their order, the direction of the family at each point, and the reason of its end."""
 
     points: tuple[Point, ...]
     directions: tuple[Floats, ...]
@@ -137,7 +137,7 @@ def _points(
 def _step(
     point: Point, sense: Floats, length: float, bounds: tuple[float, float], least: float
 ) -> tuple[Point, Floats, float, int] | End:
-    """Return the point after a step of `length` or shorter, its tangent, that length and how hard it was.
+    """Return the point after a step of `length` or shorter, its tangent, the length and the number of Newton steps.
 
     The last point lies on the bound of the parameter.
     """
@@ -145,14 +145,14 @@ def _step(
     while True:
         guess = point.u + length * sense
         found = corrected(family, guess, sense)
-        # Farther off lies another family, on which Newton's method has come by chance.
+        # A point farther away may lie on another family.
         if not isinstance(found, Status) and np.linalg.norm(found[0].u - guess) > ASTRAY * length:
             found = Status.FAILED
-        # Between orbits that wind differently about the upright lies one that meets it.
+        # Between orbits with different turns about the vertical lies an orbit through the vertical.
         if not isinstance(found, Status) and abs(found[0].chain.turns - point.chain.turns) > _SAME_TURNS:
             found = Status.LOST
         value = guess[-1] * family.span if isinstance(found, Status) else found[0].value
-        if not bounds[0] <= value <= bounds[1]:  # beyond the bound there may be nothing
+        if not bounds[0] <= value <= bounds[1]:  # beyond the bound there may be no orbit
             last = _at_bound(family, point, sense, bounds[0] if value < bounds[0] else bounds[1])
             if last is not None and last.along(sense) @ sense > _STRAIGHT:
                 return last, last.along(sense), length, 0
@@ -166,16 +166,15 @@ def _step(
 
 
 _SAME_TURNS = 0.25
-# A step this short is made even where the family bends more than it should.
+# A step this short [minimum length] is accepted even if the family bends more than allowed.
 _BENT = 10.0
 _FEW = 10
 
 
 def _asymmetry(point: Point) -> Floats:
-    """Return by how much an orbit without the half-period inversion lacks it; zero for one that keeps to it.
+    """Return the deviation of an orbit from the half-period inversion; zero for a family with the inversion.
 
-    On the family that leaves another one at a pitchfork it changes sign where the two meet: beyond come the mirror
-    images of the orbits before.
+    On a branch from a pitchfork the deviation changes sign at the pitchfork: beyond it lie the symmetry-related orbits.
     """
     family, state = point.family, point.chain.states[0]
     if family.sense < 0.0:
@@ -193,7 +192,7 @@ def _at_bound(family: Family, point: Point, sense: Floats, bound: float) -> Poin
     found = corrected(family, guess, normal)
     if not isinstance(found, Status) and np.linalg.norm(found[0].u - guess) > ASTRAY * np.linalg.norm(guess - point.u):
         return None
-    # The value is the bound itself, not what is left of it after scaling.
+    # The value is the bound itself, without rounding by the scaling.
     return None if isinstance(found, Status) else replace(found[0], value=bound)
 
 

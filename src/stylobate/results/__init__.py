@@ -1,4 +1,4 @@
-"""Results: what a computation returns, saved and loaded with everything needed to repeat it.
+"""Results of computations, saved and loaded with everything needed to repeat them.
 
 The public names, imported when they are first used, are those of `__init__.pyi`.
 """

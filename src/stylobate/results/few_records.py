@@ -1,13 +1,13 @@
-"""How many records a fragility needs, and what is said of fewer."""
+"""Number of records that a fragility needs, and the remark on fewer records."""
 
 from stylobate.text import plural
 
 FEW_RECORDS = 20
-"""With fewer records the measured coverage of the intervals of a dispersion is well below what they claim."""
+"""Minimum number of records: with fewer, the measured coverage of dispersion intervals is well below nominal."""
 
 
 def few_records(count: int) -> str:
-    """Return what is to be said of a fragility from so many records: nothing where there are enough.
+    """Return the remark on a fragility from `count` records; empty for enough records.
 
     >>> few_records(12)
     '12 records: with fewer than 20 the interval of the dispersion is too narrow'

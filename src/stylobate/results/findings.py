@@ -21,7 +21,7 @@ class Verdict(Enum):
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """One statement in the words of this project, the measurement and the verdict."""
+    """A statement in the words of this project, with the measurement and the verdict."""
 
     source: str
     statement: str
@@ -31,7 +31,7 @@ class Finding:
 
 @dataclass(frozen=True, slots=True)
 class Section:
-    """The findings of one part and the data of its figures, by name."""
+    """The findings of one section and the data of its figures, by name."""
 
     findings: tuple[Finding, ...]
     data: Mapping[str, xr.Dataset] = field(default_factory=dict)
@@ -39,7 +39,7 @@ class Section:
 
 @dataclass(frozen=True, slots=True)
 class PaperCheck:
-    """A publication checked: `sections` by heading, in its order."""
+    """Check of a publication: `sections` by heading, in the order of the publication."""
 
     sections: Mapping[str, Section]
 

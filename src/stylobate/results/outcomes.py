@@ -1,4 +1,4 @@
-"""Outcomes and other codes in arrays: the attributes that explain them, and the words for outcomes."""
+"""Outcomes and other codes in arrays: their attributes and labels."""
 
 from collections.abc import Iterable
 from typing import Any
@@ -13,7 +13,7 @@ NOT_COMPUTED = -1
 
 
 def outcome_label(code: int) -> str:
-    """Return the words for an outcome with this `code`, or for a run that has not been computed."""
+    """Return the label of the outcome with this `code`, or of a run that has not been computed."""
     return "not computed" if code == NOT_COMPUTED else Outcome(code).label
 
 
@@ -30,9 +30,9 @@ def flag_attributes(
     Parameters
     ----------
     long_name
-        What the codes say.
+        Quantity that the codes represent.
     meanings
-        The meaning of each code, one word without spaces.
+        Meaning of each code, one word without spaces.
     first
         The first code.
     dtype

@@ -8,7 +8,7 @@ import numpy.typing as npt
 
 
 def plain_numbers(values: npt.ArrayLike, digits: int) -> list[Any]:
-    """Return an array as lists of numbers with so many significant digits, None in place of what is not finite.
+    """Return an array as lists of numbers with `digits` significant digits; None replaces NaN and infinities.
 
     Examples
     --------

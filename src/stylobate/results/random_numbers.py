@@ -1,4 +1,4 @@
-"""Random numbers that can be repeated: what arguments called `rng` accept."""
+"""Reproducible random numbers: the arguments called `rng`."""
 
 import numpy as np
 
@@ -9,12 +9,12 @@ Rng = int | np.random.Generator
 
 
 def seed_of(rng: Rng) -> int:
-    """Return `rng` if it is a seed; of a generator draw one number, which is kept as the seed.
+    """Return `rng` if it is a seed; draw a seed from a generator.
 
     Raises
     ------
     ParameterError
-        If it is neither.
+        If `rng` is neither.
     """
     if isinstance(rng, np.random.Generator):
         return int(rng.integers(LARGEST_SEED.number))
@@ -22,11 +22,11 @@ def seed_of(rng: Rng) -> int:
 
 
 def generator_of(rng: Rng) -> np.random.Generator:
-    """Return `rng` if it is a generator, or a new one of this seed.
+    """Return `rng` if it is a generator, or a new generator with this seed.
 
     Raises
     ------
     ParameterError
-        If it is neither.
+        If `rng` is neither.
     """
     return rng if isinstance(rng, np.random.Generator) else np.random.default_rng(seed_of(rng))

@@ -1,4 +1,4 @@
-"""Details of a report besides its numbers: who wrote it, for what project, and the spectrum of the site."""
+"""Details of a report besides its numbers: author, project, records and the design spectrum."""
 
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
@@ -38,7 +38,7 @@ class DesignSpectrum:
     def __post_init__(self) -> None:
         if len(self.period) < _ENDS or len(self.period) != len(self.acceleration):
             message = (
-                "design_spectrum: two points at least are needed, a period and an acceleration each "
+                "design_spectrum: at least two points are needed, each with a period and an acceleration "
                 f"(got {len(self.period)} periods, {len(self.acceleration)} accelerations). Add points."
             )
             raise ParameterError(message)
@@ -69,7 +69,7 @@ class ReportDetails:
     about_records
         Event, station, magnitude or distance of a record, by the name of the record.
     design_spectrum
-        Drawn over the spectra of the records.
+        Design spectrum, drawn over the spectra of the records.
     spectral_period
         Natural period of the spectral acceleration Sa that the tables show [s].
     """

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 _PLAIN = ("decided_at", "uncertain", "planar", "thresholds", "measures", "provenance", "warnings")
-"""Fields of a response that hold plain Python values, whatever computed them."""
+"""Fields of a response that are converted to plain Python values."""
 
 
 EVENT_KINDS = (
@@ -49,10 +49,10 @@ class Event:
 
 
 class _Data:
-    """The field `data` of a response: a Dataset, made of its samples when it is first used."""
+    """The field `data` of a response: a Dataset, made from the samples at first use."""
 
     def __get__(self, response: "Response | None", owner: type | None = None) -> "xr.Dataset":
-        if response is None:  # dataclasses asks the class for a default: there is none
+        if response is None:  # dataclasses asks the class for a default, which does not exist
             raise AttributeError
         data: xr.Dataset | Samples = vars(response)["data"]
         if isinstance(data, Samples):
@@ -155,7 +155,7 @@ class Response:
         return cls(**fields | {"warnings": tuple(fields.get("warnings", ()))})
 
     def __reduce__(self) -> tuple[Any, ...]:
-        # The integrator's dense output stays behind: a run sent to another process has its samples only.
+        # The dense output cannot be pickled: a run in another process has its samples only.
         kept = {name: value for name, value in vars(self).items() if name != "sampler"}
         return partial(Response, **kept), ()
 

@@ -18,7 +18,7 @@ _OWN_ATTRIBUTES = ("format", "outcome", *_WORDS, *_FLAGS, "events", *_AS_JSON)
 
 
 def as_dataset(run: Any) -> xr.Dataset:
-    """Return the samples of a `Response` with its other fields as attributes."""
+    """Return the samples of a `Response` as a Dataset, with its other fields as attributes."""
     attributes = {
         "format": _FORMAT,
         "outcome": run.outcome.name,
@@ -44,15 +44,15 @@ def fields_of(path: str | Path) -> dict[str, Any]:
     attributes: dict[str, Any] = dict(data.attrs)
     if "format" not in attributes and "kind" in attributes:
         message = (
-            f"{path} holds no run but the result of a study, of kind {attributes['kind']!r}; stylobate.load reads it"
+            f"{path} holds the result of a study of kind {attributes['kind']!r}, not a run; stylobate.load reads it"
         )
         raise FileError(message)
     kind = str(attributes.get("format", "")).removeprefix(OWN_FORMATS).partition(" ")[0]
     if kind in _OF_ORBITS:
-        message = f"{path} holds no run but, of stylobate.orbits, an object of kind {kind!r}; stylobate.load reads it"
+        message = f"{path} holds an object of stylobate.orbits of kind {kind!r}, not a run; stylobate.load reads it"
         raise FileError(message)
     if attributes.get("format") != _FORMAT:
-        message = f"{path} is no run saved by stylobate: its format is {attributes.get('format')!r}, not {_FORMAT!r}"
+        message = f"{path} is not a run saved by stylobate: its format is {attributes.get('format')!r}, not {_FORMAT!r}"
         raise FileError(message)
     try:
         return _fields(data, attributes)

@@ -1,4 +1,4 @@
-"""The samples of a run as plain arrays, of which a Dataset is made when it is used: xarray takes long to load."""
+"""The samples of a run as plain arrays, converted to a Dataset at first use because xarray is slow to import."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -26,11 +26,11 @@ class Samples:
     Parameters
     ----------
     time
-        Shape (n,) [s].
+        Times [s], shape (n,).
     variables
-        Along the dimensions "time", "axis" (x and y) and "direction" (x, y and z).
+        Arrays with the dimensions "time", "axis" (x and y) and "direction" (x, y and z).
     attributes
-        Of all of them together.
+        Attributes of the Dataset.
     """
 
     time: npt.NDArray[np.float64]

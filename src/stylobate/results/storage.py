@@ -1,4 +1,4 @@
-"""NetCDF files, sealed by a checksum."""
+"""NetCDF files with a checksum."""
 
 import sys
 from collections.abc import Callable
@@ -16,7 +16,7 @@ from stylobate.files import read_sealed, sealed, write_whole
 _Data = TypeVar("_Data", xr.Dataset, xr.DataTree)
 
 OWN_FORMATS = "stylobate "
-"""How the formats of the package's own files begin."""
+"""First word of the formats of the package's own files."""
 
 
 def read_dataset(path: str | Path) -> xr.Dataset:
@@ -25,7 +25,7 @@ def read_dataset(path: str | Path) -> xr.Dataset:
     Raises
     ------
     FileError
-        If the file cannot be read, or is not as it was written.
+        If the file cannot be read, or its checksum differs.
     """
     return _read(xr.open_dataset, path)
 
@@ -36,7 +36,7 @@ def read_tree(path: str | Path) -> xr.DataTree:
     Raises
     ------
     FileError
-        If the file cannot be read, or is not as it was written.
+        If the file cannot be read, or its checksum differs.
     """
     return _read(xr.open_datatree, path)
 
@@ -44,13 +44,12 @@ def read_tree(path: str | Path) -> xr.DataTree:
 def write_netcdf(data: xr.Dataset | xr.DataTree, path: str | Path) -> Path:
     """Write `data` to the netCDF file `path`, with a checksum at its end, and return the path.
 
-    The file is made in memory, so that a full disk raises an error in this process; the HDF5 library would end the
-    process.
+    The file is made in memory, so that a full disk raises an error; the HDF5 library would end the process.
 
     Raises
     ------
     FileError
-        If the file cannot be written; an older file stays then.
+        If the file cannot be written; an older file then stays.
     """
     with _without_a_cluster():
         content = data.to_netcdf(None, engine="h5netcdf")
@@ -58,7 +57,7 @@ def write_netcdf(data: xr.Dataset | xr.DataTree, path: str | Path) -> Path:
 
 
 def _without_a_cluster() -> AbstractContextManager[Any]:
-    """Return a context in which an active Dask client is not used: xarray would have it lock the file in memory."""
+    """Return a context that disables an active Dask client, with which xarray would lock the file in memory."""
     dask = sys.modules.get("dask")
     return nullcontext() if dask is None else dask.config.set(scheduler="synchronous")
 
@@ -70,8 +69,8 @@ def _read(open_file: Callable[..., _Data], path: str | Path) -> _Data:
             _require_readable(content)
         with open_file(BytesIO(content), engine="h5netcdf", decode_times=False) as stored:
             data = stored.load()
-    except Exception as error:  # of a damaged file HDF5 and the layers above it raise errors of many classes
-        message = f"cannot read {path}: it is no netCDF file, or damaged ({' '.join(str(error).split())})"
+    except Exception as error:  # HDF5 and the layers above it raise many classes of errors for damaged files
+        message = f"cannot read {path}: it is not a netCDF file, or damaged ({' '.join(str(error).split())})"
         raise FileError(message) from error
     if not is_sealed and str(data.attrs.get("format", "")).startswith(OWN_FORMATS):
         message = f"{path} is damaged, or another program changed it: its checksum is missing. Compute it again"
@@ -80,7 +79,7 @@ def _read(open_file: Callable[..., _Data], path: str | Path) -> _Data:
 
 
 def _require_readable(content: bytes) -> None:
-    """Read all of an HDF5 file that may be damaged: h5py closes it after an error, which h5netcdf does not always."""
+    """Read a whole HDF5 file that may be damaged; h5py always closes it after an error, h5netcdf does not."""
 
     def read(_: str, item: Any) -> None:
         dict(item.attrs)

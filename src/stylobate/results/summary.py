@@ -1,4 +1,4 @@
-"""A run in lines to read: the same on the command line and in the laboratory."""
+"""Summary of a run in lines of text, for the command line and the laboratory."""
 
 import math
 from typing import TYPE_CHECKING
@@ -12,7 +12,7 @@ Rows = list[tuple[str, str]]
 
 
 def column_rows(column: "Column") -> Rows:
-    """Return the numbers of the column that decide."""
+    """Return the rows of the column: slenderness, frequency scale, mass and uplift acceleration."""
     return [
         ("column", f"c = {column.slenderness:.5g}, ω0 = {column.frequency_scale:.5g} rad/s, mass {column.mass:.6g} kg"),
         ("uplifts above", f"{column.slenderness * column.gravity:.5g} m/s² of horizontal acceleration"),
@@ -20,7 +20,7 @@ def column_rows(column: "Column") -> Rows:
 
 
 def verdict_rows(run: "Response") -> Rows:
-    """Return the outcome, its reason, and when it was decided."""
+    """Return the rows of the outcome, its reason and the time of its decision."""
     return [
         ("outcome", run.outcome.label + (" (uncertain)" if run.uncertain else "")),
         ("because", run.reason),
@@ -29,7 +29,7 @@ def verdict_rows(run: "Response") -> Rows:
 
 
 def measure_rows(run: "Response") -> Rows:
-    """Return the summary numbers of `run`: its tilt, where it came to, and what the contact had to bear."""
+    """Return the rows of the summary numbers of `run`: tilt, final position and contact demand."""
     return [*_motion_rows(run), *_contact_rows(run), *_demand_rows(run)]
 
 
@@ -53,7 +53,7 @@ def _events(run: "Response") -> str:
 
 
 def _contact_rows(run: "Response") -> Rows:
-    """Return how the column was on the plane and where it came to, of a model that slides."""
+    """Return the rows of contact times and residual displacement of a model that slides."""
     measures = run.measures
     if "residual_displacement" not in measures:
         return []
@@ -84,4 +84,4 @@ def _bounded(value: float, unit: str) -> str:
 
 
 _SHOWN = 4
-"""Events that are listed one by one."""
+"""Maximum number of listed events."""
