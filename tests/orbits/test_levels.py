@@ -127,7 +127,7 @@ def test_orbits_that_pass_the_upright_with_loss_out_of_a_plane_are_refused():
     amplitude, phase, _ = stable_one(LEVELS["rolling 0.1"][1](NU))
     frictions = {"damping": ETA, "spin_damping": 0.1}
     model = sb.Rolling(COLUMN, **frictions, restitution=0.9, passage_tilt=2.0 * amplitude)
-    with pytest.raises(NoOrbitError, match="so near that it loses energy"):
+    with pytest.raises(NoOrbitError, match="so close that it loses energy"):
         sb.orbits.periodic_orbit(model, CIRCLE, guess=near(amplitude, phase))
 
 

@@ -394,5 +394,5 @@ def test_a_guess_that_leads_nowhere_is_told_in_one_line():
 def test_motions_without_a_theory_need_a_guess():
     with pytest.raises(UnsupportedError, match="guess must be given"):
         periodic_orbit(MODEL, sb.Harmonic(amplitude=(0.1, 0.0, 0.1), angular_frequency=2.0))
-    with pytest.raises(ParameterError, match="last for a period"):
+    with pytest.raises(ParameterError, match="last at least one period"):
         periodic_orbit(MODEL, STRAIGHT, guess=sb.simulate(MODEL, STRAIGHT, tilt=(0.02, 0.01), duration=1.0))

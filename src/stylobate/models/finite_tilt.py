@@ -132,7 +132,7 @@ def no_return_tilt(peak_horizontal: float, minimum_vertical: float, c: float) ->
 
 
 def energy_at_rest(tilt: float, speed: float, vertical: float, c: float, kappa: float) -> float:
-    """Return ½K|α̇|² + c(1 + a_z)|α|, what is left near the upright above the state of rest."""
+    """Return ½K|α̇|² + c(1 + a_z)|α|, the energy above rest near the vertical."""
     return 0.5 * (1.0 + kappa * c * c) * speed * speed + c * (1.0 + vertical) * tilt
 
 

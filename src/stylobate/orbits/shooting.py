@@ -19,7 +19,7 @@ _MOST_STEPS, _MOST_HALVINGS = 25, 8
 _GROWTH = 2.0
 
 WHY_LOST = {
-    Status.LOST: "it comes within 1e-6 c of the vertical, where its direction is undefined, or within the loss tilt",
+    Status.LOST: "it comes within 1e-6 c of the vertical, or so close that it loses energy",
     Status.GONE: "it leaves for tilts from which no motion returns",
     Status.FAILED: "the integration does not reach the tolerance",
 }

@@ -8,16 +8,16 @@ import numpy as np
 from stylobate.errors import ModelError, ParameterError
 from stylobate.models.consistency.derivatives import problems_of_derivatives
 from stylobate.models.consistency.forces import problems_of_forces
-from stylobate.models.consistency.overturning import problems_of_balance, problems_of_no_return
-from stylobate.models.consistency.plane import problems_in_planes, problems_of_maps
-from stylobate.models.consistency.samples import Subject
-from stylobate.models.consistency.signatures import problems_of_lengths, problems_of_signatures
-from stylobate.models.consistency.upright import (
+from stylobate.models.consistency.near_vertical import (
     problems_of_departure,
     problems_of_loss,
     problems_of_passage,
     problems_of_rest,
 )
+from stylobate.models.consistency.overturning import problems_of_balance, problems_of_no_return
+from stylobate.models.consistency.plane import problems_in_planes, problems_of_maps
+from stylobate.models.consistency.samples import Subject
+from stylobate.models.consistency.signatures import problems_of_lengths, problems_of_signatures
 from stylobate.models.model import Model
 
 Examination = Callable[[Subject], Iterator[str]]

@@ -292,7 +292,7 @@ def guards(
     close = _CLOSE * min(c, speed)
     far = tilt > passage and tilt > close
     towards = tilt - close if aside < _STRAIGHT * c else -radial / (tilt * speed)
-    stroke = 1.0 if rim == 0.0 or far else towards if radial < 0.0 else -1.0
+    striking = 1.0 if rim == 0.0 or far else towards if radial < 0.0 else -1.0
     return (
         1.0 if flies else normal,
         friction,
@@ -300,5 +300,5 @@ def guards(
         rests,
         denominator - JAM,
         0.5 * math.pi - tilt,
-        stroke,
+        striking,
     )

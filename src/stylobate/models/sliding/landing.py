@@ -2,6 +2,7 @@
 
 import math
 
+from stylobate.models.sliding.face_impacts import Body, coming_down, flying_from, struck_at
 from stylobate.models.sliding.friction import TWISTING_BASE
 from stylobate.models.sliding.impacts import base_impulse, impulse, rebound, responses
 from stylobate.models.sliding.lift_off import lifted_with
@@ -9,7 +10,6 @@ from stylobate.models.sliding.on_base import TRIPPED, rests, set_down, settle_fl
 from stylobate.models.sliding.on_rim import kicked, settle_rim
 from stylobate.models.sliding.phases import FLYING, SLIDING, SLIPPING, Numbers, State
 from stylobate.models.sliding.posture import Triple, lean_of, moving, placed, turning
-from stylobate.models.sliding.strokes import Body, coming_down, flying_from, struck_at
 
 
 def land(state: State, now: Triple, later: Triple, ahead: float, rest: float, n: Numbers) -> tuple[float, State]:

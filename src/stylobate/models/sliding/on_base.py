@@ -13,11 +13,11 @@ from stylobate.models.sliding.posture import (
     Triple,
     advanced,
     forces,
+    guards_of,
     headed,
     headed_along_slip,
     lean_of,
     lean_with_rate,
-    margins_of,
     moving,
     placed,
     rates_of,
@@ -49,10 +49,10 @@ def settle_flat(state: State, now: Triple, later: Triple, ahead: float, n: Numbe
         return 0.0, standing
     if n.static <= n.c:
         return set_sliding(standing, now, later, ahead, n)
-    return released(standing, now, later, ahead, n)
+    return uplifted(standing, now, later, ahead, n)
 
 
-def upright(state: State, n: Numbers) -> State:
+def set_flat(state: State, n: Numbers) -> State:
     """Return a column on its rim set down on its base; its velocity is the slip of the centre of the base."""
     ux, uy, _, _ = lean_of(state) if state.tilt_x != 0.0 or state.tilt_y != 0.0 else (0.0, 0.0, 0.0, 1.0)
     velocity = (state.velocity_x + n.c * state.spin * uy, state.velocity_y - n.c * state.spin * ux)
@@ -61,12 +61,12 @@ def upright(state: State, n: Numbers) -> State:
 
 def rests(state: State, now: Triple, rest: float, n: Numbers) -> bool:
     """Return whether a column on its rim comes to rest by the guard "rest"."""
-    return margins_of(state, now, rest, n)[_REST] < 0.0
+    return guards_of(state, now, rest, n)[_REST] < 0.0
 
 
 def set_down(state: State, now: Triple, later: Triple, ahead: float, n: Numbers) -> tuple[float, State]:
     """Return elapsed time and state of a column that comes to rest on its rim: at rest, or its base slides on."""
-    flat = upright(state, n)
+    flat = set_flat(state, n)
     if n.kinetic > n.c:
         flat = moving(placed(flat, lean_with_rate(flat), 0.0, SLIDING), (0.0, 0.0), 0.0, 0.0, SLIDING)
     return settle_flat(flat, now, later, ahead, n)
@@ -96,7 +96,7 @@ def set_off(state: State, px: float, py: float, slip: float) -> State:
     return moving(headed(state, (way[0], way[1], 0.0), SLIDING), (slip * way[0], slip * way[1]), 0.0, 0.0, SLIDING)
 
 
-def released(state: State, now: Triple, later: Triple, ahead: float, n: Numbers) -> tuple[float, State]:
+def uplifted(state: State, now: Triple, later: Triple, ahead: float, n: Numbers) -> tuple[float, State]:
     """Return elapsed time and state a short time after uplift."""
     ax, ay, weight = now[0] + n.slope_x, now[1] + n.slope_y, 1.0 + now[2] - n.relief
     bx, by, heavier = later[0] + n.slope_x, later[1] + n.slope_y, 1.0 + later[2] - n.relief

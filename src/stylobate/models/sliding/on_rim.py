@@ -4,7 +4,7 @@ from stylobate.models.finite_tilt import sine_over_angle
 from stylobate.models.sliding.equations import JAM
 from stylobate.models.sliding.impacts import responses
 from stylobate.models.sliding.lift_off import lifted, opens
-from stylobate.models.sliding.onset import giving_way
+from stylobate.models.sliding.onset import begin_slip
 from stylobate.models.sliding.phases import ROLLING, SLIPPING, Numbers, State
 from stylobate.models.sliding.posture import (
     Triple,
@@ -44,7 +44,7 @@ def leaving(state: State, now: Triple, later: Triple, ahead: float, n: Numbers) 
     """Return elapsed time and state at a negative normal force: in the air, or slipping if slip presses the rim."""
     if state.contact == SLIPPING or opens(state, now, n):
         return 0.0, lifted(state, n)
-    return giving_way(state, now, later, ahead, n)
+    return begin_slip(state, now, later, ahead, n)
 
 
 def held(state: State, n: Numbers) -> State:

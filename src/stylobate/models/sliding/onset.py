@@ -16,9 +16,9 @@ from stylobate.models.sliding.posture import (
     lean_of,
     lean_with_rate,
     moving,
-    pace,
     placed,
     rates_of,
+    tilt_speed,
     turning,
 )
 
@@ -32,7 +32,7 @@ STARTS = (0.0, 0.0, 0.0)
 _MOST_TURNS, _SMALL_TURN, _SAME = 20, 1e-7, 1e-9
 
 
-def giving_way(state: State, now: Triple, later: Triple, ahead: float, n: Numbers) -> tuple[float, State]:
+def begin_slip(state: State, now: Triple, later: Triple, ahead: float, n: Numbers) -> tuple[float, State]:
     """Return elapsed time and state a short time after a rolling column begins to slip.
 
     Friction acts with its limit along a slip that follows the load. The motion departs from rolling by the integral of
@@ -44,7 +44,7 @@ def giving_way(state: State, now: Triple, later: Triple, ahead: float, n: Number
     if started[11] < JAM:
         return 0.0, (lifted(state, n) if opens(state, now, n) else headed(state, (0.0, 0.0, 0.0), JAMMED))
     # The time in which the contact point turns by a small angle round the rim
-    quick = _PART_OF_A_TURN * math.hypot(state.tilt_x, state.tilt_y) / pace(state)
+    quick = _PART_OF_A_TURN * math.hypot(state.tilt_x, state.tilt_y) / tilt_speed(state)
     if quick < ahead:
         later, ahead = sooner(now, later, quick / ahead), quick
     rolled = rolled_on(state, now, later, ahead, n)

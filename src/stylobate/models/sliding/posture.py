@@ -11,7 +11,7 @@ from stylobate.models.sliding.phases import FLYING, SLIDING, Numbers, State
 KICK = 10.0
 
 Triple = tuple[float, float, float]
-Margins = tuple[float, float, float, float, float, float, float]
+Guards = tuple[float, float, float, float, float, float, float]
 Forces = tuple[
     float, float, float, float, float, float, float, float, float, float, float, float, float, float, float, float
 ]
@@ -38,7 +38,7 @@ def rates_of(state: State, now: Triple, n: Numbers) -> Forces:
     )  # fmt: skip
 
 
-def margins_of(state: State, now: Triple, rest: float, n: Numbers) -> Margins:
+def guards_of(state: State, now: Triple, rest: float, n: Numbers) -> Guards:
     """Return the guards of a state."""
     return guards(
         state.tilt_x, state.tilt_y, state.tilt_rate_x, state.tilt_rate_y, state.spin, state.twist, state.footprint_x,
@@ -143,7 +143,7 @@ def slips(vx: float, vy: float, turning: float) -> bool:
     return math.sqrt(vx * vx + vy * vy + turning * turning) > KICK * STILL
 
 
-def pace(state: State) -> float:
+def tilt_speed(state: State) -> float:
     """Return |α̇| plus a tiny number, which keeps it above zero."""
     return math.hypot(state.tilt_rate_x, state.tilt_rate_y) + 1e-300
 
@@ -165,7 +165,7 @@ def energy_of(state: State, n: Numbers) -> tuple[float, float]:
     return 0.5 * kinetic, (1.0 - n.relief) * lift
 
 
-def with_no_more(energy: float, state: State, n: Numbers) -> State:
+def with_energy_limit(energy: float, state: State, n: Numbers) -> State:
     """Return `state` with all velocities reduced by one factor if its energy exceeds `energy`."""
     kinetic, lift = energy_of(state, n)
     if kinetic + lift <= energy:

@@ -3,11 +3,12 @@
 import math
 
 from stylobate.models.sliding.equations import STILL
+from stylobate.models.sliding.face_impacts import face_impact
 from stylobate.models.sliding.landing import land
 from stylobate.models.sliding.lift_off import lifted
-from stylobate.models.sliding.on_base import released, set_down, set_sliding, settle_flat, tripping
+from stylobate.models.sliding.on_base import set_down, set_sliding, settle_flat, tripping, uplifted
 from stylobate.models.sliding.on_rim import held, jammed, leaving, settle_rim
-from stylobate.models.sliding.onset import giving_way
+from stylobate.models.sliding.onset import begin_slip
 from stylobate.models.sliding.phases import FLYING, RESTING, ROLLING, SLIDING, SLIPPING, Numbers, State
 from stylobate.models.sliding.posture import (
     KICK,
@@ -20,9 +21,8 @@ from stylobate.models.sliding.posture import (
     radius_of,
     yaw,
 )
-from stylobate.models.sliding.strokes import stroke
 
-_LIFT, _FRICTION, _SUPPORT, _REST, _JAM, _STROKE = 0, 1, 2, 3, 4, 6
+_LIFT, _FRICTION, _SUPPORT, _REST, _JAM, _FACE_IMPACT = 0, 1, 2, 3, 4, 6
 
 # A weight below this counts as zero [m g]: a sliding base lifts off, and friction vanishes.
 _WEIGHTLESS = 1e-12
@@ -48,8 +48,8 @@ def reaction(
     """
     rim = state.contact in (ROLLING, SLIPPING)
     flies = state.contact == FLYING
-    if rim and event == _STROKE:
-        return stroke(state, now, later, ahead, rest, numbers)
+    if rim and event == _FACE_IMPACT:
+        return face_impact(state, now, later, ahead, rest, numbers)
     if rim and event == _REST:
         return set_down(state, now, later, ahead, numbers)
     if rim and event == _JAM:
@@ -59,7 +59,7 @@ def reaction(
     if rim and event == _FRICTION and state.contact == SLIPPING:
         return stopped(state, now, later, ahead, numbers)
     if rim and event == _FRICTION:
-        return giving_way(state, now, later, ahead, numbers)
+        return begin_slip(state, now, later, ahead, numbers)
     if rim:
         return 0.0, settle_rim(state, now, numbers)
     if flies:
@@ -77,7 +77,7 @@ def reaction(
     if event == _FRICTION:
         return set_sliding(state, now, later, ahead, numbers)
     if event == _SUPPORT:
-        return released(state, now, later, ahead, numbers)
+        return uplifted(state, now, later, ahead, numbers)
     return settle_flat(state, now, later, ahead, numbers)
 
 
@@ -95,5 +95,5 @@ def stopped(state: State, now: Triple, later: Triple, ahead: float, n: Numbers) 
         return settle_flat(still, now, later, ahead, n)
     still = settle_rim(held(state, n), now, n)
     if still.contact == ROLLING and forces(still, now, n)[10] <= 0.0:
-        return giving_way(still, now, later, ahead, n)
+        return begin_slip(still, now, later, ahead, n)
     return 0.0, still

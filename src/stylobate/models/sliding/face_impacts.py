@@ -17,7 +17,7 @@ from stylobate.models.sliding.posture import (
     lean_with_rate,
     moving,
     placed,
-    with_no_more,
+    with_energy_limit,
 )
 
 # Maximum number of repeated impacts of a rim, and fraction of the first speed below which they stop.
@@ -35,7 +35,7 @@ class Body(NamedTuple):
     spin: float
 
 
-def stroke(state: State, now: Triple, later: Triple, ahead: float, rest: float, n: Numbers) -> tuple[float, State]:
+def face_impact(state: State, now: Triple, later: Triple, ahead: float, rest: float, n: Numbers) -> tuple[float, State]:
     """Return elapsed time and state after an impact of the base face, which is an impact of the opposite rim point.
 
     The passage is computed in the vertical plane of the motion with the energy of the state. If this energy is too
@@ -57,7 +57,7 @@ def stroke(state: State, now: Triple, later: Triple, ahead: float, rest: float, 
     if bounce > 0.0:
         kinetic, lift = energy_of(state, n)
         flying = flying_from(state, body, (tilt * ux, tilt * uy), n)
-        return elapsed, with_no_more(kinetic + lift, flying, n)
+        return elapsed, with_energy_limit(kinetic + lift, flying, n)
     behind = 0.5 * elapsed if straight else 0.0
     further, after = coming_down(state, body, tilt, behind, now, later, ahead, rest, n)
     return elapsed + further, after
@@ -92,7 +92,7 @@ def coming_down(
             after = placed(state, (reach * ux, reach * uy, body.rate_x, body.rate_y), body.spin, SLIPPING)
             sx = body.velocity_x - body.rate_x - n.c * body.spin * uy
             sy = body.velocity_y - body.rate_y + n.c * body.spin * ux
-            after = with_no_more(energy, moving(after, (sx, sy), 0.0, 0.0, SLIPPING), n)
+            after = with_energy_limit(energy, moving(after, (sx, sy), 0.0, 0.0, SLIPPING), n)
             if rests(after, now, rest, n):
                 return set_down(after, now, later, ahead, n)
             return 0.0, settle_rim(after, now, n)
