@@ -16,12 +16,12 @@ TOLERANCES = (1e-6, 1e-8, 1e-10, 1e-12)
 
 
 def model(damping: float = 0.0) -> sb.Slender:
-    """Return the slender column in units with m = g = ω0 = 1."""
+    """Create the slender column in units with m = g = ω0 = 1."""
     return sb.Slender(sb.Column.dimensionless(C), damping=damping)
 
 
 def elliptic_motion(rtol: float) -> float:
-    """Return the largest error of tilt and rate [c] at τ = 3 against an independent integration to 1e-12."""
+    """Measure the largest error of tilt and rate [c] at τ = 3 against an independent integration to 1e-12."""
     a1, a2, phase, nu = 0.9 * C, 0.7 * C, 0.9, 1.7
 
     def rates(tau: float, state: np.ndarray) -> list[float]:
@@ -39,7 +39,7 @@ def elliptic_motion(rtol: float) -> float:
 
 
 def steady_rolling(rtol: float) -> float:
-    """Return the largest relative deviation of the tilt from steady rolling over 50 periods."""
+    """Measure the peak relative deviation of the tilt from steady rolling over 50 periods."""
     nu, a0 = 1.5, 0.065
     branch = sb.theory.steady_rolling(nu, a0, c=C, eta=ETA).upper
     tilt, phase = float(branch.amplitude), float(branch.phase)
@@ -51,12 +51,12 @@ def steady_rolling(rtol: float) -> float:
 
 
 def free_motion(rtol: float) -> Response:
-    """Return free motion from 0.6c with the sideways rate 0.3c over τ = 500."""
+    """Integrate free motion from 0.6c with the sideways rate 0.3c over τ = 500."""
     return sb.simulate(model(), tilt=(0.6 * C, 0.0), tilt_rate=(0.0, 0.3 * C), duration=500.0, rtol=rtol)
 
 
 def drift(name: str) -> Callable[[float], float]:
-    """Return the function that measures the largest relative drift of a constant of free motion."""
+    """Return a function that measures the peak relative drift of a constant of free motion."""
 
     def measure(rtol: float) -> float:
         values = free_motion(rtol).data[name].to_numpy()
@@ -66,7 +66,7 @@ def drift(name: str) -> Callable[[float], float]:
 
 
 def planar_motion(rtol: float) -> float:
-    """Return the largest error [c] of free planar motion from 0.6c over τ = 500 against its closed form."""
+    """Measure the peak error [c] of free planar motion from 0.6c over τ = 500 against its closed form."""
     run = sb.simulate(model(), tilt=(0.6 * C, 0.0), duration=500.0, rtol=rtol)
     exact, _ = sb.theory.planar_free_motion(run.data["time"].to_numpy(), 0.6 * C, c=C)
     return float(np.abs(run.data["tilt"].sel(axis="x").to_numpy() - exact).max()) / C

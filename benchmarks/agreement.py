@@ -1,4 +1,4 @@
-"""Whether outcomes and measures of single runs are those of ensembles to the bit: random runs of all models.
+"""Bitwise comparison of outcomes and measures of single runs and ensembles, for random runs of all models.
 
 python -m benchmarks.agreement 10000
 """
@@ -18,7 +18,7 @@ DURATION = 6.0
 
 
 def cases(rng: np.random.Generator):
-    """Yield models, base motions and starts, all numbers random."""
+    """Yield models, base motions and initial conditions with random numbers."""
     for (name, model), motion in zip(models(rng), motions(rng), strict=False):
         across = 0.0 if name == "planar" else 1.0
         plane = sb.Harmonic.straight(acceleration=rng.uniform(0.5, 5.0), angular_frequency=rng.uniform(2.0, 15.0))
@@ -28,7 +28,7 @@ def cases(rng: np.random.Generator):
 
 
 def differences(model: sb.Model, motion: sb.BaseMotion, tilt: np.ndarray, rate: np.ndarray) -> list[str]:
-    """Return what differs by a bit between a single run and the same run of an ensemble."""
+    """Return the names of values that differ between a single run and the same run of an ensemble."""
     options = {"duration": DURATION, "max_steps": 20_000}
     one = sb.simulate(model, motion, tilt=tuple(tilt), tilt_rate=tuple(rate), samples=2, recheck=False, **options)
     many = sb.simulate_ensemble(model, motion, tilt=[tilt] * 3, tilt_rate=[rate] * 3, threads=1, **options)
@@ -38,7 +38,7 @@ def differences(model: sb.Model, motion: sb.BaseMotion, tilt: np.ndarray, rate: 
 
 
 def main() -> int:
-    """Compare so many runs; return how many differ."""
+    """Compare runs; return the number that differ, at most 99."""
     count, kinds, differing = int(sys.argv[1]), Counter(), 0
     for number, (name, *case) in enumerate(islice(cases(np.random.default_rng(20261124)), count)):
         kinds[name] += 1

@@ -1,7 +1,7 @@
 """Measure how often intervals of fragility curves contain the truth. Run as `python -m benchmarks.coverage`.
 
 The table is on the page "Earthquakes" of the results; 500 data sets take a quarter of an hour. The true curve is
-lognormal; the runs of one record share a part of their capacity.
+lognormal; the runs of one record share a component of their capacity.
 """
 
 import sys
@@ -20,13 +20,13 @@ RESAMPLES = 300
 
 
 def independent_runs(rng: np.random.Generator, count: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return intensities, and whether each of `count` independent runs reached the limit state."""
+    """Draw intensities of `count` independent runs, and whether each run reached the limit state."""
     intensity = MEDIAN * np.exp(rng.normal(0.0, SPREAD, count))
     return intensity, rng.random(count) < ndtr(np.log(intensity / MEDIAN) / DISPERSION)
 
 
 def records(rng: np.random.Generator, count: int) -> tuple[xr.DataArray, xr.DataArray]:
-    """Return intensities, and whether `count` records reached the limit state at each of nine scales."""
+    """Draw intensities of `count` records at nine scales, and whether each run reached the limit state."""
     scale = np.geomspace(1.0, 9.0, 9)
     capacity = rng.normal(0.0, BETWEEN, (count, 1)) + rng.normal(0.0, WITHIN, (count, scale.size))
     reached = xr.DataArray(np.log(scale / MEDIAN) > capacity, dims=("record", "scale"))

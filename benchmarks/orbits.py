@@ -1,8 +1,9 @@
-"""The response curve of straight-line motion by exact orbits, beside plain shooting with SciPy: the same task.
+"""Response curve of straight-line motion: exact orbits against plain shooting with SciPy.
 
 Run as `python -m benchmarks.orbits`. Task: rolling at a1 = 0.13, c = η = 0.1, from ν = 8 down to 0.8 with Floquet
-multipliers. The plain way: at each frequency Newton's method from where the two orbits before point, equations (1) and
-their variational equations in Python by solve_ivp (DOP853) at the same tolerance, 1e-12. It locates no bifurcation.
+multipliers. Plain shooting uses Newton's method at each frequency from an extrapolation of the two previous orbits.
+solve_ivp (DOP853) integrates equations (1) and their variational equations in Python at the same tolerance, 1e-12. It
+locates no bifurcation.
 """
 
 import math
@@ -21,7 +22,7 @@ TARGET = Path("docs/_static/benchmarks/orbits.txt")
 
 
 def variational(t, y, nu):
-    """Right-hand side of (1) and of its variational equations."""
+    """Evaluate the right-hand side of (1) and of its variational equations."""
     x, z, vx, vz = y[:4]
     tilt = math.hypot(x, z)
     lean = 1.0 - C / tilt
@@ -41,7 +42,7 @@ def variational(t, y, nu):
 
 
 def shot(state, nu):
-    """Return the state after a period and its derivative."""
+    """Compute the state after a period and its derivative."""
     start = np.concatenate([state, np.eye(4).ravel()])
     run = solve_ivp(
         variational, (0.0, 2.0 * math.pi / nu), start, "DOP853", args=(nu,), rtol=RTOL, atol=1e-2 * RTOL * C
@@ -50,7 +51,7 @@ def shot(state, nu):
 
 
 def plain(start, frequencies):
-    """Return multipliers at each frequency, by shooting from where the two orbits before point."""
+    """Compute multipliers at each frequency, by shooting from an extrapolation of the two previous orbits."""
     state, found, before = start, [], []
     for nu in frequencies:
         if len(before) > 1:
@@ -68,7 +69,7 @@ def plain(start, frequencies):
 
 
 def main():
-    """Time both and write the table."""
+    """Time both methods and write the table."""
     if hasattr(os, "sched_setaffinity"):
         os.sched_setaffinity(0, {min(os.sched_getaffinity(0))})
     model = sb.Slender(sb.Column.dimensionless(C), damping=ETA)

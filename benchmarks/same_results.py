@@ -1,10 +1,10 @@
-"""Whether results stay the same, bit for bit, while code is moved: 200 single runs and 12 studies, by their digests.
+"""Bitwise comparison of results before and after a change of code: digests of 200 single runs and 12 studies.
 
     python -m benchmarks.same_results save before.json
     python -m benchmarks.same_results compare before.json
 
-Digests are of numbers only, without the names of variables, so that names may change. They hold on one machine, with
-the versions of one environment: another processor compiles other kernels.
+Digests cover numbers only, without names of variables, so that names may change. They are valid on one machine and for
+one environment, since another processor compiles other kernels.
 """
 
 import hashlib
@@ -31,14 +31,14 @@ BOX = {"tilt_x": (-0.1, 0.1), "tilt_rate_y": (-0.4, 0.4)}
 
 
 def digest(data: xr.Dataset) -> str:
-    """Return a digest of all numbers of `data`, whatever their names and their order."""
+    """Return a digest of all numbers of `data`, independent of names and order."""
     arrays = (np.asarray(array) for array in data.variables.values())
     numbers = (str(array.shape).encode() + array.tobytes() for array in arrays if array.dtype.kind in "fiub")
     return hashlib.sha256(b"".join(sorted(hashlib.sha256(one).digest() for one in numbers))).hexdigest()
 
 
 def models(rng: np.random.Generator) -> Iterator[tuple[str, sb.Model]]:
-    """Yield one of each kind of model, with random numbers."""
+    """Yield one model of each kind, with random numbers."""
     while True:
         damping, loss = rng.uniform(0.0, 0.3), rng.uniform(0.7, 1.0)
         column = sb.Column.solid(radius=rng.uniform(0.05, 0.3), height=rng.uniform(0.8, 2.5), density=1000.0)
@@ -51,7 +51,7 @@ def models(rng: np.random.Generator) -> Iterator[tuple[str, sb.Model]]:
 
 
 def motions(rng: np.random.Generator) -> Iterator[sb.BaseMotion]:
-    """Yield one of each kind of base motion, with random numbers."""
+    """Yield one base motion of each kind, with random numbers."""
     record = sb.sample_record()
     while True:
         acceleration, frequency = rng.uniform(0.5, 5.0), rng.uniform(2.0, 15.0)
@@ -63,7 +63,7 @@ def motions(rng: np.random.Generator) -> Iterator[sb.BaseMotion]:
 
 
 def runs() -> Iterator[tuple[str, Callable[[], xr.Dataset]]]:
-    """Yield 200 single runs by name: six models and five base motions in turn, all numbers and starts random."""
+    """Yield 200 single runs by name: six models and five base motions in turn, with random numbers."""
     rng = np.random.default_rng(20260101)
     for number, (name, model), motion in zip(range(200), models(rng), motions(rng), strict=False):
         across = 0.0 if name == "planar" else 1.0
@@ -73,14 +73,14 @@ def runs() -> Iterator[tuple[str, Callable[[], xr.Dataset]]]:
 
 
 def simulated(model: sb.Model, motion: sb.BaseMotion, tilt: np.ndarray, rate: np.ndarray) -> xr.Dataset:
-    """Return the samples of a run with its outcome and what was measured."""
+    """Return the samples of a run with its outcome and measures."""
     run = sb.simulate(model, motion, tilt=tuple(tilt), tilt_rate=tuple(rate), duration=6.0, samples=50, max_steps=20000)
     summary = {"outcome": int(run.outcome), "decided_at": run.decided_at}
     return run.data.assign(summary | {"events": ("event", [event.time for event in run.events])})
 
 
 def studies() -> Iterator[tuple[str, Callable[[], xr.Dataset]]]:
-    """Yield 12 studies by name, each small."""
+    """Yield 12 small studies by name."""
     record = sb.sample_record()
     steady = {"tilt": (0.04, 0.0), "tilt_rate": (0.0, 0.2)}
     scales = np.linspace(0.4, 2.0, 9)
@@ -108,7 +108,7 @@ def studies() -> Iterator[tuple[str, Callable[[], xr.Dataset]]]:
 
 
 def digests() -> dict[str, str]:
-    """Return the digest of each run and study; of one that is refused, its message."""
+    """Return the digest of each run and study, or the message of an error."""
     found = {}
     for name, compute in (*runs(), *studies()):
         try:
@@ -121,7 +121,7 @@ def digests() -> dict[str, str]:
 
 
 def main() -> int:
-    """Save the digests, or compare them with saved ones; return how many differ."""
+    """Save the digests or compare them with saved digests; return the number that differ, at most 99."""
     action, path = sys.argv[1], Path(sys.argv[2])
     found = digests()
     if action == "save":

@@ -1,4 +1,4 @@
-"""What a single run costs, beside SciPy's solver on the bare equations (1): run by `make bench`."""
+"""Cost of a single run against SciPy's solver of the bare equations (1); run by `make bench`."""
 
 import numpy as np
 import pytest

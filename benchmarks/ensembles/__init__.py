@@ -1,1 +1,1 @@
-"""Ensembles beside other solvers: speed, error, cost and memory; run by `make bench`."""
+"""Benchmarks of ensembles against other solvers: speed, error, cost and memory; run by `make bench`."""

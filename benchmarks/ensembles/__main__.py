@@ -1,4 +1,4 @@
-"""Measures everything and writes tables and figures: `python -m benchmarks.ensembles`."""
+"""Measure all engines and write tables and figures: `python -m benchmarks.ensembles`."""
 
 import argparse
 import json
@@ -17,7 +17,7 @@ _DPI = 200
 def main() -> None:
     arguments = _arguments()
     cores = os.cpu_count() or 1
-    one_core = use_one_core()  # before the libraries come in
+    one_core = use_one_core()  # before the libraries are imported
     from . import peak, scaling, threads  # noqa: PLC0415
     from .engines import all_engines  # noqa: PLC0415
     from .timing import timings  # noqa: PLC0415
@@ -59,7 +59,7 @@ def main() -> None:
 def _write(folder, engines, found, two_threads, costs, results) -> None:
     from . import figures, tables  # noqa: PLC0415
 
-    # Accepted steps of our own runs, made without events and summaries at the arithmetic peak.
+    # Accepted steps of stylobate's runs, without events and summaries, at the arithmetic peak.
     per_second = results["peak"] / results["flops of a step"]
     limits = {timing.workload: per_second / timing.steps for timing in found if timing.engine == "dop853"}
     machine, versions = results["machine"], results["versions"]
@@ -91,7 +91,7 @@ def _arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog="python -m benchmarks.ensembles", description=__doc__)
     parser.add_argument("--into", type=Path, default=_FOLDER, help="folder for tables and figures")
     parser.add_argument("--repetitions", type=int, default=5, help="rounds, of which the median counts")
-    parser.add_argument("--quick", action="store_true", help="a sixteenth of the runs, once: to see that it works")
+    parser.add_argument("--quick", action="store_true", help="a sixteenth of the runs, once, as a check")
     return parser.parse_args()
 
 

@@ -1,4 +1,4 @@
-"""What an engine returns, and how far it is from the truth."""
+"""Result of an engine, and its error."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -16,13 +16,13 @@ class Answer:
     Parameters
     ----------
     end
-        x, y, their rates, shape (n, 4); behind them the spin, of levels that know it.
+        x, y and their rates, shape (n, 4); then the spin for models with spin.
     time
-        When the run ended.
+        End time of the run.
     overturned
-        Whether it ended at the tilt of no return.
+        Whether the run ended at the point of no return.
     steps
-        Accepted steps in all runs together, where the engine tells.
+        Total number of accepted steps, if the engine reports it.
     """
 
     end: Array
@@ -36,5 +36,5 @@ class Answer:
 
 
 def errors(answer: Answer, truth: Answer) -> Array:
-    """Return the largest error of tilt and rate at the end of each run."""
+    """Compute the largest error of tilt and rate at the end of each run."""
     return np.abs(answer.end - truth.end).max(axis=1)

@@ -1,7 +1,7 @@
-"""A contact that can change beside one that holds: `python -m benchmarks.ensembles.contacts`, part of `make bench`.
+"""Speed of variable against permanent contact: `python -m benchmarks.ensembles.contacts`, part of `make bench`.
 
-The same columns under the same base motions by `Rolling` and by `Sliding`, in lanes on one core; some of them by the
-engine of single runs, whose outcomes are compared. All in turns in one process, the fastest of the rounds.
+`Rolling` and `Sliding` compute the same columns under the same base motions in lanes on one core. Single runs of some
+columns check the outcomes. All cases alternate in one process; the fastest round counts.
 """
 
 import argparse
@@ -27,14 +27,14 @@ _FRICTION = {"damping": 0.1, "spin_damping": 0.1}
 
 @dataclass(frozen=True, slots=True)
 class Case:
-    """Columns under circular motion, a row each: friction coefficient, acceleration, frequency, tilt at the start."""
+    """Columns under circular motion, one per row: friction coefficient, acceleration, frequency, initial tilt."""
 
     name: str
     numbers: np.ndarray
     switches: bool
 
     def lanes(self) -> xr.Dataset:
-        """Follow all of them."""
+        """Integrate all columns in lanes."""
         names = ("friction_coefficient", "acceleration", "angular_frequency")
         parameters = dict(zip(names, self.numbers.T[:3], strict=True))
         if not self.switches:
@@ -49,7 +49,7 @@ class Case:
         )
 
     def model(self, friction: float = 0.5) -> sb.Model:
-        """Return the model, with this friction coefficient where it has one."""
+        """Create the model, with this friction coefficient if it has one."""
         return (
             sb.Sliding(_COLUMN, friction_coefficient=friction, **_FRICTION)
             if self.switches
@@ -57,7 +57,7 @@ class Case:
         )
 
     def alone(self) -> list[sb.Response]:
-        """Follow the first of them by the engine of single runs."""
+        """Integrate the first columns as single runs."""
         return [
             sb.simulate(
                 self.model(friction), _circle(acceleration, frequency), tilt=(tilt, 0.0), duration=float(duration)
@@ -69,11 +69,11 @@ class Case:
 
 
 def main() -> None:
-    """Time them, and write the table."""
+    """Time the cases and write the table."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.ensembles.contacts", description=__doc__)
     parser.add_argument("--into", type=Path, default=_FOLDER, help="folder for the table")
     parser.add_argument("--count", type=int, default=4000, help="columns")
-    parser.add_argument("--rounds", type=int, default=3, help="of which the fastest counts")
+    parser.add_argument("--rounds", type=int, default=3, help="number of rounds; the fastest counts")
     arguments = parser.parse_args()
     print(use_one_core())
     held, slips = (Case(name, _numbers(arguments.count, low), switches) for name, low, switches in _CASES)

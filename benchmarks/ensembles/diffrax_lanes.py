@@ -1,4 +1,4 @@
-"""diffrax on a CPU: Dopri8 over 1024 runs at once by `vmap`."""
+"""diffrax on a CPU: Dopri8 over 1024 simultaneous runs by `vmap`."""
 
 from collections.abc import Callable
 from functools import partial
@@ -14,13 +14,13 @@ NAME = f"diffrax, {LANES} lanes"
 
 
 def prepare(workload: Workload, *, rtol: float = RTOL, atol: float = ATOL) -> Callable[[Workload], Answer]:
-    """Compile the solver and return what computes a workload of this kind."""
+    """Compile the solver and return a function that computes a workload of this kind."""
     solver = _solver(circular=workload.circular, rtol=rtol, atol=atol)
     return partial(_solve, solver)
 
 
 def _solver(*, circular: bool, rtol: float, atol: float) -> Any:
-    import diffrax  # noqa: PLC0415  it need not be installed
+    import diffrax  # noqa: PLC0415  optional
     import jax  # noqa: PLC0415
     import jax.numpy as jnp  # noqa: PLC0415
     import optimistix  # noqa: PLC0415
@@ -42,7 +42,7 @@ def _solver(*, circular: bool, rtol: float, atol: float) -> Any:
         del t, rest
         return jnp.sqrt(y[0] ** 2 + y[1] ** 2) - args[-1]
 
-    # Rolling goes without the event, which makes it faster.
+    # Rolling omits the event, which is faster.
     find = optimistix.Newton(1e-10, 1e-10, optimistix.rms_norm)
     event = None if circular else diffrax.Event(past_no_return, find, direction=True)
 

@@ -1,4 +1,4 @@
-"""The engines that are compared: how each is prepared, and how many runs of each workload make a fair sample."""
+"""Compared engines: preparation, and number of timed runs of each workload."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -21,21 +21,21 @@ class Engine:
     Parameters
     ----------
     name
-        In tables.
+        Name in tables.
     key
-        In files.
+        Name in files.
     prepare
-        Compiles for a workload; returns what computes it.
+        Function that compiles for a workload and returns a solver.
     counts
-        Runs timed of each workload that it can compute, about one second of them.
+        Number of timed runs of each supported workload, about one second each.
     lanes
-        Runs that it computes side by side, at least.
+        Minimum number of simultaneous runs.
     warm_up
-        Runs of the first call, which is not timed; by default all of them.
+        Number of runs of the first call, which is not timed; by default all.
     needs
-        Packages without which it is skipped.
+        Required packages; without them the engine is skipped.
     dop853
-        Whether a step of it is one of DOP853, whose arithmetic is known.
+        Whether its steps are DOP853 steps, whose arithmetic is known.
     """
 
     name: str

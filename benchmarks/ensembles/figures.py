@@ -1,4 +1,4 @@
-"""The figures of the documentation's page on speed."""
+"""Figures of the documentation's page on speed."""
 
 from collections.abc import Mapping, Sequence
 
@@ -16,9 +16,9 @@ _TITLES = {"rolling": "rolling: steady motion, 200 periods", "mix": "mix: random
 
 @styled
 def engines_figure(names: Mapping[str, str], found: Sequence[Timing], limits: Mapping[str, float]) -> Figure:
-    """Draw trajectories per second as bars on a logarithmic scale, a panel for each workload.
+    """Draw trajectories per second as bars on a logarithmic scale, one panel per workload.
 
-    `limits` are the trajectories per second that the arithmetic peak allows DOP853.
+    `limits` are the trajectories per second of DOP853 at the arithmetic peak.
     """
     figure = new_figure(2.6)
     panels = figure.subplots(1, 2, sharey=True, sharex=True)
@@ -49,7 +49,7 @@ def engines_figure(names: Mapping[str, str], found: Sequence[Timing], limits: Ma
 
 @styled
 def precision_figure(names: Mapping[str, str], found: Sequence[Point]) -> Figure:
-    """Draw the processor time of a run against its error, a curve for each engine, a panel for each workload."""
+    """Draw the processor time of a run against its error, one curve per engine, one panel per workload."""
     figure = new_figure(3.9)
     panels = figure.subplots(1, 2, sharex=True)
     looks = zip(names, (BLACK, PURPLE, GREEN, BLUE, VERMILION, ORANGE), "^vDsoP", DASHES[::-1], strict=True)
@@ -83,7 +83,7 @@ _ERRORS = {"rolling": "largest", "mix": "median"}
 
 @styled
 def scaling_figure(found: Sequence[Cost]) -> Figure:
-    """Draw processor time and memory against the number of trajectories, the number on a logarithmic scale."""
+    """Draw processor time and memory against the number of trajectories on a logarithmic scale."""
     figure = new_figure(2.8)
     time_axes, memory_axes = figure.subplots(1, 2)
     for workload, color, marker in (("rolling", VERMILION, "o"), ("mix", BLUE, "s")):

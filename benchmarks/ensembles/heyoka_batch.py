@@ -1,7 +1,7 @@
-"""heyoka's batch mode: a Taylor integrator for several runs side by side in the lanes of SIMD registers.
+"""heyoka's batch mode: a Taylor integrator for several runs in the lanes of SIMD registers.
 
-Its batch stops when one lane meets a terminal event, so lanes are refilled then. Runs are queued by frequency: lanes
-that end with their duration end nearly together.
+A batch stops at the terminal event of any lane, and the lane is then refilled. Runs are sorted by frequency, so that
+runs without event end at similar times.
 """
 
 from collections.abc import Callable
@@ -15,21 +15,21 @@ from .workloads import ATOL, ETA, ROLLING_ACCELERATION, RTOL, C, Workload
 
 
 def name(width: int) -> str:
-    """Return what the engine is called in tables."""
+    """Return the name of the engine in tables."""
     return f"heyoka, batch of {width}"
 
 
 def prepare(
     workload: Workload, *, width: int = 8, rtol: float = RTOL, atol: float = ATOL
 ) -> Callable[[Workload], Answer]:
-    """Compile the integrator, which has one tolerance, and return what computes a workload of this kind."""
+    """Compile the integrator, which has one tolerance, and return a function that computes a workload of this kind."""
     del atol
     integrator = _integrator(workload, width, rtol)
     return partial(_solve, integrator)
 
 
 def _integrator(workload: Workload, width: int, tolerance: float) -> Any:
-    import heyoka as hy  # noqa: PLC0415  it need not be installed
+    import heyoka as hy  # noqa: PLC0415  optional
 
     x, y, vx, vy = hy.make_vars("x", "y", "vx", "vy")
     nu, no_return = hy.par[0], hy.par[1]
@@ -39,7 +39,7 @@ def _integrator(workload: Workload, width: int, tolerance: float) -> Any:
     else:
         ax, ay = hy.par[2] * p + hy.par[4] * q, hy.par[3] * p + hy.par[5] * q
     square = x * x + y * y
-    lean = 1.0 - C * square**-0.5  # as one power it is faster than as a root and a quotient
+    lean = 1.0 - C * square**-0.5  # one power is faster than a root and a quotient
     equations = [(x, vx), (y, vy), (vx, lean * x - ETA * vx - ax), (vy, lean * y - ETA * vy - ay)]
     overturning = hy.t_event_batch(square - no_return * no_return, direction=hy.event_direction.positive)
     return hy.taylor_adaptive_batch(
@@ -73,7 +73,7 @@ def _solve(integrator: Any, workload: Workload) -> Answer:
         runs[lane] = run
         now[lane] = 0.0
         integrator.reset_cooldowns(lane)
-        if run < 0:  # nothing left: the lane stands still at a state that does no harm
+        if run < 0:  # no run left: the lane keeps a harmless state
             ends[lane] = 0.0
             state[:, lane], pars[:, lane] = workload.start[0], table[0]
             return

@@ -1,4 +1,4 @@
-"""The two sets of runs for each level of the ladder, c = η = ζ = 0.1: steady rolling of its own, and the mix."""
+"""Two sets of runs for each model of the hierarchy, c = η = ζ = 0.1: steady rolling, and the mix."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
@@ -15,18 +15,18 @@ ZETA = 0.1
 
 @dataclass(frozen=True, slots=True)
 class Level:
-    """A level of the ladder.
+    """A model of the hierarchy.
 
     Parameters
     ----------
     name
-        In tables.
+        Name in tables.
     model
-        With its frictions.
+        Model with damping.
     loads
-        By the name of a workload, what makes so many runs of it for this level.
+        Function that creates the runs, by the name of the workload.
     beside
-        Key of the slender level under the same load.
+        Key of the slender model with the same workload.
     """
 
     name: str
@@ -36,7 +36,7 @@ class Level:
 
 
 def all_levels() -> dict[str, Level]:
-    """Return the levels by their keys; the last two move along a line."""
+    """Return the models by their keys; the last two move along a line."""
     slender = sb.Slender(COLUMN, damping=ETA)
     line = "slender on a line"
     return {
@@ -63,7 +63,7 @@ def all_levels() -> dict[str, Level]:
 
 
 def rocking(count: int) -> Workload:
-    """Return runs under straight motion, begun on the exact rocking of the slender column, ν as in "rolling"."""
+    """Create runs under straight motion from the exact rocking of the slender column, ν as in "rolling"."""
     base = rolling(count)
     rate, phase = sb.theory.planar_forced_response(base.nu, ROLLING_ACCELERATION, c=C, eta=ETA).fast.start()[1:]
     none = np.zeros(count)
@@ -80,12 +80,12 @@ def rocking(count: int) -> Workload:
 
 
 def rocking_with_loss(count: int) -> Workload:
-    """Return the same runs for a level that loses energy at impacts, whose ends no closed form tells."""
+    """Create the same runs for a model with energy loss at impacts, without closed form of the end states."""
     return replace(rocking(count), exact=None)
 
 
 def mix_on_a_line(count: int) -> Workload:
-    """Return the mix with starts and base motion along x only."""
+    """Create the mix with initial conditions and base motion along x only."""
     base = mix(count)
     largest, phase = base.parameters["acceleration"], base.parameters["start_phase"]
     along = np.array([1.0, 0.0])

@@ -1,4 +1,4 @@
-"""What is timed of the ladder: every level with and without demands, two by Taylor series, one by SciPy's loop."""
+"""Timed trials of the model hierarchy: each model with and without demands, two by Taylor series, one by SciPy."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -10,29 +10,29 @@ from .level_loads import Level
 from .workloads import MIX_DISTINCT, Workload
 
 COUNT, _LOOPED = 8 * MIX_DISTINCT, 8
-"""Runs of an ensemble and of SciPy's loop."""
+"""Number of runs of an ensemble and of SciPy's loop."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Trial:
-    """A level computed in one way.
+    """A model with a solver.
 
     Parameters
     ----------
     key, name
-        In files and in tables.
+        Names in files and in tables.
     level
-        Key of the level.
+        Key of the model.
     solve
-        What computes a workload.
+        Function that computes a workload.
     counts
-        Runs of each workload; it takes no part in the others.
+        Number of runs of each supported workload.
     beside
-        Key of the trial to whose speed its own is compared.
+        Key of the trial for the comparison of speed.
     demanding
-        Key of the same trial with demands; None where there is none.
+        Key of the same trial with demands, or None.
     in_table
-        Whether it has a row of its own.
+        Whether the trial has its own row.
     """
 
     key: str

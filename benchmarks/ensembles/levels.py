@@ -1,7 +1,7 @@
-"""The models of the hierarchy side by side, into tables: `python -m benchmarks.ensembles.levels`, part of `make bench`.
+"""Speed of the models of the hierarchy, as tables: `python -m benchmarks.ensembles.levels`, part of `make bench`.
 
-Every level has its own steady rolling and its own mix, and its events, outcomes and summaries; all are timed in turns
-in one process on one core. The fastest of the rounds counts.
+Each model has its own steady rolling, mix, events, outcomes and summaries. All trials alternate in one process on one
+core; the fastest round counts.
 """
 
 import argparse
@@ -83,7 +83,7 @@ def _arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog="python -m benchmarks.ensembles.levels", description=__doc__)
     parser.add_argument("--into", type=Path, default=_FOLDER, help="folder for the tables")
     parser.add_argument("--repetitions", type=int, default=5, help="rounds, of which the fastest counts")
-    parser.add_argument("--quick", action="store_true", help="a sixteenth of the runs, once: to see that it works")
+    parser.add_argument("--quick", action="store_true", help="a sixteenth of the runs, once, as a check")
     return parser.parse_args()
 
 

@@ -1,6 +1,6 @@
-"""Right-hand sides compiled by numba: for SciPy's `solve_ivp`, whose steps are Python, and for CyRK's, which are C++.
+"""Right-hand sides compiled by numba, for SciPy's `solve_ivp` (steps in Python) and CyRK (steps in C++).
 
-CyRK's solver takes no events of compiled callers: it computes "rolling" only.
+CyRK's solver supports no events of compiled callers, so it computes "rolling" only.
 """
 
 import math
@@ -19,20 +19,20 @@ CYRK_NAME = "CyRK, DOP853, compiled loop"
 
 
 def prepare_scipy(workload: Workload, *, rtol: float = RTOL, atol: float = ATOL) -> Callable[[Workload], Answer]:
-    """Return what computes a workload of this kind by SciPy's DOP853."""
+    """Return a function that computes a workload of this kind by SciPy's DOP853."""
     del workload
     return partial(scipy_loop.solve, rtol=rtol, atol=atol, rates_of=_rates_of)
 
 
 def prepare_cyrk(workload: Workload, *, rtol: float = RTOL, atol: float = ATOL) -> Callable[[Workload], Answer]:
-    """Compile the loop and return what computes a workload of this kind by CyRK's DOP853."""
+    """Compile the loop and return a function that computes a workload of this kind by CyRK's DOP853."""
     del workload
     return partial(_solve, _cyrk_loop(), rtol, atol)
 
 
 @cache
 def _accelerations() -> Any:
-    from numba import njit  # noqa: PLC0415  it need not be installed
+    from numba import njit  # noqa: PLC0415  optional
 
     @njit
     def accelerations(tau, x, y, vx, vy, numbers):
@@ -90,7 +90,7 @@ def _cyrk_loop() -> Any:
             solution.free()
         return steps
 
-    vars(follow)["rates"] = rates  # it lasts as long as its code may be called
+    vars(follow)["rates"] = rates  # keeps the right-hand side alive as long as the loop
     return follow
 
 

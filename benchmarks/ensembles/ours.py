@@ -1,4 +1,4 @@
-"""stylobate's ensembles, with all their events, outcomes and summaries."""
+"""stylobate's ensembles as an engine, with all events, outcomes and summaries."""
 
 from collections.abc import Callable
 from functools import partial
@@ -17,13 +17,13 @@ MODEL = sb.Slender(COLUMN, damping=ETA)
 
 
 def prepare(workload: Workload, *, method: str, rtol: float = RTOL, atol: float = ATOL) -> Callable[[Workload], Answer]:
-    """Return what computes a workload of this kind by this method."""
+    """Return a function that computes a workload of this kind by this method."""
     del workload
     return partial(solve, threads=1, method=method, rtol=rtol, atol=atol)
 
 
 def solve(workload: Workload, **options: Any) -> Answer:
-    """Follow every run of the workload; the options are those of `simulate`."""
+    """Integrate all runs of the workload; options as for `simulate`."""
     data = simulate(workload, **options)
     parts = [data["end_tilt"].values, data["end_tilt_rate"].values]
     if "end_spin" in data:
@@ -42,7 +42,7 @@ def simulate(
     rtol: float = RTOL,
     atol: float = ATOL,
 ) -> xr.Dataset:
-    """Return the results of every run of the workload."""
+    """Integrate all runs of the workload and return their results."""
     return sb.simulate_ensemble(
         model,
         workload.motion,

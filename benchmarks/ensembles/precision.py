@@ -15,13 +15,13 @@ _FOLDER = Path(__file__).parents[2] / "docs" / "_static" / "benchmarks"
 _DPI = 200
 TOLERANCES = tuple(float(f"1e-{power}") for power in range(4, 13))
 _QUICK_TOLERANCES = (1e-5, 1e-9)
-# Runs of the mix that all engines compute; SciPy's end states at this tolerance are their reference.
+# Runs of the mix of all engines; tolerance of the reference end states by SciPy.
 _COMPARED, _REFERENCE = 128, 3e-14
 
 
 @dataclass(frozen=True, slots=True)
 class Point:
-    """One engine at one tolerance: processor time [s] and error of a run."""
+    """Processor time [s] and error of a run for one engine and tolerance."""
 
     engine: str
     workload: str
@@ -32,7 +32,7 @@ class Point:
 
 def main() -> None:
     arguments = _arguments()
-    one_core = use_one_core()  # before the libraries come in
+    one_core = use_one_core()  # before the libraries are imported
     from . import figures, peak, tables  # noqa: PLC0415
     from .engines import engines_by_tolerance  # noqa: PLC0415
 
@@ -88,7 +88,7 @@ def _arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog="python -m benchmarks.ensembles.precision", description=__doc__)
     parser.add_argument("--into", type=Path, default=_FOLDER, help="folder for tables and figure")
     parser.add_argument("--repetitions", type=int, default=3, help="rounds, of which the median counts")
-    parser.add_argument("--quick", action="store_true", help="two tolerances, few runs, once: to see that it works")
+    parser.add_argument("--quick", action="store_true", help="two tolerances, few runs, once, as a check")
     return parser.parse_args()
 
 

@@ -1,4 +1,4 @@
-"""Waits until nothing else uses the machine."""
+"""Waiting for an idle machine."""
 
 import time
 from pathlib import Path
@@ -9,7 +9,7 @@ _LOOK = 0.5
 
 
 def wait_for_quiet(patience: float = 20.0) -> bool:
-    """Wait until the cores are idle, at most about `patience` [s]; return whether they are. Knows Linux only."""
+    """Wait until the cores are idle, at most about `patience` [s]; return whether they are. Linux only."""
     if not _STAT.exists():
         return True
     waited = 0.0
@@ -24,6 +24,6 @@ def wait_for_quiet(patience: float = 20.0) -> bool:
 
 
 def _ticks() -> tuple[int, int]:
-    """Return the ticks of the clock that all cores together were idle for, and all ticks."""
+    """Return the idle clock ticks and all clock ticks, summed over the cores."""
     ticks = [int(word) for word in _STAT.read_text(encoding="ascii").splitlines()[0].split()[1:]]
     return ticks[3] + ticks[4], sum(ticks)

@@ -1,7 +1,7 @@
-"""A recorded earthquake at many scales: `python -m benchmarks.ensembles.records`, part of `make bench`.
+"""Ensemble under a recorded earthquake at many scales: `python -m benchmarks.ensembles.records`, in `make bench`.
 
 A thousand columns of `Wobbling`, each under a hundred scales of the three components of El Centro 1940, in lanes on all
-cores; and some of these runs by a loop over SciPy's DOP853 in plain Python that begins anew at every knot, on one core.
+cores. A loop over SciPy's DOP853 in plain Python, restarted at every knot, computes some of the runs on one core.
 """
 
 import argparse
@@ -27,19 +27,19 @@ _RTOL = 1e-8
 
 @dataclass(frozen=True, slots=True)
 class Answer:
-    """What became of one run by the loop over SciPy."""
+    """Outcome of one run by the loop over SciPy."""
 
     overturned: bool
     seconds: float
 
 
 def main() -> None:
-    """Time both, and write the table."""
+    """Time both methods and write the table."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.ensembles.records", description=__doc__)
     parser.add_argument("--into", type=Path, default=_FOLDER, help="folder for the table")
     parser.add_argument("--columns", type=int, default=1000)
     parser.add_argument("--scales", type=int, default=100)
-    parser.add_argument("--scipy", type=int, default=24, help="runs by the loop over SciPy, drawn among all")
+    parser.add_argument("--scipy", type=int, default=24, help="number of random runs by the loop over SciPy")
     arguments = parser.parse_args()
     over = _columns(arguments.columns, arguments.scales)
     _lanes({name: values[:2] for name, values in over.items()})  # compiles
@@ -68,7 +68,7 @@ def _lanes(over: dict[str, xr.DataArray]) -> xr.Dataset:
 
 
 def _drawn(runs: xr.Dataset, over: dict[str, xr.DataArray], count: int) -> list[tuple[bool, Answer]]:
-    """Return of some runs that moved whether they overturned in lanes, and what the loop over SciPy says."""
+    """Return for some moving runs whether they overturned in lanes, and the result of the loop over SciPy."""
     rng = np.random.default_rng(12)
     moved = np.argwhere(runs["uplifts"].values > 0)
     chosen = moved[rng.choice(len(moved), min(count, len(moved)), replace=False)]
@@ -83,7 +83,7 @@ def _drawn(runs: xr.Dataset, over: dict[str, xr.DataArray], count: int) -> list[
 
 
 def by_scipy(model: sb.Model, scale: float) -> Answer:
-    """Follow a column from rest, one call of `solve_ivp` from each knot to the next while it moves."""
+    """Integrate a column from rest, with one call of `solve_ivp` from knot to knot while it moves."""
     begun = time.process_time()
     samples = (scale / model.column.gravity) * _RECORD.samples
     times = _RECORD.times / model.time_scale
@@ -125,7 +125,7 @@ def _rates(model, start, end, left, right):
 
 
 def _rests(model: sb.Model, state: np.ndarray, push: np.ndarray, c: float) -> bool:
-    """Return whether little is left of the motion and the base holds the column, as the lanes judge it."""
+    """Return whether the column is at rest by the criterion of the lanes: little energy, and no uplift."""
     tilt, speed = np.hypot(*model.tilt(state)), np.hypot(*model.tilt_rate(state))
     small = 0.5 * speed**2 + c * (1.0 + push[2]) * tilt < 1e-5 * c**2
     return bool(small and math.hypot(*push[:2]) < c * (1.0 + push[2]))
@@ -149,7 +149,7 @@ def _table(runs: xr.Dataset, seconds: float, pairs: list[tuple[bool, Answer]]) -
     moved = float((runs["uplifts"] > 0).mean())
     loop = sum(answer.seconds for _, answer in pairs) / len(pairs)
     same = sum(ours == answer.overturned for ours, answer in pairs)
-    moving_rate = per_core * moved  # runs that never move cost little in either
+    moving_rate = per_core * moved  # runs that never move cost little in both methods
     rows = [
         f"| lanes, {threads} cores | {count} | {seconds:.1f} | {count / seconds:.0f} | |",
         f"| SciPy, a loop, one core | {len(pairs)} that move | {loop * len(pairs):.1f} | {1.0 / loop:.3f} "

@@ -1,4 +1,4 @@
-"""Processor time and memory of an ensemble against its number of runs; each number in a process of its own."""
+"""Processor time and memory of an ensemble versus number of runs, each number in its own process."""
 
 import json
 import resource
@@ -18,18 +18,18 @@ _STATUS, _FORGET = Path("/proc/self/status"), Path("/proc/self/clear_refs")
 
 @dataclass(frozen=True, slots=True)
 class Cost:
-    """What an ensemble of `count` runs cost on one core.
+    """Cost of an ensemble of `count` runs on one core.
 
     Parameters
     ----------
     workload, count
-        What was computed.
+        Computed workload and number of runs.
     seconds
         Processor time.
     peak
-        Largest memory of the process [bytes].
+        Peak memory of the process [bytes].
     added
-        By how much it exceeded what the process had with the packages loaded and the input made [bytes].
+        Peak memory minus the memory with loaded packages and created input [bytes].
     """
 
     workload: str
@@ -40,7 +40,7 @@ class Cost:
 
 
 def costs(workload: str, *, largest: int = COUNTS[-1]) -> list[Cost]:
-    """Return the costs for all the counts up to the `largest`."""
+    """Measure the costs of all counts up to the `largest`."""
     return [_in_own_process(workload, count) for count in COUNTS if count <= largest]
 
 
@@ -55,7 +55,7 @@ def _measure(workload: str, count: int) -> Cost:
     runs = WORKLOADS[workload](count)
     ours.solve(runs.take(slice(0, 64)), threads=1)  # loads the kernel
     if _FORGET.exists():
-        _FORGET.write_text("5", encoding="ascii")  # the peak so far, of loading
+        _FORGET.write_text("5", encoding="ascii")  # resets the peak of loading
     before = _memory("VmRSS")
     seconds = []
     for _ in range(1 if count >= 100_000 else 5):

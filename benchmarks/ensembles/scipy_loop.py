@@ -1,4 +1,4 @@
-"""SciPy's DOP853, one run after the other, with a right-hand side in plain Python."""
+"""Loop over SciPy's DOP853 with a right-hand side in plain Python."""
 
 import math
 from collections.abc import Callable
@@ -15,11 +15,11 @@ from .workloads import ATOL, ETA, ROLLING_ACCELERATION, RTOL, C, Workload
 NAME = "SciPy, loop"
 
 Rates = Callable[..., Any]
-"""A right-hand side, of time and state."""
+"""Right-hand side as a function of time and state."""
 
 
 def prepare(workload: Workload) -> Callable[[Workload], Answer]:
-    """Return what computes a workload of this kind; rolling goes without an event, which makes it faster."""
+    """Return a function that computes a workload of this kind; rolling omits the event, which is faster."""
     del workload
     return solve
 
@@ -36,7 +36,7 @@ def solve(
     atol: float = ATOL,
     rates_of: Callable[[Workload, int], Rates] = plain_rates,
 ) -> Answer:
-    """Follow every run of the workload."""
+    """Integrate all runs of the workload."""
     end, time = np.empty((len(workload), 4)), np.empty(len(workload))
     overturned = np.zeros(len(workload), bool)
     steps = 0
@@ -52,7 +52,7 @@ def solve(
 
 
 def solve_model(model: sb.Model, workload: Workload) -> Answer:
-    """Follow every run by the equations of a model as it gives them, in plain Python on floats, without an event."""
+    """Integrate all runs by the model's own equations, in plain Python on floats, without events."""
     end = np.empty((len(workload), len(model.state_names)))
     steps = 0
     for i in range(len(workload)):
@@ -80,7 +80,7 @@ def _rolling_rates(workload: Workload, i: int) -> Rates:
     nu, cos, sin, hypot, a0 = float(workload.nu[i]), math.cos, math.sin, math.hypot, ROLLING_ACCELERATION
 
     def rates(tau, state):
-        x, y, vx, vy = state.tolist()  # floats of Python are faster than those of NumPy
+        x, y, vx, vy = state.tolist()  # Python floats are faster than NumPy floats
         lean = 1.0 - C / hypot(x, y)
         turned = nu * tau
         return vx, vy, lean * x - ETA * vx - a0 * cos(turned), lean * y - ETA * vy - a0 * sin(turned)

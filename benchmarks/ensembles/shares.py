@@ -1,7 +1,7 @@
-"""Where the processor time of a call goes: `python -m benchmarks.ensembles.shares`, part of `make bench`.
+"""Shares of the processor time of a call: `python -m benchmarks.ensembles.shares`, part of `make bench`.
 
-Every call follows the 512 runs of a workload. Kernels are written again without what is to be measured, or with a
-counter; each follows the same runs in turns with the others, and the medians of the rounds are compared.
+Each call computes the 512 runs of a workload. Kernels are rewritten without the measured part, or with a counter. The
+variants alternate on the same runs, and the medians of the rounds are compared.
 """
 
 import argparse
@@ -31,7 +31,7 @@ from .workloads import MIX_DISTINCT, WORKLOADS, Workload
 
 _FOLDER = Path(__file__).parents[2] / "docs" / "_static" / "benchmarks"
 _OBSERVATION, _STEP = "                    observe(buf, i)\n", "            step(buf, width)\n"
-# As many steps as all runs of "rolling" make before anything but steps is due.
+# Number of steps of all runs of "rolling" before other work is due.
 _STEPS = 1000
 _STEPS_ALONE = """
 
@@ -43,20 +43,20 @@ def steps_alone(buf, count):
 
 @dataclass(frozen=True, slots=True)
 class Shares:
-    """Processor time of a call [s], and of its parts.
+    """Processor time of a call and of its parts [s].
 
     Parameters
     ----------
     method, workload
-        What was computed.
+        Method and workload.
     call
-        The call of `simulate_ensemble`.
+        Call of `simulate_ensemble`.
     steps, events, observation, python
-        Attempts at steps; events and the driver between steps; integrals over the last periods; all outside kernels.
+        Attempted steps; events and the driver between steps; integrals over the last periods; all code outside kernels.
     occupied
-        Accepted steps over those that the lanes could have made which were stepped.
+        Accepted steps over the attempted steps of all lanes.
     of_peak
-        Arithmetic of DOP853's steps, without events, over what a core could do in the time of an attempt.
+        Arithmetic of DOP853's steps, without events, over the arithmetic peak in the time of an attempt.
     """
 
     method: str
@@ -71,7 +71,7 @@ class Shares:
 
 
 def main() -> None:
-    """Measure the shares, and write the table."""
+    """Measure the shares and write the table."""
     arguments = _arguments()
     print(use_one_core())
     rounds = 1 if arguments.quick else arguments.rounds
@@ -110,7 +110,7 @@ def _shares(method: str, name: str, rounds: int, arithmetic_peak: float) -> Shar
 
 
 def _timed(follow: Callable[[], xr.Dataset], change: Callable[[Kernel], Kernel]) -> tuple[float, float]:
-    """Return the processor time of a call whose kernels are changed, and of its kernels [s]."""
+    """Measure the processor time of a call with changed kernels, and of its kernels [s]."""
     with _kernels(change) as within:
         begun = time.process_time()
         follow()
@@ -123,9 +123,9 @@ def _median_of_differences(longer: Sequence[float], shorter: Sequence[float]) ->
 
 @contextmanager
 def _kernels(change: Callable[[Kernel], Kernel], pieces: np.ndarray | None = None) -> Iterator[list[float]]:
-    """Replace the kernels of all calls, and the polynomials they read, which harmonic motion has none of.
+    """Replace the kernels of all calls, and their polynomials, which harmonic motion does not use.
 
-    What it yields holds the processor time spent within them [s].
+    The yielded list holds the processor time within the kernels [s].
     """
     own, within = Kernel.advance, [0.0]
 
@@ -164,7 +164,7 @@ def _rewritten(kernel: Kernel, old: str, new: str) -> Kernel:
 
 @dataclass(frozen=True, eq=False)
 class _OtherBatch:
-    """The program of a kernel with another text of the module that takes a batch through the lanes."""
+    """Program of a kernel with another text of the module that drives a batch through the lanes."""
 
     own: Bound
     text: str
@@ -180,7 +180,7 @@ class _OtherBatch:
 
 
 def _counted(follow: Callable[[], xr.Dataset]) -> tuple[int, int, int]:
-    """Return the accepted steps of all runs, the attempts at a step in all lanes, and the number of lanes."""
+    """Count the accepted steps of all runs, the attempted steps of all lanes, and the lanes."""
     counter, widths = np.zeros((1, 5)), []
 
     def counting(kernel: Kernel) -> Kernel:
@@ -193,9 +193,9 @@ def _counted(follow: Callable[[], xr.Dataset]) -> tuple[int, int, int]:
 
 
 def _steps_alone(method: str) -> Callable[[int], float]:
-    """Return what makes so many steps in lanes that all roll, nothing between them, and returns how long they took [s].
+    """Return a function that computes a number of rolling steps in all lanes and returns the time of the steps [s].
 
-    A step is code without branches: it takes as long in any run.
+    A step has no branches, so its time does not depend on the run.
     """
     kernel, begun = _begun(method)
     steps = replace(
@@ -238,8 +238,8 @@ def _begun(method: str) -> tuple[Kernel, np.ndarray]:
 def _arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog="python -m benchmarks.ensembles.shares", description=__doc__)
     parser.add_argument("--into", type=Path, default=_FOLDER, help="folder for the table")
-    parser.add_argument("--rounds", type=int, default=21, help="of which the median counts")
-    parser.add_argument("--quick", action="store_true", help="one round: to see that it works")
+    parser.add_argument("--rounds", type=int, default=21, help="number of rounds; the median counts")
+    parser.add_argument("--quick", action="store_true", help="one round, as a check")
     return parser.parse_args()
 
 

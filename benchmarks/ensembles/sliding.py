@@ -1,7 +1,7 @@
-"""Columns that roll and slip on their rims in an earthquake: `python -m benchmarks.ensembles.sliding`, in `make bench`.
+"""Speed of rolling and slipping columns in an earthquake: `python -m benchmarks.ensembles.sliding`, in `make bench`.
 
-The same columns under the same scales of the three components of El Centro 1940 by `Wobbling`, `Rolling` and `Sliding`,
-in lanes on one core, in turns in one process; the median processor time of the rounds counts.
+`Wobbling`, `Rolling` and `Sliding` compute the same columns under the same scales of the three components of El Centro
+1940, in lanes on one core. They alternate in one process; the median processor time of the rounds counts.
 """
 
 import argparse
@@ -30,29 +30,29 @@ _DAMPING = {"damping": 0.05, "spin_damping": 0.05}
 
 @dataclass(frozen=True, slots=True)
 class Case:
-    """A model, and the numbers that differ between its runs."""
+    """A model, and the parameters that vary between its runs."""
 
     name: str
     model: sb.Model
     parameters: dict[str, np.ndarray]
 
     def follow(self) -> xr.Dataset:
-        """Follow all columns."""
+        """Integrate all columns."""
         return sb.simulate_ensemble(
             self.model, _RECORD, duration=_RECORD.duration + _TAIL, parameters=self.parameters, threads=1
         )
 
     def take(self, count: int) -> "Case":
-        """Return the first of the columns."""
+        """Return the first `count` columns."""
         return replace(self, parameters={name: values[:count] for name, values in self.parameters.items()})
 
 
 def main() -> None:
-    """Time the models, and write the table."""
+    """Time the models and write the table."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.ensembles.sliding", description=__doc__)
     parser.add_argument("--into", type=Path, default=_FOLDER, help="folder for the table")
     parser.add_argument("--count", type=int, default=1000, help="columns")
-    parser.add_argument("--rounds", type=int, default=3, help="of which the median counts")
+    parser.add_argument("--rounds", type=int, default=3, help="number of rounds; the median counts")
     arguments = parser.parse_args()
     print(use_one_core())
     cases = _cases(arguments.count)

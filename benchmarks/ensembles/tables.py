@@ -1,4 +1,4 @@
-"""The tables of the documentation's page on speed, as Markdown."""
+"""Markdown tables of the documentation's page on speed."""
 
 import itertools
 import math
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 def engines_table(
     engines: Sequence[Engine], found: Sequence[Timing], limits: Mapping[str, float], workload: str
 ) -> str:
-    """Return one row an engine: speed, its ratio to SciPy's, share of the arithmetic peak, error."""
+    """Format one row per engine: speed, ratio to SciPy's speed, share of the arithmetic peak, error."""
     titles = {
         "rolling": ["trajectories/s", "× SciPy", "share of peak", "largest error"],
         "mix": ["trajectories/s", "× SciPy", "share of peak", "median error", "other outcome"],
@@ -44,7 +44,7 @@ def engines_table(
 
 
 def targets_table(found: Sequence[Timing], two_threads: Mapping[str, float] | None) -> str:
-    """Return what was asked of "rolling" on one core with AVX-512, and what each of our methods does."""
+    """Format targets of "rolling" on one core with AVX-512, and results of stylobate's methods."""
     scipy = _of(found, "scipy", "rolling")
     heyoka = next((t for t in found if (t.engine, t.workload) == ("heyoka8", "rolling")), None)
     own = [_of(found, method, "rolling") for method in NAMES]
@@ -58,13 +58,13 @@ def targets_table(found: Sequence[Timing], two_threads: Mapping[str, float] | No
         ("speed of two threads over one", "≥ 1.8", (threads, "")),
         ("error of the end state", f"SciPy's: {_power(scipy.error)}", [_power(timing.error) for timing in own]),
     ):
-        told = ["not measured" if v is None else v if isinstance(v, str) else number(v) for v in values]
-        lines.append(f"| {what} | {aim} | {' | '.join(told)} |")
+        cells = ["not measured" if v is None else v if isinstance(v, str) else number(v) for v in values]
+        lines.append(f"| {what} | {aim} | {' | '.join(cells)} |")
     return "\n".join(lines) + "\n"
 
 
 def levels_table(trials: Sequence[Trial], found: Sequence[Timing], workload: str) -> str:
-    """Return one row a level: speed, its ratio to the slender model's, speed with demands, steps and error."""
+    """Format one row per model: speed, ratio to the slender model, speed with demands, steps and error."""
     titles = ["trajectories/s", "× `Slender`", "with demands", "steps a run", "µs a step"]
     titles += {"rolling": ["largest error"], "mix": ["median error", "other outcome"]}[workload]
     lines = [f"| {workload}, one core | {' | '.join(titles)} |", "|" + "---|" * (len(titles) + 1)]
@@ -84,7 +84,7 @@ def levels_table(trials: Sequence[Trial], found: Sequence[Timing], workload: str
 
 
 def precision_table(engines: Sequence[Engine], found: Sequence["Point"], workload: str) -> str:
-    """Return one row an engine: the least processor time of a run at which it reaches each error."""
+    """Format one row per engine: minimum processor time of a run for each error."""
     heads = [f"error 1e{math.log10(error):.0f}" for error in _ERRORS]
     lines = [f"| {workload}, µs a run | {' | '.join(heads)} |", "|" + "---|" * (len(heads) + 1)]
     for engine in engines:
@@ -105,7 +105,7 @@ _ERRORS = (1e-4, 1e-6, 1e-8, 1e-10, 1e-12)
 
 
 def _time_of_error(points: Sequence["Point"], error: float) -> float:
-    """Return the least time of a run [s] with this error, interpolated between tolerances; NaN if none reaches it."""
+    """Return the minimum time of a run [s] with this error, interpolated between tolerances; NaN if never reached."""
     times = [point.seconds for point in points if point.error <= error]
     by_tolerance = sorted(points, key=lambda point: -point.rtol)
     for loose, tight in itertools.pairwise(by_tolerance):
@@ -119,7 +119,7 @@ _NOISE = 0.01
 
 
 def shares_table(found: Sequence["Shares"]) -> str:
-    """Return one row a method and workload: the parts of the processor time of a call."""
+    """Format one row per method and workload: shares of the processor time of a call."""
     lines = [
         "| 512 runs, one core | a call [ms] | steps | events, driver | observation | Python | lanes occupied "
         "| steps alone: share of peak |",
@@ -141,7 +141,7 @@ def shares_table(found: Sequence["Shares"]) -> str:
 
 
 def scaling_table(found: Sequence[Cost]) -> str:
-    """Return one row a number of trajectories."""
+    """Format one row per number of trajectories."""
     lines = [
         "| trajectories | rolling: time [s] | µs each | memory [MB] | mix: time [s] | µs each | memory [MB] |",
         "|" + "---|" * 7,
@@ -160,7 +160,7 @@ def _of(found: Sequence[Timing], engine: str, workload: str) -> Timing:
 
 
 def number(value: float) -> str:
-    """Return three digits or all of the integer part, in groups of three."""
+    """Format three digits or the whole integer part, in groups of three."""
     return f"{value:.3g}" if value < 100.0 else f"{value:,.0f}".replace(",", " ")
 
 

@@ -1,6 +1,6 @@
-"""What a second thread brings: wall time of one and of two, in turns, in a process of its own.
+"""Speed-up by a second thread: alternating wall times of one and two threads, in a separate process.
 
-The fastest of the rounds counts: wall time is at the mercy of whatever else the machine does.
+The fastest round counts, since other load on the machine affects wall time.
 """
 
 import json
@@ -20,7 +20,7 @@ _COUNTS = {"rolling": 16384, "mix": 65536}
 
 
 def speed_up(*, repetitions: int, shorter: int = 1) -> dict[str, float] | None:
-    """Return how many times as fast two threads are, for each workload; None where there is one core."""
+    """Measure the speed-up of two threads for each workload; None with one core."""
     if (os.cpu_count() or 1) < 2:
         return None
     command = [sys.executable, "-m", __spec__.name, str(repetitions), str(shorter)]
@@ -40,7 +40,7 @@ def _measure(repetitions: int, shorter: int) -> dict[str, float]:
 
 
 def gain(solve: Callable[..., object], repetitions: int) -> float:
-    """Return the fastest wall time of `solve(threads=1)` over that of `solve(threads=2)`, on all cores."""
+    """Measure the ratio of the fastest wall times of `solve(threads=1)` and `solve(threads=2)`, on all cores."""
     use_all_cores()
     solve(threads=2)
     seconds: dict[int, list[float]] = {1: [], 2: []}

@@ -1,4 +1,4 @@
-"""Times the engines in turns, round after round, so that what disturbs the machine disturbs them alike."""
+"""Timing of engines in alternating rounds, so that disturbances affect all engines alike."""
 
 import time
 from collections.abc import Callable, Mapping, Sequence
@@ -17,22 +17,22 @@ from .workloads import MIX_DISTINCT, WORKLOADS, Workload, mix
 
 @dataclass(frozen=True, slots=True)
 class Timing:
-    """What one engine did on one workload.
+    """Times and errors of one engine on one workload.
 
     Parameters
     ----------
     engine, workload
-        Their keys.
+        Keys of engine and workload.
     count
         Runs in each repetition.
     seconds
         Processor time of each repetition.
     error
-        Of the end states: the largest where the exact solution is known, else the median.
+        Error of the end states: the largest if the exact solution is known, otherwise the median.
     other_outcomes
-        How many of the 512 distinct runs of the mix overturned where the reference did not, or the other way round.
+        Number of the 512 distinct runs of the mix with another outcome than the reference.
     steps
-        Accepted steps a run.
+        Accepted steps per run.
     """
 
     engine: str
@@ -45,12 +45,12 @@ class Timing:
 
     @property
     def rate(self) -> float:
-        """Runs a second, the median of the repetitions."""
+        """Runs per second, the median of the repetitions."""
         return self.count / median(self.seconds)
 
     @property
     def fastest(self) -> float:
-        """Runs a second, the fastest of the repetitions."""
+        """Runs per second, the fastest of the repetitions."""
         return self.count / min(self.seconds)
 
 
@@ -63,9 +63,9 @@ def timings(
     compared: int = MIX_DISTINCT,
     reference: float = 1e-12,
 ) -> list[Timing]:
-    """Time each engine on a workload; compiling, and a first round, are left out.
+    """Time each engine on a workload, without compilation and a first round.
 
-    Of the mix the first runs, so many as are `compared`, are held against SciPy's at the tolerance `reference`.
+    For the mix, the first `compared` runs are compared with SciPy's at the tolerance `reference`.
     """
     fewest = compared if workload == "mix" else 16
     runs, solvers = {}, {}
@@ -85,7 +85,7 @@ def timings(
 def in_turns(
     tasks: Mapping[str, Callable[[], Answer]], repetitions: int
 ) -> tuple[dict[str, list[float]], dict[str, Answer]]:
-    """Return the processor times of every task in each round, and its last answer."""
+    """Return the processor times of each task in each round, and its last result."""
     seconds: dict[str, list[float]] = {key: [] for key in tasks}
     answers = {}
     for _ in range(repetitions):
@@ -98,7 +98,7 @@ def in_turns(
 
 
 def timing_of(key: str, runs: Workload, seconds: Sequence[float], answer: Answer, truth: Answer | None) -> Timing:
-    """Compare with the exact ends of the runs, or, of the mix, with a `truth` of the first ones."""
+    """Compare with the exact end states of the runs or, for the mix, with the `truth` of the first runs."""
     other = None
     if truth is None:
         assert runs.exact is not None

@@ -1,7 +1,7 @@
-"""What every engine computes: two sets of runs of equations (1), c = η = 0.1.
+"""Workloads of all engines: two sets of runs of equations (1), c = η = 0.1.
 
-The base moves as a_i(τ) = cos_i cos ντ + sin_i sin ντ. A run ends with its duration, or at the tilt of no return
-c + sup|a_h|.
+The base moves as a_i(τ) = cos_i cos ντ + sin_i sin ντ. A run ends with its duration, or at the point of no return, the
+tilt c + sup|a_h|.
 """
 
 import math
@@ -19,7 +19,7 @@ C = ETA = 0.1
 RTOL, ATOL = 1e-8, 1e-10
 PERIODS = 200
 COLUMN = sb.Column.dimensionless(C)
-"""SI numbers are the dimensionless ones."""
+"""SI numbers equal the dimensionless numbers."""
 
 ROLLING_ACCELERATION = 0.065
 MIX_DISTINCT = 512
@@ -28,7 +28,7 @@ MIX_AXIS_RATIO = 0.7
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Workload:
-    """Runs, one a row of every array.
+    """Set of runs, one per row of each array.
 
     Parameters
     ----------
@@ -37,15 +37,15 @@ class Workload:
     nu, duration
         Frequency and length of each run.
     start
-        x, y, their rates, shape (n, 4); behind them the spin, of levels that know it.
+        x, y and their rates, shape (n, 4); then the spin for models with spin.
     cos, sin
         Coefficients of the base acceleration along x and y [g], shape (n, 2).
     no_return
-        Tilt of no return.
+        Tilt at the point of no return.
     exact
-        The states at the end, where they are known in closed form.
+        End states, if known in closed form.
     motion, parameters
-        The same base motion as stylobate takes it.
+        The same base motion for stylobate.
     """
 
     name: str
@@ -64,7 +64,7 @@ class Workload:
 
     @property
     def circular(self) -> bool:
-        """Whether the base moves in one and the same circle (a0 cos ντ, a0 sin ντ) in all runs."""
+        """Whether the base moves in the same circle (a0 cos ντ, a0 sin ντ) in all runs."""
         return self.name == "rolling"
 
     def take(self, index: Any) -> "Workload":
@@ -75,7 +75,7 @@ class Workload:
 
 
 def rolling(count: int) -> Workload:
-    """Return runs on the exact steady rolling under circular motion: ν even on 3…6, in random order (seed 1)."""
+    """Create runs on the exact steady rolling under circular motion: ν even on 3…6, in random order (seed 1)."""
     nu = 3.0 + 3.0 * (np.random.default_rng(1).permutation(count) + 0.5) / count
     branch = sb.theory.steady_rolling(nu, ROLLING_ACCELERATION, c=C, eta=ETA).upper
     start = on_circle(branch.amplitude, branch.phase, nu)
@@ -89,24 +89,24 @@ def rolling(count: int) -> Workload:
         cos=np.stack([circle, none], axis=1),
         sin=np.stack([none, circle], axis=1),
         no_return=np.full(count, C + ROLLING_ACCELERATION),
-        exact=start,  # after whole periods it is where it was
+        exact=start,  # the state repeats after whole periods
         motion=sb.Harmonic.circular(acceleration=ROLLING_ACCELERATION, angular_frequency=3.0),
         parameters={"angular_frequency": nu},
     )
 
 
 def on_circle(amplitude: Array, psi: Array, nu: Array) -> Array:
-    """Return x, y and their rates on a circle of this amplitude, at the angle ψ, turning at the rate ν."""
+    """Return x, y and their rates on a circle of this amplitude, at the angle ψ and the rate ν."""
     x, y = amplitude * np.cos(psi), amplitude * np.sin(psi)
     return np.stack([x, y, -nu * y, nu * x], axis=1)
 
 
 def mix(count: int) -> Workload:
-    """Return `count` runs, copies of 512 random ones (seed 2) in random order, so that every engine has the same mix.
+    """Create `count` runs, copies of 512 random runs (seed 2) in random order, so that every engine has the same mix.
 
-    Uniform and independent: start tilt in a disc of radius 0.09, its rate in one of radius 0.1; the base on an ellipse
-    of axis ratio 0.7 with peak acceleration 0.15…0.3, direction of the long axis 0…π, start phase 0…2π, ν = 1…6.
-    The acceleration is always above c: no run comes to rest, which equations (1) by themselves cannot follow.
+    Uniform and independent: initial tilt in a disc of radius 0.09, tilt rate in a disc of radius 0.1; the base on an
+    ellipse of axis ratio 0.7 with peak acceleration 0.15…0.3, direction of the long axis 0…π, start phase 0…2π, ν =
+    1…6. The acceleration is always above c: no run comes to rest, which equations (1) alone do not describe.
     """
     rng = np.random.default_rng(2)
     tilt, rate = (_in_disc(rng, radius) for radius in (0.09, 0.1))
@@ -139,7 +139,7 @@ def mix(count: int) -> Workload:
 
 
 def mix_order(count: int) -> npt.NDArray[np.intp]:
-    """Return which of the distinct runs each run of the mix is; the first 512 are all of them."""
+    """Return the index of the distinct run for each run of the mix; the first 512 runs are all distinct."""
     rng = np.random.default_rng(3)
     rounds = -(-count // MIX_DISTINCT)
     return np.concatenate([rng.permutation(MIX_DISTINCT) for _ in range(rounds)])[:count]

@@ -1,6 +1,6 @@
-"""The source paper: its analyses repeated and checked, its figures and its report.
+"""Check of the source paper: repeated analyses, figures and report.
 
-The public names, imported when they are first used, are those of `__init__.pyi`.
+`__init__.pyi` lists the public names; each is imported at its first use.
 """
 
 import lazy_loader

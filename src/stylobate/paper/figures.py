@@ -1,4 +1,4 @@
-"""The figures of the source paper and those that go beyond it, from the data of its check."""
+"""Figures of the source paper and additional figures, from the data of the check."""
 
 import re
 from typing import Any
@@ -23,7 +23,7 @@ from stylobate.plots.style import (
     styled,
 )
 
-# The paper's numbers of the curves, by amplitude and branch, and where along ν to put them.
+# The paper's numbers of the curves by amplitude and branch, and their positions along ν.
 _CURVE_NUMBERS = {(0, "lower"): (2, 0.62), (0, "upper"): (3, 0.28), (1, "lower"): (4, 0.42), (1, "upper"): (5, 0.5)}
 _COLOURS = (BLUE, VERMILION)
 _LIMIT = (0, (4, 2))
@@ -31,7 +31,7 @@ _LIMIT = (0, (4, 2))
 
 @styled
 def sketch() -> Figure:
-    """Return the column leaning on its rim, from the side and from above, with the symbols."""
+    """Draw the leaning column from the side and from above, with the symbols."""
     figure = new_figure(3.4)
     side, above = figure.subplots(1, 2, width_ratios=(1.5, 1.0))
     tilt, r, height = 0.28, 0.5, 3.2
@@ -76,7 +76,7 @@ def sketch() -> Figure:
 
 @styled
 def figure_2(response: xr.Dataset, straight: xr.Dataset | None = None) -> Figure:
-    """Return Fig. 2, tilt against frequency; for straight-line motion with the `straight` full motion beside it."""
+    """Draw Fig. 2, tilt against frequency; for straight-line motion also the full motion `straight`."""
     figure = new_figure(4.4)
     axes = figure.subplots()
     nu = response["nu"]
@@ -99,7 +99,7 @@ def figure_2(response: xr.Dataset, straight: xr.Dataset | None = None) -> Figure
 
 @styled
 def figure_3(response: xr.Dataset, *, averaged: bool) -> Figure:
-    """Return Fig. 3, phase against frequency; `averaged` for straight-line motion."""
+    """Draw Fig. 3, phase against frequency; `averaged` for straight-line motion."""
     figure = new_figure(4.0)
     axes = figure.subplots()
     places = {2: 0.8, 3: 2.6, 4: 1.2, 5: 1.9}
@@ -119,7 +119,7 @@ def figure_3(response: xr.Dataset, *, averaged: bool) -> Figure:
 
 @styled
 def backbones(data: xr.Dataset) -> Figure:
-    """Return the two backbones, each with the forced response that hugs it."""
+    """Draw the two backbones, each with a forced response near it."""
     figure = new_figure(4.2)
     axes = figure.subplots()
     nu = data["nu"]
@@ -143,7 +143,7 @@ def backbones(data: xr.Dataset) -> Figure:
 
 @styled
 def averaging(data: xr.Dataset) -> Figure:
-    """Return tilt against time by the full equations and by the slow flow, where averaging is good and where not."""
+    """Draw tilt against time by the full equations and the slow flow, for an accurate and a poor case."""
     figure = new_figure(5.4)
     for k, (nu, a1) in enumerate(zip(data.attrs["nu"], data.attrs["a1"], strict=True)):
         axes = figure.add_subplot(2, 1, k + 1)
@@ -163,7 +163,7 @@ def averaging(data: xr.Dataset) -> Figure:
 
 @styled
 def modulated(data: xr.Dataset) -> Figure:
-    """Return the modulated rolling below ν*: tilt over a few of its periods, and its cycle in the rotating frame."""
+    """Draw the modulated rolling below ν*: tilt over a few periods, and the cycle in the rotating frame."""
     figure = new_figure(3.6)
     history, cycle = figure.add_subplot(1, 2, 1), figure.add_subplot(1, 2, 2)
     for k, nu in enumerate(data.attrs["nu"]):
@@ -188,7 +188,7 @@ def modulated(data: xr.Dataset) -> Figure:
 
 @styled
 def runaway(data: xr.Dataset) -> Figure:
-    """Return the azimuth of free motions that begin ever closer to a plane, and one of the paths."""
+    """Draw the azimuth of free motions that start progressively closer to a plane, and one path."""
     figure = new_figure(3.8)
     azimuth, path = figure.add_subplot(1, 2, 1), figure.add_subplot(1, 2, 2)
     for k, offset in enumerate(data["offset"].to_numpy()):
@@ -212,7 +212,7 @@ def runaway(data: xr.Dataset) -> Figure:
 
 @styled
 def critical(data: xr.Dataset) -> Figure:
-    """Return the critical frequency against the amplitude of circular base motion."""
+    """Draw the critical frequency against the amplitude of circular base motion."""
     figure = new_figure(4.0)
     axes = figure.subplots()
     for k, eta in enumerate(data["eta"].to_numpy()):
@@ -232,7 +232,7 @@ def critical(data: xr.Dataset) -> Figure:
 
 @styled
 def pressure(data: xr.Dataset) -> Figure:
-    """Return the path of the centre of pressure under a standing column."""
+    """Draw the path of the centre of pressure under a standing column."""
     figure = new_figure(4.2)
     axes = figure.subplots()
     axes.add_patch(Circle((0.0, 0.0), 1.0, fill=False, color=BLACK, linewidth=3.0, alpha=0.35, label="rim"))
@@ -251,7 +251,7 @@ def pressure(data: xr.Dataset) -> Figure:
 
 @styled
 def kicks(data: xr.Dataset) -> Figure:
-    """Return the sideways kick of one passage against its offset from the upright, with the exact slope."""
+    """Draw the sideways kick of one passage against its offset from the vertical, with the exact slope."""
     figure = new_figure(3.4)
     axes = figure.subplots()
     offset, kick = data["offset"].to_numpy(), data["kick"].to_numpy()

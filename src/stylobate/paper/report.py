@@ -1,4 +1,4 @@
-"""The report on the source paper: its figures as files, its findings as a table, all of it on one page."""
+"""Report on the source paper: figures as files, findings as a table, and one HTML page."""
 
 import json
 from collections.abc import Callable, Sequence
@@ -50,7 +50,7 @@ _SYMBOLS = Table(
     ),
 )
 
-# Name of the picture, the heading it stands under, how to draw it, and its caption.
+# Name of the picture, heading of its section, drawing function and caption.
 _PICTURES: tuple[tuple[str, str, Callable[[PaperCheck], Figure], str], ...] = (
     (
         "column",
@@ -106,8 +106,8 @@ _PICTURES: tuple[tuple[str, str, Callable[[PaperCheck], Figure], str], ...] = (
         "Straight-line base motion",
         lambda check: figures.figure_2(check.data["response"], check.data["straight"]),
         "Fig. 2 for straight-line base motion: the averaged curves, and the full motion started on them: mean and "
-        "range of the tilt over the second half of 60 periods; a cross where the column overturned (its height means "
-        "nothing).",
+        "range of the tilt over the second half of 60 periods; a cross marks overturning (its height has no "
+        "meaning).",
     ),
     (
         "figure-3-straight",
@@ -120,14 +120,14 @@ _PICTURES: tuple[tuple[str, str, Callable[[PaperCheck], Figure], str], ...] = (
         "Straight-line base motion",
         lambda check: figures.averaging(check.data["averaging"]),
         "Full motion (1) and slow flow (10). Above: both start 15 % above the averaged tilt. Below: both start on the "
-        "averaged solution, which (10) calls stable; the column overturns.",
+        "averaged solution, which is stable by (10); the column overturns.",
     ),
     (
         "exact-response",
         "Exact periodic orbits",
         lambda check: plot_exact_response(check.data["exact"]),
         "Exact rolling under straight-line motion, a1 = 0.13, beside the averaged curves: mean tilt and, shaded, its "
-        "range where stable. At the pitchfork the symmetric orbit gives way to two without the symmetry.",
+        "range where stable. At the pitchfork two orbits without the symmetry bifurcate from the symmetric orbit.",
     ),
     (
         "stability-boundary",
@@ -193,7 +193,7 @@ def paper_report(check: PaperCheck, folder: str | Path) -> Path:
 
 
 def findings_table(findings: Sequence[Finding]) -> Table:
-    """Return the findings as a table."""
+    """Convert the findings to a table."""
     header = ("where", "statement", "measured", "verdict")
     return Table(header, [(f.source, f.statement, f.measured, f.verdict.value) for f in findings])
 

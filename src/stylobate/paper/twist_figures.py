@@ -1,4 +1,4 @@
-"""The figures of a column that may turn about its axis: steady rolling, and the frequencies at which it is stable."""
+"""Figures of a column with free spin: steady rolling, and its frequency limits of stability."""
 
 import numpy as np
 import xarray as xr
@@ -11,7 +11,7 @@ from stylobate.plots.style import BLACK, DASHES, GREY, PALETTE, STABLE_WIDTH, ne
 
 @styled
 def twist(data: xr.Dataset) -> Figure:
-    """Return steady rolling with a free twist: tilt and spin against frequency, for several spin damping."""
+    """Draw steady rolling with free spin: tilt and spin against frequency, for several values of the spin damping."""
     figure = new_figure(3.6)
     tilt, spin = figure.subplots(1, 2)
     for k, zeta in enumerate(data["zeta"].to_numpy()):
@@ -33,7 +33,7 @@ def twist(data: xr.Dataset) -> Figure:
 
 @styled
 def twist_boundary(data: xr.Dataset) -> Figure:
-    """Return the critical frequency against amplitude, damping and spin damping, and the upper frequency."""
+    """Draw the critical frequency against amplitude, damping and spin damping, and the upper frequency."""
     figure = new_figure(6.2)
     (amplitude, spin_damping), (damping, upper) = figure.subplots(2, 2)
     at, damped = f"$a_0$ = {data.attrs['a0']:g}", rf"$\eta$ = {data.attrs['eta']:g}"

@@ -1,4 +1,4 @@
-"""The source paper, checked: every claim measured, the data of its figures.
+"""Check of the source paper: measurement of every claim, and data of its figures.
 
 "Dynamic of a cylindrical column on a vibrating base" (Vibroengineering Procedia).
 """
@@ -26,7 +26,7 @@ __all__ = ["check_paper"]
 
 @dataclass(frozen=True, slots=True)
 class _Analysis:
-    """One section of the paper: how it is checked, and the usual processor time of that [s]."""
+    """Check of one section of the paper, and its typical processor time [s]."""
 
     check: Callable[[], Section]
     cost: float
@@ -56,13 +56,13 @@ def check_paper(
     Parameters
     ----------
     workers
-        Processes to use; with 1 everything runs in this one.
+        Number of processes; with 1 everything runs in this process.
     progress
-        Called with the heading of each section that is done, how many sections are done, how many there are, and the
-        fraction of the work that is done; first with an empty heading, for what an earlier call had finished.
+        Called after each section with its heading, the number of finished sections, the total number, and the finished
+        fraction of the work. The first call has an empty heading and reports the sections of an earlier call.
     folder
-        Folder that keeps each finished section, in `analyses`. A later call with the same version of stylobate and of
-        the libraries under it takes the section from there, so that an interrupted check goes on where it stopped.
+        Folder that stores each finished section, in `analyses`. A later call with the same versions of stylobate and
+        its libraries reads the section from there, so that an interrupted check resumes.
 
     Returns
     -------
@@ -74,7 +74,7 @@ def check_paper(
     FileError
         If the folder cannot be written.
     WorkerLostError
-        If a process ends before its answer.
+        If a process ends without a result.
     """
     with tempfile.TemporaryDirectory(prefix="stylobate-") as passing:
         kept = FinishedAnalyses(Path(passing if folder is None else folder) / "analyses")
@@ -88,7 +88,7 @@ def check_paper(
         advance("")
         with closing(_computed([heading for heading in _ANALYSES if heading not in done], workers)) as sections:
             for heading, section in sections:
-                # Read back, so that the report is the same whether the section was computed now or earlier.
+                # Read back, so that the report does not depend on when the section was computed.
                 done[heading] = kept.write(heading, section)
                 advance(heading)
     return PaperCheck({heading: done[heading] for heading in _ANALYSES})
@@ -99,6 +99,6 @@ def _computed(headings: list[str], workers: int) -> Generator[tuple[str, Section
         for heading in headings:
             yield heading, _ANALYSES[heading].check()
         return
-    # The longest first, so that the processes end together.
+    # The longest first, so that the processes end at similar times.
     order = sorted(headings, key=lambda heading: -_ANALYSES[heading].cost)
     yield from computed({heading: _ANALYSES[heading].check for heading in order}, workers=workers)

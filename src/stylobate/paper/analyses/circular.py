@@ -1,4 +1,4 @@
-"""Circular base motion: the exact rolling (8), its stability, the critical frequency."""
+"""Circular base motion: exact rolling (8), its stability and the critical frequency."""
 
 import math
 
@@ -32,7 +32,7 @@ def check_circular() -> Section:
 
 
 def response_data() -> xr.Dataset:
-    """Return the curves of Figs. 2 and 3: amplitude and phase of both branches against ν, and the backbone (5)."""
+    """Compute the curves of Figs. 2 and 3: amplitude and phase of both branches against ν, and the backbone (5)."""
     nu = np.linspace(0.02, 4.0, 1600)
     steady = [theory.steady_rolling(nu, a0, **_PARAMETERS) for a0 in CIRCULAR_AMPLITUDES]
     dims = ("a0", "branch", "nu")
@@ -48,7 +48,7 @@ def response_data() -> xr.Dataset:
 
 
 def critical_data() -> xr.Dataset:
-    """Return ν* against a0 for several frictions, and its closed form without friction."""
+    """Compute ν* against a0 for several values of the damping, and its closed form without damping."""
     a0 = np.linspace(1e-4, 0.3, 400)
     etas = [0.1, 0.3, 0.5, 1.0]
     nu = np.array([theory.critical_frequency(a0, c=SLENDERNESS, eta=eta) for eta in etas])

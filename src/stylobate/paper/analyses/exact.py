@@ -1,4 +1,4 @@
-"""Exact periodic orbits: where averaging holds, and what happens where it does not."""
+"""Exact periodic orbits compared with averaging: stability boundaries, bifurcations and errors."""
 
 import math
 
@@ -37,12 +37,12 @@ def check_exact() -> Section:
             values=[AMPLITUDES[1]],
         ),
     }
-    findings = (_circular(), _boundaries(straight), _born(straight), _error(straight))
+    findings = (_circular(), _boundaries(straight), _bifurcating(straight), _error(straight))
     return Section(findings, {name: _plain(found) for name, found in data.items()})
 
 
 def _plain(found: xr.Dataset) -> xr.Dataset:
-    """Return data as netCDF can hold them, without truth values."""
+    """Convert data for netCDF, without truth values."""
     return found.assign({name: one.astype("int8") for name, one in found.data_vars.items() if one.dtype == bool})
 
 
@@ -51,7 +51,7 @@ def _branch(motion: Harmonic) -> Branch:
 
 
 def _lost(branch: Branch) -> Bifurcation:
-    """Return the bifurcation at which stability is lost as the frequency falls."""
+    """Return the bifurcation at which stability is lost with decreasing frequency."""
     return max((one for one in branch.bifurcations if one.supercritical is not None), key=lambda one: one.parameter)
 
 
@@ -103,7 +103,7 @@ def _boundaries(straight: dict[float, Branch]) -> Finding:
     )
 
 
-def _born(straight: dict[float, Branch]) -> Finding:
+def _bifurcating(straight: dict[float, Branch]) -> Finding:
     lines, soft = [], []
     for a1, branch in straight.items():
         one = _lost(branch)

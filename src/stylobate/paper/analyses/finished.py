@@ -1,4 +1,4 @@
-"""Finished sections of the paper's check on disk, for a later check that computes the same."""
+"""Storage of finished sections of the paper's check for reuse by a later check."""
 
 import hashlib
 import json
@@ -20,12 +20,12 @@ _FINDINGS = "findings"
 
 @dataclass(frozen=True, slots=True)
 class FinishedAnalyses:
-    """Sections by heading in a folder, one netCDF file each, named with the fingerprint of what computed it."""
+    """Sections by heading in a folder, one netCDF file each, named with the fingerprint of the code."""
 
     folder: Path
 
     def read(self, heading: str) -> Section | None:
-        """Return the section with this heading, or None if it is missing, damaged or of other code."""
+        """Read the section with this heading; None if it is missing, damaged or from other code."""
         try:
             tree = read_tree(self._file(heading))
         except FileError:
@@ -37,7 +37,7 @@ class FinishedAnalyses:
         return Section(found, {str(name): child.to_dataset() for name, child in tree.children.items()})
 
     def write(self, heading: str, section: Section) -> Section:
-        """Keep a section in place of earlier ones; return it as it is read.
+        """Store a section in place of earlier ones; return the stored section.
 
         Raises
         ------
@@ -67,7 +67,7 @@ class FinishedAnalyses:
 
 @cache
 def fingerprint() -> str:
-    """Return a digest of what the paper's check depends on: the text of stylobate, and the libraries that compute."""
+    """Return a digest of the dependencies of the check: the text of stylobate and the numerical libraries."""
     digest = hashlib.sha256(sys.version.encode())
     for library in ("numpy", "scipy", "llvmlite", "xarray"):
         digest.update(f"{library} {version(library)}\n".encode())

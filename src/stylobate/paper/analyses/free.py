@@ -1,4 +1,4 @@
-"""Free vibration: planar, rolling and general motion, (2) to (5) and (11)."""
+"""Free vibration: planar, rolling and general motion, equations (2) to (5) and (11)."""
 
 import math
 
@@ -19,7 +19,7 @@ def check_free() -> Section:
 
 
 def runaway_data() -> xr.Dataset:
-    """Return azimuth and tilt vector of free motions that begin ever closer to a plane."""
+    """Compute azimuth and tilt vector of free motions that start progressively closer to a plane."""
     model = paper_model(damping=0.0)
     offsets = [1e-1, 1e-2, 1e-4, 0.0]
     tilt = 0.7 * _C
@@ -84,7 +84,7 @@ def _general() -> Finding:
     end = run.sample(20.0 * period)
     turned, back = float(end["azimuth"][0]) / 20.0, float(end["amplitude"][0])
     gap = max(abs(turned - advance), abs(back - tilt) / tilt)
-    # Ä at the start by the equation as printed, with the sign of its terms reversed, against the integrated one.
+    # Initial Ä from the printed equation with reversed signs, against the integration.
     momentum = tilt**2 * rate
     true = momentum**2 / tilt**3 + tilt - _C
     near = run.sample(np.array([1e-3]))

@@ -1,4 +1,4 @@
-"""Below the critical frequency: modulated rolling, against conclusion 3."""
+"""Modulated rolling below the critical frequency, which contradicts conclusion 3."""
 
 import math
 from typing import Any
@@ -18,7 +18,7 @@ from stylobate.studies.responses.initial_conditions import steady_start
 _C = SLENDERNESS
 _A0 = CIRCULAR_AMPLITUDES[1]
 _FREQUENCIES = (1.38, 1.36, 1.33)
-"""ν of the cycles drawn, all stable."""
+"""ν of the plotted cycles, all stable."""
 
 _BEYOND_DOUBLING = 1.318
 _SEED = 20
@@ -30,7 +30,7 @@ def check_modulated() -> Section:
 
 
 def modulated_data() -> xr.Dataset:
-    """Return the limit cycles of (7) below ν*: tilt over one period and the path in the (θ cos ψ, θ sin ψ) plane."""
+    """Compute the limit cycles of (7) below ν*: tilt over one period and the path in the (θ cos ψ, θ sin ψ) plane."""
     fields: dict[str, Any] = {}
     for k, nu in enumerate(_FREQUENCIES):
         cycle = theory.modulated_rolling(nu, _A0, c=_C, eta=DAMPING)
@@ -91,12 +91,12 @@ def _followed_down() -> Finding:
 
 
 def _least_multiplier(nu: float) -> float:
-    """Return the least real part of the cycle's multipliers, plus one: zero where the period doubles."""
+    """Return the minimum real part of the cycle's multipliers plus one: zero at the period doubling."""
     return float(theory.modulated_rolling(nu, _A0, c=_C, eta=DAMPING).multipliers.real.min()) + 1.0
 
 
 def _lost_below(nu: float) -> tuple[float, float]:
-    """Return the frequency at which a slow descent from `nu` overturns the column, and the last it survived."""
+    """Return the overturning frequency of a slow descent from `nu`, and the last frequency without overturning."""
     model = paper_model()
     cycle = theory.modulated_rolling(nu, _A0, c=_C, eta=DAMPING)
     tilt, psi, mu, omega = (

@@ -1,4 +1,4 @@
-"""Rocking in a plane: the parallelepiped's curve against the column's, and how planar motion is lost."""
+"""Planar rocking: backbone of a parallelepiped against a round column, and loss of planar motion."""
 
 import math
 
@@ -15,7 +15,7 @@ from stylobate.theory.planar_forced import planar_kick_slope
 _C = SLENDERNESS
 _NU, _A1 = 3.0, 0.13
 _PLANAR_A1, _ROLLING_A0 = 0.008, 0.008
-"""Small amplitudes, so that each forced curve hugs its own backbone."""
+"""Small amplitudes, so that each forced curve is close to its backbone."""
 
 
 def check_planar() -> Section:
@@ -27,7 +27,7 @@ def check_planar() -> Section:
 
 
 def backbone_data() -> xr.Dataset:
-    """Return both backbones with the forced response that hugs each: planar rocking and rolling."""
+    """Compute both backbones with a forced response near each: planar rocking and rolling."""
     nu = np.linspace(0.2, 4.0, 800)
     rolling = theory.steady_rolling(nu, _ROLLING_A0, c=_C, eta=DAMPING)
     planar = theory.planar_forced_response(nu, _PLANAR_A1, c=_C, eta=DAMPING)
@@ -47,7 +47,7 @@ def backbone_data() -> xr.Dataset:
 
 
 def kick_data() -> xr.Dataset:
-    """Return the sideways kick Δẏ/y0 of one passage of the upright against the offset y0, and its exact slope."""
+    """Compute the sideways kick Δẏ/y0 of one passage near the vertical against the offset y0, and its exact slope."""
     orbit = theory.planar_forced_response(_NU, _A1, c=_C, eta=DAMPING).fast
     _, speed, phase = (float(value) for value in orbit.start())
     offsets = np.logspace(-13.0, -7.0, 13)
@@ -61,7 +61,7 @@ def kick_data() -> xr.Dataset:
 
 
 def _kick(motion: Harmonic, speed: float, offset: float) -> float:
-    # From just before the passage to just after: the same short time for every offset.
+    # From just before to just after the passage: the same short time for every offset.
     before = 2e-3
     ahead = motion.delayed(-(motion.period - before))
     run = simulate(
@@ -131,7 +131,7 @@ def _planar_loss(kicks: xr.Dataset) -> Finding:
 
 
 def _slow_rocking_left() -> tuple[float, float]:
-    """Return an offset [rad] from planar rocking at a fifth of the forcing frequency, and what is left of it."""
+    """Return initial and final offset [rad] from planar rocking at a fifth of the forcing frequency."""
     offset = 1e-5
     motion = Harmonic.straight(acceleration=0.15, angular_frequency=6.0)
     run = simulate(

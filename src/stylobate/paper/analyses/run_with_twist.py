@@ -1,4 +1,4 @@
-"""Columns that may turn, begun on the paper's solution for one that cannot."""
+"""Runs of columns with free spin from the paper's solution without spin."""
 
 import math
 
@@ -16,16 +16,16 @@ A0, NU = CIRCULAR_AMPLITUDES[1], 3.0
 """a0 and ν of these runs."""
 
 PERIODS = 300
-"""Length of a run with friction: the slowest deviation decays by exp(−0.0254 τ), 1e-7 in all these periods."""
+"""Length of a run with damping: the slowest deviation decays by exp(−0.0254 τ), 1e-7 over these periods."""
 
 GONE = 0.01
-"""Tilt that counts as none [c]."""
+"""Tilt that counts as zero [c]."""
 
 _PERIODS_WITHOUT = 15
 
 
 def run_from_paper(kind: type[Rolling | SlenderRolling], zeta: float, periods: float = PERIODS) -> Response:
-    """Return the motion of a column that may turn, begun on the paper's solution (8) without spin."""
+    """Integrate a column with free spin from the paper's solution (8) without spin."""
     motion = Harmonic.circular(acceleration=A0, angular_frequency=NU)
     model = kind(Column.dimensionless(SLENDERNESS), damping=DAMPING, spin_damping=zeta)
     branch = theory.steady_rolling(NU, A0, c=SLENDERNESS, eta=DAMPING).upper
@@ -36,7 +36,7 @@ def run_from_paper(kind: type[Rolling | SlenderRolling], zeta: float, periods: f
 
 
 def end_of_rolling(kind: type[Rolling | SlenderRolling]) -> tuple[float, float]:
-    """Return τ and σ at which the tilt is gone without friction about the vertical; NaN if it stays."""
+    """Return τ and σ at which the tilt has decayed without spin damping; NaN if it remains."""
     run = run_from_paper(kind, 0.0, _PERIODS_WITHOUT)
     tilt = np.hypot(*run.data["tilt"].to_numpy().T)
     fallen = np.flatnonzero(tilt < GONE * SLENDERNESS)

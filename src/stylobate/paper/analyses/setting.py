@@ -1,4 +1,4 @@
-"""The numbers of the source paper's figures, and the column they belong to."""
+"""Parameters of the source paper's figures, and its column."""
 
 from stylobate.column import Column
 from stylobate.models import Slender
@@ -12,10 +12,10 @@ CIRCULAR_AMPLITUDES = (0.02, 0.065)
 
 
 def paper_model(damping: float = DAMPING) -> Slender:
-    """Return the paper's column, c = 0.1, in its own units (m = g = ω0 = 1)."""
+    """Create the model of the paper's column, c = 0.1, in dimensionless units (m = g = ω0 = 1)."""
     return Slender(Column.dimensionless(SLENDERNESS), damping=damping)
 
 
 def judged(condition: bool, verdict: Verdict = Verdict.HOLDS) -> Verdict:
-    """Return `verdict` if the measurement bears it out, NOT_CONFIRMED otherwise."""
+    """Return `verdict` if the measurement confirms it, NOT_CONFIRMED otherwise."""
     return verdict if condition else Verdict.NOT_CONFIRMED

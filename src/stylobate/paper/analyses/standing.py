@@ -1,4 +1,4 @@
-"""The column that stands: conclusions 1 and 2, release and the centre of pressure."""
+"""Standing column: conclusions 1 and 2, uplift and the centre of pressure."""
 
 import math
 
@@ -15,12 +15,12 @@ _C = SLENDERNESS
 
 
 def check_standing() -> Section:
-    """Check what the paper says about a column that starts at rest, or from elsewhere."""
+    """Check the paper's statements on a column that starts at rest or from other initial conditions."""
     return Section((_sign_of_forces(), _stays(), _overturns()), {"pressure": pressure_data()})
 
 
 def pressure_data() -> xr.Dataset:
-    """Return the path of the centre of pressure of a standing column for several base motions."""
+    """Compute the path of the centre of pressure of a standing column for several base motions."""
     motions = {
         "circle, a0 = 0.5c": Harmonic.circular(acceleration=0.5 * _C, angular_frequency=2.0),
         "circle, a0 = c": Harmonic.circular(acceleration=_C, angular_frequency=2.0),

@@ -1,4 +1,4 @@
-"""Straight-line base motion: averaging (9), (10), against the full motion."""
+"""Straight-line base motion: averaging (9), (10) against the full motion."""
 
 import math
 
@@ -32,7 +32,7 @@ def check_straight() -> Section:
 
 
 def full_response_data() -> xr.Dataset:
-    """Return mean, minimum and maximum tilt of the full motion started on the averaged solution; NaN: it overturned."""
+    """Compute mean, minimum and maximum tilt of the full motion from the averaged solution; NaN after overturning."""
     nu = np.array([0.9, 1.1, 1.3, 1.5, 1.75, 2.0, 2.25, 2.5, 3.0, 3.5, 4.0])
     values = np.full((len(AMPLITUDES), nu.size, 3), np.nan)
     for i, a1 in enumerate(AMPLITUDES):
@@ -50,8 +50,8 @@ def full_response_data() -> xr.Dataset:
 
 
 def averaging_data() -> xr.Dataset:
-    """Return tilt against time by the full equations (1) and by the slow flow (10), where it is good and where not."""
-    # The first starts above the averaged tilt, so that the slow flow has something to do; the second on it.
+    """Compute tilt against time by the full equations (1) and the slow flow (10), for an accurate and a poor case."""
+    # The first run starts above the averaged tilt, so that the slow flow changes; the second starts on it.
     cases = ((3.0, 0.04, 20, 1.15), (1.5, 0.13, 8, 1.0))
     model = paper_model()
     fields = {}
@@ -144,7 +144,7 @@ def _small_parameters() -> Finding:
     lines, swings = [], {}
     for a1 in AMPLITUDES:
         for nu in (3.0, 12.0):
-            # Friction damps the start within a time of a few 1/η: so many periods more at a higher frequency.
+            # Damping removes the transient within a few 1/η, which is more periods at a higher frequency.
             periods = round(_SETTLING_TIME * nu / (2.0 * math.pi))
             run = _from_averaged(nu, a1, periods)
             mean = float(theory.averaged_rolling(nu, a1, c=_C, eta=DAMPING).forward.upper.amplitude)

@@ -1,4 +1,4 @@
-"""What the paper's assumption that the column cannot turn about the vertical is worth."""
+"""Check of the paper's assumption of no rotation about the vertical."""
 
 import math
 
@@ -18,29 +18,29 @@ from stylobate.results import Finding, Section, Verdict
 
 _C = SLENDERNESS
 _SPIN_DAMPINGS = (math.inf, 1.0, 0.3, 0.1, 0.03)
-"""ζ of the curves drawn."""
+"""ζ of the plotted curves."""
 
 _AXIAL_RATIOS = (0.1, 0.25, 0.5, 1.0, 2.0)
-"""i_a of the curves drawn: ½ is a solid cylinder, 1 a thin tube."""
+"""i_a of the plotted curves: ½ is a solid cylinder, 1 a thin tube."""
 
 _SLIM = (0.1, 0.2, 0.3, 0.4)
-"""i_a of columns whose foot is wide against what stands on it, below 2κ − 1."""
+"""i_a of columns with a wide foot, below 2κ − 1."""
 
 _KAPPA = 0.75
 _SETTLED = 1e-4
 
 _DEVIATION = 1e-5
-"""Deviations integrated, in parts of the tilt: with the square of this the derivatives are off, by 1e-10."""
+"""Integrated deviations as fractions of the tilt; the error of the derivatives is the square, 1e-10."""
 
 _SEARCHED = (0.8, 1.6)
-"""Frequencies between which integration looks for ν*."""
+"""Frequency interval of the search for ν* by integration."""
 
 _BOUNDARY, _LINEAR = 1e-6, 0.01
-"""How well integration must give ν*; how well ν* − ν*(η = 0) must be proportional to η."""
+"""Tolerances of ν* from integration, and of the proportionality of ν* − ν*(η = 0) to η."""
 
 
 def check_twist() -> Section:
-    """Check what the assumption of no rotation about the vertical needs, and how (8) changes without it."""
+    """Check the moment required by the assumption of no rotation about the vertical, and (8) without it."""
     findings: tuple[Finding, ...] = (_needed(), _with_spin_damping(), _without())
     findings += (_stability(), _weak_damping(), _upper_frequency())
     findings += findings_at_finite_tilt()
@@ -48,7 +48,7 @@ def check_twist() -> Section:
 
 
 def twist_data() -> xr.Dataset:
-    """Return steady rolling with a free twist against frequency, for several spin damping."""
+    """Compute steady rolling with free spin against frequency, for several values of the spin damping."""
     nu, zeta = np.linspace(0.5, 4.0, 281), np.array(_SPIN_DAMPINGS)
     found = _steady(nu[np.newaxis], zeta[:, np.newaxis])
     dims = ("zeta", "nu")
@@ -57,7 +57,7 @@ def twist_data() -> xr.Dataset:
 
 
 def boundary_data() -> xr.Dataset:
-    """Return the frequencies at which steady rolling with a free twist gains its stability, and loses it again."""
+    """Compute the frequencies at which steady rolling with free spin gains and loses its stability."""
     a0, zeta = np.linspace(0.002, 0.2, 199), np.array(_SPIN_DAMPINGS)
     eta, axial, slim = np.geomspace(1e-4, 1.0, 161), np.array(_AXIAL_RATIOS), np.array(_SLIM)
     damping, least = np.geomspace(1e-3, 1e2, 161), np.geomspace(1e-5, 0.0125, 401)
@@ -90,7 +90,7 @@ def boundary_data() -> xr.Dataset:
 
 
 def _weak_limit() -> float:
-    """Return the critical frequency with a free twist as the damping η vanishes."""
+    """Return the critical frequency with free spin in the limit η → 0."""
     return math.sqrt(1.0 + 2.0 * A0 / _C)
 
 
@@ -197,12 +197,12 @@ def _upper_frequency() -> Finding:
 
 
 def _integrated_boundary(*, zeta: float) -> float:
-    """Return the frequency at which integration makes deviations neither grow nor decay."""
+    """Find the frequency at which integrated deviations neither grow nor decay."""
     return float(brentq(lambda nu: _largest_multiplier(nu, zeta=zeta) - 1.0, *_SEARCHED, xtol=1e-9))
 
 
 def _largest_multiplier(nu: float, *, zeta: float, eta: float = DAMPING, axial_ratio: float = 0.5) -> float:
-    """Return by which factor a deviation from steady rolling can grow in a period, from runs of the model."""
+    """Compute the maximum growth factor per period of a deviation from steady rolling, from runs of the model."""
     found = theory.free_twist_rolling(nu, A0, c=_C, eta=eta, zeta=zeta, axial_ratio=axial_ratio)
     model: Model = SlenderRolling(Column.dimensionless(_C, _KAPPA, axial_ratio), damping=eta, spin_damping=zeta)
     size, psi = float(found.amplitude), float(found.phase)

@@ -1,4 +1,4 @@
-"""Rolling with free axial rotation, and the paper's own rolling, at tilts that are not small."""
+"""Rolling at finite tilt, with free spin and with the paper's constraint."""
 
 import math
 
@@ -14,11 +14,11 @@ _ZETA = 0.1
 _SETTLED = 1e-5
 
 _SQUARE = 0.1
-"""How well a difference must be proportional to c²."""
+"""Tolerance of the proportionality of a difference to c²."""
 
 
 def findings_at_finite_tilt() -> tuple[Finding, ...]:
-    """Check the rolling body at finite tilt against the closed forms, and both against those of small tilts."""
+    """Check the rolling body at finite tilt against its closed forms, and both against the limit of small tilts."""
     return _rolling(), _without_spin_damping(), _no_twist()
 
 
