@@ -44,7 +44,7 @@ _SIZES = dict.fromkeys(("kg", "kg m²", "kg m2"), (1e-150, 1e150))
 
 
 class StylobateError(Exception):
-    """Anything stylobate raises on purpose."""
+    """Base class of the exceptions that stylobate raises."""
 
 
 class ParameterError(StylobateError, ValueError):

@@ -130,11 +130,11 @@ def test_the_three_values_of_a_range_go_together():
     ("arguments", "lines"),
     [
         (["basin"], ["column is missing"]),
-        (BASIN, ["basin: x and y are missing (a grid of starts), or random and over (a random sample)"]),
+        (BASIN, ["basin: x and y are missing (a grid of initial conditions), or random and over (a random sample)"]),
         ([*BASIN, *GRID[:5]], ["basin.y is missing"]),
         ([*BASIN, *SAMPLE[4:]], ["basin.random is missing"]),
         ([*BASIN, *SAMPLE[:4]], ["basin.over is missing"]),
-        ([*BASIN, *GRID, *SAMPLE], ["basin.x and basin.y: random starts have ranges"]),
+        ([*BASIN, *GRID, *SAMPLE], ["basin.x and basin.y: random initial conditions have ranges"]),
         ([*BASIN, *SAMPLE, "--over", "tilt-y", "a", "1"], ["basin.over.tilt-y.0: input should be a valid number"]),
         ([*BASIN, *SAMPLE, "--over", "tilt-y", "1"], ["--over must be followed by a name, its lowest"]),
         ([*BASIN, *SAMPLE, "--over", "tilt-y", "1", "0"], ["over['tilt_y'] must be a lower and an upper bound"]),

@@ -94,7 +94,7 @@ def test_simulate_animates_the_run_it_prints(tmp_path, capsys):
     [
         (["simulate"], ["column is missing", "duration is missing"]),
         (["simulate", *COLUMN], ["duration is missing"]),
-        (["simulate", *COLUMN], ["how long to follow a run [s], such as 60"]),
+        (["simulate", *COLUMN], ["length of a run [s], such as 60"]),
         (["simulate", *COLUMN, "--velocity", "1", "2"], ["--velocity must be followed by 3 numbers; got fewer"]),
         (
             ["simulate", *COLUMN, "--velocity", "1", "2", "--duration", "3"],

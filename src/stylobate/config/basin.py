@@ -46,9 +46,11 @@ class Starts(Config):
             problems += _problems_of_the_grid(axes, self.over)
             return {"over": {axis.name: built(f"basin.{place}", axis.build, problems) for place, axis in axes.items()}}
         if axes:
-            problems.append(f"basin.{' and basin.'.join(axes)}: random starts have ranges (over) and no grid")
+            problems.append(
+                f"basin.{' and basin.'.join(axes)}: random initial conditions have ranges (over) and no grid"
+            )
         if not self.over:
-            problems.append("basin.over is missing: the ranges of random starts, by name")
+            problems.append("basin.over is missing: the ranges of random initial conditions, by name")
         built("basin", lambda: require_whole("random", self.random or 0, least=1, most=MOST_RUNS), problems)
         built("basin", lambda: require_whole("seed", self.seed, least=0, most=LARGEST_SEED), problems)
         return {"over": dict(self.over), "count": self.random, "rng": self.seed}
@@ -56,11 +58,11 @@ class Starts(Config):
 
 def _problems_of_the_grid(axes: Mapping[str, Axis], over: Mapping[str, object]) -> list[str]:
     if over:
-        return ["basin.random is missing: how many starts to draw in the ranges over"]
+        return ["basin.random is missing: the number of initial conditions to draw in the ranges over"]
     if len({axis.name for axis in axes.values()}) == 2:  # noqa: PLR2004  a plane
         return []
     if not axes:
-        return ["basin: x and y are missing (a grid of starts), or random and over (a random sample)"]
+        return ["basin: x and y are missing (a grid of initial conditions), or random and over (a random sample)"]
     missing = [f"basin.{place} is missing" for place in "xy" if place not in axes]
     return missing or [f"basin.x and basin.y must differ, got {axes['x'].name!r} in both"]
 

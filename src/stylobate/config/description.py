@@ -17,7 +17,7 @@ _UNION_FIELDS = ("column", "model", "motion")
 _UNION_TABLES = ("columns",)
 # Explanation of a missing part, added to its message.
 _WANTED = {
-    "duration": ": how long to follow a run [s], such as 60; only under a motion that ends may it be left out",
+    "duration": ": length of a run [s], such as 60; optional only under a base motion that ends",
     "motion.velocity": ": velocity of the pulse [m/s]; on the command line --pulse-velocity",
 }
 

@@ -72,7 +72,7 @@ class ManyRuns(SharedByRuns, Case):
     def problems_of_the_length(self, names: tuple[str, ...]) -> list[str]:
         """Return a line unless one of `duration` and `periods` is given, or a duration among the `names` that vary.
 
-        Under a motion that ends none is needed: see `SimulationConfig`.
+        A motion that ends needs no duration: see `SimulationConfig`.
         """
         if self._lasts_as_its_motion(names):
             return []
@@ -120,7 +120,7 @@ def common_values(provenance: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def name_of(axis: object) -> str:
-    """Return the name in the plain values of an axis, as in Python; nothing if it has none."""
+    """Return the name in the plain values of an axis, as in Python; "" without a name."""
     name = axis.get("name") if isinstance(axis, Mapping) else None
     return name.replace("-", "_") if isinstance(name, str) else ""
 
@@ -129,6 +129,6 @@ def refuse_design(provenance: Mapping[str, Any], *known: str) -> Mapping[str, An
     """Return the design of a saved sweep, or raise ParameterError if its kind is not among those `known`."""
     design: Mapping[str, Any] = provenance.get("design") or {"kind": "ensemble"}
     if design["kind"] not in known:
-        message = f"the runs in it are those of a design {design['kind']!r}; only {' and '.join(known)} can be repeated"
+        message = f"the runs belong to a design {design['kind']!r}; only {' and '.join(known)} can be repeated"
         raise ParameterError(message)
     return design

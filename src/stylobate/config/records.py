@@ -168,7 +168,7 @@ class RecordMotion(Reading):
     def _checked_files(self) -> None:
         """Raise ParameterError if no files are named, or a file has changed."""
         if (self.path is None) == (self.sample is None):
-            message = "path (one file, or those of one event) or sample must be given, one of them"
+            message = "either path (one file, or the files of one event) or sample must be given"
             raise ParameterError(message)
         if self.path is not None and not 1 <= len(self.paths) <= _LONGEST_EVENT:
             message = f"path must name one to three files of one event, got {len(self.paths)}"
@@ -199,7 +199,7 @@ class RecordMotion(Reading):
             return read_record(
                 self.path, self.units, step=self.step, columns=self.columns, axis=self.axis, format=self._format()
             )
-        self._refuse(("axis",), "files that are put together")
+        self._refuse(("axis",), "files that are joined")
         (event,) = self.find({self.name: self.paths} if self.name else [self.paths], self._directions())
         return self.join(event)
 

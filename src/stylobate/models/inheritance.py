@@ -12,10 +12,10 @@ def owner_of(kind: type[Model], name: str) -> type:
 
 
 def belongs_to_equations(kind: type[Model], name: str, *also: str) -> bool:
-    """Return whether `name` is stated by the class that states `rates` and `parameters`, or by a subclass of it.
+    """Return whether the class that states `rates` and `parameters`, or a subclass of it, states `name`.
 
-    A subclass that replaces them replaces the equations. A claim about the equations, such as the energy of the
-    balance, is then a claim about other equations, unless the subclass states it again.
+    A subclass that replaces `rates` or `parameters` replaces the equations. An inherited claim about the equations,
+    such as the energy of the balance, is then void unless the subclass states it again.
 
     Parameters
     ----------

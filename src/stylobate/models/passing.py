@@ -15,9 +15,9 @@ def pass_vertical(
 
     Near the vertical the angular momentum ℓ = |α|²β̇ and the spin are constant, and K d²|α|/dτ² = ℓ²/|α|³ − Gℓ/|α|².
     The path is a conic, along which the azimuth turns by 2√K φ, tan φ = √K|ȧ|/(|ℓ|(1/|α| − G/ℓ)). Between infinite
-    distances it turns by √K [π + 2 sgn(ℓ) atan(G/(√K v))]. On a path with offset b and speed v, at the distance l from
-    the point of closest approach, the weight adds the kick −(2wb/(Kv)) asinh(l/b) across the path. The effect of
-    damping and base is also added, one half before the turn and one half after it.
+    distances it turns by √K [π + 2 sgn(ℓ) atan(G/(√K v))]. The weight adds the kick −(2wb/(Kv)) asinh(l/b) across a
+    path with offset b and speed v; l is the distance from the point of closest approach. The effect of damping and base
+    is also added, one half before the turn and one half after it.
 
     Parameters
     ----------

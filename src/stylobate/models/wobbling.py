@@ -21,7 +21,7 @@ from stylobate.quantities import Quantity
 
 Constraint = Annotated[Literal["pure_tilt", "rubber"], Quantity(text="constraint on the axial rotation")]
 
-# Keeps tan θ and its powers finite where the axis lies level.
+# Keeps tan θ and its powers finite at θ = π/2.
 _LEVEL = 1e-100
 
 

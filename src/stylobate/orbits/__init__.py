@@ -1,4 +1,4 @@
-"""Exact periodic orbits: found by shooting, followed over parameters, with their bifurcations.
+"""Exact periodic orbits: shooting, continuation over parameters, and bifurcations.
 
 The public names, imported when they are first used, are those of `__init__.pyi`.
 """

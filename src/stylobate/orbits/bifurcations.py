@@ -82,7 +82,7 @@ class Bifurcation:
         return self.orbit.state
 
     def __repr__(self) -> str:
-        """Describe it in one line."""
+        """Describe the bifurcation in one line."""
         how = {True: ", supercritical", False: ", subcritical", None: ""}[self.supercritical]
         return f"Bifurcation({self.kind.value} at {self.point.family.name} = {self.parameter:.10g}{how})"
 
@@ -150,13 +150,13 @@ def _classified(point: Point, sense: Floats, name: str) -> Bifurcation | None:
     if abs(nearest - critical) > _CRITICAL:
         return None
     if name == "period doubling":
-        # Half an orbit that doubles is a whole one that loses its symmetry.
+        # A period doubling of the half orbit is a loss of symmetry of the whole orbit.
         kind = Kind.PITCHFORK if family.sense < 0.0 else kind
         if not without_damping(point.multipliers):
             coefficient = period_doubling_coefficient(period_map)
             supercritical = coefficient > 0.0
     if np.sum(np.abs(values) > 1.0 + _CRITICAL) > 0:
-        supercritical = None  # it is unstable on both sides
+        supercritical = None  # the orbit is unstable on both sides
     vector: Floats = critical_vectors(point.map_derivative, nearest)[0].real
     multiplier = nearest**2 if family.sense < 0.0 else nearest
     return Bifurcation(kind, point.value, orbit, multiplier, coefficient, supercritical, vector, point, sense)

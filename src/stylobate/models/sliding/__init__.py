@@ -1,4 +1,4 @@
-"""The column that can slip, pivot, lift off and land: level 3 of the model hierarchy."""
+"""The model of a column that can slip, pivot, lift off and land."""
 
 from stylobate.models.sliding.model import Sliding
 from stylobate.models.sliding.phases import Contact, State
