@@ -90,7 +90,7 @@ def fuzz(client, operation, examples):
 
 @pytest.mark.parametrize("label", [label for label in OF_ANY_SIZE if label not in COMPUTING])
 def test_what_the_schema_allows_is_answered_as_it_says(client, label):
-    fuzz(client, OF_ANY_SIZE[label], 100)
+    fuzz(client, OF_ANY_SIZE[label], 50)
 
 
 @pytest.mark.parametrize("label", COMPUTING)
