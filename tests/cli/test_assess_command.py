@@ -92,7 +92,7 @@ def test_a_study_gives_a_report_that_is_kept_and_shown_again(study, tmp_path, ca
     (folder / "assessment.nc").write_bytes(saved[: len(saved) // 2])
     monkeypatch.undo()
     assert run(["assess", str(study), "--folder", str(folder)]) == 0
-    assert f"stylobate: 6 of 6 parts were kept in {folder / 'store'} and not computed" in capsys.readouterr().err
+    assert f"stylobate: 6 of 6 parts were read from {folder / 'store'} and not computed" in capsys.readouterr().err
     assert (folder / "assessment.nc").read_bytes() == saved
     assert (folder / "report.html").read_text(encoding="utf-8") == drawn
     study.write_text(STUDY.replace("One column", "Another"), encoding="utf-8")

@@ -232,7 +232,7 @@ def test_a_coefficient_of_friction_that_changes_no_run_is_refused_with_a_remedy(
 @pytest.mark.parametrize(
     ("command", "more", "told"),
     [
-        ("spectrum", "--duration 9 --free-tail 3", "spectrum.tail: duration says how long to follow a column"),
+        ("spectrum", "--duration 9 --free-tail 3", "spectrum.tail: contradicts duration"),
         ("fragility", "--years 10", "--years: fragility does not use it (got 10.0)"),
         ("basin", "--seed 3", "--seed: basin does not use it (got 3)"),
         (

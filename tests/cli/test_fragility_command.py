@@ -223,7 +223,7 @@ def test_what_was_interrupted_is_fitted_as_far_as_it_is_known_and_goes_on(folder
             ["--intensity", "peak ground acceleration"],
             "fragility.hazard does not state the unit of its intensity; ",
         ),
-        (["--hazard-units", "m/s"], "is of an intensity in m/s, the fragility of 'PGA/(g tan α)' in 1"),
+        (["--hazard-units", "m/s"], "uses an intensity in m/s, but the fragility uses 'PGA/(g tan α)' in 1"),
         (["--hazard", "bent.csv"], "bent.csv, line 3: annual rate must not increase with intensity"),
         (["--hazard", "velocity.csv"], "fragility.hazard uses 'peak ground velocity', but the fragility uses"),
         (["--hazard", "vague.csv"], "vague.csv: the columns are not named, so rates cannot be told apart"),
@@ -243,7 +243,7 @@ def test_what_was_interrupted_is_fitted_as_far_as_it_is_known_and_goes_on(folder
         (["--hazard-site", "here"], "--hazard-site: no number and no LON,LAT (got 'here')"),
         (["--hazard-component", "mean"], "component: unknown definition of the horizontal component (got 'mean')"),
         (["--spread", "colour=0.1"], "spreads: colour is not known here"),
-        (["--property-samples", "0"], "fragility.samples and fragility.spreads go together"),
+        (["--property-samples", "0"], "fragility.samples and fragility.spreads need each other"),
         (["--intensity", "magnitude"], "intensity must be 'peak ground acceleration'"),
         (["--records", "nowhere"], "nowhere: cannot be read: No such file"),
         (["--figure", "f.doc"], "--figure must end with"),
@@ -266,7 +266,7 @@ def test_a_description_tells_all_its_mistakes():
     }
     with pytest.raises(ConfigError) as told:
         FragilityConfig.parse(values).build()
-    for words in ("duration is not known", "number must be", "go together", "years must be", "a file of them"):
+    for words in ("duration is not supported", "number must be", "need each other", "years must be", "or a file"):
         assert words in str(told.value)
     assert "quakes: cannot be read: No such file" in str(told.value)
 

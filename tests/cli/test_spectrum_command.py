@@ -100,7 +100,7 @@ def test_one_column_needs_no_quantity_that_varies(capsys):
         (BANDS[:-6], "spectrum.scales are missing"),
         (
             [*BANDS, "--rocking", "--acceleration", "1"],
-            "spectrum.scales is not known of a rocking spectrum: leave it out",
+            "spectrum.scales is not supported by a rocking spectrum. Remove it.",
         ),
         ([*BANDS, "--y", "angular-frequency", "1", "2", "2"], "spectrum.x and spectrum.y must differ"),
         ([*BANDS, "--y", "weight", "1", "2", "2"], "spectrum.y: weight is not known here"),

@@ -62,11 +62,11 @@ def test_verdicts_are_those_of_single_runs(found):
         for level, numbers in DISSIPATION.items():
             column = sb.Slender(model(0.2).column, **numbers)
             run = sb.simulate(column, one, duration=one.duration + 2.0)
-            told = verdicts.sel(column="slim", record=name, dissipation=level, vertical="with", scale=1.0)
-            assert int(told["overturned"]) == (run.outcome is sb.Outcome.OVERTURNED)
+            verdict = verdicts.sel(column="slim", record=name, dissipation=level, vertical="with", scale=1.0)
+            assert int(verdict["overturned"]) == (run.outcome is sb.Outcome.OVERTURNED)
             if run.outcome is not sb.Outcome.OVERTURNED:
                 ratio = run.measures["peak_tilt"] / column.column.tipping_angle
-                assert float(told["tilt_ratio"]) == pytest.approx(ratio, rel=1e-5, abs=1e-9)
+                assert float(verdict["tilt_ratio"]) == pytest.approx(ratio, rel=1e-5, abs=1e-9)
 
 
 def test_what_always_overturns_and_what_never_moves_are_told_so(found):
@@ -132,7 +132,7 @@ def test_interrupted_work_goes_on_where_it_was(found, tmp_path, caplog):
     assert not caplog.messages
     with caplog.at_level(logging.INFO, logger="stylobate"):
         assessed(columns=("slim",), store=tmp_path / "store")
-    assert caplog.messages == [f"8 of 8 parts were kept in {tmp_path / 'store'} and not computed again"]
+    assert caplog.messages == [f"8 of 8 parts were read from {tmp_path / 'store'} and not computed again"]
     # Another record is another part.
     assessed(columns=("slim",), records=[*RECORDS[:2], RECORDS[2].scaled(1.1)], store=tmp_path / "store", changes=())
     assert len(list((tmp_path / "store").glob("*.nc"))) > len(kept) + 4
@@ -145,17 +145,17 @@ def test_records_are_computed_some_at_a_time_and_the_whole_is_that_of_all_at_onc
     parts = one_by_one()
     for name in ("robustness", "planar", "summary"):
         xr.testing.assert_equal(parts.data[name], whole.data[name])
-        for one, told in whole.data[name].items():
-            assert parts.data[name][one].attrs.get("long_name") == told.attrs.get("long_name")
+        for one, array in whole.data[name].items():
+            assert parts.data[name][one].attrs.get("long_name") == array.attrs.get("long_name")
 
 
 def test_what_is_perhaps_in_another_unit_or_one_event_is_remarked():
     tower, column = (sb.Column.solid(radius=0.1 * height, height=height, density=2700.0) for height in (61.0, 6.0))
-    with pytest.warns(UnlikelyInputWarning) as told:
+    with pytest.warns(UnlikelyInputWarning) as caught:
         remark_on({"tower": tower, "column": column}, ["Aigio", "aigio", "Kobe"])
-    assert [str(one.message).partition(";")[0] for one in told] == [
-        "tower: a height of 61 m",
-        "records: 'Aigio' and 'aigio' differ by case only and are taken as different ones",
+    assert [str(one.message).partition(". ")[0] for one in caught] == [
+        "tower: unlikely height (got 61 m)",
+        "records: 'Aigio' and 'aigio' differ by case only and count as different records",
     ]
 
 
@@ -406,13 +406,13 @@ def test_many_records_give_a_fragility_and_few_give_none(found):
 
 
 @pytest.mark.parametrize(
-    ("change", "told"),
+    ("change", "message"),
     [
         ({"dissipation": {}}, "dissipation is missing"),
         ({"dissipation": None}, "dissipation is missing"),
         ({"friction_coefficient": None}, "friction_coefficient is missing"),
         ({"dissipation": {"low": {"damping": 0.1}}}, "central and high must be stated too"),
-        ({"dissipation": {**DISSIPATION, "high": {"restitution": 0.5}}}, "the same numbers at each level"),
+        ({"dissipation": {**DISSIPATION, "high": {"restitution": 0.5}}}, "the same parameters at each level"),
         (
             {"dissipation": {level: {"restitution": 0.5} for level in DISSIPATION}},
             "the model slender has no restitution",
@@ -433,14 +433,14 @@ def test_many_records_give_a_fragility_and_few_give_none(found):
         ),
     ],
 )
-def test_what_cannot_be_assessed_is_one_line(change, told):
+def test_what_cannot_be_assessed_is_one_line(change, message):
     arguments = {
         "columns": {"slim": model(0.2)},
         "records": RECORDS,
         "dissipation": DISSIPATION,
         "friction_coefficient": 0.6,
     } | change
-    with pytest.raises(ParameterError, match=told) as caught:
+    with pytest.raises(ParameterError, match=message) as caught:
         assess(arguments.pop("columns"), arguments.pop("records"), **arguments)
     assert "\n" not in str(caught.value)
 
@@ -451,15 +451,15 @@ def test_what_the_contact_must_bear_and_the_planar_answer_are_told():
     verdicts = whole.data["verdicts"].sel(column="slim", dissipation="central", vertical="with", scale=0.5)
     run = sb.simulate(sb.Slender(model(0.2).column, damping=0.05), RECORDS[1].scaled(0.5), duration=4.0)
     if "peak_friction_demand" in run.measures:
-        told = float(verdicts["friction_demand"].sel(record="middle"))
-        assert told == pytest.approx(run.measures["peak_friction_demand"], rel=0.02)
+        value = float(verdicts["friction_demand"].sel(record="middle"))
+        assert value == pytest.approx(run.measures["peak_friction_demand"], rel=0.02)
     margins = whole.data["margins"].sel(column="slim", case="central")
     assert np.isfinite(margins["friction_demand"].sel(record="middle")).all()
     need, least = (margins[name].sel(record="middle") for name in ("friction_demand", "least_overturning"))
     below = need.where(need["margin_scale"] < least)
     assert float(margins["friction_to_margin"].sel(record="middle")) == pytest.approx(float(below.max()))
     slipping = need["margin_scale"].to_numpy()[need.to_numpy() > 0.6]
-    told = float(margins["least_slipping"].sel(record="middle"))
-    assert told == slipping[0] if slipping.size else np.isnan(told)
+    value = float(margins["least_slipping"].sel(record="middle"))
+    assert value == slipping[0] if slipping.size else np.isnan(value)
     assert set(whole.data["planar"].dims) == {"column", "record", "scale"}
     assert np.isfinite(float(whole.data["summary"]["friction_demand"].max()))

@@ -72,10 +72,10 @@ def with_contact(bare):
     demands = xr_like(verdicts, 0.31)
     demands[{"column": 0, "scale": 1}] = 0.7123
     planar = verdicts["tilt_ratio"].sel(dissipation="central", vertical="with", drop=True) * 0.5
-    told = planar.rename("planar_tilt_ratio").to_dataset()
+    answers = planar.rename("planar_tilt_ratio").to_dataset()
     few = planar.isel(record=0, drop=True)
-    told = told.assign(log_ratio=planar * 0.1, bias=few * 0.0 + 0.123, standard_error=few * 0.0 + 0.0456)
-    told = told.assign(
+    answers = answers.assign(log_ratio=planar * 0.1, bias=few * 0.0 + 0.123, standard_error=few * 0.0 + 0.0456)
+    answers = answers.assign(
         {name: (few.dims, np.ones(few.shape, int)) for name in ("compared", "only_space", "only_planar")}
     )
     by_record = demands.max(("dissipation", "vertical"))
@@ -84,7 +84,7 @@ def with_contact(bare):
         "verdicts": verdicts.assign(
             friction_demand=demands, pivoting_demand=demands / 3.0, minimum_normal_force=demands
         ),
-        "planar": told,
+        "planar": answers,
         "summary": summary,
     }
     return replace(bare, data={**bare.data, **more}, setting={**bare.setting, "contact": True})
@@ -381,7 +381,7 @@ def test_the_history_shows_the_last_run_that_stands_and_the_first_that_overturns
 
 
 @pytest.mark.parametrize(
-    ("need", "slipping", "first", "told"),
+    ("need", "slipping", "first", "words"),
     [
         (0.4, np.nan, 0, "No run for the margin needed more friction than stated."),
         (0.5, 2.5, 0, "needs more friction than stated is 2.5, above the smallest overturning scale: the column"),
@@ -389,19 +389,19 @@ def test_the_history_shows_the_last_run_that_stands_and_the_first_that_overturns
         (np.nan, np.nan, 0, "The friction needed at other scales was not computed."),
     ],
 )
-def test_friction_up_to_the_margin_is_told(found, need, slipping, first, told):
+def test_friction_up_to_the_margin_is_stated(found, need, slipping, first, words):
     at = {"friction_to_margin": need, "least_slipping": slipping, "slips_first": first}
     summary = found.data["summary"]
     counted = summary.assign({name: ("column", np.full(2, value)) for name, value in at.items()})
     changed = replace(found, data={**found.data, "summary": counted})
-    assert told in dict(column_findings(changed, "stout").rows)["contact"]
+    assert words in dict(column_findings(changed, "stout").rows)["contact"]
 
 
 def test_the_table_of_friction_up_to_the_margin_is_that_of_its_runs(found):
     margins = found.data["margins"]
     need = margins["friction_demand"].fillna(0.0) + 0.5 * margins["margin_scale"]
-    told = margins.assign(friction_demand=need, **demands_to_margin(margins.assign(friction_demand=need), 0.6))
-    table = assessment_tables(replace(found, data={**found.data, "margins": told}))["contact-to-margin"]
+    changed = margins.assign(friction_demand=need, **demands_to_margin(margins.assign(friction_demand=need), 0.6))
+    table = assessment_tables(replace(found, data={**found.data, "margins": changed}))["contact-to-margin"]
     scales = margins["margin_scale"].to_numpy()
     assert {row[6] for row in table.rows} == {f"{scales[scales > 1.2][0]:.4g}"}
     for column, record, case, _, need_below, *_ in table.rows:

@@ -1,4 +1,4 @@
-"""Bands of safety by record, and limit states told from runs."""
+"""Intervals of survival by record, and limit states of runs."""
 
 import numpy as np
 import pytest
@@ -21,8 +21,10 @@ def test_bands_tell_every_run_whatever_their_order(series, random):
     assert int(found["band_runs"].sum()) == len(runs)
     for place, states in enumerate(series):
         bands = found.isel(band=found["band_record"].values == place)
-        told = np.concatenate([np.repeat(one["band_reached"], one["band_runs"]) for _, one in bands.groupby("band")])
-        assert told.tolist() == states
+        states_of_bands = np.concatenate(
+            [np.repeat(one["band_reached"], one["band_runs"]) for _, one in bands.groupby("band")]
+        )
+        assert states_of_bands.tolist() == states
         # Neighbours differ.
         assert np.all(np.diff(bands["band_reached"].values.astype(int)) != 0)
         assert bool(found["monotone"][place]) == (states == sorted(states))

@@ -1,4 +1,4 @@
-"""The dispersion of records and of properties told apart."""
+"""The dispersion split into records and properties."""
 
 import numpy as np
 import pytest
@@ -49,7 +49,7 @@ def test_properties_that_move_no_capacity_show_no_dispersion():
         found = dispersion_parts(scale, xr.DataArray(states, dims=DIMS), rng=rng)
         assert found["property_dispersion"].item() == 0.0
         assert found["record_dispersion"].item() > 0.1
-    # What the steps between scales hide is told.
+    # The result reports the dispersion that the steps between scales hide.
     assert found.attrs["resolution"] == pytest.approx(np.log(scale[1] / scale[0]) / np.sqrt(12.0))
 
 

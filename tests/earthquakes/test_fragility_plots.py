@@ -84,8 +84,8 @@ def test_areas_of_the_contributions_are_shares_of_the_rate():
 def test_a_rate_mostly_from_beyond_the_hazard_is_not_drawn_as_a_fact():
     hazard = HazardCurve(intensity=[0.1, 1.0, 10.0], rate=[0.1, 1e-2, 1e-4])
     found = annual_rate(lognormal_fragility(60.0, 0.3), hazard)
-    (told,) = legend_of(sb.plot(found))
-    plain = " ".join(told.split())
+    (entry,) = legend_of(sb.plot(found))
+    plain = " ".join(entry.split())
     assert "withheld: the hazard curve ends at 10, and all of the rate lies beyond bounds" in plain
     assert f"{found['annual_rate'].item():.2e} /a" not in plain
 

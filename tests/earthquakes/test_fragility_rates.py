@@ -80,17 +80,17 @@ def test_a_rate_mostly_from_beyond_the_curve_is_warned_of(caplog):
 
 
 @pytest.mark.parametrize(
-    ("median", "told"),
+    ("median", "reason"),
     [
         (3.0, ""),
         (200.0, "the hazard curve ends at 20, and all of the rate lies beyond"),
         (0.02, "the hazard curve begins at 0.2, and 97 % of the rate lies beyond"),
     ],
 )
-def test_a_rate_of_which_the_curve_tells_less_than_half_is_not_told(median, told):
+def test_a_rate_that_lies_mostly_beyond_the_curve_is_withheld(median, reason):
     found = annual_rate(lognormal_fragility(median, 0.3), BENT)
-    assert found["withheld_reason"].item() == told
-    assert (found["share_beyond"].item() > 0.5) is bool(told)
+    assert found["withheld_reason"].item() == reason
+    assert (found["share_beyond"].item() > 0.5) is bool(reason)
 
 
 def test_a_steep_curve_continued_too_far_is_told_to_be_infinite():

@@ -115,7 +115,7 @@ def test_a_table_of_openquake_with_one_site_needs_no_choice_and_its_velocities_a
     ("content", "given", "message"),
     [
         (SITES, {"site": 0}, "imt is not named above the header"),
-        (OLD + SITES, {}, "site: needed, for the table holds 2 sites. Give a number from 0 to 1 or .* 22.35, 37.95"),
+        (OLD + SITES, {}, "site: missing, and the table holds 2 sites. Give a number from 0 to 1 or .* 22.35, 37.95"),
         (OLD + SITES, {"site": 2}, r"site: no such number \(got 2\). Give one from 0 to 1"),
         (OLD + SITES, {"site": (10.0, 45.0)}, "site: none within 0.05° .* The nearest is at 22.35, 37.95"),
         (OLD + SITES + "1,2\n", {"site": 0}, "line 5: 6 values are needed"),
@@ -123,7 +123,7 @@ def test_a_table_of_openquake_with_one_site_needs_no_choice_and_its_velocities_a
         (OLD.replace("investigation", "other") + SITES, {"site": 0}, "investigation_time: needed for probabilities"),
         ("PGA [g], rate\n" + NUMBERS, {"site": 0}, "site: the file holds one curve"),
         ("PGA [g], PoE\n" + NUMBERS, {}, "investigation_time: needed for probabilities"),
-        ("PGA [g], rate\n" + NUMBERS, {"investigation_time": 50.0}, "investigation_time: of probabilities only"),
+        ("PGA [g], rate\n" + NUMBERS, {"investigation_time": 50.0}, "investigation_time: not used with annual rates"),
         (
             POISSON + NUMBERS,
             {"investigation_time": 10.0},
@@ -145,16 +145,16 @@ def test_a_table_of_openquake_with_one_site_needs_no_choice_and_its_velocities_a
         (
             "PGA [g], return period [a]\n" + NUMBERS,
             {},
-            r'unclear what the second column is \(got "return period \[a\]"\)',
+            r'the kind of the second column is unclear \(got "return period \[a\]"\)',
         ),
-        ("PGA [g], annual exceedance\n" + NUMBERS, {}, "unclear what the second column is"),
-        ("PGA [g], rate in 50 years\n" + NUMBERS, {}, "unclear what the second column is"),
+        ("PGA [g], annual exceedance\n" + NUMBERS, {}, "the kind of the second column is unclear"),
+        ("PGA [g], rate in 50 years\n" + NUMBERS, {}, "the kind of the second column is unclear"),
         (
             "PGA [g], rate\n0.1,0.02\n0.8,0.03\n",
             {},
             "line 3: annual rate must not increase .* 0.03 at 0.8 g after 0.02 at 0.1 g",
         ),
-        ("PGA [g], rate\n0.8,0.02\n\n0.8,0.01\n", {}, "line 4: intensity 0.8 g is there twice"),
+        ("PGA [g], rate\n0.8,0.02\n\n0.8,0.01\n", {}, "line 4: intensity 0.8 g occurs twice"),
         ("PGA [g], rate\n0,0.02\n0.8,0.01\n", {}, r"line 2: intensity must be positive and finite \(got 0 g\)"),
         ("PGA [g], rate\n0.1,0.02\n0.8,0\n", {}, r"line 3: annual rate must be positive and finite \(got 0\)"),
         (POISSON + "0.1,63\n0.8,2\n", {}, r"line 2: probability must be between 0 and 1 \(got 63\). .*\[%\]"),
@@ -174,13 +174,16 @@ def test_what_is_unclear_or_contradicts_itself_is_refused(tmp_path, content, giv
 @pytest.mark.parametrize(
     ("given", "message"),
     [
-        ({}, "must be given, or a file of them"),
-        ({"intensity": [1.0, 2.0]}, "intensity and its rates must be as many, got 2 and 0"),
-        ({"rate": [1.0, 2.0], "file": "site.csv"}, "must be given, or a file of them"),
-        ({"intensity": [1.0], "rate": [0.1], "probability": [0.1]}, "rate and probability: one of both only"),
-        ({"intensity": [1.0, 2.0], "rate": [0.1]}, "intensity and its rates must be as many, got 2 and 1"),
+        ({}, "give either intensity and rate"),
+        ({"intensity": [1.0, 2.0]}, "intensity and its rates must have equal numbers of values, got 2 and 0"),
+        ({"rate": [1.0, 2.0], "file": "site.csv"}, "give either intensity and rate"),
+        ({"intensity": [1.0], "rate": [0.1], "probability": [0.1]}, "rate and probability: only one is allowed"),
+        (
+            {"intensity": [1.0, 2.0], "rate": [0.1]},
+            "intensity and its rates must have equal numbers of values, got 2 and 1",
+        ),
         ({"intensity": [1.0, 2.0], "rate": [0.1, 0.2]}, "point 2: annual rate must not increase"),
-        ({"intensity": [1.0, 2.0], "rate": [0.2, 0.1], "site": 0}, "site: of files only"),
+        ({"intensity": [1.0, 2.0], "rate": [0.2, 0.1], "site": 0}, "site: applies to files only"),
     ],
 )
 def test_listed_points_that_are_no_curve_are_refused(given, message):
@@ -205,7 +208,7 @@ def test_the_names_of_the_columns_win_over_remarks_and_the_last_line_over_titles
     "second", ["rate in fifty years", "rate per decade", "probability in fifty years", "monthly rate"]
 )
 def test_exceedances_of_a_time_that_is_not_read_are_refused(tmp_path, second):
-    with pytest.raises(FileError, match="unclear what the second column is"):
+    with pytest.raises(FileError, match="the kind of the second column is unclear"):
         points(tmp_path, f"PGA [g], {second}\n{NUMBERS}", investigation_time=10.0)
 
 

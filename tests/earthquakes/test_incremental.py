@@ -1,4 +1,4 @@
-"""Incremental dynamic analyses are ensembles under scaled records, with what is told of each run."""
+"""Incremental dynamic analyses are ensembles under scaled records, with intensity and limit states of each run."""
 
 import numpy as np
 import pytest
@@ -204,7 +204,7 @@ def test_intensities_are_proportional_and_say_what_they_are(component):
         ({"records": [RECORDS[0], RECORDS[0]]}, "records must differ in name, got 'noise 0' twice"),
         ({"records": 3.0}, "records must be a base motion"),
         ({"parameters": {"scale": [1.0]}}, "parameters cannot name scale: use the argument scales"),
-        ({"parameters": {"damping": [0.1], "size": [1.0, 2.0]}}, "parameters must have one value for each"),
+        ({"parameters": {"damping": [0.1], "size": [1.0, 2.0]}}, "parameters must have equal numbers of values"),
         ({"intensity": "magnitude"}, "intensity must be 'peak ground acceleration'"),
         ({"component": "GMRotI50"}, r"component: unknown definition .* \(got 'GMRotI50'\)"),
         ({"tail": -1.0}, "tail must be zero or positive"),

@@ -167,15 +167,15 @@ def test_a_record_overturns_in_bands_too():
 
 
 def test_a_store_keeps_scan_and_edges(tmp_path):
-    store, told = tmp_path / "bands.zarr", []
+    store, calls = tmp_path / "bands.zarr", []
     question = {"scales": [1.0, 3.0, 6.0], "over": {"angular_frequency": [5.0]}, "store": store}
     first = overturning_bands(VISCOUS, SINE, **question)
     again = overturning_bands(
-        VISCOUS, SINE, **question, resume=True, progress=lambda done, total: told.append((done, total))
+        VISCOUS, SINE, **question, resume=True, progress=lambda done, total: calls.append((done, total))
     )
     xr.testing.assert_identical(first, again)
     # Nothing is computed: each part is done as soon as it begins.
-    assert len(told) == len(list(store.glob("edges*"))) + 1
+    assert len(calls) == len(list(store.glob("edges*"))) + 1
     with pytest.raises(sb.errors.FileError, match="exists"):
         overturning_bands(VISCOUS, SINE, **question)
 
@@ -194,10 +194,10 @@ def test_after_an_interruption_the_bands_are_those_of_the_scan():
 
 
 def test_provenance_repeats_the_question(spectrum):
-    told = json.loads(spectrum.attrs["provenance"])
-    assert told["motion"]["kind"] == "sinusoidal"
-    assert told["tail"] is None
-    assert told["width"] == 1e-3
+    provenance = json.loads(spectrum.attrs["provenance"])
+    assert provenance["motion"]["kind"] == "sinusoidal"
+    assert provenance["tail"] is None
+    assert provenance["width"] == 1e-3
     assert f"{15.0 ** (1 / 15):.4g}" in spectrum.attrs["resolution"]
 
 
@@ -235,8 +235,8 @@ def test_a_record_has_no_frequency_to_vary():
 def test_a_radius_that_varies_alone_is_remarked_on_and_a_size_is_not():
     cases = [{"radius": [0.1]}, {"mass_height": [1.0], "damping": [0.1]}]
     for over in cases:
-        told = f"^over: {next(iter(over))} changes without mass .*; size scales a column"
-        with pytest.warns(UnlikelyInputWarning, match=told):
+        message = f"^over: {next(iter(over))} changes without mass .*; size scales a column"
+        with pytest.warns(UnlikelyInputWarning, match=message):
             Cases.of(VISCOUS, SINE, over)
     for over in ({"size": [2.0]}, {"slenderness": [0.2]}, {"radius": [0.1], "transverse_inertia": [1.0]}):
         Cases.of(VISCOUS, SINE, over)

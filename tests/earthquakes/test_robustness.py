@@ -136,11 +136,16 @@ def test_changes_that_do_not_apply_are_told_and_not_counted():
 def test_a_result_tells_from_what_it_was_made():
     changes = [ScaledRecord(1.02), Polarity()]
     found = robustness(MODEL, {"pulse": PULSE}, scale=0.5, changes=changes, tail=1.0, rtol=1e-6)
-    told = json.loads(found.attrs["provenance"])
-    assert told["model"] == {"kind": "slender", "damping": 0.05}
-    assert told["motion"]["motions"][0]["angular_frequency"] == 6.0
-    assert (told["scale"], told["tail"], told["rtol"], told["rotations"]) == (0.5, 1.0, 1e-6, [0.0])
-    assert told["changes"] == [repr(change) for change in changes]
+    provenance = json.loads(found.attrs["provenance"])
+    assert provenance["model"] == {"kind": "slender", "damping": 0.05}
+    assert provenance["motion"]["motions"][0]["angular_frequency"] == 6.0
+    assert (provenance["scale"], provenance["tail"], provenance["rtol"], provenance["rotations"]) == (
+        0.5,
+        1.0,
+        1e-6,
+        [0.0],
+    )
+    assert provenance["changes"] == [repr(change) for change in changes]
     assert found.attrs["kind"] == "robustness"
 
 
@@ -177,8 +182,8 @@ def test_restitution_is_a_dissipation_too():
     ("change", "message"),
     [
         ({"changes": []}, "changes must hold at least one change"),
-        ({"changes": [Polarity(), Polarity()]}, "none of them twice"),
-        ({"changes": ["polarity"]}, "changes must be changes such as"),
+        ({"changes": [Polarity(), Polarity()]}, "each only once"),
+        ({"changes": ["polarity"]}, "changes must be perturbations such as"),
         ({"scale": 0.0}, "scale must be positive"),
         ({"tilt_limit": 0.1}, "tilt_limit must be left out"),
     ],

@@ -105,8 +105,8 @@ def test_free_rocking_of_a_block_has_the_period_of_housner(ratio, period):
 
 def test_provenance_and_bad_questions():
     found = rocking_spectrum(STONE, PULSE, over={"size": [5.0]}, duration=3.0, samples=11)
-    told = json.loads(found.attrs["provenance"])
-    assert (told["duration"], told["samples"]) == (3.0, 11)
+    provenance = json.loads(found.attrs["provenance"])
+    assert (provenance["duration"], provenance["samples"]) == (3.0, 11)
     assert "sampled_tilt" not in found
     with pytest.raises(ParameterError, match="over must name a parameter"):
         rocking_spectrum(STONE, PULSE, over={})

@@ -165,9 +165,9 @@ def test_a_band_too_narrow_to_be_seen_is_drawn_and_counted_as_such(over):
 
 def test_too_many_parameters_are_refused():
     crowded = bands({"size": np.arange(1.0, 7.0), "damping": np.arange(0.1, 0.6, 0.1)}, PATTERN)
-    with pytest.raises(ParameterError, match="two with up to 4 values of one of them"):
+    with pytest.raises(ParameterError, match="two with up to 4 values along one of them"):
         sb.plot(crowded)
-    with pytest.raises(ParameterError, match="over one name, or two"):
+    with pytest.raises(ParameterError, match="one dimension, or two"):
         sb.plot(bands({"size": [1.0], "damping": [0.1], "slenderness": [0.1]}, PATTERN))
 
 

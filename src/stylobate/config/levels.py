@@ -49,7 +49,7 @@ def _differing(levels: Mapping[str, Mapping[str, float]]) -> list[str]:
     if names and all(set(level) == names for level in levels.values()):
         return []
     given = ", ".join(f"{level} {' and '.join(sorted(numbers)) or 'nothing'}" for level, numbers in levels.items())
-    return [f"dissipation must name the same numbers at each level, one or more, got {given}"]
+    return [f"dissipation must state the same parameters at each level, one or more, got {given}"]
 
 
 def _falling(levels: Mapping[str, Mapping[str, float]]) -> list[str]:

@@ -1,6 +1,6 @@
 """Columns in earthquakes: incremental analyses, fragility, spectra, robustness and the assessment.
 
-The public names, imported when they are first used, are those of `__init__.pyi`.
+`__init__.pyi` lists the public names; each is imported at its first use.
 """
 
 import lazy_loader

@@ -1,4 +1,4 @@
-"""Runs at every combination of some choices, as points of a sweep, and their results over the choices again."""
+"""Runs at every combination of several choices: points of a sweep, and results over the choices."""
 
 import math
 from collections.abc import Mapping
@@ -11,13 +11,13 @@ Places = npt.NDArray[np.intp]
 
 
 def crossed(lengths: Mapping[str, int]) -> dict[str, Places]:
-    """Return for every combination the place along each of the named choices, flat, the last one fastest."""
+    """Return flat arrays of the indices of each named choice over all combinations; the last choice varies fastest."""
     grids = np.indices(tuple(lengths.values()))
     return {name: grid.ravel() for name, grid in zip(lengths, grids, strict=True)}
 
 
 def unfolded(runs: xr.Dataset, lengths: Mapping[str, int]) -> xr.Dataset:
-    """Return `runs` over the dimension `run`, of `crossed` choices, over these choices; what varied is left out."""
+    """Reshape `runs` from the dimension `run` to the dimensions of `crossed` choices; drop coordinates over `run`."""
     shape = tuple(lengths.values())
     assert runs.sizes["run"] == math.prod(shape)
     variables = {}

@@ -6,10 +6,10 @@ from stylobate.errors import require_not_negative
 
 
 def tail_of(column: Column, tail: float | None = None) -> float:
-    """Return for how long `column` is followed after the end of a record [s]: `tail`, or by default 20/p.
+    """Return the free-vibration time of `column` after the end of a record [s]: `tail`, or by default 20/p.
 
-    Near the unstable equilibrium at the tilt α a deviation grows as exp(pt), p = √(m g R/K): in 20/p by 5·10⁸. So a
-    column that the record left nearer to overturning than one that has not decided by then is one in 10⁸.
+    Near the unstable equilibrium at the tilt α_c a deviation grows as exp(pt), p = √(m g R/K): by 5·10⁸ in 20/p. So
+    only a column that the record left within about 10⁻⁸ α_c of this equilibrium is still undecided after 20/p.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""A fragility study from its description: runs, fitted curves, parts of the dispersion, and annual rates."""
+"""A fragility study from its description: runs, fitted curves, components of the dispersion, and annual rates."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -31,7 +31,7 @@ from stylobate.studies.sweeps.recipe import RunOptions
 
 _OVERTURNING = "overturning"
 _LEAST = 2
-# Streams of random numbers of one seed.
+# Streams of random numbers from one seed.
 _OF_SAMPLES, _OF_RESAMPLES, _OF_PARTS = range(3)
 
 
@@ -42,7 +42,7 @@ class FragilityStudy:
     Parameters
     ----------
     model, records
-        The column, and base motions by name.
+        Model of the column, and base motions by name.
     scales, rotations, vertical, tail, intensity, component
         As for `incremental_dynamic_analysis`.
     spreads, samples
@@ -52,11 +52,11 @@ class FragilityStudy:
     counting, confidence, resamples
         As for `fit_fragility`.
     hazard
-        The hazard curve, in `intensity` and `component`.
+        Hazard curve, in `intensity` and `component`.
     years
         Time for which probabilities are stated.
     options
-        Of all runs.
+        Options of all runs.
     """
 
     model: Model
@@ -84,7 +84,7 @@ class FragilityStudy:
         Raises
         ------
         ParameterError
-            If an intensity is not known, the hazard is of another one or no curve, or a spread cannot be.
+            If the intensity is unknown, the hazard is invalid or uses another intensity, or a spread is invalid.
         """
         table = setup.table
         spectral = None if isinstance(table.intensity, str) else table.intensity
@@ -142,7 +142,7 @@ class FragilityStudy:
         )
 
     def fits(self, runs: xr.Dataset) -> xr.Dataset:
-        """Fit the fragility of each limit state; from two records on, intervals are a bootstrap over records."""
+        """Fit the fragility of each limit state; with two records or more, intervals are a bootstrap over records."""
         several = runs.sizes.get("record", 1) >= _LEAST
         return fragility_of_runs(
             runs,
@@ -155,7 +155,8 @@ class FragilityStudy:
     def parts(self, runs: xr.Dataset, limit_state: str = _OVERTURNING) -> xr.Dataset | None:
         """Split the dispersion into records and properties; None if the data do not suffice.
 
-        It needs one rotation, one choice of the vertical component, and at least two records and two samples.
+        The runs must have one rotation, one choice of the vertical component, and at least two records, two samples
+        and two scales.
         """
         sizes = [runs.sizes.get(name, 1) for name in ("record", "property_sample", "scale")]
         if min(sizes) < _LEAST or any(name in runs.dims for name in ("rotation", "vertical")):

@@ -1,4 +1,4 @@
-"""A base motion as a planar column knows it: its component along one horizontal direction, and the vertical one."""
+"""Base motion of a planar column: the component along one horizontal direction, and the vertical component."""
 
 import math
 from dataclasses import dataclass
@@ -26,7 +26,7 @@ class InOneDirection(Transformed):
         return math.cos(self.direction) * along, math.sin(self.direction) * along, z
 
     def directions(self) -> tuple[tuple[float, float], ...]:
-        """Return the one direction; none where the motion is across it."""
+        """Return the only direction; none if the motion is perpendicular to it."""
         longest = max((abs(float(self._along(x, y))) for x, y in self.motion.directions()), default=0.0)
         return ((longest * math.cos(self.direction), longest * math.sin(self.direction)),) if longest > 0.0 else ()
 
@@ -35,7 +35,7 @@ class InOneDirection(Transformed):
 
 
 def in_one_direction(motion: BaseMotion, direction: float) -> BaseMotion:
-    """Return `motion` with its horizontal component along `direction` [rad] only, turned to x; a record of a record."""
+    """Keep only the horizontal component of `motion` along `direction` [rad], rotated to x; a record stays a record."""
     direction = require_finite("direction", direction, "rad")
     if not isinstance(motion, Record):
         return InOneDirection(motion=motion.rotated(-direction) if direction else motion, direction=0.0)

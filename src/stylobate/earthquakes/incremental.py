@@ -140,19 +140,19 @@ class Plan:
     Parameters
     ----------
     model
-        What all runs have in common.
+        Model of all runs.
     records
         Base motions by name.
     scales, rotations, vertical
         Their values.
     parameters
-        Numbers of column and model by name, of one length: a value for each property sample.
+        Parameters of column and model by name, with one value for each property sample.
     tail
-        Free vibration after the record [s], by default 20/p.
+        Free-vibration time after the record [s], by default 20/p.
     intensity
-        The measure, with its horizontal component.
+        Intensity measure, with its horizontal component.
     left_out
-        Dimensions of one value that the result has as coordinates only.
+        Dimensions of one value; the result has them as coordinates only.
     """
 
     model: Model
@@ -177,7 +177,7 @@ class Plan:
         tail: float | None,
         intensity: IntensityMeasure,
     ) -> Self:
-        """Return the plan of these arguments, or raise ParameterError for one that cannot be."""
+        """Check the arguments of `incremental_dynamic_analysis`; raise ParameterError for an invalid one."""
         named = named_records(records)
         factors = positive_values("scales", scales)
         angles = checked_values("rotations", "rotation", np.atleast_1d(np.asarray(rotations)))
@@ -206,7 +206,7 @@ class Plan:
 
     @property
     def lengths(self) -> dict[str, int]:
-        """The dimensions and their lengths, those left out included."""
+        """The lengths of all dimensions, including those left out."""
         return {
             "record": len(self.records),
             "rotation": self.rotations.size,
@@ -259,7 +259,7 @@ class Plan:
 
     @property
     def levels(self) -> xr.DataArray:
-        """The intensity of the runs, over record, property sample where it depends on it, and scale."""
+        """The intensity of the runs, over record, property sample if it depends on the column, and scale."""
         of_column = self.intensity.quantity in (Intensity.ACCELERATION_RATIO, Intensity.VELOCITY_RATIO)
         columns = [model.column for model in (self.sampled if of_column else self.sampled[:1])]
         values = np.array([[self.intensity.of(motion, one) for one in columns] for motion in self.records.values()])
@@ -268,7 +268,7 @@ class Plan:
         return xr.DataArray(scaled if of_column else scaled[:, 0], dims=dims, attrs=self.intensity.attributes)
 
     def labelled(self, runs: xr.Dataset) -> xr.Dataset:
-        """Return `runs`, over all dimensions, as an incremental dynamic analysis."""
+        """Add tilt ratios, limit states, intensities and coordinates to `runs`, which are over all dimensions."""
         slenderness = xr.DataArray([model.column.slenderness for model in self.sampled], dims="property_sample")
         labelled = runs.assign(
             tilt_ratio=tilt_ratios(runs, slenderness),
@@ -294,7 +294,7 @@ class Plan:
 
 
 def tilt_ratios(runs: xr.Dataset, slenderness: float | xr.DataArray) -> xr.DataArray:
-    """Return the peak tilt over α = atan c: infinite where overturned, NaN where a run is undecided."""
+    """Compute the peak tilt over α_c = arctan c: infinite if overturned, NaN if the run is undecided."""
     codes = runs["outcome"]
     decided = ~codes.isin([NOT_COMPUTED, *UNRESOLVED])
     ratio = (runs["peak_tilt"] / np.arctan(slenderness)).where(decided)
@@ -308,12 +308,12 @@ def without_vertical(motion: BaseMotion) -> BaseMotion:
 
 
 def positive_values(name: str, values: npt.ArrayLike) -> Floats:
-    """Return `values` as an array of at least one positive number, or raise ParameterError."""
+    """Check for at least one positive number; return an array, or raise ParameterError."""
     array = checked_values(name, "scale", np.atleast_1d(np.asarray(values)))
     bad = array[~(array > 0.0)]
     if bad.size or not array.size:
         got = repr(float(bad[0])) if bad.size else "none"
-        message = f"{name} must hold at least one number, all positive, got {got}; Polarity is for the opposite sense"
+        message = f"{name} must hold at least one number, all positive, got {got}; use Polarity to reverse a record"
         raise ParameterError(message)
     return array
 
@@ -327,9 +327,9 @@ def _choices(vertical: bool | Sequence[bool]) -> tuple[bool, ...]:
 
 
 def _samples(parameters: Mapping[str, npt.ArrayLike] | None) -> dict[str, Floats]:
-    """Return the numbers of the property samples, of one length."""
+    """Return the parameters of the property samples, as arrays of equal length."""
     if parameters is not None and not isinstance(parameters, Mapping):
-        message = f'parameters must name what differs, such as {{"damping": […]}}, got {parameters!r}'
+        message = f'parameters must map names to values, such as {{"damping": […]}}, got {parameters!r}'
         raise ParameterError(message)
     given = dict(parameters or {})
     for name in given:
@@ -340,7 +340,7 @@ def _samples(parameters: Mapping[str, npt.ArrayLike] | None) -> dict[str, Floats
     several = {name: checked_values("parameters", name, values) for name, values in given.items() if np.ndim(values)}
     sizes = {name: values.size for name, values in several.items()}
     if len(set(sizes.values())) > 1 or 0 in sizes.values():
-        message = f"parameters must have one value for each property sample, all as many, got {sizes}"
+        message = f"parameters must have equal numbers of values, one for each property sample, got {sizes}"
         raise ParameterError(message)
     count = next(iter(sizes.values()), 1)
     same = {name: np.full(count, require_finite(name, value)) for name, value in given.items() if name not in several}  # type: ignore[arg-type]

@@ -1,4 +1,4 @@
-"""Intensity measures: how strong a record is, of which horizontal component."""
+"""Intensity measures of records, with the definition of the horizontal component."""
 
 import math
 from dataclasses import dataclass
@@ -16,7 +16,7 @@ from stylobate.engine.forcing import common_line
 from stylobate.errors import ParameterError, UnsupportedError, require_not_negative, require_positive
 from stylobate.studies.sweeps.quantities import Floats
 
-# A velocity is looked at so many times between breaks, and in a period of the highest frequency.
+# Number of samples of a velocity between breaks, and in a period of the highest frequency.
 _BETWEEN_BREAKS, _PER_PERIOD = 8, 100
 
 
@@ -28,7 +28,7 @@ class Intensity(Enum):
     PEAK_VELOCITY = "peak ground velocity"
     """PGV [m/s]."""
     ACCELERATION_RATIO = "PGA/(g tan α)"
-    """Above 1 the record alone can set the column rocking, if PGA is that of RotD100."""
+    """Above 1 a record can start rocking, if PGA is defined by RotD100."""
     VELOCITY_RATIO = "p PGV/(g tan α)"
     """With p = √(m g R/K)."""
 
@@ -72,7 +72,7 @@ class SpectralAcceleration:
 
     @property
     def value(self) -> str:
-        """What it is called."""
+        """Full name."""
         return f"spectral acceleration at {self.period:g} s, {100.0 * self.damping:g} % damping"
 
     @property
@@ -109,14 +109,14 @@ class SpectralAcceleration:
 
 @dataclass(frozen=True, slots=True)
 class IntensityMeasure:
-    """A measure of strength, and the definition of the horizontal component of which it is.
+    """An intensity measure with the definition of its horizontal component.
 
     Parameters
     ----------
     quantity
-        What is measured.
+        Measured quantity.
     component
-        How one number is made of two horizontal components.
+        Definition that combines two horizontal components to one number.
     """
 
     quantity: Intensity | SpectralAcceleration
@@ -128,12 +128,12 @@ class IntensityMeasure:
         intensity: "str | Intensity | SpectralAcceleration",
         component: str | HorizontalComponent = HorizontalComponent.ROTD50,
     ) -> Self:
-        """Return the measure of these names.
+        """Look up the measure with these names.
 
         Raises
         ------
         ParameterError
-            If a name is not known.
+            If a name is unknown.
         """
         definition = HorizontalComponent.named(component)
         if isinstance(intensity, (Intensity, SpectralAcceleration)):
@@ -147,12 +147,12 @@ class IntensityMeasure:
 
     @property
     def name(self) -> str:
-        """Quantity and definition, as beside numbers and on axes."""
+        """Quantity and definition, for labels."""
         return f"{self.quantity.value}, {self.component.value}"
 
     @property
     def attributes(self) -> dict[str, str]:
-        """Unit, name and definition, of arrays."""
+        """Unit, name and definition, for attributes of arrays."""
         return {"units": self.quantity.units, "long_name": self.name, "component": self.component.value}
 
     def of(self, motion: BaseMotion, column: Column) -> float:
@@ -163,12 +163,12 @@ class IntensityMeasure:
 def horizontal_peak(motion: BaseMotion, order: int, component: HorizontalComponent) -> float:
     """Compute the peak horizontal acceleration [m/s²] or velocity [m/s] of a motion that ends.
 
-    A motion along one straight line has one horizontal component: its peak counts in every definition.
+    A motion along one straight line has one horizontal component; its peak is the same in every definition.
 
     Parameters
     ----------
     motion
-        The motion; velocities are taken up to its end.
+        Base motion; velocities are evaluated up to its end.
     order
         ACCELERATION or VELOCITY.
     component
@@ -176,8 +176,8 @@ def horizontal_peak(motion: BaseMotion, order: int, component: HorizontalCompone
 
     Notes
     -----
-    Accelerations of a record are exact, and those of another motion along a line are what it reports itself. All other
-    peaks are those of values dense enough to be 0.1 % low at most.
+    Peak accelerations of a record are exact; those of another motion along a line are its own `peak_horizontal`. All
+    other peaks are those of dense samples and at most 0.1 % low.
     """
     if isinstance(motion, Record):
         return peak_of_record(motion, order, component, since=0.0)
@@ -196,7 +196,7 @@ def has_two_components(motion: BaseMotion) -> bool:
 
 
 def _dense_times(motion: BaseMotion) -> Floats:
-    """Return times up to the end of a motion between which it changes little [s]."""
+    """Return dense times up to the end of a motion [s]."""
     end = motion.duration
     number = math.ceil(_PER_PERIOD * end * motion.highest_frequency / (2.0 * math.pi)) + _PER_PERIOD
     if motion.degree is not None:  # smooth between breaks, however close these are

@@ -1,4 +1,4 @@
-"""The base motions of a study, each with the name that labels its results."""
+"""Names of the base motions of a study."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -11,12 +11,12 @@ Records: TypeAlias = BaseMotion | Sequence[BaseMotion] | Mapping[str, BaseMotion
 
 
 def named_records(records: Records) -> dict[str, BaseMotion]:
-    """Return the motions by their names: those of a mapping, those the records have, else "motion 1" and so on.
+    """Map names to motions: names of the mapping, else names of the records, else "motion 1" and so on.
 
     Raises
     ------
     ParameterError
-        If there is none, one is no base motion or never ends, or two have one name.
+        If `records` is empty, a value is no base motion or never ends, or two motions have the same name.
     """
     if isinstance(records, BaseMotion):
         records = [records]

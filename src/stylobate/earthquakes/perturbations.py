@@ -14,7 +14,7 @@ from stylobate.models.declared import dissipation_of
 
 
 class PerturbationOf(Enum):
-    """What is changed."""
+    """Object of a perturbation."""
 
     RECORD = "record"
     DISSIPATION = "dissipation"
@@ -32,7 +32,7 @@ class Perturbation(ABC):
     @property
     @abstractmethod
     def name(self) -> str:
-        """Its name in tables and figures."""
+        """Name in tables and figures."""
 
     def changed_motion(self, motion: BaseMotion) -> BaseMotion | None:
         """Return the base motion after the change; None if this change does not apply."""
@@ -65,7 +65,7 @@ class Perturbation(ABC):
 
     @property
     def rest_threshold(self) -> float | None:
-        """The energy below which a column comes to rest, as `rest_energy` of `simulate`; None for that of the run."""
+        """Energy below which a column comes to rest, as `rest_energy` of `simulate`; None keeps that of the run."""
         return None
 
 
@@ -152,7 +152,7 @@ class ComponentScaled(Perturbation):
         return f"{self.axis} component {_percent(self.factor)}"
 
     def changed_motion(self, motion: BaseMotion) -> BaseMotion | None:
-        """Return the record; None for other motions, or one without this component."""
+        """Return the changed record; None for other motions, or a record without this component."""
         if self.axis == "z":
             return motion.scaled(1.0, vertical=self.factor) if any(motion.vertical_range(0.0)) else None
         if not isinstance(motion, Record) or self.axis not in motion.axes:
@@ -173,13 +173,13 @@ class WithoutVertical(Perturbation):
         return "no vertical"
 
     def changed_motion(self, motion: BaseMotion) -> BaseMotion | None:
-        """Return the motion without it; None where there is none."""
+        """Return the motion without its vertical component; None if it has none."""
         return without_vertical(motion) if any(motion.vertical_range(0.0)) else None
 
 
 @dataclass(frozen=True, slots=True)
 class Shifted(Perturbation):
-    """Delay the record by a fraction of its step: the same record, integrated between other times."""
+    """Delay the record by a fraction of its step, so that the integration uses other times."""
 
     part: float = 0.5
     of: ClassVar[PerturbationOf] = PerturbationOf.RECORD
@@ -213,7 +213,7 @@ class Resampled(Perturbation):
         return f"step × {self.factor:g}"
 
     def changed_motion(self, motion: BaseMotion) -> BaseMotion | None:
-        """Return the record; None for other motions."""
+        """Return the resampled record; None for other motions."""
         return motion.resampled(self.factor * motion.step) if isinstance(motion, Record) else None
 
 
@@ -232,7 +232,7 @@ class Filtered(Perturbation):
         return ", ".join(f"{name} {corner:g} Hz" for name, corner in corners if corner is not None)
 
     def changed_motion(self, motion: BaseMotion) -> BaseMotion | None:
-        """Return the record; None for other motions, or where its step cannot hold the corner."""
+        """Return the filtered record; None for other motions, or if the corner exceeds the Nyquist frequency."""
         if not isinstance(motion, Record):
             return None
         if self.lowpass is not None and self.lowpass >= 0.5 / motion.step:
@@ -252,11 +252,11 @@ class DissipationScaled(_Scaled):
         return f"dissipation × {self.factor:g}"
 
     def changed_values(self, model: Model) -> dict[str, float] | None:
-        """Return the dissipation parameters; None for a model without dissipation."""
+        """Return the changed dissipation parameters; None for a model without dissipation."""
         values = {}
         for name, quantity in dissipation_of(type(model)).items():
             value, lossless = getattr(model, name), quantity.lossless
-            # A restitution that is not stated is that of the impact.
+            # Without a stated restitution the model uses that of the impact.
             value = getattr(model, f"impact_{name}", lossless) if value is None else value
             if value != lossless:
                 values[name] = max(0.0, lossless - self.factor * (lossless - float(value)))
@@ -275,7 +275,7 @@ class SlendernessScaled(_Scaled):
         return f"slenderness {_percent(self.factor)}"
 
     def changed_values(self, model: Model) -> dict[str, float]:
-        """Return the slenderness."""
+        """Return the changed slenderness."""
         return {"slenderness": self.factor * model.column.slenderness}
 
 
@@ -317,8 +317,8 @@ class ToleranceScaled(_Scaled):
 class RestEnergy(Perturbation):
     """Set the energy below which a column comes to rest, `rest_energy` of `simulate`, to another `value`.
 
-    A column that comes to rest forgets the motion that was left; with a lower threshold it goes on hopping, and the
-    next push finds it elsewhere. No threshold is the right one: that of a floor is not known.
+    At rest the residual motion is lost; with a lower threshold it continues, and later shaking meets another state. The
+    threshold of a real floor is unknown, so no value is correct.
     """
 
     value: float

@@ -1,4 +1,4 @@
-"""Planar (Housner) against three-dimensional rocking, record by record: which column overturns, and the ratio."""
+"""Planar (Housner) and three-dimensional rocking compared by record: overturning, and the ratio of peak tilts."""
 
 import math
 from collections.abc import Sequence
@@ -23,7 +23,7 @@ from stylobate.studies.sweeps.recipe import RunOptions
 AXES = (0.0, 0.5 * math.pi)
 """The directions of the two horizontal components [rad]."""
 
-# A bias needs two records: one gives no scatter.
+# Minimum number of records for a bias: one record has no scatter.
 _LEAST = 2
 
 
@@ -43,9 +43,9 @@ def planar_bias(
 ) -> xr.Dataset:
     """Compare Housner's planar column under each horizontal component with the three-dimensional column.
 
-    The planar column sees the component along one direction and the vertical one; the worst of several directions
-    counts, as in practice. The three-dimensional column sees the whole record. For a comparison with equal dissipation
-    pass `planar=PlanarRocking(column, damping=…, restitution=1.0)`.
+    The component along one direction and the vertical component act on the planar column; the worst of several
+    directions counts, as in practice. The whole record acts on the three-dimensional column. For a comparison with
+    equal dissipation pass `planar=PlanarRocking(column, damping=…, restitution=1.0)`.
 
     Parameters
     ----------
@@ -59,7 +59,7 @@ def planar_bias(
         The planar column; by default the same body with the same `damping` and `rolling_resistance`, and with
         Housner's restitution at impacts, which conserves the angular momentum about the edge on which it lands.
     least_ratio
-        Peak tilts below this fraction of α do not count as rocking; their ratio is NaN.
+        Peak tilts below this fraction of α_c do not count as rocking; their ratio is NaN.
     executor, progress, **options
         As for `incremental_dynamic_analysis`.
 

@@ -1,4 +1,4 @@
-"""Uncertain properties of a column: their distributions, and samples."""
+"""Uncertain properties of a column: distributions and samples."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -19,7 +19,7 @@ class Spread(Protocol):
     """The distribution of an uncertain property."""
 
     def draw(self, nominal: float, shares: Floats) -> Floats:
-        """Return the values below which these `shares` of the distribution lie; `nominal` is that of the model."""
+        """Return the quantiles of these `shares` of the distribution; `nominal` is the value of the model."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,9 +29,9 @@ class LognormalSpread:
     Parameters
     ----------
     dispersion
-        Its standard deviation.
+        Standard deviation of the logarithm.
     median
-        Of the property; by default the value that the model has.
+        Median; by default the value of the model.
     """
 
     dispersion: float
@@ -43,7 +43,7 @@ class LognormalSpread:
             require_positive("median", self.median)
 
     def draw(self, nominal: float, shares: Floats) -> Floats:
-        """Return the values below which these `shares` lie."""
+        """Return the quantiles of these `shares`."""
         median = require_positive("median", nominal if self.median is None else self.median)
         return np.asarray(median * np.exp(self.dispersion * ndtri(shares)))
 
@@ -55,9 +55,9 @@ class NormalSpread:
     Parameters
     ----------
     deviation
-        Standard deviation before the cut, in the unit of the property.
+        Standard deviation before truncation, in the unit of the property.
     mean
-        The same; by default the value that the model has.
+        Mean before truncation; by default the value of the model.
     least, most
         Bounds.
     """
@@ -74,7 +74,7 @@ class NormalSpread:
             raise ParameterError(message)
 
     def draw(self, nominal: float, shares: Floats) -> Floats:
-        """Return the values below which these `shares` lie."""
+        """Return the quantiles of these `shares`."""
         mean = nominal if self.mean is None else self.mean
         low, high = (ndtr((bound - mean) / self.deviation) for bound in (self.least, self.most))
         values = mean + self.deviation * ndtri(low + shares * (high - low))
@@ -83,7 +83,7 @@ class NormalSpread:
 
 @dataclass(frozen=True, slots=True)
 class UniformSpread:
-    """A uniform distribution between two values, for a property of which only bounds are known."""
+    """A uniform distribution between two values, for a property with known bounds only."""
 
     least: float
     most: float
@@ -94,7 +94,7 @@ class UniformSpread:
             raise ParameterError(message)
 
     def draw(self, nominal: float, shares: Floats) -> Floats:
-        """Return the values below which these `shares` lie."""
+        """Return the quantiles of these `shares`."""
         del nominal
         return np.asarray((1.0 - shares) * self.least + shares * self.most)
 

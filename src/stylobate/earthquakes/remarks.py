@@ -1,4 +1,4 @@
-"""Remarks on what is no mistake, but looks like one: a column as high as a tower, two records of nearly one name."""
+"""Warnings of unlikely inputs: columns as high as towers, records whose names differ by case only."""
 
 import warnings
 from collections.abc import Iterable, Iterator, Mapping
@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from stylobate.column import Column
 from stylobate.errors import UnlikelyInputWarning
 
-# Columns are seldom higher [m]: a larger number is perhaps in another unit.
+# Columns are seldom higher [m]: a larger number may be in another unit.
 _HIGHEST = 60.0
 
 
@@ -16,7 +16,7 @@ def remark_on(columns: Mapping[str, Column], records: Iterable[str]) -> None:
     Parameters
     ----------
     columns
-        By the name that labels their results.
+        Columns by name.
     records
         Names of records.
     """
@@ -27,9 +27,10 @@ def remark_on(columns: Mapping[str, Column], records: Iterable[str]) -> None:
 def _of_heights(columns: Mapping[str, Column]) -> Iterator[str]:
     for name, column in columns.items():
         if column.height is not None and column.height > _HIGHEST:
-            yield f"{name}: a height of {column.height:g} m; lengths are in metres, is this one?"
+            yield f"{name}: unlikely height (got {column.height:g} m). Check that it is in metres."
         elif column.height is None and column.mass_height > 0.5 * _HIGHEST:
-            yield f"{name}: a mass centre at {column.mass_height:g} m; lengths are in metres, is this one?"
+            height = f"{column.mass_height:g} m"
+            yield f"{name}: unlikely height of the centre of mass (got {height}). Check that it is in metres."
 
 
 def _of_names(records: Iterable[str]) -> Iterator[str]:
@@ -40,6 +41,6 @@ def _of_names(records: Iterable[str]) -> Iterator[str]:
         if len(names) > 1:
             quoted = " and ".join(map(repr, names))
             yield (
-                f"records: {quoted} differ by case only and are taken as different ones; if they are components of one "
-                "event, list their files as one event"
+                f"records: {quoted} differ by case only and count as different records. If they are components of one "
+                "event, list their files as one event."
             )

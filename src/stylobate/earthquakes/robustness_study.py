@@ -1,4 +1,4 @@
-"""Robustness of verdicts: every run repeated under small changes of record, dissipation, geometry and integration."""
+"""Robustness of verdicts: runs repeated under small changes of record, dissipation, geometry and integration."""
 
 import json
 from collections.abc import Mapping, Sequence
@@ -114,14 +114,14 @@ def robustness(
 
 
 def _provenance(given: Sweep, **own: Any) -> str:
-    """Return what all runs have in common but for their changes, and what is this study's `own`, in JSON."""
+    """Return the common settings of all runs and the `own` settings of this study, in JSON."""
     common = {name: value for name, value in given.describe().items() if name not in ("design", "duration", "periods")}
     return json.dumps({**common, **own})
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Case:
-    """A record with a change, `place` 0 being none: what is run."""
+    """A run: a record with a change; `place` 0 means no change."""
 
     record: int
     place: int
@@ -138,7 +138,7 @@ class _Case:
 
 @dataclass(frozen=True, slots=True)
 class _Arrays:
-    """Results over record, rotation and change, the first of which is none."""
+    """Results over record, rotation and change; the first change is none."""
 
     outcome: npt.NDArray[np.int8]
     peak_tilt: Floats
@@ -147,13 +147,13 @@ class _Arrays:
 
     @classmethod
     def empty(cls, shape: tuple[int, ...]) -> "_Arrays":
-        """Return arrays of runs not computed."""
+        """Create arrays of runs that are not computed yet."""
         return cls(
             np.full(shape, NOT_COMPUTED, dtype=np.int8), np.full(shape, np.nan), np.zeros(shape, bool), np.ones(shape)
         )
 
     def put(self, group: Sequence[_Case], runs: xr.Dataset, rotations: int) -> None:
-        """Keep the runs of a group of cases, each at all rotations."""
+        """Store the runs of a group of cases, each at all rotations."""
         for name in _KEPT:
             values = runs[name].to_numpy().reshape(len(group), rotations)
             for case, row in zip(group, values, strict=True):
@@ -165,11 +165,11 @@ class _Arrays:
 def _checked(changes: Sequence[Perturbation]) -> tuple[Perturbation, ...]:
     for change in changes:
         if not isinstance(change, Perturbation):
-            message = f"changes must be changes such as ScaledRecord(1.02), got {change!r}"
+            message = f"changes must be perturbations such as ScaledRecord(1.02), got {change!r}"
             raise ParameterError(message)
     names = [change.name for change in changes]
     if not names or len(set(names)) < len(names):
-        message = f"changes must hold at least one change, none of them twice, got {names}"
+        message = f"changes must hold at least one change, each only once, got {names}"
         raise ParameterError(message)
     return tuple(changes)
 
@@ -205,7 +205,7 @@ def _cases(
 
 
 def _grouped(cases: Sequence[_Case]) -> list[list[_Case]]:
-    """Return the cases that one sweep can run: the same numbers differ, under one tolerance and rest energy."""
+    """Group the cases into sweeps: a sweep varies the same parameters with one tolerance and rest energy."""
     groups: dict[tuple[tuple[str, ...], float, float | None, bool], list[_Case]] = {}
     for case in cases:
         kind = (tuple(case.values), case.tolerance, case.rest_energy, case.delay > 0.0)

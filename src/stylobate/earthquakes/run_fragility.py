@@ -9,7 +9,7 @@ from stylobate.earthquakes.fragility import Counting, fit_fragility
 from stylobate.errors import ParameterError
 from stylobate.results.random_numbers import Rng
 
-# Within one of each of these and a record the intensity grows with the scale alone.
+# For fixed values of these dimensions and a fixed record, the intensity depends on the scale only.
 _SERIES = ("rotation", "vertical", "property_sample")
 
 

@@ -1,4 +1,4 @@
-"""The hazard curve of a site as it is described, in the intensity of a fragility."""
+"""The hazard curve of a description, in the intensity of a fragility."""
 
 from typing import Any
 
@@ -10,7 +10,7 @@ from stylobate.errors import ParameterError
 
 _UNITS = {"m s-2": "m/s²", "m s-1": "m/s", "1": "1"}
 _FIRST_LINE = "“PGA RotD50 [g], annual rate [1/a]”"
-_DAMPING = ", 5 % damping"  # of hazard curves, whose files are refused if they name another
+_DAMPING = ", 5 % damping"  # hazard curves with another damping are refused
 
 
 def site_hazard(points: HazardPoints, intensity: IntensityMeasure) -> HazardCurve:
@@ -19,8 +19,8 @@ def site_hazard(points: HazardPoints, intensity: IntensityMeasure) -> HazardCurv
     Raises
     ------
     ParameterError
-        If the points are of another intensity, horizontal component or unit than `intensity`, do not state what must
-        be stated, or are no hazard curve.
+        If the points have another intensity, horizontal component or unit than `intensity`, lack one of these, or are
+        no hazard curve.
     """
     quantity = intensity.quantity
     _require_unit(points, intensity)
@@ -59,7 +59,7 @@ def _require_unit(points: HazardPoints, intensity: IntensityMeasure) -> None:
         message = f"fragility.hazard does not state the unit of its intensity; {where} {example}"
         raise ParameterError(message)
     message = (
-        f"fragility.hazard is of an intensity in {_UNITS[points.units]}, the fragility of {name!r} in "
-        f"{_UNITS[units]}; give the hazard of that, or another intensity"
+        f"fragility.hazard uses an intensity in {_UNITS[points.units]}, but the fragility uses {name!r} in "
+        f"{_UNITS[units]}. Provide both for the same intensity measure."
     )
     raise ParameterError(message)

@@ -1,4 +1,4 @@
-"""`assess`: whether each column survives each record, how close it was, and how sure that is."""
+"""Assessment of columns under records: outcomes, margins and robustness."""
 
 import datetime as dt
 import platform
@@ -38,7 +38,7 @@ from stylobate.studies.sweeps import Executor
 from stylobate.studies.sweeps.computing import silent
 from stylobate.studies.sweeps.recipe import RunOptions
 
-# Packages on whose versions the digits depend.
+# Packages whose versions can change the last digits of the results.
 _PACKAGES = ("stylobate", "numpy", "scipy", "llvmlite", "xarray")
 
 
@@ -114,7 +114,8 @@ def assess(
     progress
         Called with the name of the part, the runs done and the approximate number of runs.
     **options
-        Of all runs, as in `simulate_ensemble`, such as `rest_energy`, the energy below which a column comes to rest.
+        Options of all runs, as in `simulate_ensemble`, such as `rest_energy`, the energy below which a column comes to
+        rest.
 
     Returns
     -------
@@ -123,8 +124,8 @@ def assess(
         scale: `overturned` (1, 0, −1 not decided), `outcome`, `tilt_ratio`, contact demand; "margins" over
         column, case, record and band; "robustness" over column, dissipation, scale, record and change; "sliding" over
         column, record and scale; "planar"; "fragility" over column if there are enough records; "histories" over
-        column and run, of the record that governs each; "summary", counts;
-        "spectra" over record and period, "ground_motions" over record and instant, as the report draws them.
+        column and run, under the governing record of each column; "summary", counts;
+        "spectra" over record and period, "ground_motions" over record and instant, for the figures of the report.
 
     Raises
     ------
@@ -140,7 +141,7 @@ def assess(
 
     Notes
     -----
-    Records are sorted by name and columns are computed separately: their order changes no number.
+    Records are sorted by name, and columns are computed separately: the order of both changes no result.
 
     Examples
     --------
@@ -226,7 +227,7 @@ def _dated(details: ReportDetails) -> dict[str, Any]:
 
 
 def _software() -> dict[str, str]:
-    """Return the versions of the program, of what it computes with, and the machine."""
+    """Return the versions of stylobate and its numerical packages, and the machine."""
     packages = {name: version(name) for name in _PACKAGES}
     return {**packages, "Python": platform.python_version(), "machine": f"{platform.system()} {platform.machine()}"}
 
@@ -250,7 +251,7 @@ def _over_columns(found: Sequence[xr.Dataset], names: Sequence[str]) -> xr.Datas
 
 
 def _setting(inputs: Inputs) -> dict[str, Any]:
-    """Return what was assessed, as plain values."""
+    """Return the settings of the assessment as plain values."""
     return {
         "version": version("stylobate"),
         "software": _software(),

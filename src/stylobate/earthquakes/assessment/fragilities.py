@@ -1,4 +1,4 @@
-"""Fragility of a column over the peak ground acceleration of the records, where there are records enough."""
+"""Fragility of a column over the peak ground acceleration of the records."""
 
 import numpy as np
 import xarray as xr
@@ -17,9 +17,9 @@ def fragility_of(reached: xr.DataArray, peak_acceleration: xr.DataArray) -> xr.D
     Parameters
     ----------
     reached
-        Over `record`, `limit_state` and `margin_scale`: 1, 0, −1.
+        Over `record`, `limit_state` and `margin_scale`: 1 reached, 0 not reached, −1 undecided.
     peak_acceleration
-        Of each record, over `record` [m/s²]: RotD50, or that of the one component.
+        Peak acceleration over `record` [m/s²]: RotD50, or the peak of the only component.
     """
     about = IntensityMeasure(Intensity.PEAK_ACCELERATION).attributes
     names = reached["record"].to_numpy()

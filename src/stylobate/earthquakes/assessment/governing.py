@@ -1,4 +1,4 @@
-"""Which record governs a column, and its runs: at the stated scale, and on both sides of the margin."""
+"""The governing record of a column, and its runs at the stated scale and on both sides of the margin."""
 
 import math
 from dataclasses import dataclass
@@ -18,8 +18,8 @@ from stylobate.results.outcomes import outcome_attributes
 from stylobate.studies.sweeps.computing import Progress
 
 STATED, STANDS, OVERTURNS = "stated", "stands", "overturns"
-"""The runs of a governing record: at the stated scale nearest to 1; the last below the margin that stands, and the
-first that overturns."""
+"""The runs under a governing record: at the stated scale nearest to 1; the last survival below the margin, and the
+first overturning."""
 
 _SAMPLES = 2001
 _OF_RUNS = ("strobes", "demands", "samples")
@@ -31,18 +31,18 @@ _DEMANDS = {
 
 
 def governing_record(verdicts: xr.Dataset, margins: xr.Dataset, scale: int) -> str:
-    """Return the record that governs one column.
+    """Return the name of the governing record of one column.
 
-    A record that overturns it at the stated scale governs before one that does not; and that in the central case before
-    one that does so in another. Among equals it is the one of the least scale that overturns, in the central case, then
-    in any; then the one of the largest peak tilt at the stated scale, then at any.
+    A record that overturns the column at the stated scale precedes a record that does not; a record that overturns it
+    in the central case precedes a record that does so in another case. Among equal records the smallest overturning
+    scale decides (central case, then any case), then the largest peak tilt (stated scale, then any scale).
 
     Parameters
     ----------
     verdicts, margins
-        Of one column.
+        Verdicts and margins of one column.
     scale
-        The place of the stated scale.
+        Index of the stated scale.
     """
     stated = verdicts.isel(scale=scale)
     fallen = stated["overturned"] == 1
@@ -57,13 +57,13 @@ def governing_record(verdicts: xr.Dataset, margins: xr.Dataset, scale: int) -> s
         -stated["tilt_ratio"].sel(central).fillna(0.0).to_numpy(),
         -tilts.where(np.isfinite(tilts)).max("margin_scale").fillna(0.0).to_numpy(),
     ]
-    # Records are sorted by name: the first of equals is the same whatever order they came in.
+    # Records are sorted by name, so the choice among equal records does not depend on their order in the input.
     return str(verdicts["record"].to_numpy()[np.lexsort(keys[::-1])[0]])
 
 
 @dataclass(frozen=True, slots=True)
 class _Shown:
-    """A run to show: which it is, its scale, and its case; no scale where there is no such run."""
+    """A run to show: its name, scale and case; the scale is NaN if there is no such run."""
 
     run: str
     scale: float
@@ -71,7 +71,7 @@ class _Shown:
 
 
 def _shown(inputs: Inputs, record: str, margins: xr.Dataset) -> list[_Shown]:
-    """Return the runs of a governing record: those at the margin in the central case, or else where it is least."""
+    """List the runs under a governing record; the margin is that of the central case, else the smallest of any case."""
     own = margins.sel(record=record)
     least = own["least_overturning"]
     case = CENTRAL
@@ -79,7 +79,7 @@ def _shown(inputs: Inputs, record: str, margins: xr.Dataset) -> list[_Shown]:
         case = str(least["case"].to_numpy()[int(least.argmin("case"))])
     own = own.sel(case=case)
     overturns, stands = float(own["least_overturning"]), float(own["largest_below"])
-    if math.isnan(overturns):  # the largest scale that is known to stand
+    if math.isnan(overturns):  # show the largest decided scale
         tilt = own["tilt_ratio"].to_numpy()
         known = own["margin_scale"].to_numpy()[np.isfinite(tilt)]
         stands = float(known[-1]) if known.size else math.nan
@@ -93,18 +93,17 @@ def _shown(inputs: Inputs, record: str, margins: xr.Dataset) -> list[_Shown]:
 def histories_of(
     inputs: Inputs, column: str, record: str, margins: xr.Dataset, parts: Parts, *, contact: bool
 ) -> xr.Dataset:
-    """Return the runs of a column under its governing record: at the stated scale, and beside the margin.
+    """Compute the runs of a column under its governing record: at the stated scale, and beside the margin.
 
     Returns
     -------
     xarray.Dataset
-        Over `run`: "stated", at the stated scale nearest to 1, at the central dissipation; "stands" and "overturns",
-        the last run below the least scale that overturned and the first that did, at the central dissipation or, where
-        that has none, in the case that has the least. Where nothing overturned it, "stands" is at the largest scale
-        decided.
-        Each has its `scale`, NaN where there is no such run, and its `case`. Over `sample` too: `time` [s], NaN beyond
-        the end of the run; `tilt_x`, `tilt_y` and `amplitude` in units of α; `base_x`, `base_y` [m/s²]. Without:
-        `peak_tilt_ratio`, its `azimuth` [rad] and `time_of_peak_tilt` [s]; `overturned`; `outcome`;
+        Over `run`: "stated", at the stated scale nearest to 1 and the central dissipation; "overturns", at the smallest
+        overturning scale of the central case, or of all cases if the central case has none; "stands", the last
+        survival below it. If no run overturned the column, "stands" is at the largest decided scale.
+        Each run has its `scale`, NaN if there is no such run, and its `case`. Over `sample` too: `time` [s], NaN beyond
+        the end of the run; `tilt_x`, `tilt_y` and `amplitude` in units of α_c; `base_x`, `base_y` [m/s²]. Over `run`
+        only: `peak_tilt_ratio`, its `azimuth` [rad] and `time_of_peak_tilt` [s]; `overturned`; `outcome`;
         `friction_demand`, `pivoting_demand`, `minimum_normal_force`, NaN without `contact`.
     """
     shown = _shown(inputs, record, margins)

@@ -1,4 +1,4 @@
-"""Ground motions of an assessment as they are drawn, their response spectra, and their RotD50 intensities."""
+"""Ground motions of an assessment: curves for figures, response spectra, and RotD50 intensities."""
 
 import math
 
@@ -16,9 +16,9 @@ from stylobate.studies.sweeps.computing import Progress
 from stylobate.studies.sweeps.quantities import Floats
 
 ROTD50, ONE_COMPONENT = HorizontalComponent.ROTD50.value, "one component"
-"""Definitions of a horizontal intensity: the median over all directions; the one component that a record has."""
+"""Definitions of a horizontal intensity: the median over all directions; the only component of a record."""
 
-# A motion that is no record is sampled so often; a record is drawn with so many points at most.
+# Number of samples of a motion that is no record; maximum number of points of a drawn record.
 _SAMPLES, _DRAWN = 4001, 2000
 _PERIODS = np.concatenate(
     [
@@ -40,7 +40,7 @@ def as_record(motion: BaseMotion) -> Record:
 def horizontal_peaks(motion: BaseMotion) -> tuple[str, float, float]:
     """Return the definition, PGA [m/s²] and PGV [m/s] of the horizontal motion.
 
-    A motion along one straight line has no other direction: its peaks are those of that component.
+    A motion along one straight line has the peaks of its only component.
     """
     definition = ROTD50 if has_two_components(motion) else ONE_COMPONENT
     acceleration, velocity = (
@@ -50,22 +50,22 @@ def horizontal_peaks(motion: BaseMotion) -> tuple[str, float, float]:
 
 
 def spectra_of(inputs: Inputs, parts: Parts, period: float) -> xr.Dataset:
-    """Return the 5 % damped response spectra of the records.
+    """Compute the 5 % damped response spectra of the records.
 
     Parameters
     ----------
     inputs
-        What is assessed.
+        Arguments of the assessment.
     parts
-        Keeps the spectra once they are computed.
+        Store of the spectra.
     period
-        A natural period to compute besides those of the curves [s].
+        Additional natural period [s].
 
     Returns
     -------
     xarray.Dataset
-        Over `record` and `period`: `spectral_acceleration` [m/s²], RotD50 of the pseudo-acceleration, or that of the
-        one horizontal component.
+        Over `record` and `period`: `spectral_acceleration` [m/s²], RotD50 of the pseudo-acceleration, or the
+        pseudo-acceleration of the only horizontal component.
     """
     periods = np.unique(np.append(_PERIODS, period))
 
@@ -89,19 +89,19 @@ def _spectrum(motion: BaseMotion, periods: Floats) -> Floats:
     spectra = response_spectra(record, periods, damping=_DAMPING)
     if has_two_components(motion):
         return np.asarray(spectra["rotd50"].to_numpy())
-    # Oscillators along a line keep to it: their peaks along x and y are the components of the peak along the line.
+    # An oscillator under motion along a line moves along it: its peaks along x and y are components of one peak.
     squares = [spectra["psa"].sel(axis=axis).to_numpy() ** 2 for axis in record.axes if axis != "z"]
     return np.sqrt(np.sum(squares, axis=0)) if squares else np.zeros(periods.size)
 
 
 def ground_motions(inputs: Inputs) -> xr.Dataset:
-    """Return the accelerations of the records as they are drawn.
+    """Return the accelerations of the records for a figure.
 
     Returns
     -------
     xarray.Dataset
         Over `record`, `instant` and `axis`: `acceleration` [m/s²]; over `record` and `instant` `time` [s]; NaN beyond
-        the end of a record. A record of more than 2000 samples is given by the lowest and highest of each stretch.
+        the end of a record. A record of more than 2000 samples is reduced to minimum and maximum of each interval.
     """
     drawn = [_envelope(as_record(motion)) for motion in inputs.records.values()]
     longest = max(len(times) for times, _ in drawn)
@@ -123,9 +123,9 @@ def ground_motions(inputs: Inputs) -> xr.Dataset:
 
 
 def _envelope(record: Record) -> tuple[Floats, Floats]:
-    """Return times and accelerations of a record, few enough to draw, its peaks among them."""
+    """Return times and accelerations of a record, reduced to a number that a figure can show, with all peaks."""
     size = math.ceil(2 * len(record.samples) / _DRAWN)
-    if size <= 2:  # noqa: PLR2004  two samples stand for a stretch
+    if size <= 2:  # noqa: PLR2004  two samples represent an interval
         return record.times, record.samples
     padding = -len(record.samples) % size
     stretches = np.pad(record.samples, ((0, padding), (0, 0)), mode="edge").reshape(-1, size, len(AXES))

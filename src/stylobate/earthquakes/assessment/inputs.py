@@ -1,4 +1,4 @@
-"""What is assessed: columns with their dissipation and friction, records by name, and what is asked of them."""
+"""Checked arguments of an assessment: columns with dissipation and friction, records by name, and options."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -25,9 +25,9 @@ CENTRAL = "central"
 NO_VERTICAL = "central, no vertical"
 """The case of margins in which the vertical component does not act."""
 
-# What the parts of an assessment hold: a store of another layout is not read.
+# Version of the layout of stored parts; a store of another layout is not read.
 _LAYOUT = 3
-# Scales nearer than this part of themselves are one.
+# Scales that differ by less than this fraction count as equal.
 _SAME_SCALE = 1e-9
 
 
@@ -38,29 +38,29 @@ class Inputs:
     Parameters
     ----------
     columns
-        The column with its equations by name, at each level of dissipation.
+        Model of each column by name, at each level of dissipation.
     records
         Base motions by name, sorted.
     dissipation
-        The numbers of each level.
+        Dissipation parameters of each level.
     friction
-        The coefficient of friction of each column that its contact is said to have.
+        Stated friction coefficient of each column.
     scales
         Scale factors at which verdicts are given.
     margin_scales
-        Scale factors looked at for margins, increasing, those of the verdicts and their small changes among them.
+        Scale factors of the scan for margins, increasing; they include those of the verdicts and their small changes.
     width
-        Relative width to which their edges are found.
+        Relative width to which ends of overturning intervals are located.
     tail
-        How long columns are followed after a record [s], by default 20/p.
+        Free-vibration time after a record [s], by default 20/p.
     changes
         Small changes under which verdicts are repeated.
     changes_at
-        Levels of dissipation at which they are.
+        Levels of dissipation with small changes.
     least_records
-        Fewer records give no fragility.
+        Minimum number of records for a fragility.
     options
-        Of all runs.
+        Options of all runs.
     """
 
     columns: Mapping[str, Mapping[str, Model]]
@@ -89,7 +89,7 @@ class Inputs:
         changes_at: Sequence[str] | None,
         **more: Any,
     ) -> Self:
-        """Return the inputs, or raise ParameterError for one that cannot be."""
+        """Check the arguments of an assessment; raise ParameterError for an invalid one."""
         if not isinstance(columns, Mapping) or not columns:
             message = f"columns must map names to models, at least one, got {columns!r}"
             raise ParameterError(message)
@@ -109,7 +109,7 @@ class Inputs:
 
     @property
     def as_recorded(self) -> int:
-        """The place of scale 1 among the scales; where it is not among them, of the nearest."""
+        """Index of the scale nearest to 1."""
         return int(np.argmin(np.abs(np.log(self.scales))))
 
     @property
@@ -125,11 +125,11 @@ class Inputs:
         return any(any(motion.vertical_range(0.0)) for motion in self.records.values())
 
     def with_records(self, names: Sequence[str]) -> Self:
-        """Return these inputs with some of the records only."""
+        """Return these inputs with the named records only."""
         return replace(self, records={name: self.records[name] for name in names})
 
     def identity(self, column: str, level: str | None = None) -> dict[str, Any]:
-        """Return the identity of the runs of a column, at one level or at all."""
+        """Return the identity of the runs of a column, at one level or at all levels."""
         models = self.columns[column]
         chosen = models if level is None else {level: models[level]}
         return {
@@ -143,12 +143,12 @@ class Inputs:
 
 
 def checked_dissipation(dissipation: Mapping[str, Mapping[str, float]] | None) -> dict[str, dict[str, float]]:
-    """Return the numbers of each level, or raise ParameterError with the remedy.
+    """Check the dissipation parameters of each level.
 
     Raises
     ------
     ParameterError
-        If low, central and high are not all stated, name different numbers, or none.
+        If low, central or high is missing, or the levels state different parameters or none.
     """
     remedy = "State it for low, central and high, such as low = {damping = 0.005}"
     if not isinstance(dissipation, Mapping) or not dissipation:
@@ -163,7 +163,7 @@ def checked_dissipation(dissipation: Mapping[str, Mapping[str, float]] | None) -
         given = ", ".join(
             f"{level} {' and '.join(sorted(numbers)) or 'nothing'}" for level, numbers in dissipation.items()
         )
-        message = f"dissipation must name the same numbers at each level, got {given}. {remedy}"
+        message = f"dissipation must state the same parameters at each level, got {given}. {remedy}"
         raise ParameterError(message)
     unknown = sorted(names.difference(OF_DISSIPATION))
     if unknown:
@@ -176,7 +176,7 @@ def checked_dissipation(dissipation: Mapping[str, Mapping[str, float]] | None) -
 
 
 def _levels_named(given: Sequence[str] | None, levels: Mapping[str, Any]) -> tuple[str, ...]:
-    """Return the names of levels that are given, in the order of the levels; all of them for None."""
+    """Check names of levels and sort them; None means all levels."""
     if given is None:
         return tuple(levels)
     chosen = (given,) if isinstance(given, str) else tuple(given)
@@ -204,7 +204,8 @@ def _at_levels(name: str, model: Model, levels: Mapping[str, Mapping[str, float]
 def _frictions(given: float | Mapping[str, float] | None, columns: Sequence[str]) -> dict[str, float]:
     if given is None:
         message = (
-            "friction_coefficient is missing: the friction between column and base, such as 0.6; one, or by column"
+            "friction_coefficient is missing: the friction between column and base. State one number such as 0.6, or "
+            "one for each column."
         )
         raise ParameterError(message)
     if not isinstance(given, Mapping):
@@ -229,7 +230,7 @@ def _rising(name: str, values: npt.ArrayLike, *, least: int) -> Floats:
 
 
 def _joined(scanned: Floats, stated: Floats, changes: Sequence[Perturbation]) -> Floats:
-    """Return the scales `scanned`, with those stated and their small changes: what is said of both is of one set."""
+    """Join the scales `scanned` with those stated and their small changes, so that margins and verdicts agree."""
     factors = [1.0, *(change.factor for change in changes if isinstance(change, ScaledRecord))]
     rising = np.unique(np.concatenate([scanned, np.outer(stated, factors).ravel()]))
     apart = np.diff(rising, prepend=0.0) > _SAME_SCALE * rising

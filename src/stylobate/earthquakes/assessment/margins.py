@@ -1,4 +1,4 @@
-"""Margins of one column: all bands of scale factors in which each record overturns it, case by case."""
+"""Margins of one column: all overturning intervals of the scale factor, by record and case."""
 
 import numpy as np
 import xarray as xr
@@ -24,22 +24,22 @@ _RUNS = ("outcome", "peak_tilt", "friction_demand")
 
 
 def margins_of(inputs: Inputs, column: str, parts: Parts, *, contact: bool, executor: Executor | None) -> xr.Dataset:
-    """Return the bands of a column.
+    """Compute the overturning intervals of a column.
 
     Returns
     -------
     xarray.Dataset
-        Over `case` (the levels of dissipation; and the central one without the vertical component) and `record`:
-        `least_overturning`, the least scale that overturned, NaN where none did; `largest_below`, the largest scale
-        below it that did not, NaN where none; `least_lasting`, the least scale at which a band begins that is wider
-        than its edges are known; `bands`; `unknown`, undecided runs of the scan; `decided_to`, the largest scale up to
-        which every run was decided; `stands_again`, whether it did not overturn at a scale above one that overturned
-        it; `standing_slip`, the least scale at which it slides before it rocks, NaN where it rocks first. Over `band`
-        and `stretch` too all of `overturning_bands`. Over `margin_scale` too: `outcome`, `tilt_ratio`; of the central
-        case over `limit_state`: `reached`. What the contact must bear, NaN without `contact`: over `margin_scale` too
-        `friction_demand`, while it stands and while it moves; `friction_to_margin`, the largest of the scales run below
-        the least that overturned, of all where none did. `least_slipping`, the least scale that needs more than the
-        stated friction, NaN where none does.
+        Over `case` (the levels of dissipation; and the central level without the vertical component) and `record`:
+        `least_overturning`, the smallest overturning scale, NaN if none; `largest_below`, the largest surviving scale
+        below it, NaN if none; `least_lasting`, the smallest scale at which an interval begins that is wider than the
+        uncertainty of its ends; `bands`, the number of intervals; `unknown`, the number of undecided runs of the scan;
+        `decided_to`, the largest scale up to which every run was decided; `stands_again`, whether the column survived a
+        scale above an overturning one; `standing_slip`, the smallest scale at which it slides before it rocks, NaN if
+        it rocks first. Over `band` and `stretch` too all variables of `overturning_bands`. Over `margin_scale` too:
+        `outcome`, `tilt_ratio`; for the central case over `limit_state`: `reached`. The contact demand, NaN without
+        `contact`: over `margin_scale` too `friction_demand`, standing and moving; `friction_to_margin`, the largest
+        demand below the smallest overturning scale, or at any scale if there is none; `least_slipping`, the smallest
+        scale that needs more than the stated friction, NaN if none does.
     """
     cases = cases_of(inputs)
     found = of_one_width([_bands(inputs, column, case, parts, contact, executor) for case in cases])
@@ -56,7 +56,7 @@ def margins_of(inputs: Inputs, column: str, parts: Parts, *, contact: bool, exec
 
 
 def of_one_width(margins: list[xr.Dataset]) -> list[xr.Dataset]:
-    """Return the margins with as many bands and undecided stretches each, NaN beyond the last."""
+    """Pad margins with NaN to equal numbers of intervals and undecided stretches."""
     for dim in ("band", "stretch"):
         widest = max(one.sizes[dim] for one in margins)
         margins = [one.pad({dim: (0, widest - one.sizes[dim])}) if one.sizes[dim] < widest else one for one in margins]
@@ -64,7 +64,7 @@ def of_one_width(margins: list[xr.Dataset]) -> list[xr.Dataset]:
 
 
 def demands_to_margin(margins: xr.Dataset, stated: float) -> dict[str, xr.DataArray]:
-    """Return the friction that is needed up to the margin, and where it first exceeds the stated one."""
+    """Compute the friction needed up to the margin, and the smallest scale at which it exceeds the `stated` one."""
     need, scale = margins["friction_demand"], margins["margin_scale"]
     least = margins["least_overturning"]
     one = {"units": "1"}
@@ -74,8 +74,10 @@ def demands_to_margin(margins: xr.Dataset, stated: float) -> dict[str, xr.DataAr
     return {
         "friction_to_margin": need.where(~(scale >= least))
         .max("margin_scale")
-        .assign_attrs(**one, long_name="largest friction needed below the least scale that overturned"),
-        "least_slipping": first.assign_attrs(**one, long_name="least scale that needs more than the stated friction"),
+        .assign_attrs(**one, long_name="largest friction needed below the smallest overturning scale"),
+        "least_slipping": first.assign_attrs(
+            **one, long_name="smallest scale that needs more than the stated friction"
+        ),
     }
 
 
@@ -85,7 +87,7 @@ def cases_of(inputs: Inputs) -> list[str]:
 
 
 def margin_runs(inputs: Inputs) -> int:
-    """Return how many runs the margins of one column take at least."""
+    """Return the minimum number of runs for the margins of one column."""
     return len(cases_of(inputs)) * _scan_runs(inputs)
 
 
@@ -153,15 +155,15 @@ def _as_dataset(found: xr.Dataset, names: list[str], width: float) -> xr.Dataset
     return (
         kept.assign(flags)
         .assign(
-            least_overturning=first["band_from"].assign_attrs(units="1", long_name="least scale that overturned"),
+            least_overturning=first["band_from"].assign_attrs(units="1", long_name="smallest overturning scale"),
             least_lasting=kept["band_from"]
             .where(lasting)
             .min("band")
-            .assign_attrs(units="1", long_name="least scale at which a band begins that is no hairline"),
-            largest_below=first["safe_below"].assign_attrs(units="1", long_name="largest scale below that did not"),
-            stands_again=again.astype(float).assign_attrs(
-                long_name="did not overturn at a scale above one that overturned"
+            .assign_attrs(units="1", long_name="smallest scale at which an interval wider than its edges begins"),
+            largest_below=first["safe_below"].assign_attrs(
+                units="1", long_name="largest surviving scale below the smallest overturning scale"
             ),
+            stands_again=again.astype(float).assign_attrs(long_name="survived a scale above an overturning scale"),
         )
         .assign_attrs(resolution=found.attrs["resolution"], provenance=found.attrs["provenance"])
     )

@@ -1,4 +1,4 @@
-"""The parts of an assessment, each kept in a file once it is computed: what was interrupted goes on from there."""
+"""Store of the parts of an assessment: one file for each computed part, so that an assessment can resume."""
 
 import hashlib
 import json
@@ -19,21 +19,21 @@ from stylobate.studies.sweeps.fingerprint import identity_of
 _log = logging.getLogger("stylobate")
 
 Announce: TypeAlias = Callable[[str, int, int], None]
-"""Called with what is computed, the runs done and the runs in all."""
+"""Called with the name of the part, the runs done and the total number of runs."""
 
 
 @dataclass(frozen=True, slots=True)
 class Parts:
-    """Parts computed or, from the folder `store`, known.
+    """Parts of an assessment, computed or read from the folder `store`.
 
     Parameters
     ----------
     store
-        Where they are kept; None keeps nothing.
+        Folder of the parts; None stores nothing.
     total
-        Runs of all parts, about.
+        Approximate number of runs of all parts.
     announce
-        Gets the progress while a part is computed; it begins at the runs of the parts that are known.
+        Called with the progress while a part is computed; runs of stored parts count as done.
     """
 
     store: Path | None
@@ -45,7 +45,7 @@ class Parts:
     def get(
         self, name: str, runs: int, identity: Mapping[str, Any], compute: Callable[[Progress], xr.Dataset]
     ) -> xr.Dataset:
-        """Return the part `name` of about so many `runs`; it is computed if none of the same `identity` is kept.
+        """Return the part `name` of about `runs` runs; compute it if the store has none of the same `identity`.
 
         Raises
         ------
@@ -70,20 +70,20 @@ class Parts:
         return found
 
     def report(self) -> None:
-        """Log in one line how many parts were known, if any were."""
+        """Log the number of parts that were read from the store, if any."""
         if self._known:
             _log.info(
-                "%d of %d parts were kept in %s and not computed again", len(self._known), len(self._done), self.store
+                "%d of %d parts were read from %s and not computed again", len(self._known), len(self._done), self.store
             )
 
     def _report_what_is_reused(self) -> None:
-        """Log, before the first part that is computed, how many parts are known."""
+        """Log the number of stored parts before the first part is computed."""
         if self._known and len(self._known) == len(self._done):
-            _log.info("%d parts are kept in %s; the work goes on from there", len(self._known), self.store)
+            _log.info("%d parts were read from %s; the assessment resumes there", len(self._known), self.store)
 
 
 def identities(motions: Mapping[str, BaseMotion]) -> dict[str, Any]:
-    """Return the identities of these motions, by name."""
+    """Return the identities of motions, by name."""
     return {
         name: motion.digest if isinstance(motion, Record) else identity_of(motion) for name, motion in motions.items()
     }

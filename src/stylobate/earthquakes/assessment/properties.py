@@ -1,4 +1,4 @@
-"""What is known of columns and records before anything is run."""
+"""Properties of the columns and records of an assessment."""
 
 import numpy as np
 import xarray as xr
@@ -10,12 +10,12 @@ from stylobate.earthquakes.assessment.ground_motions import as_record, horizonta
 from stylobate.earthquakes.assessment.inputs import CENTRAL, Inputs
 from stylobate.earthquakes.intensities import peak_horizontal_velocity
 
-# Peaks of a motion that is no record are looked at at so many times.
+# Number of samples for the peaks of a motion that is no record.
 _TIMES = 20_001
 
 
 def column_properties(inputs: Inputs) -> xr.Dataset:
-    """Return the numbers of each column, over `column`."""
+    """Return the properties of each column, over `column`."""
     bodies = [levels[CENTRAL].column for levels in inputs.columns.values()]
     numbers = {
         "radius": ([body.radius for body in bodies], "m", "base radius r"),
@@ -23,7 +23,7 @@ def column_properties(inputs: Inputs) -> xr.Dataset:
         "mass_height": ([body.mass_height for body in bodies], "m", "height of the centre of mass h"),
         "mass": ([body.mass for body in bodies], "kg", "mass"),
         "slenderness": ([body.slenderness for body in bodies], "1", "slenderness c = r/h"),
-        "tipping_angle": ([body.tipping_angle for body in bodies], "rad", "tipping angle α"),
+        "tipping_angle": ([body.tipping_angle for body in bodies], "rad", "tipping angle α_c"),
         "rim_distance": ([body.rim_distance for body in bodies], "m", "size R"),
         "frequency_parameter": ([body.frequency_parameter for body in bodies], "rad s-1", "frequency parameter p"),
         "uplift_acceleration": (
@@ -43,9 +43,9 @@ def column_properties(inputs: Inputs) -> xr.Dataset:
 
 
 def record_properties(inputs: Inputs) -> xr.Dataset:
-    """Return the numbers of each record, over `record`; `definition` names that of the horizontal intensities.
+    """Return the properties of each record, over `record`; `definition` is that of the horizontal intensities.
 
-    `drifts` is 1 where the velocity at the end is more than 5 % of the PGV along some axis.
+    `drifts` is 1 if the velocity at the end exceeds 5 % of the PGV along some axis.
     """
     motions = list(inputs.records.values())
     definitions, accelerations, velocities = zip(*map(horizontal_peaks, motions), strict=True)
@@ -68,7 +68,7 @@ def record_properties(inputs: Inputs) -> xr.Dataset:
         "residual_velocity": (
             [float(np.linalg.norm(motion.velocity(motion.duration))) for motion in motions],
             "m s-1",
-            "velocity left at its end",
+            "velocity at the end",
         ),
     }
     return xr.Dataset(

@@ -1,4 +1,4 @@
-"""Every verdict on one column again under small changes, at each dissipation; and by Housner's planar column."""
+"""Repeated verdicts on one column: under small changes at each dissipation, and with Housner's planar column."""
 
 import numpy as np
 import xarray as xr
@@ -12,22 +12,22 @@ from stylobate.studies.sweeps import Executor
 from stylobate.studies.sweeps.computing import Progress
 
 _AXES = 2
-# Counts of records.
+# Variables that count records.
 _COUNTS = ("only_space", "only_planar")
-# Records that are computed, and kept, together: enough to keep the cores busy, few enough to lose at Ctrl-C.
+# Number of records in one stored part: enough to occupy the cores, few enough to lose at Ctrl-C.
 _TOGETHER = 4
 
 
 def robustness_of(inputs: Inputs, column: str, parts: Parts, *, executor: Executor | None) -> xr.Dataset:
-    """Return which verdicts on a column flip.
+    """Repeat the verdicts on a column under small changes.
 
     Returns
     -------
     xarray.Dataset
-        Over `dissipation`, `scale`, `record` and `change`: `applies`, 1 where the change applies to the record;
-        `flips`, 1 where the change makes it overturn or not, 0 where it does not, −1 where the change does not apply or
-        a run is undecided; `changed_tilt_ratio`. Without `change`: `flipped`, `compared` and `undecided`, numbers of
-        changes that flip the verdict, that apply and are decided, that apply and are not; `tilt_ratio_low`,
+        Over `dissipation`, `scale`, `record` and `change`: `applies`, 1 if the change applies to the record;
+        `flips`, 1 if the change flips the verdict, 0 if it does not, −1 if the change does not apply or a run is
+        undecided; `changed_tilt_ratio`. Without `change`: `flipped`, `compared` and `undecided`, the numbers of
+        changes that flip the verdict, that apply and are decided, that apply and are undecided; `tilt_ratio_low`,
         `tilt_ratio_high`. Along `change` `change_of`.
     """
 
@@ -87,7 +87,7 @@ def _robustness_at(
 
 
 def robustness_runs(inputs: Inputs) -> int:
-    """Return how many runs the robustness of one column takes."""
+    """Return the number of runs for the robustness of one column."""
     return len(inputs.records) * (1 + len(inputs.changes)) * inputs.scales.size * len(inputs.changes_at)
 
 
@@ -100,7 +100,7 @@ def _as_dataset(found: xr.Dataset) -> xr.Dataset:
     plain = xr.Dataset(
         {
             "applies": found["applies"].astype(np.int8).assign_attrs(long_name="the change applies"),
-            "flips": flips.assign_attrs(long_name="another verdict than as given"),
+            "flips": flips.assign_attrs(long_name="the verdict differs from that without the change"),
             "changed_tilt_ratio": found["tilt_ratio"],
             "flipped": (flips == 1).sum("change").assign_attrs(units="1", long_name="changes that flip the verdict"),
             "compared": decided.sum("change").assign_attrs(units="1", long_name="changes that apply and are decided"),
@@ -114,14 +114,14 @@ def _as_dataset(found: xr.Dataset) -> xr.Dataset:
 
 
 def planar_of(inputs: Inputs, column: str, parts: Parts, *, executor: Executor | None) -> xr.Dataset:
-    """Return the answers of Housner's planar column, at the central dissipation.
+    """Compute the response of Housner's planar column, at the central dissipation.
 
     Returns
     -------
     xarray.Dataset
-        Over `record` and `scale`: `planar_tilt_ratio`, that of the worse of the two components, infinite where it
-        overturns, and `log_ratio` of the tilts where both rock; over `scale` `bias`, `standard_error`, `compared`,
-        `only_space`, `only_planar`.
+        Over `record` and `scale`: `planar_tilt_ratio`, the larger one of the two components, infinite if it
+        overturns, and `log_ratio` of the tilts if both columns rock; over `scale` `bias`, `standard_error`,
+        `compared`, `only_space`, `only_planar`.
     """
     few = [_planar_at(some, column, parts, executor) for some in _some_at_a_time(inputs)]
     records = xr.concat([one.drop_vars(_COUNTS) for one in few], dim="record", join="override")
@@ -149,5 +149,5 @@ def _planar_at(inputs: Inputs, column: str, parts: Parts, executor: Executor | N
 
 
 def planar_runs(inputs: Inputs) -> int:
-    """Return how many runs the planar answers on one column take."""
+    """Return the number of runs for the planar comparison of one column."""
     return len(inputs.records) * inputs.scales.size * (1 + _AXES)

@@ -1,4 +1,4 @@
-"""Columns that slide before they rock, by the model that slides: how far they go, and whether they overturn."""
+"""Columns that slide before they rock, with the model `Sliding`: outcome and slip."""
 
 from typing import Any
 
@@ -19,24 +19,24 @@ from stylobate.studies.sweeps.computing import Progress
 _OPTIONS = tuple(name for name in numbers_of(Accuracy) if name != "tilt_limit")
 _NUMBERS = {
     "tilt_ratio": ("1", "peak tilt / α_c"),
-    "residual_slip": ("m", "distance of the footprint from its place at the end"),
-    "peak_slip": ("m", "largest distance of the footprint from its place"),
+    "residual_slip": ("m", "distance of the footprint from its start at the end"),
+    "peak_slip": ("m", "peak distance of the footprint from its start"),
     "slip_path": ("m", "length of the path of slip"),
-    "time_sliding": ("s", "how long it slid on its base"),
+    "time_sliding": ("s", "time of sliding on the base"),
 }
 Run = dict[str, float]
 
 
 def sliding_of(inputs: Inputs, column: str, parts: Parts) -> xr.Dataset:
-    """Return the runs of a column by `Sliding`, at its stated friction and the central dissipation.
+    """Run a column with `Sliding`, at its stated friction and the central dissipation.
 
     Returns
     -------
     xarray.Dataset
-        Over `record` and `scale`: `outcome`; `overturned` (1, 0, −1 not decided); `uncertain` (1 where rounding could
-        change the outcome); `tilt_ratio`, infinite where it overturned; `residual_slip`, `peak_slip` and
-        `slip_path` [m]; `time_sliding` [s]. A column that rocks before it slides is not followed: outcome and
-        `overturned` −1, NaN.
+        Over `record` and `scale`: `outcome`; `overturned` (1, 0, −1 not decided); `uncertain` (1 if rounding could
+        change the outcome); `tilt_ratio`, infinite if the column overturned; `residual_slip`, `peak_slip` and
+        `slip_path` [m]; `time_sliding` [s]. A column that rocks before it slides is not run: `outcome` and
+        `overturned` are −1, the rest is NaN.
     """
     followed = column in inputs.sliding_first
     rows = [
@@ -63,7 +63,7 @@ def sliding_of(inputs: Inputs, column: str, parts: Parts) -> xr.Dataset:
 
 
 def sliding_runs(inputs: Inputs) -> int:
-    """Return how many runs the columns that slide take."""
+    """Return the number of runs for the columns that slide."""
     return len(inputs.sliding_first) * len(inputs.records) * inputs.scales.size
 
 
@@ -71,7 +71,7 @@ _NOT_FOLLOWED: Run = {"outcome": NOT_COMPUTED, "overturned": -1.0, "uncertain": 
 
 
 def sliding_model(given: Model, friction: float) -> Sliding:
-    """Return the model that slides with the column of a model and the dissipation that `Sliding` has too."""
+    """Return `Sliding` with the column of a model and those dissipation parameters that both models have."""
     losses = {name: getattr(given, name) for name in dissipation_of(Sliding) if name in dissipation_of(type(given))}
     return Sliding(given.column, friction_coefficient=friction, **losses)
 

@@ -1,4 +1,4 @@
-"""The counts that a reader sees first: of how many records a column overturned, and of how many that is not sure."""
+"""Summary of an assessment: numbers of records that overturned a column, or left the verdict open."""
 
 from collections.abc import Mapping
 
@@ -11,33 +11,34 @@ _ACTS = "with"
 
 
 def summary_of(data: Mapping[str, xr.Dataset], governing: list[str]) -> xr.Dataset:
-    """Return the counts over the records.
+    """Count the records by their outcomes, and collect the extreme results over them.
 
     Parameters
     ----------
     data
         The parts of an assessment.
     governing
-        The record that governs each column.
+        Governing record of each column.
 
     Returns
     -------
     xarray.Dataset
-        Over `column` and `scale`: `overturned`, `undecided` and `stood`, numbers of records at the central dissipation
-        with the vertical component; `overturned_in_some`, numbers of records that overturned it in some run, whatever
-        the dissipation; `undecided_in_some` and `uncertain_in_some`, of those with some run that is undecided, or that
-        a small change could alter; `on_dissipation` and `on_vertical`, of records whose verdict depends on these;
-        `not_robust`, of those with a verdict, at any dissipation at which it was repeated, that a small change flips;
-        `changes_undecided`, of those with a small change that applies and is not decided; `planar_differs`, of those by
-        which the planar column does otherwise; `peak_tilt_ratio`; `friction_demand`, the largest of all runs, and
-        over `record` too `friction_by_record`. Over `column`: `governing`;
-        `least_overturning` of the central case, NaN where none overturned, and `least_record` that has it, empty where
-        none does; `least_of_all`, of all cases; `friction_to_margin`, the largest of all cases, and the
-        `least_slipping` of them; `slips_first`, whether in some case a record needs more than the stated friction below
-        the scale that overturns; `slides_first`, whether the stated friction is below r/h, so that it slides before it
-        rocks; `never_overturned` and `stands_again`, numbers of records in the central case; `scan_undecided`, of
-        those with undecided runs in the scan of the margin, and `decided_to`, the largest scale up to which all runs of
-        all records were decided, NaN if already the first was not.
+        Over `column` and `scale`, numbers of records: `overturned`, `undecided` and `stood` in the central case
+        (central dissipation with the vertical component); `overturned_in_some`, `undecided_in_some` and
+        `uncertain_in_some` in at least one case; `on_dissipation` and `on_vertical`, with a verdict that depends on
+        dissipation or vertical component; `not_robust`, with a verdict that a small change flips at any dissipation;
+        `changes_undecided`, with a small change that applies and is not decided; `planar_differs`, with another outcome
+        of the planar column. Also `peak_tilt_ratio`; `friction_demand`, the largest of all runs, and over `record` too
+        `friction_by_record`.
+
+        Over `column`: `governing`; `least_overturning`, the smallest overturning scale of the central case, NaN if
+        none, and its record `least_record`, empty if none; `least_of_all`, the smallest of all cases;
+        `friction_to_margin`, the largest of all cases; `least_slipping`, the smallest of all cases; `slips_first`,
+        whether in some case a record needs more than the stated friction below the smallest overturning scale;
+        `slides_first`, whether the stated friction is below r/h, so that the column slides before it rocks. Numbers of
+        records in the central case: `never_overturned`, `stands_again`, and `scan_undecided`, with undecided runs in
+        the scan of the margin; `decided_to`, the largest scale up to which all runs of the central case were decided,
+        NaN if the first scale was not.
     """
     verdicts, margins = data["verdicts"], data["margins"]
     fallen = verdicts["overturned"]
@@ -85,14 +86,14 @@ def summary_of(data: Mapping[str, xr.Dataset], governing: list[str]) -> xr.Datas
 
 
 def _least_records(margins: xr.Dataset) -> list[str]:
-    """Return the record of the least scale that overturned, for each column; the first of equals by name."""
+    """Return the record with the smallest overturning scale of each column; the first by name among equals."""
     least = margins["least_overturning"].transpose("column", "record").to_numpy()
     names = margins["record"].to_numpy()
     return [str(names[np.nanargmin(row)]) if np.isfinite(row).any() else "" for row in least]
 
 
 def _slips_first(margins: xr.Dataset) -> xr.DataArray:
-    """Return whether more than the stated friction is needed below the least scale that overturned, or none did."""
+    """Return whether a scale below the smallest overturning scale (if any) needs more than the stated friction."""
     slipping, falling = margins["least_slipping"], margins["least_overturning"]
     return slipping.notnull() & ~(slipping >= falling)
 

@@ -14,20 +14,20 @@ from stylobate.studies.sweeps.computing import Progress
 
 _DEMANDS: Mapping[str, tuple[str, str]] = {
     "peak_friction_demand": ("friction_demand", "peak friction force over normal force"),
-    "peak_pivoting_demand": ("pivoting_demand", "largest moment about the vertical over normal force and radius"),
+    "peak_pivoting_demand": ("pivoting_demand", "peak moment about the vertical over normal force and radius"),
     "minimum_normal_force": ("minimum_normal_force", "minimum normal force over weight"),
 }
 
 
 def verdicts_on(inputs: Inputs, column: str, parts: Parts, *, contact: bool, executor: Executor | None) -> xr.Dataset:
-    """Return the verdicts on a column.
+    """Compute the verdicts on a column.
 
     Returns
     -------
     xarray.Dataset
-        Over `record`, `dissipation`, `vertical` and `scale`: `overturned` (1, 0, −1 where the run is undecided),
-        its `outcome`, `tilt_ratio`, `uncertain`, `friction_demand` while it stands and while it moves,
-        `pivoting_demand`, `minimum_normal_force`.
+        Over `record`, `dissipation`, `vertical` and `scale`: `overturned` (1, 0, −1 if the run is undecided),
+        `outcome`, `tilt_ratio`, `uncertain`, `friction_demand` (standing and moving), `pivoting_demand`,
+        `minimum_normal_force`.
     """
     vertical = (True, False) if inputs.has_vertical else (True,)
     levels = inputs.dissipation
@@ -59,7 +59,7 @@ def verdicts_on(inputs: Inputs, column: str, parts: Parts, *, contact: bool, exe
 
 
 def verdict_runs(inputs: Inputs) -> int:
-    """Return how many runs the verdicts on one column take."""
+    """Return the number of runs for the verdicts on one column."""
     return len(inputs.records) * len(inputs.dissipation) * (2 if inputs.has_vertical else 1) * inputs.scales.size
 
 

@@ -1,4 +1,4 @@
-"""Describe an assessment: columns, records, dissipation, friction and the analyses."""
+"""Description of an assessment: columns, records, dissipation, friction and analyses."""
 
 import datetime as dt
 import warnings
@@ -38,17 +38,17 @@ _MARGIN = {"from": 0.2, "to": 5.0, "number": 60, "spacing": "log"}
 
 
 def _with_name(values: Any) -> Any:
-    """Return the values of a margin as those of an axis."""
+    """Convert the values of a margin to those of an axis."""
     return {**_MARGIN, **values, "name": "scale"} if isinstance(values, dict) and "values" not in values else values
 
 
 def _as_source(values: Any) -> Any:
-    """Return the values of records; a folder, a pattern or a list of files is their source."""
+    """Convert a folder, a pattern or a list of files to the values of records."""
     return {"source": values} if isinstance(values, (str, list, tuple)) else values
 
 
 def _as_friction(values: Any) -> Any:
-    """Return a coefficient, or one for each column."""
+    """Validate one coefficient, or one for each column."""
     return (_BY_COLUMN if isinstance(values, Mapping) else _ONE).validate_python(values)
 
 
@@ -167,7 +167,7 @@ class AssessConfig(Config):
         for name, remedy in _NEEDED.items():
             if name not in given:
                 problems.append(f"{name} is missing: {remedy}")
-                given[name] = _STANDS_IN[name]
+                given[name] = _PLACEHOLDERS[name]
         try:
             found = super().parse(given)
         except ConfigError as error:
@@ -226,13 +226,13 @@ class AssessConfig(Config):
         return AssessmentSetup(built_models, records, {**options, **repeated, "margin_scales": scales})
 
     def _repeated(self) -> dict[str, Any]:
-        """Return which verdicts are repeated under small changes, as arguments of `earthquakes.assess`."""
+        """Return the arguments of `earthquakes.assess` for small changes."""
         if isinstance(self.robustness, bool):
             return {} if self.robustness else {"changes": ()}
         return {"changes_at": self.robustness} if self.robustness else {"changes": ()}
 
     def _details(self, problems: list[str]) -> ReportDetails | None:
-        """Return what the report shows besides its numbers; None, and a line in `problems`, for what cannot be."""
+        """Build the details of the report; None, and a line in `problems`, if one is invalid."""
         given = self.design_spectrum
         try:
             return ReportDetails(
@@ -262,12 +262,12 @@ class AssessConfig(Config):
 
     def _problems_of_the_model(self) -> list[str]:
         if self.model.kind == "sliding":
-            return ["model.kind must be one that holds the contact, such as wobbling, got 'sliding'"]
+            return ["model.kind: must assume permanent contact (got 'sliding'). Use one such as wobbling."]
         repeated = [name for name in self.dissipation["central"] if name in self.model.model_fields_set]
         return [f"model.{name}: `dissipation` sets it. Remove it from the model." for name in repeated]
 
     def _problems_of_the_numbers(self) -> list[str]:
-        """Return a line for each number that no assessment can have."""
+        """Return a line for each invalid number."""
         friction = self.friction_coefficient
         by_column = friction if isinstance(friction, dict) else {}
         checks: list[Callable[[], object]] = [
@@ -325,9 +325,9 @@ _NEEDED = {
         "it decides the outcome of a three-dimensional column and is seldom known. State it for three levels, such "
         "as [dissipation] low = {damping = 0.005}, central = {damping = 0.02}, high = {damping = 0.05}"
     ),
-    "friction_coefficient": "the friction between column and base, with which what the runs need is compared",
+    "friction_coefficient": "the friction between column and base, to compare with the friction that the runs need",
 }
-_STANDS_IN: dict[str, Any] = {
+_PLACEHOLDERS: dict[str, Any] = {
     "dissipation": {level: {"damping": 0.0} for level in LEVELS},
     "friction_coefficient": 1.0,
 }

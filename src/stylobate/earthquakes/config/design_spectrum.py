@@ -1,4 +1,4 @@
-"""Describe a design spectrum: points of period and spectral acceleration, or a file of two columns."""
+"""Description of a design spectrum: points of period and spectral acceleration, or a file of two columns."""
 
 import re
 from pathlib import Path
@@ -52,7 +52,7 @@ class DesignSpectrumConfig(Config):
             If the file cannot be read.
         """
         if (self.file is None) == (not self.points):
-            message = "design_spectrum: give points or file, one of the two."
+            message = "design_spectrum: give either points or file."
             raise ParameterError(message)
         points, stated = (self.points, None) if self.file is None else _read(self.file)
         given = None if self.units is None else unit_of(self.units)
@@ -75,7 +75,7 @@ class DesignSpectrumConfig(Config):
 
 
 def _read(path: str) -> tuple[tuple[tuple[float, float], ...], str | None]:
-    """Return the points of a file, and the unit of accelerations that its first line states."""
+    """Read the points of a file, and the unit of accelerations in its first line."""
     text = plain_table(Text.of(Path(path), read_bytes(Path(path)))).text
     units: str | None = None
     points: list[tuple[float, float]] = []
@@ -97,7 +97,7 @@ def _read(path: str) -> tuple[tuple[tuple[float, float], ...], str | None]:
 
 
 def _stated_unit(text: Text, at: int, header: str) -> str | None:
-    """Return the unit of the accelerations in the line of names, whose periods must be in seconds."""
+    """Return the unit of the accelerations in the header line; periods must be in seconds."""
     found = [_BRACKETED.findall(name) for name in re.split(r"[,;\t]", header.rstrip(",;"))]
     period, acceleration = found if len(found) == _COLUMNS else ([], _BRACKETED.findall(header))
     if period and period[-1].strip().lower() not in _SECONDS:

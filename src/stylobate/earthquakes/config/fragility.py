@@ -1,4 +1,4 @@
-"""Describe a fragility: records, their scales, uncertain properties, the fit and the hazard."""
+"""Description of a fragility: records, scales, uncertain properties, fit and hazard."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -84,13 +84,13 @@ _SPREADS: dict[str, type[Lognormal | Normal | Uniform]] = {"lognormal": Lognorma
 
 
 def _as_spread(values: Any) -> Any:
-    """Return the spread of this kind; mistakes name the keys of the file, without class names."""
+    """Validate the spread of this kind; error messages name the keys of the file, without class names."""
     if isinstance(values, Config):
         return values
     kind = values.get("kind") if isinstance(values, Mapping) else None
     if kind not in _SPREADS:
         message = f"a spread must have a kind, {', '.join(map(repr, _SPREADS))}, such as {_EXAMPLE}"
-        raise PydanticCustomError("spread", message)  # noqa: EM101  the first is its type
+        raise PydanticCustomError("spread", message)  # noqa: EM101  the first argument is the type
     return _SPREADS[str(kind)].model_validate(values)
 
 
@@ -119,7 +119,7 @@ def _as_intensity(values: Any) -> Any:
     if isinstance(values, Mapping):
         return Spectral.model_validate(values)
     message = "must be a name, or a table with a period such as {period = 0.5}"
-    raise PydanticCustomError("intensity", message)  # noqa: EM101  the first is its type
+    raise PydanticCustomError("intensity", message)  # noqa: EM101  the first argument is the type
 
 
 class Fragility(Config):
@@ -222,12 +222,12 @@ class FragilityConfig(ManyRuns):
         return super().parse(values)
 
     def build(self, *, read: bool = True) -> FragilitySetup:
-        """Return model, records, and what is described of them; without records unless these are to be `read`.
+        """Build model, records and options; without records if not `read`.
 
         Raises
         ------
         ConfigError
-            With one line for each part that cannot be.
+            With one line for each invalid part.
         """
         table, problems = self.fragility, self._problems()
         scales = built("fragility.scales", table.scales.build, problems)
@@ -248,14 +248,14 @@ class FragilityConfig(ManyRuns):
     def _problems(self) -> list[str]:
         table = self.fragility
         problems = [
-            f"{name} is not known of a fragility: runs last as their records and fragility.tail"
+            f"{name} is not supported by a fragility: runs end with their record and fragility.tail. Remove it."
             for name in ("duration", "periods")
             if getattr(self, name) is not None
         ]
         if self.tilt_limit is not None:
-            problems.append("tilt_limit must be left out: a run stopped at it is not known to overturn")
+            problems.append("tilt_limit must be left out: a run stopped there may or may not overturn")
         if bool(table.samples) != bool(table.spreads):
-            problems.append("fragility.samples and fragility.spreads go together; give both or none of them")
+            problems.append("fragility.samples and fragility.spreads need each other. Give both or neither.")
         checks = {
             "samples": lambda: require_whole("samples", table.samples, least=0),
             "seed": lambda: require_whole("seed", table.seed, least=0, most=LARGEST_SEED),

@@ -1,4 +1,4 @@
-"""Describe a hazard curve: exceedance rates of an intensity at a site, as numbers or in a file."""
+"""Description of a hazard curve: exceedance rates of an intensity at a site, as numbers or in a file."""
 
 from dataclasses import dataclass, replace
 from itertools import pairwise
@@ -28,17 +28,17 @@ class HazardPoints:
     intensity
         Intensities.
     exceedance
-        Annual rates at which they are exceeded [1/a]; with an `investigation_time`, the probabilities within it.
+        Annual rates of exceedance [1/a]; with an `investigation_time`, the probabilities of exceedance within it.
     investigation_time
         Time of the probabilities [a]; None for rates.
     units
-        "m s-2", "m s-1" or "1"; None where it is not stated.
+        "m s-2", "m s-1" or "1"; None if not stated.
     measure
-        What the intensity is, a spectral acceleration as "spectral acceleration at 0.5 s"; empty where not stated.
+        Name of the intensity measure, such as "spectral acceleration at 0.5 s"; empty if not stated.
     component
-        Definition of its horizontal component; None where it is not stated.
+        Definition of the horizontal component; None if not stated.
     source
-        The file, for messages; empty without.
+        File, for messages; empty without one.
     """
 
     intensity: tuple[float, ...]
@@ -100,7 +100,7 @@ class Hazard(Config):
         """
         listed = self.intensity or self.rate or self.probability
         if bool(listed) == (self.file is not None):
-            message = "intensity and rate (or probability) must be given, or a file of them, one of both"
+            message = "give either intensity and rate (or probability), or a file"
             raise ParameterError(message)
         table = self._listed() if self.file is None else read_hazard(self.file, self.site)
         column, exceedance = self._intensity_column(table.intensity), self._exceedance_column(table.exceedance)
@@ -119,13 +119,14 @@ class Hazard(Config):
     def _listed(self) -> HazardTable:
         values = self.rate or self.probability
         if self.rate and self.probability:
-            message = "rate and probability: one of both only. Remove the other."
+            message = "rate and probability: only one is allowed. Remove the other."
             raise ParameterError(message)
         if self.site is not None:
-            message = f"site: of files only (got {self.site!r}). Remove it."
+            message = f"site: applies to files only (got {self.site!r}). Remove it."
             raise ParameterError(message)
         if len(values) != len(self.intensity):
-            message = f"intensity and its rates must be as many, got {len(self.intensity)} and {len(values)}"
+            counts = f"{len(self.intensity)} and {len(values)}"
+            message = f"intensity and its rates must have equal numbers of values, got {counts}"
             raise ParameterError(message)
         rows = tuple(
             Row(intensity=x, exceedance=y, where=f"point {place}")
@@ -149,7 +150,7 @@ class Hazard(Config):
             given = require_positive("investigation_time", given, "a")
         if not column.is_probability:
             if given is not None:
-                message = f"investigation_time: of probabilities only, and these are rates (got {given:g}). Remove it."
+                message = f"investigation_time: not used with annual rates (got {given:g}). Remove it."
                 raise ParameterError(message)
             return column
         time = _one_of("investigation_time", column.investigation_time, given)
@@ -160,7 +161,7 @@ class Hazard(Config):
 
 
 def _in_order(rows: tuple[Row, ...], units: str, column: ExceedanceColumn) -> list[Row]:
-    """Return the points in increasing order, or raise ParameterError for those that are no hazard curve."""
+    """Sort the points by intensity; raise ParameterError if they do not form a hazard curve."""
     kind = "probability" if column.is_probability else "annual rate"
     most = 1.0 / column.factor
     unit = f" {units}" if units not in ("", "1") else ""
@@ -180,7 +181,7 @@ def _in_order(rows: tuple[Row, ...], units: str, column: ExceedanceColumn) -> li
     ordered = sorted(rows, key=lambda row: row.intensity)
     for low, high in pairwise(ordered):
         if low.intensity == high.intensity:
-            message = f"{high.where}: intensity {high.intensity:g}{unit} is there twice. Keep one of the two points."
+            message = f"{high.where}: intensity {high.intensity:g}{unit} occurs twice. Keep one of the two points."
             raise ParameterError(message)
         if high.exceedance > low.exceedance:
             message = (
@@ -199,7 +200,7 @@ def _known_unit(units: str | None) -> str | None:
 
 
 def _one_of(name: str, in_file: _T | None, given: _T | None) -> _T | None:
-    """Return what the file or the description states; both may, the same."""
+    """Return the value of file or description; raise ParameterError if they contradict each other."""
     if in_file is not None and given is not None and in_file != given:
         message = f"{name}: the file states {in_file!r}, the description {given!r}. Remove it from the description."
         raise ParameterError(message)

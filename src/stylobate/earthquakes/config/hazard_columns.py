@@ -1,4 +1,4 @@
-"""The columns of a hazard curve: which intensity in which unit and component, and which kind of exceedance."""
+"""The columns of a hazard curve: intensity measure, unit and component, and kind of exceedance."""
 
 import re
 from dataclasses import dataclass
@@ -7,7 +7,7 @@ from stylobate.base_motions.records import HorizontalComponent
 from stylobate.base_motions.records.units import in_si, unit_of
 from stylobate.errors import ParameterError
 
-# Of velocities; those of accelerations are as in records.
+# Units of velocities; units of accelerations are those of records.
 _VELOCITIES = {"m/s": 1.0, "ms-1": 1.0, "cm/s": 0.01, "cms-1": 0.01, "mm/s": 0.001, "mms-1": 0.001}
 _PER_YEAR = ("1/a", "a-1", "1/y", "1/yr", "1/year", "y-1", "yr-1")
 UNITS = "g, m/s², cm/s², m/s, cm/s or 1"
@@ -16,10 +16,10 @@ UNITS = "g, m/s², cm/s², m/s, cm/s or 1"
 MEASURES = ("peak ground acceleration", "peak ground velocity", "PGA/(g tan α)", "p PGV/(g tan α)")
 """The measures besides spectral accelerations."""
 _SHORT = {"pga": MEASURES[0], "pgv": MEASURES[1], **{name.lower(): name for name in MEASURES}}
-# Names of a column that leave the measure open.
+# Names of a column that do not state the measure.
 _OPEN = ("", "intensity", "intensity measure", "im", "iml")
 
-# A name of a column and, in brackets at its end, its unit; round ones may belong to the name, as in SA(0.5 s).
+# Name of a column, and its unit in brackets at the end; round brackets may belong to the name, as in SA(0.5 s).
 _SQUARE = re.compile(r"\s*(?P<name>.*?)\s*\[(?P<unit>[^\]]*)\]\s*")
 _ROUND = re.compile(r"\s*(?P<name>.*?)\s*\((?P<unit>[^()]*)\)\s*")
 _PERIOD = r"(?P<{}>\d*\.?\d+)\s*(?:s|secs?|seconds?)?"
@@ -36,7 +36,7 @@ _PROBABILITY = re.compile(r"prob|\bpo?e\b", re.IGNORECASE)
 _RATE = re.compile(r"rate|frequency|lambda|λ|\bm?afe\b", re.IGNORECASE)
 _YEARS = re.compile(r"(?P<years>\d+(?:\.\d+)?)[\s-]*(?:years?|yrs?|y|a)\b", re.IGNORECASE)
 _ANNUAL = re.compile(r"annual|yearly|(?:\bper|\ba|\bone|/)\s*(?:year|yr)\b", re.IGNORECASE)
-# Words for times that none of the two above has read.
+# Words for times that the two expressions above do not match.
 _OTHER_TIME = re.compile(
     r"\b(?:years?|yrs?|decades?|century|centuries|months?|days?|lifetime)\b|monthly|daily", re.IGNORECASE
 )
@@ -44,14 +44,14 @@ _OTHER_TIME = re.compile(
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class IntensityColumn:
-    """The intensities of a hazard curve; what is not stated is None.
+    """The intensities of a hazard curve; fields that are not stated are None.
 
     Parameters
     ----------
     measure
-        Full name of the measure, a spectral acceleration as "spectral acceleration at 0.5 s".
+        Full name of the measure, such as "spectral acceleration at 0.5 s".
     units
-        Unit, in one spelling.
+        Unit, in canonical spelling.
     component
         Definition of the horizontal component.
     """
@@ -67,7 +67,7 @@ class IntensityColumn:
         Raises
         ------
         ParameterError
-            If it names a measure, unit or component that is not known.
+            If measure, unit or component is unknown.
         """
         name, unit = _split(header)
         if unit is not None and canonical_unit(unit) is None:
@@ -82,16 +82,16 @@ class IntensityColumn:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ExceedanceColumn:
-    """How often the intensities of a hazard curve are exceeded.
+    """Kind of exceedance of a hazard curve: annual rates or probabilities.
 
     Parameters
     ----------
     is_probability
-        Whether these are probabilities within a time, and not annual rates.
+        Whether the numbers are probabilities within a time, and not annual rates.
     investigation_time
-        The time of the probabilities [a]; None where it is not stated.
+        Time of the probabilities [a]; None if not stated.
     factor
-        By what the numbers are multiplied: 0.01 for percentages.
+        Factor on the numbers: 0.01 for percentages.
     """
 
     is_probability: bool = False
@@ -105,7 +105,7 @@ class ExceedanceColumn:
         Raises
         ------
         ParameterError
-            If it says neither, or both.
+            If it states neither, or both.
         """
         name, unit = _split(header)
         times = {float(found["years"]) for found in _YEARS.finditer(header)} | (
@@ -124,19 +124,19 @@ class ExceedanceColumn:
         if is_rate and not is_probability and annual:
             return cls()
         message = (
-            f'unclear what the second column is (got "{header.strip()}"). Name it "annual rate [1/a]" or '
-            '"probability in 50 years"; of a return period give its inverse as the annual rate.'
+            f'the kind of the second column is unclear (got "{header.strip()}"). Name it "annual rate [1/a]" or '
+            '"probability in 50 years"; convert return periods to annual rates.'
         )
         raise ParameterError(message)
 
 
 def require_measure(text: str) -> str:
-    """Return the full name of the measure that `text` spells.
+    """Return the full name of the intensity measure `text`.
 
     Raises
     ------
     ParameterError
-        If it spells none that is known.
+        If the measure is unknown.
     """
     lower = " ".join(text.lower().split())
     if spectral := _SPECTRAL.fullmatch(lower):
@@ -151,7 +151,7 @@ def require_measure(text: str) -> str:
 
 
 def canonical_unit(text: str) -> str | None:
-    """Return the unit that `text` spells, or None."""
+    """Return the canonical spelling of the unit `text`, or None."""
     plain = _plain(text).replace("**", "").replace("^", "")
     if plain in ("1", "-", "—", "–"):
         return "1"
@@ -159,7 +159,7 @@ def canonical_unit(text: str) -> str | None:
 
 
 def si_factor(units: str) -> tuple[float, str]:
-    """Return by what intensities are multiplied, and the unit in which they are then."""
+    """Return the factor that converts intensities to SI, and the SI unit."""
     if units == "1":
         return 1.0, "1"
     return (_VELOCITIES[units], "m s-1") if units in _VELOCITIES else (in_si(units), "m s-2")

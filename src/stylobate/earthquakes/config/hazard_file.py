@@ -14,7 +14,7 @@ from stylobate.errors import FileError, ParameterError
 Site: TypeAlias = int | tuple[float, float]
 """Number of a site in its table, from 0, or its longitude and latitude [degrees]."""
 
-# A site this near [degrees] is the one that is asked for.
+# Largest distance between a requested site and the site of a table [degrees].
 _NEAR = 0.05
 _POE = "poe-"
 _SEPARATED = re.compile(r"[;\t]")
@@ -25,7 +25,7 @@ _STATED = re.compile(r"\bcomponent\s*[:=]\s*(?P<component>[^,;\"']+)", re.IGNORE
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Row:
-    """A point of a hazard curve as a file has it, and `where`, for messages."""
+    """A point of a hazard curve in the units of its file, and its place `where`, for messages."""
 
     intensity: float
     exceedance: float
@@ -34,7 +34,7 @@ class Row:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class HazardTable:
-    """Points of a hazard curve as they are written, and what its columns are."""
+    """Points of a hazard curve in the units of its file, and the meaning of its columns."""
 
     rows: tuple[Row, ...]
     intensity: IntensityColumn
@@ -42,12 +42,12 @@ class HazardTable:
 
 
 def read_hazard(path: str, site: Site | None) -> HazardTable:
-    """Read the hazard curve of a file, of one `site` where it has several.
+    """Read the hazard curve of a file, for one `site` if it has several.
 
     Raises
     ------
     FileError
-        If it cannot be read, or does not say what its columns are.
+        If the file cannot be read, or does not name its columns.
     """
     try:
         lines = Path(path).read_text(encoding="utf-8-sig").splitlines()
@@ -78,9 +78,9 @@ def _two_columns(path: str, lines: list[tuple[int, str]], site: Site | None) -> 
 
 
 def _header(lines: list[str]) -> tuple[IntensityColumn, ExceedanceColumn]:
-    """Return what the columns are: the last names before the numbers, those of remarks only without others.
+    """Read the names of the columns: the last names before the numbers; names in remarks count if there are no others.
 
-    A component may stand in a line of its own.
+    A component may stand in a separate line.
     """
     before = list(takewhile(lambda line: not begins_with_a_number(line), lines))
     pairs = [pair for line in before if not line.startswith(REMARKS) and (pair := _two_names(line))][-1:]
@@ -101,7 +101,7 @@ def _header(lines: list[str]) -> tuple[IntensityColumn, ExceedanceColumn]:
 
 
 def _clear(pairs: list[tuple[str, str]]) -> tuple[str, ExceedanceColumn]:
-    """Return the first of these names whose second states a kind of exceedance, or raise for the first."""
+    """Return the first pair of names whose second states a kind of exceedance; else raise the error of the first."""
     problem: ParameterError | None = None
     for first, second in pairs:
         try:
@@ -113,7 +113,7 @@ def _clear(pairs: list[tuple[str, str]]) -> tuple[str, ExceedanceColumn]:
 
 
 def _two_names(line: str) -> tuple[str, str] | None:
-    """Return the names of two columns, which a tab or semicolon separates, else the last comma."""
+    """Split a line into the names of two columns, at a tab or semicolon, else at the last comma."""
     parts = _SEPARATED.split(line)
     if len(parts) == 1:
         first, comma, second = line.rpartition(",")
@@ -122,7 +122,7 @@ def _two_names(line: str) -> tuple[str, str] | None:
 
 
 def _pair(path: str, place: int, line: str) -> Row:
-    """Return the two numbers of a line; commas are decimal where semicolons or tabs separate the columns."""
+    """Read the two numbers of a line; commas are decimal if semicolons or tabs separate the columns."""
     where = f"{path}, line {place}"
     separated = _SEPARATED.search(line) is not None
     parts = _SEPARATED.split(line) if separated else line.replace(",", " ").split()
@@ -131,7 +131,7 @@ def _pair(path: str, place: int, line: str) -> Row:
     try:
         intensity, exceedance = (float(part) for part in parts)
     except ValueError:
-        comma = " Where commas are decimal, separate the columns by semicolons." if "," in line else ""
+        comma = " If commas are decimal, separate the columns by semicolons." if "," in line else ""
         message = f"{where}: two numbers are needed, intensity and annual rate, got {line!r}.{comma}"
         raise FileError(message) from None
     return Row(intensity=intensity, exceedance=exceedance, where=where)
@@ -145,7 +145,7 @@ def _is_openquake(line: str) -> bool:
 def _openquake(
     path: str, before: list[tuple[int, str]], after: list[tuple[int, str]], site: Site | None
 ) -> HazardTable:
-    """Return the curve of a site: a header of lon, lat and poe-LEVEL; above it investigation_time and imt."""
+    """Read the curve of a site: a header of lon, lat and poe-LEVEL; above it investigation_time and imt."""
     names = before[-1][1].lower().split(",")
     remark = " ".join(line for _, line in before[:-1])
     measure, time = _MEASURE.search(remark), _TIME.search(remark)
@@ -167,7 +167,7 @@ def _openquake(
 
 
 def _site(path: str, place: int, line: str, names: list[str]) -> tuple[int, dict[str, float]]:
-    """Return the numbers of a row by their names; names of sites are passed over."""
+    """Read the numbers of a row by their names; other cells, such as names of sites, are skipped."""
     parts = line.split(",")
     try:
         wanted = [name in ("lon", "lat") or name.startswith(_POE) for name in names]
@@ -180,7 +180,7 @@ def _site(path: str, place: int, line: str, names: list[str]) -> tuple[int, dict
 
 
 def _chosen(site: Site | None, places: list[tuple[float, float]]) -> int:
-    """Return the number of the site that is asked for."""
+    """Return the number of the requested site."""
     if not places:
         message = "the table holds no site"
         raise ParameterError(message)
@@ -188,7 +188,7 @@ def _chosen(site: Site | None, places: list[tuple[float, float]]) -> int:
         return 0
     if site is None:
         message = (
-            f"site: needed, for the table holds {len(places)} sites. Give a number from 0 to {len(places) - 1} or "
+            f"site: missing, and the table holds {len(places)} sites. Give a number from 0 to {len(places) - 1} or "
             f"longitude and latitude, such as {places[0][0]:g}, {places[0][1]:g}."
         )
         raise ParameterError(message)

@@ -1,4 +1,4 @@
-"""Describe a spectrum: the case that all runs share, one or two quantities with their values, and the scales."""
+"""Description of a spectrum: the common case, one or two quantities with their values, and the scales."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any, Literal, Self
@@ -17,14 +17,14 @@ class Scales(Axis):
 
 
 class Spectrum(Config):
-    """Quantities that vary, and the scales that are tried.
+    """Quantities that vary, and scales of the base motion.
 
     Parameters
     ----------
     x, y
-        Values of a quantity: a table as below. Without `x` the result is of one column.
+        Values of a quantity: a table as below. Without `x` the result has one column.
     scales
-        Factors of the base motion: a table as below, without a name. Needed, but not with `rocking`.
+        Factors of the base motion: a table as below, without a name. Required except with `rocking`.
     rocking
         Whether to compute a rocking spectrum: peak tilts and tilt rates at the scale of the motion.
     width
@@ -59,7 +59,7 @@ class SpectrumConfig(ManyRuns):
         table = table if isinstance(table, Mapping) else {}
         varied = tuple(name_of(table.get(place)) for place in "xy")
         scaled = () if table.get("rocking") else ("acceleration",)
-        own = {name: value for name, value in values.items() if name != "periods"}  # those are of other commands
+        own = {name: value for name, value in values.items() if name != "periods"}  # other commands use periods
         return super().parse(with_numbers_that_vary(own, (*varied, *scaled)))
 
     @classmethod
@@ -112,17 +112,17 @@ class SpectrumConfig(ManyRuns):
         problems: list[str] = []
         if table.tail is not None and self.duration is not None:
             problems.append(
-                f"spectrum.tail: duration says how long to follow a column (got {self.duration!r} s and a tail of "
-                f"{table.tail!r}). Remove one of them."
+                f"spectrum.tail: contradicts duration (got a duration of {self.duration!r} s and a tail of "
+                f"{table.tail!r} s). Remove one of them."
             )
         if table.rocking:
             problems += [
-                f"spectrum.{name} is not known of a rocking spectrum: leave it out"
+                f"spectrum.{name} is not supported by a rocking spectrum. Remove it."
                 for name in ("scales", "width")
                 if getattr(table, name) is not None
             ]
             if table.x is None:
-                problems.append("spectrum.x is missing: what varies, such as size")
+                problems.append("spectrum.x is missing. State a quantity that varies, such as size.")
         elif table.scales is None:
             problems.append("spectrum.scales are missing: factors of the base motion, such as from 0.2 to 5, number 40")
         if table.x is not None and table.y is not None and table.x.name == table.y.name:

@@ -1,1 +1,1 @@
-"""Figures and reports of what earthquakes do to columns."""
+"""Figures of columns in earthquakes: incremental analyses, fragility, spectra, robustness."""

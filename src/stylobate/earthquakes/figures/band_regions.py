@@ -1,4 +1,4 @@
-"""Where in a figure a column overturns, is safe again, or is undecided: boxes over amplitude, and hairlines."""
+"""Regions of a figure of overturning intervals: overturning, survival, undecided, as boxes and hairlines."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -23,44 +23,44 @@ from stylobate.text import plural
 
 Floats = npt.NDArray[np.float64]
 Box = tuple[float, float, float, float]
-# Left, right, lowest and highest amplitude of each.
+"""Left, right, lowest and highest amplitude."""
 Boxes = list[Box]
 
 UNRESOLVED = [Outcome.FAILED, Outcome.LIFTED_OFF, Outcome.LIMIT_REACHED]
 UNCERTAIN: dict[str, Any] = {"marker": "o", "mfc": "white", "mec": BLACK, "mew": 0.5, "linestyle": "none"}
 UNKNOWN: dict[str, Any] = {"marker": "x", "color": VERMILION, "linestyle": "none"}
 WEAKEST: dict[str, Any] = {"color": BLUE, "linestyle": "--", "linewidth": 1.2}
-"""The line below which the peak acceleration is below g tan α."""
+"""Line below which the peak acceleration is less than c g."""
 
 _SAFE, _AGAIN, _FALLEN = Look("#ffffff"), Look("#DCEBF5", "////", BLUE), OUTCOME_LOOKS[Outcome.OVERTURNED]
 _EDGE = Look(GREY)
 UNDECIDED = Look("#e6e6e6", "xxx", GREY)
-"""Where runs ended before they showed whether the column overturns."""
+"""Look of undecided scales."""
 # An edge wider than this fraction appears in the legend.
 _WIDE_EDGE = 0.01
-# What takes less than this part of the axis would be thinner than a line of this width [points], and is drawn as one.
+# A box that takes less than this fraction of the axis is drawn as a line of this width [points].
 _HAIRLINE, _THINNEST = 0.007, 2.0
 
 
 @dataclass(frozen=True, slots=True)
 class Regions:
-    """The boxes of each look, and the bands too narrow to be seen: `hairlines`."""
+    """The boxes of each look, and `hairlines`, the overturning intervals too narrow to be seen."""
 
     boxes: dict[Look, Boxes]
     hairlines: Boxes
 
     @classmethod
     def of(cls, one: xr.Dataset, factor: Floats, edges: Floats, *, geometric: bool) -> "Regions":
-        """Return the regions of the cases in `one`.
+        """Compute the regions of the cases in `one`.
 
         Parameters
         ----------
         one
             Bands over (case, band), runs over (case, scale).
         factor
-            By which the scales of each case are multiplied where they are drawn, shape (case,).
+            Factor from scales to drawn amplitudes, shape (case,).
         edges
-            Between which each case is drawn, shape (case, 2).
+            Left and right edge of each case, shape (case, 2).
         geometric
             Whether the axis of amplitudes is logarithmic.
         """
@@ -78,11 +78,11 @@ class Regions:
 
     @property
     def has_wide_edges(self) -> bool:
-        """Whether there is an edge wide enough for the legend."""
+        """Whether an edge is wide enough for the legend."""
         return any(high > (1.0 + _WIDE_EDGE) * low for _, _, low, high in self.boxes[_EDGE])
 
     def draw(self, axes: Axes, *, along_x: bool = False) -> None:
-        """Fill the boxes, amplitudes upwards; or `along_x`, their other sides then parts of the height of the axes."""
+        """Fill the boxes with amplitudes upwards; or `along_x`, with their other sides as fractions of the height."""
         for look, boxes in self.boxes.items():
             _fill(axes, boxes, look, along_x=along_x)
         for left, right, low, high in self.hairlines:
@@ -95,7 +95,7 @@ class Regions:
 
 @dataclass(frozen=True, slots=True)
 class _Intervals:
-    """The scales of one case: of bands, between the decided runs beside each, and of what is undecided."""
+    """Intervals of scales of one case: `bands`; `reach`, to the decided runs beside each band; `undecided`."""
 
     bands: list[tuple[float, float]]
     reach: list[tuple[float, float]]
@@ -103,7 +103,7 @@ class _Intervals:
 
     @classmethod
     def of(cls, one: xr.Dataset) -> "_Intervals":
-        """Return the intervals in a table of bands without axes."""
+        """Read the intervals from a table of bands without axes."""
         begin, end, below, above = (
             one[name].to_numpy() for name in ("band_from", "band_to", "safe_below", "safe_above")
         )
@@ -112,7 +112,7 @@ class _Intervals:
         return cls(*(_finite(*pair) for pair in ((begin, end), outside, stretch)))
 
     def looks(self, last: float) -> dict[Look, list[tuple[float, float]]]:
-        """Return the intervals of each look up to the `last` scale; what is left is safe and was so below."""
+        """Return the intervals of each look up to the `last` scale; the column survives at all other scales."""
         taken = sorted([*self.reach, *self.undecided])
         free = [(high, low) for (_, high), (low, _) in pairwise([*taken, (last, last)])]
         lowest = min((low for low, _ in self.bands), default=np.inf)
@@ -139,17 +139,17 @@ def amplitude_ends(one: xr.Dataset, factor: Floats) -> tuple[float, float]:
 
 
 def is_normalized(found: xr.Dataset) -> bool:
-    """Return whether the bands are drawn as in the literature, by the peak base acceleration over g tan α."""
+    """Return whether the amplitude is the peak base acceleration over c g, as in the literature."""
     return "frequency_ratio" in found.coords and bool((found["acceleration_ratio"] > 0.0).all())
 
 
 def amplitude_label(found: xr.Dataset) -> str:
-    """Return what the amplitudes are called in a figure of the bands."""
+    """Return the axis label of the amplitudes."""
     return r"peak base acceleration $a/(c\,g)$" if is_normalized(found) else axis_label(found["scale"])
 
 
 def band_legend(found: xr.Dataset, *, hairlines: int, wide_edges: bool) -> list[Patch | Line2D]:
-    """Return the entries of a legend for what is drawn of all the bands `found`."""
+    """Return the legend entries for the overturning intervals `found`."""
     entries: list[Patch | Line2D] = [
         Patch(label=name, **fill_options(look))
         for name, look in (("survives", _SAFE), ("overturns", _FALLEN), ("survives again", _AGAIN))
@@ -169,7 +169,7 @@ def band_legend(found: xr.Dataset, *, hairlines: int, wide_edges: bool) -> list[
 
 
 def run_legend(counts: Sequence[int], markersize: float) -> list[Line2D]:
-    """Return the entries for runs that are uncertain, and for those that are undecided, of which there are so many."""
+    """Return the legend entries for uncertain and undecided runs, with their `counts`."""
     looks = zip(counts, ("uncertain", "not decided"), (UNCERTAIN, UNKNOWN), strict=True)
     return [
         Line2D([], [], label=f"{name}: {plural(count, 'run')}", markersize=markersize, **look)
@@ -179,7 +179,7 @@ def run_legend(counts: Sequence[int], markersize: float) -> list[Line2D]:
 
 
 def _share(box: Box, ends: tuple[float, float], *, geometric: bool) -> float:
-    """Return which part of the axis of amplitudes a box takes."""
+    """Return the fraction of the axis of amplitudes that a box takes."""
     _, _, low, high = box
     if geometric:
         return float(np.log(high / low) / np.log(ends[1] / ends[0]))
@@ -187,20 +187,20 @@ def _share(box: Box, ends: tuple[float, float], *, geometric: bool) -> float:
 
 
 def undecided_label(outcomes: xr.DataArray) -> str:
-    """Return "not decided", with the reasons that are among these outcomes of runs."""
+    """Return "not decided" with the reasons in these outcomes."""
     reasons = undecided_reasons(outcomes)
     return f"not decided: {', '.join(reasons)}" if reasons else "not decided"
 
 
 def undecided_reasons(outcomes: xr.DataArray) -> list[str]:
-    """Return why runs with these outcomes are undecided, in words, each once."""
+    """Return the reasons for undecided runs among these outcomes, each once."""
     codes = set(np.unique(outcomes.to_numpy()).tolist())
     reasons = [one.label for one in Outcome if one in codes.intersection(UNRESOLVED)]
     return [*reasons, "not computed"] if NOT_COMPUTED in codes else reasons
 
 
 def _fill(axes: Axes, boxes: Boxes, look: Look, *, along_x: bool) -> None:
-    """Fill boxes, but those of no height or no end, with a look; they are one path, so that textures go on."""
+    """Fill boxes of finite, positive height with a look; they form one path, so that textures are continuous."""
     shown = np.array([box for box in boxes if box[3] > box[2]]).reshape(-1, 4)
     left, right, low, high = shown.T
     corners = np.stack([[left, low], [right, low], [right, high], [left, high], [left, low]])
@@ -208,7 +208,7 @@ def _fill(axes: Axes, boxes: Boxes, look: Look, *, along_x: bool) -> None:
     codes = np.tile([Path.MOVETO, Path.LINETO, Path.LINETO, Path.LINETO, Path.CLOSEPOLY], len(shown))
     path = Path(np.moveaxis(corners, 2, 0).reshape(-1, 2), codes)
     place = {"transform": axes.get_xaxis_transform()} if along_x else {}
-    # Boxes meet without a line between them if they are drawn without edges; a hatch has the colour of its edge.
+    # Boxes without edges meet without a line between them; a hatch has the colour of the edge.
     axes.add_patch(
         PathPatch(path, facecolor=look.colour, edgecolor=look.ink, hatch=look.texture, linewidth=0.0, **place)
     )

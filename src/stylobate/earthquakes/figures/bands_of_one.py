@@ -1,4 +1,4 @@
-"""The overturning bands of a single column along its amplitudes, with the peak tilts of the runs that stand."""
+"""Figure of the overturning intervals of one column along the amplitude, with the peak tilts of surviving runs."""
 
 import numpy as np
 import numpy.typing as npt
@@ -31,12 +31,12 @@ _HEIGHT, _DOT = 3.8, 3.2
 
 @styled
 def plot_bands_of_one(found: xr.Dataset) -> Figure:
-    """Return a figure of the bands of amplitude that overturn one column, and of its peak tilts in between.
+    """Draw the overturning intervals of one column, and its peak tilts between them.
 
     Parameters
     ----------
     found
-        Overturning bands over no name: `band_from` … over the bands, `outcome` and `peak_tilt` over the scale.
+        Overturning bands of one case: `band_from` … over the bands, `outcome` and `peak_tilt` over the scale.
     """
     figure = new_figure(_HEIGHT)
     axes = figure.subplots()
@@ -61,14 +61,14 @@ def plot_bands_of_one(found: xr.Dataset) -> Figure:
 
 
 def _draw_runs(axes: Axes, found: xr.Dataset, amplitude: Floats) -> tuple[int, int]:
-    """Draw the peak tilts of runs that stand; mark and count the runs that are uncertain or undecided."""
+    """Draw the peak tilts of surviving runs; mark and count uncertain and undecided runs."""
     codes, tilt = found["outcome"].to_numpy(), found["peak_tilt"].to_numpy() / float(found["tipping_angle"])
     unknown = np.isin(codes, UNRESOLVED)
     uncertain = found["uncertain"].to_numpy() & (codes != NOT_COMPUTED)
     stands = ~unknown & (codes != Outcome.OVERTURNED)
     shown = np.where(stands, tilt, np.nan)
     axes.plot(amplitude, shown, color=BLACK, marker=".", markersize=4.0, linewidth=0.9)
-    # What has no peak tilt is marked at the lower edge.
+    # Runs without a peak tilt are marked at the lower edge.
     height = np.where(stands, shown, 0.0)
     for chosen, look in ((uncertain, UNCERTAIN), (unknown, UNKNOWN)):
         if chosen.any():

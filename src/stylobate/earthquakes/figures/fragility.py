@@ -1,4 +1,4 @@
-"""Fragility curves with what was observed, annual rates with what contributes to them, bands of safety by record."""
+"""Figures of fragility: curves with observed fractions, annual rates with contributions, intervals by record."""
 
 import textwrap
 from typing import Any
@@ -19,25 +19,25 @@ _HEIGHT = 4.2
 _RATE_HEIGHT = 5.2
 _MARKS = ("o", "s", "^", "D", "v", "P", "X")
 _BAND = 0.18
-# Height of a record's bar in the figure of bands [inches], and of the rest of that figure.
+# Height of the row of a record in the figure of intervals, and of the rest of that figure [inches].
 _ROW, _FRAME = 0.17, 1.5
 _TALLEST = 7.5
 _BAR = 0.72
-# Letters in a line of a legend.
+# Maximum number of characters in a line of a legend.
 _LEGEND = 30
-# Points of several limit states at one intensity stand apart by this factor.
+# Factor between the points of several limit states at one intensity.
 _APART = 1.012
 
 
 @figure_of("fragility")
 @styled
 def plot_fragility(found: xr.Dataset) -> Figure:
-    """Return a figure of fragility curves with their confidence bands and the shares observed.
+    """Draw fragility curves with their confidence bands and the observed fractions.
 
-    Curves end where the data end. Points are shares of the runs at an intensity, or near it, with intervals of Wilson;
-    the points of several limit states stand a little apart. A limit state without a fit has its points, and the legend
-    says why. The title states the records that are safe again above an intensity that reached the limit state, and how
-    runs of them are counted.
+    Curves end where the data end. Points are fractions of the runs at an intensity, or near it, with Wilson intervals;
+    the points of several limit states are slightly offset. A limit state without a fit has points, and the legend gives
+    the reason. The title states the number of records that survive above an intensity that reached the limit state,
+    and the counting of their runs.
     """
     figure = new_figure(_HEIGHT)
     axes = figure.subplots()
@@ -120,7 +120,7 @@ def _interval_mark(found: xr.Dataset) -> Line2D:
 
 
 def _title_lines(found: xr.Dataset) -> list[str]:
-    """Return the lines of the title: where intervals come from, and records that are not monotone."""
+    """Return the lines of the title: method of the intervals, and number of records that are not monotonic."""
     lines = []
     if "confidence" in found.attrs and np.isfinite(found["median"]).any():
         lines.append(f"band: {found.attrs['band']}")
@@ -136,7 +136,7 @@ _TICKS = ((20.0, (1.0, 2.0, 3.0, 5.0)), (300.0, (1.0, 2.0, 5.0)))
 
 
 def _plain_ticks(axes: Axes) -> None:
-    """Write intensities as plain numbers; the shorter the axis, the more of each decade."""
+    """Write intensities as plain numbers; shorter axes have more ticks in each decade."""
     low, high = axes.get_xlim()
     subs = next((subs for ratio, subs in _TICKS if high / low < ratio), (1.0,))
     axes.xaxis.set_major_locator(LogLocator(subs=subs))
@@ -147,10 +147,10 @@ def _plain_ticks(axes: Axes) -> None:
 @figure_of("annual rate")
 @styled
 def plot_annual_rate(found: xr.Dataset) -> Figure:
-    """Return a figure of the hazard curve, and below it what each intensity contributes to the annual rate.
+    """Draw the hazard curve, and below it the contribution of each intensity to the annual rate.
 
-    Contributions are shares of the rate of their limit state, over the logarithm of the intensity: areas are shares.
-    Vertical lines are the medians of the fragilities. What lies beyond the hazard curve is stated in the legend.
+    Contributions are fractions of the rate of their limit state, over the logarithm of the intensity, so that areas are
+    fractions. Vertical lines are the medians of the fragilities. The legend states the fraction beyond the curve.
     """
     figure = new_figure(_RATE_HEIGHT)
     above, below = figure.subplots(2, 1, sharex=True)
@@ -193,10 +193,10 @@ def _rate_of(state: xr.Dataset, years: float) -> str:
 @figure_of("reached bands")
 @styled
 def plot_reached_bands(found: xr.Dataset) -> Figure:
-    """Return a figure of the bands of each record: safe, reached, and safe again.
+    """Draw the intervals of each record: survival, limit state reached, and survival above it.
 
-    Records are ordered by the first scale that reached the limit state; names of those that are not monotone are marked
-    with a star, and where records are many only these are named. Between bands nothing was computed.
+    Records are sorted by the smallest scale that reached the limit state. A star marks records that are not monotonic;
+    a figure of many records names only these. Gaps between intervals contain no runs.
     """
     rows = found.sizes["record"]
     figure = new_figure(_FRAME + min(_ROW * rows, _TALLEST))
@@ -219,7 +219,7 @@ def plot_reached_bands(found: xr.Dataset) -> Figure:
             continue
         look: dict[str, Any] = {"facecolor": colour, "hatch": hatch, "edgecolor": "white"}
         axes.barh(height[owner[chosen]], (high - low)[chosen], _BAR, left=low[chosen], linewidth=0.0, **look)
-        # A band of one scale has no length.
+        # An interval of one scale has no length.
         single = chosen & (high == low)
         axes.plot(low[single], height[owner[single]], linestyle="none", marker=mark, markersize=3.5, color=colour)
         legend.append(Patch(label=name, **look))

@@ -1,4 +1,4 @@
-"""Incremental dynamic analyses: peak tilts over the intensity, record by record, overturning apart."""
+"""Figures of incremental dynamic analyses: peak tilts over the intensity by record, and overturning."""
 
 import numpy as np
 import numpy.typing as npt
@@ -16,14 +16,14 @@ from stylobate.text import plural
 Floats = npt.NDArray[np.float64]
 
 _HEIGHT = 4.6
-# So many records have a colour and a name; of more all are grey.
+# Maximum number of records with a colour and a name; more are grey.
 _NAMED = 6
 _MARKS = "osD^vP"
-# Height of the strip of those that overturn: for its frame, and for each record [parts of the panel of tilts].
+# Height of the strip of overturned runs: frame, and row of each record [fractions of the panel of tilts].
 _STRIP, _ROW = 0.06, 0.035
 _MOST_ROWS = 24
 _QUANTILES = (0.16, 0.5, 0.84)
-# Intensities that differ by less than this part are one.
+# Intensities that differ by less than this fraction count as equal.
 _ONE_LEVEL = 1e-6
 _NUMBERS_TO_SPAN = 20.0
 
@@ -31,16 +31,16 @@ _NUMBERS_TO_SPAN = 20.0
 @figure_of("incremental dynamic analysis")
 @styled
 def plot_incremental(found: xr.Dataset) -> Figure:
-    """Return a figure of peak tilts over α against the intensity, a line for each record, and who overturned above.
+    """Draw peak tilts over α_c against the intensity, with one line for each record and a strip of overturned runs.
 
-    Lines end where the column overturns and begin again where it is safe again. The strip above shows at which
-    intensities each record overturned it. Where the runs of all records have the same intensities the median is drawn,
-    and the 16 and 84 % quantiles dashed, overturned runs counted as above all tilts: the lines end where they overturn.
+    Lines end where the column overturns and continue where it survives again. The strip above shows the intensities at
+    which each record overturned the column. If all records have the same intensities, the figure shows the median and,
+    dashed, the 16 and 84 % quantiles; overturned runs count as above all tilts, so these lines end at overturning.
 
     Raises
     ------
     ParameterError
-        If there is no run.
+        If the runs have no dimension `scale`.
     """
     if "scale" not in found.dims:
         message = "found must have the dimension scale to be drawn over the intensity; take runs.isel(scale=[0])"
@@ -67,7 +67,7 @@ def plot_incremental(found: xr.Dataset) -> Figure:
 
 
 def _series(found: xr.Dataset) -> tuple[list[str], Floats, Floats]:
-    """Return the record of each series of runs, and the intensities and peak tilts over α in it: (series, scale)."""
+    """Return the record of each series of runs, with its intensities and peak tilts over α_c: (series, scale)."""
     others = [dim for dim in found["tilt_ratio"].dims if dim != "scale"]
     tilt = found["tilt_ratio"].transpose(*others, "scale")
     level = found["intensity"].broadcast_like(tilt).transpose(*others, "scale")
@@ -80,7 +80,7 @@ def _series(found: xr.Dataset) -> tuple[list[str], Floats, Floats]:
 
 
 def _look(place: int, records: int) -> tuple[str, str, float]:
-    """Return colour, mark and width of a record's lines."""
+    """Return colour, mark and width of the lines of a record."""
     if records > _NAMED:
         return GREY, "o", 0.7
     return PALETTE[place % len(PALETTE)], _MARKS[place % len(_MARKS)], 1.3
@@ -100,7 +100,7 @@ def _draw(tilts: Axes, strip: Axes, level: Floats, tilt: Floats, *, place: int, 
 
 
 def _draw_quantiles(axes: Axes, level: Floats, tilt: Floats) -> list[Line2D]:
-    """Draw quantiles over the series at common intensities; return the entries of the legend, none without them."""
+    """Draw quantiles over the series at common intensities; return the legend entries, none without quantiles."""
     if len(level) < 3 or np.any(np.ptp(level, axis=0) > _ONE_LEVEL * level.max(axis=0)):  # noqa: PLR2004
         return []
     quantiles = _quantiles(tilt)
@@ -122,7 +122,7 @@ def _draw_quantiles(axes: Axes, level: Floats, tilt: Floats) -> list[Line2D]:
 
 
 def _quantiles(tilt: Floats) -> Floats:
-    """Return quantiles over the first axis, overturned ones above all; NaN where a run is undecided."""
+    """Compute quantiles over the first axis, with overturned runs above all; NaN where a run is undecided."""
     known = ~np.isnan(tilt).any(axis=0)
     found = np.quantile(np.where(known, tilt, 0.0), _QUANTILES, axis=0, method="inverted_cdf")
     return np.where(known, found, np.nan)

@@ -1,4 +1,4 @@
-"""Overturning spectra: which amplitudes overturn, and above which the column is safe again."""
+"""Figures of overturning spectra: overturning intervals, and survival above them."""
 
 from dataclasses import dataclass, field
 
@@ -31,17 +31,17 @@ from stylobate.results.outcomes import NOT_COMPUTED
 Floats = npt.NDArray[np.float64]
 
 _HEIGHT, _MOST_PANELS = 4.4, 4
-# A dot on an uncertain run is at least and at most this large, and the panels together so wide [points].
+# Minimum and maximum size of the dot on an uncertain run, and width of all panels [points].
 _DOTS, _WIDTH = (1.0, 3.2), 400.0
-# What changes ω/p most.
+# Parameters that change ω/p most.
 _OF_THE_RATIO = ("angular_frequency", "size", "mass_height", "gravity")
-# Where more than this part of all runs is uncertain, dots would hide the bands: they are counted only.
+# If more than this fraction of all runs is uncertain, dots would hide the intervals, so the legend only counts them.
 _MOST_MARKED = 0.2
 
 
 @dataclass(slots=True)
 class _Marks:
-    """What the panels show, for the legend: runs that are uncertain, undecided ones, hairlines."""
+    """Contents of the panels for the legend: numbers of uncertain and undecided runs, hairlines, wide edges."""
 
     panels: int = 1
     counts: list[int] = field(default_factory=lambda: [0, 0])
@@ -52,19 +52,19 @@ class _Marks:
 @figure_of("overturning bands")
 @styled
 def plot_overturning_bands(found: xr.Dataset) -> Figure:
-    """Return a figure of the bands of amplitude that overturn, a panel for each value of a second parameter.
+    """Draw the overturning intervals of the amplitude, with a panel for each value of a second parameter.
 
-    White is safe, dark overturns, hatched is safe again above a band that overturns, grey and cross-hatched is not
-    decided. Dots mark runs of the scan that are uncertain, crosses those that are not decided. Pulses and harmonic
-    motions are drawn as in the literature: peak base acceleration over g tan α, against ω/p. Others by their scale,
-    over the size 2R if it varies; below the dashed line the peak acceleration is below g tan α. Bands too narrow to be
-    seen are drawn as lines. Of a single column the amplitude runs along the axis, and the peak tilts of the runs that
-    stand are drawn over it.
+    White means survival, dark overturning, hatched survival above an overturning interval, grey and cross-hatched
+    undecided. Dots mark uncertain runs of the scan, crosses undecided runs. For pulses and harmonic motions the axes
+    are those of the literature: peak base acceleration over c g, against ω/p. Other motions have the scale as vertical
+    axis, over the size 2R if it varies; below the dashed line the peak acceleration is less than c g. Intervals too
+    narrow to be seen are drawn as lines. For a single column the horizontal axis is the amplitude, and the figure
+    includes the peak tilts of surviving runs.
 
     Raises
     ------
     ParameterError
-        If the bands are over more than two parameters, or there are more than four panels: choose some by `found.sel`.
+        If the result has more than two parameters or more than four panels: choose some by `found.sel`.
     """
     dims = [str(dim) for dim in found["bands"].dims]
     along, panel = split(found, dims, _MOST_PANELS, "overturning bands")
@@ -119,7 +119,7 @@ def _draw(axes: Axes, one: xr.Dataset, along: Horizontal, marks: _Marks) -> None
 
 
 def _mark(axes: Axes, one: xr.Dataset, along: Horizontal, factor: Floats, marks: _Marks) -> None:
-    """Mark the runs of the scan that are uncertain or undecided, and count them."""
+    """Mark and count the uncertain and undecided runs of the scan."""
     codes, scales = one["outcome"].to_numpy(), one["scale"].to_numpy()
     size = float(np.clip(_WIDTH / marks.panels / max(codes.shape) / 2.0, *_DOTS))
     uncertain = one["uncertain"].to_numpy() & (codes != NOT_COMPUTED)

@@ -1,4 +1,4 @@
-"""The three-dimensional column against Housner's planar one: peak tilts, and overturning by direction."""
+"""Figures of three-dimensional and planar (Housner) columns: peak tilts, and overturning by direction."""
 
 import numpy as np
 import numpy.typing as npt
@@ -17,17 +17,17 @@ Floats = npt.NDArray[np.float64]
 
 _HEIGHT, _POLAR_HEIGHT = 5.4, 3.4
 _MOST_PANELS = 3
-# Overturned columns lie this part of the axis beyond its end.
+# Distance of the marks of overturned columns beyond the end of the axis, as a fraction of the axis.
 _MARGIN = 0.07
 
 
 @figure_of("planar bias")
 @styled
 def plot_planar_bias(found: xr.Dataset) -> Figure:
-    """Draw the peak tilts of the three-dimensional column against those of the worst planar one.
+    """Draw the peak tilts of the three-dimensional column over those of the worst planar column.
 
-    A point for each record and scale. Columns that overturn lie in the margins: on the right the planar one, above the
-    three-dimensional one, in the corner both. Above the diagonal the planar column is on the unsafe side.
+    Each record and scale has a point. Points in the margins are overturned columns: the planar column on the right, the
+    three-dimensional column at the top, both in the corner. Above the diagonal the planar column is unconservative.
     """
     figure = new_figure(_HEIGHT, width=6.4)
     axes = figure.subplots()
@@ -81,13 +81,13 @@ def plot_directions(found: xr.Dataset) -> Figure:
 
     For a planar bias, the polar figures show the planar column in each direction, and the three-dimensional column,
     which has no direction. For an incremental dynamic analysis they show each rotation of the record. Open marks on the
-    rim: not overturned by any of the scales. A plane has two senses, in which a column without another asymmetry
-    answers alike: both are drawn.
+    rim mean that no scale overturned the column. Each plane is drawn in both senses, because the response of a
+    symmetric column is the same.
 
     Raises
     ------
     ParameterError
-        If nothing depends on a direction, or there are more than three records: choose some by `found.sel`.
+        If `found` has no directions, or more than three records: choose some by `found.sel`.
     """
     turned = "planar_tilt_ratio" not in found
     name = "rotation" if turned else "direction"
@@ -151,7 +151,7 @@ def _draw_polar(axes: PolarAxes, one: xr.Dataset, name: str, *, turned: bool) ->
 
 
 def _radius(tilt: Floats, scale: Floats) -> tuple[Floats, float]:
-    """Return the radius for each row of `tilt`, not finite if the value lies beyond, and the radius of the rim."""
+    """Return the radius for each row of `tilt`, not finite if no scale overturned, and the radius of the rim."""
     if scale.size > 1:
         radius = np.where(np.isinf(tilt), scale, np.inf).min(axis=1)
         end = scale.max() if np.isinf(radius).any() else radius.max()

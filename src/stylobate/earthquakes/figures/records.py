@@ -1,4 +1,4 @@
-"""Records as they are: accelerations over time, and response spectra beside them."""
+"""Figures of records: accelerations over time, with response spectra."""
 
 from collections.abc import Mapping, Sequence
 
@@ -22,9 +22,9 @@ def plot_records(records: Sequence[Record], spectra: Mapping[str, xr.Dataset]) -
     Parameters
     ----------
     records
-        The records; each must accelerate.
+        Records with nonzero acceleration.
     spectra
-        By name of the record, its spectra from `response_spectra`.
+        Spectra from `response_spectra`, by name of the record.
     """
     figure = new_figure(_HEIGHT * len(records) + 0.4, width=1.3 * WIDTH)
     grid = figure.subplots(len(records), 2, squeeze=False, width_ratios=(2, 1))
@@ -38,7 +38,7 @@ def plot_records(records: Sequence[Record], spectra: Mapping[str, xr.Dataset]) -
 
 def _history(axes: Axes, record: Record) -> None:
     for axis in record.axes:
-        place = AXES.index(axis)  # the vertical one lies behind
+        place = AXES.index(axis)  # the vertical component lies behind
         axes.plot(
             record.times, record.samples[:, place], color=_COLOURS[axis], linewidth=0.6, zorder=3.0 - place, label=axis
         )

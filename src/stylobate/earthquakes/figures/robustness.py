@@ -1,4 +1,4 @@
-"""Which small changes flip which verdicts: a table of records and changes."""
+"""Figure of robustness: verdicts that small changes flip, by record and change."""
 
 import numpy as np
 import numpy.typing as npt
@@ -30,9 +30,9 @@ _NAMED = 24
 @figure_of("robustness")
 @styled
 def plot_robustness(found: xr.Dataset) -> Figure:
-    """Return a figure of the verdicts on overturning: a row for each change, a column for each record.
+    """Draw the verdicts on overturning, with a row for each change and a column for each record.
 
-    The bars on the right show how many of the records a change flips; a star marks records that no change flips.
+    The bars on the right count the records that a change flips; a star marks records that no change flips.
     """
     cells = _cells(found)
     changes, records = cells.shape
@@ -63,7 +63,7 @@ def plot_robustness(found: xr.Dataset) -> Figure:
 
 
 def _cells(found: xr.Dataset) -> npt.NDArray[np.integer]:
-    """Return the place in _LOOKS of each change and column."""
+    """Return the index in _LOOKS for each change and column."""
     others = [dim for dim in found["outcome"].dims if dim != "change"]
     after = found["reached"].sel(limit_state=_STATE, drop=True)
     before = found["reached_as_given"].sel(limit_state=_STATE, drop=True).broadcast_like(after)

@@ -1,4 +1,4 @@
-"""Rocking spectra: peak tilt and peak rate of tilt against the period 2π/p."""
+"""Figures of rocking spectra: peak tilt and peak tilt rate over the period 2π/p."""
 
 from typing import Any
 
@@ -15,7 +15,7 @@ from stylobate.plots.labels import axis_label
 from stylobate.plots.style import BLACK, DASHES, GREY, PALETTE, new_figure, styled
 
 _HEIGHT, _MOST_CURVES = 5.4, 6
-# Above the largest peak there is room for the marks of what overturned.
+# Height of the axis over the largest peak, with room for the marks of overturned runs.
 _ROOM = 1.25
 _MARKS = ("o", "s", "^", "D", "v", "P")
 _FALLEN: dict[str, Any] = {"marker": 7, "linestyle": "none", "markersize": 6, "clip_on": False, "zorder": 4}
@@ -26,15 +26,15 @@ _OVERTURNED = Outcome.OVERTURNED
 @figure_of("rocking spectrum")
 @styled
 def plot_rocking_spectrum(found: xr.Dataset) -> Figure:
-    """Return a figure of peak tilt over α and peak rate of tilt over p, a curve for each value of a second parameter.
+    """Draw peak tilt over α_c and peak tilt rate over p, with one curve for each value of a second parameter.
 
-    Against the period 2π/p if the size varies. Curves break where the column overturned; there a mark hangs from the
-    upper edge. Circles are uncertain runs.
+    The horizontal axis is the period 2π/p if the size varies. Curves break where the column overturned; a mark at the
+    upper edge shows these runs. Circles are uncertain runs.
 
     Raises
     ------
     ParameterError
-        If the spectrum is over more than two parameters, or there are more than six curves: choose some by `found.sel`.
+        If the spectrum has more than two parameters or more than six curves: choose some by `found.sel`.
     """
     dims = [str(dim) for dim in found["peak_tilt_ratio"].dims]
     first = "size" if "size" in dims else None
@@ -89,7 +89,7 @@ def _draw(axes: Axes, one: xr.Dataset, across: Horizontal, name: str, place: int
     unsure = one["uncertain"].to_numpy()[order]
     axes.plot(x[unsure], y[unsure], **_UNCERTAIN)
     fallen = one["outcome"].to_numpy()[order] == _OVERTURNED
-    # Marks of several curves hang one below another.
+    # Marks of several curves lie one below another.
     height = 1.0 - 0.035 * place if count > 1 else 1.0
     transform = axes.get_xaxis_transform()
     axes.plot(x[fallen], np.full(int(fallen.sum()), height), color=PALETTE[place], transform=transform, **_FALLEN)

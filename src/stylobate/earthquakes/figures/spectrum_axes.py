@@ -1,4 +1,4 @@
-"""What spectra are drawn against: size, frequency over p, period, or the parameter itself."""
+"""Horizontal axes of spectra: size, frequency over p, period, or the parameter itself."""
 
 from typing import NamedTuple
 
@@ -14,12 +14,12 @@ from stylobate.plots.labels import axis_label
 Floats = npt.NDArray[np.float64]
 
 _PLANE = 2
-# Beyond so many names of motions in a row they are written upright.
+# Maximum number of names of motions with horizontal text; more are vertical.
 _SHORT = 3
 
 
 class Horizontal(NamedTuple):
-    """Values along the horizontal axis, what they are called, and the names that stand for them, if any do."""
+    """Values along the horizontal axis, their label, and names in place of numbers, if any."""
 
     values: Floats
     label: str
@@ -27,17 +27,17 @@ class Horizontal(NamedTuple):
 
 
 def split(found: xr.Dataset, dims: list[str], most: int, what: str) -> tuple[str | None, str | None]:
-    """Return the dimension along the axis and that of the panels or curves; the one of most values comes first.
+    """Return the dimension along the axis (the longest) and the dimension of the panels or curves.
 
     Raises
     ------
     ParameterError
-        If there are more than two, or more than so many values along the second.
+        If there are more than two dimensions, or more than `most` values along the second.
     """
     ordered = sorted(dims, key=lambda dim: -found.sizes[dim])
     if len(ordered) > _PLANE or (len(ordered) == _PLANE and found.sizes[ordered[1]] > most):
         message = (
-            f"a figure of {what} is over one name, or two with up to {most} values of one of them; got "
+            f"a figure of {what} has one dimension, or two with up to {most} values along one of them; got "
             f"{ {dim: found.sizes[dim] for dim in dims} }: choose some by found.sel(...) or found.isel(...)"
         )
         raise ParameterError(message)
@@ -52,13 +52,13 @@ def named(found: xr.Dataset, dim: str, place: int) -> str:
 
 
 def motion_names(found: xr.Dataset) -> Horizontal:
-    """Return the places of several motions with their names."""
+    """Return the positions of several motions with their names."""
     names = tuple(str(name) for name in found["motion_name"].to_numpy())
     return Horizontal(np.arange(float(len(names))), "base motion", names)
 
 
 def finish(axes: Axes, along: Horizontal) -> None:
-    """Scale, mark and name the horizontal axis."""
+    """Set scale, ticks and label of the horizontal axis."""
     if along.names:
         rotation = 0 if len(along.names) <= _SHORT else 90
         axes.set_xticks(along.values, along.names, rotation=rotation)

@@ -1,6 +1,6 @@
-"""Statistics of fragility: how often a column reaches a limit state at an intensity, and how often in a year.
+"""Statistics of fragility: probabilities of limit states over the intensity, and annual rates.
 
-However the runs were made: what is needed is the intensity of each, whether it reached the limit state, and its record.
+The functions accept runs of any origin: they need intensity, record and limit state of each run.
 """
 
 from stylobate.earthquakes.fragility.annual_rate import annual_rate

@@ -1,12 +1,12 @@
-"""How often in a year a limit state is reached: fragility and hazard brought together.
+"""Annual rates of limit states from fragility and hazard.
 
     rate = ∫ P(x) |dλ(x)|                                                                               (1)
 
-with P = Φ((u − μ)/β), u = ln x. Where λ is the power law λ_a exp(−k(u − a)), integration by parts gives
+with P = Φ((u − μ)/β), u = ln x. For the power law λ = λ_a exp(−k(u − a)), integration by parts gives
 
     ∫_a^b P |dλ| = P(a)λ(a) − P(b)λ(b) + λ_a exp(k(a − μ) + k²β²/2) [Φ((u − μ)/β + kβ)]_a^b             (2)
 
-over the whole axis λ(median) exp(k²β²/2): Cornell, Jalayer, Hamburger and Foutch, "Probabilistic basis for 2000 SAC
+and over the whole axis λ(median) exp(k²β²/2): Cornell, Jalayer, Hamburger and Foutch, "Probabilistic basis for 2000 SAC
 Federal Emergency Management Agency steel moment frame guidelines", J. Struct. Eng. 128 (2002).
 """
 
@@ -23,9 +23,9 @@ from stylobate.errors import ParameterError, require_positive, require_whole
 
 _log = logging.getLogger("stylobate")
 
-# A share of the rate from beyond the hazard curve above which a warning is due.
+# Fraction of the rate beyond the hazard curve above which a warning is logged.
 _MUCH_BEYOND = 0.1
-# A share above which the rate is an unsupported extrapolation and is withheld.
+# Fraction above which the rate is an unsupported extrapolation and is withheld.
 _MOSTLY_BEYOND = 0.5
 _NEARLY_ALL = 0.995
 _UNITS = {"m s-2": " m/s²", "m s-1": " m/s"}
@@ -87,7 +87,7 @@ def annual_rate(fragility: xr.Dataset, hazard: HazardCurve, *, years: float = 50
     ]
     within, below, above, low, high = (np.array([one[k] for one in parts]) for k in range(5))
     rate = within + below + above
-    # The continuation of a steep curve may be infinite: its share is then 1.
+    # The continuation of a steep curve may be infinite; its share is then 1.
     share = 1.0 - np.divide(within, rate, out=np.full(rate.shape, np.nan), where=rate > 0.0)
     names = [str(name) for name in fragility[LIMIT_STATE].to_numpy()]
     for name, one in zip(names, share, strict=True):
@@ -134,7 +134,7 @@ def annual_rate(fragility: xr.Dataset, hazard: HazardCurve, *, years: float = 50
 
 
 def _withheld_reason(share: float, below: float, above: float, hazard: HazardCurve) -> str:
-    """Return why a rate is withheld; an empty text where it is stated or has no fit."""
+    """Return the reason for withholding a rate; empty if the rate is stated or has no fit."""
     if not share > _MOSTLY_BEYOND:
         return ""
     ends = np.exp(hazard.log_intensity)
@@ -160,7 +160,7 @@ def _parts(
     below = float(_piece_below(u[0], hazard.log_rate[0], slopes[0], mu, beta))
     last = float(np.exp(hazard.log_rate[-1]))
     at_end = float(ndtr((u[-1] - mu) / beta)) * last
-    # A curve that ends level never falls to 0: nothing is known but λ_n.
+    # A curve with a level end never falls to 0, so only λ_n is known.
     above = float(_piece(u[-1:], np.array([np.inf]), hazard.log_rate[-1:], slopes[-1:], mu, beta)[0])
     above = float(np.clip(above, at_end, last)) if slopes[-1] > 0.0 else last
     within = float(contribution.sum())
@@ -168,18 +168,18 @@ def _parts(
 
 
 def _piece(a: Floats, b: Floats, log_rate: Floats, k: Floats, mu: float, beta: float) -> Floats:
-    """Return (2), with ln λ(a); b may be infinite."""
+    """Compute (2), with ln λ(a); b may be infinite."""
     start = ndtr((a - mu) / beta) * np.exp(log_rate)
     fall = np.where(k > 0.0, k * (b - a), 0.0) if np.all(np.isfinite(b)) else np.full(a.shape, np.inf)
     end = ndtr((b - mu) / beta) * np.exp(log_rate - fall)
     log_scale = log_rate + k * (a - mu) + 0.5 * (k * beta) ** 2
     middle = np.exp(log_scale + _log_difference((a - mu) / beta + k * beta, (b - mu) / beta + k * beta))
-    # Roundings may leave a trace below zero.
+    # Rounding may give slightly negative values.
     return np.asarray(np.where(k > 0.0, np.maximum(start - end + middle, 0.0), 0.0))
 
 
 def _piece_below(b: float, log_rate: float, k: float, mu: float, beta: float) -> float:
-    """Return (2) from 0 to exp(b), with ln λ(b): P(x)λ(x) vanishes at 0."""
+    """Compute (2) from 0 to exp(b), with ln λ(b); P(x)λ(x) vanishes at 0."""
     log_middle = log_rate + k * (b - mu) + 0.5 * (k * beta) ** 2 + float(log_ndtr((b - mu) / beta + k * beta))
     with np.errstate(over="ignore"):
         middle = float(np.exp(log_middle))
@@ -187,7 +187,7 @@ def _piece_below(b: float, log_rate: float, k: float, mu: float, beta: float) ->
 
 
 def _log_difference(low: Floats, high: Floats) -> Floats:
-    """Return ln(Φ(high) − Φ(low)), from the tail in which it is not lost."""
+    """Compute ln(Φ(high) − Φ(low)) in the tail without cancellation."""
     mirrored = low > 0.0
     near = log_ndtr(np.where(mirrored, -low, high))
     far = log_ndtr(np.where(mirrored, -high, low))
@@ -215,7 +215,7 @@ def _require_fragility(fragility: xr.Dataset, hazard: HazardCurve) -> None:
 
 
 def require_same_component(fragility: str | None, hazard: str | HorizontalComponent | None) -> None:
-    """Raise ParameterError unless fragility and hazard state one definition of the horizontal component, or neither."""
+    """Raise ParameterError unless fragility and hazard use the same definition of the horizontal component, or none."""
     own, other = (None if one is None else HorizontalComponent.named(one).value for one in (fragility, hazard))
     if own == other:
         return

@@ -1,4 +1,4 @@
-"""Intervals of intensity, record by record, in which a column survives, fails, and survives again.
+"""Intervals of intensity in which a column survives, reaches a limit state, and survives again, by record.
 
 Overturning is not monotonic: a column may survive a stronger motion. See Zhang and Makris, "Rocking response
 of free-standing blocks under cycloidal pulses", J. Eng. Mech. 127 (2001).
@@ -74,7 +74,7 @@ def _bands_of(scale: Floats, state: Integers, name: str) -> list[Band]:
     if torn.size:
         message = (
             f"reached must agree between runs of one record at one scale, got both at {float(x[torn[0]])!r} "
-            f"of record {name}; compute bands for each property sample by itself"
+            f"of record {name}; compute bands for each property sample separately"
         )
         raise ParameterError(message)
     if not x.size:
@@ -94,12 +94,16 @@ def _dataset(
     unit = {"units": seen.attributes["units"]}
     return xr.Dataset(
         {
-            "monotone": ("record", np.array(again) == 0, {"long_name": "never safe above a scale that reached it"}),
-            "first_reached": ("record", first, {**unit, "long_name": "first scale that reached it"}),
-            "last_safe": ("record", safe, {**unit, "long_name": "last scale that was safe"}),
-            "safe_again": ("record", again, {"units": "1", "long_name": "safe bands above the first reached"}),
+            "monotone": ("record", np.array(again) == 0, {"long_name": "no survival above a scale that reached it"}),
+            "first_reached": ("record", first, {**unit, "long_name": "smallest scale that reached it"}),
+            "last_safe": ("record", safe, {**unit, "long_name": "largest surviving scale"}),
+            "safe_again": (
+                "record",
+                again,
+                {"units": "1", "long_name": "surviving intervals above the first reached"},
+            ),
             "runs": ("record", [sum(band[3] for band in part) for part in parts], {"units": "1", "long_name": "runs"}),
-            "band_record": ("band", columns[0].astype(np.int64), {"long_name": "place of its record"}),
+            "band_record": ("band", columns[0].astype(np.int64), {"long_name": "index of the record"}),
             "band_reached": ("band", columns[1].astype(bool), {"long_name": "reached the limit state"}),
             "band_from": ("band", columns[2].astype(float), {**seen.attributes}),
             "band_to": ("band", columns[3].astype(float), {**seen.attributes}),

@@ -13,7 +13,7 @@ from stylobate.errors import require_positive
 from stylobate.results.outcomes import flag_attributes
 
 CURVE_POINTS = 121
-# A curve that rests on no data is drawn this many dispersions to either side of its median.
+# Half-width of a curve without data, in dispersions.
 _REACH = 3.5
 
 
@@ -24,11 +24,11 @@ class Curve:
     Parameters
     ----------
     numbers
-        By the names of the variables.
+        Numbers by the names of the variables.
     covariance
-        Of (ln median, ln dispersion).
+        Covariance of (ln median, ln dispersion).
     shares
-        Along the curve, by the names of the variables.
+        Probabilities along the curve, by the names of the variables.
     """
 
     numbers: dict[str, float]
@@ -65,7 +65,7 @@ def lognormal_fragility(
     Raises
     ------
     ParameterError
-        If a number is not positive, or the component not known.
+        If a number is not positive, or the component is unknown.
 
     Examples
     --------
@@ -92,7 +92,7 @@ _PROBABILITY = {"units": "1", "long_name": "probability of reaching the limit st
 
 
 def _status_attributes() -> dict[str, object]:
-    return flag_attributes("what the data determine", [status.name for status in FitStatus], dtype=np.int64)
+    return flag_attributes("status of the fit", [status.name for status in FitStatus], dtype=np.int64)
 
 
 def curves_table(seen: Observations, x: Floats, curves: list[Curve]) -> xr.Dataset:
@@ -113,13 +113,13 @@ def curves_table(seen: Observations, x: Floats, curves: list[Curve]) -> xr.Datas
         "runs_reached": {"units": "1", "long_name": "runs that reached it"},
         "runs_not_known": {"units": "1", "long_name": "undecided runs"},
         "largest_safe": {**about, "long_name": "largest intensity that did not reach it"},
-        "least_reached": {**about, "long_name": "least intensity that reached it"},
+        "least_reached": {**about, "long_name": "smallest intensity that reached it"},
         "resamples_without_fit": {"units": "1", "long_name": "resamples without a fit"},
     }
     shares = {
         "probability": _PROBABILITY,
-        "probability_low": {"units": "1", "long_name": "lower end of its interval"},
-        "probability_high": {"units": "1", "long_name": "upper end of its interval"},
+        "probability_low": {"units": "1", "long_name": "lower end of the interval of the probability"},
+        "probability_high": {"units": "1", "long_name": "upper end of the interval of the probability"},
     }
     parameters = ["log median", "log dispersion"]
     return xr.Dataset(

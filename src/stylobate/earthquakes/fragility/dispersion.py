@@ -1,14 +1,14 @@
-"""How much of the dispersion of capacities is of the records, and how much of the column's properties.
+"""Dispersion of capacities split into record-to-record dispersion and dispersion of uncertain properties.
 
-The capacity of a column in a record is the scale at which the limit state is reached first. Its logarithm is
+The capacity of a column under a record is the smallest scale that reaches the limit state. Its logarithm is
 
     ln C = μ + r(record) + p(property sample) + e                                                        (1)
 
 with independent r, p, e of variances β_RR², β_P², β_E²; the total dispersion is β² = β_RR² + β_P² + β_E². The variances
-are those whose mean squares are expected to be what they are: the analysis of variance of a two-way layout without
-replication, Searle, Casella and McCulloch, "Variance Components" (1992), chapter 4. e is what a property does in one
-record and not in another, and the step between scales: a capacity between two scales of ratio exp(d) is put at their
-geometric mean, and Sheppard's d²/12 is taken off β_E².
+equate the mean squares to their expectations: the analysis of variance of a two-way layout without replication, Searle,
+Casella and McCulloch, "Variance Components" (1992), chapter 4. The residual e combines the interaction of properties
+with records and the step between scales: a capacity between two scales of ratio exp(d) is set to their geometric mean,
+and Sheppard's correction d²/12 is subtracted from β_E².
 """
 
 from dataclasses import dataclass
@@ -25,7 +25,7 @@ from stylobate.studies.proportions import require_confidence
 
 _DIMS = ("record", "property_sample", "scale")
 _LEAST = 2
-# Variances are differences of mean squares: what is less than this part of these is their rounding.
+# Variances are differences of mean squares; below this fraction of the mean squares a variance is rounding error.
 _ROUNDING = 1e-12
 
 
@@ -33,9 +33,9 @@ class Samples(Enum):
     """Whether all records share the property samples."""
 
     CROSSED = "crossed"
-    """Every record meets the same property samples."""
+    """All records share the property samples."""
     NESTED = "nested"
-    """Each record has property samples of its own: β_P² then holds β_E²."""
+    """Each record has its own property samples; β_P² then includes β_E²."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -45,9 +45,9 @@ class MeanSquares:
     Parameters
     ----------
     values, freedom
-        Of records, property samples and the rest; NaN for the property samples where they are nested.
+        Values for records, property samples and residual; NaN for property samples if they are nested.
     records, samples
-        How many there are.
+        Numbers of records and property samples.
     step
         Sheppard's correction, the mean of d²/12.
     """
@@ -59,20 +59,20 @@ class MeanSquares:
     step: float
 
     def variances(self, values: Floats) -> Floats:
-        """Return β_RR², β_P², β_E² for mean squares of shape (…, 3), negative ones included."""
+        """Compute β_RR², β_P², β_E² from mean squares of shape (…, 3); they may be negative."""
         record, sample, rest = np.moveaxis(values, -1, 0)
         if np.isnan(self.freedom[1]):
             return np.stack([(record - rest) / self.samples, rest - self.step, np.zeros_like(rest)], axis=-1)
         return np.stack([(record - rest) / self.samples, (sample - rest) / self.records, rest - self.step], axis=-1)
 
     def estimate(self) -> Floats:
-        """Return the variances, those that are not positive as 0, and so those that are a rounding of the others."""
+        """Estimate the variances; those that are negative or rounding errors become 0."""
         found = self.variances(self.values)
         largest = self.values[~np.isnan(self.freedom)].max()
         return np.where(found <= _ROUNDING * largest, 0.0, found)
 
     def drawn(self, count: int, rng: np.random.Generator) -> Floats:
-        """Return variances that would explain the mean squares, drawn with their χ² distributions.
+        """Draw variances that are compatible with the mean squares and their χ² distributions.
 
         Generalised pivots: Weerahandi, "Generalized confidence intervals", J. Am. Stat. Assoc. 88 (1993).
         """
@@ -159,14 +159,14 @@ def dispersion_parts(
 
 _NAMES = {
     "total_dispersion": "dispersion of the capacities",
-    "record_dispersion": "of it, from record to record",
-    "property_dispersion": "of it, from property sample to property sample",
-    "joint_dispersion": "of it, of record and property sample together",
+    "record_dispersion": "record-to-record dispersion",
+    "property_dispersion": "dispersion from property sample to property sample",
+    "joint_dispersion": "dispersion of record and property sample together",
 }
 
 
 def _with_total(variances: Floats) -> Floats:
-    """Return total and three dispersions."""
+    """Compute the total dispersion and its three components."""
     return np.asarray(np.sqrt(np.concatenate([variances.sum(axis=-1, keepdims=True), variances], axis=-1)))
 
 
@@ -178,7 +178,7 @@ def _with_ends(values: Floats, ends: Floats) -> dict[str, tuple[tuple[()], float
             variables[f"{name}_{side}"] = (
                 (),
                 float(end[place]),
-                {"units": "1", "long_name": f"its interval, {side} end"},
+                {"units": "1", "long_name": f"{about}, {side} end of the interval"},
             )
     return variables
 
@@ -212,7 +212,7 @@ def _series(reached: xr.DataArray, scale: npt.ArrayLike | xr.DataArray) -> tuple
 
 
 def _capacities(state: npt.NDArray[np.int64], u: Floats) -> tuple[Floats, Floats]:
-    """Return ln C and the step d about it, NaN where it is beyond the scales or a run below it is not known."""
+    """Return ln C and the step d around it; NaN if C is beyond the scales or a run below it is undecided."""
     first = np.argmax(state == 1, axis=-1)[..., np.newaxis]
     known = (state == 1).any(axis=-1) & (first[..., 0] > 0) & ~_unknown_below(state)
     high = np.take_along_axis(u, first, axis=-1)[..., 0]
@@ -221,7 +221,7 @@ def _capacities(state: npt.NDArray[np.int64], u: Floats) -> tuple[Floats, Floats
 
 
 def _unknown_below(state: npt.NDArray[np.int64]) -> npt.NDArray[np.bool_]:
-    """Return whether a run at or below the first that reached the limit state is not known."""
+    """Return whether a run at or below the first that reached the limit state is undecided."""
     before = np.cumsum(state == 1, axis=-1) == 0
     return np.asarray(np.any(before & (state == NOT_KNOWN), axis=-1))
 

@@ -1,4 +1,4 @@
-"""Lognormal fragility curves by maximum likelihood, with what the data leave open."""
+"""Lognormal fragility curves by maximum likelihood, with intervals."""
 
 import numpy as np
 import xarray as xr
@@ -88,8 +88,8 @@ def fit_fragility(
     level = require_confidence(confidence)
     given = Observations.of(intensity, reached, record, property_sample)
     draws = require_whole("resamples", resamples, least=0)
-    seen = given.plural(counting)
-    fallen_back = given.non_monotone()
+    seen = given.counted(counting)
+    non_monotone = given.non_monotone()
     replicates = _replicates(seen, draws, rng)
     x = np.geomspace(seen.intensity.min(), seen.intensity.max(), CURVE_POINTS)
     curves = [
@@ -100,7 +100,7 @@ def fit_fragility(
         .assign(
             non_monotone_records=(
                 LIMIT_STATE,
-                fallen_back,
+                non_monotone,
                 {"long_name": "records with survival above an intensity that reached it"},
             )
         )
@@ -141,7 +141,7 @@ def _curve(seen: Observations, place: int, x: Floats, confidence: float, replica
     status = FitStatus(fits.status[0])
     fitted = status is FitStatus.FITTED
     eta = fits.intercept[0] + fits.slope[0] * np.log(x)
-    # Resamples of data without a fit agree with one another by chance: the likelihood bounds what can be said.
+    # Resamples of data without a fit may agree by chance, so the intervals come from the likelihood.
     if replicates is None or not fitted:
         likelihood = Likelihood(u=u, hits=hits, misses=misses, best=float(fits.log_likelihood[0]))
         covariance, ends = _covariance(fits), profile_ends(likelihood, status, fits, confidence)
@@ -172,7 +172,7 @@ def _curve(seen: Observations, place: int, x: Floats, confidence: float, replica
 
 
 def _covariance(fits: Fits) -> Floats:
-    """Return the covariance of (ln median, ln dispersion): ln m = −a/b, ln β = −ln b."""
+    """Compute the covariance of (ln median, ln dispersion), with ln m = −a/b, ln β = −ln b."""
     if fits.status[0] != FitStatus.FITTED:
         return np.full((2, 2), np.nan)
     a, b = float(fits.intercept[0]), float(fits.slope[0])
@@ -181,7 +181,7 @@ def _covariance(fits: Fits) -> Floats:
 
 
 def _band(fits: Fits, u: Floats, eta: Floats, confidence: float) -> tuple[Floats, Floats]:
-    """Return the ends of the interval of the probability at each `u`, normal in η = a + bu."""
+    """Compute the interval of the probability at each `u`, normal in η = a + bu."""
     if fits.status[0] != FitStatus.FITTED:
         return np.full(u.shape, np.nan), np.full(u.shape, np.nan)
     design = np.stack([np.ones_like(u), u])

@@ -1,4 +1,4 @@
-"""Hazard: how often in a year an intensity is exceeded at a site."""
+"""Hazard curve of a site: annual rates of exceedance of an intensity."""
 
 from dataclasses import dataclass
 from typing import Any, Self
@@ -20,7 +20,7 @@ class HazardCurve:
     Parameters
     ----------
     intensity
-        Two or more, positive and different; they are kept in increasing order.
+        Two or more intensities, positive and different; they are stored in increasing order.
     rate
         Mean annual rate λ [1/a] at which each is exceeded, positive, nowhere increasing with intensity.
     units, quantity
@@ -28,12 +28,12 @@ class HazardCurve:
     component
         Definition of the horizontal component of the intensity, such as "RotD50"; None if it has none.
     origin
-        Where the rates come from, in words.
+        Origin of the rates, in words.
 
     Raises
     ------
     ParameterError
-        If the points are no such curve.
+        If the points do not form a hazard curve.
 
     Examples
     --------
@@ -64,7 +64,7 @@ class HazardCurve:
         investigation_time
             The time of the probabilities [a], often 50.
         **more
-            As of the curve: units, quantity, component, origin.
+            Other fields of the curve: units, quantity, component, origin.
 
         Raises
         ------
@@ -110,7 +110,7 @@ class HazardCurve:
             raise ParameterError(message)
         if self.component is not None:
             object.__setattr__(self, "component", HorizontalComponent.named(self.component).value)
-        # A value of its own, however the arrays change from which it was made.
+        # Tuples are independent of later changes of the arrays.
         object.__setattr__(self, "intensity", tuple(x.tolist()))
         object.__setattr__(self, "rate", tuple(rate.tolist()))
 
@@ -130,7 +130,7 @@ class HazardCurve:
         return np.asarray(-np.diff(self.log_rate) / np.diff(self.log_intensity))
 
     def at(self, intensity: npt.ArrayLike) -> Floats:
-        """Return the rates at which these intensities are exceeded; NaN beyond the ends of the curve."""
+        """Interpolate the rates of exceedance of these intensities; NaN beyond the ends of the curve."""
         u = np.log(np.asarray(intensity, dtype=float))
         rate = np.exp(np.interp(u, self.log_intensity, self.log_rate, left=np.nan, right=np.nan))
         return np.asarray(rate)

@@ -1,8 +1,8 @@
-"""Intervals of median and dispersion by profile likelihood: what a likelihood-ratio test does not reject.
+"""Intervals of median and dispersion by profile likelihood: values that a likelihood-ratio test does not reject.
 
-An interval holds each value at which the likelihood, made as large as the other number allows, is above its greatest by
-no less than half the quantile of χ² with one degree of freedom. It needs no maximum: where the data leave the median or
-the dispersion open to one side, that end is 0 or infinite.
+An interval contains each value whose log-likelihood, maximized over the other parameter, is less than half the quantile
+of χ² with one degree of freedom below the maximum. A maximum need not exist: if the data do not bound the median or the
+dispersion on one side, that end is 0 or infinite.
 """
 
 from collections.abc import Callable
@@ -16,12 +16,12 @@ from scipy.stats import chi2
 from stylobate.earthquakes.fragility.observations import Floats
 from stylobate.earthquakes.fragility.probit import Fits, FitStatus, score
 
-# Ends of intervals are found to this part, in the logarithm of the intensity and of the dispersion.
+# Tolerance of the ends of intervals, in the logarithm of the intensity and of the dispersion.
 _TOLERANCE = 1e-9
 # Beyond this slope, times the range of the logarithms, a curve is a step.
 _STEP = 1e5
 _DOUBLINGS = 60
-# Where one intensity parts the data, and has both, a median this part of the range away determines its share.
+# If one intensity separates the data and has hits and misses, a median at this fraction of the range from it fits them.
 _ASIDE = 1e-3
 
 
@@ -34,9 +34,9 @@ class Likelihood:
     u
         Logarithms of the intensities, shape (n,).
     hits, misses
-        How often each was reached and was not, shape (n,).
+        Numbers of runs that reached the limit state, and that did not, shape (n,).
     best
-        The greatest log-likelihood, or its least upper bound.
+        Maximum of the log-likelihood, or its supremum.
     """
 
     u: Floats
@@ -45,12 +45,12 @@ class Likelihood:
     best: float
 
     def at(self, intercept: float, slope: float) -> float:
-        """Return the log-likelihood."""
+        """Compute the log-likelihood."""
         eta = intercept + slope * self.u
         return float(np.sum(self.hits * log_ndtr(eta) + self.misses * log_ndtr(-eta)))
 
     def of_median(self, log_median: float) -> float:
-        """Return the log-likelihood with the dispersion that is most likely for a median."""
+        """Maximize the log-likelihood of a median over the dispersion."""
         z = self.u - log_median
 
         def rises(slope: float) -> float:
@@ -60,7 +60,7 @@ class Likelihood:
         return self.at(-slope * log_median, slope)
 
     def of_slope(self, slope: float) -> float:
-        """Return the log-likelihood with the median that is most likely for a dispersion 1/slope."""
+        """Maximize the log-likelihood of a dispersion 1/slope over the median."""
 
         def rises(intercept: float) -> float:
             return float(np.sum(score(intercept + slope * self.u, self.hits, self.misses)))
@@ -79,7 +79,7 @@ class Likelihood:
         return float(np.ptp(self.u)) or 1.0
 
     def without_slope(self, *, below_half: bool) -> float:
-        """Return the log-likelihood of a share that does not depend on the intensity, at most or at least 1/2."""
+        """Maximize the log-likelihood of a probability that is the same at all intensities, at most or at least 1/2."""
         hits, misses = float(self.hits.sum()), float(self.misses.sum())
         share = hits / (hits + misses)
         share = min(share, 0.5) if below_half else max(share, 0.5)
@@ -90,7 +90,7 @@ class Likelihood:
 def profile_ends(
     likelihood: Likelihood, status: FitStatus, fits: Fits, confidence: float
 ) -> tuple[float, float, float, float]:
-    """Return the ends of the intervals of median and dispersion of a set of counts and its fit."""
+    """Compute the intervals of median and dispersion for a set of counts and its fit."""
     if status in {FitStatus.NO_RUNS, FitStatus.NOT_INCREASING}:
         return 0.0, np.inf, 0.0, np.inf
     drop = 0.5 * float(chi2.ppf(confidence, 1))
@@ -101,7 +101,7 @@ def profile_ends(
 
 
 def _likely_median(likelihood: Likelihood, status: FitStatus, fits: Fits) -> float:
-    """Return the logarithm of a median that is as likely as any, or nearly."""
+    """Return the logarithm of a median with the maximum likelihood, or nearly."""
     u, hits, misses = likelihood.u, likelihood.hits, likelihood.misses
     if status is FitStatus.FITTED:
         return float(-fits.intercept[0] / fits.slope[0])
@@ -117,16 +117,16 @@ def _likely_median(likelihood: Likelihood, status: FitStatus, fits: Fits) -> flo
 
 
 def _median_interval(likelihood: Likelihood, start: float, drop: float) -> tuple[float, float]:
-    """Return the interval of the median.
+    """Compute the interval of the median.
 
     Parameters
     ----------
     likelihood
-        Of the data.
+        Likelihood of the data.
     start
-        Logarithm of a median whose likelihood is near the best one.
+        Logarithm of a median whose likelihood is near the maximum.
     drop
-        How far below the best the log-likelihood is at the ends.
+        Difference between the maximum log-likelihood and that at the ends.
     """
     ends = []
     for sense in (-1.0, 1.0):
@@ -142,7 +142,7 @@ def _median_interval(likelihood: Likelihood, start: float, drop: float) -> tuple
 
 
 def _dispersion_interval(likelihood: Likelihood, status: FitStatus, slope: float, drop: float) -> tuple[float, float]:
-    """Return the interval of the dispersion; arguments as of `_median_interval`, and the most likely slope 1/β."""
+    """Compute the interval of the dispersion; arguments as for `_median_interval`, and the most likely slope 1/β."""
 
     def above(log_slope: float) -> float:
         return likelihood.of_slope(float(np.exp(log_slope))) - likelihood.best + drop
@@ -157,7 +157,7 @@ def _dispersion_interval(likelihood: Likelihood, status: FitStatus, slope: float
 
 
 def _outwards(above: Callable[[float], float], start: float, step: float) -> float:
-    """Return where `above`, not negative at `start`, changes its sign in the direction of `step`."""
+    """Find the zero of `above`, which is not negative at `start`, in the direction of `step`."""
     near, far = start, start + step
     for _ in range(_DOUBLINGS):
         if above(far) < 0.0:
@@ -167,7 +167,7 @@ def _outwards(above: Callable[[float], float], start: float, step: float) -> flo
 
 
 def _zero(falls: Callable[[float], float], low: float, guess: float, high: float) -> float:
-    """Return where a falling function is 0 between `low` and `high`, or the end that is nearest to it."""
+    """Find the zero of a falling function between `low` and `high`, or the end nearest to it."""
     if falls(low) <= 0.0:
         return low
     near, far = low, guess

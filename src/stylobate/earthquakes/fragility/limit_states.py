@@ -18,28 +18,28 @@ def limit_states(
     slenderness: npt.ArrayLike | xr.DataArray | None = None,
     tilt_ratios: Sequence[float] = (1e-3, 0.1, 0.5, 1.0),
 ) -> xr.DataArray:
-    """Find which limit states each run reached: peak tilts in fractions of α = atan(c), and overturning.
+    """Find the limit states that each run reached: peak tilts in fractions of α_c = arctan c, and overturning.
 
-    α is the tilt at which the centre of mass of a column on its rim stands above the contact point. The
-    smallest tilt by default, 0.001 α, separates columns that rock from those that stand. It is not uplift: an upright
-    column lifts as soon as |a_h| > c (g + a_z), and may then tilt less.
+    The tipping angle α_c is the tilt at which the centre of mass stands above the contact point. The smallest default
+    tilt, 0.001 α_c, separates columns that rock from those that stand. It is not uplift: an upright column lifts if
+    |a_h| > c (g + a_z), and may then tilt less.
 
     Parameters
     ----------
     runs
-        With `outcome` and `peak_tilt` [rad], such as from `simulate_ensemble`, `overturning_map` or a sweep.
+        Runs with `outcome` and `peak_tilt` [rad], such as from `simulate_ensemble`, `overturning_map` or a sweep.
     slenderness
         c of each run; by default the coordinate `slenderness` of `runs`.
     tilt_ratios
-        Peak tilts over α, positive. A run that starts at a larger tilt has reached it from the start.
+        Peak tilts over α_c, positive. A run that starts at a larger tilt has reached it from the start.
 
     Returns
     -------
     xarray.DataArray
         Over `limit_state` and the dimensions of `runs`: 1 reached, 0 not, −1 not known. A run that overturned has
-        reached them all. One that failed, lifted off or was stopped at a tilt limit has reached what its tilt had
-        exceeded; the rest is undecided, as is a run that was not computed. One that is STILL_MOVING did not overturn by
-        its end and counts as one that SURVIVED.
+        reached all limit states. A run that failed, lifted off or stopped at a tilt limit has reached the limit states
+        below its peak tilt; the others are undecided. A run that was not computed is undecided. A run that is
+        STILL_MOVING did not overturn by its end and counts as SURVIVED.
 
     Raises
     ------
@@ -82,7 +82,7 @@ def limit_states(
 def _slenderness(runs: xr.Dataset, given: npt.ArrayLike | xr.DataArray | None) -> xr.DataArray:
     if given is None:
         if "slenderness" not in runs.coords:
-            message = "slenderness must be given where runs have no coordinate of that name, got None"
+            message = "slenderness must be given if runs have no coordinate of that name, got None"
             raise ParameterError(message)
         return runs["slenderness"]
     if isinstance(given, xr.DataArray):

@@ -1,4 +1,4 @@
-"""What a fragility is fitted to: the intensity of each run, whether it reached a limit state, its record and sample."""
+"""Data of a fragility fit: intensity, limit states, record and property sample of each run."""
 
 from dataclasses import dataclass, replace
 from enum import Enum
@@ -15,7 +15,7 @@ Integers: TypeAlias = npt.NDArray[np.int64]
 Data: TypeAlias = npt.ArrayLike | xr.DataArray
 
 NOT_KNOWN = -1
-"""The code of a run for which it is undecided whether it reached a limit state."""
+"""Code of an undecided run."""
 
 LIMIT_STATE = "limit_state"
 
@@ -31,22 +31,22 @@ class Counting(Enum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Observations:
-    """Runs, one after the other.
+    """Runs as flat arrays.
 
     Parameters
     ----------
     intensity
-        Shape (runs,), positive.
+        Intensity of each run, shape (runs,), positive.
     reached
         Shape (limit states, runs): 1 reached, 0 not, NOT_KNOWN.
     record
-        Number of the record of each run, from 0, shape (runs,); None where nobody named it.
+        Number of the record of each run, from 0, shape (runs,); None if records are not named.
     series
-        Number of the record and property sample of each run together.
+        Number of the combination of record and property sample of each run.
     records
-        Names of the records, by their numbers.
+        Names of the records, by number.
     names
-        Of the limit states.
+        Names of the limit states.
     attributes
         Unit and long name of the intensity.
     """
@@ -61,12 +61,12 @@ class Observations:
 
     @classmethod
     def of(cls, intensity: Data, reached: Data, record: Data | None, property_sample: Data | None = None) -> Self:
-        """Return the runs in arrays that broadcast by the names of their dimensions, or have one shape.
+        """Flatten arrays that broadcast by the names of their dimensions, or have equal shapes.
 
         Raises
         ------
         ParameterError
-            If shapes differ, an intensity is not positive, or `reached` holds other than truth values, 0, 1 and −1.
+            If shapes differ, an intensity is not positive, or `reached` has values other than booleans, 0, 1 and −1.
         """
         states = _labelled("reached", reached, ())
         if LIMIT_STATE not in states.dims:
@@ -99,18 +99,18 @@ class Observations:
             attributes={"long_name": "intensity", "units": "1", **levels.attrs},
         )
 
-    def plural(self, counting: Counting) -> Self:
-        """Return the runs with those above a first one reached, by record, counted as `counting` says.
+    def counted(self, counting: Counting) -> Self:
+        """Count the runs above the first reached one of each series by the rule `counting`.
 
         Raises
         ------
         ParameterError
-            If records are needed and not known.
+            If records are required but not named.
         """
         if counting is Counting.AS_COMPUTED:
             return self
         if self.series is None:
-            message = "counting must be Counting.AS_COMPUTED where no record is named, got Counting.FIRST; give record"
+            message = "counting must be Counting.AS_COMPUTED if no record is named, got Counting.FIRST; give record"
             raise ParameterError(message)
         reached = self.reached.copy()
         for state in reached:
@@ -149,7 +149,7 @@ def _labelled(name: str, values: Data, dims: tuple[str, ...], shape: tuple[int, 
 
 
 def _named(reached: xr.DataArray, name: str, values: Data | None) -> tuple[str, Data] | None:
-    """Return names that were given, or those that `reached` has in a dimension or coordinate."""
+    """Return the given names, or those of the dimension or coordinate of `reached`; None without either."""
     if values is not None:
         return name, values
     if name in reached.coords:
@@ -158,7 +158,7 @@ def _named(reached: xr.DataArray, name: str, values: Data | None) -> tuple[str, 
 
 
 def _numbered(values: xr.DataArray) -> tuple[npt.NDArray[Any], Integers]:
-    """Return the different values, and the place of each run's value among them."""
+    """Return the unique values, and the index of each run's value among them."""
     known, number = np.unique(values.to_numpy().ravel(), return_inverse=True)
     return known, number.astype(np.int64)
 

@@ -1,12 +1,12 @@
-"""The lognormal fragility P = Φ(ln(x/m)/β) as a probit regression on u = ln x: many fits at once.
+"""Probit regression on u = ln x for the lognormal fragility P = Φ(ln(x/m)/β): many fits at once.
 
 With a = −ln(m)/β and b = 1/β, η = a + bu, the log-likelihood of hits and misses
 
     ℓ = Σ hits ln Φ(η) + misses ln Φ(−η)                                                               (1)
 
-is concave in (a, b): Newton's method finds its one maximum wherever there is one. There is none where one intensity
-parts those that reached from those that did not (Albert and Anderson, "On the existence of maximum likelihood estimates
-in logistic regression models", Biometrika 71, 1984).
+is concave in (a, b), so Newton's method finds its only maximum. No maximum exists if one intensity separates hits from
+misses (Albert and Anderson, "On the existence of maximum likelihood estimates in logistic regression models",
+Biometrika 71, 1984).
 """
 
 from dataclasses import dataclass
@@ -18,7 +18,7 @@ from scipy.special import log_ndtr
 
 from stylobate.earthquakes.fragility.observations import Floats, Integers
 
-# Newton's method ends where a step would gain less than this part of ℓ, far below any standard error.
+# Newton's method ends if a step gains less than this fraction of ℓ, far below any standard error.
 _GAIN = 1e-14
 _STEPS = 60
 _HALVINGS = 40
@@ -33,13 +33,13 @@ class FitStatus(IntEnum):
     NO_RUNS = 1
     """Every run is undecided."""
     NONE_REACHED = 2
-    """No run reached it: the median lies above, the dispersion is open."""
+    """No run reached it: the median lies above, the dispersion is unknown."""
     ALL_REACHED = 3
-    """Every run reached it: the median lies below, the dispersion is open."""
+    """Every run reached it: the median lies below, the dispersion is unknown."""
     ONE_INTENSITY = 4
     """All runs have one intensity: only the fraction reached there is known."""
     SEPARATED = 5
-    """Each run reached it above some intensity and none below: the median lies in the gap, the dispersion may be 0."""
+    """All runs above some intensity reached it, no run below: the median lies in the gap, the dispersion may be 0."""
     NOT_INCREASING = 6
     """It is reached no more often at higher intensities: no lognormal fragility describes the data."""
 
@@ -53,9 +53,9 @@ class Fits:
     status
         Values of FitStatus.
     intercept, slope
-        a and b; NaN where the status is not FITTED.
+        a and b; NaN if the status is not FITTED.
     log_likelihood
-        (1) at its maximum; its least upper bound where there is none.
+        Maximum of (1), or its supremum if there is no maximum.
     information
         Observed information of (a, b), shape (fits, 2, 2).
     """
@@ -68,14 +68,14 @@ class Fits:
 
 
 def fit_probit(u: Floats, hits: Floats, misses: Floats) -> Fits:
-    """Return the most likely fits.
+    """Compute the maximum-likelihood fits.
 
     Parameters
     ----------
     u
         Logarithms of the intensities, shape (n,).
     hits, misses
-        How often each was reached and was not, shape (fits, n).
+        Numbers of runs that reached the limit state, and that did not, shape (fits, n).
     """
     status = _existence(u, hits, misses)
     solved = status == FitStatus.FITTED
@@ -98,23 +98,23 @@ def fit_probit(u: Floats, hits: Floats, misses: Floats) -> Fits:
 
 
 def log_likelihood(intercept: Floats, slope: Floats, u: Floats, hits: Floats, misses: Floats) -> Floats:
-    """Return (1), of shape (fits,)."""
+    """Compute (1), of shape (fits,)."""
     eta = intercept[:, np.newaxis] + slope[:, np.newaxis] * u
     return np.asarray((hits * log_ndtr(eta) + misses * log_ndtr(-eta)).sum(axis=-1))
 
 
 def score(eta: Floats, hits: Floats, misses: Floats) -> Floats:
-    """Return dℓ/dη of each run."""
+    """Compute dℓ/dη of each run."""
     return np.asarray(hits * _mills(eta) - misses * _mills(-eta))
 
 
 def _mills(z: Floats) -> Floats:
-    """Return φ(z)/Φ(z)."""
+    """Compute φ(z)/Φ(z)."""
     return np.asarray(np.exp(-0.5 * z * z - _LOG_ROOT_2PI - log_ndtr(z)))
 
 
 def _derivatives(eta: Floats, u: Floats, hits: Floats, misses: Floats) -> tuple[Floats, Floats]:
-    """Return gradient and negative Hessian of (1) in (a, b)."""
+    """Compute gradient and negative Hessian of (1) in (a, b)."""
     up, down = _mills(eta), _mills(-eta)
     first = hits * up - misses * down
     second = hits * up * (up + eta) + misses * down * (down - eta)
@@ -123,7 +123,7 @@ def _derivatives(eta: Floats, u: Floats, hits: Floats, misses: Floats) -> tuple[
 
 
 def _newton(u: Floats, hits: Floats, misses: Floats) -> Floats:
-    """Return (a, b) at the maximum of (1), for counts that have one."""
+    """Find (a, b) at the maximum of (1), for counts that have a maximum."""
     theta: Floats = np.zeros((len(hits), 2))
     value = log_likelihood(theta[:, 0], theta[:, 1], u, hits, misses)
     active = np.arange(len(hits))
@@ -142,7 +142,7 @@ def _newton(u: Floats, hits: Floats, misses: Floats) -> Floats:
 def _climb(
     theta: Floats, step: Floats, value: Floats, u: Floats, hits: Floats, misses: Floats
 ) -> tuple[Floats, Floats]:
-    """Return the ends of steps, each halved until it does not lower the likelihood."""
+    """Take steps, each halved until it does not lower the likelihood."""
     part = np.ones(len(theta))
     for _ in range(_HALVINGS):
         trial = theta + part[:, np.newaxis] * step
@@ -155,7 +155,7 @@ def _climb(
 
 
 def _existence(u: Floats, hits: Floats, misses: Floats) -> Integers:
-    """Return FITTED where (1) has a maximum, else why it has none."""
+    """Return FITTED if (1) has a maximum, else the status that states the reason."""
     hit, miss = hits > 0.0, misses > 0.0
     least_hit, largest_hit = _range(u, hit)
     least_miss, largest_miss = _range(u, miss)
@@ -180,9 +180,9 @@ def _range(u: Floats, chosen: npt.NDArray[np.bool_]) -> tuple[Floats, Floats]:
 
 
 def _supremum(hits: Floats, misses: Floats) -> float:
-    """Return the least upper bound of (1) for counts that an intensity parts: those at one intensity have their share.
+    """Compute the supremum of (1) for counts that an intensity separates: only intensities with both counts add to it.
 
-    Counts at one intensity stand in one place.
+    All counts of an intensity are in one entry.
     """
     total = hits + misses
     both = (hits > 0.0) & (misses > 0.0)

@@ -1,9 +1,9 @@
-"""Intervals from resampled records: the bootstrap over clusters, for runs of one record go together.
+"""Intervals by bootstrap over records: a cluster bootstrap, because runs of one record are dependent.
 
 Field and Welsh, "Bootstrapping clustered data", J. R. Stat. Soc. B 69 (2007). The percentiles are corrected for the
 median bias of the resamples (Efron, "Nonparametric standard errors and confidence intervals", Can. J. Stat. 9, 1981)
-and taken farther out as Student's t is, for records are few (Hesterberg, "What teachers should know about the
-bootstrap", Am. Stat. 69, 2015).
+and widened as in Student's t for small numbers of records (Hesterberg, "What teachers should know about the bootstrap",
+Am. Stat. 69, 2015).
 """
 
 from dataclasses import dataclass
@@ -23,11 +23,11 @@ class Replicates:
     Parameters
     ----------
     log_median, dispersion
-        NaN where there is no fit; dispersion 0 where an intensity separates the resample.
+        Fits; NaN without a fit; dispersion 0 if an intensity separates the resample.
     own
-        Logarithm of the median, and dispersion, of the data themselves.
+        Logarithm of the median, and dispersion, of the original data.
     records
-        How many there are.
+        Number of records.
     """
 
     log_median: Floats
@@ -36,24 +36,24 @@ class Replicates:
     records: int
 
     def without_fit(self) -> int:
-        """Return how many resamples have no fit."""
+        """Count the resamples without a fit."""
         return int(np.count_nonzero(np.isnan(self.log_median)))
 
     def covariance(self) -> Floats:
-        """Return the covariance of (ln median, ln dispersion) over the resamples with a fit."""
+        """Compute the covariance of (ln median, ln dispersion) over the resamples with a fit."""
         used = self.dispersion > 0.0
         if np.count_nonzero(used) < 2:  # noqa: PLR2004  a covariance needs two
             return np.full((2, 2), np.nan)
         return np.asarray(np.cov(self.log_median[used], np.log(self.dispersion[used])))
 
     def ends(self, confidence: float) -> tuple[float, float, float, float]:
-        """Return the ends of the intervals of median and dispersion."""
+        """Compute the intervals of median and dispersion."""
         median = self._percentiles(np.exp(self.log_median), float(np.exp(self.own[0])), confidence, (0.0, np.inf))
         dispersion = self._percentiles(self.dispersion, self.own[1], confidence, (0.0, np.inf))
         return float(median[0]), float(median[1]), float(dispersion[0]), float(dispersion[1])
 
     def band(self, u: Floats, confidence: float) -> tuple[Floats, Floats]:
-        """Return the ends of the interval of the probability at each `u`."""
+        """Compute the interval of the probability at each `u`."""
         ends = [
             self._percentiles(
                 _shares(one, self.log_median, self.dispersion), float(_shares(one, *self.own)), confidence, (0.0, 1.0)
@@ -66,11 +66,11 @@ class Replicates:
     def _percentiles(
         self, values: Floats, own: float, confidence: float, extremes: tuple[float, float]
     ) -> tuple[float, float]:
-        """Return the ends of an interval; values that are NaN count beyond both."""
+        """Compute the ends of an interval; NaN values count beyond both ends."""
         if np.isnan(own):
             return extremes
         none = np.isnan(values)
-        # Half of the ties, and of what has no value, lie below.
+        # Half of the ties and half of the NaN values count as lower.
         below = np.mean(np.where(none, 0.5, 0.5 * (values < own) + 0.5 * (values <= own)))
         bias = float(ndtri(np.clip(below, 0.5 / values.size, 1.0 - 0.5 / values.size)))
         free = self.records - 1.0
@@ -86,7 +86,7 @@ def _shares(u: float, log_median: Floats | float, dispersion: Floats | float) ->
 
 
 def resampled(seen: Observations, count: int, rng: np.random.Generator) -> list[Replicates]:
-    """Return fits to `count` resamples for each limit state; the records drawn are the same for all of them."""
+    """Fit `count` resamples for each limit state; all limit states share the drawn records."""
     record = seen.record
     if record is None:
         message = "record: resampling needs the record of each run. Pass `record=`."
@@ -105,15 +105,15 @@ def resampled(seen: Observations, count: int, rng: np.random.Generator) -> list[
 
 
 def _fitted(u: Floats, hits: Floats, misses: Floats, records: int) -> Replicates:
-    """Return fits of which the first is that of the data."""
+    """Fit counts; the first set is that of the original data."""
     fits = fit_probit(u, hits, misses)
     log_median, dispersion = -fits.intercept / fits.slope, 1.0 / fits.slope
-    parted = fits.status == FitStatus.SEPARATED
+    separated = fits.status == FitStatus.SEPARATED
     level = np.broadcast_to(u, hits.shape)
     safe = np.max(level, axis=1, where=misses > 0.0, initial=-np.inf)
     least = np.min(level, axis=1, where=hits > 0.0, initial=np.inf)
-    log_median[parted] = 0.5 * (safe[parted] + least[parted])
-    dispersion[parted] = 0.0
+    log_median[separated] = 0.5 * (safe[separated] + least[separated])
+    dispersion[separated] = 0.0
     return Replicates(
         log_median=log_median[1:],
         dispersion=dispersion[1:],

@@ -1,4 +1,4 @@
-"""What was observed: the share of runs that reached a limit state at each intensity, or near it."""
+"""Observed fractions of runs that reached a limit state at each intensity, or near it."""
 
 import numpy as np
 import xarray as xr
@@ -6,15 +6,15 @@ import xarray as xr
 from stylobate.earthquakes.fragility.observations import LIMIT_STATE, Floats, Integers, Observations
 from stylobate.studies.proportions import wilson_interval
 
-# More different intensities than this are put together in as many bins of equal numbers of runs.
+# Maximum number of separate intensities; more are grouped into bins with equal numbers of runs.
 _MOST_STRIPES = 25
 _BINS = 10
 
 
 def observed_shares(seen: Observations, confidence: float) -> xr.Dataset:
-    """Return shares over `stripe`: of the runs of one intensity, or in bins of equal numbers of runs.
+    """Compute fractions over `stripe`: runs of one intensity, or bins with equal numbers of runs.
 
-    Each has the geometric mean of its intensities, `stripe_intensity`, and their range.
+    Each stripe has the geometric mean `stripe_intensity` of its intensities, and their range.
     """
     bins = _bins(seen.intensity)
     count = int(bins.max()) + 1

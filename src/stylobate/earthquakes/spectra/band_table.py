@@ -12,45 +12,45 @@ from stylobate.earthquakes.spectra.cases import Cases
 from stylobate.earthquakes.spectra.edges import Edges, Ends, Integers
 
 
-# Of each field the type and, as an attribute of the result, the long name.
+# Each annotation has the type of a field and its long name, an attribute of the result.
 @dataclass(frozen=True, slots=True)
 class _Band:
-    band_from: Annotated[float, "least scale of the band that overturned"]
-    band_to: Annotated[float, "largest scale of the band that overturned"]
-    safe_below: Annotated[float, "largest scale below the band that did not overturn"] = np.nan
-    safe_above: Annotated[float, "least scale above the band that did not overturn"] = np.nan
-    open_below: Annotated[bool, "the band may begin lower: it reaches the first scale, or an undecided run"] = False
-    open_above: Annotated[bool, "the band may go on: it reaches the last scale, or an undecided run"] = False
-    undecided_below: Annotated[bool, "the next run below the band is undecided"] = False
-    undecided_above: Annotated[bool, "the next run above the band is undecided"] = False
-    uncertain_below: Annotated[bool, "a run at its lower edge is uncertain or undecided"] = False
-    uncertain_above: Annotated[bool, "a run at its upper edge is uncertain or undecided"] = False
+    band_from: Annotated[float, "smallest scale of the interval that overturned"]
+    band_to: Annotated[float, "largest scale of the interval that overturned"]
+    safe_below: Annotated[float, "largest scale below the interval that did not overturn"] = np.nan
+    safe_above: Annotated[float, "smallest scale above the interval that did not overturn"] = np.nan
+    open_below: Annotated[bool, "the interval may begin lower: it reaches the first scale or an undecided run"] = False
+    open_above: Annotated[bool, "the interval may end higher: it reaches the last scale or an undecided run"] = False
+    undecided_below: Annotated[bool, "the next run below the interval is undecided"] = False
+    undecided_above: Annotated[bool, "the next run above the interval is undecided"] = False
+    uncertain_below: Annotated[bool, "a run at the lower edge is uncertain or undecided"] = False
+    uncertain_above: Annotated[bool, "a run at the upper edge is uncertain or undecided"] = False
 
 
 @dataclass(frozen=True, slots=True)
 class _Stretch:
     undecided_from: Annotated[float, "largest decided scale below undecided runs, or the first scale"]
-    undecided_to: Annotated[float, "least decided scale above undecided runs, or the last scale"]
+    undecided_to: Annotated[float, "smallest decided scale above undecided runs, or the last scale"]
 
 
 def band_table(cases: Cases, scan: Ends, edges: Edges) -> xr.Dataset:
-    """Return the bands of each case, and what is undecided between and beyond them.
+    """Tabulate the overturning intervals and undecided stretches of each case.
 
     Returns
     -------
     xarray.Dataset
-        Over the axes and `band`, NaN beyond the last: the bands. Over the axes and `stretch`: `undecided_from` and
-        `undecided_to`. Over the axes: how many bands, `reversals` and undecided runs there are, and `decided_to`.
+        Over the axes and `band`, NaN beyond the last: the intervals. Over the axes and `stretch`: `undecided_from` and
+        `undecided_to`. Over the axes: the numbers of intervals, `reversals` and undecided runs, and `decided_to`.
     """
     own = [np.flatnonzero((edges.case == case) & ~edges.turns) for case in range(cases.count)]
     bands = [_bands_of(scan[case], edges, chosen) for case, chosen in enumerate(own)]
     stretches = [_stretches_of(scan[case], edges, chosen) for case, chosen in enumerate(own)]
     dims = tuple(cases.axes)
     counts = {
-        "bands": ([len(row) for row in bands], "bands that overturn"),
+        "bands": ([len(row) for row in bands], "overturning intervals"),
         "reversals": (
             np.bincount(edges.case[edges.turns], minlength=cases.count),
-            "changes of direction within the bands, without a safe gap as wide as an edge",
+            "changes of direction within the intervals, without a safe gap as wide as an edge",
         ),
         "unknown": (np.count_nonzero(~scan.decided, axis=1), "undecided runs of the scan"),
     }
@@ -80,7 +80,7 @@ def _column(rows: Sequence[Sequence[_Band]] | Sequence[Sequence[_Stretch]], name
 
 
 def _bands_of(scan: Ends, edges: Edges, own: Integers) -> list[_Band]:
-    """Return the bands of one case, of which the edges are its `own`: each ends where decided runs end."""
+    """Return the overturning intervals of one case from its `own` edges; an interval ends at an undecided run."""
     bands: list[_Band] = []
     begun: dict[str, Any] = {}
     if scan.state[0] == 1:
@@ -99,14 +99,14 @@ def _bands_of(scan: Ends, edges: Edges, own: Integers) -> list[_Band]:
 
 
 def _outside(side: str, run: Ends, *, unsure: bool) -> dict[str, Any]:
-    """Return what stands on this side of a band: a run that did not overturn, or an undecided one."""
+    """Return the fields for the run on one side of an interval: it survived, or it is undecided."""
     if run.decided:
         return {f"safe_{side}": float(run.scale), f"uncertain_{side}": unsure}
     return {f"open_{side}": True, f"undecided_{side}": True, f"uncertain_{side}": True}
 
 
 def _stretches_of(scan: Ends, edges: Edges, own: Integers) -> list[_Stretch]:
-    """Return where one case is undecided, from a decided run, or an end of the scan, to the next."""
+    """Return the undecided stretches of one case, each between decided runs or ends of the scan."""
     begins = [edge for edge in own if edges.high.state[edge] < 0]
     ends = [edge for edge in own if edges.low.state[edge] < 0]
     first = [] if scan.decided[0] else [float(scan.scale[0])]

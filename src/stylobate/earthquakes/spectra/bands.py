@@ -24,7 +24,7 @@ from stylobate.studies.sweeps.computing import Progress, silent
 from stylobate.studies.sweeps.quantities import Floats, checked_values
 from stylobate.studies.sweeps.recipe import RunOptions
 
-# Nearer than this the ends of an edge differ by rounding only.
+# Smallest relative width of an edge; below it the ends differ by rounding only.
 _NARROWEST = 1e-9
 
 
@@ -90,17 +90,17 @@ def overturning_bands(
         decided scales on both sides, or the ends of the scan. `bands` counts intervals; `reversals` the changes of
         direction in them without a surviving scale between; `unknown` the undecided runs of the scan; `decided_to` is
         the largest scale up to which every run was decided. Coordinates normalize: `frequency_parameter` p,
-        `tipping_angle` α, `rim_distance` R, `acceleration_ratio` (peak horizontal base acceleration over g tan α, at
+        `tipping_angle` α_c, `rim_distance` R, `acceleration_ratio` (peak horizontal base acceleration over g tan α, at
         scale 1) and, of pulses and harmonic motions, `frequency_ratio` ω/p.
 
     Raises
     ------
     ParameterError
-        If an argument is out of range, or `tilt_limit` is given: a run stopped there is not known to overturn.
+        If an argument is out of range, or `tilt_limit` is given: a run stopped there may or may not overturn.
     UnsupportedError
         If the motion lacks a number that is to vary.
     Interrupted
-        On Ctrl-C; `partial` has the bands as far as they are known.
+        On Ctrl-C; `partial` has the intervals found so far.
 
     Warns
     -----
@@ -151,7 +151,7 @@ def overturning_bands(
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Search:
-    """A scan, and its edges halved round by round, each a sweep; those of a store lie inside that of the scan."""
+    """A scan, and rounds of bisection of its edges; each round is a sweep, stored inside the store of the scan."""
 
     cases: Cases
     durations: Floats
@@ -219,7 +219,7 @@ class _Search:
                 provenance=self.provenance,
                 width=self.width,
                 scale_step=step - 1.0,
-                resolution=f"intervals and gaps narrower than the step of scales, a factor {step:.4g}, may be missed",
+                resolution=f"intervals and gaps narrower than the step of the scan, a factor {step:.4g}, may be missed",
                 runs=sum(self.done) or computed,
             )
         )
@@ -235,6 +235,6 @@ def _checked_scales(scales: npt.ArrayLike) -> Floats:
 
 def _checked_width(width: float) -> float:
     if require_positive("width", width) < _NARROWEST:
-        message = f"width must be at least {_NARROWEST:g}, below which rounding decides; got {width!r}"
+        message = f"width must be at least {_NARROWEST:g}, because rounding errors are larger; got {width!r}"
         raise ParameterError(message)
     return float(width)

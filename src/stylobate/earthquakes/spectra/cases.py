@@ -1,4 +1,4 @@
-"""The cases of a spectrum: every combination of the values of some parameters, and what normalizes each."""
+"""The cases of a spectrum: all combinations of parameter values, with their normalizing quantities."""
 
 import math
 from collections.abc import Mapping
@@ -24,17 +24,17 @@ from stylobate.studies.sweeps.recipe import RunOptions
 Integers = npt.NDArray[np.int64]
 
 TAIL = 40.0
-"""How long columns are followed after the end of their base motion, over 1/p.
+"""Free-vibration time after the end of the base motion, over 1/p.
 
-Near the edge of a band a column stays near its balance, which it leaves as e^(pt), and perhaps comes back to that on
-its other side: after 20/p still, within about 10⁻⁶ of the edge; after 40/p, within 10⁻¹².
+Near the edge of an overturning interval a column stays near its unstable equilibrium, and leaves it as e^(pt). After
+20/p it is still near within about 10⁻⁶ of the edge; after 40/p, within 10⁻¹².
 """
 
 _MOTION = "motion"
-# What normalizes a spectrum, for each case.
+# Quantities that normalize a spectrum, for each case.
 _NUMBERS: Mapping[str, Mapping[str, str]] = {
     "frequency_parameter": {"units": "rad s-1", "long_name": "frequency parameter p"},
-    "tipping_angle": {"units": "rad", "long_name": "tipping angle α"},
+    "tipping_angle": {"units": "rad", "long_name": "tipping angle α_c"},
     "rim_distance": {"units": "m", "long_name": "distance R of the centre of mass from the rim"},
     "acceleration_ratio": {"units": "1", "long_name": "peak base acceleration / (c g), at scale 1"},
     "frequency_ratio": {"units": "1", "long_name": "angular frequency of the base motion / p"},
@@ -44,10 +44,10 @@ _NUMBERS: Mapping[str, Mapping[str, str]] = {
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Cases:
-    """What the runs of a spectrum are made of.
+    """Model, base motion and parameter values of the runs of a spectrum.
 
-    `axes` are the parameters with their values as they were asked for; `values` are those that ensembles vary, and
-    `numbers` what normalizes, both flat over the cases.
+    `axes` has the requested parameters with their values; `values` has the parameters that ensembles vary and `numbers`
+    the normalizing quantities, both flat over the cases.
     """
 
     model: Model
@@ -60,7 +60,7 @@ class Cases:
     def of(
         cls, model: Model, motion: BaseMotion, over: Mapping[str, npt.ArrayLike] | None, *, scaled: bool = False
     ) -> Self:
-        """Return the cases `over` these values.
+        """Create the cases `over` these values.
 
         Parameters
         ----------
@@ -97,12 +97,12 @@ class Cases:
         return math.prod(self.shape)
 
     def durations(self, duration: float | None, tail: float | None) -> Floats:
-        """Return how long to follow each case [s]: to `tail` [s] after the end of its motion, or for the `duration`.
+        """Return the duration of each case [s]: to `tail` [s] after the end of its motion, or the given `duration`.
 
         Raises
         ------
         ParameterError
-            If one is not positive, or the motion never ends and there is no `duration`.
+            If an argument is not positive, or the motion never ends and there is no `duration`.
         """
         if duration is not None:
             return np.full(self.count, require_positive("duration", duration, "s"))
@@ -114,17 +114,17 @@ class Cases:
         return ends
 
     def sweep(self, case: Integers, durations: Floats, scale: Floats | None, **options: Unpack[RunOptions]) -> Sweep:
-        """Return the runs of these cases, each for its one of the `durations` and perhaps with a `scale`."""
+        """Build the sweep of these cases, each with its duration and, if given, its `scale`."""
         at = {name: values[case] for name, values in self.values.items()}
         scaled = {} if scale is None else {"scale": scale}
         return Sweep.points(self.model, self.motion, at={**at, **scaled, "duration": durations[case]}, **options)
 
     def over_axes(self, values: npt.NDArray[Any]) -> npt.NDArray[Any]:
-        """Return `values`, flat over the cases in their first dimension, over the axes."""
+        """Reshape the first dimension of `values` from cases to the axes."""
         return values.reshape(self.shape + values.shape[1:])
 
     def coordinates(self) -> dict[str, xr.Variable]:
-        """Return the axes, what normalizes over them, and the names of motions."""
+        """Return the axes, the normalizing quantities over them, and the names of motions."""
         dims = tuple(self.axes)
         found = {name: xr.Variable((name,), axis, attributes_of(name)) for name, axis in self.axes.items()}
         for name, attributes in _NUMBERS.items():

@@ -1,4 +1,4 @@
-"""Edges between neighbouring scales of different ends: found in a scan, and halved until they are narrow."""
+"""Edges between neighbouring scales with different outcomes, found in a scan and bisected."""
 
 from dataclasses import dataclass
 from typing import Any, Self
@@ -16,10 +16,10 @@ Flags = npt.NDArray[np.bool_]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Ends:
-    """What runs at these `scale` came to, arrays of one shape.
+    """Outcomes of runs at these values of `scale`, as arrays of equal shape.
 
-    `state` is 1 where the column overturned, towards the azimuth `direction` [rad]; 0 where it did not, negative where
-    that is not known.
+    `state` is 1 if the column overturned, towards the azimuth `direction` [rad]; 0 if it did not; negative if the run
+    is undecided.
     """
 
     scale: Floats
@@ -29,7 +29,7 @@ class Ends:
 
     @classmethod
     def of(cls, runs: xr.Dataset, scale: Floats) -> Self:
-        """Return what the `runs` came to, which were made at these scales, one after another."""
+        """Collect the outcomes of `runs` at these scales, in the same order."""
         direction, uncertain = (runs[name].to_numpy().reshape(scale.shape) for name in ("direction", "uncertain"))
         return cls(scale, overturned_or_not(runs).reshape(scale.shape), direction, uncertain.astype(bool))
 
@@ -38,28 +38,28 @@ class Ends:
 
     @property
     def decided(self) -> Flags:
-        """Whether it is known if the column overturned."""
+        """Whether each run is decided."""
         return self.state >= 0
 
     def differ(self, other: "Ends") -> Flags:
-        """Return where the states differ, undecided being one state, or both overturn more than a right angle apart."""
+        """Flag pairs with different states (undecided is one state) or overturning more than a right angle apart."""
         apart = np.cos(self.direction - other.direction) < 0.0
         unlike = np.maximum(self.state, -1) != np.maximum(other.state, -1)
         return np.asarray(unlike | ((self.state == 1) & apart))
 
 
 def joined(*parts: Ends) -> Ends:
-    """Return what all the runs came to, one part after another."""
+    """Concatenate outcomes."""
     names = ("scale", "state", "direction", "uncertain")
     return Ends(*(np.concatenate([getattr(part, name) for part in parts]) for name in names))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Edges:
-    """Changes along the scale, in order of case and scale: between the runs `low` and `high` something changes.
+    """Changes of the outcome along the scale between the runs `low` and `high`, in order of case and scale.
 
-    Overturning begins or ends there; or decided runs end or begin; or the direction of overturning turns round, and
-    there may be a safe gap between.
+    At an edge overturning begins or ends, or decided runs end or begin, or the direction of overturning reverses; a
+    reversal may hide a safe gap.
     """
 
     case: Integers
@@ -68,7 +68,7 @@ class Edges:
 
     @classmethod
     def between(cls, scan: Ends) -> Self:
-        """Return the edges of a scan, whose arrays have the shape (cases, scales), scales increasing."""
+        """Find the edges of a scan; its arrays have the shape (cases, scales), with increasing scales."""
         case, place = np.nonzero(scan[:, :-1].differ(scan[:, 1:]))
         return cls(case, scan[case, place], scan[case, place + 1])
 
@@ -79,21 +79,21 @@ class Edges:
 
     @property
     def turns(self) -> Flags:
-        """Where the column overturns on either side."""
+        """Whether the column overturns on both sides of an edge."""
         return np.asarray((self.low.state == 1) & (self.high.state == 1))
 
     def wide(self, width: float) -> Flags:
-        """Return which edges are wider than this fraction of their scale."""
+        """Flag the edges that are wider than this fraction of their scale."""
         return np.asarray(self.high.scale > self.low.scale * (1.0 + width))
 
     def halvings(self, width: float) -> int:
-        """Return how many runs it takes to halve all of them until none is wide, if no more are found."""
+        """Return the number of runs that bisect all edges to this width, if no further edges are found."""
         wide = self.wide(width)
         ratio = np.log(self.high.scale[wide] / self.low.scale[wide]) / np.log1p(width)
         return int(np.ceil(np.log2(ratio)).sum())
 
     def halved(self, chosen: Flags, middle: Ends) -> "Edges":
-        """Return the edges with those `chosen` cut where the runs `middle` were made: of each the parts that differ."""
+        """Cut the `chosen` edges at the runs `middle`; keep the halves whose ends differ."""
         case, low, high = self.case[chosen], self.low[chosen], self.high[chosen]
         below, above = low.differ(middle), middle.differ(high)
         cases = np.concatenate([self.case[~chosen], case[below], case[above]])

@@ -1,4 +1,4 @@
-"""What repeats a spectrum, as plain values."""
+"""Provenance of a spectrum: the values that repeat it."""
 
 import json
 from dataclasses import asdict
@@ -14,7 +14,7 @@ from stylobate.studies.sweeps.recipe import DEFAULTS, RunOptions
 def provenance_of_spectrum(
     model: Model, motion: BaseMotion, options: RunOptions, *, tail: float | None, duration: float | None, **own: float
 ) -> str:
-    """Return model, motion, options and how long columns are followed, in JSON."""
+    """Return model, motion, options and length of the runs, in JSON."""
     chosen: dict[str, Any] = {**DEFAULTS, **options}
     chosen["rules"] = asdict(chosen["rules"] or OutcomeRules())
     length = {"tail": tail if tail is None else float(tail)} if duration is None else {"duration": float(duration)}

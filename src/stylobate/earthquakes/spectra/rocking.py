@@ -1,4 +1,4 @@
-"""Rocking spectra: peak tilt and peak rate of tilt against size and slenderness."""
+"""Rocking spectra: peak tilt and peak tilt rate over size and slenderness."""
 
 from collections.abc import Mapping
 from functools import partial
@@ -24,7 +24,7 @@ from stylobate.studies.sweeps.labelled import labelled_sweep
 from stylobate.studies.sweeps.recipe import RunOptions
 
 _SAMPLES = 2001
-# What is kept of the histories is the peak rate.
+# Histories; the result keeps only the peak rate of them.
 _HISTORIES = ("sample_time", "sampled_tilt", "sampled_tilt_rate")
 
 
@@ -63,7 +63,7 @@ def rocking_spectrum(
     Returns
     -------
     xarray.Dataset
-        Of kind "rocking spectrum", over the names: `peak_tilt_ratio`, peak tilt over α; `peak_rate_ratio`, peak rate
+        Of kind "rocking spectrum", over the names: `peak_tilt_ratio`, peak tilt over α_c; `peak_rate_ratio`, peak rate
         of the tilt vector over p [rad]; both NaN if the column overturned or the run is undecided, see `outcome`;
         and all variables of ensembles. Coordinates as for `overturning_bands`, and `rocking_period` 2π/p [s].
 

@@ -107,8 +107,8 @@ def _intensity(assessment: Assessment, column: str, record: str) -> str:
     cells = dict(zip(table.header, row, strict=True))
     spectral = next(name for name in table.header if name.startswith("Sa") and name.endswith("[g]"))
     return (
-        f"At that scale PGA is {cells['PGA [g]']} g, PGV {cells['PGV [m/s]']} m/s and {spectral.removesuffix(' [g]')} "
-        f"{cells[spectral]} g ({cells['definition']})."
+        f"At scale {cells['smallest overturning scale']} PGA is {cells['PGA [g]']} g, PGV {cells['PGV [m/s]']} m/s and "
+        f"{spectral.removesuffix(' [g]')} {cells[spectral]} g ({cells['definition']})."
     )
 
 
