@@ -94,7 +94,7 @@ def test_an_orbit_that_is_its_own_mirror_image_is_told():
 @pytest.mark.parametrize(
     ("parameter", "bounds", "told"),
     [
-        ("angular_frequency", ((0.8, 4.0), (0.8, 4.0)), "another than angular_frequency"),
+        ("angular_frequency", ((0.8, 4.0), (0.8, 4.0)), "parameter must differ from angular_frequency"),
         ("acceleration", ((0.8, 4.0), (0.1, 0.4)), "bounds must be two numbers that enclose"),
         ("acceleration", ((0.8, 4.0), (0.01, math.nan)), "bounds must be two numbers that enclose"),
         ("colour", ((0.8, 4.0), (0.01, 0.4)), "colour"),
