@@ -40,11 +40,18 @@ CASES = {
         *(sb.PlanarRocking(COLUMN, restitution=0.8), STRONG, STILL, STILL, 2.0),
         "STAND PLANE_STEP uplift impact rest",
     ),
-    "leaps past the upright": (sb.Slender(COLUMN), BASE_AT_REST, (0.3 * C, 0.0), (0.0, 1e-11 * C), 3.0, "STEP LEAP"),
+    "leaps past the upright": (
+        sb.Slender(COLUMN),
+        BASE_AT_REST,
+        (0.3 * C, 0.0),
+        (0.0, 1e-11 * C),
+        3.0,
+        "STEP ANALYTICAL_STEP",
+    ),
     "strikes its base": (sb.Wobbling(COLUMN, restitution=0.9), CIRCLE, (0.2 * C, 0.0), (0.0, 1e-4), 3.0, "STEP impact"),
     "rests, then rocks in a plane": (
         *(sb.Wobbling(COLUMN, restitution=0.3), STRONG.delayed(2.0), (0.02 * C, 0.01 * C), STILL, 2.8),
-        "STEP LEAP STAND PLANE_STEP uplift impact rest",
+        "STEP ANALYTICAL_STEP STAND PLANE_STEP uplift impact rest",
     ),
 }
 RTOL = 1e-10
@@ -94,7 +101,7 @@ def assert_alike(model, run, other):
     np.testing.assert_allclose(model.tilt(states), model.tilt(expected), atol=1e-6 * C)
     np.testing.assert_allclose(model.tilt_rate(states), model.tilt_rate(expected), atol=1e-5 * C)
     np.testing.assert_array_equal(run.trajectory.resting(tau), other.trajectory.resting(tau))
-    if run.log(Log.IN_SPACE) and TraceKind.PLANE_STEP not in run.trajectory.stretches[:, Trace.KIND]:
+    if run.log(Log.THREE_DIMENSIONAL) and TraceKind.PLANE_STEP not in run.trajectory.stretches[:, Trace.KIND]:
         azimuth, known = (
             one.trajectory.azimuth(tau, model.tilt(seen)) for one, seen in ((run, states), (other, expected))
         )
@@ -166,7 +173,7 @@ def test_a_step_that_is_taken_back_leaves_no_trace():
 def test_a_run_may_end_at_or_within_a_leap(share):
     model, motion, tilt, rate, _, _ = CASES["leaps past the upright"]
     whole = followed("leaps past the upright")[0].trajectory
-    leap = whole.stretches[whole.stretches[:, Trace.KIND] == TraceKind.LEAP][0]
+    leap = whole.stretches[whole.stretches[:, Trace.KIND] == TraceKind.ANALYTICAL_STEP][0]
     end = leap[Trace.START] + share * leap[Trace.LENGTH]
     duration = end * model.time_scale
     plan = plan_of(model, motion, duration, rtol=RTOL)
@@ -263,7 +270,7 @@ def test_what_is_counted_of_contacts_is_what_the_trace_shows(case):
     assert told.noted[0, Change.IMPACTS] == sum(kind in ("land", "face_impact") for kind in kinds)
     trajectory = run.trajectory
     # A short time in which one kind becomes another counts to that.
-    leaps = np.flatnonzero(trajectory.stretches[:, Trace.KIND] == TraceKind.LEAP)
+    leaps = np.flatnonzero(trajectory.stretches[:, Trace.KIND] == TraceKind.ANALYTICAL_STEP)
     contacts, lengths = trajectory.contacts.copy(), trajectory.ends - trajectory.starts
     contacts[leaps] = contacts[leaps + 1]
     for kind, times in zip((k for k in Contact if k is not Contact.JAMMED), told.times.values(), strict=True):

@@ -10,7 +10,7 @@ from scipy.integrate import DOP853, OdeSolution
 from scipy.optimize import brentq
 
 from stylobate.engine.pace import report, step_limit
-from stylobate.engine.tolerances import HOP_FROM, HOP_OFFSET
+from stylobate.engine.tolerances import PASSAGE_FROM, PASSAGE_OFFSET
 from stylobate.engine.user_events import EventRecorder
 from stylobate.models import Model
 
@@ -249,7 +249,9 @@ class Mover:
         c, speed = self.model.column.slenderness, math.hypot(vx, vy)
         inward = x * vx + y * vy < 0.0
         return bool(
-            inward and math.hypot(x, y) < HOP_FROM * min(c, speed) and abs(x * vy - y * vx) < HOP_OFFSET * c * speed
+            inward
+            and math.hypot(x, y) < PASSAGE_FROM * min(c, speed)
+            and abs(x * vy - y * vx) < PASSAGE_OFFSET * c * speed
         )
 
     def _passage(self, before: Floats, steps: Steps, after: Floats) -> tuple[float, float]:

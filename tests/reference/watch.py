@@ -8,7 +8,7 @@ from functools import partial
 import numpy as np
 from scipy.optimize import brentq
 
-from stylobate.engine.tolerances import HOPS_APART, STILL
+from stylobate.engine.tolerances import STILL, SWINGS_APART
 from stylobate.models import Model
 
 from .following import Reason
@@ -81,7 +81,7 @@ class Watch:
         energy = self._rest_energy(tilt, speed, az)
         square = self.model.column.slenderness**2
         change = 2.0 * math.sqrt(2.0 * max(energy, 0.0)) * self.forcing.largest_rate(tau, self.model.column.slenderness)
-        hop = math.sqrt(HOPS_APART * change)
+        hop = math.sqrt(SWINGS_APART * change)
         if not self._holds_from(tau):
             force = self.model.rest_capacity * (1.0 + az) - math.hypot(ax, ay)
             return min(self.thresholds.rest_energy * square - energy, force - hop)

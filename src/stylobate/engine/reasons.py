@@ -87,7 +87,7 @@ def _standing(model: Model, motion: BaseMotion, followed: Followed) -> str:
 def _races(model: Model, followed: Followed) -> bool:
     """Return whether close passages without loss, which the model could have, explain the number of steps."""
     lossless = model.impact_map is not None and model.loss_tilt == 0.0
-    return lossless and followed.log(Log.LEAST_PASSAGE) < _RACES * model.column.slenderness
+    return lossless and followed.log(Log.CLOSEST_PASSAGE) < _RACES * model.column.slenderness
 
 
 def bounds_of(followed: Followed) -> tuple[float, float]:

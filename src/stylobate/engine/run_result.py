@@ -107,7 +107,7 @@ def run_result(
             "minimum_tilt": float(arrays["minimum_tilt"]),
             "turns": float(arrays["turns"]),
             "steps": float(arrays["steps"]),
-            "least_passage": followed.log(Log.LEAST_PASSAGE),
+            "least_passage": followed.log(Log.CLOSEST_PASSAGE),
             "impacts": float(sum(event.kind == "impact" for event in events)),
             **late_measures(followed),
             **(contact_measures(arrays, motion, trajectory) if model.switches else {}),

@@ -1,4 +1,4 @@
-"""What a run begins with besides tilt and tilt rate, and what it cannot begin with."""
+"""Initial conditions of runs: spin, twist, position, velocity and clearance, and their checks."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -40,12 +40,12 @@ class Turning:
         *,
         standing: bool,
     ) -> "Turning":
-        """Return them; `standing` says whether the column starts upright, without a tilt or a rate of it.
+        """Check and return the initial conditions; `standing` means zero tilt and zero tilt rate.
 
         Raises
         ------
         ParameterError
-            If one is not finite, or of no meaning for `model`.
+            If a value is not finite, or `model` does not support it.
         """
         spin, twist = require_finite("spin", spin, "rad/s"), require_finite("twist", twist, "rad")
         x, y = require_vector("position", position, 2, "m")
@@ -54,7 +54,7 @@ class Turning:
         refuse_spin(model, spin, standing=standing)
         if not model.carried_names and not model.switches and (twist or x or y):
             name, value = ("twist", twist) if twist else ("position", (x, y))
-            message = f"{name} must be left out: model {model.name} does not follow it, got {value!r}"
+            message = f"{name} must be left out: model {model.name} does not compute it, got {value!r}"
             raise ParameterError(message)
         if not model.switches and (vx or vy or vz or clearance):
             name, found = ("clearance", clearance) if clearance else ("velocity", (vx, vy, vz))
@@ -63,20 +63,20 @@ class Turning:
             )
             raise ParameterError(message)
         if vz < 0.0 and clearance == 0.0:
-            message = f"velocity must not lead into the plane where the clearance is 0, got {vz!r} m/s along its normal"
+            message = f"velocity must not lead into the plane if the clearance is 0, got {vz!r} m/s along its normal"
             raise ParameterError(message)
         return cls(spin, twist, (x, y), (vx, vy, vz), clearance)
 
     def carried(self, model: Model) -> tuple[float, ...]:
-        """Return what a run of `model` carries along from the start."""
+        """Return the initial passive states of a run of `model`."""
         if not model.carried_names:
             return ()
         return self.twist, self.position[0] / model.column.radius, self.position[1] / model.column.radius
 
     def begun(self, model: Model, state: Floats) -> Floats:
-        """Return the state of a start without twist, position, velocity and clearance with these.
+        """Add twist, position, velocity and clearance to an initial state without them.
 
-        It is that of a model that changes between kinds of contact.
+        The state is that of a model that changes between kinds of contact.
         """
         if not (self.twist or any(self.position) or any(self.velocity) or self.clearance):
             return state
@@ -94,7 +94,7 @@ class Turning:
         )
 
     def values(self) -> dict[str, Any]:
-        """Return them by name, those left out being none."""
+        """Return the values that are not zero, by name."""
         given: dict[str, Any] = {"spin": self.spin, "twist": self.twist, "position": self.position}
         given |= {"velocity": self.velocity, "clearance": self.clearance}
         return {name: value for name, value in given.items() if np.any(value)}
@@ -102,7 +102,7 @@ class Turning:
 
 @dataclass(frozen=True, slots=True)
 class Start:
-    """How a single run begins, tilt [rad] and tilt rate [rad/s] and what else there is, and its duration [s]."""
+    """Initial conditions of a single run (tilt [rad], tilt rate [rad/s], others), and its duration [s]."""
 
     tilt: tuple[float, float]
     tilt_rate: tuple[float, float]
@@ -111,7 +111,7 @@ class Start:
 
 
 def refuse_spin(model: Model, spin: float, *, standing: bool) -> None:
-    """Raise ParameterError if there is a spin that `model` does not know, or of a column that stands."""
+    """Raise ParameterError if there is a spin and `model` does not support it, or the column stands."""
     if spin == 0.0:
         return
     if model.spin_state is None:
@@ -123,7 +123,7 @@ def refuse_spin(model: Model, spin: float, *, standing: bool) -> None:
 
 
 def require_plane(model: Model, motion: BaseMotion, tilt: tuple[float, float], tilt_rate: tuple[float, float]) -> None:
-    """Raise ParameterError if `model` moves in a plane only, and start and base motion lie in none."""
+    """Raise ParameterError if `model` is planar, but start and base motion are not in one vertical plane."""
     if not model.planar_only:
         return
     directions = (tilt, tilt_rate, *motion.directions())
@@ -132,7 +132,7 @@ def require_plane(model: Model, motion: BaseMotion, tilt: tuple[float, float], t
 
 
 def out_of_plane(model: Model, tilt: Sequence[float], tilt_rate: Sequence[float]) -> ParameterError:
-    """Return what is said of a start and a base motion that lie in no vertical plane."""
+    """Return the error of a start and a base motion that are not in one vertical plane."""
     given = ", ".join(f"{name} ({x:.5g}, {y:.5g})" for name, (x, y) in (("tilt", tilt), ("tilt_rate", tilt_rate)))
     message = (
         f"tilt, tilt_rate and motion must lie in one vertical plane for model {model.name}; with {given} they do not: "
@@ -142,7 +142,7 @@ def out_of_plane(model: Model, tilt: Sequence[float], tilt_rate: Sequence[float]
 
 
 def require_nouns(model: Model, motion: BaseMotion | None, rules: OutcomeRules | None) -> None:
-    """Raise ParameterError if one of these is not what its name says."""
+    """Raise ParameterError if an argument has the wrong type."""
     if not isinstance(model, Model):
         message = f"model must be a model such as Slender(column), got {model!r}"
         raise ParameterError(message)
@@ -158,6 +158,6 @@ def require_nouns(model: Model, motion: BaseMotion | None, rules: OutcomeRules |
 
 
 def cannot_depart(model: Model) -> UnsupportedError:
-    """Return the error of a model that does not say how a column departs from rest."""
+    """Return the error of a model without the function `departure`."""
     message = f"model {model.name} does not say how a column departs from rest: give it `departure`, or start it moving"
     return UnsupportedError(message)

@@ -17,9 +17,9 @@ FIRST_STEP_OFF = 1e-13
 CLOSE_PASSAGE = 1e-8
 """A run that passes the upright closer than this [units of c] is uncertain."""
 
-HOP_FROM = 1e-6
+PASSAGE_FROM = 1e-6
 """Nearer to the upright than this [units of the smaller of c and the speed] …"""
-HOP_OFFSET = 1e-9
+PASSAGE_OFFSET = 1e-9
 """… and with the path leading past it at less than this [units of c], it is passed in closed form."""
 SLIP_SHARE = 1e-3
 """While a contact slips the absolute tolerance of the slip is this part of the usual one."""
@@ -27,7 +27,7 @@ SLIP_TURNS = 10.0
 """Where slip along a heading ends, slip across it of more than so many tolerances is a slip that has turned."""
 SLIP_SHORTER = 0.9
 """The step in which it turned is made again, over this part of the way to where it ended along its heading."""
-HOPS_APART = 5.0
+SWINGS_APART = 5.0
 """How small a part of the force on a column near rest may change during one hop: one over this."""
 STILL = 1e-5
 """A column of less energy than this [c²] that nothing to come can release is at rest however its force may change."""

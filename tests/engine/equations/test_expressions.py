@@ -282,5 +282,5 @@ def test_a_model_without_equations_in_a_plane_has_no_flow_there():
     system = PeriodicSystem(
         Helped(COLUMN, 0.1), sb.Harmonic.straight(acceleration=0.1, angular_frequency=2.0), line=(1.0, 0.0)
     )
-    with pytest.raises(UnsupportedError, match="plane"):
+    with pytest.raises(UnsupportedError, match="no equations of planar motion"):
         system.carry(np.array([0.03, 0.0]), 0.0, 0.1)

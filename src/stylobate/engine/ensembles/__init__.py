@@ -1,1 +1,1 @@
-"""Ensembles: from arguments of any shape to labelled results, in parts that run side by side."""
+"""Ensembles: from arguments of any shape to labelled results, computed in parts in parallel."""

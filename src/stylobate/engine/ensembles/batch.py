@@ -1,4 +1,4 @@
-"""A part of an ensemble on its way: the table that kernels read and write, and its passage through them."""
+"""Part of an ensemble: the table that kernels read and write, and its computation by the kernels."""
 
 import math
 from collections.abc import Callable
@@ -30,24 +30,23 @@ Halt = npt.NDArray[np.uint8]
 
 
 def _nothing(_steps: float, _time: float) -> None:
-    """Take no notice of a pause."""
+    """Ignore a pause."""
 
 
 WIDTH = 24
-"""Lanes of a kernel: three vectors of AVX-512, whose latencies overlap; the buffer still fits the nearest cache."""
+"""Lanes of a kernel: three AVX-512 vectors, whose latencies overlap; the buffer still fits the first-level cache."""
 
 SWITCHING_WIDTH = 8
-"""Lanes of a kernel that changes between kinds of contact: a lane has many more rows."""
+"""Lanes of a kernel that changes between kinds of contact; its lanes have many more rows."""
 
 
 @dataclass(frozen=True, slots=True)
 class Plan:
-    """What is the same for all runs of an ensemble, decided before the first.
+    """Settings that all runs of an ensemble share.
 
-    `rest_share` is a factor of the energy below which rest is entered where the base motion can release the column;
-    `traces` is how many entries of a trace are kept before they are taken out, 0 for none; `plain` whether kernels run
-    as plain Python, one run at a time, for a model that cannot be compiled; `orbits` is with how many known orbits each
-    run is compared.
+    `rest_share` is a factor of the energy below which a column comes to rest if the base motion can uplift it.
+    `traces` is the number of trace entries in the table, 0 for none. `plain` means that kernels run as plain Python,
+    one run at a time, for a model that cannot be compiled. `orbits` is the number of known orbits of each run.
     """
 
     model: Model
@@ -59,7 +58,7 @@ class Plan:
     orbits: int = 0
 
     def repeated(self) -> "Plan":
-        """Return the plan by which runs in doubt are repeated: a finer rest threshold, another tolerance, no notes."""
+        """Return the plan to repeat runs in doubt: a finer rest threshold, another tolerance, no samples or traces."""
         own = self.options
         rtol = other_tolerance(own.rtol)
         atol = None if own.atol is None else own.atol * (rtol / own.rtol)
@@ -67,10 +66,10 @@ class Plan:
         return replace(self, options=options, rest_share=FINER_REST, traces=0)
 
     def shape(self, *, planar: bool) -> Shape:
-        """Return what sets the kernel of motion in a plane, or in space, apart from others."""
+        """Return the shape of the kernel for planar or three-dimensional motion."""
         states, parameters = len(self.model.state_names), len(self.model.parameters)
         forcing = self.motion.source(planar=planar)
-        by_series = self.options.method == "taylor" and not planar  # in a plane the equations are linear between events
+        by_series = self.options.method == "taylor" and not planar  # planar equations are linear between events
         vertical = "az" in forcing.components
         return Shape(
             states=states,
@@ -94,16 +93,16 @@ class Plan:
 
     @property
     def layout(self) -> Shape:
-        """Where the table of a batch has its columns: the same for both kernels."""
+        """Shape that defines the columns of the table of a batch, the same for both kernels."""
         return self.shape(planar=False)
 
 
 @dataclass(frozen=True, slots=True)
 class Batch:
-    """Some runs in the units of their models.
+    """Runs in the units of their models.
 
-    `planar` says which runs begin in a plane, and when they have run, which ended in one; `traces` holds what was
-    taken out of the trace of a single run.
+    `planar` marks runs that begin with planar motion and, after the computation, runs that end with it. `traces` holds
+    the trace entries of a single run.
     """
 
     plan: Plan
@@ -117,7 +116,7 @@ class Batch:
 
     @classmethod
     def of(cls, plan: Plan, runs: Runs) -> "Batch":
-        """Return these runs, ready to go.
+        """Return the batch of these runs, ready for computation.
 
         Raises
         ------
@@ -144,19 +143,19 @@ class Batch:
         return cls(plan, models, motions, energy, planar, table, runs.orbits)
 
     def log(self, column: Log) -> Floats:
-        """Return what was noted of all runs."""
+        """Return a column of the log of all runs."""
         return self.table[:, LOG + column]
 
     @property
     def converged(self) -> OrbitReached | None:
-        """The runs that have converged to a known orbit, and the orbit of each; None if none has."""
+        """Runs that have converged to a known orbit, and the orbit of each; None if no run has."""
         runs = np.flatnonzero(self.log(Log.STATUS) == Status.CONVERGED)
         if self.orbits is None or not runs.size:
             return None
         return orbit_reached(self.table, self.plan.layout.orbits_at, self.orbits, runs)
 
     def notes(self, *, strobes: bool) -> Floats:
-        """Return the samples or strobes, shape (n, number, 5): tilt x and y, their rates, time; NaN where none."""
+        """Return the (stroboscopic) samples, shape (n, number, 5): tilt vector, its rate, time; NaN if missing."""
         options = self.plan.options
         first = self.plan.layout.breaks_at + self.motions.breaks.shape[1]
         count = options.strobes if strobes else options.samples
@@ -164,9 +163,9 @@ class Batch:
         return self.table[:, first : first + NOTE * count].reshape(len(self.table), count, NOTE)
 
     def advance(self, halt: Halt, paused: Callable[[float, float], None] = _nothing) -> bool:
-        """Run to the end; return whether it got there before `halt[0]` was set.
+        """Compute the runs to their ends; return False if `halt[0]` was set before.
 
-        Where a trace is kept, `paused(steps, time [s])` is called whenever it is full.
+        If there is a trace, `paused(steps, time [s])` is called whenever the trace is full.
         """
         finished = self._through(halt, paused, planar=False, chosen=~self.planar)
         released = self.log(Log.STATUS) == Status.TO_PLANE
@@ -197,7 +196,7 @@ class Batch:
         return finished
 
     def _take_trace(self, table: Floats) -> None:
-        """Take out what a trace holds of the only run in the `table`."""
+        """Move the trace entries of the only run from the `table` to `traces`."""
         if self.plan.traces:
             width = self.plan.layout.trace_width
             at = table.shape[1] - self.plan.traces * width
@@ -206,7 +205,7 @@ class Batch:
             table[0, at:] = table[0, LOG + Log.NEXT_TRACE] = 0.0
 
     def _to_plane(self, chosen: npt.NDArray[np.bool_]) -> None:
-        """Take the state of these runs from space to tilt and rate along their line."""
+        """Replace the three-dimensional state of these runs by tilt and rate along their line."""
         part = self.table[chosen]
         states = len(self.plan.model.state_names)
         leans = self.plan.model.tilt_of(*part[:, STATE : STATE + states].T, *self.models.parameters[chosen].T)
@@ -246,7 +245,7 @@ def _empty_table(plan: Plan, shape: Shape, count: int, breaks: int) -> Floats:
     table[:, notes:traces] = np.nan
     for column in (Log.FIRST_AZIMUTH, Log.LAST_AZIMUTH):
         table[:, LOG + column] = np.nan
-    for column in (Log.MINIMUM_TILT, Log.LEAST_PASSAGE, Log.NORMAL):
+    for column in (Log.MINIMUM_TILT, Log.CLOSEST_PASSAGE, Log.NORMAL):
         table[:, LOG + column] = np.inf
     return table
 
@@ -257,7 +256,7 @@ def _fill_setup(
     options, traces = plan.options, plan.traces
     atol = ATOL_SHARE * options.rtol * models.slenderness if options.atol is None else options.atol
     with np.errstate(divide="ignore"):
-        # Half the shortest period: no step can miss the forcing.
+        # Half the shortest period, so that no step misses the forcing.
         longest = math.pi / motions.frequency
     columns = {
         Setup.END: runs.duration / models.time_scale,
@@ -293,7 +292,7 @@ def _fill_setup(
 def _fill_starts(
     table: Floats, model: Model, runs: Runs, models: ModelColumns, motions: MotionColumns
 ) -> npt.NDArray[np.bool_]:
-    """Set states and lines; return which runs begin in a plane."""
+    """Set states and lines; return which runs begin with planar motion."""
     states = models.states.copy()
     rate = runs.tilt_rate * models.time_scale[:, np.newaxis]
     stands = ~(_not_zero(runs.tilt) | _not_zero(rate))
@@ -313,7 +312,7 @@ def _fill_starts(
         moved.tilt[upright] = off
         columns = ModelColumns.of(model, runs.values, moved.tilt, runs.tilt_rate, runs.spin)
         states[upright] = columns.states[upright]
-    if model.contact_kinds is not None:  # what stands begins as if it slid: the model decides how it goes on
+    if model.contact_kinds is not None:  # a standing column begins as sliding; the reset map decides its contact
         states[stands, -1] = model.contact_kinds["SLIDING"]
         if runs.turning is not None:
             states[0] = runs.turning.begun(model, states[0])
@@ -321,7 +320,7 @@ def _fill_starts(
     if planar.any():
         table[planar, STATE] = np.sum(runs.tilt * line, axis=1)[planar]
         table[planar, STATE + 1] = np.sum(rate * line, axis=1)[planar]
-    table[:, LOG + Log.TOUCHED_UPRIGHT] = stands
+    table[:, LOG + Log.REACHED_VERTICAL] = stands
     return np.asarray(planar)
 
 
@@ -331,7 +330,7 @@ def _not_zero(vectors: Floats) -> npt.NDArray[np.bool_]:
 
 
 def _check_starts(model: Model, runs: Runs, stands: npt.NDArray[np.bool_], in_a_plane: npt.NDArray[np.bool_]) -> None:
-    """Raise ParameterError for a start with a spin that cannot be, or out of the plane that the model needs."""
+    """Raise ParameterError for a spin that the model does not support, or a start out of the plane that it needs."""
     spinning = runs.spin != 0.0
     if spinning.any():
         refuse_spin(model, float(runs.spin[spinning][0]), standing=bool(np.any(spinning & stands)))
@@ -342,9 +341,9 @@ def _check_starts(model: Model, runs: Runs, stands: npt.NDArray[np.bool_], in_a_
 
 
 def common_lines(vectors: Floats) -> Floats:
-    """Return for each run the unit vector to which all its `vectors`, shape (n, m, 2), are parallel to 8 ulp.
+    """Return for each run the unit vector that is parallel to all its `vectors`, shape (n, m, 2), to 8 ulp.
 
-    Where there is none, or all are zero, it is (0, 0); zero vectors fit any line.
+    The result is (0, 0) if there is none or if all vectors are zero; zero vectors are parallel to any line.
     """
     count = vectors.shape[0]
     if vectors.shape[1] == 0:

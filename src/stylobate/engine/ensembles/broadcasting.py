@@ -1,4 +1,4 @@
-"""Arguments of any shape as flat arrays over the runs, broadcast together by the names of their dimensions."""
+"""Broadcasting of arguments by the names of their dimensions to flat arrays over the runs."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -21,19 +21,19 @@ ArrayLike: TypeAlias = "npt.ArrayLike | xr.DataArray"
 
 RUN, AXIS = "run", "axis"
 _TILT_LIMIT = math.pi / 2.0
-_OF_MASS = ("mass", "transverse_inertia", "axial_inertia")
+_MASS_NAMES = ("mass", "transverse_inertia", "axial_inertia")
 
 
 @dataclass(frozen=True, slots=True)
 class Runs:
-    """What differs between the runs, flat, and how it is laid out.
+    """Arguments that differ between the runs as flat arrays, and the layout of the results.
 
     Parameters
     ----------
     dims, shape
-        Of the results.
+        Dimensions and shape of the results.
     tilt, tilt_rate
-        Starts, shape (n, 2) [rad], [rad/s].
+        Initial tilt vectors and rates, shape (n, 2) [rad], [rad/s].
     spin
         Angular velocity about the axis at the start, shape (n,) [rad/s].
     duration
@@ -41,9 +41,9 @@ class Runs:
     values
         Parameters by name, shape (n,).
     coordinates
-        What labels the results.
+        Coordinates of the results.
     turning
-        What else a single run begins with; None in ensembles.
+        Other initial conditions of a single run; None in ensembles.
     orbits
         The known orbits of each run; None without any.
     """
@@ -63,7 +63,7 @@ class Runs:
         return math.prod(self.shape)
 
     def part(self, chosen: slice | npt.NDArray[np.intp]) -> "Runs":
-        """Return some of the runs, without layout."""
+        """Return some of the runs, without their layout."""
         length = len(self.duration[chosen])
         values = {name: value[chosen] for name, value in self.values.items()}
         starts = (self.tilt[chosen], self.tilt_rate[chosen], self.spin[chosen], self.duration[chosen])
@@ -84,7 +84,7 @@ def broadcast(
     Raises
     ------
     ParameterError
-        If one has a wrong shape, is not finite or out of range, or two do not go together.
+        If an argument has a wrong shape, is not finite or out of range, or if two arguments are incompatible.
     """
     given = {"tilt": _vectors("tilt", tilt), "tilt_rate": _vectors("tilt_rate", tilt_rate)}
     given |= {"spin": _numbers("spin", spin), "duration": _numbers("duration", duration)}
@@ -106,7 +106,7 @@ def broadcast(
 
 
 def _numbers_of_orbit(orbit: KnownOrbit, place: str) -> "dict[str, xr.DataArray]":
-    """Return the numbers of a known orbit, named by its place among the arguments."""
+    """Return the numbers of a known orbit, named by its position in the arguments."""
     vectors = ("tilt", "tilt_rate")
     return {
         f"{place}.{name}": (_vectors if name in vectors else _numbers)(f"{place}.{name}", value)
@@ -115,7 +115,7 @@ def _numbers_of_orbit(orbit: KnownOrbit, place: str) -> "dict[str, xr.DataArray]
 
 
 def one_run(start: Start) -> Runs:
-    """Return a single run, its arguments checked before."""
+    """Return a single run, whose arguments have been checked."""
     vectors = (np.array([start.tilt]), np.array([start.tilt_rate]))
     numbers = (np.array([start.turning.spin]), np.array([start.duration]))
     return Runs((RUN,), (1,), *vectors, *numbers, {}, {}, start.turning)
@@ -197,7 +197,7 @@ def _check(flat: Mapping[str, Floats]) -> None:
         if broken.any():
             message = f"{name} must be finite, got {float(array[broken][0])!r}"
             raise ParameterError(message)
-        require_size(name, float(np.abs(array).max(initial=0.0)), "kg" if name in _OF_MASS else "")
+        require_size(name, float(np.abs(array).max(initial=0.0)), "kg" if name in _MASS_NAMES else "")
     tilts = np.hypot(*flat["tilt"].T)
     if tilts.size and tilts.max() >= _TILT_LIMIT:
         message = f"tilt must be below π/2 rad in length (angles are in rad, not degrees), got {float(tilts.max())!r}"

@@ -1,4 +1,4 @@
-"""Results of runs whose model changes between kinds of contact."""
+"""Contact results of runs whose model changes between kinds of contact."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -20,7 +20,7 @@ CONTACT_KINDS = tuple(column.name.removeprefix("TIME_").lower() for column in _T
 
 @dataclass(frozen=True, slots=True)
 class Contacts:
-    """What was noted of the contacts of each run: times in the units of the models."""
+    """Contact record of each run; times are in the units of the models."""
 
     state: Floats
     noted: Floats
@@ -29,7 +29,7 @@ class Contacts:
 
     @classmethod
     def of(cls, batch: Batch) -> "Contacts":
-        """Return it; the present kind of contact lasts to the end."""
+        """Return the contact record of a batch; the present kind of contact lasts to the end."""
         order = len(batch.plan.model.state_names)
         state, noted = batch.table[:, STATE : STATE + order].T, batch.table[:, STATE + order :]
         kind, present = state[-1].astype(np.int8), batch.log(Log.TIME) - noted[:, Change.SINCE]
@@ -40,7 +40,7 @@ class Contacts:
         return cls(state, noted, kind, times)
 
     def late(self, name: str) -> npt.NDArray[np.bool_]:
-        """Return in which runs there was such contact in the last periods."""
+        """Return the runs in which this contact occurred in the last periods."""
         rim = self.times["rolling"] + self.times["slipping"]
         taken = {"sliding": self.times["sliding"], "rim": rim, "flying": self.times["flying"]}[name]
         before = self.noted[:, Change[f"WINDOW_{name.upper()}"]]
@@ -48,9 +48,9 @@ class Contacts:
 
 
 def contact_arrays(batch: Batch, span: Floats) -> dict[str, npt.NDArray[Any]]:
-    """Return where and how the column ended that can leave its place, and how it touched the plane until then.
+    """Return final position, contact kind, mean velocities, contact times and event counts of each run.
 
-    `span` is the length of the last periods, NaN where they were not looked at; so for `upright_outcomes`.
+    `span` is the length of the last periods, NaN if they were not computed.
     """
     names, scale, length = batch.plan.model.state_names, batch.models.time_scale, batch.models.length
     contacts = Contacts.of(batch)
@@ -72,7 +72,7 @@ def contact_arrays(batch: Batch, span: Floats) -> dict[str, npt.NDArray[Any]]:
 
 
 def upright_outcomes(batch: Batch, span: Floats, codes: npt.NDArray[np.int8]) -> npt.NDArray[np.int8]:
-    """Return the outcomes with those of columns that stay upright in the last periods, or at the end without any."""
+    """Replace the outcomes of columns that stay upright in the last periods, or at the end if there are none."""
     contacts = Contacts.of(batch)
     seen, decided = ~np.isnan(span), batch.log(Log.STATUS) == Status.STOPPED
     names = [kind.name for kind in batch.plan.model.contact_kinds or ()]

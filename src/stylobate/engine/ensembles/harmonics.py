@@ -1,4 +1,4 @@
-"""Base motions as sums of harmonic terms, with their numbers changed run by run."""
+"""Base motions as sums of harmonic terms, with parameters that vary between runs."""
 
 import cmath
 import math
@@ -17,7 +17,7 @@ _COPIES = (Scaled, Rotated, Delayed)
 
 @dataclass(frozen=True, slots=True)
 class Term:
-    """Acceleration Re(amplitude e^{i(ω(t − shift) + start_phase)}) from `onset` on, rising over `ramp` from `shift`.
+    """Acceleration Re(amplitude e^{i(ω(t − shift) + start_phase)}) after `onset`, with a rise over `ramp` from `shift`.
 
     Parameters
     ----------
@@ -40,7 +40,7 @@ class Term:
 
 
 def terms_of(motion: BaseMotion) -> tuple[Term, ...] | None:
-    """Return the terms of `motion`, or None if it is made of anything but harmonic motion."""
+    """Return the harmonic terms of `motion`, or None if it is not a sum of harmonic motions."""
     if type(motion) is Harmonic:
         amplitudes = tuple(cmath.rect(a, phase) for a, phase in zip(motion.amplitude, motion.phase, strict=True))
         x, y, z = amplitudes
@@ -48,7 +48,7 @@ def terms_of(motion: BaseMotion) -> tuple[Term, ...] | None:
     if type(motion) is Sum:
         parts = [terms_of(part) for part in motion.motions]
         return None if None in parts else tuple(term for part in parts for term in part or ())
-    if not isinstance(motion, _COPIES) or type(motion) not in _COPIES:  # a subclass is another motion
+    if not isinstance(motion, _COPIES) or type(motion) not in _COPIES:  # a subclass can differ
         return None
     inner = terms_of(motion.motion)
     return None if inner is None else tuple(_transformed(motion, term) for term in inner)
@@ -63,7 +63,7 @@ def _transformed(motion: Scaled | Rotated | Delayed, term: Term) -> Term:
 
 @dataclass(frozen=True, slots=True)
 class Terms:
-    """The terms of the motions of n runs: arrays of shape (n, terms), amplitudes (n, terms, 3); in SI units."""
+    """Terms of the motions of n runs: arrays of shape (n, terms), amplitudes (n, terms, 3), in SI units."""
 
     angular_frequency: Floats
     amplitude: npt.NDArray[np.complex128]
@@ -76,9 +76,9 @@ class Terms:
     def of(
         cls, terms: tuple[Term, ...], values: Mapping[str, Floats], count: int, base_acceleration: Floats
     ) -> "Terms":
-        """Return `terms` for each of `count` runs, with the numbers of `values`, each of shape (count,), changed.
+        """Return `terms` for each of `count` runs, with the parameters of `values`, each of shape (count,), changed.
 
-        `base_acceleration` is the largest horizontal one before the change, of each [m/s²].
+        `base_acceleration` is the peak horizontal acceleration of each run before the change [m/s²].
         """
         shape = (count, len(terms))
 
@@ -126,27 +126,27 @@ class Terms:
         return self.start_phase - self.angular_frequency * self.shift
 
     def breaks(self) -> Floats:
-        """Return the times at which the acceleration is not smooth [s], shape (n, breaks), increasing; else inf."""
+        """Return the increasing times of non-smooth acceleration [s], shape (n, breaks), padded with inf."""
         ramped = np.where(self.ramp > 0.0, self.shift + self.ramp, np.inf)
         times = np.concatenate([self.onset, ramped], axis=1)
         times = np.sort(np.where(times > 0.0, times, np.inf), axis=1)
         return times[:, np.any(np.isfinite(times), axis=0)]
 
     def columns(self, time_scale: Floats, gravity: Floats, *, windowed: bool) -> Floats:
-        """Return what a kernel reads: in each term turns to a unit of time, amplitudes [g] and phases [turns]."""
+        """Return the columns of a kernel: per term the turns per unit of time, amplitudes [g] and phases [turns]."""
         scale = time_scale[:, np.newaxis]
         phase = np.angle(self.amplitude) + self.phase_at_start[..., np.newaxis]
         parts = [self.angular_frequency * scale / (2.0 * math.pi)]
         for axis in range(3):
             parts += [np.abs(self.amplitude[..., axis]) / gravity[:, np.newaxis], _turns(phase[..., axis])]
         if windowed:
-            # The end of the rise is the same number as the break at which the kernel takes the next leg.
+            # The end of the rise is exactly the break at which the kernel begins the next leg.
             parts += [self.onset / scale, self.shift / scale, (self.shift + self.ramp) / scale]
         return np.stack(parts, axis=-1).reshape(len(scale), -1)
 
 
 def factors(values: Mapping[str, Floats], base_acceleration: Floats) -> Floats | None:
-    """Return the factor by which `acceleration` and `scale` multiply the motion of each run, or None for 1."""
+    """Return the factor of the motion of each run from `acceleration` and `scale`, or None for 1."""
     factor = None
     if "acceleration" in values:
         factor = values["acceleration"] / base_acceleration

@@ -1,4 +1,4 @@
-"""What a kernel needs of the model of each run."""
+"""Columns of the table of a batch that describe the model of each run."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -14,7 +14,7 @@ Floats = npt.NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True)
 class ModelColumns:
-    """Arrays over the runs: of shape (n,), but for `slope`, (n, 3), `states`, (n, number of states), and `parameters`.
+    """Arrays over the runs of shape (n,), except `slope`, (n, 3), `states`, (n, number of states), and `parameters`.
 
     `length` is the height of the centre of mass [m].
     """
@@ -35,7 +35,7 @@ class ModelColumns:
     def of(
         cls, model: Model, values: Mapping[str, Floats], tilt: Floats, tilt_rate: Floats, spin: Floats
     ) -> "ModelColumns":
-        """Return them for runs that start with `tilt` and `tilt_rate`, shape (n, 2), and `spin`, `values` changed.
+        """Return the columns for runs with these initial values, `tilt` and `tilt_rate` of shape (n, 2), and `values`.
 
         Raises
         ------
@@ -79,7 +79,7 @@ Kinds = list[tuple[Model, slice | npt.NDArray[np.int64]]]
 
 
 def _distinct(model: Model, values: Mapping[str, Floats], count: int) -> Kinds:
-    """Return the different models, each with the runs that it belongs to."""
+    """Return the distinct models, each with its runs."""
     if not values or count == 0:
         return [(model, slice(None))]
     table = np.stack(list(values.values()), axis=1)

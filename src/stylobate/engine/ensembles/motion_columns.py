@@ -1,4 +1,4 @@
-"""What a kernel needs of the base motion of each run."""
+"""Columns of the table of a batch that describe the base motion of each run."""
 
 import math
 from collections.abc import Callable, Mapping, Sequence
@@ -26,12 +26,12 @@ _NO_PIECES = np.zeros((1, 5))
 
 @dataclass(frozen=True, slots=True)
 class MotionPlan:
-    """How an ensemble's base motion is evaluated: decided once, so that all its runs are computed alike.
+    """Evaluation method of the base motion of an ensemble, the same for all runs.
 
-    `members` are the motions of which each run has one. Where declared numbers of the motion vary and it is tabulated,
-    there is one for each of their combinations: `names` are these numbers, `levels` the values of each, in rising
-    order, and `combinations` the places of those of each member, as one number. `terms` is None for motions that are
-    tabulated, in `table`, one after another: each begins at its piece of `first`, and has as many as `lengths` states.
+    Each run has one of the motions `members`. If declared parameters of a tabulated motion vary, there is one member
+    for each combination: `names` are these parameters, `levels` the increasing values of each, and `combinations` the
+    joint indices of the values of each member. `terms` is None for tabulated motions. `table` holds these one after
+    another; each begins at its index in `first` and has its number of pieces in `lengths`.
     """
 
     motion: BaseMotion
@@ -54,9 +54,9 @@ class MotionPlan:
         Raises
         ------
         ParameterError
-            If a number of the motion is out of range, or there is no motion of a number that is chosen.
+            If a parameter of the motion is out of range, or a chosen motion does not exist.
         UnsupportedError
-            If the motion lacks a number that is to be changed, or cannot be tabulated.
+            If the motion lacks a parameter in `values`, or cannot be tabulated.
         """
         declared = declared_names(motion, values)
         for name, own in declared.items():
@@ -95,14 +95,14 @@ class MotionPlan:
         return cls(motion, members, *varied, None, table, first, lengths, False, vertical, base)
 
     def member(self, values: Mapping[str, Floats], count: int) -> npt.NDArray[np.intp]:
-        """Return which of the `members` each of `count` runs has."""
+        """Return the index in `members` of the motion of each of `count` runs."""
         if self.names:
             places = [np.searchsorted(level, values[name]) for name, level in zip(self.names, self.levels, strict=True)]
             return np.searchsorted(self.combinations, _combination(self.levels, places))
         return values["motion"].astype(np.intp) if "motion" in values else np.zeros(count, dtype=np.intp)
 
     def source(self, *, planar: bool) -> KernelForcing:
-        """Return how kernels evaluate it."""
+        """Return the kind of base motion for the kernels."""
         components = (*(("ah",) if planar else ("ax", "ay")), *(("az",) if self.vertical else ()))
         if self.terms is not None:
             return Harmonics(len(self.terms), self.windowed, components)
@@ -111,17 +111,17 @@ class MotionPlan:
 
     @property
     def pieces(self) -> Floats:
-        """The table that kernels read; of a harmonic motion, nothing."""
+        """Table of pieces for the kernels; without content for harmonic motion."""
         return _NO_PIECES if self.table is None else self.table.rows
 
 
 @dataclass(frozen=True, slots=True)
 class MotionColumns:
-    """Arrays over the runs in model units: `directions` (n, vectors, 2), `breaks` (n, b), `columns` (n, m), else (n,).
+    """Arrays over the runs in model units, of shape (n,) except `directions` (n, vectors, 2), `breaks`, `columns`.
 
-    `duration` is the time after which the base stands still [s]. `phase` is the phase of the forcing at t = 0 [turns];
-    `forward` and `backward` are the azimuths [rad] at t = 0 of its parts that turn anticlockwise and clockwise, NaN
-    where it has more than one frequency.
+    `duration` is the time after which the base stands still [s]. `phase` is the phase of the forcing at t = 0 [turns].
+    `forward` and `backward` are the azimuths [rad] at t = 0 of its anticlockwise and clockwise components, NaN for more
+    than one frequency.
     """
 
     columns: Floats
@@ -141,7 +141,7 @@ class MotionColumns:
 
     @classmethod
     def of(cls, plan: MotionPlan, values: Mapping[str, Floats], models: ModelColumns) -> "MotionColumns":
-        """Return them for runs of these `models` that change these `values`."""
+        """Return the columns for runs of these `models` that change these `values`."""
         count = len(models.gravity)
         which = plan.member(values, count)
 
@@ -189,7 +189,7 @@ class MotionColumns:
 
 
 def _combined(values: Sequence[Floats]) -> tuple[tuple[Floats, ...], npt.NDArray[np.intp]]:
-    """Return the different values of each number in rising order, and the combinations that there are of them."""
+    """Return the distinct values of each parameter in increasing order, and the combinations that occur."""
     levels = tuple(np.unique(one) for one in values)
     places = [np.searchsorted(level, one) for level, one in zip(levels, values, strict=True)]
     return levels, np.unique(_combination(levels, places)) if levels else np.zeros(0, dtype=np.intp)
@@ -200,7 +200,7 @@ def _combination(levels: Sequence[Floats], places: Sequence[npt.NDArray[np.intp]
 
 
 def _single_frequency(terms: Terms, motion: BaseMotion) -> tuple[Floats, Floats, Floats, Floats]:
-    """Return the highest frequency of each run, its phase at t = 0, and the azimuths of its two circular parts."""
+    """Return the highest frequency of each run, its phase at t = 0, and the azimuths of its circular components."""
     count = len(terms.angular_frequency)
     nothing = np.full(count, np.nan)
     if terms.angular_frequency.shape[1] == 0:
@@ -217,7 +217,7 @@ def _single_frequency(terms: Terms, motion: BaseMotion) -> tuple[Floats, Floats,
 
 def _directions(members: Sequence[BaseMotion], which: npt.NDArray[np.intp], factor: Floats, rotation: Floats) -> Floats:
     spanning = [member.directions() for member in members]
-    vectors = np.zeros((len(members), max(map(len, spanning)), 2))  # zero vectors fit any line
+    vectors = np.zeros((len(members), max(map(len, spanning)), 2))  # zero vectors are parallel to any line
     for number, given in enumerate(spanning):
         vectors[number, : len(given)] = np.array(given, dtype=float).reshape(-1, 2)
     cos, sin = np.cos(rotation)[:, np.newaxis], np.sin(rotation)[:, np.newaxis]

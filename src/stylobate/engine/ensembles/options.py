@@ -1,4 +1,4 @@
-"""The options of an ensemble, checked once."""
+"""Options of an ensemble, and their checks."""
 
 from dataclasses import dataclass
 
@@ -18,7 +18,7 @@ METHODS = ("dop853", "taylor")
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Options:
-    """What all runs of an ensemble share; as in `simulate`."""
+    """Options that all runs of an ensemble share, as in `simulate`."""
 
     method: str
     rtol: float
@@ -48,12 +48,12 @@ class Options:
         demands: bool = False,
         recheck: bool = False,
     ) -> "Options":
-        """Return the options.
+        """Check and return the options.
 
         Raises
         ------
         ParameterError
-            If one is out of range.
+            If an option is out of range.
         """
         if method not in METHODS:
             message = f"method must be one of {', '.join(map(repr, METHODS))}, got {method!r}"
@@ -82,5 +82,5 @@ class Options:
 
     @property
     def overturned_tilt(self) -> float:
-        """Tilt that counts as overturned where no criterion proves it [rad]."""
+        """Tilt that counts as overturned if no criterion proves overturning [rad]."""
         return OVERTURNED_TILT

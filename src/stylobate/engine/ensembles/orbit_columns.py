@@ -1,4 +1,4 @@
-"""Known orbits in the table of a batch: what kernels read of them, and the orbit to which each run has converged."""
+"""Known orbits in the table of a batch: columns for the kernels, and the orbit to which each run has converged."""
 
 import math
 from dataclasses import dataclass
@@ -13,19 +13,18 @@ from stylobate.results import OutcomeRules
 
 Floats = npt.NDArray[np.float64]
 
-# A window is so many periods at least, over which the oscillations of complex multipliers even out …
+# Minimum number of periods in a window, over which the oscillations of complex multipliers average out.
 LEAST_WINDOW = 4
-# … and as many as bring the distance from the orbit down to this part.
+# Factor by which the distance from the orbit must fall in a window.
 FALL_OF_WINDOW = 0.5
 
 
 def fill_orbits(
     table: Floats, first: int, orbits: OrbitsOfRuns, period: Floats, time_scale: Floats, rules: OutcomeRules
 ) -> None:
-    """Set the columns of the known orbits, from the column `first` on; `period` is in the units of the models.
+    """Set the columns of the known orbits, which begin at column `first`; `period` is in the units of the models.
 
-    A run that is too short is not compared with an orbit: the latest time at which it must be near comes before it
-    begins.
+    A run that is too short is not compared with an orbit, because the latest time for its approach is before its start.
     """
     with np.errstate(divide="ignore", invalid="ignore"):
         decay = -np.log(orbits.multiplier)
@@ -54,7 +53,7 @@ def fill_orbits(
 
 @dataclass(frozen=True, slots=True)
 class OrbitReached:
-    """Runs that have converged to a known orbit, and its numbers: those of `KnownOrbit`, over these runs."""
+    """Runs that have converged to a known orbit, and the numbers of `KnownOrbit` for each of these runs."""
 
     runs: npt.NDArray[np.intp]
     tilt: Floats
@@ -64,7 +63,7 @@ class OrbitReached:
 
 
 def orbit_reached(table: Floats, first: int, orbits: OrbitsOfRuns, runs: npt.NDArray[np.intp]) -> OrbitReached:
-    """Return the orbits that these `runs` have reached."""
+    """Return the orbits to which these `runs` have converged."""
     places = first + ORBIT * np.arange(orbits.turns.shape[1]) + Orbit.REACHED
     chosen = np.argmax(table[np.ix_(runs, places)], axis=1)
     of_runs = (getattr(orbits, name)[runs, chosen] for name in OrbitReached.__slots__[1:])

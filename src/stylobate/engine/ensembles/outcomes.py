@@ -1,4 +1,4 @@
-"""The outcomes of runs, and what their last periods show, from what kernels noted of them."""
+"""Outcomes of runs and measures of their last periods, from the log of the kernels."""
 
 from dataclasses import dataclass
 
@@ -14,7 +14,7 @@ from stylobate.errors import Outcome
 
 Floats = npt.NDArray[np.float64]
 
-# The outcomes of runs whose kernel ended them; what the others amount to, their last periods show.
+# Outcomes of runs that ended in the kernel; the last periods decide the other outcomes.
 _ENDINGS = {
     Status.RESTED: Outcome.AT_REST,
     Status.OVERTURNED: Outcome.OVERTURNED,
@@ -35,7 +35,7 @@ _OUTCOME_OF_GROUND = np.array([outcome_on(kind) for kind in Ground], dtype=np.in
 
 @dataclass(frozen=True, slots=True)
 class Late:
-    """The last periods of each run: NaN where they were not looked at to the end."""
+    """Measures of the last periods of each run; NaN if these were not completed."""
 
     span: Floats
     turned: Floats
@@ -48,7 +48,7 @@ class Late:
 
 
 def late_periods(batch: Batch) -> Late:
-    """Return what the last periods of each run show."""
+    """Return the measures of the last periods of each run."""
     n = batch.plan.options.rules.periods
     period, end = batch.motions.period, batch.table[:, Setup.END]
     end = end * (1.0 + SLACK)
@@ -80,7 +80,7 @@ def late_periods(batch: Batch) -> Late:
         turned=known(turned),
         mean_tilt=mean_tilt,
         phase=known(np.angle(np.exp(1j * phase))),
-        minimum_tilt=known(batch.log(Log.LATE_LEAST)),
+        minimum_tilt=known(batch.log(Log.LATE_MINIMUM_TILT)),
         repetition=known(_repetition(batch, LATE, mean_tilt)),
         repetition_before=known(_repetition(batch, BEFORE, mean_tilt), before),
         drift=known(np.abs(lags[0] / (n * LOOKS) - lags[1] / (n * LOOKS)), before),
@@ -88,7 +88,7 @@ def late_periods(batch: Batch) -> Late:
 
 
 def _reference(batch: Batch, azimuth: Floats) -> Floats:
-    """Return the azimuth of a circular part of the forcing, measured along the line for motion in a plane."""
+    """Return the azimuth of a circular component of the forcing, relative to the line for planar motion."""
     line = np.arctan2(batch.table[:, Setup.LINE_Y], batch.table[:, Setup.LINE_X])
     return np.where(batch.planar, azimuth - line, azimuth)
 
@@ -98,10 +98,10 @@ def _window(batch: Batch, first: int, column: Window) -> Floats:
 
 
 def _repetition(batch: Batch, first: int, mean_tilt: Floats) -> Floats:
-    """Return the largest difference of states one period apart, over the peak tilt or rate.
+    """Return the maximum difference of states one period apart, over the peak tilt or rate.
 
-    All looks may fall on passages of the upright: then tilts are compared with the mean tilt of the last periods.
-    Infinite where the looks saw nothing but a column that stands: what it does between them is not known to repeat.
+    All looks may fall on passages through the vertical; then the mean tilt of the last periods is the unit of tilts.
+    The result is infinite if the column stood at all looks, because the motion between the looks is unknown.
     """
     tilt_size, rate_size = _window(batch, first, Window.TILT_SIZE), _window(batch, first, Window.RATE_SIZE)
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -112,7 +112,7 @@ def _repetition(batch: Batch, first: int, mean_tilt: Floats) -> Floats:
 
 
 def _survive(batch: Batch, moving: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool_]:
-    """Return which of the runs that are `moving` at their end have outlived a base motion that ends: see `survival`."""
+    """Return which of the runs that are `moving` at their end have survived a base motion that ends; see `survival`."""
     lasts = batch.motions.duration
     survive = moving & (batch.log(Log.STATUS) == Status.STOPPED) & (batch.log(Log.STANDS) == 0.0)
     survive &= (lasts > 0.0) & has_ended(batch.log(Log.TIME) * batch.models.time_scale, lasts)
@@ -124,7 +124,7 @@ def _survive(batch: Batch, moving: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool
 
 
 def _states(batch: Batch) -> Floats:
-    """Return the states in three dimensions, shape (number of states, n)."""
+    """Return the three-dimensional states, shape (number of states, n)."""
     model = batch.plan.model
     states = batch.table[:, STATE : STATE + len(model.state_names)].T
     if not batch.planar.any():
@@ -136,7 +136,7 @@ def _states(batch: Batch) -> Floats:
 
 
 def grounds_of(batch: Batch, late: Late) -> npt.NDArray[np.int8]:
-    """Return on which `Ground` the outcome of each run rests that moves at its end."""
+    """Return the `Ground` of the outcome of each run that moves at its end."""
     evidence = Evidence(
         turned=np.nan_to_num(late.turned),
         minimum_tilt=np.nan_to_num(late.minimum_tilt) / batch.models.slenderness,

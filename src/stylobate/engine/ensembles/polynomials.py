@@ -1,4 +1,4 @@
-"""Any base motion as a table: one polynomial after another between its breaks, to rounding."""
+"""Tabulation of any base motion by successive polynomials between its breaks, nearly to rounding."""
 
 import math
 from collections.abc import Sequence
@@ -15,15 +15,15 @@ from stylobate.errors import UnsupportedError
 Floats = npt.NDArray[np.float64]
 
 DEGREE = 15
-# Numbers of a row before its coefficients; the kernels know it too.
+# Columns of a row before its coefficients; the same number is in the kernels.
 _BEFORE = 6
-# Pieces are no longer than half the shortest period, and halved where the polynomials do not get as near as this part
-# of the peak acceleration, so often at most.
+# Pieces are at most half the shortest period long. They are halved until the error is below this fraction of the peak
+# acceleration; the second number is the maximum number of halvings.
 _ACCURACY, _HALVINGS = 1e-11, 12
 _MOST_PIECES = 2_000_000
-# A piece begins where the one before ends if its acceleration does, to this part of the largest.
-_GOES_ON = 1e-10
-# Short of a break, from either side, by this part of the time.
+# A piece continues the previous one if the jump of the acceleration is below this fraction of its maximum.
+_NO_JUMP = 1e-10
+# Relative distance in time from a break at which the acceleration is evaluated.
 _ASIDE = 4.0 * float(np.finfo(float).eps)
 
 
@@ -31,9 +31,9 @@ _ASIDE = 4.0 * float(np.finfo(float).eps)
 class Table:
     """Pieces of polynomials, a row each.
 
-    A row holds start and end [s]; sup |a_h|, inf and sup a_z from its start on [m/s²]; 1 if the acceleration goes on
-    without a jump from the piece before, else 0; then for x, y and z the coefficients, lowest power first, in the time
-    from the middle of the piece over half its length.
+    A row holds start and end [s]; sup |a_h|, inf and sup a_z after its start [m/s²]; 1 if the acceleration continues
+    the previous piece without a jump, else 0; and the coefficients for x, y and z, lowest power first. Their variable
+    is the time from the middle of the piece over half its length.
     """
 
     rows: Floats
@@ -45,12 +45,12 @@ class Table:
         powers = coefficients.shape[-1]
         starts, ends = coefficients @ (-1.0) ** np.arange(powers), coefficients.sum(axis=-1)
         jumps = np.abs(starts[1:] - ends[:-1]).max(axis=-1, initial=0.0)
-        goes_on = np.append(0.0, jumps <= _GOES_ON * np.abs(coefficients).max(initial=0.0))
-        return cls(np.column_stack([spans, bounds, goes_on, coefficients.reshape(len(spans), -1)]), powers - 1)
+        continues = np.append(0.0, jumps <= _NO_JUMP * np.abs(coefficients).max(initial=0.0))
+        return cls(np.column_stack([spans, bounds, continues, coefficients.reshape(len(spans), -1)]), powers - 1)
 
     @property
     def coefficients(self) -> Floats:
-        """Those of all pieces, shape (pieces, 3, degree + 1)."""
+        """Coefficients of all pieces, shape (pieces, 3, degree + 1)."""
         return self.rows[:, _BEFORE:].reshape(len(self.rows), 3, -1)
 
     def raised(self, degree: int) -> "Table":
@@ -62,7 +62,7 @@ class Table:
 
 
 def one_after_another(tables: Sequence[Table]) -> Table:
-    """Return the pieces of all `tables` in one, of the highest of their degrees."""
+    """Join the pieces of all `tables` in one table with the highest of their degrees."""
     degree = max(table.degree for table in tables)
     return Table(np.concatenate([table.raised(degree).rows for table in tables]), degree)
 
@@ -73,7 +73,7 @@ def tabulated(motion: BaseMotion, end: float) -> Table:
     Raises
     ------
     UnsupportedError
-        If it is not smooth between its breaks.
+        If the motion is not smooth between its breaks.
     """
     if motion.degree is not None and motion.degree <= 1:
         return _linear(motion)
@@ -87,7 +87,7 @@ def tabulated(motion: BaseMotion, end: float) -> Table:
     pieces: list[tuple[float, float, Floats]] = []
     after = next((time for time in motion.breaks if time >= end), math.inf)
     for low, high in zip(edges, [*edges[1:], math.inf], strict=True):
-        cuts = np.minimum(_cuts(low, high, longest, end), after)  # no piece goes over a break
+        cuts = np.minimum(_cuts(low, high, longest, end), after)  # no piece crosses a break
         for a, b in zip(cuts[:-1].tolist(), cuts[1:].tolist(), strict=True):
             pieces += _fitted(motion, a, b, size, _HALVINGS)
     starts, ends, coefficients = zip(*pieces, strict=True)
@@ -96,14 +96,14 @@ def tabulated(motion: BaseMotion, end: float) -> Table:
 
 
 def _linear(motion: BaseMotion) -> Table:
-    """Return the table of a motion that is linear between its breaks, exactly; its last piece goes on for ever."""
+    """Return the exact table of a motion that is linear between its breaks; the last piece has no end."""
     edges = np.array([0.0, *(time for time in motion.breaks if time > 0.0)])
     edges = np.append(edges, edges[-1] + 1.0)
     middle, quarter = 0.5 * (edges[:-1] + edges[1:]), 0.25 * np.diff(edges)
     first = np.stack(motion.derivative(middle - quarter, ACCELERATION))
     second = np.stack(motion.derivative(middle + quarter, ACCELERATION))
     coefficients = np.stack([0.5 * (first + second), second - first], axis=-1).transpose(1, 0, 2)
-    # Between its ends a line is nowhere larger than there.
+    # A line has its extremes at its ends.
     ends = np.stack([coefficients[..., 0] - coefficients[..., 1], coefficients[..., 0] + coefficients[..., 1]])
     horizontal, vertical = np.hypot(ends[..., 0], ends[..., 1]).max(axis=0), ends[..., 2]
     bounds = np.stack([horizontal, -vertical.min(axis=0), vertical.max(axis=0)])
@@ -112,7 +112,7 @@ def _linear(motion: BaseMotion) -> Table:
 
 
 def _cuts(low: float, high: float, longest: float, end: float) -> Floats:
-    """Return where the stretch from a break to the next is cut; the cuts do not depend on `end`, only their number."""
+    """Return the cuts between two breaks; `end` determines only their number."""
     if math.isfinite(high):
         return np.linspace(low, high, max(1, math.ceil((high - low) / longest)) + 1)
     if math.isinf(longest):
@@ -123,7 +123,7 @@ def _cuts(low: float, high: float, longest: float, end: float) -> Floats:
 def _fitted(
     motion: BaseMotion, start: float, end: float, size: float, halvings: int
 ) -> list[tuple[float, float, Floats]]:
-    # At the Chebyshev points of both kinds: half of them make the polynomial, the others test it.
+    # The Chebyshev points of one kind determine the polynomial, the points of the other kind test it.
     count = DEGREE + 1
     points = np.cos(math.pi * np.arange(2 * count + 1) / (2 * count))[::-1]
     middle, half = 0.5 * (start + end), 0.5 * (end - start)

@@ -1,4 +1,4 @@
-"""Parts of an ensemble side by side on threads; Ctrl-C stops them within a step."""
+"""Parallel computation of the parts of an ensemble on threads; Ctrl-C stops them within a step."""
 
 import os
 from collections.abc import Callable
@@ -11,20 +11,20 @@ from stylobate.processes import end_all
 
 Halt = npt.NDArray[np.uint8]
 
-# Parts: small enough that every thread has one, all threads end together and progress shows; large enough to fill the
-# lanes, and that Python's share of each is small.
+# Size of parts: small enough that every thread has one, all threads end together and progress is visible; large enough
+# to fill the lanes and to keep the overhead of Python small.
 _FEWEST, _ENOUGH, _MOST, _PARTS_PER_THREAD = 128, 512, 4096, 8
 
 
 def parts_of(count: int, threads: int) -> list[slice]:
-    """Return the slices in which `count` runs are computed."""
+    """Return the slices of the parts of `count` runs."""
     share = -(-count // threads)
     size = min(max(_FEWEST, min(share, _ENOUGH), -(-share // _PARTS_PER_THREAD)), _MOST)
     return [slice(start, min(start + size, count)) for start in range(0, count, size)]
 
 
 def usual_threads() -> int:
-    """Return how many threads this process may run at a time."""
+    """Return the number of threads that this process may run at a time."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
@@ -36,7 +36,8 @@ def run_parts(
 ) -> bool:
     """Call `compute` for each part, and `done` in this thread as each is finished; return False after Ctrl-C.
 
-    `compute` is given a flag that is set when it should stop; what it raises is raised here, once all have stopped.
+    The second argument of `compute` is a flag that is set when it should stop. An exception of `compute` is raised here
+    after all parts have stopped.
     """
     halt = np.zeros(1, dtype=np.uint8)
     waiting = iter(parts)
@@ -52,7 +53,7 @@ def run_parts(
             for _ in range(threads):
                 start()
             while running:
-                # Wakes up now and then: only between its own steps can Python take notice of Ctrl-C.
+                # The timeout lets Python react to Ctrl-C, which it can only do between its own steps.
                 finished, _ = wait(running, timeout=0.1, return_when=FIRST_COMPLETED)
                 for future in finished:
                     part = running.pop(future)
@@ -62,7 +63,7 @@ def run_parts(
         except KeyboardInterrupt:
             halt[0] = 1
             while running and wait(running, timeout=0.1).not_done:
-                end_all()  # a thread may wait for a compiler, and the next one start another
+                end_all()  # a thread may wait for a compiler, and the next one may start another
             return False
         except BaseException:
             halt[0] = 1

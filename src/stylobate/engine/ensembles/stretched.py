@@ -1,4 +1,4 @@
-"""Tables of one pulse at many frequencies: the first is fitted, the others are the same, stretched in time."""
+"""Tables of one pulse at many frequencies: the first is fitted, the others are stretched in time."""
 
 from collections.abc import Sequence
 
@@ -11,23 +11,23 @@ from stylobate.engine.ensembles.polynomials import Table, tabulated
 
 Floats = npt.NDArray[np.float64]
 
-# A stretched table is that of a motion if it meets it to this part of the peak acceleration, in the middle of each
-# piece and at its quarters: no worse than a fit.
-_MEETS = 1e-10
+# Maximum error of a stretched table as a fraction of the peak acceleration, at the middle and the quarters of each
+# piece; it is no worse than the error of a fit.
+_FIT_ERROR = 1e-10
 _BEYOND = 1.0 + 1e-9
-_LOOKED_AT = np.array([-0.5, 0.0, 0.5])
+_TEST_POINTS = np.array([-0.5, 0.0, 0.5])
 
 
 def tabulated_alike(motions: Sequence[BaseMotion], end: float) -> list[Table]:
-    """Return the tables of `motions` from t = 0 to `end` [s]; those that are the first one stretched are not fitted.
+    """Return the tables of `motions` from t = 0 to `end` [s]; motions that stretch the first one are not fitted.
 
     Raises
     ------
     UnsupportedError
-        If one is not smooth between its breaks.
+        If a motion is not smooth between its breaks.
     """
     first = motions[0]
-    table = tabulated(first, max(end, _edges(first)[-1] * _BEYOND))  # to its end: others may be there sooner
+    table = tabulated(first, max(end, _edges(first)[-1] * _BEYOND))  # to its end, which others may reach earlier
     return [table, *(_stretched(table, first, motion, end) or tabulated(motion, end) for motion in motions[1:])]
 
 
@@ -36,7 +36,7 @@ def _edges(motion: BaseMotion) -> Floats:
 
 
 def _stretched(table: Table, of: BaseMotion, motion: BaseMotion, end: float) -> Table | None:
-    """Return the table of a motion that goes between its breaks as another does; None if it does not."""
+    """Return the table of `motion` if it is `of` stretched between its breaks, else None."""
     before, after = _edges(of), _edges(motion)
     size = of.peak_horizontal(0.0)
     if len(before) != len(after) or len(before) == 1 or not size > 0.0:
@@ -50,13 +50,13 @@ def _stretched(table: Table, of: BaseMotion, motion: BaseMotion, end: float) -> 
     coefficients = np.append(strength * table.coefficients[going], np.zeros((1, *table.coefficients.shape[1:])), axis=0)
     bounds = np.append(strength * table.rows[going, 2:5], np.zeros((1, 3)), axis=0)
     found = Table.of(np.vstack([spans, rest]), bounds, coefficients)
-    return found if _meets(found, motion, size * strength) else None
+    return found if _fits(found, motion, size * strength) else None
 
 
-def _meets(table: Table, motion: BaseMotion, size: float) -> bool:
+def _fits(table: Table, motion: BaseMotion, size: float) -> bool:
     middle, half = 0.5 * table.rows[:, :2].sum(axis=1), 0.5 * (table.rows[:, 1] - table.rows[:, 0])
-    times = middle[:, np.newaxis] + half[:, np.newaxis] * _LOOKED_AT
-    powers = _LOOKED_AT ** np.arange(table.degree + 1)[:, np.newaxis]
+    times = middle[:, np.newaxis] + half[:, np.newaxis] * _TEST_POINTS
+    powers = _TEST_POINTS ** np.arange(table.degree + 1)[:, np.newaxis]
     tabulated_values = table.coefficients @ powers  # piece, axis, time
     wanted = np.stack(motion.derivative(times.ravel(), ACCELERATION)).reshape(3, *times.shape).transpose(1, 0, 2)
-    return bool(np.abs(tabulated_values - wanted).max() <= _MEETS * size)
+    return bool(np.abs(tabulated_values - wanted).max() <= _FIT_ERROR * size)

@@ -1,4 +1,4 @@
-"""Convert a batch that has run to results of each run, arrays in SI units."""
+"""Conversion of a finished batch to arrays of results in SI units, one entry per run."""
 
 import math
 from collections.abc import Mapping
@@ -29,7 +29,7 @@ Arrays = dict[str, npt.NDArray[Any]]
 
 @dataclass(frozen=True, slots=True)
 class Quantity:
-    """A variable of the results: type, dimensions besides those of the runs, attributes, value if not computed."""
+    """Variable of the results: type, dimensions besides those of the runs, attributes, value if not computed."""
 
     dtype: type
     dims: tuple[str, ...]
@@ -64,12 +64,12 @@ QUANTITIES: Mapping[str, Quantity] = {
     "minimum_tilt": _numbers("minimum tilt while it moves", "rad"),
     "turns": _numbers("turns of the contact point", "1"),
     "mean_tilt": _numbers("mean tilt over the last periods", "rad"),
-    "phase": _numbers("phase of the lean to the base acceleration, over the last periods", "rad"),
+    "phase": _numbers("phase of the tilt vector relative to the base acceleration, over the last periods", "rad"),
     "mean_rolling_rate": _numbers("mean rolling rate over the last periods", "rad s-1"),
     "repetition": _numbers("change from period to period, over the last periods", "1"),
     "end_spin": _numbers("angular velocity about the axis at the end", "rad s-1"),
     "peak_friction_demand": _numbers("peak friction force over normal force", "1"),
-    "peak_pivoting_demand": _numbers("largest moment about the vertical over normal force and radius", "1"),
+    "peak_pivoting_demand": _numbers("peak moment about the vertical over normal force and radius", "1"),
     "minimum_normal_force": _numbers("minimum normal force over weight", "1"),
     "end_footprint": _numbers("centre of the footprint circle at the end", "m", "axis"),
     "end_twist": _numbers("angle of turn about the axis at the end", "rad"),
@@ -82,11 +82,11 @@ QUANTITIES: Mapping[str, Quantity] = {
             + ", 5 jammed"
         },
     ),
-    **{f"time_{kind}": _numbers(f"how long it was {kind}", "s") for kind in CONTACT_KINDS},
+    **{f"time_{kind}": _numbers(f"time spent {kind}", "s") for kind in CONTACT_KINDS},
     "mean_velocity": _numbers("mean velocity of the footprint over the last periods", "m s-1", "axis"),
     "mean_twist_rate": _numbers("mean rate of the twist over the last periods", "rad s-1"),
-    "impacts": Quantity(np.int32, (), {"long_name": "landings, and strokes of the base"}),
-    "slips": Quantity(np.int32, (), {"long_name": "how often a contact that held began to slip"}),
+    "impacts": Quantity(np.int32, (), {"long_name": "landings and face impacts"}),
+    "slips": Quantity(np.int32, (), {"long_name": "times that a sticking contact began to slip"}),
     "uplifts": Quantity(np.int32, (), {"long_name": "uplifts from rest"}),
     "steps": Quantity(np.int32, (), {"long_name": "integration steps"}),
     "strobe_tilt": _numbers("tilt vector at phase zero of the base motion", "rad", "strobe", "axis"),
@@ -101,7 +101,7 @@ _DEMANDS = ("peak_friction_demand", "peak_pivoting_demand", "minimum_normal_forc
 
 
 def empty(model: Model, options: Options, count: int) -> Arrays:
-    """Return the results of `count` runs of which none has been computed."""
+    """Return arrays for the results of `count` runs, filled with the values for runs that are not computed."""
     sizes = {"axis": 2, "strobe": options.strobes, "sample": options.samples}
     left_out = {*(() if options.demands else _DEMANDS), *(("end_spin",) if model.spin_state is None else ())}
     left_out |= {*(() if model.switches else _CONTACTS)}
@@ -119,14 +119,14 @@ def empty(model: Model, options: Options, count: int) -> Arrays:
 
 
 def summaries(batch: Batch) -> Arrays:
-    """Return the results of the runs of `batch`; those that have not ended keep what stands for nothing."""
+    """Return the results of the runs of `batch`; runs that have not ended have the values of `empty`."""
     arrays = empty(batch.plan.model, batch.plan.options, len(batch.table))
     summarize_into(arrays, batch)
     return arrays
 
 
 def summarize_into(arrays: Arrays, batch: Batch) -> None:
-    """Write the results of the runs of `batch` that have ended into `arrays`, which have a row for each of its runs."""
+    """Write the results of the ended runs of `batch` into `arrays`, which have a row for each run."""
     ended = batch.log(Log.STATUS) != Status.WAITING
     every_run = bool(ended.all())
     for name, values in _all(batch).items():
@@ -138,12 +138,12 @@ def summarize_into(arrays: Arrays, batch: Batch) -> None:
 
 def _all(batch: Batch) -> Arrays:
     scale = batch.models.time_scale
-    tilt, rate = _leans(batch)
+    tilt, rate = _tilt_vectors(batch)
     late = late_periods(batch)
     outcome = outcomes(batch, late)
     overturned = outcome == Outcome.OVERTURNED
-    passage = batch.log(Log.LEAST_PASSAGE)
-    touched = batch.log(Log.TOUCHED_UPRIGHT) > 0.0
+    passage = batch.log(Log.CLOSEST_PASSAGE)
+    touched = batch.log(Log.REACHED_VERTICAL) > 0.0
     start = np.hypot(*batch.plan.model.tilt_of(*batch.models.states.T, *batch.models.parameters.T)[:2])
     is_coarse = coarse(
         batch.rest_energy,
@@ -161,12 +161,12 @@ def _all(batch: Batch) -> Arrays:
         "end_time": batch.log(Log.TIME) * scale,
         "uncertain": uncertain,
         "in_doubt": _in_doubt(batch, outcome),
-        "planar": batch.log(Log.IN_SPACE) == 0.0,
+        "planar": batch.log(Log.THREE_DIMENSIONAL) == 0.0,
         "end_tilt": tilt,
         "end_tilt_rate": rate / scale[:, np.newaxis],
         "direction": np.where(overturned, np.arctan2(tilt[:, 1], tilt[:, 0]), np.nan),
         "peak_tilt": batch.log(Log.PEAK_TILT),
-        "time_of_peak_tilt": batch.log(Log.LARGEST_AT) * scale,
+        "time_of_peak_tilt": batch.log(Log.PEAK_AT) * scale,
         "minimum_tilt": np.where(
             touched, 0.0, np.minimum.reduce([start, batch.log(Log.MINIMUM_TILT), np.hypot(*tilt.T)])
         ),
@@ -197,14 +197,11 @@ def _all(batch: Batch) -> Arrays:
         if notes.shape[1] and not strobes:
             arrays["sample_time"] = notes[..., 4] * scale[:, np.newaxis]
     reached = batch.converged
-    return arrays if reached is None else arrays | _of_orbits(batch, arrays, reached)
+    return arrays if reached is None else arrays | _orbit_results(batch, arrays, reached)
 
 
-def _of_orbits(batch: Batch, arrays: Arrays, reached: OrbitReached) -> Arrays:
-    """Return what the last periods show, and the strobes after the end, of runs that have converged to known orbits.
-
-    Both are those of the orbits.
-    """
+def _orbit_results(batch: Batch, arrays: Arrays, reached: OrbitReached) -> Arrays:
+    """Return last-period measures and later stroboscopic samples of the known orbits that runs have converged to."""
     runs, scale = reached.runs, batch.models.time_scale
     period = batch.motions.period[runs] * scale[runs]
     names = ("mean_tilt", "mean_rolling_rate", "strobe_tilt", "strobe_tilt_rate")
@@ -220,7 +217,7 @@ def _of_orbits(batch: Batch, arrays: Arrays, reached: OrbitReached) -> Arrays:
 
 
 def fallen(outcomes: npt.NDArray[np.int8]) -> npt.NDArray[np.bool_]:
-    """Return which codes of outcomes are those of columns that overturned or reached the tilt limit."""
+    """Return which outcome codes mean that the column overturned or reached the tilt limit."""
     return np.asarray(np.logical_or.reduce([outcomes == code for code in FALLEN]))
 
 
@@ -235,7 +232,7 @@ def _in_doubt(batch: Batch, outcome: npt.NDArray[np.int8]) -> npt.NDArray[np.boo
     return np.asarray(doubtful & (outcome != Outcome.FAILED))
 
 
-def _leans(batch: Batch) -> tuple[Floats, Floats]:
+def _tilt_vectors(batch: Batch) -> tuple[Floats, Floats]:
     """Return tilt vectors [rad] and their rates in the time of the models, shape (n, 2)."""
     states = batch.table[:, STATE : STATE + len(batch.plan.model.state_names)].T
     leans = np.stack(batch.plan.model.tilt_of(*states, *batch.models.parameters.T), axis=-1)
@@ -248,7 +245,7 @@ def _leans(batch: Batch) -> tuple[Floats, Floats]:
 
 
 def _demands(batch: Batch) -> Arrays:
-    """Return the extremes of what the contact had to bear, moving or standing; NaN of runs that did neither."""
+    """Return the extremes of the contact demand, moving or standing; NaN for runs without either."""
     normal = batch.log(Log.NORMAL)
     borne, lifts = np.isfinite(normal), normal <= LEAST_FORCE
     found = [batch.log(column) for column in (Log.FRICTION, Log.PIVOTING)]

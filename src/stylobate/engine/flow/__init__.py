@@ -1,1 +1,1 @@
-"""The flow of a model over a period of the base motion, with its exact derivatives."""
+"""Flow of a model over a period of the base motion, with its exact derivatives."""

@@ -1,18 +1,18 @@
-"""What the head of a flow's module defines, for reading its text by itself; `modules` writes the real one."""
+"""Declarations of the names that the head of a flow module defines; `modules` writes the real head."""
 
 from collections.abc import Callable
 
 ORDER: int
 """Number of equations."""
 ACCELERATIONS: int
-"""Three of the base in space; along the plane and vertically in a plane."""
+"""Number of acceleration components: three, or two (along the plane and vertical) if planar."""
 NUMBERS: int
-"""Parameters of the model."""
+"""Number of parameters of the model."""
 PLANAR: bool
 
 rates_into: Callable[..., None]
 jacobian_into: Callable[..., None]
-speed_left: Callable[..., float]
-"""(rate, parameters) → the rate of a tilt in a plane after a passage of the upright."""
+speed_after_passage: Callable[..., float]
+"""(rate, parameters) → tilt rate after a planar passage through the vertical."""
 lean_of: Callable[..., tuple[float, float, float, float]]
-"""(state, parameters) → the tilt vector and its rate."""
+"""(state, parameters) → tilt vector and its rate."""

@@ -1,4 +1,4 @@
-"""Writes and compiles the flow of a model."""
+"""Source text and compilation of the flow of a model."""
 
 from collections.abc import Callable
 from functools import cache
@@ -35,7 +35,7 @@ Vector = npt.NDArray[np.float64]
 
 @cache
 def flow_of(model: type[Model], states: int, numbers: int, *, planar: bool) -> Compiled:
-    """Return the flow of a class of models with so many states and parameters, in space or in a plane.
+    """Return the flow of a class of models with these numbers of states and parameters, three-dimensional or planar.
 
     Raises
     ------
@@ -44,7 +44,7 @@ def flow_of(model: type[Model], states: int, numbers: int, *, planar: bool) -> C
     """
     rates = model.planar_rates if planar else model.rates
     if rates is None:
-        message = f"model {model.name} has no equations of motion in a plane"
+        message = f"model {model.name} has no equations of planar motion"
         raise UnsupportedError(message)
     functions: dict[str, Callable[..., Any]] = (
         {"rates": rates} if planar else {"rates": rates, "tilt_of": model.tilt_of}
@@ -92,7 +92,7 @@ def flow_of(model: type[Model], states: int, numbers: int, *, planar: bool) -> C
 
 
 class _Arguments:
-    """What a model's equations are called with, by the names they have in the module."""
+    """Arguments of the equations of a model, by their names in the module."""
 
     def __init__(self, order: int, numbers: int, *, planar: bool) -> None:
         self.planar = planar
@@ -102,23 +102,23 @@ class _Arguments:
 
     @property
     def all(self) -> list[str]:
-        """In the order of the equations."""
+        """All arguments in the order of the equations."""
         side = ["side"] if self.planar else []
         return [*self.states, *side, *self.accelerations, *self.numbers]
 
     @property
     def variables(self) -> list[str]:
-        """By which they are differentiated."""
+        """Arguments with respect to which the equations are differentiated."""
         return [*self.states, *self.accelerations, *self.numbers]
 
     @property
     def constants(self) -> dict[str, int]:
-        """How many of each, and whether motion keeps to a plane."""
+        """Numbers of states, accelerations and parameters, and whether motion is planar."""
         counts = (len(self.states), len(self.accelerations), len(self.numbers))
         return dict(zip(("ORDER", "ACCELERATIONS", "NUMBERS", "PLANAR"), (*counts, self.planar), strict=True))
 
     def unpacked(self) -> list[str]:
-        """Return lines that take them out of vectors."""
+        """Return lines that unpack the arguments from vectors."""
         groups = (("y", self.states), ("push", self.accelerations), ("numbers", self.numbers))
         return [f"    {name} = {vector}[{j}]" for vector, names in groups for j, name in enumerate(names)]
 
@@ -176,11 +176,11 @@ def _lean_source(arguments: _Arguments) -> str:
 
 def _loss_source(arguments: _Arguments, *, loses: bool) -> str:
     if not loses:
-        return "def speed_left(rate, numbers):\n    return rate"
+        return "def speed_after_passage(rate, numbers):\n    return rate"
     numbers = ", ".join(f"numbers[{j}]" for j in range(len(arguments.numbers)))
     return "\n".join(
         [
-            "def speed_left(rate, numbers):",
+            "def speed_after_passage(rate, numbers):",
             f"    state = impact_map(*from_plane(0.0, rate, 1.0, 0.0, {numbers}), {numbers})",
             f"    _, _, vx, _ = tilt_of(*state, {numbers})",
             "    return vx",

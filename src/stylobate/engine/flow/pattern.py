@@ -1,8 +1,8 @@
-"""The flow of a model over a part of the base motion's period, with its derivatives: the text of a compiled module.
+"""Flow of a model over a part of the period of the base motion, with its derivatives: text of a compiled module.
 
-A module is a copy of what follows the mark, behind a head that defines for one model what is imported from `head`. The
-state of order n is the first column of a matrix of n rows; then come its derivatives by the state at the start, and by
-one number on which the system depends.
+A module consists of a head, which defines the names of `head` for one model, and of a copy of the text after the mark.
+The state of order n is the first column of a matrix of n rows. The next columns are its derivatives with respect to the
+initial state and to one parameter of the system.
 
 DOP853: E. Hairer, S. P. Nørsett, G. Wanner, "Solving Ordinary Differential Equations I", 2nd ed., section II.5.
 """
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
         jacobian_into,
         lean_of,
         rates_into,
-        speed_left,
+        speed_after_passage,
     )
 
 Table = npt.NDArray[np.float64]
@@ -33,19 +33,19 @@ Vector = npt.NDArray[np.float64]
 
 # --- the module's text begins here ---
 
-# As SciPy's: safety 0.9, a step changes by 0.2 to 10.
+# Step control as in SciPy: safety factor, bounds of the step ratio, and lower bound of the error.
 SAFETY, LEAST_FACTOR, LARGEST_FACTOR, LEAST_ERROR = 0.9, 0.2, 10.0, 1e-12
-# In turns of the base motion.
+# Steps in turns of the base motion.
 FIRST_STEP, LONGEST_STEP, SHORTEST_STEP = 0.01, 0.125, 1e-13
 MOST_STEPS = 200_000
-# A crossing of the upright is met to this part of the slenderness.
+# Tolerance of the tilt at a passage through the vertical [units of c], and maximum number of iterations.
 MET, MOST_TRIES = 1e-15, 60
-# Part of a change of the model's numbers by whose effect on the loss at a crossing its derivative is taken.
+# Difference step for the derivative of the loss at a passage, as a fraction of the change of the parameters.
 LOSS_STEP = 1e-6
 
 
 def accelerations_into(s: float, terms: Table, out: Vector) -> None:
-    """Set the accelerations at `s` turns: in each row of `terms` a multiple of the frequency, then pairs cos, sin."""
+    """Set the accelerations at `s` turns; a row of `terms` has a multiple of the frequency, then pairs cos, sin."""
     for k in range(ACCELERATIONS):
         out[k] = 0.0
     for term in range(len(terms)):
@@ -67,9 +67,9 @@ def slopes_into(
     work: Table,
     out: Table,
 ) -> None:
-    """Set the rates of state and derivatives to a turn of the base motion.
+    """Set the rates of state and derivatives per turn of the base motion.
 
-    `change` holds the changes of the period and of the model's numbers, `term_change` those of the terms.
+    `change` holds the changes of the period and of the model parameters, `term_change` the changes of the terms.
     """
     push, push_change, rates = work[0], work[1], work[2]
     jacobian = work[3:]
@@ -106,7 +106,7 @@ def stages_into(
     k: npt.NDArray[np.float64],
     new: Table,
 ) -> None:
-    """Make a step of length `h` to `new`; `k[0]` holds the slopes at its start, `k[12]` will hold those at its end."""
+    """Make a step of length `h` to `new`; `k[0]` holds the slopes at its start, `k[12]` receives those at its end."""
     for stage in range(1, 13):
         for i in range(ORDER):
             for column in range(ORDER + 2):
@@ -118,7 +118,7 @@ def stages_into(
 
 
 def error_of(y: Table, new: Table, h: float, k: npt.NDArray[np.float64], rtol: float, atol: float) -> float:
-    """Return the error of a step over what is allowed; that of the derivative by a number is not looked at."""
+    """Return the error of a step over its tolerance; the derivative with respect to a parameter is not included."""
     e5 = e3 = 0.0
     for i in range(ORDER):
         for column in range(ORDER + 1):
@@ -134,10 +134,10 @@ def error_of(y: Table, new: Table, h: float, k: npt.NDArray[np.float64], rtol: f
     return abs(h) * e5 / math.sqrt(spread * ORDER * (ORDER + 1)) if spread > 0.0 else 0.0
 
 
-def note_tilt(y: Table, new: Table, duration: float, numbers: Vector, noted: Vector) -> float:
-    """Note the minimum and maximum tilt of a step, by a cubic through the squares at its ends.
+def record_tilt(y: Table, new: Table, duration: float, numbers: Vector, record: Vector) -> float:
+    """Record the minimum and maximum tilt of a step, by a cubic through the squares at its ends.
 
-    Return where in the step the cubic turns, or 0 where it does not.
+    Return the fraction of the step at which the cubic has an extreme, or 0 if it has none.
     """
     x, z, vx, vz = lean_of(y[:, 0], numbers)
     start, slope = x * x + z * z, 2.0 * duration * (x * vx + z * vz)
@@ -147,19 +147,19 @@ def note_tilt(y: Table, new: Table, duration: float, numbers: Vector, noted: Vec
     if slope * end_slope < 0.0:
         at, extreme = turning_point(start, end, slope, end_slope, 1.0 if slope > 0.0 else -1.0)
         least, largest = min(least, extreme), max(largest, extreme)
-    noted[0] = min(noted[0], math.sqrt(max(least, 0.0)))
-    noted[1] = max(noted[1], math.sqrt(largest))
+    record[0] = min(record[0], math.sqrt(max(least, 0.0)))
+    record[1] = max(record[1], math.sqrt(largest))
     return at
 
 
-def note_turning(y: Table, new: Table, numbers: Vector, noted: Vector) -> None:
-    """Count how often the lean passes the negative x axis, anticlockwise less clockwise."""
+def count_turns(y: Table, new: Table, numbers: Vector, record: Vector) -> None:
+    """Count the passages of the tilt vector across the negative x axis, anticlockwise minus clockwise."""
     x0, y0, vx0, vy0 = lean_of(y[:, 0], numbers)
     x1, y1, vx1, vy1 = lean_of(new[:, 0], numbers)
-    noted[4] += winding(x0, y0, x1, y1, x0 * vy0 - y0 * vx0 + x1 * vy1 - y1 * vx1)
+    record[4] += winding(x0, y0, x1, y1, x0 * vy0 - y0 * vx0 + x1 * vy1 - y1 * vx1)
 
 
-def note_extremes(
+def record_extremes(
     y: Table,
     s: float,
     h: float,
@@ -174,23 +174,23 @@ def note_extremes(
     new: Table,
     near: npt.NDArray[np.float64],
     middle: Table,
-    noted: Vector,
+    record: Vector,
 ) -> None:
-    """Note the extremes of the tilt within a step; `near` and `middle` are room for another one.
+    """Record the extremes of the tilt within a step; `near` and `middle` are work arrays for another step.
 
-    A cubic over the whole step is right to 1e-4 only: an extreme is looked at again from a state near it.
+    A cubic over the whole step has an accuracy of only 1e-4, so that an extreme is computed again from a state near it.
     """
-    least, largest = noted[0], noted[1]
-    at = note_tilt(y, new, period * h, numbers, noted)
+    least, largest = record[0], record[1]
+    at = record_tilt(y, new, period * h, numbers, record)
     if 0.0 < at < 1.0:
-        noted[0], noted[1] = least, largest
+        record[0], record[1] = least, largest
         near[0] = k[0]
         stages_into(y, s, at * h, side, period, terms, numbers, change, term_change, work, near, middle)
-        note_tilt(y, middle, period * at * h, numbers, noted)
-        note_tilt(middle, new, period * (1.0 - at) * h, numbers, noted)
+        record_tilt(y, middle, period * at * h, numbers, record)
+        record_tilt(middle, new, period * (1.0 - at) * h, numbers, record)
 
 
-def step_to_upright(
+def step_to_vertical(
     y: Table,
     s: float,
     h: float,
@@ -204,7 +204,7 @@ def step_to_upright(
     k: npt.NDArray[np.float64],
     new: Table,
 ) -> float:
-    """Shorten a step that has passed the upright until it ends there; return its length."""
+    """Shorten a step that has passed the vertical until it ends there; return its length."""
     low, high = 0.0, h
     for _ in range(MOST_TRIES):
         aside = side * new[0, 0]
@@ -214,7 +214,7 @@ def step_to_upright(
             low = h
         else:
             high = h
-        # Newton's step, or the middle where it leads out of the bracket.
+        # Newton's step, or the midpoint if Newton's step leaves the bracket.
         speed = side * k[12, 0, 0]
         h = h - aside / speed if speed < 0.0 else low
         h = h if low < h < high else 0.5 * (low + high)
@@ -222,10 +222,10 @@ def step_to_upright(
     return h
 
 
-def cross(y: Table, s: float, side: float, terms: Table, numbers: Vector, change: Vector, work: Table) -> bool:
-    """Pass the upright in a plane: speed and acceleration jump, and derivatives with them; False if it grazes.
+def cross_vertical(y: Table, s: float, side: float, terms: Table, numbers: Vector, change: Vector, work: Table) -> bool:
+    """Pass the vertical in planar motion: speed, acceleration and derivatives jump; return False at a grazing passage.
 
-    With the loss v⁺ = e v⁻ they are multiplied by the saltation matrix ((e, 0), ((a⁺ − e a⁻)/v⁻, e)).
+    With the loss v⁺ = e v⁻ the derivatives are multiplied by the saltation matrix ((e, 0), ((a⁺ − e a⁻)/v⁻, e)).
     """
     push, before, after = work[0], work[1], work[2]
     y[0, 0] = 0.0
@@ -234,7 +234,7 @@ def cross(y: Table, s: float, side: float, terms: Table, numbers: Vector, change
         return False
     accelerations_into(s, terms, push)
     rates_into(y[:, 0], push, side, numbers, before)
-    left = speed_left(speed, numbers)
+    left = speed_after_passage(speed, numbers)
     kept_part = left / speed
     y[1, 0] = left
     rates_into(y[:, 0], push, -side, numbers, after)
@@ -242,12 +242,12 @@ def cross(y: Table, s: float, side: float, terms: Table, numbers: Vector, change
     for column in range(1, ORDER + 2):
         y[1, column] = kept_part * y[1, column] + jump * y[0, column]
         y[0, column] *= kept_part
-    # What the loss itself changes with the number on which the system depends.
+    # Derivative of the loss itself with respect to the parameter.
     larger, smaller = np.zeros(NUMBERS), np.zeros(NUMBERS)
     for j in range(NUMBERS):
         larger[j] = numbers[j] + LOSS_STEP * change[1 + j]
         smaller[j] = numbers[j] - LOSS_STEP * change[1 + j]
-    y[1, ORDER + 1] += (speed_left(speed, larger) - speed_left(speed, smaller)) / (2.0 * LOSS_STEP)
+    y[1, ORDER + 1] += (speed_after_passage(speed, larger) - speed_after_passage(speed, smaller)) / (2.0 * LOSS_STEP)
     return True
 
 
@@ -261,25 +261,25 @@ def flow(
     change: Vector,
     term_change: Table,
     limits: Vector,
-    noted: Vector,
+    record: Vector,
 ) -> int:
-    """Carry `y` from `begin` to `end` [turns of the base motion]; return how that went.
+    """Integrate `y` from `begin` to `end` [turns of the base motion]; return the `Status`.
 
-    `limits`: relative and absolute tolerance, minimum and maximum tilt. `noted`: minimum and maximum tilt met, number
-    of steps, side of the upright on which it leans (for motion in a plane), passages of the negative x axis.
+    `limits`: relative and absolute tolerance, minimum and maximum tilt. `record`: minimum and maximum tilt so far,
+    number of steps, side of the vertical (planar motion only), and passages across the negative x axis.
     """
     rtol, atol, least, largest = limits
     k = np.zeros((13, ORDER, ORDER + 2))
     work = np.zeros((3 + ORDER, ORDER + ACCELERATIONS + NUMBERS))
     new = np.zeros((ORDER, ORDER + 2))
     near, middle = np.zeros((13, ORDER, ORDER + 2)), np.zeros((ORDER, ORDER + 2))
-    side = noted[3]
+    side = record[3]
     s, h = begin, min(FIRST_STEP, end - begin)
     rejected = False
     slopes_into(y, s, side, period, terms, numbers, change, term_change, work, k[0])
     while s < end:
         too_short = h < SHORTEST_STEP * max(1.0, abs(s)) and end - s > h
-        if too_short or noted[2] >= MOST_STEPS:
+        if too_short or record[2] >= MOST_STEPS:
             return Status.FAILED
         last = h >= end - s
         h = end - s if last else h
@@ -291,30 +291,30 @@ def flow(
             continue
         passed = PLANAR and side * new[0, 0] < 0.0
         if passed:
-            h = step_to_upright(y, s, h, side, period, terms, numbers, change, term_change, work, k, new)
-        note_extremes(y, s, h, side, period, terms, numbers, change, term_change, work, k, new, near, middle, noted)
+            h = step_to_vertical(y, s, h, side, period, terms, numbers, change, term_change, work, k, new)
+        record_extremes(y, s, h, side, period, terms, numbers, change, term_change, work, k, new, near, middle, record)
         if passed:
-            noted[0] = 0.0
-            noted[2] += 1
+            record[0] = 0.0
+            record[2] += 1
             s += h
             y[:, :] = new
-            if not cross(y, s, side, terms, numbers, change, work):
+            if not cross_vertical(y, s, side, terms, numbers, change, work):
                 return Status.LOST
-            side = noted[3] = -side
+            side = record[3] = -side
             slopes_into(y, s, side, period, terms, numbers, change, term_change, work, k[0])
             h = FIRST_STEP
             continue
         if not PLANAR:
-            note_turning(y, new, numbers, noted)
+            count_turns(y, new, numbers, record)
         s = end if last else s + h
-        noted[2] += 1
+        record[2] += 1
         y[:, :] = new
         k[0] = k[12]
         factor = min(LARGEST_FACTOR, max(LEAST_FACTOR, SAFETY / max(error, LEAST_ERROR) ** 0.125))
         h = min(h * (min(factor, 1.0) if rejected else factor), LONGEST_STEP)
         rejected = False
-        if noted[1] > largest:
+        if record[1] > largest:
             return Status.GONE
-        if noted[0] < least and not PLANAR:
+        if record[0] < least and not PLANAR:
             return Status.LOST
     return Status.DONE

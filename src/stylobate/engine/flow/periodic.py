@@ -1,4 +1,4 @@
-"""A model under a periodic base motion, as the compiled flow takes it: dimensionless, in turns of the base motion."""
+"""Model under a periodic base motion in the form of the compiled flow: dimensionless, time in turns of the base."""
 
 import math
 from collections.abc import Callable
@@ -20,14 +20,14 @@ from stylobate.models import Model
 Floats = npt.NDArray[np.float64]
 
 LOST_TILT = 1e-6
-"""Nearer to the upright than this [units of c] the direction of lean is lost, and with it the orbit."""
+"""Tilt [units of c] below which the direction of lean, and with it the orbit, is lost."""
 
-# A motion that is no sum of harmonic ones is taken by so many samples of a period, and given up if its Fourier series
-# has not fallen below this part of its largest term by half of their digits.
+# Samples per period for a base motion that is not a sum of harmonics, and the relative size below which its Fourier
+# coefficients must fall by half of the highest order.
 _SAMPLES, _LEFT_OUT = 512, 1e-12
 _HARMONIC = 1e-9
-# Derivatives of the dimensionless numbers by a named parameter, which are closed forms of it: five-point differences
-# with this step, of the number itself but for angles, right to about 1e-12.
+# Derivatives of the dimensionless numbers with respect to a named parameter: five-point differences with this step,
+# relative except for angles. Their accuracy is about 1e-12, because the numbers are closed forms of the parameter.
 _STEP = 1e-3
 _CENTRAL = {-2.0: 1.0, -1.0: -8.0, 1.0: 8.0, 2.0: -1.0}
 _FORWARD = {0.0: -25.0, 1.0: 48.0, 2.0: -36.0, 3.0: 16.0, 4.0: -3.0}
@@ -37,9 +37,9 @@ _ANGLES = ("phase_difference", "rotation", "start_phase")
 
 @dataclass(frozen=True, slots=True)
 class Numbers:
-    """What the flow depends on: the period, the model's parameters, the harmonic terms of the base motion [g].
+    """Inputs of the flow: the period, the parameters of the model, and the harmonic terms of the base motion [g].
 
-    `terms` has a row for each: its multiple of the frequency, then coefficients of cosine and sine along each axis.
+    `terms` has a row for each term: its multiple of the frequency, then coefficients of cosine and sine for each axis.
     """
 
     period: float
@@ -49,9 +49,9 @@ class Numbers:
 
 @dataclass(frozen=True, slots=True)
 class Flow:
-    """How a state was carried: its end, the derivatives of that by the start and by a parameter, and what was met.
+    """Result of the flow: final state, its derivatives with respect to the start and a parameter, and extremes.
 
-    `turns` are those of the lean about the upright, 0 in a plane.
+    `turns` counts the turns of the tilt vector about the vertical; it is 0 in planar motion.
     """
 
     status: Status
@@ -67,16 +67,16 @@ class Flow:
 
 @dataclass(frozen=True, slots=True)
 class PeriodicSystem:
-    """A model under a periodic base motion.
+    """Model under a periodic base motion.
 
     Parameters
     ----------
     model, motion
         The column and its base motion.
     line
-        Unit vector of the vertical plane to which the motion keeps; None in space.
+        Unit vector of the vertical plane of the motion; None for three-dimensional motion.
     rtol
-        Relative tolerance of the flow; the absolute one is rtol × 0.01 c.
+        Relative tolerance of the flow; the absolute tolerance is rtol × 0.01 c.
     """
 
     model: Model
@@ -95,36 +95,36 @@ class PeriodicSystem:
 
     @property
     def planar(self) -> bool:
-        """Whether it moves in a vertical plane."""
+        """Whether the motion is planar."""
         return self.line is not None
 
     @property
     def scale(self) -> float:
-        """The slenderness c, the unit of tilts and their rates."""
+        """Slenderness c, the unit of tilts and their rates."""
         return self.model.column.slenderness
 
     @property
     def safe_tilt(self) -> float:
-        """Tilt beyond which no periodic motion comes back, or a right angle."""
+        """Point of no return for any periodic motion, at most a right angle."""
         gravity = self.model.column.gravity
         largest = self.motion.peak_horizontal(0.0) / gravity
         least = self.motion.vertical_range(0.0)[0] / gravity
         return min(self.model.least_safe_tilt(largest, least), 0.5 * math.pi)
 
     def changed(self, **values: float) -> Self:
-        """Return the system with these numbers of column, model or motion changed; see `with_parameters`."""
+        """Return the system with these parameters of column, model or motion changed; see `with_parameters`."""
         model, motion = with_parameters(self.model, self.motion, **values)
         return replace(self, model=model, motion=motion)
 
     def value_of(self, name: str) -> float:
-        """Return the present value of a number that `changed` takes."""
+        """Return the present value of a parameter that `changed` accepts."""
         return present_value(self.model, self.motion, name)
 
     def image(self, sense: float) -> Floats:
-        """Return the factors of the states, shape (order,), that make their opposite, or ones for `sense` +1.
+        """Return the factors, shape (order,), from a state to its opposite, or ones for `sense` +1.
 
-        In the opposite state the column leans the other way: turned by half a turn about the vertical, which leaves a
-        spin as it is.
+        The opposite state is rotated by half a turn about the vertical: the tilt vector changes its sign, the spin does
+        not.
         """
         factors = np.full(self.order, sense)
         if self.model.spin_state is not None and not self.planar:
@@ -132,7 +132,7 @@ class PeriodicSystem:
         return factors
 
     def derivative(self, name: str, at: float | None = None) -> Numbers:
-        """Return how the numbers change with the number called `name`, where it is `at`, by default as it is."""
+        """Return the derivatives of the numbers with respect to `name` at the value `at`; present value by default."""
         value = self.value_of(name) if at is None else at
         step = _STEP * (1.0 if name in _ANGLES or value == 0.0 else abs(value))
         around, weights = self._around(name, value, step)
@@ -147,12 +147,12 @@ class PeriodicSystem:
         )
 
     def _around(self, name: str, value: float, step: float) -> tuple[list[Numbers], list[float]]:
-        """Return the numbers at values around one, and the weights of their difference; beside it at an edge."""
+        """Return the numbers at values around `value`, or on one side of it at an edge, and the difference weights."""
         *inner, last = (_CENTRAL, _FORWARD, _BACKWARD)
         for rule in inner:
             try:
                 return [self.changed(**{name: value + k * step}).numbers for k in rule], list(rule.values())
-            except StylobateError:  # at the edge of what can be, such as no friction, or no loss
+            except StylobateError:  # at the edge of the valid range, such as no friction or no loss
                 continue
         return [self.changed(**{name: value + k * step}).numbers for k in last], list(last.values())
 
@@ -166,20 +166,20 @@ class PeriodicSystem:
         side: float = 0.0,
         peak_tilt: float | None = None,
     ) -> Flow:
-        """Carry `state` from `begin` to `end`, in turns of the base motion.
+        """Integrate `state` from `begin` to `end`, in turns of the base motion.
 
         Parameters
         ----------
         state
-            Shape (order,), in units of the model; tilt and rate along the line in a plane.
+            Shape (order,), in units of the model; tilt and rate along the line if planar.
         begin, end
             Phases, in turns.
         change
-            What the numbers change by along a parameter, see `derivative`.
+            Derivatives of the numbers with respect to a parameter, see `derivative`.
         side
-            Side of the upright (±1) on which a motion in a plane begins; by default that of its tilt, or of its rate.
+            Side of the vertical (±1) on which planar motion begins; by default the sign of the tilt, or of its rate.
         peak_tilt
-            Beyond it the motion is given up; the tilt of no return by default.
+            Tilt at which the integration stops; the point of no return by default.
         """
         order, numbers = self.order, self.numbers
         flow = flow_of(type(self.model), len(self.model.state_names), len(self.model.parameters), planar=self.planar)
@@ -198,7 +198,7 @@ class PeriodicSystem:
         )
         if self.planar and side == 0.0:
             side = math.copysign(1.0, state[0] if state[0] != 0.0 else state[1])
-        noted = np.array([math.inf, 0.0, 0.0, side, 0.0])
+        record = np.array([math.inf, 0.0, 0.0, side, 0.0])
         status = flow(
             table,
             begin,
@@ -209,22 +209,22 @@ class PeriodicSystem:
             np.concatenate([[change.period], change.parameters]),
             change.terms,
             limits,
-            noted,
+            record,
         )
         return Flow(
             Status(status),
             table[:, 0].copy(),
             table[:, 1 : order + 1].copy(),
             table[:, order + 1].copy(),
-            float(noted[0]),
-            float(noted[1]),
-            int(noted[2]),
-            float(noted[3]),
-            float(noted[4]) + self._azimuth(table[:, 0]) - self._azimuth(state),
+            float(record[0]),
+            float(record[1]),
+            int(record[2]),
+            float(record[3]),
+            float(record[4]) + self._azimuth(table[:, 0]) - self._azimuth(state),
         )
 
     def _azimuth(self, state: Floats) -> float:
-        """Return the azimuth of the lean [turns], −½ to ½; 0 in a plane."""
+        """Return the azimuth of the tilt vector [turns], −½ to ½; 0 if planar."""
         if self.planar:
             return 0.0
         x, y, _, _ = self.model.tilt_of(*state, *self.model.parameters)
@@ -237,7 +237,7 @@ def require_periodic(motion: BaseMotion) -> float:
     Raises
     ------
     UnsupportedError
-        If it has none, or is not periodic from t = 0.
+        If the motion has no period, or is not periodic from t = 0.
     """
     period = motion.period
     if period is None:
@@ -280,7 +280,7 @@ def _harmonic_rows(motion: BaseMotion, period: float) -> list[tuple[float, Float
 
 
 def _sampled_rows(motion: BaseMotion, period: float) -> list[tuple[float, Floats]]:
-    """Return the Fourier series of a motion that is not made of harmonic ones."""
+    """Return the Fourier series of a base motion that is not a sum of harmonics."""
     time = period * np.arange(_SAMPLES) / _SAMPLES
     series = np.fft.rfft(motion.acceleration(time), axis=0) / _SAMPLES
     size = np.abs(series).max(axis=1)
@@ -298,7 +298,7 @@ def _sampled_rows(motion: BaseMotion, period: float) -> list[tuple[float, Floats
 
 
 def plane_of(model: Model, motion: BaseMotion, state: Floats) -> tuple[float, float] | None:
-    """Return the line along which state and base motion lie, or None if they lie in no vertical plane."""
+    """Return the line of the vertical plane of state and base motion, or None if they are not in one plane."""
     if model.planar_rates is None:
         return None
     x, y, vx, vy = (float(number) for number in model.tilt_of(*state, *model.parameters))

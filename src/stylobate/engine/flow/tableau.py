@@ -1,4 +1,4 @@
-"""What the text of a flow's module takes as constants."""
+"""Constants for the text of a flow module: coefficients of DOP853, and the status of a flow."""
 
 from enum import IntEnum
 
@@ -15,12 +15,12 @@ DOP_E3, DOP_E5 = np.array(dop853.E3), np.array(dop853.E5)
 
 
 class Status(IntEnum):
-    """How a flow ended."""
+    """Status of a flow at its end."""
 
     DONE = 0
     LOST = 1
-    """It came to the upright, where the derivatives do not exist."""
+    """The motion came to the vertical, where the derivatives do not exist."""
     GONE = 2
-    """It went beyond the peak tilt."""
+    """The motion exceeded the peak tilt."""
     FAILED = 3
-    """The steps became too many or too short."""
+    """There were too many steps, or a step was too short."""

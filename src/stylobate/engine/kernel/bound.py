@@ -1,6 +1,6 @@
-"""What the modules of the driver leave open: each kernel binds it to a model and a kind of base motion.
+"""Names that the modules of the driver leave open: each kernel binds them to a model and a kind of base motion.
 
-See `kernels` for how; before that, a name here stands for nothing.
+`kernels` binds the names; until then they have no value.
 """
 
 from collections.abc import Callable
@@ -10,42 +10,42 @@ from stylobate.compiler.programs import Unbound
 
 WIDTH: int
 GRAIN: int
-"""A step takes a multiple of so many lanes."""
+"""The number of lanes of a step is a multiple of this number."""
 ORDER: int
 """Number of equations."""
 KEPT: int
-"""Number of columns of the state, with what is noted of changes between kinds of contact."""
+"""Number of columns of the state and of the record of contact changes."""
 KEPT_STATES: tuple[int, ...]
-"""States that a step keeps, among them the kind of contact."""
+"""States that are constant within a step, among them the kind of contact."""
 PARAMETERS: int
 PLANAR: bool
 COMPONENTS: int
-"""Of the acceleration that are followed: one along the line of a plane or two, and the vertical one if there is any."""
+"""Number of acceleration components: one (planar) or two horizontal ones, and the vertical one if the base has it."""
 SERIES: int
-"""Order of the series by which steps are made; 0 where they are made by stages."""
+"""Order of the Taylor series; 0 if the steps are those of DOP853."""
 INTEGRALS: tuple[int, ...]
-"""Of each state the one whose rate it is, or itself, where steps are made by series."""
+"""For each state: the state whose rate it is, or itself. Only for steps by Taylor series."""
 RATES_OF: tuple[int, ...]
-"""Of each state the one that is its rate, or −1."""
+"""For each state: the state that is its rate, or −1."""
 DEGREES: tuple[int, ...]
 COEFFICIENTS: tuple[int, ...]
-"""Of each expanded state the degree of its polynomial, and the row of its first coefficient."""
+"""Degree of the polynomial of each expanded state, and the row of its first coefficient."""
 VERTICAL: bool
 TERMS: int
 WINDOWED: int
 FIRST_FORCING: int
 FORCING_ROWS: int
 DEGREE: int
-"""Of the polynomials that tabulate the base motion; −1 for harmonic motion."""
+"""Degree of the polynomials that tabulate the base motion; −1 for harmonic motion."""
 PARAMETERS_AT: int
 MOTION_AT: int
 BREAKS_AT: int
-"""Columns of the table at which the parameters, the numbers of the base motion and its breaks begin."""
+"""First columns of the parameters, of the numbers of the base motion and of its breaks in the table."""
 TRACE_ROOM: int
-"""Entries of a trace that must be free before a lane is dealt with."""
+"""Number of free trace entries that the driver requires before it handles an event of a lane."""
 TRACE_STATES: int
 TRACE_WIDTH: int
-"""Most states of an entry of a trace, and its columns."""
+"""Maximum number of states in a trace entry, and number of its columns."""
 CAN_REST: bool
 CAN_DEPART: bool
 CAN_PASS: bool
@@ -53,32 +53,32 @@ CAN_PROVE_NO_RETURN: bool
 CAN_GO_TO_PLANE: bool
 CAN_LOSE: bool
 KEEPS_AT_REST: bool
-"""Whether the model has a function `at_rest` that says in which state it rests."""
+"""Whether the model has a function `at_rest`, which gives the state at rest."""
 SWITCHING: bool
 """Whether the model changes between kinds of contact."""
 DEMANDS: bool
 ORBITS: int
 ORBITS_AT: int
-"""With how many known orbits a run is compared, and the column of the table at which they begin."""
+"""Number of known orbits with which a run is compared, and their first column in the table."""
 SPIN: int
-"""Number of the state that is the spin, or −1."""
+"""Index of the spin in the state, or −1."""
 
 GUARDS: int
 LAST: int
 LIMIT: int
-"""Numbers of the last margin, and of that of the tilt limit behind it."""
+"""Indices of the last guard of the model, and of the guard of the tilt limit, which follows it."""
 FALLEN: int
-"""Number of the margin of a column that has overturned."""
+"""Index of the guard of overturning."""
 FRICTION: int
 JAM: int
-"""Numbers of the margins of friction, and of friction that jams."""
+"""Indices of the guards of Coulomb friction and of dynamic jamming."""
 SLIP_X: int
 SLIP_Y: int
-"""Places of the velocity of slip in the state."""
+"""Indices of the slip velocity in the state."""
 WINDOW_ENDS: tuple[int, int, int]
-"""Places of footprint and twist in the state."""
+"""Indices of footprint and twist in the state."""
 CHANGES: int
-"""Numbers that make up an implicit step: as many states as it has stages."""
+"""Number of unknowns of an implicit step: states times stages."""
 RESTING: int
 SLIDING: int
 ROLLING: int
@@ -88,7 +88,7 @@ JAMMED: int
 """Kinds of contact."""
 
 R: Any
-"""Numbers of the rows of the buffer."""
+"""Indices of the rows of the buffer."""
 
 rates: Callable[..., tuple[float, ...]]
 tilt_of: Callable[..., tuple[float, float, float, float]]
@@ -106,12 +106,12 @@ project: Callable[..., tuple[float, ...]]
 """The model's functions: see `Model`."""
 
 expand: Callable[..., tuple[tuple[tuple[float, ...], ...], tuple[tuple[float, ...], ...], tuple[float, ...]]]
-"""Taylor coefficients of a step; written for the model, see `expansion`."""
+"""Taylor coefficients of a step; `expansion` writes this function for the model."""
 
 begin: Callable[..., int]
-"""Sets the run of a lane going; returns WAITING when it moves, else the status with which it ends at once."""
+"""Starts the run of a lane; returns WAITING if the column moves, else the status with which the run ends at once."""
 handle: Callable[..., int]
-"""Deals with a lane that needs it; returns the status of a run that ends, or WAITING."""
+"""Handles the event of a lane; returns the final status if the run ends, else WAITING."""
 
 
 def __getattr__(name: str) -> Any:

@@ -1,8 +1,9 @@
-"""Names for the columns of the table of a batch: what a kernel reads of a run and notes; and of its buffer, `Lane`.
+"""Columns of the table of a batch (input and record of each run), and rows of the buffer of a kernel (`Lane`).
 
-The table is one float64 array with a row for each run. A row holds `Setup`, then `Log`, two windows, the looks of a
-period, the state, `Change` where the model knows it, an `Orbit` for each that is known, the model's parameters, the
-numbers of the base motion, its breaks, samples, strobes, and the trace of the run where one is kept.
+The table is one float64 array with a row for each run. A row holds, in this order: `Setup`, `Log`, two windows, the
+looks of a period, the state, `Change` if the contact of the model can change, an `Orbit` for each known orbit, the
+parameters of the model, the numbers of the base motion, its breaks, samples, stroboscopic samples, and the trace of
+the run if there is one. A look is a check of the tilt vector at one of the equally spaced times of the last periods.
 """
 
 from enum import IntEnum, auto
@@ -16,7 +17,7 @@ class _FromZero(IntEnum):
 
 
 class Setup(_FromZero):
-    """What a kernel reads of a run, in dimensionless time and g."""
+    """Input of a run, in dimensionless time and g."""
 
     END = auto()
     """Duration."""
@@ -26,73 +27,73 @@ class Setup(_FromZero):
     LONGEST_STEP = auto()
     SLENDERNESS = auto()
     CAPACITY = auto()
-    """|a_h|/(1 + a_z) up to which the column stays."""
+    """Maximum |a_h|/(1 + a_z) under which the column stands still."""
     TILT_LIMIT = auto()
     OVERTURNED_TILT = auto()
-    """What counts as overturned where the model proves nothing."""
+    """Tilt that counts as overturned if the model proves no point of no return."""
     REST_ENERGY = auto()
-    """ε; 0 where the column cannot come to rest."""
+    """Rest energy ε; 0 if the column cannot come to rest."""
     REST_ENERGY_FOR_GOOD = auto()
-    """ε once nothing to come can release the column again."""
+    """Rest energy ε when the rest of the base motion can no longer uplift the column."""
     LARGEST_HORIZONTAL = auto()
     MINIMUM_VERTICAL = auto()
     MAXIMUM_VERTICAL = auto()
     TIME_SCALE = auto()
     """Unit of time [s]."""
     FREQUENCY = auto()
-    """The highest in the base motion [rad]; 0 for a base at rest."""
+    """Highest angular frequency in the base motion; 0 for a base at rest."""
     PERIOD = auto()
-    """Of the base motion; 0 where there is none."""
+    """Period of the base motion; 0 if it has none."""
     STROBE = auto()
     """First time at which the base motion has phase zero."""
     PERIODS = auto()
-    """How many of the last periods decide the outcome."""
+    """Number of last periods that decide the outcome."""
     BREAKS = auto()
     SAMPLES = auto()
     STROBES = auto()
-    """How many columns of breaks, and sets of five columns of samples and strobes, the row of the run has."""
+    """Numbers of breaks (one column each), samples and stroboscopic samples (`NOTE` columns each) in the row."""
     TRACES = auto()
-    """How many entries of a trace, in columns behind these, it has room for; 0 where none is kept."""
+    """Number of trace entries for which the row has room, behind the samples; 0 if the run keeps no trace."""
     PASSAGE_TILT = auto()
-    """Minimum tilt below which a passage of the upright out of a plane loses energy; 0 where none does."""
+    """Minimum tilt below which a three-dimensional passage through the vertical loses energy; 0 if none does."""
     LINE_X = auto()
     LINE_Y = auto()
-    """Unit vector of the line along which the base moves or, in a plane, the column too; 0, 0 without one."""
+    """Unit vector of the line along which the base moves (and the column, in planar motion); 0, 0 if there is none."""
     SLOPE_X = auto()
     SLOPE_Y = auto()
     SLOPE_Z = auto()
-    """What an inclined plane adds to the acceleration of the base; it is in the equations, but not in the motion."""
+    """Contribution of an inclined plane to the base acceleration; it is in the equations, not in the base motion."""
 
 
 class Log(_FromZero):
-    """What a kernel notes of a run, from which it can also take the run up again; behind the columns of `Setup`."""
+    """Record of a run, from which the kernel can also continue the run; follows the columns of `Setup`."""
 
     STATUS = auto()
     TIME = auto()
     STANDS = auto()
     """1 while the column stands on its base."""
     DECIDED = auto()
-    """When its outcome was decided."""
+    """Time at which the outcome was decided."""
     STEPS = auto()
     RELEASES = auto()
     RESTS = auto()
     RELEASED_FROM_REST = auto()
-    """1 once it came to rest and was released again."""
+    """1 if the column came to rest and was uplifted again."""
     PEAK_TILT = auto()
-    LARGEST_AT = auto()
+    PEAK_AT = auto()
     MINIMUM_TILT = auto()
-    """Where the tilt stopped falling."""
-    LEAST_PASSAGE = auto()
-    """The same out of a plane."""
+    """Smallest of the tilts at which the tilt stopped falling."""
+    CLOSEST_PASSAGE = auto()
+    """The same for three-dimensional passages through the vertical."""
     FIRST_AZIMUTH = auto()
     LAST_AZIMUTH = auto()
-    """Of the lean, followed round [turns]; NaN before it leans out of a plane."""
-    IN_SPACE = auto()
-    """1 once it moved out of a plane."""
-    TOUCHED_UPRIGHT = auto()
-    """1 once it passed the upright in a plane, or came to rest."""
+    """Continuous azimuth of the tilt vector [turns]; NaN before three-dimensional motion begins."""
+    THREE_DIMENSIONAL = auto()
+    """1 if the motion was three-dimensional at some time."""
+    REACHED_VERTICAL = auto()
+    """1 if the column passed the vertical in planar motion, or came to rest."""
     LEG_ENDS = auto()
-    """When the polynomial ends that describes the base motion now; infinite for harmonic motion."""
+    """End of the present polynomial of the base motion; infinite for harmonic motion."""
     NEXT_BREAK = auto()
     BREAKS_AT = auto()
     NEXT_LOOK = auto()
@@ -105,180 +106,180 @@ class Log(_FromZero):
     NEXT_TRACE = auto()
     """Number of the next entry of the trace."""
     LIFTS_AT = auto()
-    """When the base begins to drop away; infinite if never."""
+    """Time at which the base begins to fall faster than gravity; infinite if it never does."""
     FRICTION = auto()
     PIVOTING = auto()
-    """Largest demands on the contact, while the column moves and while it stands."""
+    """Peak contact demands, while the column moves and while it stands."""
     NORMAL = auto()
-    """Minimum normal force [m g]; followed with the demands where they are asked for."""
+    """Minimum normal force [m g]; computed with the demands if the caller requests them."""
     WATCHED = auto()
-    """1 in the last periods, in which the following are taken."""
-    LATE_LEAST = auto()
-    """Minimum tilt in them."""
+    """1 in the last periods, for which the following columns are computed."""
+    LATE_MINIMUM_TILT = auto()
+    """Minimum tilt in the last periods."""
     MEAN_TILT = auto()
     FORWARD_COS = auto()
     FORWARD_SIN = auto()
     BACKWARD_COS = auto()
     BACKWARD_SIN = auto()
-    """Integrals over the last periods: of the tilt, and of its parts that turn with the forcing and against it."""
+    """Integrals over the last periods: of the tilt, and of its components that rotate with and against the forcing."""
 
 
 class Lane(_FromZero):
-    """What a lane keeps in the buffer while it has a run, behind the columns of the table; flags are 0 or 1."""
+    """Rows of the buffer for a lane that has a run, behind the columns of the table; flags are 0 or 1."""
 
     RUN = auto()
-    """Index of the run; -1 where it has none."""
+    """Index of the run; -1 if the lane has none."""
     PIECE = auto()
-    """Number of the polynomial of the base motion."""
+    """Index of the polynomial of the base motion."""
     H = auto()
     """Step to try."""
     TRIED = auto()
     """Step last tried."""
     HELD_STEP = auto()
-    """Step that an event held back."""
+    """Step that was held back because it overshot an event."""
     BY_TILT = auto()
-    """Flag: the event aimed at is met where the tilt reaches its bound, else where it grows; -1 at a lossy passage."""
+    """Flag: the aimed event is reached when the tilt reaches its bound, else when it grows; -1 at a lossy passage."""
     STOP = auto()
     """Time that the next step must not pass."""
     WANTED = auto()
-    """Next step as the error allows it, before stops cut it."""
+    """Next step that the error allows, before it is cut at the next stop."""
     MADE = auto()
-    """Step last made; 0 where it was not taken."""
+    """Step last made; 0 if it was not accepted."""
     AIMED = auto()
-    """How many steps have been aimed at an event ahead."""
+    """Number of steps aimed at the event ahead."""
     REJECTED = auto()
-    """Flag of a step with too large an error."""
+    """Flag: the error of the step is too large."""
     SIDE = auto()
-    """In a plane: sign of the tilt."""
+    """Sign of the tilt in planar motion."""
     ATOL_NOW = auto()
-    """Absolute tolerance, finer while a motion is still small."""
+    """Absolute tolerance; finer while a motion is still small."""
     GROWN = auto()
-    """Tilt at which a motion is no longer small."""
+    """Tilt above which a motion is no longer small."""
     REST_TILT = auto()
     REST_SQUARE = auto()
     SLOW_SQUARE = auto()
-    """Tilt and squares of speed below which rest is looked for."""
+    """Tilt and squared speeds below which the driver checks for rest."""
     NO_RETURN = auto()
-    """Tilt beyond which the model proves that the column overturns."""
+    """Point of no return: tilt beyond which the model proves that the column overturns."""
     TILT = auto()
     RADIAL = auto()
     """Tilt times its rate."""
     MOMENTUM = auto()
-    """Twice the area that the lean sweeps per unit of time."""
+    """Twice the area that the tilt vector sweeps per unit of time."""
     X = auto()
     Y = auto()
     VX = auto()
     VY = auto()
-    """Lean and its rate."""
+    """Tilt vector and its rate."""
     TURNS = auto()
-    """Whole turns of the lean so far."""
+    """Whole turns of the tilt vector so far."""
     LOW = auto()
     """Minimum tilt within the step."""
     SLOW = auto()
-    """Flag: it may have been slow enough within the step to come to rest."""
+    """Flag: within the step the column may have been slow enough to come to rest."""
     PEAK = auto()
     """Flag: a peak tilt lies within the step."""
     FLAG = auto()
-    """Not 0 where the driver must look at the lane."""
+    """Not 0 if the lane has an event for the driver."""
     ERROR = auto()
-    """Of the step, in units of the tolerance."""
+    """Error of the step, in units of the tolerance."""
     OK = auto()
     """Flag: the error is small enough."""
     HELD = auto()
-    """Flag: but the step goes beyond an event."""
+    """Flag: the error is small enough, but the step overshoots an event."""
     GO = auto()
-    """Flag: the step is taken."""
+    """Flag: the step is accepted."""
     REACHED = auto()
-    """Flag: it has reached the stop."""
+    """Flag: the step has reached the stop."""
     TRACE_AZIMUTH = auto()
-    """Of the lean, as the trace last noted it [turns]."""
+    """Azimuth of the tilt vector in the last trace entry [turns]."""
     NEW_X = auto()
     NEW_Y = auto()
     NEW_VX = auto()
     NEW_VY = auto()
     NEW_TILT = auto()
     NEW_RADIAL = auto()
-    """The same at the end of the step tried."""
+    """Tilt vector, its rate, tilt, and tilt times tilt rate at the end of the step tried."""
     PER_TURN = auto()
-    """1/period of the base motion; 0 where it has none."""
+    """1/period of the base motion; 0 if it has none."""
 
 
 class Change(_FromZero):
-    """What is noted of the changes between kinds of contact, of models that know them; behind the state."""
+    """Record of the changes between kinds of contact, for models that have them; follows the state."""
 
     SINCE = auto()
-    """When the present kind of contact began."""
+    """Time at which the present kind of contact began."""
     CHANGED_AT = auto()
     AT_ONCE = auto()
-    """When the contact changed last, and how often before at the same moment."""
+    """Time of the last contact change, and number of earlier changes at the same time."""
     SLIPS = auto()
-    """How often a contact that held gave way."""
+    """Number of times that a sticking contact began to slip."""
     IMPACTS = auto()
-    """Landings, and strokes of the base."""
+    """Number of landings and face impacts."""
     TIME_RESTING = auto()
     TIME_SLIDING = auto()
     TIME_ROLLING = auto()
     TIME_SLIPPING = auto()
     TIME_FLYING = auto()
-    """How long each kind of contact lasted, the present one left out; numbered as the kinds are."""
+    """Total duration of each kind of contact without the present one, in the order of the kinds."""
     WINDOW_AT = auto()
     WINDOW_X = auto()
     WINDOW_Y = auto()
     WINDOW_TWIST = auto()
-    """When the last periods began, and footprint and twist then."""
+    """Begin of the last periods, and footprint and twist at that time."""
     WINDOW_SLIDING = auto()
     WINDOW_RIM = auto()
     WINDOW_FLYING = auto()
-    """How long the base had slid by then, the rim touched, and nothing."""
+    """Durations of sliding on the base face, of rim contact and of flight up to that time."""
 
 
 class Orbit(_FromZero):
-    """A periodic orbit that is known beforehand, and the approach of a run to it; behind `Change`."""
+    """A known periodic orbit, and the approach of a run to it; follows `Change`."""
 
     X = auto()
     Y = auto()
     VX = auto()
     VY = auto()
     SPIN = auto()
-    """Its state at phase zero of the base motion; NaN where the run has no such orbit."""
+    """State of the orbit at phase zero of the base motion; NaN if the run has no such orbit."""
     SIZE = auto()
     RATE = auto()
-    """Units of distances from it: of tilts, and of rates and spin."""
+    """Units of the distance from the orbit: for tilts, and for rates and spin."""
     WINDOW = auto()
     FALL = auto()
-    """Periods m of a window, and ρ^m, the largest multiplier having the modulus ρ."""
+    """Number m of periods in a window, and ρ^m, where ρ is the modulus of the largest multiplier."""
     DECAY = auto()
     """−ln ρ in the unit of time."""
     REPEATS = auto()
-    """Largest difference of states one period apart of a motion that repeats."""
+    """Maximum difference of states one period apart that counts as a repeating motion."""
     LATEST = auto()
-    """When the run must be near it to repeat in time; −∞ where it has no such orbit."""
+    """Latest time at which a run must be near the orbit to repeat before its end; −∞ if it has no such orbit."""
     REACHED = auto()
-    """1 once the run has converged to it."""
+    """1 if the run has converged to the orbit."""
     BEFORE = auto()
     LARGEST = auto()
     AGE = auto()
     FALLS = auto()
-    """The approach to it, see `convergence.Approach`."""
+    """Approach to the orbit, see `convergence.Approach`."""
 
 
 class Window(_FromZero):
-    """What is noted of a window of some periods, at equal looks."""
+    """Record of a window of several periods, computed at its looks."""
 
     TILT_CHANGE = auto()
     RATE_CHANGE = auto()
-    """Largest difference of a component to one period before."""
+    """Maximum difference between states one period apart."""
     TILT_SIZE = auto()
     RATE_SIZE = auto()
     LAG_FORWARD = auto()
     LAG_BACKWARD = auto()
-    """Sums of the azimuth behind a forcing that turns anticlockwise or clockwise [turns]."""
+    """Sums of the azimuth relative to a forcing that rotates anticlockwise or clockwise [turns]."""
     FIRST_AZIMUTH = auto()
     LAST_AZIMUTH = auto()
 
 
 LOOKS = 2
-"""Looks to a period in the windows."""
+"""Looks per period in the windows."""
 
 ORBIT = len(Orbit)
 """Columns of a known orbit."""
@@ -290,30 +291,30 @@ BEFORE = LOG + len(Log)
 LATE = BEFORE + len(Window)
 """First column of the window of the last periods."""
 LAST_LOOKS = LATE + len(Window)
-"""First column of the leans at the looks of the last period."""
+"""First column of the tilt vectors and their rates at the looks of the last period."""
 STATE = LAST_LOOKS + 4 * LOOKS
 """First column of the state."""
 
 SLACK = 1e-12
-"""A run is as long as a number of periods to this part."""
+"""Relative tolerance when a duration is compared with a number of periods."""
 
 TRACE_TERMS = 8
-"""Vectors of an entry of a trace: the state at its start, and seven coefficients."""
+"""Number of vectors in a trace entry: the state at its start, and seven coefficients."""
 TRACE_ROOM = 16
-"""Entries that must be free before a lane is dealt with: that is more than are made at once."""
+"""Number of free entries that the driver requires before it handles a lane: more than one event can write."""
 
 SWITCHING_TRACE_ROOM = 1500
-"""The same where kinds of contact change: a stretch of implicit steps, and changes at one moment, are made at once."""
+"""The same for models whose contact can change: one call can write a series of implicit steps and contact changes."""
 
 NOTE = 5
-"""Columns of a sample or a strobe: tilt x and y, their rates, time."""
+"""Columns of a sample or stroboscopic sample: tilt vector, its rate, time."""
 
 
 class Trace(_FromZero):
-    """What the columns of an entry of a trace hold; behind them stand the state at its start and a polynomial.
+    """First columns of a trace entry; the state at its start and a polynomial follow.
 
-    An entry lasts until the next one begins. The polynomial is that of the dense output of DOP853, see `dense_source`,
-    in the share of the entry's length that is over: seven coefficients, each of all states.
+    An entry lasts until the next one begins. The polynomial is the dense output of DOP853 (see `stages.dense_change`)
+    in the elapsed fraction of the entry: seven coefficients for each state.
     """
 
     KIND = auto()
@@ -321,34 +322,34 @@ class Trace(_FromZero):
     LENGTH = auto()
     AZIMUTH = auto()
     END_AZIMUTH = auto()
-    """Of the lean at both ends, followed round [turns]; out of a plane."""
+    """Continuous azimuth of the tilt vector at both ends [turns]; only for three-dimensional motion."""
 
 
 class TraceKind(_FromZero):
-    """What an entry of a trace is: a stretch of motion, or an event."""
+    """Kind of a trace entry: a segment of motion, or an event."""
 
     STEP = auto()
     PLANE_STEP = auto()
-    """A step in a vertical plane: its state is tilt and rate."""
-    LEAP = auto()
-    """A short time passed in closed form."""
+    """A step of planar motion; its state is tilt and tilt rate."""
+    ANALYTICAL_STEP = auto()
+    """A short time for which the solution is analytical."""
     STAND = auto()
     """The column stands on its base."""
     RELEASE = auto()
     REST = auto()
     IMPACT = auto()
     PASSAGE = auto()
-    """Events: only their time, START, has a meaning."""
+    """Events: only START is used."""
     CONTACT = auto()
-    """The event that ends a kind of contact: behind it the number of its guard, and the kinds before and after."""
+    """The event that ends a kind of contact; the index of its guard and the kinds before and after it follow."""
 
 
 class Status(_FromZero):
-    """How a run stands with its kernel."""
+    """Status of a run in its kernel."""
 
     WAITING = auto()
     STOPPED = auto()
-    """Its time was up."""
+    """The run reached its duration."""
     RESTED = auto()
     OVERTURNED = auto()
     LIMIT = auto()
@@ -356,14 +357,14 @@ class Status(_FromZero):
     STEP_LIMIT = auto()
     STEP_TOO_SMALL = auto()
     UNSEEN = auto()
-    """It stood for as many periods of the base motion as its steps allow to search, and there are more."""
+    """The column stood for as many periods as the step limit allows to search, and the base motion goes on."""
     CANNOT_DEPART = auto()
-    """It was released from rest, and its model does not say how it departs."""
+    """The column was uplifted from rest, but its model has no function `departure`."""
     TO_PLANE = auto()
-    """It was released from rest by a motion along a line: the kernel of plane motion takes it on."""
+    """The column was uplifted from rest by motion along a line: the kernel for planar motion continues the run."""
     ENDLESS = auto()
-    """Its contact changed without end."""
+    """The contact changed infinitely often in a finite time."""
     JAMMED = auto()
-    """Its contact can neither stick nor slip nor open."""
+    """Dynamic jamming: the contact can neither stick nor slip nor open."""
     CONVERGED = auto()
-    """It has converged to a known orbit, see `convergence`."""
+    """The run has converged to a known orbit, see `convergence`."""

@@ -1,4 +1,4 @@
-"""A model's equations as Taylor series."""
+"""Taylor series of the equations of a model."""
 
 from collections.abc import Iterable
 from functools import cache
@@ -12,23 +12,23 @@ from stylobate.models import Model
 
 
 class Expansion:
-    """The series of a model's equations: of its states and of the square of its tilt.
+    """Taylor series of the states of a model and of the square of its tilt.
 
-    Coefficient k of state j is called `s{j}_{k}`; those of the base's accelerations `ax_{k}` …, parameters `p{j}`.
+    Variables: coefficient k of state j `s{j}_{k}`, coefficients of the base acceleration `ax_{k}` …, parameters `p{j}`.
 
     Parameters
     ----------
     model
         The class of the model.
     states, parameters
-        How many it has.
+        Numbers of states and of parameters.
     vertical
         Whether the base moves vertically too.
 
     Raises
     ------
     UnsupportedError
-        If the equations cannot be recorded, or hold operations without a recurrence.
+        If the equations cannot be recorded, or contain operations without a recurrence.
     """
 
     def __init__(self, model: type[Model], states: int, parameters: int, *, vertical: bool) -> None:
@@ -45,7 +45,7 @@ class Expansion:
 
     @property
     def integrals(self) -> tuple[int, ...]:
-        """Of each state the one whose rate it is, or itself: the coefficients of that one give those of both."""
+        """For each state the state whose rate it is, or itself; its coefficients determine those of both."""
         out = list(range(len(self._names)))
         for j, rate in enumerate(self._rates):
             if rate.name in self._names:
@@ -55,7 +55,7 @@ class Expansion:
         return tuple(out)
 
     def coefficient_lines(self, k: int) -> list[str]:
-        """Return lines that find coefficients `k` of rates and square, and from them what follows of the states."""
+        """Return lines that compute coefficients `k` of rates and square, and the next coefficients of the states."""
         out = self._series.lines(k)
         if k == SERIES_ORDER:
             return out
@@ -85,7 +85,7 @@ def series_integrals(model: type[Model], states: int, parameters: int, *, vertic
     Raises
     ------
     UnsupportedError
-        If they have no series.
+        If the equations have no series.
     """
     try:
         return Expansion(model, states, parameters, vertical=vertical).integrals
@@ -98,10 +98,10 @@ def series_integrals(model: type[Model], states: int, parameters: int, *, vertic
 
 
 def expand_source(model: type[Model], shape: Shape) -> str:
-    """Return the source of `expand(start, pushes, numbers)`: Taylor coefficients of a step.
+    """Return the source of `expand(start, pushes, numbers)`, which computes the Taylor coefficients of a step.
 
-    From the states at its start, the coefficients of each component of the push and the parameters it finds those of
-    each state, those of the rates, and those of the square of the tilt.
+    Its arguments are the states at the start of the step, the coefficients of each acceleration component and the
+    parameters. Its results are the coefficients of the states, of the rates and of the square of the tilt.
     """
     vertical = "az" in shape.forcing.components
     expansion = Expansion(model, shape.states, shape.parameters, vertical=vertical)

@@ -1,4 +1,4 @@
-"""Kinds of base motion that kernels evaluate, and the rows in which their numbers stand; see `driver/push`."""
+"""Kinds of base motion that kernels evaluate, and the buffer rows of their coefficients; see `driver/push`."""
 
 from dataclasses import dataclass
 from typing import Protocol
@@ -11,26 +11,26 @@ class KernelForcing(Protocol):
 
     @property
     def components(self) -> tuple[str, ...]:
-        """Names of the accelerations: "ax" and "ay", or "ah" in a plane, and "az" where the base moves vertically."""
+        """Names of the accelerations: "ax" and "ay", or "ah" if planar, and "az" if the base moves vertically."""
 
     @property
     def tag(self) -> str:
-        """A short name for file names."""
+        """Short name for file names."""
 
     def reserve(self, rows: Rows) -> None:
-        """Add the rows of its numbers."""
+        """Add the rows of the coefficients."""
 
     def constants(self, rows: Rows) -> dict[str, int]:
-        """Return what the driver must know to fill the rows."""
+        """Return the constants that the driver needs to fill the rows."""
 
     @property
     def columns(self) -> int:
-        """How many numbers describe the motion in the table of a batch."""
+        """Number of columns that describe the motion in the table of a batch."""
 
 
 @dataclass(frozen=True, slots=True)
 class Harmonics(KernelForcing):
-    """A sum of harmonic terms: in each, one frequency, and an amplitude and phase for each component.
+    """Sum of harmonic terms, each with one frequency, and an amplitude and phase for each component.
 
     Parameters
     ----------
@@ -39,7 +39,7 @@ class Harmonics(KernelForcing):
     windowed
         Whether the terms may begin later or rise over a time: each is multiplied by α − β cos(window phase).
     components
-        ("ax", "ay"), with "az" where the base moves vertically; in a plane "ah" in place of the two.
+        ("ax", "ay"), or ("ah",) if planar; with "az" if the base moves vertically.
     """
 
     terms: int
@@ -48,16 +48,16 @@ class Harmonics(KernelForcing):
 
     @property
     def tag(self) -> str:
-        """Such as `h1`, `h2w`; a vertical component shows as `z`."""
+        """Short name such as `h1`, `h2w`; `z` marks a vertical component."""
         return f"h{self.terms}{'w' * self.windowed}{'z' * ('az' in self.components)}"
 
     @property
     def columns(self) -> int:
-        """Of each term the frequency, amplitude and phase along x, y, z; onset, begin and end of its rise."""
+        """Columns of each term: frequency, amplitude and phase along x, y, z; onset, begin and end of its rise."""
         return self.terms * (7 + 3 * self.windowed)
 
     def reserve(self, rows: Rows) -> None:
-        """Add the rows of all the terms, those of one after those of another."""
+        """Add the rows of all terms, term by term."""
         for term in range(self.terms):
             rows.add(f"turns{term}")
             for component in self.components:
@@ -68,7 +68,7 @@ class Harmonics(KernelForcing):
                     rows.add(f"{name}{term}")
 
     def constants(self, rows: Rows) -> dict[str, int]:
-        """Return the number of terms, and how their rows lie."""
+        """Return the number of terms and the layout of their rows."""
         return {
             "TERMS": self.terms,
             "WINDOWED": int(self.windowed),
@@ -80,19 +80,19 @@ class Harmonics(KernelForcing):
 
 @dataclass(frozen=True, slots=True)
 class Polynomials(KernelForcing):
-    """A motion tabulated as one polynomial after another, all of the same `degree`; steps end where pieces do."""
+    """Motion tabulated as successive polynomials of the same `degree`; steps end where the pieces end."""
 
     degree: int
     components: tuple[str, ...]
 
     @property
     def tag(self) -> str:
-        """Such as `p1`, `p15`; a vertical component shows as `z`."""
+        """Short name such as `p1`, `p15`; `z` marks a vertical component."""
         return f"p{self.degree}{'z' * ('az' in self.components)}"
 
     @property
     def columns(self) -> int:
-        """Factor, cos and sin of a rotation, vertical factor, delay [s], first piece, number of pieces."""
+        """Columns: factor, cos and sin of a rotation, vertical factor, delay [s], first piece, number of pieces."""
         return 7
 
     def reserve(self, rows: Rows) -> None:
@@ -104,7 +104,7 @@ class Polynomials(KernelForcing):
                 rows.add(f"{component}{power}")
 
     def constants(self, rows: Rows) -> dict[str, int]:
-        """Return the degree, and where the rows begin."""
+        """Return the degree and the first row."""
         return {
             "TERMS": 0,
             "WINDOWED": 0,

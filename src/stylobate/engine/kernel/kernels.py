@@ -22,10 +22,10 @@ from stylobate.engine.kernel.shape import SERIES_ORDER, STAGES, Shape
 from stylobate.models import Model
 
 _GRAIN = 8
-"""Lanes of a step: the longest vector that a processor has."""
+"""Lanes of a step: the maximum vector length of a processor."""
 
 _EDGE = 8
-"""Numbers in a line of the processor's cache: a vector that lies across two lines costs twice."""
+"""Numbers in a cache line of the processor: a vector across two lines costs twice as much."""
 
 _IN_LANES = ("rates", "tilt_of", "contact", "guards", "project")
 """Functions of a model that steps call for all lanes."""
@@ -38,7 +38,7 @@ _USED_AS_THEY_ARE = (columns, dop853, elementary, linear_equations, radau, roots
 
 @dataclass(frozen=True, slots=True)
 class Kernel:
-    """What advances batches of runs of a model."""
+    """Compiled program that advances batches of runs of a model."""
 
     shape: Shape
     compiled: Compiled
@@ -52,7 +52,7 @@ class Kernel:
     def advance(
         self, table: Table, pieces: Table, halt: npt.NDArray[np.uint8], buffer: Table, *, plain: bool = False
     ) -> bool:
-        """Run a batch to its end, until `halt[0]` is set or a trace is full; return whether it is at its end."""
+        """Run a batch to its end, or until `halt[0]` is set or a trace is full; return whether the batch has ended."""
         advance = self.compiled.plain if plain else self.compiled
         return bool(advance(table, pieces, halt, buffer))
 
@@ -79,7 +79,7 @@ def kernel_of(model: type[Model], shape: Shape) -> Kernel:
 
 
 def _rows(shape: Shape) -> SimpleNamespace:
-    """Return the numbers of the rows of the buffer, by their names in capitals; the first rows of blocks by others."""
+    """Return the indices of the buffer rows under their names in capitals, and of the first row of each block."""
     rows = shape.rows()
     blocks = {
         "STATE": "y0",
@@ -103,13 +103,13 @@ def _rows(shape: Shape) -> SimpleNamespace:
         "ORBIT": "orbit0",
         "END_PUSH": f"end_{shape.forcing.components[0]}",
     }
-    # What reads rows that a kernel lacks is left out by the compiler.
+    # The compiler leaves out code that reads rows which a kernel lacks.
     first = {name: rows.get(row) for name, row in blocks.items()}
     return SimpleNamespace(**{name.upper(): rows[name] for name in rows}, **first)
 
 
 def _constants(model: type[Model], shape: Shape) -> dict[str, Any]:
-    """Return what else the driver leaves open."""
+    """Return the other constants that the driver leaves open."""
     has = {name: getattr(model, name) is not None for name in _OPTIONAL}
     return {
         "WIDTH": shape.width,
@@ -133,7 +133,7 @@ def _constants(model: type[Model], shape: Shape) -> dict[str, Any]:
         "CAN_LOSE": has["impact_map"],
         "KEEPS_AT_REST": has["at_rest"] and not shape.planar,
         "DEMANDS": shape.demands,
-        # In a plane the multipliers of an orbit do not apply: disturbances out of it are left out.
+        # The multipliers of an orbit do not apply to planar motion, which excludes disturbances out of the plane.
         "ORBITS": 0 if shape.planar else shape.orbits,
         "ORBITS_AT": shape.orbits_at,
         "SPIN": -1 if model.spin_state is None else model.spin_state,
@@ -145,7 +145,7 @@ def _constants(model: type[Model], shape: Shape) -> dict[str, Any]:
 
 
 def _series_constants(shape: Shape) -> dict[str, Any]:
-    """Return which states steps by series expand, of which degree, and where their coefficients lie."""
+    """Return the constants of steps by Taylor series: expanded states, degrees, and rows of the coefficients."""
     rows, states = shape.rows(), range(len(shape.series))
     rates_of = [next((m for m, integral in enumerate(shape.series) if integral == j != m), -1) for j in states]
     return {
@@ -158,7 +158,7 @@ def _series_constants(shape: Shape) -> dict[str, Any]:
 
 
 def _contact_constants(model: type[Model], shape: Shape) -> dict[str, Any]:
-    """Return numbers of guards and of kinds of contact; −1 where there are none. The tilt limit is a margin too."""
+    """Return the indices of guards and kinds of contact; −1 if absent. The tilt limit counts as a guard."""
     names, kinds = model.guard_names, model.contact_kinds
     places = {"FALLEN": "fallen", "FRICTION": "friction", "JAM": "jam"}
     states = ("footprint_x", "footprint_y", "twist") if shape.guards else ()
@@ -178,7 +178,7 @@ def _contact_constants(model: type[Model], shape: Shape) -> dict[str, Any]:
 
 
 def _functions(model: type[Model], shape: Shape) -> dict[str, Callable[..., Any]]:
-    """Return the model's functions as a kernel of this shape uses them, by name."""
+    """Return the functions of the model that a kernel of this shape uses, by name."""
     functions = {"rates": model.planar_rates if shape.planar else model.rates, "tilt_of": model.tilt_of}
     functions |= {name: getattr(model, name) for name in _OPTIONAL}
     if shape.demands:
@@ -191,7 +191,7 @@ def _functions(model: type[Model], shape: Shape) -> dict[str, Callable[..., Any]
 
 
 def _in_words(model: type[Model], shape: Shape) -> str:
-    """Describe a kernel so that its description differs from those of the other kernels of a model."""
+    """Describe a kernel such that descriptions of different kernels of a model differ."""
     kind = f"{'plane' if shape.planar else 'space'} motion, {shape.forcing.tag}, {shape.width} lanes"
     options = (
         ", by Taylor series" if shape.series else "",

@@ -1,6 +1,6 @@
 """The buffer of a kernel: one contiguous array, row r of lane i at buf[r * WIDTH + i].
 
-What the rows mean stands in `columns` (`Setup`, `Log`, `Lane`); which of them a kernel has is for its `Shape` to say.
+`columns` defines the meaning of the rows (`Setup`, `Log`, `Lane`); the `Shape` of a kernel determines which it has.
 """
 
 from collections.abc import Iterator
@@ -13,7 +13,7 @@ Row = npt.NDArray[np.float64]
 
 
 class Rows:
-    """Named rows, numbered in the order in which they are added."""
+    """Named rows, numbered in the order of addition."""
 
     def __init__(self) -> None:
         self._numbers: dict[str, int] = {}
@@ -32,7 +32,7 @@ class Rows:
         return self._numbers[name]
 
     def get(self, name: str) -> int:
-        """Return the number of a row, or 0 where there is none of this name."""
+        """Return the index of a row, or 0 if there is no row of this name."""
         return self._numbers.get(name, 0)
 
     def __iter__(self) -> Iterator[str]:

@@ -1,4 +1,4 @@
-"""Linear equations by Gaussian elimination with exchange of rows, in the arrays that are passed."""
+"""Linear equations: Gaussian elimination with partial pivoting, in the arrays of the caller."""
 
 import math
 from typing import NamedTuple
@@ -7,7 +7,7 @@ from stylobate.engine.kernel.layout import Row, Table
 
 
 class NewtonRoom(NamedTuple):
-    """Arrays in which an implicit step is solved: the Jacobian, the matrix of all stages, and rows as long as that."""
+    """Work arrays of an implicit step: the Jacobian, the matrix of all stages, and vectors of the same length."""
 
     jacobian: Table
     matrix: Table
@@ -17,9 +17,9 @@ class NewtonRoom(NamedTuple):
 
 
 def factor(matrix: Table, pivots: Row) -> bool:
-    """Replace a square matrix by its factors L and U, and note the rows exchanged; return False if it is singular.
+    """Replace a square matrix by its factors L and U, and record the row exchanges; return False if it is singular.
 
-    A matrix with numbers that are not finite counts as singular. Zeros below the diagonal cost nothing.
+    A matrix with numbers that are not finite counts as singular. Zeros below the diagonal cost no operations.
     """
     n = len(matrix)
     for k in range(n):
@@ -44,7 +44,7 @@ def factor(matrix: Table, pivots: Row) -> bool:
 
 
 def solve(factors: Table, pivots: Row, x: Row) -> None:
-    """Replace the right-hand side `x` by the solution of the equations with these `factor`s."""
+    """Replace the right-hand side `x` by the solution of the equations with the `factors` from `factor`."""
     n = len(x)
     for k in range(n):
         largest = int(pivots[k])

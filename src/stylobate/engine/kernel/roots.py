@@ -1,18 +1,19 @@
-"""Where a step of a lane meets an event, from the values and slopes at its two ends."""
+"""Root finding for events within a step, from the values and slopes at both ends of the step."""
 
 import math
 
 import numpy as np
 
 _BISECTIONS = 52
-# A first return is sought from this fraction of the step on, doubled up to the second number, then at equal steps.
+# The search for a first return begins at this fraction of the step, doubles up to the second number, and then
+# continues at equal steps.
 _FIRST_FRACTION, _EQUAL = 2.0**-40, 1.0 / 16.0
 # Relative accuracy of a root.
 _ROOT = 1e-14
 
 
 def cubic(u: float, start: float, end: float, slope: float, end_slope: float) -> float:
-    """Return the cubic on [0, 1] with these values and slopes at its ends."""
+    """Return the value at `u` of the cubic on [0, 1] with these values and slopes at its ends."""
     rise = end - start
     b = 3.0 * rise - 2.0 * slope - end_slope
     a = slope + end_slope - 2.0 * rise
@@ -28,7 +29,7 @@ def cubic_rate(u: float, start: float, end: float, slope: float, end_slope: floa
 
 
 def first_growth_past(bound: float, start: float, end: float, slope: float, end_slope: float) -> float:
-    """Return the u in [0, 1] at which the cubic first lies above `bound` and grows; 1 if only its end does."""
+    """Return the smallest u in [0, 1] at which the cubic lies above `bound` and grows; 1 if only its end does."""
     before = 0.0
     for k in range(1, 17):
         u = k / 16.0
@@ -53,9 +54,9 @@ def _grows_past(u: float, bound: float, start: float, end: float, slope: float, 
 def quintic(
     u: float, h: float, x0: float, v0: float, a0: float, x1: float, v1: float, a1: float
 ) -> tuple[float, float]:
-    """Return value and slope (to u) at `u` of the quintic on [0, 1] with values, rates and accelerations at both ends.
+    """Return value and slope in u of the quintic on [0, 1] with these values, rates and accelerations at both ends.
 
-    Rates and accelerations are those in time, the interval being `h` long.
+    Rates and accelerations are time derivatives; the interval has the duration `h`.
     """
     p1, p2 = v0 * h, 0.5 * a0 * h * h
     rise, q1, q2 = x1 - x0, v1 * h, 0.5 * a1 * h * h
@@ -67,12 +68,12 @@ def quintic(
 
 
 def first_return(h: float, s0: float, v0: float, a0: float, s1: float, v1: float, a1: float) -> float:
-    """Return the time in (0, h] at which a height s > 0 first falls below zero, 0 if at once, h if not.
+    """Return the first time in (0, h] at which a height s > 0 falls below zero; 0 if at once, h if never.
 
-    By the quintic with the heights, speeds and accelerations at both ends; right at the start it has the
-    relative accuracy of the acceleration there.
+    The height is the quintic with these values, speeds and accelerations at both ends. Near the start its relative
+    accuracy is that of the acceleration there.
     """
-    # From the upright it cannot be back before half the time that speed and acceleration at the start give.
+    # A swing from the vertical takes at least half the time that speed and acceleration at the start give.
     p1, p2 = v0 * h, 0.5 * a0 * h * h
     u = _EQUAL
     if s0 == 0.0 and p2 < 0.0:
@@ -105,7 +106,7 @@ def _falling_root(
     v1: float,
     a1: float,
 ) -> float:
-    """Return where the quintic falls below zero between `low` and `high`, by Newton's rule kept inside."""
+    """Return the root of the quintic between `low` and `high`, by Newton's method with bisection as safeguard."""
     u = 0.5 * (low + high) if low_value <= 0.0 else (low_value * high - high_value * low) / (low_value - high_value)
     for _ in range(_BISECTIONS):
         value, slope = quintic(u, h, s0, v0, a0, s1, v1, a1)
@@ -123,14 +124,14 @@ def _falling_root(
 
 
 def turns_of(x: float, y: float) -> float:
-    """Return the azimuth of (x, y) in turns, −½ to ½; that of y = −0 is that of y = 0, as in `winding`."""
+    """Return the azimuth of (x, y) in turns, −½ to ½; y = −0 counts as y = 0, as in `winding`."""
     return math.atan2(y + 0.0, x) / (2.0 * math.pi)
 
 
 def nearest_turn(azimuth: float, previous: float) -> float:
-    """Return `azimuth` [turns] plus the whole turns that bring it nearest to the `previous` one; NaN there is none.
+    """Return `azimuth` [turns] plus the whole turns that bring it nearest to `previous`; NaN there means none.
 
-    Of two that are equally near the even one is taken: what goes to and fro through the upright does not travel round.
+    Of two equally near values the even number of turns is taken: rocking through the vertical adds no turns.
     """
     turns: float = np.rint(previous - azimuth)
     return azimuth if math.isnan(previous) else azimuth + turns

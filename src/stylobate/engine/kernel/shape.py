@@ -1,4 +1,4 @@
-"""What sets one kernel apart from another, and the layout of its buffer and table."""
+"""Shape of a kernel: its distinguishing properties, and the layout of its buffer and table."""
 
 from dataclasses import dataclass
 from functools import cache
@@ -26,41 +26,40 @@ STAGES = 12
 DENSE_TERMS = 7
 """Terms of the polynomial that gives the state within a step of DOP853."""
 
-MARGIN_PLACES = 4
-"""Equal parts of a step, at the ends of which guards are looked at."""
+GUARD_PLACES = 4
+"""Number of equal parts of a step; the guards are evaluated at the end of each part."""
 
 SERIES_ORDER = 16
 """Order of Taylor series."""
 
 NODES = 8
-"""Places within a step at which it is observed."""
+"""Number of nodes within a step at which it is observed."""
 
 
 @dataclass(frozen=True, slots=True)
 class Shape:
-    """What sets one kernel apart from another.
+    """Properties that distinguish one kernel from another.
 
     Parameters
     ----------
     states, parameters
-        How many the model has.
+        Numbers of states and parameters of the model.
     planar
-        Whether it integrates motion in a vertical plane, with two states.
+        Whether it integrates planar motion, with two states.
     forcing
-        How the base moves.
+        Kind of base motion.
     width
-        Lanes.
+        Number of lanes.
     series
-        Where steps are made by Taylor series: of each state the one whose rate it is, or itself. Empty where they are
-        made by DOP853.
+        For steps by Taylor series: for each state the state whose rate it is, or itself. Empty for DOP853.
     demands
-        Whether it follows what the contact must bear.
+        Whether it computes the contact demands.
     guards
-        How many guards guard a kind of contact, of a model that changes between kinds; else 0.
+        Number of guards of a model that changes between kinds of contact; else 0.
     slip, kept
-        Which of its states are the velocity of slip, and which do not change within a step.
+        Indices of the slip velocity, and of the states that are constant within a step.
     orbits
-        With how many known orbits each run is compared.
+        Number of known orbits with which each run is compared.
     """
 
     states: int
@@ -77,32 +76,32 @@ class Shape:
 
     @property
     def orbits_at(self) -> int:
-        """Column of the table at which known orbits begin, behind the state and what is noted of changes."""
+        """First column of the known orbits in the table, behind the state and the record of contact changes."""
         return STATE + max(self.states, 2) + len(self.changes)
 
     @property
     def parameters_at(self) -> int:
-        """Column at which the model's parameters begin."""
+        """First column of the parameters of the model."""
         return self.orbits_at + self.orbits * ORBIT
 
     @property
     def motion_at(self) -> int:
-        """Column at which the numbers of the base motion begin."""
+        """First column of the numbers of the base motion."""
         return self.parameters_at + self.parameters
 
     @property
     def breaks_at(self) -> int:
-        """Column at which its breaks begin."""
+        """First column of the breaks of the base motion."""
         return self.motion_at + self.forcing.columns
 
     @property
     def trace_width(self) -> int:
-        """Columns of an entry of a trace, the same for motion in space and in a plane."""
+        """Number of columns of a trace entry, the same for three-dimensional and planar motion."""
         return len(Trace) + TRACE_TERMS * max(self.states, 2)
 
     @property
     def trace_room(self) -> int:
-        """Entries of a trace that must be free before a lane is dealt with."""
+        """Number of free trace entries that the driver requires before it handles an event of a lane."""
         return SWITCHING_TRACE_ROOM if self.guards else TRACE_ROOM
 
     @property
@@ -112,17 +111,17 @@ class Shape:
 
     @property
     def changes(self) -> list[str]:
-        """Rows behind the state: what is noted of changes between kinds of contact."""
+        """Rows behind the state: the record of contact changes."""
         return [column.name.lower() for column in Change] if self.guards else []
 
     @property
     def expanded(self) -> list[int]:
-        """The states whose Taylor coefficients are kept: all that are not the rate of another."""
+        """States whose Taylor coefficients are stored: all that are not the rate of another state."""
         return [j for j, integral in enumerate(self.series) if integral == j]
 
     @property
     def paired(self) -> set[int]:
-        """Those whose rate is a state too."""
+        """States whose rate is also a state."""
         return {integral for j, integral in enumerate(self.series) if integral != j}
 
     def degree(self, j: int) -> int:
@@ -130,7 +129,7 @@ class Shape:
         return SERIES_ORDER + (j in self.paired)
 
     def rows(self) -> Rows:
-        """Return the layout of the buffer: the tables' columns first, under their names in small letters."""
+        """Return the layout of the buffer: first the columns of the table, under their names in lower case."""
         return _rows_of(self)
 
 
@@ -170,7 +169,7 @@ def _add_stages(shape: Shape, rows: Rows) -> None:
         rows.add_many(f"k{stage}_", shape.order)
     rows.add_many("last_slope", shape.order)
     if shape.guards:
-        rows.add("last_margin", "margin_now", "broken", "stiff_looks", "stiff_look_at", "stiff_wait")
+        rows.add("last_guard", "guard_now", "broken", "stiff_looks", "stiff_look_at", "stiff_wait")
         for name in ("stage", "rate", "step"):
             rows.add_many(name, shape.order)
     for name in ("extra0_", "extra1_", "extra2_", *(f"dense{power}_" for power in range(DENSE_TERMS))):
@@ -178,7 +177,7 @@ def _add_stages(shape: Shape, rows: Rows) -> None:
 
 
 DEMANDS = ("normal", "friction", "pivoting")
-"""What the contact must bear: normal force over m g, friction and moment over it."""
+"""Contact demands: normal force over m g, and friction force and moment over the normal force."""
 
 OBSERVED = ("mean_tilt", "forward_cos", "forward_sin", "backward_cos", "backward_sin")
 """Rows of the integrals over the last periods."""

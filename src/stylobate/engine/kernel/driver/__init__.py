@@ -1,8 +1,8 @@
-"""The driver of a kernel: fills lanes with runs, meets the events of single lanes, takes the runs out at their end.
+"""Driver of a kernel: fills the lanes with runs, handles events of single lanes, and removes runs at their end.
 
-Functions take the buffer and a lane, and where they need them the table of the batch and the polynomials of the base
-motion. They are ordinary functions; what differs between kernels they take from `bound`, which each kernel binds to a
-model and a kind of base motion: equations, numbers of rows (`R.TIME`), what there is.
+The functions take the buffer and a lane, and if necessary the table of the batch and the polynomials of the base
+motion. They are ordinary functions. Equations, row indices (`R.TIME`) and options come from `bound`, which each kernel
+binds to a model and a kind of base motion.
 """
 
 from types import ModuleType
@@ -55,5 +55,5 @@ _SWITCHING = (
 
 
 def modules(*, switching: bool) -> tuple[ModuleType, ...]:
-    """Return the modules of the driver, for models that change between kinds of contact or for others."""
+    """Return the modules of the driver for models with (`switching`) or without changes between kinds of contact."""
     return _COMMON + (_SWITCHING if switching else _SMOOTH)

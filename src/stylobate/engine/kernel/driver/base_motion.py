@@ -1,4 +1,7 @@
-"""The base motion in a lane: its leg, and bounds from now on."""
+"""Base motion of a lane: its present leg, and bounds for the remaining time.
+
+A leg is an interval of the base motion with one formula: a piece of the tabulation, or the time between two breaks.
+"""
 
 import math
 
@@ -17,8 +20,8 @@ from stylobate.engine.kernel.bound import (
 from stylobate.engine.kernel.driver.equations import model_no_return
 from stylobate.engine.kernel.layout import Table
 
-# Where the coefficients of a piece begin in its row, and the place that says whether it goes on without a jump.
-COEFFICIENTS_AT, GOES_ON = 6, 5
+# Columns of a piece: its first coefficient, and the flag of a piece that continues the previous one without a jump.
+COEFFICIENTS_AT, CONTINUES = 6, 5
 
 
 def set_leg(buf: Table, i: int, table: Table, pieces: Table, t: float) -> None:
@@ -38,7 +41,7 @@ def set_terms(buf: Table, i: int, motion: Table, t: float) -> None:
         row = FIRST_FORCING + term * FORCING_ROWS
         buf[row, i] = motion[source]
         if PLANAR:
-            # Both components along the line: a sum of two cosines of one frequency.
+            # The acceleration along the line is a sum of two cosines of one frequency.
             ux, uy = buf[R.LINE_X, i], buf[R.LINE_Y, i]
             fx, fy = 2.0 * math.pi * motion[source + 2], 2.0 * math.pi * motion[source + 4]
             cos = ux * motion[source + 1] * math.cos(fx) + uy * motion[source + 3] * math.cos(fy)
@@ -65,7 +68,7 @@ def set_terms(buf: Table, i: int, motion: Table, t: float) -> None:
 
 
 def set_piece(buf: Table, i: int, motion: Table, pieces: Table, t: float) -> None:
-    """Load the polynomial that holds from `t` on."""
+    """Load the polynomial that begins at `t`."""
     delay, first, last = motion[4], int(motion[5]), int(motion[5] + motion[6]) - 1
     scale = buf[R.TIME_SCALE, i]
     time = t * scale * (1.0 + 4e-16)  # a leg that begins at a knot has passed it
@@ -78,7 +81,7 @@ def set_piece(buf: Table, i: int, motion: Table, pieces: Table, t: float) -> Non
 
 
 def load_piece(buf: Table, i: int, motion: Table, pieces: Table, index: int) -> None:
-    """Load the polynomial in row `index`, and the bounds of the base motion from its start on."""
+    """Load the polynomial in row `index`, and the bounds of the base motion after its start."""
     factor, cos, sin, vertical, delay = motion[0], motion[1], motion[2], motion[3], motion[4]
     first, count = int(motion[5]), int(motion[6])
     scale = buf[R.TIME_SCALE, i]
@@ -110,20 +113,20 @@ def load_piece(buf: Table, i: int, motion: Table, pieces: Table, index: int) -> 
     buf[R.LEG_ENDS, i] = (end + delay) / scale if index - first < count - 1 else math.inf
 
 
-def goes_on_in_next_piece(buf: Table, i: int, table: Table, pieces: Table) -> bool:
-    """Load the next piece if it goes on at the end of this leg without a jump, so that slopes hold; return whether."""
+def continues_in_next_piece(buf: Table, i: int, table: Table, pieces: Table) -> bool:
+    """Load the next piece if it continues this leg without a jump, so that slopes are valid; return whether it does."""
     motion = table[int(buf[R.RUN, i]), MOTION_AT:]
     delay, index = motion[4], int(motion[5] + buf[R.PIECE, i])
     leg_end = buf[R.LEG_ENDS, i]
-    # Before a delayed motion begins no piece is loaded; very short ones end where they begin, by rounding.
-    if (pieces[index, 1] + delay) / buf[R.TIME_SCALE, i] != leg_end or pieces[index + 1, GOES_ON] == 0.0:
+    # Before a delayed motion begins no piece is loaded; a very short piece can have no length, by rounding.
+    if (pieces[index, 1] + delay) / buf[R.TIME_SCALE, i] != leg_end or pieces[index + 1, CONTINUES] == 0.0:
         return False
     load_piece(buf, i, motion, pieces, index + 1)
     return buf[R.LEG_ENDS, i] > leg_end
 
 
 def piece_at(pieces: Table, near: int, first: int, last: int, delay: float, time: float) -> int:
-    """Return the last piece that begins at a time or before: most often the one behind the last that was asked for."""
+    """Return the index of the last piece that begins no later than `time`; `near` is the index of the last query."""
     if pieces[near, 0] + delay <= time:
         first = near
         if near == last or pieces[near + 1, 0] + delay > time:
@@ -147,7 +150,7 @@ def set_no_return(buf: Table, i: int) -> None:
 
 
 def forcing_rate(buf: Table, i: int) -> float:
-    """Return the largest rate at which the force on a column near rest can change; exactly, where it is linear."""
+    """Return the maximum rate of change of the force on a column near rest; exact for linear pieces."""
     if DEGREE == 1:
         per_half = buf[FIRST_FORCING + 1, i]
         x, row = buf[FIRST_FORCING + 3, i], FIRST_FORCING + 5
@@ -161,11 +164,11 @@ def forcing_rate(buf: Table, i: int) -> float:
     return buf[R.FREQUENCY, i] * (buf[R.LARGEST_HORIZONTAL, i] + buf[R.SLENDERNESS, i] * vertical)
 
 
-def least_force(buf: Table, i: int) -> float:
-    """Return the least force that holds a standing column down from now on; below zero where it can be released."""
+def minimum_force(buf: Table, i: int) -> float:
+    """Return the minimum force that will hold a standing column down; it is negative if uplift is possible."""
     pushed = buf[R.LARGEST_HORIZONTAL, i] + math.hypot(buf[R.SLOPE_X, i], buf[R.SLOPE_Y, i])
     return buf[R.CAPACITY, i] * (1.0 + buf[R.MINIMUM_VERTICAL, i] + buf[R.SLOPE_Z, i]) - pushed
 
 
 def held_for_good(buf: Table, i: int) -> bool:
-    return least_force(buf, i) >= 0.0 and 1.0 + buf[R.MINIMUM_VERTICAL, i] + buf[R.SLOPE_Z, i] > 0.0
+    return minimum_force(buf, i) >= 0.0 and 1.0 + buf[R.MINIMUM_VERTICAL, i] + buf[R.SLOPE_Z, i] > 0.0

@@ -1,4 +1,4 @@
-"""A batch of runs through the lanes."""
+"""Loop over a batch of runs: fill the lanes, make steps, handle events, and store the results."""
 
 import math
 
@@ -19,7 +19,7 @@ from stylobate.engine.kernel.bound import (
 )
 from stylobate.engine.kernel.columns import STATE, Status
 from stylobate.engine.kernel.driver.base_motion import set_leg, set_no_return
-from stylobate.engine.kernel.driver.convergence import watch, watch_from
+from stylobate.engine.kernel.driver.convergence import start_watching, watch
 from stylobate.engine.kernel.driver.moving import azimuth_now, square_of_speed
 from stylobate.engine.kernel.driver.observation import observe
 from stylobate.engine.kernel.driver.step import step
@@ -27,12 +27,12 @@ from stylobate.engine.kernel.driver.stops import passes_knot, set_break, set_loo
 from stylobate.engine.kernel.driver.tracing import trace_steps
 from stylobate.engine.kernel.layout import Table
 
-# A motion that begins is followed finely up to this tilt [units of c].
+# A motion that begins has a finer tolerance up to this tilt [units of c].
 GROWN = 1e-3
 
 
 def enter(buf: Table, i: int, table: Table, pieces: Table, run: int) -> int:
-    """Take a run into lane `i`; return WAITING when it moves, else the status with which it ends at once."""
+    """Load a run into lane `i`; return WAITING if the column moves, else the status with which the run ends at once."""
     for column in range(STATE):
         buf[column, i] = table[run, column]
     for j in range(KEPT):
@@ -53,14 +53,14 @@ def enter(buf: Table, i: int, table: Table, pieces: Table, run: int) -> int:
     set_strobe(buf, i)
     set_break(buf, i, table)
     if ORBITS:
-        watch_from(buf, i, table)
+        start_watching(buf, i, table)
     set_no_return(buf, i)
     set_leg(buf, i, table, pieces, t)
     return begin(buf, i, table, pieces)
 
 
 def leave(buf: Table, i: int, table: Table, status: int) -> None:
-    """Note the run of lane `i` as it is now."""
+    """Write the present state of the run of lane `i` to the table."""
     run = int(buf[R.RUN, i])
     buf[R.STATUS, i] = status
     if status not in (Status.RESTED, Status.TO_PLANE):
@@ -73,8 +73,8 @@ def leave(buf: Table, i: int, table: Table, status: int) -> None:
         table[run, STATE + j] = buf[R.STATE + j, i]
 
 
-def quiet(buf: Table, i: int) -> None:
-    """Fill an idle lane with numbers that do no harm."""
+def set_idle(buf: Table, i: int) -> None:
+    """Fill an idle lane with harmless numbers."""
     for row in range(len(buf)):
         buf[row, i] = 0.0
     for row in (R.STATE, R.TILT, R.X, R.SLENDERNESS, R.SIDE, R.ATOL, R.ATOL_NOW):
@@ -89,7 +89,7 @@ def quiet(buf: Table, i: int) -> None:
 
 
 def fill(buf: Table, i: int, table: Table, pieces: Table, waiting: int) -> int:
-    """Take the first run from `waiting` on that does not end at once into lane `i`; return which waits next."""
+    """Load the first run from `waiting` on that does not end at once into lane `i`; return the next waiting run."""
     while waiting < len(table):
         run = waiting
         waiting += 1
@@ -98,16 +98,16 @@ def fill(buf: Table, i: int, table: Table, pieces: Table, waiting: int) -> int:
             if status == Status.WAITING:
                 break
             leave(buf, i, table, status)
-            quiet(buf, i)
+            set_idle(buf, i)
     return waiting
 
 
-def begin_or_go_on(buf: Table, table: Table, pieces: Table) -> int:
-    """Fill the lanes of a new buffer, or take up one of a batch that was paused; return the run that waits next."""
+def begin_or_continue(buf: Table, table: Table, pieces: Table) -> int:
+    """Fill the lanes of a new buffer, or continue a paused batch; return the next waiting run."""
     waiting = 0
     if math.isnan(buf[R.RUN, 0]):
         for i in range(WIDTH):
-            quiet(buf, i)
+            set_idle(buf, i)
             waiting = fill(buf, i, table, pieces, waiting)
         return waiting
     for i in range(WIDTH):
@@ -119,20 +119,20 @@ def begin_or_go_on(buf: Table, table: Table, pieces: Table) -> int:
 
 
 def gather(buf: Table) -> int:
-    """Move the runs to the first lanes; return how many lanes a step takes, whole vectors of them: 0 without a run."""
+    """Move the runs to the first lanes; return the number of lanes for a step in whole vectors, 0 without a run."""
     live = 0
     for i in range(WIDTH):
         if buf[R.RUN, i] >= 0.0:
             if i > live:
                 for row in range(len(buf)):
                     buf[row, live] = buf[row, i]
-                quiet(buf, i)
+                set_idle(buf, i)
             live += 1
     return GRAIN * ((live + GRAIN - 1) // GRAIN)
 
 
 def pause(buf: Table, table: Table) -> bool:
-    """Let the traces be taken out of the table; return False, as `advance` does that has not come to its end."""
+    """Prepare the table so that the caller can empty the traces; return False, since the batch has not ended."""
     for i in range(WIDTH):
         if buf[R.RUN, i] >= 0.0:
             table[int(buf[R.RUN, i]), R.NEXT_TRACE] = buf[R.NEXT_TRACE, i]
@@ -140,7 +140,7 @@ def pause(buf: Table, table: Table) -> bool:
 
 
 def is_due(buf: Table, i: int, table: Table, pieces: Table) -> bool:
-    """Observe the step just made in a lane; return whether the driver must deal with it."""
+    """Observe the step just made in a lane; return whether the lane has an event for the driver."""
     if buf[R.WATCHED, i] > 0.0 and buf[R.GO, i] > 0.0:
         observe(buf, i)
     if ORBITS and passes_phase_zero(buf, i):
@@ -149,24 +149,24 @@ def is_due(buf: Table, i: int, table: Table, pieces: Table) -> bool:
 
 
 def passes_phase_zero(buf: Table, i: int) -> bool:
-    """Return whether the step just made took a run to phase zero of the base motion or beyond, and is not tentative."""
+    """Return whether the step just made is final and reached phase zero of the base motion."""
     return buf[R.TIME, i] >= buf[R.PHASE_ZERO_AT, i] and buf[R.GO, i] > 0.0 and buf[R.AIMED, i] == 0.0
 
 
 def status_of(buf: Table, i: int, table: Table, pieces: Table) -> int:
-    """Return the status of a lane that is flagged, once its event has been dealt with."""
+    """Handle the event of a flagged lane; return its status."""
     if ORBITS and buf[R.CONVERGED, i] > 0.0:
         return Status.CONVERGED
     return handle(buf, i, table, pieces)
 
 
 def advance(table: Table, pieces: Table, halt: npt.NDArray[np.uint8], buf: Table) -> bool:
-    """Run a batch to its end; return whether it got there.
+    """Run a batch to its end; return whether it has ended.
 
-    It does not where `halt[0]` is set to 1 from another thread, or a trace is full: then the same buffer goes on, once
-    the trace has been emptied. `table` has a row for each run, see `columns`; `buf` is NaN before the first run.
+    The batch stops early if another thread sets `halt[0]` to 1, or if a trace is full. After the caller has emptied the
+    trace, a call with the same buffer continues. `table` has a row for each run, see `columns`; a new `buf` is NaN.
     """
-    waiting = begin_or_go_on(buf, table, pieces)
+    waiting = begin_or_continue(buf, table, pieces)
     traced = table[0, R.TRACES] > 0.0
     while True:
         width = gather(buf)
@@ -186,7 +186,7 @@ def advance(table: Table, pieces: Table, halt: npt.NDArray[np.uint8], buf: Table
                 status = status_of(buf, i, table, pieces)
                 if status != Status.WAITING:
                     leave(buf, i, table, status)
-                    quiet(buf, i)
+                    set_idle(buf, i)
                     waiting = fill(buf, i, table, pieces, waiting)
         if full:
             return pause(buf, table)

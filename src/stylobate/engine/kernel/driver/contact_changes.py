@@ -1,4 +1,4 @@
-"""How a column goes on whose kind of contact ended, and standing until the base motion ends that."""
+"""Changes between kinds of contact: reset maps, and standing until uplift."""
 
 import math
 
@@ -21,27 +21,27 @@ from stylobate.engine.kernel.columns import Status, TraceKind
 from stylobate.engine.kernel.driver.base_motion import held_for_good
 from stylobate.engine.kernel.driver.contact_ends import broken_now
 from stylobate.engine.kernel.driver.equations import lean_of_new, row_state
-from stylobate.engine.kernel.driver.guards import margins_at, model_react
+from stylobate.engine.kernel.driver.guards import guards_at, model_reset
 from stylobate.engine.kernel.driver.moving import azimuth_now, first_step, set_lean, set_rates, set_state
 from stylobate.engine.kernel.driver.observation import observe
 from stylobate.engine.kernel.driver.push import accelerations
 from stylobate.engine.kernel.driver.release import RELEASE_MARGIN
 from stylobate.engine.kernel.driver.release_search import next_release, search_end
 from stylobate.engine.kernel.driver.stops import leg_end, meet_stop, next_stop, resume, stand_to_the_end
-from stylobate.engine.kernel.driver.tracing import trace_entry, trace_leap, trace_stand
+from stylobate.engine.kernel.driver.tracing import trace_analytical_step, trace_entry, trace_stand
 from stylobate.engine.kernel.layout import Table
 from stylobate.engine.kernel.roots import nearest_turn, turns_of
 from stylobate.engine.tolerances import DEPARTURE
 
-# So many changes of contact without a step between them are no motion; closer than the second number they are at one
-# moment [units of the larger of 1 and the time].
+# Maximum number of contact changes at one time, and the time difference that counts as one time [units of the larger
+# of 1 and the time].
 MOST_AT_ONCE, ONE_MOMENT = 100, 1e-12
-# No margin: asks how a motion goes on that begins.
+# Not a guard: the reset map at the start of a motion.
 BEGINS = -1
 
 
-def go_through(buf: Table, i: int, table: Table, pieces: Table, number: int) -> int:
-    """Go on from a broken margin, and from all that break at once behind it; return WAITING, or the final status."""
+def apply_resets(buf: Table, i: int, table: Table, pieces: Table, number: int) -> int:
+    """Apply the reset map of a broken guard and of each guard broken after it; return WAITING or the final status."""
     while True:
         if number == FALLEN:
             return Status.OVERTURNED
@@ -49,7 +49,7 @@ def go_through(buf: Table, i: int, table: Table, pieces: Table, number: int) -> 
             return Status.LIMIT
         if endless(buf, i):
             return Status.ENDLESS
-        change(buf, i, table, number)
+        apply_reset(buf, i, table, number)
         if buf[R.CONTACT, i] == JAMMED:
             return Status.JAMMED
         if buf[R.CONTACT, i] == RESTING:
@@ -63,7 +63,7 @@ def go_through(buf: Table, i: int, table: Table, pieces: Table, number: int) -> 
 
 
 def endless(buf: Table, i: int) -> bool:
-    """Return whether the contact has changed too often at this moment; count the change that follows."""
+    """Return whether the contact has changed too often at this time; count the next change."""
     t = buf[R.TIME, i]
     again = t - buf[R.CHANGED_AT, i] <= ONE_MOMENT * max(1.0, abs(t))
     buf[R.AT_ONCE, i] = buf[R.AT_ONCE, i] + 1.0 if again else 0.0
@@ -71,14 +71,14 @@ def endless(buf: Table, i: int) -> bool:
     return buf[R.AT_ONCE, i] > MOST_AT_ONCE
 
 
-def change(buf: Table, i: int, table: Table, number: int) -> None:
-    """Let the model decide how it goes on from a broken margin; put that into the state, and note it."""
+def apply_reset(buf: Table, i: int, table: Table, number: int) -> None:
+    """Apply the reset map of the model for a broken guard to the state, and record the change."""
     t, before = buf[R.TIME, i], int(buf[R.CONTACT, i])
     if buf[R.TILT, i] > 0.0:
         buf[R.LAST_AZIMUTH, i] = azimuth_now(buf, i)
     ahead = DEPARTURE / (1.0 + buf[R.FREQUENCY, i])
     now, later = accelerations(buf, i, t), accelerations(buf, i, t + ahead)
-    elapsed, state = model_react(buf, i, float(number), now, later, ahead)
+    elapsed, state = model_reset(buf, i, float(number), now, later, ahead)
     lapses = elapsed > 0.0 and t + elapsed < buf[R.END, i]
     if buf[R.TRACES, i] > 0.0:
         trace_change(buf, i, table, number, elapsed, state)
@@ -98,9 +98,9 @@ def change(buf: Table, i: int, table: Table, number: int) -> None:
 
 
 def trace_change(buf: Table, i: int, table: Table, number: int, elapsed: float, state: tuple[float, ...]) -> None:
-    """Add to the trace the event with which the present state becomes this one, so much later."""
+    """Add the event to the trace that changes the present state into `state` within the time `elapsed`."""
     before, after = int(buf[R.CONTACT, i]), int(state[ORDER - 1])
-    if number >= 0 and not goes_on(number, before, after, elapsed):
+    if number >= 0 and not slip_continues(number, before, after, elapsed):
         at = trace_entry(buf, i, table, TraceKind.CONTACT, buf[R.TIME, i], 0.0)
         run = int(buf[R.RUN, i])
         table[run, at] = number
@@ -109,18 +109,18 @@ def trace_change(buf: Table, i: int, table: Table, number: int, elapsed: float, 
 
 
 def trace_lapse(buf: Table, i: int, table: Table, elapsed: float, state: tuple[float, ...]) -> None:
-    """Add to the trace the time in which the present state becomes this one."""
+    """Add the analytical step to the trace that changes the present state into `state` within the time `elapsed`."""
     for j in range(ORDER):
         buf[R.NEW + j, i] = state[j]
     x, y, _, _ = lean_of_new(buf, i)
     last = buf[R.LAST_AZIMUTH, i]
     azimuth = nearest_turn(turns_of(x, y), last) if x != 0.0 or y != 0.0 else last
     buf[R.TRACE_AZIMUTH, i] = last if buf[R.TILT, i] > 0.0 else azimuth
-    trace_leap(buf, i, table, elapsed, state, azimuth)
+    trace_analytical_step(buf, i, table, elapsed, state, azimuth)
 
 
 def pass_lapse(buf: Table, i: int, elapsed: float) -> None:
-    """Pass the short time in which one state became the other."""
+    """Advance the time by the duration of a reset, and observe it."""
     buf[R.TIME, i] += elapsed
     if buf[R.WATCHED, i] > 0.0:
         set_lean(buf, i)
@@ -129,15 +129,15 @@ def pass_lapse(buf: Table, i: int, elapsed: float) -> None:
         observe(buf, i)
 
 
-def goes_on(number: int, before: int, after: int, elapsed: float) -> bool:
-    """Return whether a slip goes on at once along another heading: it has not ended."""
+def slip_continues(number: int, before: int, after: int, elapsed: float) -> bool:
+    """Return whether a slip continues at once in another direction, so that it has not ended."""
     return number == FRICTION and before == after and elapsed == 0.0
 
 
 def count(buf: Table, i: int, number: int, before: int, after: int, elapsed: float) -> None:
-    """Count impacts, slips that begin, rests and releases."""
+    """Count impacts, starts of slip, rests and uplifts."""
     gives_way = (before == RESTING and after == SLIDING) or (before == ROLLING and after == SLIPPING)
-    reverses = after in (SLIDING, SLIPPING) and before == after and not goes_on(number, before, after, elapsed)
+    reverses = after in (SLIDING, SLIPPING) and before == after and not slip_continues(number, before, after, elapsed)
     if before == FLYING or number == LAST:
         buf[R.IMPACTS, i] += 1.0
     if number not in (JAM, LAST) and (gives_way or reverses):
@@ -151,7 +151,7 @@ def count(buf: Table, i: int, number: int, before: int, after: int, elapsed: flo
 
 
 def set_moving(buf: Table, i: int, table: Table, pieces: Table) -> int:
-    """Begin to integrate from the state in the buffer, whose lean is set: with the step wanted before, if any.
+    """Start the integration from the state and tilt vector in the buffer, with the previous step if there is one.
 
     Return as `resume` does.
     """
@@ -165,12 +165,12 @@ def set_moving(buf: Table, i: int, table: Table, pieces: Table) -> int:
             buf[R.FIRST_AZIMUTH, i] = azimuth
     else:
         buf[R.TURNS, i] = 0.0 if math.isnan(last) else last
-        buf[R.TOUCHED_UPRIGHT, i] = 1.0
+        buf[R.REACHED_VERTICAL, i] = 1.0
     buf[R.TRACE_AZIMUTH, i] = azimuth_now(buf, i)
     if tilt > buf[R.PEAK_TILT, i]:
         buf[R.PEAK_TILT, i] = tilt
-        buf[R.LARGEST_AT, i] = t
-    buf[R.IN_SPACE, i] = 1.0
+        buf[R.PEAK_AT, i] = t
+    buf[R.THREE_DIMENSIONAL, i] = 1.0
     buf[R.ATOL_NOW, i] = buf[R.ATOL, i]
     set_rates(buf, i, t)
     buf[R.AIMED, i] = 0.0
@@ -181,9 +181,9 @@ def set_moving(buf: Table, i: int, table: Table, pieces: Table) -> int:
 
 
 def stand(buf: Table, i: int, table: Table, pieces: Table) -> tuple[int, int]:
-    """Stand until the base motion ends that; return WAITING and the margin that is broken, or the final status."""
+    """Stand until uplift or slip; return WAITING and the broken guard, or the final status."""
     buf[R.STANDS, i] = 1.0
-    buf[R.TOUCHED_UPRIGHT, i] = 1.0
+    buf[R.REACHED_VERTICAL, i] = 1.0
     buf[R.WANTED, i] = 0.0
     t = buf[R.TIME, i]
     trace_stand(buf, i, table, t)
@@ -197,7 +197,7 @@ def stand(buf: Table, i: int, table: Table, pieces: Table) -> tuple[int, int]:
         if held_for_good(buf, i):
             buf[R.DECIDED, i] = t
             return stand_to_the_end(buf, i, table, pieces, t), BEGINS
-        # The search is not cut at stops that leave the base motion as it is: what is looked at does not change a run.
+        # Stops within a leg do not cut the search, so that samples do not change a run.
         if not searched:
             release = next_release(buf, i, t)
             searched = True
@@ -211,8 +211,8 @@ def stand(buf: Table, i: int, table: Table, pieces: Table) -> tuple[int, int]:
 
 
 def broken_at_release(buf: Table, i: int) -> int:
-    """Return the margin that ends standing; by a rounding it may not be broken yet."""
-    guards = margins_at(buf, i, buf[R.TIME, i], row_state(buf, i, R.STATE))
+    """Return the guard that ends standing; by rounding it may not be broken yet."""
+    guards = guards_at(buf, i, buf[R.TIME, i], row_state(buf, i, R.STATE))
     number = 0
     if guards[0] > RELEASE_MARGIN:
         number = 1

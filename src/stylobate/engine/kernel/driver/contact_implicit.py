@@ -1,4 +1,4 @@
-"""Implicit steps of a lane whose slip is stiff, as long as they pay and the kind of contact lasts."""
+"""Implicit steps for stiff slip, while they are efficient and the kind of contact lasts."""
 
 import math
 
@@ -6,14 +6,14 @@ import numpy as np
 
 from stylobate.engine.kernel.bound import CHANGES, FRICTION, ORDER, R
 from stylobate.engine.kernel.columns import Status
-from stylobate.engine.kernel.driver.contact_changes import go_through
-from stylobate.engine.kernel.driver.contact_ends import broken_now, first_end
+from stylobate.engine.kernel.driver.contact_changes import apply_resets
+from stylobate.engine.kernel.driver.contact_ends import broken_now, first_broken_guard
 from stylobate.engine.kernel.driver.contact_steps import (
-    come_to,
     end_at_limit,
     end_contact,
     meet_reached_stop,
-    turns,
+    slip_turns,
+    step_to,
 )
 from stylobate.engine.kernel.driver.contact_stiffness import LOOK_AGAIN, LOOK_EVERY, NEAR_BOUNDARY
 from stylobate.engine.kernel.driver.equations import row_state
@@ -29,22 +29,22 @@ from stylobate.engine.kernel.driver.implicit_step import (
     solve_step,
 )
 from stylobate.engine.kernel.driver.moving import set_rates, set_state
-from stylobate.engine.kernel.driver.stops import go_on
+from stylobate.engine.kernel.driver.stops import set_next_stop
 from stylobate.engine.kernel.layout import Table
 from stylobate.engine.kernel.linear_equations import NewtonRoom
 from stylobate.engine.tolerances import SLIP_SHORTER
 
-# An implicit step takes as long as explicit ones over hλ of this size: shorter ones do not pay. So many of them in turn
-# end a stretch, and the next look is as far off as in a run that has not been stiff.
+# An implicit step costs as much as explicit steps over this hλ; a shorter one does not pay. After so many such steps in
+# sequence the explicit method continues, with the interval between stiffness checks of a run that has not been stiff.
 PAYS, MOST_UNPAID = 20.0, 5
-# So many steps at most before the other lanes, and a signal to halt, have their turn.
+# Maximum number of implicit steps in one call, so that other lanes and a halt signal are served.
 STRETCH = 1000
-# Step control of the reference: safety, by how much a step changes, and by how much one whose equations are not solved.
+# Step control of Hairer and Wanner: safety factor, bounds of step changes, and the factor after a failed solution.
 SAFETY, LEAST_FACTOR, LARGEST_FACTOR, UNSOLVED_FACTOR = 0.9, 0.2, 8.0, 0.5
 
 
 def follow_implicitly(buf: Table, i: int, table: Table, pieces: Table) -> int:
-    """Go on by implicit steps while they pay; return the status of a run that ends, or WAITING."""
+    """Make implicit steps while they pay; return the final status if the run ends, else WAITING."""
     room = NewtonRoom(
         np.zeros((ORDER, ORDER)), np.zeros((CHANGES, CHANGES)), np.zeros(CHANGES), np.zeros(CHANGES), np.zeros(CHANGES)
     )
@@ -60,27 +60,27 @@ def follow_implicitly(buf: Table, i: int, table: Table, pieces: Table) -> int:
         pays = h > 0.0 and unpaid <= MOST_UNPAID
         if not pays:
             break
-        elapsed, number = first_end(buf, i)
-        begins = number != FRICTION or not turns(buf, i, elapsed)
-        if not begins:  # made again, shorter
+        elapsed, number = first_broken_guard(buf, i)
+        begins = number != FRICTION or not slip_turns(buf, i, elapsed)
+        if not begins:  # repeated with a shorter step
             buf[R.WANTED, i] = SLIP_SHORTER * elapsed
             before = 0.0
             continue
         if number >= 0:
             return end_contact(buf, i, table, pieces, elapsed, number)
         before = h
-        status, number = take(buf, i, table, pieces)
+        status, number = take_step(buf, i, table, pieces)
         if status != Status.WAITING:
             return status
         if number >= 0:
-            return go_through(buf, i, table, pieces, number)
+            return apply_resets(buf, i, table, pieces, number)
     return go_on_explicitly(buf, i, table, pieces, rate, pays=pays)
 
 
 def attempt(buf: Table, i: int, before: float, rate: float, room: NewtonRoom) -> float:
-    """Make a step ready to be taken, as long as its error allows; return its length, or 0 where none pays.
+    """Compute a step whose error is acceptable; return its length, or 0 if no step pays.
 
-    `before` is the length of the step of which the dense output is kept, or 0; `rate` is the fastest of the equations.
+    `before` is the length of the step whose dense output is stored, or 0; `rate` is the fastest rate of the equations.
     """
     h = min(buf[R.WANTED, i], buf[R.LONGEST_STEP, i], buf[R.STOP, i] - buf[R.TIME, i])
     slopes = row_state(buf, i, R.SLOPE)
@@ -105,18 +105,18 @@ def attempt(buf: Table, i: int, before: float, rate: float, room: NewtonRoom) ->
 
 
 def factor_of(error: float, iterations: int) -> float:
-    """Return by how much the next step is longer than one of this error, in tolerances."""
+    """Return the ratio of the next step to one with this error in tolerances."""
     if not error < math.inf:
         return UNSOLVED_FACTOR
     safety = SAFETY * (2 * MOST_ITERATIONS + 1) / (2 * MOST_ITERATIONS + iterations)
     return min(max(safety / math.sqrt(math.sqrt(max(error, 1e-12))), LEAST_FACTOR), LARGEST_FACTOR)
 
 
-def take(buf: Table, i: int, table: Table, pieces: Table) -> tuple[int, int]:
-    """Take the step that is ready; return WAITING and the margin that its end breaks, or −1, or the final status."""
+def take_step(buf: Table, i: int, table: Table, pieces: Table) -> tuple[int, int]:
+    """Accept the computed step; return WAITING and the guard broken at its end, or −1, or the final status."""
     h, stop = buf[R.TRIED, i], buf[R.STOP, i]
     reached = h >= stop - buf[R.TIME, i]
-    beyond = come_to(buf, i, table, h)
+    beyond = step_to(buf, i, table, h)
     if beyond > 0.0:
         return end_at_limit(buf, i, beyond), -1
     if reached:
@@ -129,7 +129,7 @@ def take(buf: Table, i: int, table: Table, pieces: Table) -> tuple[int, int]:
 
 
 def go_on_explicitly(buf: Table, i: int, table: Table, pieces: Table, rate: float, *, pays: bool) -> int:
-    """Leave the lane to explicit steps; look soon whether implicit ones pay, or later if they did not."""
+    """Return the lane to explicit steps; check for stiffness soon if implicit steps paid, else later."""
     buf[R.STIFF_LOOK_AT, i] = buf[R.STEPS, i] + (1.0 if pays else LOOK_EVERY)
     buf[R.REJECTED, i] = 0.0
     buf[R.AIMED, i] = 0.0
@@ -137,6 +137,6 @@ def go_on_explicitly(buf: Table, i: int, table: Table, pieces: Table, rate: floa
         buf[R.WANTED, i] = min(buf[R.WANTED, i], NEAR_BOUNDARY / rate)
     number = broken_now(buf, i)
     if number >= 0:
-        return go_through(buf, i, table, pieces, number)
-    go_on(buf, i)
+        return apply_resets(buf, i, table, pieces, number)
+    set_next_stop(buf, i)
     return Status.WAITING

@@ -1,9 +1,10 @@
-"""Convergence of a run to a periodic orbit that is known beforehand, by which the run ends before its duration.
+"""Convergence of a run to a known periodic orbit, which ends the run before its duration.
 
-At each phase zero of the base motion the distance of the state from the orbit is measured, in units of the orbit's mean
-tilt. Near the orbit this distance falls by the modulus ρ of the largest multiplier in each period, but for oscillations
-of complex multipliers. So the largest distances within successive windows of m periods are compared, of which each must
-be ρ^m times the one before, within a margin. The dense output of the step gives the state: no step is changed.
+At each phase zero of the base motion `watch` measures the distance of the state from the orbit, in units of the mean
+tilt of the orbit. Near the orbit the distance falls in each period by the factor ρ, the modulus of the largest
+multiplier; complex multipliers add oscillations. Therefore the largest distances within successive windows of m periods
+are compared: each must be ρ^m times the previous one, within a margin. The dense output gives the state, so that no
+step changes.
 """
 
 import math
@@ -16,26 +17,27 @@ from stylobate.engine.kernel.driver.within import set_dense_output, set_within, 
 from stylobate.engine.kernel.layout import Table
 
 Approach = tuple[float, float, float, float]
-"""Largest distance in the window before; the same in the present window; its periods so far; windows that fell."""
+"""Largest distances in the previous and in the present window, periods of the present window so far, and number of
+successive windows that fell as the multipliers demand."""
 
-# Distance from an orbit within which disturbances are taken to follow its multipliers.
+# Distance from an orbit within which perturbations are assumed to follow its multipliers.
 NEAR = 0.03
-# The largest distance of a window agrees with ρ^m times the one before within this factor.
+# The largest distance of a window agrees with ρ^m times the previous one within this factor.
 MARGIN = 1.6
-# So many successive windows must fall as the multipliers demand.
+# Number of successive windows that must fall as the multipliers demand.
 WINDOWS = 3.0
-# Distances below this are those of a run on the orbit: rounding and tolerance keep them from falling further.
+# A run is on the orbit below this distance: rounding and tolerance prevent smaller distances.
 ON_ORBIT = 1e-6
-# At distances above this a run is not compared with an orbit.
+# A run is not compared with an orbit above this distance.
 FAR = 0.2
-# Cubics through the ends of a step, by which distances are estimated first, are in error by less than this.
+# Maximum error of the first estimates of distances, by cubics through the ends of a step.
 OF_CUBICS = 0.1
-# States one period apart must differ by less than this part of the tolerance with which the outcome is judged.
+# States one period apart must differ by less than this fraction of the tolerance that decides the outcome.
 CERTAIN = 0.05
 
 
 def approach_after(approach: Approach, distance: float, window: float, fall: float) -> Approach:
-    """Continue the record of an approach by the distance one period later.
+    """Update the record of an approach with the distance one period later.
 
     Parameters
     ----------
@@ -44,7 +46,7 @@ def approach_after(approach: Approach, distance: float, window: float, fall: flo
     distance
         Distance from the orbit.
     window
-        Periods m of a window.
+        Number m of periods in a window.
     fall
         ρ^m.
     """
@@ -59,29 +61,29 @@ def approach_after(approach: Approach, distance: float, window: float, fall: flo
 
 
 def is_certain(approach: Approach, fall_to_judgement: float, repeats: float) -> bool:
-    """Return whether a run has converged, and will repeat when its outcome is judged.
+    """Return whether a run has converged and will repeat when its outcome is decided.
 
     Parameters
     ----------
     approach
         The record.
     fall_to_judgement
-        Factor by which the distance falls until the last periods begin, by which the outcome is judged.
+        Factor by which the distance falls before the last periods, which decide the outcome.
     repeats
-        Largest difference of states one period apart, in units of the largest state, of a motion that repeats.
+        Maximum difference of states one period apart of a repeating motion, in units of the largest state.
     """
     largest, _, periods, falls = approach
     return periods == 0.0 and falls >= WINDOWS and largest * fall_to_judgement <= CERTAIN * repeats
 
 
-def watch_from(buf: Table, i: int, table: Table) -> None:
-    """Begin to watch the run of a lane."""
+def start_watching(buf: Table, i: int, table: Table) -> None:
+    """Start the comparison of the run of a lane with its known orbits."""
     run = int(buf[R.RUN, i])
     for k in range(ORBITS):
         first = R.ORBIT + k * ORBIT
         for column in range(ORBIT):
             buf[first + column, i] = table[run, ORBITS_AT + k * ORBIT + column]
-        forget(buf, i, k)
+        reset_approach(buf, i, k)
     buf[R.CONVERGED, i] = 0.0
     buf[R.PHASE_ZERO_AT, i] = math.inf
     if latest(buf, i) > buf[R.TIME, i]:
@@ -89,19 +91,19 @@ def watch_from(buf: Table, i: int, table: Table) -> None:
 
 
 def set_phase_zero(buf: Table, i: int) -> None:
-    """Set the next time at which the base motion has phase zero; none too late for a run to end early."""
+    """Set the next time at which the base motion has phase zero; none if it is too late for a run to end early."""
     t, period, first = buf[R.TIME, i], buf[R.PERIOD, i], buf[R.STROBE, i]
     following = first + (math.floor((t - first) / period + SLACK) + 1.0) * period
     buf[R.PHASE_ZERO_AT, i] = following if following < judged_from(buf, i) else math.inf
 
 
 def judged_from(buf: Table, i: int) -> float:
-    """Return when the last periods begin, by which the outcome is judged."""
+    """Return the start of the last periods, which decide the outcome."""
     return buf[R.END, i] - (buf[R.PERIODS, i] + 1.0) * buf[R.PERIOD, i]
 
 
-def forget(buf: Table, i: int, k: int) -> None:
-    """Forget the approach to an orbit."""
+def reset_approach(buf: Table, i: int, k: int) -> None:
+    """Reset the record of the approach to an orbit."""
     set_approach(buf, i, k, (math.inf, 0.0, 0.0, 0.0))
 
 
@@ -116,9 +118,9 @@ def watch(buf: Table, i: int, table: Table) -> None:
     end, h = buf[R.TIME, i], buf[R.MADE, i]
     elapsed = buf[R.PHASE_ZERO_AT, i] - (end - h)
     set_phase_zero(buf, i)
-    if elapsed < 0.0:  # the column stood, or passed the upright in closed form
+    if elapsed < 0.0:  # the column stood, or made an analytical step past the vertical
         for k in range(ORBITS):
-            forget(buf, i, k)
+            reset_approach(buf, i, k)
         return
     set_within(buf, i, elapsed)
     closest = math.inf
@@ -137,13 +139,13 @@ def watch(buf: Table, i: int, table: Table) -> None:
             if approaches(buf, i, k, distance):
                 table[int(buf[R.RUN, i]), ORBITS_AT + k * ORBIT + Orbit.REACHED] = 1.0
                 buf[R.CONVERGED, i] = 1.0
-                buf[R.FLAG, i] = 2.0  # more than a stop reached, which may be a knot that is passed
+                buf[R.FLAG, i] = 2.0  # not 1, which `passes_knot` takes for a stop reached
         else:
-            forget(buf, i, k)
+            reset_approach(buf, i, k)
 
 
 def latest(buf: Table, i: int) -> float:
-    """Return the last time at which a run that is not near an orbit can still converge to it before it is judged."""
+    """Return the last time at which a run far from its orbits can still converge before its outcome is decided."""
     last = -math.inf
     for k in range(ORBITS):
         last = max(last, buf[R.ORBIT + k * ORBIT + Orbit.LATEST, i])
@@ -151,7 +153,7 @@ def latest(buf: Table, i: int) -> float:
 
 
 def distance_of_new(buf: Table, i: int, k: int) -> float:
-    """Return the distance of the new state from an orbit; NaN where the run has no such orbit."""
+    """Return the distance of the new state from an orbit; NaN if the run has no such orbit."""
     first = R.ORBIT + k * ORBIT
     x, y, vx, vy = lean_of_new(buf, i)
     size, rate = buf[first + Orbit.SIZE, i], buf[first + Orbit.RATE, i]
@@ -164,7 +166,7 @@ def distance_of_new(buf: Table, i: int, k: int) -> float:
 
 
 def approaches(buf: Table, i: int, k: int, distance: float) -> bool:
-    """Note the distance from an orbit; return whether the run has converged to it."""
+    """Record the distance from an orbit; return whether the run has converged to the orbit."""
     first = R.ORBIT + k * ORBIT
     before = first + Orbit.BEFORE
     approach = buf[before, i], buf[before + 1, i], buf[before + 2, i], buf[before + 3, i]

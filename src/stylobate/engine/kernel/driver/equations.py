@@ -1,4 +1,4 @@
-"""The model's equations as the driver calls them: for one lane, or for all lanes side by side."""
+"""Equations of the model as the driver calls them, for one lane or vectorised over lanes."""
 
 import math
 
@@ -31,19 +31,19 @@ from stylobate.models.model import Push
 
 State = tuple[float, ...]
 
-# A tilt that is none and yet has a side.
+# Negligible tilt that has a sign.
 ASIDE = 1e-140
-# A normal force below this part of the weight counts as that: the demands are as good as infinite.
+# Lower bound of the normal force in demands, in fractions of the weight; demands there are practically infinite.
 LEAST_NORMAL = 1e-12
 
 
 def numbers(buf: Table, i: int) -> tuple[float, ...]:
-    """Return the model's parameters."""
+    """Return the parameters of the model."""
     return tuple(buf[R.PARAMETER + j, i] for j in range(PARAMETERS))
 
 
 def row_state(buf: Table, i: int, row: int) -> State:
-    """Return the state that stands from this row on."""
+    """Return the state stored from this row on."""
     return tuple(buf[row + j, i] for j in range(ORDER))
 
 
@@ -61,7 +61,7 @@ def rates_at(buf: Table, i: int, t: float, state: State) -> State:
 
 
 def lean_of(buf: Table, i: int, state: State) -> tuple[float, float, float, float]:
-    """Return the tilt vector and its rate; along x in a plane."""
+    """Return the tilt vector and its rate; along x if planar."""
     if PLANAR:
         return state[0], 0.0, state[1], 0.0
     return tilt_of(*state, *numbers(buf, i))
@@ -76,11 +76,11 @@ def lean_of_new(buf: Table, i: int) -> tuple[float, float, float, float]:
 
 
 def loads_of(buf: Table, i: int, state: State, push: Accelerations) -> tuple[float, float, float]:
-    """Return normal force, friction demand and pivoting demand of the contact, where they are followed."""
+    """Return normal force, friction demand and pivoting demand; 1, 0, 0 if the kernel does not compute demands."""
     if not DEMANDS:
         return 1.0, 0.0, 0.0
     if PLANAR:
-        # At the upright itself the column stands on the edge of the side to which it goes.
+        # At tilt zero the column stands on the edge of the side towards which it moves.
         tilt = state[0] + ASIDE * buf[R.SIDE, i]
         normal, force, moment = contact(
             *from_plane(tilt, state[1], 1.0, 0.0, *numbers(buf, i)), *push, *numbers(buf, i)
@@ -100,19 +100,19 @@ def model_no_return(buf: Table, i: int, largest: float, least: float) -> float:
 
 
 def model_passage(buf: Table, i: int, ax: float, ay: float, az: float) -> tuple[float, State]:
-    """Return how long a passage of the upright in closed form lasts, and the state after it."""
+    """Return the duration of the analytical passage through the vertical, and the state after it."""
     state = row_state(buf, i, R.STATE)
     return passage(*state, ax, ay, az, *numbers(buf, i)) if CAN_PASS else (0.0, state)
 
 
 def model_at_rest(buf: Table, i: int) -> State:
-    """Return the state in which the column stands that comes to rest."""
+    """Return the state of a column that comes to rest."""
     if KEEPS_AT_REST:
         return at_rest(*row_state(buf, i, R.STATE), *numbers(buf, i))
     return tuple(0.0 for _ in range(ORDER))
 
 
-def model_struck(buf: Table, i: int) -> State:
+def model_impact(buf: Table, i: int) -> State:
     """Return the state after an impact."""
     state = row_state(buf, i, R.STATE)
     if not CAN_LOSE:
@@ -125,7 +125,7 @@ def model_struck(buf: Table, i: int) -> State:
 
 
 def model_departure(buf: Table, i: int, push: Push, elapsed: float, ux: float, uy: float) -> State:
-    """Return the state a short time after a release; in a plane tilt and rate along its line."""
+    """Return the state a short time after uplift; if planar, tilt and rate along the line."""
     if not CAN_DEPART:
         return row_state(buf, i, R.STATE)
     state = departure(push, elapsed, *numbers(buf, i))

@@ -1,4 +1,4 @@
-"""What a lane is stopped for, and dealing with it."""
+"""Events of a lane: overturning, tilt limit, passage through the vertical, rest, and stops."""
 
 import math
 
@@ -6,24 +6,30 @@ from stylobate.engine.kernel.bound import CAN_LOSE, CAN_PASS, CAN_REST, ORDER, P
 from stylobate.engine.kernel.columns import Status
 from stylobate.engine.kernel.driver.equations import lean_of_new, row_state
 from stylobate.engine.kernel.driver.moving import set_lean, set_state
-from stylobate.engine.kernel.driver.passages import cross_upright, hop, hops, loses, strike
-from stylobate.engine.kernel.driver.peaks import closest_within, measure_peak, take_back
+from stylobate.engine.kernel.driver.passages import (
+    apply_impact,
+    cross_vertical,
+    loses_energy,
+    nears_vertical,
+    pass_analytically,
+)
+from stylobate.engine.kernel.driver.peaks import closest_within, measure_peak, undo_step
 from stylobate.engine.kernel.driver.resting import rest_within_step, settle
-from stylobate.engine.kernel.driver.stops import go_on, meet_stop
-from stylobate.engine.kernel.driver.tracing import untrace
+from stylobate.engine.kernel.driver.stops import meet_stop, set_next_stop
+from stylobate.engine.kernel.driver.tracing import remove_trace_entry
 from stylobate.engine.kernel.driver.within import set_within
 from stylobate.engine.kernel.layout import Table
 from stylobate.engine.kernel.roots import first_growth_past, first_return
 
-# An event is met by repeated steps towards it, so often at most; a further step below the second number, in units of
-# the longest step, is made by a Taylor polynomial, whose error is its third power.
+# Maximum number of steps aimed at an event. A remaining step below the second number, in units of the longest step, is
+# made by a Taylor polynomial, whose error is of third order.
 MOST_AIMS, SHORT_AIM = 6, 1e-6
-# A step back to an event has at least this part of the step that met it.
+# Minimum step back to an event, as a fraction of the step that passed it.
 SHORTEST_AIM = 1e-9
 
 
 def event_ahead(buf: Table, i: int) -> float:
-    """Return the step to the first event within a step that was held back."""
+    """Return the time to the first event within a step that was held back."""
     h = buf[R.HELD_STEP, i]
     tilt0, radial0 = buf[R.TILT, i], buf[R.RADIAL, i]
     x1, y1, vx1, vy1 = lean_of_new(buf, i)
@@ -50,17 +56,17 @@ def event_ahead(buf: Table, i: int) -> float:
     return found
 
 
-def meets_upright(buf: Table, i: int) -> bool:
-    """Return whether the event that a lane was aimed at is the upright."""
+def meets_vertical(buf: Table, i: int) -> bool:
+    """Return whether the targeted event is the passage through the vertical."""
     return PLANAR and buf[R.TILT, i] < 0.5 * min(buf[R.TILT_LIMIT, i], buf[R.NO_RETURN, i])
 
 
-def miss(buf: Table, i: int) -> float:
-    """Return the further step to the event at which an aimed step has arrived."""
+def remaining_step(buf: Table, i: int) -> float:
+    """Return the time from the end of an aimed step to its event."""
     tilt, radial, h = buf[R.TILT, i], buf[R.RADIAL, i], buf[R.MADE, i]
     bound = min(buf[R.TILT_LIMIT, i], buf[R.NO_RETURN, i])
     further = 0.0
-    if meets_upright(buf, i):
+    if meets_vertical(buf, i):
         speed = buf[R.STATE + 1, i]
         further = -buf[R.STATE, i] / speed if speed != 0.0 else 0.0
     elif buf[R.BY_TILT, i] > 0.0:
@@ -73,8 +79,8 @@ def miss(buf: Table, i: int) -> float:
     return min(max(further, -0.5 * abs(h)), 0.5 * abs(h))
 
 
-def creep(buf: Table, i: int, h: float) -> None:
-    """Go on by a time so short that the step's series, or two terms of another, give the state."""
+def advance_briefly(buf: Table, i: int, h: float) -> None:
+    """Advance by a very short time, by the series of the step or by two Taylor terms."""
     if SERIES:
         set_within(buf, i, buf[R.MADE, i] + h)
         set_state(buf, i, row_state(buf, i, R.NEW))
@@ -86,12 +92,12 @@ def creep(buf: Table, i: int, h: float) -> None:
     set_lean(buf, i)
 
 
-def held_back(buf: Table, i: int, table: Table, pieces: Table) -> int:
+def handle_held_step(buf: Table, i: int, table: Table, pieces: Table) -> int:
     """Aim at the event within the step that was held back."""
     h = buf[R.TRIED, i]
     buf[R.HELD_STEP, i] = h
     ahead = event_ahead(buf, i)
-    if ahead <= 0.0:  # a swing that begins and ends within a part of the step too small to be resolved
+    if ahead <= 0.0:  # a swing too short to be resolved within the step
         buf[R.STATE, i] = 0.0
         return settle(buf, i, table, pieces, buf[R.TIME, i])
     aim(buf, i, ahead)
@@ -99,37 +105,37 @@ def held_back(buf: Table, i: int, table: Table, pieces: Table) -> int:
 
 
 def aim(buf: Table, i: int, ahead: float) -> None:
-    """Let the next step end at the event that lies `ahead`."""
-    # Of the two conditions of overturning, which is met last: tilt, or growth of the tilt. A lossy passage, −1, is
-    # aimed at as the latter: where the tilt begins to grow.
+    """Let the next step end at the event at the time `ahead`."""
+    # The condition of overturning that is met last: tilt, or growth of the tilt. A lossy passage, −1, is located as the
+    # latter, at the minimum tilt.
     buf[R.BY_TILT, i] = 1.0 if buf[R.TILT, i] < min(buf[R.TILT_LIMIT, i], buf[R.NO_RETURN, i]) else 0.0
     buf[R.H, i] = ahead
     buf[R.AIMED, i] = 1.0
 
 
-def arrived(buf: Table, i: int, table: Table, pieces: Table) -> int:
-    """Go nearer to the event that the lane was aimed at, or deal with it."""
-    further = miss(buf, i)
+def approach_event(buf: Table, i: int, table: Table, pieces: Table) -> int:
+    """Make another step towards the targeted event, or handle the event if it is reached."""
+    further = remaining_step(buf, i)
     short = abs(further) < SHORT_AIM * min(1.0, buf[R.LONGEST_STEP, i])
     if not short and buf[R.AIMED, i] < MOST_AIMS:
         buf[R.H, i] = further
         buf[R.AIMED, i] += 1.0
         return Status.WAITING
-    creep(buf, i, further)
+    advance_briefly(buf, i, further)
     buf[R.AIMED, i] = 0.0
     if buf[R.TILT, i] > buf[R.PEAK_TILT, i]:
         buf[R.PEAK_TILT, i] = buf[R.TILT, i]
-        buf[R.LARGEST_AT, i] = buf[R.TIME, i]
-    if meets_upright(buf, i):
-        return cross_upright(buf, i, table, pieces)
+        buf[R.PEAK_AT, i] = buf[R.TIME, i]
+    if meets_vertical(buf, i):
+        return cross_vertical(buf, i, table, pieces)
     if CAN_LOSE and buf[R.BY_TILT, i] < 0.0:
-        return strike(buf, i, table, pieces)
+        return apply_impact(buf, i, table, pieces)
     return Status.LIMIT if buf[R.TILT_LIMIT, i] <= buf[R.NO_RETURN, i] else Status.OVERTURNED
 
 
-def near_upright(buf: Table, i: int, table: Table) -> float:
-    """Deal with a passage near the upright, out of a plane; return when the column came to rest there, or NaN."""
-    if CAN_LOSE and loses(buf, i):
+def handle_near_vertical(buf: Table, i: int, table: Table) -> float:
+    """Handle a three-dimensional passage near the vertical; return the time at which the column rests, or NaN."""
+    if CAN_LOSE and loses_energy(buf, i):
         aim(buf, i, -max(closest_within(buf, i), SHORTEST_AIM * buf[R.MADE, i]))
         buf[R.BY_TILT, i] = -1.0
         return math.nan
@@ -137,30 +143,30 @@ def near_upright(buf: Table, i: int, table: Table) -> float:
         rest = rest_within_step(buf, i)
         if not math.isnan(rest):
             return rest
-    if CAN_PASS and hops(buf, i):
-        hop(buf, i, table)
+    if CAN_PASS and nears_vertical(buf, i):
+        pass_analytically(buf, i, table)
     return math.nan
 
 
 def handle(buf: Table, i: int, table: Table, pieces: Table) -> int:
-    """Deal with a lane that needs it; return the status of a run that ends, or WAITING."""
+    """Handle the event of a lane; return the final status if the run ends, else WAITING."""
     if buf[R.HELD, i] > 0.0:
-        return held_back(buf, i, table, pieces)
+        return handle_held_step(buf, i, table, pieces)
     if buf[R.GO, i] == 0.0:
         return Status.STEP_TOO_SMALL
     if buf[R.PEAK, i] > 0.0:
         ahead = measure_peak(buf, i)
-        if ahead > 0.0 and buf[R.AIMED, i] == 0.0:  # the limit lies between the ends of the step and its peak
-            take_back(buf, i)
-            untrace(buf, i)
+        if ahead > 0.0 and buf[R.AIMED, i] == 0.0:  # only the peak within the step exceeds the limit
+            undo_step(buf, i)
+            remove_trace_entry(buf, i)
             aim(buf, i, ahead)
             return Status.WAITING
     if buf[R.AIMED, i] > 0.0:
-        return arrived(buf, i, table, pieces)
+        return approach_event(buf, i, table, pieces)
     if buf[R.STEPS, i] >= buf[R.MOST_STEPS, i]:
         return Status.STEP_LIMIT
     if not PLANAR:
-        rest = near_upright(buf, i, table)
+        rest = handle_near_vertical(buf, i, table)
         if not math.isnan(rest):
             return settle(buf, i, table, pieces, rest)
         if buf[R.AIMED, i] > 0.0:
@@ -170,5 +176,5 @@ def handle(buf: Table, i: int, table: Table, pieces: Table) -> int:
         status = meet_stop(buf, i, table, pieces, t)
         if status != Status.WAITING:
             return status
-    go_on(buf, i)
+    set_next_stop(buf, i)
     return Status.WAITING

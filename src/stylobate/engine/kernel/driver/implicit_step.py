@@ -1,7 +1,7 @@
-"""One implicit step of a lane, by Radau IIA: E. Hairer, G. Wanner, "Solving Ordinary Differential Equations II", IV.8.
+"""Implicit step of a lane by Radau IIA: E. Hairer, G. Wanner, "Solving Ordinary Differential Equations II", IV.8.
 
-A step consists of the changes of the state from its start to each of three nodes, the last of which is its end:
-`change` has the states at the first node, then those at the second and the third.
+The unknowns `change` are the changes of the state from the start of the step to each of three nodes, node by node. The
+last node is the end of the step.
 """
 
 import math
@@ -17,18 +17,18 @@ from stylobate.engine.kernel.linear_equations import NewtonRoom, factor, solve
 from stylobate.engine.kernel.shape import DENSE_TERMS
 from stylobate.engine.tolerances import SLIP_SHARE
 
-# A state is changed by this part of the slip to see how the rates change, for their direction turns with it, and by no
-# more than the second number. The third is the least for states that are no slip, by whose roundings rates jump.
+# Difference step of a state as a fraction of the slip velocity, with whose direction the rates rotate; its maximum;
+# and its minimum for states that are not slip velocities, whose rounding makes rates jump.
 PART_OF_SLIP, LARGEST_DIFFERENCE, LEAST_DIFFERENCE = 1e-3, 1e-7, 1e-12
-# So many iterations by Newton's method at most; they end below the first part of the tolerance, or its root if that is
-# less, but not below so many roundings of the second.
+# Maximum number of Newton iterations; they end below this fraction of the tolerance, or below the root of the relative
+# tolerance if that is smaller, but not below the last number over the relative tolerance.
 MOST_ITERATIONS, WELL_SOLVED, SOLVED_ROUNDINGS = 7, 0.03, 2e-15
-# Products with the Jacobian before the growth is taken from four more: what is not fastest has faded by then.
+# Products with the Jacobian before four more that measure the growth; slower components have faded by then.
 FADING = 4
 
 
 def set_jacobian(buf: Table, i: int, jacobian: Table) -> None:
-    """Set the derivatives of the rates by differences; the slopes belong to the state. The kind of contact is kept."""
+    """Set the Jacobian of the rates by differences from the slopes at the state; the kind of contact is constant."""
     t = buf[R.TIME, i]
     slip = max(math.hypot(buf[R.STATE + SLIP_X, i], buf[R.STATE + SLIP_Y, i]), SLIP_SHARE * buf[R.ATOL_NOW, i])
     small = min(PART_OF_SLIP * slip, LARGEST_DIFFERENCE)
@@ -46,7 +46,7 @@ def set_jacobian(buf: Table, i: int, jacobian: Table) -> None:
 
 
 def fastest_rate(jacobian: Table) -> float:
-    """Return about the largest modulus of the eigenvalues of the Jacobian, by its powers."""
+    """Estimate the largest modulus of the eigenvalues of the Jacobian by power iteration."""
     vector, product = np.zeros(ORDER), np.zeros(ORDER)
     for j in range(ORDER):
         vector[j] = 1.0
@@ -70,7 +70,7 @@ def fastest_rate(jacobian: Table) -> float:
 
 
 def solve_step(buf: Table, i: int, h: float, room: NewtonRoom) -> int:
-    """Solve the equations of a step from a guess of its changes; return the number of iterations, or 0."""
+    """Solve the equations of a step from a guess of its changes; return the number of iterations, or 0 on failure."""
     _, matrix, pivots, change, correction = room
     set_matrix(h, room)
     if not factor(matrix, pivots):
@@ -95,7 +95,7 @@ def solve_step(buf: Table, i: int, h: float, room: NewtonRoom) -> int:
 
 
 def set_matrix(h: float, room: NewtonRoom) -> None:
-    """Set the matrix of Newton's method, A⁻¹/h ⊗ I − I ⊗ J."""
+    """Set the matrix A⁻¹/h ⊗ I − I ⊗ J of Newton's method."""
     jacobian, matrix, _, _, _ = room
     for row in range(CHANGES):
         for column in range(CHANGES):
@@ -110,7 +110,7 @@ def set_matrix(h: float, room: NewtonRoom) -> None:
 
 
 def set_defect(buf: Table, i: int, h: float, change: Row, defect: Row) -> None:
-    """Set by how much the rates at the nodes exceed the slopes of the cubic through these changes."""
+    """Set the differences between the rates at the nodes and the slopes of the cubic through these changes."""
     t = buf[R.TIME, i]
     for stage in range(radau.STAGES):
         first = stage * ORDER
@@ -141,10 +141,10 @@ def size_of_correction(buf: Table, i: int, correction: Row) -> float:
 
 
 def error_of_changes(buf: Table, i: int, h: float, slopes: tuple[float, ...], room: NewtonRoom) -> float:
-    """Return the error of a step in tolerances, and leave it in the last third of `correction`.
+    """Return the error of a step in tolerances, and store its components in the last third of `correction`.
 
-    `slopes` are the rates at the start. The embedded formula needs (γ₀⁻¹/h − J)⁻¹: on multiples of the eigenvector of
-    A⁻¹ the matrix of all stages is that.
+    `slopes` are the rates at the start. The embedded formula needs (γ₀⁻¹/h − J)⁻¹; on multiples of the eigenvector of
+    A⁻¹, the matrix of all stages acts as γ₀⁻¹/h − J.
     """
     _, matrix, pivots, change, correction = room
     for j in range(ORDER):
@@ -164,7 +164,7 @@ def error_of_changes(buf: Table, i: int, h: float, slopes: tuple[float, ...], ro
 
 
 def damped_error(buf: Table, i: int, h: float, room: NewtonRoom) -> float:
-    """Return the error that is left where the estimate itself is stiff: from the rates at the start, once corrected."""
+    """Return the error estimate with rates at the corrected start, for an estimate that is stiff itself."""
     for j in range(ORDER):
         buf[R.NEW + j, i] = buf[R.STATE + j, i] + room.correction[CHANGES - ORDER + j]
     slopes = rates_at(buf, i, buf[R.TIME, i], row_state(buf, i, R.NEW))
@@ -187,7 +187,7 @@ def set_cubic(buf: Table, i: int, change: Row) -> None:
 
 
 def guess_changes(buf: Table, i: int, ratio: float, change: Row) -> None:
-    """Guess the changes of a step from the cubic of the one before, of which it is `ratio` times as long; 0 if none."""
+    """Extrapolate the changes from the cubic of the previous step, by the `ratio` of the lengths; 0 means no step."""
     for n in range(CHANGES):
         change[n] = 0.0
     for stage in range(radau.STAGES if ratio > 0.0 else 0):

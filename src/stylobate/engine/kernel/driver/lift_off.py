@@ -1,4 +1,4 @@
-"""When the base falls away faster than gravity."""
+"""Lift-off: the time at which the base begins to fall faster than gravity."""
 
 import math
 
@@ -11,7 +11,7 @@ from stylobate.engine.tolerances import SAMPLES_PER_PERIOD
 
 
 def find_lift(buf: Table, i: int, table: Table, pieces: Table) -> None:
-    """Set when the base begins to fall faster than gravity."""
+    """Set the time at which the base begins to fall faster than gravity."""
     buf[R.LIFTS_AT, i] = math.inf
     if not VERTICAL or buf[R.MINIMUM_VERTICAL, i] > -1.0:
         return
@@ -38,7 +38,7 @@ def weight(buf: Table, i: int, t: float) -> float:
 
 def lift_in_leg(buf: Table, i: int, start: float, end: float) -> float:
     frequency = buf[R.FREQUENCY, i]
-    # A weight that is linear in time is least at an end.
+    # A weight that is linear in time has its minimum at an end.
     sampled = frequency > 0.0 and DEGREE != 1
     spacing = 2.0 * math.pi / (frequency * SAMPLES_PER_PERIOD) if sampled else end - start
     t0 = t1 = start
@@ -50,7 +50,7 @@ def lift_in_leg(buf: Table, i: int, start: float, end: float) -> float:
         w2 = weight(buf, i, t2)
         below = t2
         if k > 1 and w1 <= w0 and w1 <= w2 and w2 >= 0.0:
-            low, high = t0, t2  # the least weight between three samples, by thirds
+            low, high = t0, t2  # minimum weight between three samples, by ternary search
             for _ in range(80):
                 a, b = low + (high - low) / 3.0, high - (high - low) / 3.0
                 if weight(buf, i, a) < weight(buf, i, b):

@@ -1,4 +1,4 @@
-"""The state of a lane, and how it begins to move."""
+"""State of a lane, its tilt vector and rates, and the start of motion."""
 
 import math
 
@@ -11,7 +11,7 @@ from stylobate.engine.kernel.roots import nearest_turn, turns_of
 
 
 def azimuth_now(buf: Table, i: int) -> float:
-    """Return the azimuth of the lean, followed round [turns]; the last one known while it stands, 0 before any."""
+    """Return the continuous azimuth of the tilt vector [turns]; the last one while standing, 0 before any tilt."""
     if PLANAR or buf[R.STANDS, i] > 0.0:
         last = buf[R.LAST_AZIMUTH, i]
         return 0.0 if math.isnan(last) else last
@@ -19,14 +19,14 @@ def azimuth_now(buf: Table, i: int) -> float:
 
 
 def square_of_speed(buf: Table, i: int, energy: float) -> float:
-    """Return the square of the speed at which a column near the upright has this energy [c²]."""
+    """Return the square of the speed at which a column near the vertical has this energy [c²]."""
     c = buf[R.SLENDERNESS, i]
     of_speed_c = model_rest_energy(buf, i, 0.0, c, 0.0)
     return energy * c**4 / of_speed_c if of_speed_c > 0.0 else 0.0
 
 
 def set_lean(buf: Table, i: int) -> None:
-    """Set the rows that describe the lean from the state."""
+    """Compute the rows of the tilt vector from the state."""
     x, y, vx, vy = model_lean(buf, i)
     buf[R.X, i] = x
     buf[R.Y, i] = y
@@ -38,7 +38,7 @@ def set_lean(buf: Table, i: int) -> None:
 
 
 def set_rates(buf: Table, i: int, t: float) -> None:
-    """Set what a step begins with: the loads of the contact, where they are followed, and slopes, where it has them."""
+    """Compute the contact loads and the slopes at the start of a step, if the kernel has them."""
     if DEMANDS:
         set_loads(buf, i, t)
     if SERIES:
@@ -49,7 +49,7 @@ def set_rates(buf: Table, i: int, t: float) -> None:
 
 
 def set_loads(buf: Table, i: int, t: float) -> None:
-    """Note the loads of the contact at the beginning of a step."""
+    """Compute the contact loads at the start of a step."""
     loads = loads_of(buf, i, row_state(buf, i, R.STATE), accelerations(buf, i, t))
     for load in range(LOADS):
         buf[R.LOADS + load, i] = loads[load]
@@ -60,13 +60,13 @@ def set_state(buf: Table, i: int, state: tuple[float, ...]) -> None:
         buf[R.STATE + j, i] = state[j]
 
 
-def at_upright(buf: Table, i: int) -> bool:
+def is_at_rest(buf: Table, i: int) -> bool:
     x, y, vx, vy = model_lean(buf, i)
     return x == 0.0 and y == 0.0 and vx == 0.0 and vy == 0.0
 
 
-def set_off(buf: Table, i: int, t: float, wanted: float) -> None:
-    """Begin to move from the state in the buffer at `t`; `wanted` is the first step to try, or 0."""
+def start_moving(buf: Table, i: int, t: float, wanted: float) -> None:
+    """Start the motion from the state in the buffer at `t`; `wanted` is the first step to try, or 0."""
     buf[R.STANDS, i] = 0.0
     buf[R.TIME, i] = t
     set_lean(buf, i)
@@ -74,7 +74,7 @@ def set_off(buf: Table, i: int, t: float, wanted: float) -> None:
     if PLANAR:
         buf[R.SIDE, i] = math.copysign(1.0, x if x != 0.0 else buf[R.VX, i])
     else:
-        buf[R.IN_SPACE, i] = 1.0
+        buf[R.THREE_DIMENSIONAL, i] = 1.0
         here = turns_of(x, y)
         azimuth = nearest_turn(here, buf[R.LAST_AZIMUTH, i])
         buf[R.TURNS, i] = azimuth - here
@@ -85,7 +85,7 @@ def set_off(buf: Table, i: int, t: float, wanted: float) -> None:
     buf[R.ATOL_NOW, i] = min(atol, buf[R.RTOL, i] * tilt) if tilt > 0.0 else atol
     if tilt > buf[R.PEAK_TILT, i]:
         buf[R.PEAK_TILT, i] = tilt
-        buf[R.LARGEST_AT, i] = t
+        buf[R.PEAK_AT, i] = t
     set_rates(buf, i, t)
     buf[R.AIMED, i] = 0.0
     buf[R.REJECTED, i] = 0.0
@@ -115,5 +115,5 @@ def first_step(buf: Table, i: int, t: float) -> float:
     still = d1 <= 1e-15 and d2 <= 1e-15  # noqa: PLR2004
     other = max(1e-6, h * 1e-3) if still else (0.01 / max(d1, d2)) ** 0.125
     found = min(100.0 * h, other, longest)
-    # Where the rates overflow it is zero or NaN: the whole way then, which is shortened until the run has failed.
+    # If the rates overflow, the step is zero or NaN. The longest step is then shortened until the run fails.
     return found if found > 0.0 else longest

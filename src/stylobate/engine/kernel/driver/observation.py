@@ -1,7 +1,7 @@
-"""Integrals over the last periods: the mean tilt, and the parts of the lean that turn with the forcing and against it.
+"""Integrals over the last periods: mean tilt, and tilt vector in frames that rotate with and against the forcing.
 
-Few lanes are in their last periods at one time. Each is observed by itself; where steps are made by series, which are
-long, a loop runs over the nodes of Gauss's rule within the step.
+Few lanes are in their last periods at one time, so the driver observes each lane separately. Steps by Taylor series
+are long; for these a loop runs over the nodes of Gauss's rule within the step.
 """
 
 import math
@@ -28,27 +28,27 @@ Observed = tuple[float, float, float, float, float]
 
 @fast
 def observe(buf: Table, i: int) -> None:
-    """Add the integrals over the step just made of the tilt, and of the lean times e^{∓2πi t/T}, T being the period."""
+    """Add the integrals over the step just made of the tilt, and of the tilt vector times e^{∓2πi t/T}; T: period."""
     if SERIES:
         observe_by_nodes(buf, i)
     else:
         observe_by_ends(buf, i)
-    buf[R.LATE_LEAST, i] = min(buf[R.LATE_LEAST, i], buf[R.LOW, i])
+    buf[R.LATE_MINIMUM_TILT, i] = min(buf[R.LATE_MINIMUM_TILT, i], buf[R.LOW, i])
 
 
 def observe_by_nodes(buf: Table, i: int) -> None:
-    """Integrate by Gauss's rule, the states at its nodes being those of the step's series."""
+    """Integrate by Gauss's rule, with the states at its nodes from the series of the step."""
     h, w = buf[R.MADE, i], buf[R.PER_TURN, i]
     start = w * (buf[R.TIME, i] - h)
     terms = tuple(series_terms(buf, i, j) for j in range(ORDER))
-    # Sums would have to be taken in order: products are kept, and added afterwards.
+    # A sum in this loop would prevent vectorisation: the products are stored and added afterwards.
     for node in lanes(NODES):
         u = PLACES[node]
         x, y, _, _ = lean_of(buf, i, tuple(polynomial(one, u * h) for one in terms))
         turns = start + w * (u * h)
         cos, sin = cos_turns(turns), cos_turns(turns - 0.25)
         weight = h * WEIGHTS[node]
-        values = (math.sqrt(x * x + y * y), *turning_parts(x, y, cos, sin))
+        values = (math.sqrt(x * x + y * y), *rotating_components(x, y, cos, sin))
         for k in range(OBSERVED):
             buf[R.NODE_MEAN_TILT + k, node] = weight * values[k]
     for node in range(NODES):
@@ -56,35 +56,35 @@ def observe_by_nodes(buf: Table, i: int) -> None:
             buf[R.MEAN_TILT + k, i] += buf[R.NODE_MEAN_TILT + k, node]
 
 
-def turning_parts(x: float, y: float, cos: float, sin: float) -> tuple[float, float, float, float]:
-    """Return the components of a vector in frames that turn with the forcing and against it."""
+def rotating_components(x: float, y: float, cos: float, sin: float) -> tuple[float, float, float, float]:
+    """Return the components of a vector in frames that rotate with and against the forcing."""
     return x * cos + y * sin, y * cos - x * sin, x * cos - y * sin, y * cos + x * sin
 
 
 def observe_by_ends(buf: Table, i: int) -> None:
     """Integrate by the trapezoidal rule with its end correction, exact for cubics.
 
-    Tilt and lean are those in a frame that turns with the forcing, or against it, where steady rolling stands still.
+    The frames rotate with and against the forcing, because steady rolling is constant in one of them.
     """
     h, w = buf[R.MADE, i], buf[R.PER_TURN, i]
     start = w * (buf[R.TIME, i] - h)
     weight, correction = 0.5 * h, h * h * (1.0 / 12.0)
-    values0, slopes0 = seen_at(buf, i, R.LAST_STATE, start, w)
-    values1, slopes1 = seen_at(buf, i, R.STATE, start + w * h, w)
+    values0, slopes0 = observed_at(buf, i, R.LAST_STATE, start, w)
+    values1, slopes1 = observed_at(buf, i, R.STATE, start + w * h, w)
     for k in tuple(range(OBSERVED)):
         whole = weight * (values0[k] + values1[k]) + correction * (slopes0[k] - slopes1[k])
         buf[R.MEAN_TILT + k, i] += whole
 
 
-def seen_at(buf: Table, i: int, row: int, turns: float, w: float) -> tuple[Observed, Observed]:
-    """Return what is integrated, and its rates, at an end of the step: the state from this row on."""
+def observed_at(buf: Table, i: int, row: int, turns: float, w: float) -> tuple[Observed, Observed]:
+    """Return the integrands and their rates at an end of the step, whose state begins at this row."""
     x, y, vx, vy = lean_of(buf, i, row_state(buf, i, row))
     cos, sin = cos_turns(turns), cos_turns(turns - 0.25)
     turning = 6.283185307179586 * w
     tilt = math.sqrt(x * x + y * y)
-    # In a plane a tilt begins at the upright with some speed.
+    # Planar motion passes tilt zero with a nonzero rate.
     rate = buf[R.SIDE, i] * vx if PLANAR else (x * vx + y * vy) / (tilt + TINY)
-    along, across, against, other = turning_parts(x, y, cos, sin)
-    forward = turning_parts(vx + turning * y, vy - turning * x, cos, sin)
-    backward = turning_parts(vx - turning * y, vy + turning * x, cos, sin)
+    along, across, against, other = rotating_components(x, y, cos, sin)
+    forward = rotating_components(vx + turning * y, vy - turning * x, cos, sin)
+    backward = rotating_components(vx - turning * y, vy + turning * x, cos, sin)
     return (tilt, along, across, against, other), (rate, forward[0], forward[1], backward[2], backward[3])

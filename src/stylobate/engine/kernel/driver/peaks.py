@@ -1,4 +1,4 @@
-"""The peak tilt within a step."""
+"""Peak tilt and minimum tilt within a step."""
 
 import math
 
@@ -10,14 +10,14 @@ from stylobate.engine.kernel.driver.within import set_within
 from stylobate.engine.kernel.layout import Table
 from stylobate.engine.kernel.roots import quintic
 
-# Time over which accelerations of the lean are taken by differences.
+# Time difference for the second derivative of the tilt vector.
 DIFFERENCE = 1e-5
 
 
 def measure_peak(buf: Table, i: int) -> float:
     """Measure the peak tilt within the step just made.
 
-    Return the time into the step at which it passes the tilt limit, or 0: then nothing is noted.
+    Return 0 and record the peak, or return the time into the step at which the tilt passes its limit.
     """
     h = buf[R.MADE, i]
     before = after = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
@@ -37,7 +37,7 @@ def measure_peak(buf: Table, i: int) -> float:
     if tilt <= limit:
         if tilt > buf[R.PEAK_TILT, i]:
             buf[R.PEAK_TILT, i] = tilt
-            buf[R.LARGEST_AT, i] = buf[R.TIME, i] - h + low * h
+            buf[R.PEAK_AT, i] = buf[R.TIME, i] - h + low * h
         return 0.0
     low = 0.0
     for _ in range(40):
@@ -51,7 +51,7 @@ def measure_peak(buf: Table, i: int) -> float:
 
 
 def closest_within(buf: Table, i: int) -> float:
-    """Return how long before the end of the step just made the tilt was least."""
+    """Return the time from the minimum tilt to the end of the step just made."""
     before = after = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     if not SERIES:
         before, after = lean_before(buf, i), lean_after(buf, i)
@@ -66,8 +66,8 @@ def closest_within(buf: Table, i: int) -> float:
     return (1.0 - high) * buf[R.MADE, i]
 
 
-def take_back(buf: Table, i: int) -> None:
-    """Return to the beginning of the step just made."""
+def undo_step(buf: Table, i: int) -> None:
+    """Restore the state at the start of the step just made."""
     x1, y1, momentum1 = buf[R.X, i], buf[R.Y, i], buf[R.MOMENTUM, i]
     for j in range(ORDER):
         buf[R.STATE + j, i] = buf[R.LAST_STATE + j, i]
@@ -90,7 +90,7 @@ def lean_after(buf: Table, i: int) -> tuple[float, float, float, float, float, f
 def lean_and_rates(
     buf: Table, i: int, state: tuple[float, ...], slopes: tuple[float, ...]
 ) -> tuple[float, float, float, float, float, float]:
-    """Return the lean, its rate and its acceleration, by differences along the motion; exact where linear."""
+    """Return the tilt vector, its rate and, by differences along the motion, its acceleration."""
     for j in range(ORDER):
         buf[R.NEW + j, i] = state[j] + DIFFERENCE * slopes[j]
     _, _, ahead_x, ahead_y = lean_of_new(buf, i)
@@ -110,7 +110,7 @@ def lean_within(
     before: tuple[float, float, float, float, float, float],
     after: tuple[float, float, float, float, float, float],
 ) -> tuple[float, float, float, float]:
-    """Return the lean and its rate at the part `u` of the step: by its series, or quintics through both its ends."""
+    """Return the tilt vector and its rate at the fraction `u` of the step, by its series or by quintics."""
     if SERIES:
         set_within(buf, i, u * buf[R.MADE, i])
         return lean_of_new(buf, i)

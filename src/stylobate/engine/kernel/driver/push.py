@@ -1,4 +1,4 @@
-"""The acceleration of the base in a lane: a sum of harmonic terms, or a polynomial that holds for the present."""
+"""Base acceleration in a lane: a sum of harmonic terms, or the present polynomial of a tabulated motion."""
 
 from stylobate.engine.elementary import cos_turns
 from stylobate.engine.kernel.bound import (
@@ -18,7 +18,7 @@ Accelerations = tuple[float, float, float]
 
 
 def accelerations(buf: Table, i: int, t: float) -> Accelerations:
-    """Return the accelerations at a time: horizontal x and y, in a plane along its line and 0, and vertical [g]."""
+    """Return the accelerations at a time [g]: x and y (along the line and 0 if planar), and vertical."""
     if DEGREE >= 0:
         u = (t - buf[FIRST_FORCING, i]) * buf[FIRST_FORCING + 1, i]
         return directed(tuple(piece_polynomial(buf, i, u, k) for k in range(COMPONENTS)))
@@ -26,13 +26,13 @@ def accelerations(buf: Table, i: int, t: float) -> Accelerations:
 
 
 def directed(components: tuple[float, ...]) -> Accelerations:
-    """Return x, y and z of the components that a kernel follows."""
+    """Return the accelerations x, y and z from the components of the kernel."""
     vertical = components[-1] if VERTICAL else 0.0
     return components[0], 0.0 if PLANAR else components[1], vertical
 
 
 def waves(buf: Table, i: int, t: float, component: int) -> float:
-    """Return Σ a cos 2π(ft + φ), each term times its window, of a component."""
+    """Return Σ a cos 2π(ft + φ) of a component, each term times its window."""
     total = 0.0
     for term in tuple(range(TERMS)):
         row = FIRST_FORCING + term * FORCING_ROWS
@@ -45,12 +45,12 @@ def waves(buf: Table, i: int, t: float, component: int) -> float:
 
 
 def window(buf: Table, i: int, t: float, row: int) -> float:
-    """Return α − β cos 2π(ft + φ), by which a term rises, from these rows on."""
+    """Return the window α − β cos 2π(ft + φ) of a term, from the coefficients that begin at this row."""
     return buf[row, i] - buf[row + 1, i] * cos_turns(buf[row + 2, i] * t + buf[row + 3, i])
 
 
 def piece_polynomial(buf: Table, i: int, u: float, component: int) -> float:
-    """Return a component by Horner's rule, `u` being the time from the middle of the piece over half its length."""
+    """Return a component by Horner's rule; `u` is the time from the middle of the piece over half its length."""
     row = FIRST_FORCING + 2 + component * (DEGREE + 1)
     value = buf[row + DEGREE, i]
     for power in tuple(range(DEGREE)):
@@ -59,7 +59,7 @@ def piece_polynomial(buf: Table, i: int, u: float, component: int) -> float:
 
 
 def keep_end_push(buf: Table, i: int, push: Accelerations) -> None:
-    """Keep the accelerations at the end of the step, where its two last stages stand."""
+    """Store the accelerations at the end of the step, which its last two stages use."""
     ax, ay, az = push
     buf[R.END_PUSH, i] = ax
     if not PLANAR:
@@ -85,7 +85,7 @@ def push_series(buf: Table, i: int, t: float, order: int) -> tuple[tuple[float, 
 
 
 def wave_series(buf: Table, i: int, t: float, component: int, order: int) -> tuple[float, ...]:
-    """Return the coefficients of the sum of the terms; one that rises is the sum of three waves."""
+    """Return the coefficients of the sum of the terms; a term with a window is a sum of three waves."""
     total = tuple(0.0 for _ in range(order))
     for term in tuple(range(TERMS)):
         row = FIRST_FORCING + term * FORCING_ROWS
@@ -106,7 +106,7 @@ def added(a: tuple[float, ...], b: tuple[float, ...]) -> tuple[float, ...]:
 
 
 def wave(t: float, turns: float, size: float, begins: float, phase: float, order: int) -> tuple[float, ...]:
-    """Return the coefficients of a wave: f″ = −ω²f gives every second one from the one before."""
+    """Return the coefficients of a wave, by the recurrence of f″ = −ω²f."""
     omega = 6.283185307179586 * turns
     square = -omega * omega
     angle = turns * t + begins + phase

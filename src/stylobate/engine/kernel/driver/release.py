@@ -1,4 +1,4 @@
-"""When the base motion releases a standing column."""
+"""Uplift of a standing column: the first time at which the base acceleration exceeds the capacity."""
 
 import math
 
@@ -8,9 +8,9 @@ from stylobate.engine.kernel.driver.push import accelerations
 from stylobate.engine.kernel.layout import Table
 from stylobate.engine.tolerances import SAMPLES_PER_PERIOD
 
-# What counts as the same moment [samples].
+# Time difference that counts as zero [samples].
 MOMENT = 1e-6
-# Weight that counts as none.
+# Weight that counts as zero.
 RELEASE_MARGIN = 8.0 * 2.220446049250313e-16
 
 
@@ -21,7 +21,7 @@ def excess(buf: Table, i: int, t: float) -> float:
 
 
 def release_time(buf: Table, i: int, start: float, end: float) -> float:
-    """Return the first time in [start, end) at which the base motion releases a standing column, or infinity."""
+    """Return the first time of uplift of a standing column in [start, end), or infinity."""
     if held_for_good(buf, i) or end <= start:
         return math.inf
     if DEGREE == 1:
@@ -29,7 +29,7 @@ def release_time(buf: Table, i: int, start: float, end: float) -> float:
     frequency = buf[R.FREQUENCY, i]
     spacing = 2.0 * math.pi / (frequency * SAMPLES_PER_PERIOD) if frequency > 0.0 else end - start
     spacing = min(spacing, 0.5 * (end - start))
-    # An excess that is gone a moment later is the rounding of the instant at which the column came to rest.
+    # An excess that vanishes at once is a rounding error of the time at which the column came to rest.
     if excess(buf, i, start) > 0.0:
         moment = min(start + MOMENT * spacing, end)
         if excess(buf, i, moment) > 0.0:
@@ -41,7 +41,7 @@ def release_time(buf: Table, i: int, start: float, end: float) -> float:
         t2 = min(start + k * spacing, end)
         e2 = excess(buf, i, t2)
         curvature = e0 - 2.0 * e1 + e2
-        # A peak counts if the parabola through three samples would pass the limit with twice the rise it shows.
+        # A peak counts if twice the rise of the parabola through three samples would pass the limit.
         if k > 1 and e1 >= e0 and e1 >= e2 and curvature < 0.0:
             rise = -((e2 - e0) ** 2) / (8.0 * curvature)
             if e1 + 2.0 * rise - curvature > 0.0:
@@ -56,7 +56,7 @@ def release_time(buf: Table, i: int, start: float, end: float) -> float:
 
 
 def release_on_line(buf: Table, i: int, start: float, end: float) -> float:
-    """Return the same where the base acceleration is linear in time: the excess is convex, and largest at an end."""
+    """Return the same for a base acceleration linear in time: the excess is convex, with its maximum at an end."""
     if excess(buf, i, start) > 0.0:
         moment = min(start + MOMENT * (end - start), end)
         if excess(buf, i, moment) > 0.0:
@@ -69,7 +69,7 @@ def release_on_line(buf: Table, i: int, start: float, end: float) -> float:
 
 
 def peak(buf: Table, i: int, low: float, high: float) -> float:
-    """Return where the excess is largest, by golden sections."""
+    """Return the time of the maximum excess, by golden-section search."""
     golden = 0.6180339887498949
     a, b = high - golden * (high - low), low + golden * (high - low)
     ea, eb = excess(buf, i, a), excess(buf, i, b)

@@ -1,4 +1,4 @@
-"""Until when a release of a standing column is sought, and when the next one comes."""
+"""Search for the next uplift of a standing column, and its time limit."""
 
 import math
 
@@ -7,15 +7,15 @@ from stylobate.engine.kernel.driver.release import release_time
 from stylobate.engine.kernel.driver.stops import leg_end
 from stylobate.engine.kernel.layout import Table
 
-# So many periods show what a motion that repeats does, whatever the phase at which they begin.
+# Number of periods that show all of a periodic motion, whatever the phase at their start.
 PERIODS_KNOWN = 2.0
 
 
 def next_release(buf: Table, i: int, t: float) -> float:
-    """Return when the base motion releases the column before the leg ends, or infinity.
+    """Return the time of the next uplift before the leg ends, or infinity.
 
-    NaN where that cannot be known: so many periods are searched as a run may take steps, for a column that moves takes
-    two in each.
+    NaN means that the search reached its limit of one period per allowed step; a moving column takes two steps in a
+    period.
     """
     end = search_end(buf, i, t)
     release = release_time(buf, i, t, end)
@@ -23,7 +23,7 @@ def next_release(buf: Table, i: int, t: float) -> float:
 
 
 def search_end(buf: Table, i: int, t: float) -> float:
-    """Return until when a release is sought from `t` on within the leg."""
+    """Return the end of the search for uplift that begins at `t` within the leg."""
     end, frequency = leg_end(buf, i), buf[R.FREQUENCY, i]
     if DEGREE == 1 or frequency == 0.0:
         return end
@@ -33,5 +33,5 @@ def search_end(buf: Table, i: int, t: float) -> float:
 
 
 def repeats_to_the_end(buf: Table, i: int) -> bool:
-    """Return whether the base motion has a period from now to the end of the run."""
+    """Return whether the base motion is periodic from now to the end of the run."""
     return buf[R.PERIOD, i] > 0.0 and min(buf[R.LEG_ENDS, i], buf[R.BREAKS_AT, i]) >= buf[R.END, i]

@@ -1,48 +1,48 @@
-"""Coming to rest, standing, and departing from rest."""
+"""Rest: conditions of rest, standing, and uplift from rest."""
 
 import math
 
 from stylobate.engine.kernel.bound import CAN_DEPART, CAN_GO_TO_PLANE, PLANAR, R
 from stylobate.engine.kernel.columns import Status, TraceKind
-from stylobate.engine.kernel.driver.base_motion import forcing_rate, held_for_good, least_force
+from stylobate.engine.kernel.driver.base_motion import forcing_rate, held_for_good, minimum_force
 from stylobate.engine.kernel.driver.equations import lean_of_new, model_at_rest, model_departure, model_rest_energy
-from stylobate.engine.kernel.driver.moving import at_upright, azimuth_now, set_off, set_state
+from stylobate.engine.kernel.driver.moving import azimuth_now, is_at_rest, set_state, start_moving
 from stylobate.engine.kernel.driver.push import accelerations
 from stylobate.engine.kernel.driver.release import RELEASE_MARGIN
 from stylobate.engine.kernel.driver.release_search import next_release, search_end
-from stylobate.engine.kernel.driver.standing_loads import bear_standing
-from stylobate.engine.kernel.driver.stops import go_on, leg_end, meet_stop, next_stop, stand_to_the_end
+from stylobate.engine.kernel.driver.standing_loads import record_standing_loads
+from stylobate.engine.kernel.driver.stops import leg_end, meet_stop, next_stop, set_next_stop, stand_to_the_end
 from stylobate.engine.kernel.driver.tracing import trace_event, trace_stand
 from stylobate.engine.kernel.driver.within import set_dense_output, set_within, set_within_closely
 from stylobate.engine.kernel.layout import Table
-from stylobate.engine.tolerances import DEPARTURE, HOPS_APART, STILL
+from stylobate.engine.tolerances import DEPARTURE, STILL, SWINGS_APART
 from stylobate.models.model import Push
 
 
 def holding_force(buf: Table, i: int, ax: float, ay: float, az: float) -> float:
-    """Return the force that holds a standing column down: the least from now on, if that holds it for good."""
-    force = least_force(buf, i)
+    """Return the force that holds a standing column down; its future minimum, if that is not negative."""
+    force = minimum_force(buf, i)
     return force if force >= 0.0 else buf[R.CAPACITY, i] * (1.0 + az) - math.hypot(ax, ay)
 
 
 def rest_margin(buf: Table, i: int, t: float, tilt: float, speed: float) -> float:
-    """Return what is positive where a column of this tilt and speed comes to rest at `t`."""
+    """Return an indicator that is positive if a column of this tilt and speed comes to rest at `t`."""
     ax, ay, az = accelerations(buf, i, t)
     energy = model_rest_energy(buf, i, tilt, speed, az)
     force = holding_force(buf, i, ax, ay, az)
     change = 2.0 * math.sqrt(2.0 * max(energy, 0.0)) * forcing_rate(buf, i)
     square = buf[R.SLENDERNESS, i] ** 2
-    dies = force - math.sqrt(HOPS_APART * change)
-    if least_force(buf, i) < 0.0:
+    dies = force - math.sqrt(SWINGS_APART * change)
+    if minimum_force(buf, i) < 0.0:
         return min(buf[R.REST_ENERGY, i] * square - energy, dies)
     share = buf[R.REST_ENERGY_FOR_GOOD, i]
     return max(min(share, STILL) * square - energy, min(share * square - energy, dies))
 
 
 def rest_within_step(buf: Table, i: int) -> float:
-    """Return when the column came to rest within the step just made, or NaN.
+    """Return the time within the step just made at which the column came to rest, or NaN.
 
-    Whether it may have is asked of cubics; whether and when it did, of the step's dense output.
+    Cubics show whether the column may have come to rest; the dense output decides whether it did, and when.
     """
     h = buf[R.MADE, i]
     start = buf[R.TIME, i] - h
@@ -64,7 +64,7 @@ def rest_within_step(buf: Table, i: int) -> float:
 
 
 def first_rest(buf: Table, i: int, start: float, h: float, low: float, high: float) -> float:
-    """Return at which part of the step the column came to rest, between two parts of it."""
+    """Return the fraction of the step at which the column came to rest, between two fractions."""
     for _ in range(40):
         middle = 0.5 * (low + high)
         if margin_within_step(buf, i, start, h, middle, True) > 0.0:
@@ -75,11 +75,11 @@ def first_rest(buf: Table, i: int, start: float, h: float, low: float, high: flo
 
 
 def margin_within_step(buf: Table, i: int, start: float, h: float, u: float, closely: bool) -> float:
-    """Return the margin of rest at a part of the step, closely where its dense output is there."""
+    """Return `rest_margin` at a fraction of the step, from cubics or, if `closely`, from the dense output."""
     t = start + u * h
     ax, ay, az = accelerations(buf, i, t)
     force = holding_force(buf, i, ax, ay, az)
-    if force <= 0.0:  # so is the margin
+    if force <= 0.0:  # then the margin is not positive either
         return force
     if closely:
         set_within_closely(buf, i, u * h)
@@ -97,12 +97,12 @@ def settle(buf: Table, i: int, table: Table, pieces: Table, t: float) -> int:
     trace_event(buf, i, table, TraceKind.REST, t)
     buf[R.STANDS, i] = 1.0
     buf[R.RESTS, i] += 1.0
-    buf[R.TOUCHED_UPRIGHT, i] = 1.0
+    buf[R.REACHED_VERTICAL, i] = 1.0
     return stand(buf, i, table, pieces, t)
 
 
 def stand(buf: Table, i: int, table: Table, pieces: Table, t: float) -> int:
-    """Stand from `t` until released; return WAITING when moving again, else the status with which the run ends."""
+    """Stand from `t` until uplift; return WAITING if the column moves again, else the final status."""
     trace_stand(buf, i, table, t)
     release = release_within_leg(buf, i, t)
     while True:
@@ -115,7 +115,7 @@ def stand(buf: Table, i: int, table: Table, pieces: Table, t: float) -> int:
         stop = next_stop(buf, i)
         t = stop
         if release < stop:
-            if 1.0 + accelerations(buf, i, release)[2] <= RELEASE_MARGIN:  # not released but lifted
+            if 1.0 + accelerations(buf, i, release)[2] <= RELEASE_MARGIN:  # lift-off, not uplift
                 buf[R.TIME, i] = release
                 return Status.LIFTED
             if not CAN_DEPART:
@@ -124,10 +124,10 @@ def stand(buf: Table, i: int, table: Table, pieces: Table, t: float) -> int:
             if t < buf[R.END, i]:
                 buf[R.RELEASES, i] += 1.0
                 trace_event(buf, i, table, TraceKind.RELEASE, release)
-                if not at_upright(buf, i):
-                    return take_off(buf, i, table, pieces, t)
+                if not is_at_rest(buf, i):
+                    return leave_rest(buf, i, table, pieces, t)
         buf[R.TIME, i] = t
-        # The search is not cut at stops that leave the base motion as it is: what is looked at does not change a run.
+        # Stops within a leg do not cut the search, so that samples do not change a run.
         again = release < stop or t >= leg_end(buf, i)
         while next_stop(buf, i) <= t:
             status = meet_stop(buf, i, table, pieces, next_stop(buf, i))
@@ -138,18 +138,18 @@ def stand(buf: Table, i: int, table: Table, pieces: Table, t: float) -> int:
 
 
 def release_within_leg(buf: Table, i: int, t: float) -> float:
-    """Return `next_release`, and note what the column bears until then.
+    """Return `next_release`, and record the contact loads until then.
 
-    Loads are followed by legs, not by stops: what is looked at changes none of them.
+    Loads are computed by legs, not by stops, so that samples do not change them.
     """
     release = next_release(buf, i, t)
-    # NaN, where no release was seen, is not less.
-    bear_standing(buf, i, t, min(search_end(buf, i, t), release))
+    # min keeps the first argument if the release is NaN.
+    record_standing_loads(buf, i, t, min(search_end(buf, i, t), release))
     return release
 
 
 def depart(buf: Table, i: int, release: float) -> float:
-    """Put the state a short time after the release into the buffer, and return that time."""
+    """Set the state a short time after uplift, and return that time."""
     elapsed = DEPARTURE / (1.0 + buf[R.FREQUENCY, i])
     ax, ay, az = accelerations(buf, i, release)
     bx, by, bz = accelerations(buf, i, release + elapsed)
@@ -166,9 +166,9 @@ def depart(buf: Table, i: int, release: float) -> float:
     return release + elapsed
 
 
-def take_off(buf: Table, i: int, table: Table, pieces: Table, t: float) -> int:
-    """Go on, moving, from the departure at `t`."""
-    # Looks within the departure, which moves the column by the third power of its duration, see it stand.
+def leave_rest(buf: Table, i: int, table: Table, pieces: Table, t: float) -> int:
+    """Continue with motion from the state after uplift at `t`."""
+    # Samples within this time show a standing column: the displacement is of third order in the time.
     while next_stop(buf, i) <= t:
         meet_stop(buf, i, table, pieces, next_stop(buf, i))
     if buf[R.RESTS, i] > 0.0:
@@ -177,6 +177,6 @@ def take_off(buf: Table, i: int, table: Table, pieces: Table, t: float) -> int:
     if CAN_GO_TO_PLANE and (buf[R.LINE_X, i] != 0.0 or buf[R.LINE_Y, i] != 0.0):
         buf[R.STANDS, i] = 0.0
         return Status.TO_PLANE
-    set_off(buf, i, t, 0.0)
-    go_on(buf, i)
+    start_moving(buf, i, t, 0.0)
+    set_next_stop(buf, i)
     return Status.WAITING

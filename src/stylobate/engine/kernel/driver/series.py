@@ -1,9 +1,8 @@
-"""A step by Taylor series for all lanes side by side.
+"""Step by Taylor series, vectorised over lanes.
 
-The coefficients of the states follow order by order from recurrences that the model's recorded equations give, in the
-written function `expand`. Their last two show how long a step may be; what the polynomial lacks of fulfilling the
-equations at the end of the step is its error. Where the equations hold few products this takes half the work of a
-Runge–Kutta method.
+The generated function `expand` computes the coefficients of the states order by order, by recurrences from the
+recorded equations of the model. The last two coefficients limit the step; the defect of the equations at the end of the
+step is its error. For equations with few products this takes half the work of a Runge–Kutta method.
 """
 
 import math
@@ -17,15 +16,15 @@ from stylobate.engine.kernel.driver.sums import polynomial, reciprocals, value_a
 from stylobate.engine.kernel.layout import Table
 from stylobate.engine.kernel.shape import SERIES_ORDER
 
-# A step is at most this much longer than the last one's coefficients would have allowed, or than the last one was.
+# Maximum ratio of a step to the step that the previous coefficients allowed, and to the previous step.
 ROOM, MOST_GROWTH = 1.5, 10.0
-# One is shortened at once by no more than this.
+# Minimum factor by which one attempt shortens a step.
 LEAST_SHARE = 1e-3
 
 
 @fast
 def make_series_step(buf: Table, width: int) -> None:
-    """Find coefficients, the length of the step, the new state and its error."""
+    """Compute the coefficients, the length of the step, the new state and its error."""
     for i in lanes(width):
         t = buf[R.TIME, i]
         start = tuple(buf[R.STATE + j, i] for j in range(ORDER))
@@ -46,13 +45,13 @@ def make_series_step(buf: Table, width: int) -> None:
 
 
 def choose_length(buf: Table, i: int, states: tuple[tuple[float, ...], ...]) -> None:
-    """Shorten the step that was to be tried to what the last coefficients allow, and propose the next."""
+    """Shorten the step to the length that the last coefficients allow, and propose the next step."""
     tried, last = buf[R.H, i], SERIES_ORDER
     base = abs(tried)
     power2 = base * base
     power4 = power2 * power2
     power8 = power4 * power4
-    # |c15| b^15 + |c16| b^16, b being the step tried: how much of the tolerance the last terms take.
+    # |c15| b^15 + |c16| b^16 in tolerances, with b the step tried.
     before = power8 * power4 * power2 * base
     full = before * base
     per_scale = reciprocals(tuple(buf[R.ATOL_NOW, i] + buf[R.RTOL, i] * abs(state[0]) for state in states))
@@ -61,19 +60,19 @@ def choose_length(buf: Table, i: int, states: tuple[tuple[float, ...], ...]) -> 
         size = size + (abs(states[j][last - 1]) * before + abs(states[j][last]) * full) * per_scale[j]
     root = math.sqrt(math.sqrt(math.sqrt(math.sqrt(size))))
     factor = 1.0 / max(root, 1.0 / MOST_GROWTH)
-    # Sums, not largest values, above and in the error: they let NaN through, and the step is not taken.
+    # Sums instead of maxima, here and in the error, propagate NaN, and the step is rejected.
     buf[R.H, i] = tried * max(LEAST_SHARE, min(1.0, factor))
     buf[R.PROPOSED, i] = base * factor * ROOM
 
 
 def find_defect(buf: Table, i: int, t: float, start: State, rates: tuple[tuple[float, ...], ...]) -> None:
-    """Find the error of the step: by how much its end does not fulfil the equations."""
+    """Compute the error of the step from the defect of the equations at its end."""
     h = buf[R.H, i]
     new = tuple(buf[R.NEW + j, i] for j in range(ORDER))
     slopes = rates_at(buf, i, t, new)
     error = 0.0
     for j in range(ORDER):
-        if RATES_OF[j] < 0:  # what it is the integral of holds as well
+        if RATES_OF[j] < 0:  # the defect of a rate covers its integral
             defect = abs(slopes[j] - polynomial(rates[j], h))
             error = error + defect / (buf[R.ATOL_NOW, i] + buf[R.RTOL, i] * max(abs(start[j]), abs(new[j])))
     buf[R.ERROR, i] = error * abs(h) * (1.0 / (SERIES_ORDER + 1))
@@ -83,7 +82,7 @@ def find_defect(buf: Table, i: int, t: float, start: State, rates: tuple[tuple[f
 
 
 def series_terms(buf: Table, i: int, j: int) -> tuple[float, ...]:
-    """Return the coefficients by which the step just made gives a state, in the time since it began."""
+    """Return the coefficients of a state in the step just made, in powers of the time since its start."""
     integral = INTEGRALS[j]
     first = COEFFICIENTS[integral] - 1
     start = buf[R.LAST_STATE + j, i]
@@ -93,25 +92,25 @@ def series_terms(buf: Table, i: int, j: int) -> tuple[float, ...]:
 
 
 def series_within(buf: Table, i: int, elapsed: float) -> State:
-    """Return the state at a time since the step just made began."""
+    """Return the state at the time `elapsed` after the start of the step just made."""
     return tuple(polynomial(series_terms(buf, i, j), elapsed) for j in range(ORDER))
 
 
 def falls_and_rises(slope: float, end_slope: float) -> float:
-    """Return 1 if a function falls and then rises between two places with these slopes, else 0."""
+    """Return 1 if a function with these end slopes falls and then rises, else 0."""
     return (1.0 if slope < 0.0 else 0.0) * (1.0 if end_slope > 0.0 else 0.0)
 
 
 def rises_and_falls(slope: float, end_slope: float) -> float:
-    """Return 1 if a function rises and then falls between two places with these slopes, else 0."""
+    """Return 1 if a function with these end slopes rises and then falls, else 0."""
     return (1.0 if slope > 0.0 else 0.0) * (1.0 if end_slope < 0.0 else 0.0)
 
 
 def extremes_by_series(buf: Table, i: int) -> tuple[float, float, float, float, float]:
-    """Return whether the tilt has a minimum and its value, whether a maximum, its value and at which part of the step.
+    """Return minimum flag, minimum, maximum flag, maximum of the tilt, and the fraction of the step at the maximum.
 
-    A step may be long: cubics over its halves show places, the series values. In each half there is one extreme at
-    most; of two lows or two highs the first is taken.
+    A step may be long: cubics over its halves locate the extremes, and the series gives their values. Each half has at
+    most one extreme; of two minima or two maxima the first is used.
     """
     h = buf[R.H, i]
     half = 0.5 * h
@@ -135,7 +134,7 @@ Three = tuple[float, float, float]
 
 
 def place_of_extreme(values: Three, slopes: Three, early: float, sign: float) -> float:
-    """Return at which part of a step an extreme lies, in its first half if it is early."""
+    """Return the fraction of the step at which an extreme lies, in the first half of the step if `early` is 1."""
     start = values[0] if early > 0.0 else values[1]
     end = values[1] if early > 0.0 else values[2]
     slope = slopes[0] if early > 0.0 else slopes[1]

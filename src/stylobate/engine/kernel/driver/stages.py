@@ -1,7 +1,7 @@
-"""The stages of DOP853 for all lanes side by side, and what its slopes show of a step in one lane.
+"""Stages of DOP853, vectorised over lanes, and dense output and stability of a step in one lane.
 
 E. Hairer, S. P. Nørsett, G. Wanner, "Solving Ordinary Differential Equations I", 2nd ed., II.5 and II.6: twelve
-stages of order 8, the error estimated from formulas of orders 5 and 3, three stages more for dense output of order 7.
+stages of order 8, error estimates of orders 5 and 3, and three more stages for dense output of order 7.
 """
 
 import math
@@ -17,23 +17,23 @@ from stylobate.engine.kernel.shape import DENSE_TERMS
 
 STAGE_NUMBERS = tuple(range(1, STAGES + 1))
 STAGE_WEIGHTS = (*A, B)
-"""Weights of the slopes in each stage; the last one is the end of the step."""
+"""Weights of the slopes in each stage; the last stage is the end of the step."""
 
 
 def slopes_of(buf: Table, i: int, j: int) -> tuple[float, ...]:
-    """Return the slopes of all stages of a state, the one at the end of the step last."""
+    """Return the slopes of a state at all stages; the last one is at the end of the step."""
     return tuple(buf[R.SLOPE + stage * ORDER + j, i] for stage in range(STAGES + 1))
 
 
 @fast
 def make_stage(buf: Table, stage: int, width: int) -> None:
-    """Evaluate the equations in a stage; the last one gives the new state and the slope there."""
+    """Evaluate the equations at a stage; the last stage gives the new state and its slope."""
     for i in lanes(width):
         h, t = buf[R.H, i], buf[R.TIME, i]
         state = tuple(
             buf[R.STATE + j, i] + h * weighted(STAGE_WEIGHTS[stage], slopes_of(buf, i, j)) for j in range(ORDER)
         )
-        # The two last stages stand at one time.
+        # The last two stages have the same time.
         push = end_push(buf, i) if stage == STAGES else accelerations(buf, i, t + C[stage] * h)
         if stage == STAGES - 1:
             keep_end_push(buf, i, push)
@@ -44,13 +44,13 @@ def make_stage(buf: Table, stage: int, width: int) -> None:
                 buf[R.NEW + j, i] = state[j]
 
 
-# Long equations stand once, in a function that all stages call: states are passed in rows, and what is done with each
-# state alike is one loop over all states of all lanes, which lie in a block of rows.
+# Long equations are compiled once, in a function that all stages call. Its states are in rows; operations that are the
+# same for each state are one loop over the block of all states of all lanes.
 
 
 @fast
 def make_long_stage(buf: Table, stage: int) -> None:
-    """Do as `make_stage`, with one call of the equations for all stages."""
+    """Evaluate a stage as `make_stage` does, with one compiled copy of the equations for all stages."""
     block = flat(buf)
     for n in lanes(ORDER * WIDTH):
         slopes = tuple(block[(R.SLOPE + earlier * ORDER) * WIDTH + n] for earlier in range(stage))
@@ -63,7 +63,7 @@ def make_long_stage(buf: Table, stage: int) -> None:
 
 @fast
 def evaluate(buf: Table, share: float) -> None:
-    """Evaluate the equations in all lanes, at this part of the step."""
+    """Evaluate the equations in all lanes at this fraction of the step."""
     for i in lanes(WIDTH):
         push = accelerations(buf, i, buf[R.TIME, i] + share * buf[R.H, i])
         slopes = rates_under(buf, i, row_state(buf, i, R.STAGE), push)
@@ -75,7 +75,7 @@ def evaluate(buf: Table, share: float) -> None:
 
 
 def set_dense(buf: Table, i: int, state: int, slope: int, t: float, h: float) -> None:
-    """Set the dense output of the step over h from t, whose state and slope at the start lie from these rows on."""
+    """Compute the dense output of the step h from t; `state` and `slope` are the first rows of its start."""
     for number in EXTRA_NUMBERS:
         for j in range(ORDER):
             combination = weighted(A_EXTRA[number], stage_slopes(buf, i, slope, j))
@@ -97,19 +97,19 @@ EXTRA_NUMBERS, DENSE_NUMBERS = tuple(range(3)), tuple(range(4))
 
 
 def stage_slopes(buf: Table, i: int, slope: int, j: int) -> tuple[float, ...]:
-    """Return the slopes of all stages and of those more, the first one from the row `slope` on."""
+    """Return the slopes of a state at all stages and at the extra stages; `slope` is the first row of the start."""
     first = buf[slope + j, i]
     stages = tuple(buf[R.SLOPE + stage * ORDER + j, i] for stage in range(1, STAGES + 1))
     return first, *stages, *(buf[R.EXTRA + number * ORDER + j, i] for number in EXTRA_NUMBERS)
 
 
 def dense_state(buf: Table, i: int, u: float) -> State:
-    """Return the state at the part `u` of the step whose dense output is set, from the state of the lane."""
+    """Return the state at the fraction `u` of the step whose dense output is set, from the state of the lane."""
     return tuple(buf[R.STATE + j, i] + dense_change(buf, i, u, j) for j in range(ORDER))
 
 
 def dense_change(buf: Table, i: int, u: float, j: int) -> float:
-    """Return by how much a state has changed at the part `u` of the step."""
+    """Return the change of a state from the start of the step to its fraction `u`."""
     change = 0.0
     for k in tuple(range(DENSE_TERMS)):
         term = DENSE_TERMS - 1 - k
@@ -118,7 +118,7 @@ def dense_change(buf: Table, i: int, u: float, j: int) -> float:
 
 
 def stability(buf: Table, i: int) -> float:
-    """Return hλ of the step just made, from the slopes of its two last stages, which belong to states at one time.
+    """Return hλ of the step just made, from the slopes of its last two stages, whose times are equal.
 
     E. Hairer, G. Wanner, "Solving Ordinary Differential Equations II", section IV.2.
     """

@@ -1,4 +1,4 @@
-"""What the contact bears while the column stands."""
+"""Contact loads while the column stands."""
 
 import math
 
@@ -9,11 +9,11 @@ from stylobate.engine.kernel.layout import Table
 from stylobate.engine.tolerances import SAMPLES_PER_PERIOD
 
 
-def bear_standing(buf: Table, i: int, start: float, end: float) -> None:
-    """Note the peak friction demand |a_h|/(1 + a_z), and the minimum normal force, of standing from start to end.
+def record_standing_loads(buf: Table, i: int, start: float, end: float) -> None:
+    """Record the peak friction demand |a_h|/(1 + a_z) and the minimum normal force while standing from start to end.
 
-    Where the acceleration is linear in time both are reached at an end: the demand is quasi-convex there. Otherwise
-    peaks are those of parabolas through three of the samples by which a release is sought.
+    If the acceleration is linear in time, both occur at an end, because the demand is quasi-convex. Otherwise they are
+    extremes of parabolas through three samples, spaced as in the search for uplift.
     """
     if not DEMANDS or end <= start:
         return
@@ -44,7 +44,7 @@ def standing_load(buf: Table, i: int, t: float) -> tuple[float, float]:
 
 
 def crest(before: float, here: float, after: float) -> float:
-    """Return the height of the parabola through three equidistant values where it has a crest, else the middle one."""
+    """Return the maximum of the parabola through three equidistant values, or the middle value if it has none there."""
     bend = before - 2.0 * here + after
     slant = after - before
     return here - slant * slant / (8.0 * bend) if abs(slant) < -2.0 * bend else here

@@ -1,18 +1,18 @@
-"""One attempt at a step in the lanes that have runs."""
+"""One attempted step in all lanes that have runs."""
 
 from stylobate.compiler.marks import fast, lanes
 from stylobate.engine.kernel.bound import DEMANDS, ORDER, SERIES, SWITCHING, WIDTH, R
 from stylobate.engine.kernel.driver.demands import follow_demands
-from stylobate.engine.kernel.driver.guards import bring_up_to_date, look_at_guards
+from stylobate.engine.kernel.driver.guards import evaluate_guards, project_states
 from stylobate.engine.kernel.driver.series import make_series_step
 from stylobate.engine.kernel.driver.stages import STAGE_NUMBERS, make_long_stage, make_stage
-from stylobate.engine.kernel.driver.step_control import judge
+from stylobate.engine.kernel.driver.step_control import control_step
 from stylobate.engine.kernel.layout import Table
 
 
 @fast
 def step(buf: Table, width: int) -> None:
-    """Try a step in each of the first lanes, and take it where its error allows and no event lies within."""
+    """Try a step in each of the first `width` lanes; accept it if its error is small and it contains no event."""
     if SERIES:
         make_series_step(buf, width)
     elif SWITCHING:
@@ -20,16 +20,16 @@ def step(buf: Table, width: int) -> None:
     else:
         for stage in STAGE_NUMBERS:
             make_stage(buf, stage, width)
-    judge(buf, width)
+    control_step(buf, width)
     if SWITCHING:
-        bring_up_to_date(buf)
+        project_states(buf)
     if DEMANDS:
         follow_demands(buf, width)
 
 
 @fast
 def make_long_step(buf: Table) -> None:
-    """Make a step of a model whose equations are long, and look at its guards within."""
+    """Make a step of a model with long equations, and evaluate its guards within the step."""
     for i in lanes(WIDTH):
         for j in range(ORDER):
             buf[R.STEP + j, i] = buf[R.H, i]
@@ -38,4 +38,4 @@ def make_long_step(buf: Table) -> None:
     for i in lanes(WIDTH):
         for j in range(ORDER):
             buf[R.NEW + j, i] = buf[R.STAGE + j, i]
-    look_at_guards(buf)
+    evaluate_guards(buf)

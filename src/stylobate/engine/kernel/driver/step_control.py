@@ -1,6 +1,6 @@
-"""What a step that was tried amounts to, in all lanes side by side: its error, events in it, extremes, the next step.
+"""Step control, vectorised over lanes: error of the step tried, events and extremes in it, and the next step.
 
-Straight-line code with selects; what one part finds goes to the next in rows, conditions as numbers 0 and 1.
+Straight-line code with selects; each part passes its results on in rows, with conditions as numbers 0 and 1.
 """
 
 import math
@@ -14,43 +14,43 @@ from stylobate.engine.kernel.driver.series import extremes_by_series, falls_and_
 from stylobate.engine.kernel.driver.stages import slopes_of
 from stylobate.engine.kernel.driver.sums import reciprocals, weighted
 from stylobate.engine.kernel.layout import Table
-from stylobate.engine.tolerances import HOP_FROM, HOP_OFFSET, SLIP_SHARE
+from stylobate.engine.tolerances import PASSAGE_FROM, PASSAGE_OFFSET, SLIP_SHARE
 
-# Step control as SciPy's: safety 0.9, a step changes by 0.2 to 10, an error below the last number counts as that.
+# Step control as in SciPy: safety factor, bounds of the step ratio, and lower bound of the error.
 SAFETY, LEAST_FACTOR, LARGEST_FACTOR, LEAST_ERROR = 0.9, 0.2, 10.0, 1e-12
-# A step by series that ran into NaN is tried again with this part of it.
+# Factor for a second attempt after a step by series that gave NaN.
 RETRY = 0.5
-# A step shorter than this part of the time cannot be made.
+# Minimum step, as a fraction of the time.
 SHORTEST = 2.3e-15
-# A peak tilt within a step is measured if it may exceed the largest so far by this part.
+# A peak tilt within a step is measured if it may exceed the previous peak by this factor.
 NEW_PEAK = 1.0 + 1e-7
-# Added where a divisor may be zero.
+# Added to a divisor that may be zero.
 TINY = 1e-300
 
 
 @fast
-def judge(buf: Table, width: int) -> None:
-    """Accept or reject the step of each lane, note what happened in it, and choose the next."""
-    # A loop that does too little at once would not fill the registers, one that does too much would spill them.
+def control_step(buf: Table, width: int) -> None:
+    """Accept or reject the step of each lane, record extremes and events, and choose the next step."""
+    # Short loops would leave registers unused; one long loop would spill them.
     for i in lanes(width):
-        if not SERIES:  # whose error is known with the step
+        if not SERIES:  # steps by series have computed their error
             find_error(buf, i)
         accept(buf, i)
     for i in lanes(width):
-        note_extremes(buf, i)
+        record_extremes(buf, i)
         if not PLANAR:
             follow_azimuth(buf, i)
     for i in lanes(width):
         keep_step(buf, i)
         choose_next_step(buf, i)
-        suspect(buf, i)
+        flag_lane(buf, i)
 
 
 # Error
 
 
 def find_error(buf: Table, i: int) -> None:
-    """Find the error of the step, in tolerances."""
+    """Compute the error of the step in tolerances."""
     scales = reciprocals(tuple(scale_of(buf, i, j) for j in range(ORDER)))
     e5 = e3 = 0.0
     for j in range(ORDER):
@@ -69,7 +69,7 @@ def scale_of(buf: Table, i: int, j: int) -> float:
 
 
 def absolute_tolerance(buf: Table, i: int, j: int) -> float:
-    """Return the absolute tolerance of a state: that of slip is finer while a contact slips."""
+    """Return the absolute tolerance of a state; it is finer for slip velocities while a contact slips."""
     atol = buf[R.ATOL_NOW, i]
     if not SWITCHING:
         return atol
@@ -83,7 +83,7 @@ def absolute_tolerance(buf: Table, i: int, j: int) -> float:
 
 
 def accept(buf: Table, i: int) -> None:
-    """Find the new lean, and whether the step is good, and taken or held back by an event."""
+    """Compute the new tilt vector, and decide whether the step is accepted, rejected, or held back by an event."""
     x, y, vx, vy = lean_of_new(buf, i)
     tilt = math.sqrt(x * x + y * y)
     radial = x * vx + y * vy
@@ -102,8 +102,8 @@ def accept(buf: Table, i: int) -> None:
 
 
 def overshoot(buf: Table, i: int, x: float, vx: float, tilt: float, radial: float) -> float:
-    """Return source for an indicator that is positive if the step goes beyond an event."""
-    if SWITCHING:  # its guards have been looked at
+    """Return an indicator that is positive if the step overshoots an event."""
+    if SWITCHING:  # the guards have been evaluated
         return buf[R.BROKEN, i]
     past = min(tilt - buf[R.NO_RETURN, i], radial)
     past = max(past, tilt - buf[R.TILT_LIMIT, i])
@@ -121,11 +121,11 @@ def overshoot(buf: Table, i: int, x: float, vx: float, tilt: float, radial: floa
 # Extremes
 
 
-def note_extremes(buf: Table, i: int) -> None:
-    """Note the minimum and maximum tilt within the step.
+def record_extremes(buf: Table, i: int) -> None:
+    """Record the minimum and maximum tilt within the step.
 
-    They are those of the square of the tilt, whose least value at a passage of the upright is kept; in a plane of the
-    tilt itself, which may begin at the upright.
+    They are extremes of the squared tilt, which is smooth at a passage through the vertical; in planar motion they are
+    extremes of the tilt, which may start from zero.
     """
     h, go = buf[R.H, i], buf[R.GO, i]
     tilt0, tilt1 = buf[R.TILT, i], buf[R.NEW_TILT, i]
@@ -136,10 +136,10 @@ def note_extremes(buf: Table, i: int) -> None:
         lowest = highest
     low = lowest if falls > 0.0 else min(tilt0, tilt1)
     buf[R.LOW, i] = low
-    # A step towards an event may go beyond it: its ends do not count yet.
+    # A step aimed at an event may overshoot the event: its ends do not count yet.
     ends = 0.0 if buf[R.AIMED, i] > 0.0 else max(tilt0, tilt1)
     largest = buf[R.PEAK_TILT, i]
-    # An extreme that may be above all others so far is measured by the driver, which looks at aimed steps anyway.
+    # The driver measures an extreme that may exceed the peak so far; it handles aimed steps anyway.
     highest = highest if rises > 0.0 else 0.0
     above = max(2.0 * highest - ends - largest * NEW_PEAK, buf[R.AIMED, i])
     peak = go * rises * (1.0 if above > 0.0 else 0.0)
@@ -147,21 +147,21 @@ def note_extremes(buf: Table, i: int) -> None:
     seen = max(ends, highest) * (1.0 - peak)
     seen = seen if go > 0.0 else 0.0
     now = buf[R.TIME, i] + h * (share if rises > 0.0 else (1.0 if tilt1 > tilt0 else 0.0))
-    before = buf[R.LARGEST_AT, i]
-    buf[R.LARGEST_AT, i] = now if seen > largest else before
+    before = buf[R.PEAK_AT, i]
+    buf[R.PEAK_AT, i] = now if seen > largest else before
     buf[R.PEAK_TILT, i] = max(largest, seen)
-    note_least(buf, i, R.MINIMUM_TILT, low, go * falls)
+    record_minimum(buf, i, R.MINIMUM_TILT, low, go * falls)
     if not PLANAR:
-        # Passages as slow as rest do not count.
+        # Passages at the speed of rest or below do not count.
         square = buf[R.NEW_VX, i] * buf[R.NEW_VX, i] + buf[R.NEW_VY, i] * buf[R.NEW_VY, i]
         falls = falls if square > buf[R.REST_SQUARE, i] else 0.0
-        note_least(buf, i, R.LEAST_PASSAGE, low, go * falls)
+        record_minimum(buf, i, R.CLOSEST_PASSAGE, low, go * falls)
     if not PLANAR and not SWITCHING:
         mark_slow(buf, i, h)
 
 
 def extreme_by_cubic(buf: Table, i: int) -> tuple[float, float, float, float]:
-    """Return whether a cubic through the ends has a minimum or a maximum, at which part of the step, and the tilt."""
+    """Return minimum flag, maximum flag, fraction of the step and tilt of the extreme of a cubic through the ends."""
     h = buf[R.H, i]
     if PLANAR:
         side = buf[R.SIDE, i]
@@ -177,17 +177,17 @@ def extreme_by_cubic(buf: Table, i: int) -> tuple[float, float, float, float]:
     return falls, rises, share, value if PLANAR else math.sqrt(value)
 
 
-def note_least(buf: Table, i: int, row: int, low: float, counts: float) -> None:
+def record_minimum(buf: Table, i: int, row: int, low: float, counts: float) -> None:
     least = buf[row, i]
     closer = low if counts > 0.0 else least
     buf[row, i] = min(least, closer)
 
 
 def mark_slow(buf: Table, i: int, h: float) -> None:
-    """Mark the lanes in which the column may have been slow enough to come to rest within the step.
+    """Mark lanes in which the column may have been slow enough to come to rest within the step.
 
-    Its speed within lies no further below that at the ends than it changed, or its weight may have changed it. A step
-    by series may be long: it is always looked at.
+    The speed within the step is lower than at its ends at most by the change of the velocity, or by the change that the
+    weight can cause. A step by series may be long and is always marked.
     """
     if SERIES:
         buf[R.SLOW, i] = 1.0
@@ -203,23 +203,23 @@ def mark_slow(buf: Table, i: int, h: float) -> None:
 
 
 def follow_azimuth(buf: Table, i: int) -> None:
-    """Follow the azimuth of the lean round, and end a finer tolerance."""
+    """Update the continuous azimuth of the tilt vector, and end the finer tolerance of small motions."""
     go = buf[R.GO, i]
     x1, y1 = buf[R.NEW_X, i], buf[R.NEW_Y, i]
     before, after = buf[R.MOMENTUM, i], x1 * buf[R.NEW_VY, i] - y1 * buf[R.NEW_VX, i]
     buf[R.TURNS, i] = buf[R.TURNS, i] + go * winding(buf[R.X, i], buf[R.Y, i], x1, y1, before + after)
     buf[R.MOMENTUM, i] = after if go > 0.0 else before
-    # A motion that has grown, or turned back, is followed with the usual tolerance.
+    # A motion that has grown or turned back gets the full tolerance.
     grown = max(buf[R.NEW_TILT, i] - buf[R.GROWN, i], -buf[R.NEW_RADIAL, i]) * go
     full, now = buf[R.ATOL, i], buf[R.ATOL_NOW, i]
     buf[R.ATOL_NOW, i] = full if grown > 0.0 else now
 
 
-# Keeping the step, and the next one
+# Acceptance of the step, and the next step
 
 
 def keep_step(buf: Table, i: int) -> None:
-    """Take the new state, where the step is taken."""
+    """Replace the state by the new state if the step is accepted."""
     go = buf[R.GO, i]
     for j in range(ORDER):
         buf[R.LAST_STATE + j, i] = buf[R.STATE + j, i]
@@ -236,16 +236,16 @@ def keep_step(buf: Table, i: int) -> None:
 
 
 def keep(buf: Table, i: int, target: int, source: int, go: float) -> None:
-    """Put one row into another where a step is taken."""
+    """Copy one row into another if the step is accepted."""
     new, old = buf[source, i], buf[target, i]
     buf[target, i] = new if go > 0.0 else old
 
 
 def choose_next_step(buf: Table, i: int) -> None:
-    """Go on in time where the step is taken, and choose the next one."""
+    """Advance the time if the step is accepted, and choose the next step."""
     h, t = buf[R.H, i], buf[R.TIME, i]
     go, ok, stop = buf[R.GO, i], buf[R.OK, i], buf[R.STOP, i]
-    # By a rounding a step shorter than what remains may reach the stop too.
+    # By rounding, a slightly shorter step may also reach the stop.
     reached = go * (1.0 if max(h - (stop - t), t + h - stop) >= 0.0 else 0.0)
     buf[R.REACHED, i] = reached
     buf[R.TRIED, i] = h
@@ -255,7 +255,7 @@ def choose_next_step(buf: Table, i: int) -> None:
     buf[R.TIME, i] = now
     wanted = min(wanted_by_series(buf, i, h, ok) if SERIES else wanted_by_error(buf, i, h), buf[R.LONGEST_STEP, i])
     buf[R.REJECTED, i] = 1.0 - ok
-    # A rejected step back to an event is shortened, and still aimed: without an aim it would go on back in time.
+    # A rejected step back to an event remains aimed; otherwise it would continue backwards in time.
     buf[R.AIMED, i] = buf[R.AIMED, i] * (1.0 if h < 0.0 else ok)
     buf[R.WANTED, i] = wanted
     buf[R.H, i] = min(wanted, stop - now)
@@ -263,47 +263,47 @@ def choose_next_step(buf: Table, i: int) -> None:
 
 
 def wanted_by_error(buf: Table, i: int, h: float) -> float:
-    """Return the next step that the error of this one allows, before stops cut it."""
+    """Return the next step that the error of this step allows, before it is cut at the next stop."""
     error = max(buf[R.ERROR, i], LEAST_ERROR)
     most = 1.0 if buf[R.REJECTED, i] > 0.0 else LARGEST_FACTOR
-    # Of a step that ran into NaN the factor is NaN: the first of two is taken where the second is no number.
+    # After NaN the factor is NaN; min and max then return their first argument.
     return h * min(most, max(LEAST_FACTOR, SAFETY / math.sqrt(math.sqrt(math.sqrt(error)))))
 
 
 def wanted_by_series(buf: Table, i: int, h: float, ok: float) -> float:
-    """Return the same of a step by series, whose last terms propose it."""
+    """Return the next step that the last terms of a step by series allow."""
     proposed = buf[R.PROPOSED, i]
     return proposed if ok > 0.0 else RETRY * h
 
 
-# Lanes for the driver
+# Flags for the driver
 
 
-def suspect(buf: Table, i: int) -> None:
-    """Mark the lanes that the driver must look at.
+def flag_lane(buf: Table, i: int) -> None:
+    """Flag lanes that have an event for the driver.
 
-    Those held back by an event, at a stop, aimed at an event, out of steps or stuck; in space also those perhaps
-    coming to rest, or so near the upright that they pass it in closed form, where no guards say so.
+    Flagged lanes are held back by an event, at a stop, aimed at an event, at the step limit, or stuck. In
+    three-dimensional motion without guards, lanes near rest or near the vertical are flagged too.
     """
-    near = 0.0 if PLANAR or SWITCHING else near_upright_now(buf, i)
+    near = 0.0 if PLANAR or SWITCHING else near_vertical(buf, i)
     most = min(buf[R.MOST_STEPS, i], buf[R.STIFF_LOOK_AT, i]) if SWITCHING else buf[R.MOST_STEPS, i]
     over = 1.0 if buf[R.STEPS, i] >= most else 0.0
     stuck = 1.0 if abs(buf[R.TRIED, i]) < SHORTEST * abs(buf[R.TIME, i]) + TINY else 0.0
     met = buf[R.REACHED, i] + buf[R.AIMED, i] + buf[R.PEAK, i] + near + over
     flag = buf[R.HELD, i] + stuck * buf[R.REJECTED, i] + buf[R.GO, i] * met
-    if SWITCHING:  # of a lane without a run, guards say nothing
+    if SWITCHING:  # in a lane without a run the guards have no meaning
         flag = flag * (0.0 if buf[R.RUN, i] < 0.0 else 1.0)
     buf[R.FLAG, i] = flag
 
 
-def near_upright_now(buf: Table, i: int) -> float:
-    """Return what is positive where the step passed the upright closely, or heads straight for it."""
+def near_vertical(buf: Table, i: int) -> float:
+    """Return an indicator that is positive if the step passed the vertical closely, or heads straight for it."""
     c = buf[R.SLENDERNESS, i]
     square = buf[R.VX, i] * buf[R.VX, i] + buf[R.VY, i] * buf[R.VY, i]
     lowest = buf[R.SLOW, i] * buf[R.REST_TILT, i]
     near = 1.0 if buf[R.LOW, i] < max(lowest, buf[R.PASSAGE_TILT, i]) else 0.0
     inward = 1.0 if buf[R.RADIAL, i] < 0.0 else 0.0
     tilt, momentum = buf[R.TILT, i], buf[R.MOMENTUM, i]
-    close = 1.0 if tilt * tilt < HOP_FROM**2 * min(c * c, square) else 0.0
-    straight = 1.0 if momentum * momentum < HOP_OFFSET**2 * c * c * square else 0.0
+    close = 1.0 if tilt * tilt < PASSAGE_FROM**2 * min(c * c, square) else 0.0
+    straight = 1.0 if momentum * momentum < PASSAGE_OFFSET**2 * c * c * square else 0.0
     return near + inward * close * straight

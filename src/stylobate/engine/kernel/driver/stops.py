@@ -1,18 +1,18 @@
-"""The times at which a lane must stop, and what is done there: looks, samples, strobes, legs of the base motion."""
+"""Stops of a lane: looks in the last periods, samples, stroboscopic samples, and legs of the base motion."""
 
 import math
 
 from stylobate.engine.kernel.bound import BREAKS_AT, DEGREE, PLANAR, R
 from stylobate.engine.kernel.columns import LOOKS, NOTE, SLACK, Status, Window
-from stylobate.engine.kernel.driver.base_motion import goes_on_in_next_piece, set_leg
-from stylobate.engine.kernel.driver.guards import note_window
+from stylobate.engine.kernel.driver.base_motion import continues_in_next_piece, set_leg
+from stylobate.engine.kernel.driver.guards import record_window
 from stylobate.engine.kernel.driver.moving import azimuth_now, set_rates
-from stylobate.engine.kernel.driver.standing_loads import bear_standing
+from stylobate.engine.kernel.driver.standing_loads import record_standing_loads
 from stylobate.engine.kernel.layout import Table
 
 
 def look_count(buf: Table, i: int) -> float:
-    """Return the number of the last look: two windows and one period more, one and one more, or −1 for none."""
+    """Return the index of the last look: of two windows and one period, else of one window and one period, or −1."""
     end, period, periods = buf[R.END, i], buf[R.PERIOD, i], buf[R.PERIODS, i]
     end *= 1.0 + SLACK
     if period <= 0.0 or end < (periods + 1) * period:
@@ -37,13 +37,13 @@ def set_sample(buf: Table, i: int) -> None:
 
 
 def set_strobe(buf: Table, i: int) -> None:
-    """Set the time of the next strobe; those kept are the last ones before the end."""
+    """Set the time of the next stroboscopic sample; the last ones before the end are recorded."""
     buf[R.STROBES_AT, i] = math.inf
     period, end, strobes = buf[R.PERIOD, i], buf[R.END, i], buf[R.STROBES, i]
     if buf[R.NEXT_STROBE, i] >= strobes or period <= 0.0:
         return
     last = math.floor((end * (1.0 + SLACK) - buf[R.STROBE, i]) / period)
-    # Places for strobes before the run began stay empty.
+    # Columns of samples before the start of the run remain empty.
     buf[R.NEXT_STROBE, i] = max(buf[R.NEXT_STROBE, i], strobes - 1.0 - last)
     if buf[R.NEXT_STROBE, i] < strobes:
         number = last + 1.0 - strobes + buf[R.NEXT_STROBE, i]
@@ -58,7 +58,7 @@ def set_break(buf: Table, i: int, table: Table) -> None:
 
 
 def leg_end(buf: Table, i: int) -> float:
-    """Return until when the base motion is what it is now."""
+    """Return the end of the present leg of the base motion."""
     return min(buf[R.END, i], buf[R.LIFTS_AT, i], buf[R.LEG_ENDS, i], buf[R.BREAKS_AT, i])
 
 
@@ -66,41 +66,41 @@ def next_stop(buf: Table, i: int) -> float:
     return min(leg_end(buf, i), buf[R.LOOKS_AT, i], buf[R.SAMPLES_AT, i], buf[R.STROBES_AT, i])
 
 
-def go_on(buf: Table, i: int) -> None:
-    """Set the next stop, and the step towards it."""
+def set_next_stop(buf: Table, i: int) -> None:
+    """Set the next stop, and limit the next step to it."""
     stop = next_stop(buf, i)
     buf[R.STOP, i] = stop
     buf[R.H, i] = min(buf[R.WANTED, i], stop - buf[R.TIME, i])
 
 
 def passes_knot(buf: Table, i: int, table: Table, pieces: Table) -> bool:
-    """Go on where a piece of the base motion ends and the next goes on, and nothing else is due; return whether."""
-    # A flag of 1 that is due to a stop reached has no other cause.
+    """Continue with the next piece of the base motion if that is the only task of this stop; return whether it is."""
+    # A flag of 1 with a stop reached has no other cause.
     if DEGREE < 0 or buf[R.FLAG, i] != 1.0 or buf[R.REACHED, i] != 1.0 or buf[R.RUN, i] < 0.0:
         return False
     t, leg_end = buf[R.TIME, i], buf[R.LEG_ENDS, i]
     others = min(buf[R.END, i], buf[R.LIFTS_AT, i], buf[R.BREAKS_AT, i], buf[R.LOOKS_AT, i])
     if t != leg_end or t >= min(others, buf[R.SAMPLES_AT, i], buf[R.STROBES_AT, i]):
         return False
-    if not goes_on_in_next_piece(buf, i, table, pieces):
+    if not continues_in_next_piece(buf, i, table, pieces):
         return False
     buf[R.FLAG, i] = 0.0
-    go_on(buf, i)
+    set_next_stop(buf, i)
     return True
 
 
 def meet_stop(buf: Table, i: int, table: Table, pieces: Table, t: float) -> int:
-    """Do what is due at the stop `t`; return the status of a run that ends there, or WAITING."""
+    """Handle the stop at `t`; return the final status if the run ends there, else WAITING."""
     while buf[R.LOOKS_AT, i] <= t:
         take_look(buf, i, t)
         buf[R.NEXT_LOOK, i] += 1.0
         set_look(buf, i)
     while buf[R.SAMPLES_AT, i] <= t:
-        note_lean(buf, i, table, t, int(buf[R.NEXT_SAMPLE, i]))
+        record_lean(buf, i, table, t, int(buf[R.NEXT_SAMPLE, i]))
         buf[R.NEXT_SAMPLE, i] += 1.0
         set_sample(buf, i)
     while buf[R.STROBES_AT, i] <= t:
-        note_lean(buf, i, table, t, int(buf[R.SAMPLES, i] + buf[R.NEXT_STROBE, i]))
+        record_lean(buf, i, table, t, int(buf[R.SAMPLES, i] + buf[R.NEXT_STROBE, i]))
         buf[R.NEXT_STROBE, i] += 1.0
         set_strobe(buf, i)
     if t >= buf[R.LIFTS_AT, i]:
@@ -118,23 +118,23 @@ def meet_stop(buf: Table, i: int, table: Table, pieces: Table, t: float) -> int:
 
 
 def resume(buf: Table, i: int, table: Table, pieces: Table) -> int:
-    """Go on from an event, which may have been met a rounding beyond a stop; return as `meet_stop` does."""
+    """Continue after an event, which may be beyond a stop by rounding; return as `meet_stop` does."""
     while next_stop(buf, i) <= buf[R.TIME, i]:
         status = meet_stop(buf, i, table, pieces, next_stop(buf, i))
         if status != Status.WAITING:
             return status
-    go_on(buf, i)
+    set_next_stop(buf, i)
     return Status.WAITING
 
 
 def stand_to_the_end(buf: Table, i: int, table: Table, pieces: Table, t: float) -> int:
-    """Note the rest of a run that stands for good, and what it bears in the legs to come."""
+    """Complete the record of a run that stands to its end, with the contact loads of the remaining legs."""
     while t < buf[R.END, i]:
         leg_ends = leg_end(buf, i)
         t = next_stop(buf, i)
         meet_stop(buf, i, table, pieces, t)
         if t >= leg_ends:
-            bear_standing(buf, i, t, leg_end(buf, i))
+            record_standing_loads(buf, i, t, leg_end(buf, i))
     buf[R.TIME, i] = t
     return Status.RESTED
 
@@ -145,8 +145,8 @@ def lean_now(buf: Table, i: int) -> tuple[float, float, float, float]:
     return buf[R.X, i], buf[R.Y, i], buf[R.VX, i], buf[R.VY, i]
 
 
-def note_lean(buf: Table, i: int, table: Table, t: float, index: int) -> None:
-    """Note the lean as the sample or strobe of this index; strobes follow the samples."""
+def record_lean(buf: Table, i: int, table: Table, t: float, index: int) -> None:
+    """Record the tilt vector as the sample of this index; stroboscopic samples follow the samples."""
     x, y, vx, vy = lean_now(buf, i)
     if PLANAR:
         ux, uy = buf[R.LINE_X, i], buf[R.LINE_Y, i]
@@ -161,7 +161,7 @@ def note_lean(buf: Table, i: int, table: Table, t: float, index: int) -> None:
 
 
 def take_look(buf: Table, i: int, t: float) -> None:
-    """Note the lean at one of the looks in the last periods, and its change since one period before."""
+    """Record the tilt vector at one of the looks in the last periods, and its change within one period."""
     index, last, span = int(buf[R.NEXT_LOOK, i]), int(look_count(buf, i)), int(buf[R.PERIODS, i]) * LOOKS
     x, y, vx, vy = lean_now(buf, i)
     azimuth = azimuth_now(buf, i)
@@ -195,5 +195,5 @@ def take_look(buf: Table, i: int, t: float) -> None:
         buf[first + Window.LAG_BACKWARD, i] += weight * (azimuth + forced)
     if index == middle:
         buf[R.WATCHED, i] = 1.0
-        buf[R.LATE_LEAST, i] = math.hypot(x, y)
-        note_window(buf, i, t)
+        buf[R.LATE_MINIMUM_TILT, i] = math.hypot(x, y)
+        record_window(buf, i, t)

@@ -1,13 +1,13 @@
-"""Sums with weights that are known, polynomials, and reciprocals; in lanes and for one."""
+"""Weighted sums, polynomials, and reciprocals, for vectorised loops and for single lanes."""
 
 
 def weighted(weights: tuple[float, ...], values: tuple[float, ...]) -> float:
-    """Return a linear combination; what has no weight is left out."""
+    """Return a linear combination without the terms of weight zero."""
     return sum(weight * value for weight, value in zip(weights, values, strict=False) if weight != 0.0)
 
 
 def reciprocals(values: tuple[float, ...]) -> tuple[float, ...]:
-    """Return 1/value of each, by one division for two of them."""
+    """Return the reciprocals of the values, with one division for each two."""
     out: tuple[float, ...] = ()
     for j in tuple(range((len(values) + 1) // 2)):
         if 2 * j + 1 < len(values):
@@ -20,12 +20,12 @@ def reciprocals(values: tuple[float, ...]) -> tuple[float, ...]:
 
 
 def polynomial(coefficients: tuple[float, ...], u: float) -> float:
-    """Return a polynomial by Horner's rule."""
+    """Return the value of a polynomial at `u`, by Horner's rule."""
     return value_and_slope(coefficients, u)[0]
 
 
 def value_and_slope(coefficients: tuple[float, ...], u: float) -> tuple[float, float]:
-    """Return a polynomial and its derivative, by the same rule."""
+    """Return value and derivative of a polynomial at `u`, by Horner's rule."""
     value, slope = coefficients[-1], 0.0
     for k in tuple(range(len(coefficients) - 1)):
         slope = value if k == 0 else slope * u + value

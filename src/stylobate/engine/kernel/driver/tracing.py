@@ -1,4 +1,4 @@
-"""The trace of a run: the dense output of its steps, and its events. Steps by series leave none."""
+"""Trace of a run: the dense output of its steps, and its events. Steps by series have no dense output in the trace."""
 
 from stylobate.engine.kernel.bound import (
     BREAKS_AT,
@@ -19,7 +19,7 @@ from stylobate.engine.kernel.roots import turns_of
 
 
 def trace_steps(buf: Table, table: Table) -> bool:
-    """Add the steps just made; return whether a trace has no room for more."""
+    """Add the steps just made; return whether a trace is full."""
     full = False
     for i in range(WIDTH):
         if buf[R.TRACES, i] > 0.0 and buf[R.GO, i] > 0.0:
@@ -29,7 +29,7 @@ def trace_steps(buf: Table, table: Table) -> bool:
 
 
 def trace_step(buf: Table, i: int, table: Table) -> None:
-    """Add the step just made; one that goes back to an event only shortens the one before."""
+    """Add the step just made; a step back to an event only shortens the previous entry."""
     h = buf[R.MADE, i]
     if h > 0.0 and not SERIES:
         start = buf[R.TIME, i] - h
@@ -39,7 +39,7 @@ def trace_step(buf: Table, i: int, table: Table) -> None:
 
 
 def trace_dense(buf: Table, i: int, table: Table, start: float, length: float) -> None:
-    """Add a step of this length whose dense output is there, from the state before it."""
+    """Add a step of this length, with its start state and dense output."""
     at = trace_entry(buf, i, table, TraceKind.PLANE_STEP if PLANAR else TraceKind.STEP, start, length)
     run = int(buf[R.RUN, i])
     for j in range(ORDER):
@@ -49,17 +49,19 @@ def trace_dense(buf: Table, i: int, table: Table, start: float, length: float) -
 
 
 def trace_part(buf: Table, i: int, table: Table) -> None:
-    """Add the step that the lane has taken up to an event within it, or by an implicit method."""
+    """Add the accepted part of a step up to an event, or an implicit step."""
     if buf[R.TRACES, i] > 0.0:
         trace_dense(buf, i, table, buf[R.TIME, i] - buf[R.MADE, i], buf[R.TRIED, i])
         buf[R.TRACE_AZIMUTH, i] = azimuth_of(buf, i)
 
 
-def trace_leap(buf: Table, i: int, table: Table, elapsed: float, state: tuple[float, ...], azimuth: float) -> None:
-    """Add a short time that is passed in closed form, from the present state to another, of this azimuth."""
+def trace_analytical_step(
+    buf: Table, i: int, table: Table, elapsed: float, state: tuple[float, ...], azimuth: float
+) -> None:
+    """Add an analytical step from the present state to `state` with the azimuth `azimuth`."""
     if buf[R.TRACES, i] == 0.0:
         return
-    at = trace_entry(buf, i, table, TraceKind.LEAP, buf[R.TIME, i], elapsed)
+    at = trace_entry(buf, i, table, TraceKind.ANALYTICAL_STEP, buf[R.TIME, i], elapsed)
     run = int(buf[R.RUN, i])
     for j in range(ORDER):
         table[run, at + j] = buf[R.STATE + j, i]
@@ -72,7 +74,7 @@ def trace_leap(buf: Table, i: int, table: Table, elapsed: float, state: tuple[fl
 
 
 def trace_stand(buf: Table, i: int, table: Table, t: float) -> None:
-    """Add that the column stands from `t` on."""
+    """Add an entry for standing from `t` on."""
     if buf[R.TRACES, i] == 0.0:
         return
     at = trace_entry(buf, i, table, TraceKind.STAND, t, 1.0)
@@ -103,12 +105,12 @@ def trace_entry(buf: Table, i: int, table: Table, kind: int, start: float, lengt
 
 
 def azimuth_of(buf: Table, i: int) -> float:
-    """Return the azimuth of the lean [turns]."""
+    """Return the azimuth of the tilt vector [turns]."""
     return 0.0 if PLANAR else buf[R.TURNS, i] + turns_of(buf[R.X, i], buf[R.Y, i])
 
 
-def untrace(buf: Table, i: int) -> None:
-    """Take back the last entry, of a step that was taken back."""
+def remove_trace_entry(buf: Table, i: int) -> None:
+    """Remove the last entry, after its step was undone."""
     if buf[R.TRACES, i] > 0.0 and not SERIES:
         buf[R.NEXT_TRACE, i] -= 1.0
         buf[R.TRACE_AZIMUTH, i] = azimuth_of(buf, i)

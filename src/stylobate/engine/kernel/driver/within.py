@@ -1,4 +1,4 @@
-"""The state within the step just made."""
+"""State within the step just made."""
 
 from stylobate.engine.kernel.bound import ORDER, SERIES, R
 from stylobate.engine.kernel.driver.series import series_within
@@ -8,7 +8,7 @@ from stylobate.engine.kernel.roots import cubic
 
 
 def set_dense_output(buf: Table, i: int) -> None:
-    """Prepare the dense output of the step just made."""
+    """Compute the dense output of the step just made."""
     if not SERIES:
         for j in range(ORDER):
             buf[R.NEW + j, i] = buf[R.STATE + j, i]
@@ -17,7 +17,7 @@ def set_dense_output(buf: Table, i: int) -> None:
 
 
 def set_within_closely(buf: Table, i: int, elapsed: float) -> None:
-    """Do as `set_within`, to the order of the method: the dense output of the step is there."""
+    """Set the state as `set_within` does, but from the dense output, at the order of the method."""
     if SERIES:
         set_within(buf, i, elapsed)
         return
@@ -27,9 +27,9 @@ def set_within_closely(buf: Table, i: int, elapsed: float) -> None:
 
 
 def set_within(buf: Table, i: int, elapsed: float) -> None:
-    """Put the state at this time after the step just made began into the rows of the new state.
+    """Set the rows of the new state to the state at the time `elapsed` after the start of the step just made.
 
-    It is that of the step's series, or of cubics through its ends.
+    The state is that of the series of the step, or of cubics through its ends.
     """
     if SERIES:
         state = series_within(buf, i, elapsed)
