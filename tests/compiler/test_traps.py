@@ -214,7 +214,7 @@ REFUSED = {
     sum_over_lanes: "total has no value here, or one in lanes only",
     return_in_lanes: "return within lanes",
     array_in_a_loop: "an array made in each pass of a loop",
-    sometimes_nothing: "some ways through it return a value, others none",
+    sometimes_nothing: "some paths return a value, others do not",
     returned_array: "arrays are not returned",
     constant_written: "arrays of a module, are read only",
     another_tuple: "values of different structure",

@@ -204,7 +204,7 @@ def test_a_model_that_cannot_be_compiled_is_followed_in_plain_python(caplog):
         sb.simulate(make(COLUMN, damping=0.1), CIRCLE, tilt=(0.3 * C, 0.0), tilt_rate=(0.0, 0.05), duration=2.0)
         for make in (sb.Slender, Uncompiled)
     ]
-    assert "simulate follows single runs of it uncompiled" in caplog.text
+    assert "`simulate` computes single runs without compilation" in caplog.text
     # Sums are rounded otherwise in machine code, in the last digits.
     np.testing.assert_allclose(*(run.data["tilt"].values for run in runs), rtol=0.0, atol=1e-13)
 

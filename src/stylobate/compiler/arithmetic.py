@@ -1,6 +1,6 @@
-"""Arithmetic on numbers of compiled code, single or in lanes, with the results that Python gives.
+"""Arithmetic on numbers of compiled code, single or in lanes, with the results of Python.
 
-Where it differs: division by zero is infinite or not a number instead of an error, and whole numbers have 64 bits.
+Differences: division by zero gives infinity or NaN instead of an error, and whole numbers have 64 bits.
 """
 
 import ast
@@ -25,7 +25,7 @@ from stylobate.compiler.values import (
 )
 
 FAST = "contract arcp nsz afn "
-"""Flags of fast arithmetic: neither "nnan" nor "ninf", so that what is not a number stays so."""
+"""Flags of fast arithmetic: neither "nnan" nor "ninf", so that NaN and infinity are kept."""
 
 _KNOWN: dict[type, Callable[[Any, Any], Any]] = {
     ast.Add: operator.add,
@@ -56,18 +56,18 @@ _COMPARED = {
 
 _BEYOND = 2**63
 MOST_FACTORS = 16
-"""A power up to this one, a whole number that is known, is made by multiplications."""
+"""Maximum known whole exponent for which a power is a product."""
 
 
 class Arithmetic:
-    """Writes the instructions of arithmetic into a function.
+    """Writer of the arithmetic instructions of a function.
 
     Parameters
     ----------
     module, text
-        Where they are written.
+        Module and function that receive the instructions.
     fast
-        Whether its results may be rounded otherwise; see `marks.fast`.
+        Whether results may be rounded differently, see `marks.fast`.
     """
 
     def __init__(self, module: ModuleText, text: FunctionText, *, fast: bool) -> None:
@@ -78,24 +78,24 @@ class Arithmetic:
     # Numbers and their kinds
 
     def number(self, value: Value, kind: Kind | None = None) -> Number:
-        """Return a value as a number of the compiled code, of this kind.
+        """Return a value as a number of the compiled code, of the kind `kind`.
 
         Raises
         ------
         Refusal
-            If it is none, or holds what the kind cannot.
+            If the value is not a number, or the kind cannot represent it.
         """
         if isinstance(value, Number):
             return value if kind is None or value.kind is kind else self._converted(value, kind)
         if not is_known_number(value):
-            message = f"a number is wanted, not {_described(value)}"
+            message = f"expected a number, got {_described(value)}"
             raise Refusal(message)
         own = kind_of(value)
         if own is Kind.INTEGER and abs(value) >= _BEYOND:
             message = f"whole numbers have 64 bits, {value} has more"
             raise Refusal(message)
         if kind is not None and kind < own and kind is Kind.INTEGER:
-            message = f"a whole number is wanted, not {value}"
+            message = f"expected a whole number, got {value}"
             raise Refusal(message)
         return constant(value, own if kind is None else kind)
 
@@ -103,7 +103,7 @@ class Arithmetic:
         if kind is Kind.BOOLEAN:
             return self.number(self.compared(ast.NotEq(), number, 0))
         if kind < number.kind:
-            message = "a whole number is wanted, not one with a fraction; write int(...)"
+            message = "expected a whole number, got one with a fraction; write int(...)"
             raise Refusal(message)
         instruction = "sitofp" if number.kind is Kind.INTEGER else "uitofp" if kind is Kind.FLOAT else "zext"
         text = self.text.value(f"{instruction} {number.operand} to {type_of(kind, number.lanes)}")
@@ -114,7 +114,7 @@ class Arithmetic:
         return self.number(value, Kind.BOOLEAN)
 
     def wide(self, number: Number) -> Number:
-        """Return a number in each lane."""
+        """Repeat a number in each lane."""
         if number.lanes or not self.lanes:
             return number
         kind = type_of(number.kind, self.lanes)
@@ -123,7 +123,7 @@ class Arithmetic:
         return Number(number.kind, text, self.lanes)
 
     def alike(self, *values: Value, kind: Kind | None = None) -> list[Number]:
-        """Return numbers of one kind, by default the one that holds all of them, in lanes if any of them is."""
+        """Convert values to one kind, by default the smallest common kind, in lanes if any value is in lanes."""
         kind = max(map(kind_of, values)) if kind is None else kind
         if any(isinstance(value, Number) and value.lanes for value in values):
             return [
@@ -137,7 +137,7 @@ class Arithmetic:
     # Operations
 
     def binary(self, operation: ast.operator, a: Value, b: Value) -> Value:
-        """Return a sum, product and so on."""
+        """Return the result of a binary operation."""
         if isinstance(a, LaneIndex) or isinstance(b, LaneIndex):
             return _moved(operation, a, b)
         if isinstance(a, tuple) and isinstance(b, tuple) and isinstance(operation, ast.Add):
@@ -162,8 +162,8 @@ class Arithmetic:
         return self.number(value).kind
 
     def _divided(self, operation: ast.operator, x: Number, y: Number) -> Number:
-        # LLVM rounds quotients of whole numbers towards zero, Python down.
-        y = self.number(self.chosen(self.compared(ast.Eq(), y, 0), 1, y))  # by zero the processor would stop
+        # LLVM rounds quotients of whole numbers towards zero, Python rounds down.
+        y = self.number(self.chosen(self.compared(ast.Eq(), y, 0), 1, y))  # division by zero would trap
         rest = Number(Kind.INTEGER, self.text.value(f"srem {x.operand}, {y.text}"), x.lanes)
         apart = self.text.value(f"xor {rest.operand}, {y.text}")
         opposite = self.compared(ast.Lt(), Number(Kind.INTEGER, apart, x.lanes), 0)
@@ -187,7 +187,7 @@ class Arithmetic:
         return result
 
     def negative(self, value: Value) -> Value:
-        """Return a number with its sign changed."""
+        """Return the negative of a number."""
         if is_known_number(value):
             return -value
         number = self.number(value)
@@ -196,7 +196,7 @@ class Arithmetic:
         return Number(Kind.FLOAT, self.text.value(f"fneg {self.flags}{number.operand}"), number.lanes)
 
     def opposite(self, value: Value) -> Value:
-        """Return whether a condition does not hold."""
+        """Return the negation of a condition."""
         _refuse_lanes(value)
         if not isinstance(value, Number):
             return not value
@@ -205,7 +205,7 @@ class Arithmetic:
         return Number(Kind.BOOLEAN, self.text.value(f"xor {number.operand}, {always.text}"), number.lanes)
 
     def compared(self, operation: ast.cmpop, a: Value, b: Value) -> Value:
-        """Return whether two numbers stand to each other as the operation says."""
+        """Return the result of a comparison."""
         _refuse_lanes(a, b)
         if isinstance(operation, ast.Is | ast.IsNot) and (a is None or b is None):
             return (a is b) is isinstance(operation, ast.Is)
@@ -250,12 +250,12 @@ class Arithmetic:
         return Number(Kind.BOOLEAN, self.text.value(f"{instruction} {x.operand}, {y.text}"), x.lanes)
 
     def chosen(self, condition: Value, a: Value, b: Value) -> Value:
-        """Return `a` where the condition holds, else `b`; both are computed."""
+        """Return `a` if the condition holds, else `b`; both are computed."""
         if not isinstance(condition, Number):
             return a if condition else b
         if isinstance(a, tuple) or isinstance(b, tuple):
             if type(a) is not type(b) or len(a) != len(b):
-                message = "one of two tuples is chosen where they have the same length and class"
+                message = "a choice between two tuples of different length or class; use tuples of one structure"
                 raise Refusal(message)
             made = [self.chosen(condition, *pair) for pair in zip(a, b, strict=True)]
             return type(a)(*made) if hasattr(a, "_fields") else tuple(made)
@@ -269,7 +269,7 @@ class Arithmetic:
     # Functions
 
     def called(self, name: str, *values: Value) -> Number:
-        """Return the result of one of LLVM's own functions, `llvm.sqrt` and the like."""
+        """Return the result of an LLVM intrinsic such as `llvm.sqrt`."""
         numbers = self.alike(*values, kind=Kind.FLOAT)
         kind, lanes = numbers[0].type, numbers[0].lanes
         suffix = f"v{lanes}f64" if lanes else "f64"
@@ -278,7 +278,7 @@ class Arithmetic:
         return Number(Kind.FLOAT, text, lanes)
 
     def called_in_library(self, name: str, *values: Value) -> Number:
-        """Return the result of a function of the C library, one lane after the other."""
+        """Return the result of a function of the C library, called for one lane after the other."""
         numbers = self.alike(*values, kind=Kind.FLOAT)
         lanes = numbers[0].lanes
         function = self.module.declared(name, "double", ["double"] * len(numbers))
@@ -293,7 +293,7 @@ class Arithmetic:
         return Number(Kind.FLOAT, result, lanes)
 
     def of_lane(self, value: Value, lane: int) -> Value:
-        """Return what a value is in one lane."""
+        """Return the value of one lane."""
 
         def single(part: Value) -> Value:
             if isinstance(part, LaneIndex):
@@ -305,7 +305,7 @@ class Arithmetic:
         return rebuilt(value, single)
 
     def in_lanes(self, values: list[Value]) -> Value:
-        """Return values of one structure, one for each lane, as one value."""
+        """Join values of one structure, one for each lane, to one value."""
         first = values[0]
         if isinstance(first, tuple):
             made = [self.in_lanes(list(parts)) for parts in zip(*values, strict=True)]
@@ -318,7 +318,7 @@ class Arithmetic:
         return Number(first.kind, result, len(values))
 
     def whole(self, value: Value) -> Value:
-        """Return a number without its fraction, as `int` does; beyond 64 bits the largest, 0 where it is none."""
+        """Return a number without its fraction, as `int` does; saturated at 64 bits, 0 for NaN."""
         if not isinstance(value, Number):
             return int(value)
         if value.kind is not Kind.FLOAT:

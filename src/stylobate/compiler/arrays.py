@@ -1,4 +1,4 @@
-"""Places in arrays, and views into them."""
+"""Elements of arrays, and views into arrays."""
 
 import ast
 import math
@@ -12,13 +12,13 @@ from stylobate.compiler.refusal import Refusal
 from stylobate.compiler.values import Array, Element, Kind, LaneIndex, Number, Value, constant, type_of
 
 MOST_IN_FUNCTION = 4096
-"""Numbers that an array made in a function may hold."""
+"""Maximum number of elements of an array that a function creates."""
 
 
 def view(arithmetic: Arithmetic, array: Array, indices: Sequence[Value]) -> Array:
-    """Return the part of an array that indices and slices of its first axes leave."""
+    """Return the view of an array for indices and slices of its first axes."""
     if len(indices) > len(array.shape):
-        message = f"an array of {len(array.shape)} axes is asked for with {len(indices)} indices"
+        message = f"an array of {len(array.shape)} axes is indexed with {len(indices)} indices"
         raise Refusal(message)
     known, pointer = 0, array.pointer
     shape, strides = [], []
@@ -43,7 +43,7 @@ def view(arithmetic: Arithmetic, array: Array, indices: Sequence[Value]) -> Arra
 
 
 def room(arithmetic: Arithmetic, shape: Value) -> Array:
-    """Return a small array of zeros, which lasts as long as the function runs."""
+    """Return a small array of zeros with the lifetime of the function call."""
     shape = shape if isinstance(shape, tuple) else (shape,)
     if not _is_known(shape) or math.prod(shape) > MOST_IN_FUNCTION:
         message = (
@@ -57,7 +57,7 @@ def room(arithmetic: Arithmetic, shape: Value) -> Array:
 
 
 def copy(arithmetic: Arithmetic, target: Array, source: Value) -> None:
-    """Put the numbers of an array into another one of the same shape, both without gaps."""
+    """Copy an array into another array of the same shape, both contiguous."""
     alike = isinstance(source, Array) and source.shape == target.shape and source.strides == target.strides
     if not alike or not target.writable or target.strides != _without_gaps(target.shape):
         message = "arrays are copied as a whole where shapes are known and equal, without gaps; write a loop"
@@ -70,13 +70,13 @@ def copy(arithmetic: Arithmetic, target: Array, source: Value) -> None:
 def elements(arithmetic: Arithmetic, array: Array) -> tuple[Value, ...]:
     """Return the elements of an array of known length."""
     if len(array.shape) != 1 or not isinstance(array.shape[0], int):
-        message = "only a row of known length is taken to pieces"
+        message = "only a row of known length can be unpacked; write a loop"
         raise Refusal(message)
     return tuple(load(arithmetic, *place(arithmetic, array, [index])) for index in range(array.shape[0]))
 
 
 def flat(arithmetic: Arithmetic, array: Array) -> Array:
-    """Return an array without gaps as one row."""
+    """Return a contiguous array as one row."""
     size: Value = 1
     for length in array.shape:
         size = arithmetic.binary(ast.Mult(), size, length)
@@ -87,12 +87,12 @@ def flat(arithmetic: Arithmetic, array: Array) -> Array:
 
 
 def place(arithmetic: Arithmetic, array: Array, indices: Sequence[Value]) -> tuple[Array, int]:
-    """Return one element as an array without axes, and in how many lanes it is addressed.
+    """Return one element as an array without axes, and the number of lanes that address it.
 
     Raises
     ------
     Refusal
-        If lanes do not lie one beside the other.
+        If the elements of the lanes are not adjacent.
     """
     *outer, last = indices
     if not isinstance(last, LaneIndex):
@@ -109,7 +109,7 @@ def place(arithmetic: Arithmetic, array: Array, indices: Sequence[Value]) -> tup
 
 
 def load(arithmetic: Arithmetic, element: Array, lanes: int) -> Number:
-    """Return what stands at a `place`."""
+    """Load the number at a `place`."""
     if element.element is Element.SIGNAL:
         byte = arithmetic.text.value(f"load volatile i8, ptr {element.pointer}")
         return Number(Kind.INTEGER, arithmetic.text.value(f"zext i8 {byte} to i64"))
@@ -118,20 +118,20 @@ def load(arithmetic: Arithmetic, element: Array, lanes: int) -> Number:
 
 
 def store(arithmetic: Arithmetic, element: Array, lanes: int, value: Value) -> None:
-    """Put a number at a `place`."""
+    """Store a number at a `place`."""
     if element.element is Element.SIGNAL or not element.writable:
         message = "signals, and arrays of a module, are read only"
         raise Refusal(message)
     number = arithmetic.number(value, Kind.FLOAT)
     if number.lanes and not lanes:
-        message = "lanes are put into one place; write them to places of their own"
+        message = "lanes are stored in one element; store each lane in its own element"
         raise Refusal(message)
     number = arithmetic.wide(number) if lanes else number
     arithmetic.text.line(f"store {number.operand}, ptr {element.pointer}, align 8")
 
 
 def table(arithmetic: Arithmetic, values: np.ndarray) -> Array:
-    """Return a constant array of the module that is compiled."""
+    """Return a constant array of the compiled module."""
     numbers = [constant(float(value), Kind.FLOAT).operand for value in values.ravel()]
     return Array(arithmetic.module.table(numbers), values.shape, _without_gaps(values.shape), writable=False)
 
@@ -141,7 +141,7 @@ def _is_known(shape: tuple[Value, ...]) -> bool:
 
 
 def _without_gaps(shape: tuple[Value, ...]) -> tuple[int, ...]:
-    """Return the strides of an array of known shape, or nothing."""
+    """Return the strides of a contiguous array of known shape, or nothing."""
     return tuple(math.prod(shape[axis + 1 :]) for axis in range(len(shape))) if _is_known(shape) else ()
 
 

@@ -1,4 +1,4 @@
-"""Statements: the body of one function, turned into instructions."""
+"""Compilation of statements: the body of one function."""
 
 import ast
 from collections.abc import Callable, Iterable, Mapping
@@ -14,33 +14,33 @@ from stylobate.compiler.text import Block
 from stylobate.compiler.values import Kind, LaneIndex, Number, Value, constant
 
 RESULT = "return"
-"""The name under which the room of a function's result is kept."""
+"""Name of the slot of the result of a function."""
 
 
 class Callees(Protocol):
-    """The functions that are compiled together."""
+    """Functions that are compiled together."""
 
     lanes: int
 
     def call(
         self, caller: "Body", function: Callable[..., Any], values: list[Value], keywords: Mapping[str, Value]
     ) -> Value:
-        """Return the result of a function that another one calls."""
+        """Return the result of a function that `caller` calls."""
 
 
 class Body(Names):
-    """The body of one function under construction.
+    """Body of one function under construction.
 
     Parameters
     ----------
     callees
-        The functions that it calls.
+        Functions that it calls.
     source
         The function.
     arithmetic
-        Writes its instructions.
+        Writer of its instructions.
     kinds
-        Kinds that the room of a name must at least have.
+        Minimum kind of the slot of each name.
     """
 
     def __init__(self, callees: Callees, source: Source, arithmetic: Arithmetic, kinds: Mapping[str, Kind]) -> None:
@@ -51,7 +51,7 @@ class Body(Names):
         self._loops: list[tuple[Block, Block]] = []
         self._returned = False
         self._over = False
-        """Whether instructions are those of a loop over lanes of this function, not of one that calls it."""
+        """Whether the current instructions are in a loop over lanes of this function, not of its caller."""
         self._results: set[bool] = set()
         self._at: ast.AST = source.arguments
 
@@ -63,11 +63,11 @@ class Body(Names):
         Raises
         ------
         CompileError
-            If something in it is not compiled.
+            If the function contains unsupported code.
         LanesRefusal
-            If something in it is not compiled in lanes, of a function that is called there.
+            If the function is called in a loop over lanes and contains code that is unsupported there.
         slots.WiderKindError
-            If a name needs room of another kind, noted in its `name`.
+            If the slot of a name needs another kind; the attribute `name` has the name.
         """
         try:
             for name, value in arguments.items():
@@ -75,15 +75,15 @@ class Body(Names):
             self._block(self.source.body)
         except Refusal as refusal:
             if isinstance(refusal, LanesRefusal) and not self._over:
-                raise  # the caller makes one lane after the other
+                raise  # the caller compiles one lane after the other
             raise at_its_place(refusal, self._at, self.source.file, self.source.name) from refusal
-        except (ArithmeticError, LookupError, TypeError, ValueError, AttributeError) as error:  # of what is known
+        except (ArithmeticError, LookupError, TypeError, ValueError, AttributeError) as error:  # from known values
             reason = f"{type(error).__name__}: {error}"
             raise at_its_place(reason, self._at, self.source.file, self.source.name) from error
         if self.arithmetic.lanes:
             return
         if RESULT in self._slots and not self.text.block.ended:
-            message = "some ways through it return a value, others none"
+            message = "some paths return a value, others do not"
             raise at_its_place(message, self._at, self.source.file, self.source.name)
         self.text.jump(self.exit)
         self.text.begin(self.exit)
@@ -94,7 +94,7 @@ class Body(Names):
 
     @property
     def in_loop(self) -> bool:
-        """Whether instructions are those of a pass of a loop."""
+        """Whether the current instructions are inside a loop."""
         return bool(self._loops)
 
     # Statements
@@ -155,7 +155,7 @@ class Body(Names):
             return
         self._results.add(value is None)
         if len(self._results) > 1:
-            message = "some ways through it return a value, others none"
+            message = "some paths return a value, others do not"
             raise Refusal(message)
         if has_array(value):
             message = "arrays are not returned; pass one in which the results are put"
@@ -165,7 +165,7 @@ class Body(Names):
         self.text.jump(self.exit)
 
     def finished(self) -> Value:
-        """Return the result, behind the last instruction of the function."""
+        """Return the result after the last instruction of the function."""
         return self.result if self.arithmetic.lanes else slots.load(self.arithmetic, self._slots.get(RESULT))
 
     def _if(self, node: ast.If) -> None:
@@ -227,7 +227,7 @@ class Body(Names):
                 return
         items = self.value(node.iter)
         if not isinstance(items, tuple):
-            message = f"{ast.unparse(node.iter)} is no range and no tuple"
+            message = f"{ast.unparse(node.iter)} is neither a range nor a tuple"
             raise Refusal(message)
         self._unrolled(node, items)
 
@@ -279,13 +279,13 @@ class Body(Names):
                 self.text.jump(onward)
                 self.text.begin(onward)
         if isinstance(node.target, ast.Name) and not self.arithmetic.lanes:
-            self._bound.pop(node.target.id, None)  # it has room, where the value stands with which the loop was left
+            self._bound.pop(node.target.id, None)  # its slot holds the value at the end of the loop
         if not self.arithmetic.lanes:
             self.text.jump(done)
             self.text.begin(done)
 
     def _take_item(self, node: ast.For, item: Value) -> None:
-        """Give the target of an unrolled loop its value: known in the body, unless that assigns to it."""
+        """Assign a value to the target of an unrolled loop; it is known in the body unless the body assigns to it."""
         name = node.target.id if isinstance(node.target, ast.Name) else ""
         if not name or name in assigned_in(node.body) or self.arithmetic.lanes:
             self.assign_to(node.target, item)
@@ -295,7 +295,7 @@ class Body(Names):
         self._bound[name] = item
 
     def _picks_from_tuples(self, node: ast.For) -> bool:
-        """Return whether the loop's index picks from tuples: each pass has then instructions of its own."""
+        """Return whether the loop index selects from tuples, so that the loop must be unrolled."""
         if not isinstance(node.target, ast.Name):
             return False
         return any(
@@ -315,11 +315,11 @@ class Body(Names):
         return isinstance(known, tuple)
 
     def _over_lanes(self, node: ast.For, count: Value) -> None:
-        """Make the passes of a loop side by side, as many at once as fit into a vector."""
+        """Compile a vectorised loop over lanes, with as many passes at once as a vector holds."""
         width = self.callees.lanes
         whole = count % width == 0 if isinstance(count, int) else isinstance(count, Number)
         if self.arithmetic.lanes or not whole or not isinstance(node.target, ast.Name):
-            message = f"a loop over lanes stands by itself and has a multiple of {width} passes"
+            message = f"a loop over lanes cannot be inside another one and must have a multiple of {width} passes"
             raise Refusal(message)
         end = self.arithmetic.number(count, Kind.INTEGER)
         head, done = self.text.new_block(), self.text.new_block()

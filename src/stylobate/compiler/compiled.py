@@ -1,4 +1,4 @@
-"""Functions that are compiled when they are first called."""
+"""Functions that are compiled at their first call."""
 
 import ctypes
 import types
@@ -19,24 +19,24 @@ from stylobate.errors import UnsupportedError
 
 @dataclass(frozen=True, eq=False)
 class Compiled:
-    """A function of a module that is made for a model.
+    """Compiled function of a module that belongs to a model.
 
     Parameters
     ----------
     name
-        The function.
+        Name of the function.
     program
-        Its module.
+        Program of its module.
     functions
-        Functions of the model, by the names under which they stand in the module.
+        Functions of the model, by their names in the module.
     arguments
-        What it is called with.
+        Arguments of the function.
     model, description
-        What messages call the model, and what is compiled.
+        Names of the model and of the compiled program in messages.
     fast
-        Names of functions of the model whose arithmetic is fast; see `marks.fast`.
+        Names of functions of the model whose arithmetic is fast, see `marks.fast`.
     brief
-        Whether compiling takes too little time to be logged.
+        Whether compilation is too short to be logged.
     """
 
     name: str
@@ -49,7 +49,7 @@ class Compiled:
     brief: bool = False
 
     def __call__(self, *values: Any) -> int:
-        """Return what it returns for these arrays, without gaps, and numbers.
+        """Call the function with these contiguous arrays and numbers; return its result.
 
         Raises
         ------
@@ -64,17 +64,17 @@ class Compiled:
         return int(self._code(*passed))
 
     def plain(self, *values: Any) -> int:
-        """Return the same by plain Python, uncompiled."""
-        with np.errstate(all="ignore"):  # numbers that are not used may be none
+        """Call the function as plain Python, without compilation."""
+        with np.errstate(all="ignore"):  # unused numbers may be NaN
             return int(getattr(self.module, self.name)(*values) or 0)
 
     @cached_property
     def module(self) -> types.ModuleType:
-        """The module, of plain Python."""
+        """Module of plain Python."""
         return self.program.module(f"{self._words}_{id(self)}", self.functions)
 
     def unit(self, *, exact: bool = False) -> Unit:
-        """Return a unit to which functions of the module can be added."""
+        """Return a new unit for functions of the module."""
         fast = [function for name, function in self.functions.items() if name in self.fast]
         return Unit(lanes=machine.lanes(), fast=fast, exact=exact)
 
@@ -89,11 +89,13 @@ class Compiled:
             logged = None if self.brief else self.description
             engine = kept.code_of(self._words, parts, self.functions, self._written, logged)
         except CompileError as error:
-            message = f"model {self.model} cannot be compiled; simulate follows single runs of it uncompiled: {error}"
+            message = (
+                f"model {self.model} cannot be compiled; `simulate` computes single runs without compilation: {error}"
+            )
             raise UnsupportedError(message) from error
         kinds = [kind for argument in self.arguments for kind in _types_of(argument)]
         function = ctypes.CFUNCTYPE(ctypes.c_int64, *kinds)(engine.get_function_address(self.name))
-        vars(function)["engine"] = engine  # it lasts as long as its code may be called
+        vars(function)["engine"] = engine  # keeps the code alive
         return function
 
     def _written(self) -> str:
@@ -103,7 +105,7 @@ class Compiled:
 
 
 def _passed(argument: ArrayArgument, value: np.ndarray[Any, Any]) -> list[int]:
-    """Return the pointer of an array, and its lengths that are not known before."""
+    """Return the pointer of an array, and its lengths that are unknown at compile time."""
     assert value.flags.c_contiguous
     assert value.dtype == (np.float64 if argument.element is Element.FLOAT else np.uint8)
     known = zip(value.shape, argument.shape, strict=True)

@@ -1,4 +1,4 @@
-"""Expressions: read from the syntax tree, evaluated where their values are known, else written as instructions."""
+"""Compilation of expressions: known values are evaluated, all others become instructions."""
 
 import ast
 from abc import ABC, abstractmethod
@@ -18,7 +18,7 @@ _OF_ARRAYS: dict[Any, Callable[..., Array]] = {marks.flat: arrays.flat, np.zeros
 
 
 class Expressions(ABC):
-    """Evaluates expressions for the function in whose text the instructions are written."""
+    """Compiler of the expressions of one function."""
 
     def __init__(self, arithmetic: Arithmetic) -> None:
         self.arithmetic = arithmetic
@@ -27,11 +27,11 @@ class Expressions(ABC):
     @property
     @abstractmethod
     def in_loop(self) -> bool:
-        """Whether instructions are those of a pass of a loop."""
+        """Whether the current instructions are inside a loop."""
 
     @abstractmethod
     def read(self, name: str) -> Value:
-        """Return what a name means here."""
+        """Return the value of a name."""
 
     @abstractmethod
     def call(self, function: Callable[..., Any], values: list[Value], keywords: dict[str, Value]) -> Value:
@@ -73,7 +73,7 @@ class Expressions(ABC):
                 raise Refusal(message)
 
     def indices(self, node: ast.Subscript) -> list[Value]:
-        """Return what stands between the brackets."""
+        """Return the indices of a subscript."""
         parts = node.slice.elts if isinstance(node.slice, ast.Tuple) else [node.slice]
         return [self._index(part) for part in parts]
 
@@ -97,7 +97,7 @@ class Expressions(ABC):
             return owner.shape
         foreign = isinstance(owner, tuple) and node.attr not in getattr(owner, "_fields", ())
         if isinstance(owner, Array | Number | LaneIndex) or foreign or not hasattr(owner, node.attr):
-            message = f"{ast.unparse(node)} is not known while compiling"
+            message = f"{ast.unparse(node)} is not known at compile time"
             raise Refusal(message)
         return self._usable(getattr(owner, node.attr))
 
@@ -115,7 +115,7 @@ class Expressions(ABC):
         if isinstance(value, Array):
             return arrays.elements(self.arithmetic, value)
         if not isinstance(value, tuple | range):
-            message = "a tuple is wanted, whose length is known while compiling"
+            message = "expected a tuple whose length is known at compile time"
             raise Refusal(message)
         return tuple(value)
 
@@ -139,17 +139,17 @@ class Expressions(ABC):
                 raise Refusal(message)
 
     def condition(self, node: ast.expr) -> Value:
-        """Return whether an expression holds: what is not zero does."""
+        """Return the truth value of an expression; nonzero is true."""
         if isinstance(node, ast.BoolOp):
             return self._all_or_any(node, condition=True)
         value = self.value(node)
         if isinstance(value, Array | LaneIndex):
-            message = f"{ast.unparse(node)} is no condition"
+            message = f"{ast.unparse(node)} is not a condition"
             raise Refusal(message)
         return self.arithmetic.truth(value) if isinstance(value, Number) else bool(value)
 
     def _all_or_any(self, node: ast.BoolOp, *, condition: bool) -> Value:
-        """Evaluate `and` or `or`: of a single run no more than is needed, as Python does."""
+        """Evaluate `and` or `or`, outside lanes with the short circuit of Python."""
         joined = self.arithmetic.both if isinstance(node.op, ast.And) else self.arithmetic.either
         decisive = isinstance(node.op, ast.Or)
         part = self.condition if condition else self._boolean
@@ -168,7 +168,7 @@ class Expressions(ABC):
         return value
 
     def _boolean(self, node: ast.expr) -> Value:
-        """Return an operand of `and` or `or` whose value is used: of a number it would be the number itself."""
+        """Return an operand of `and` or `or` whose value is used; refuse a number, which would be the result."""
         value = self.value(node)
         if isinstance(value, Number) and value.kind is not Kind.BOOLEAN:
             message = f"the value of and, or is used: {ast.unparse(node)} is a number; write a if condition else b"
@@ -234,7 +234,7 @@ class Expressions(ABC):
         if isinstance(owner, tuple | range):
             return self._of_tuple(tuple(owner), indices[0])
         if not isinstance(owner, Array):
-            message = f"{ast.unparse(node)} is no element of an array or a tuple"
+            message = f"{ast.unparse(node)} is not an element of an array or a tuple"
             raise Refusal(message)
         if len(indices) < len(owner.shape) or any(isinstance(index, slice) for index in indices):
             return arrays.view(self.arithmetic, owner, indices)
@@ -242,7 +242,7 @@ class Expressions(ABC):
 
     def _of_tuple(self, items: tuple[Value, ...], index: Value) -> Value:
         if isinstance(index, LaneIndex):
-            message = "the index of a loop over lanes picks from no tuple"
+            message = "the index of a loop over lanes cannot select from a tuple"
             raise Refusal(message)
         if not isinstance(index, Number):
             return items[index]
@@ -273,12 +273,12 @@ class Expressions(ABC):
 
 @cache
 def _is_costly(node: ast.expr) -> bool:
-    """Return whether a value takes so long that it is found only where it is chosen."""
+    """Return whether an expression is costly, so that only the chosen branch is evaluated."""
     return any(isinstance(part, ast.Call | ast.Subscript) for part in ast.walk(node))
 
 
 def _wider(a: Value, b: Value) -> Value:
-    """Return of two values of one structure numbers of the kinds that hold both."""
+    """Return a value with the wider kinds of two values of one structure."""
     if isinstance(a, tuple) and isinstance(b, tuple) and type(a) is type(b) and len(a) == len(b):
         made = [_wider(*pair) for pair in zip(a, b, strict=True)]
         return type(a)(*made) if hasattr(a, "_fields") else tuple(made)

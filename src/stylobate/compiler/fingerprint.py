@@ -1,4 +1,4 @@
-"""What sets a model's functions apart from others: their code, and the constants and functions that they use."""
+"""Fingerprints of functions: digests of their code and of the constants and functions that they use."""
 
 import dis
 import hashlib
@@ -16,7 +16,7 @@ Function = Callable[..., Any]
 
 
 def fingerprint(function: Function) -> str:
-    """Return a digest of what `function` computes: its code, the constants and the functions that it uses."""
+    """Return a digest of `function`: its code, and the constants and functions that it uses."""
     digest = hashlib.sha256()
     for part in _parts(plain_function(function), set()):
         digest.update(part.encode())
@@ -42,7 +42,7 @@ def _parts(function: types.FunctionType, seen: set[int]) -> Iterator[str]:
 
 
 def _along(names: Mapping[str, Any], dotted: str) -> Iterator[object]:
-    """Yield what a name such as f, module.f or Class.constant leads to, step by step."""
+    """Yield the objects along a name such as f, module.f or Class.constant."""
     root, *path = dotted.split(".")
     value = names.get(root)
     yield value
@@ -67,7 +67,7 @@ def _value_parts(value: object, seen: set[int]) -> Iterator[str]:
 
 
 def _described(value: object) -> str:
-    """Return a text that differs between constants that differ."""
+    """Return a text that differs between different constants."""
     if isinstance(value, np.ndarray):
         return f"{value.dtype} {value.shape} {value.tobytes().hex()}"
     if isinstance(value, Enum):
@@ -89,7 +89,7 @@ def _code_parts(code: types.CodeType) -> Iterator[str]:
 
 
 def global_names(code: types.CodeType) -> Iterator[str]:
-    """Return the names that `code` looks up in its module, with the attributes that it takes of them: `math.pi`."""
+    """Yield the names that `code` looks up in its module, with their attributes, such as `math.pi`."""
     name = ""
     for instruction in dis.get_instructions(code):
         if instruction.opname == "LOAD_GLOBAL":

@@ -1,4 +1,4 @@
-"""Machine code on disk: compiled once, loaded by every later process as the same bytes."""
+"""Cache of machine code on disk: compiled once, loaded by later processes."""
 
 import hashlib
 import logging
@@ -18,7 +18,7 @@ from stylobate.compiler.trusted_cache import VARIABLE, TrustedCache
 from stylobate.errors import FileError
 
 PLAIN_VARIABLE = "STYLOBATE_PLAIN"
-"""With this set to 1, what would be compiled runs as plain Python: slowly, and step by step in a debugger."""
+"""If this variable is 1, nothing is compiled: functions run as plain Python, slowly, also in a debugger."""
 
 _log = logging.getLogger("stylobate")
 _notices = logging.getLogger("stylobate.compiling")
@@ -26,7 +26,7 @@ _loading = threading.RLock()
 
 
 def runs_plain() -> bool:
-    """Return whether the user wants plain Python."""
+    """Return whether the user has chosen plain Python."""
     return os.environ.get(PLAIN_VARIABLE, "") not in ("", "0")
 
 
@@ -37,25 +37,25 @@ def code_of(
     write: Callable[[], str],
     description: str | None,
 ) -> llvm.ExecutionEngine:
-    """Return machine code, loaded: from disk, or newly compiled.
+    """Load machine code from disk, or compile it.
 
     Parameters
     ----------
     name
-        Beginning of its name on disk.
+        Prefix of the file name.
     parts
-        Texts on which it depends.
+        Texts that determine the code.
     functions
-        Functions of a model on which it depends.
+        Functions of a model that determine the code.
     write
-        Returns the text of its module of LLVM.
+        Function that returns the text of the LLVM module.
     description
-        What is compiled, in words for the log; None logs nothing.
+        Description for the log; None logs nothing.
 
     Raises
     ------
     CompileError
-        If something in it is not compiled.
+        If a function contains unsupported code.
     FileError
         If other users can write to the folder of compiled code.
     """
@@ -64,11 +64,11 @@ def code_of(
     with _loading:
         code = folder.read(entry, quiet=True)
         if code is None:
-            # One process compiles, others that need the same wait for it.
+            # One process compiles; others that need the same code wait.
             with folder.held(entry):
                 code = folder.read(entry)
                 if code is None:
-                    # A warning, seen where no logging is set up: seconds may pass, once.
+                    # A warning is visible without logging setup; compilation can take seconds.
                     if description is not None:
                         _notices.warning("compiling %s; kept in %s", description, folder.folder)
                     code = machine.object_code(write())
@@ -77,7 +77,7 @@ def code_of(
 
 
 def cache_folder() -> Path:
-    """Return the folder in which compiled code is kept: $STYLOBATE_CACHE, or `stylobate` in the user's cache folder."""
+    """Return the folder of compiled code: $STYLOBATE_CACHE, or `stylobate` in the cache folder of the user."""
     chosen = os.environ.get(VARIABLE)
     if chosen:
         return Path(chosen)
@@ -91,7 +91,7 @@ def cache_folder() -> Path:
 
 
 def _keep(folder: TrustedCache, entry: str, code: bytes) -> None:
-    """Write an entry, or warn that each process will compile it."""
+    """Write an entry; on failure warn that each process will compile again."""
     try:
         folder.write(entry, code)
     except (OSError, FileError) as error:
@@ -109,7 +109,7 @@ def _key(parts: Iterable[str], functions: Mapping[str, Callable[..., Any]]) -> s
 
 @cache
 def _own_text() -> str:
-    """Return the text of the compiler: machine code depends on it too."""
+    """Return the source of the compiler, on which machine code depends."""
     return "".join(path.read_text(encoding="utf-8") for path in sorted(Path(__file__).parent.glob("*.py")))
 
 

@@ -1,4 +1,4 @@
-"""What a function that is to be compiled says of itself; in plain Python these marks do nothing."""
+"""Marks in functions for the compiler; in plain Python they have no effect."""
 
 from collections.abc import Callable
 from typing import Any, TypeVar
@@ -10,19 +10,19 @@ _F = TypeVar("_F", bound=Callable[..., Any])
 
 
 def lanes(count: int) -> range:
-    """Return `range(count)`: the passes of the loop depend on nothing of each other, and are made side by side."""
+    """Return `range(count)`, and mark a loop whose passes are independent and can be vectorised."""
     return range(count)
 
 
 def flat(array: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
-    """Return an array without gaps as one row, without copying."""
+    """Return a contiguous array as one row, without a copy."""
     return array.reshape(array.size)
 
 
 def fast(function: _F) -> _F:
     """Allow products and sums to be fused and quotients to be products with reciprocals, in a function and its calls.
 
-    Not a number remains what it is: a step that ran into one is seen.
+    NaN is kept, so that failed steps are detected.
     """
     function.__dict__["fast"] = True
     return function

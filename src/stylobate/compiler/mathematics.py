@@ -1,4 +1,4 @@
-"""The functions of `math`, of NumPy and of Python itself that compiled functions may call on numbers."""
+"""Mathematical functions of `math`, NumPy and Python that compiled functions can call."""
 
 import ast
 import math
@@ -34,12 +34,12 @@ _WHOLE_IN_PYTHON = ("floor", "ceil", "trunc")
 
 
 def is_mathematics(function: Any) -> bool:
-    """Return whether the compiler knows this function."""
+    """Return whether the compiler supports this function."""
     return _name_of(function) is not None
 
 
 def call(arithmetic: Arithmetic, function: Callable[..., Any], values: list[Value]) -> Value:
-    """Return the result of a function that `is_mathematics`."""
+    """Return the result of a mathematical function, see `is_mathematics`."""
     if function is len:
         return _length(values[0])
     if all(is_known_number(value) for value in values):
@@ -57,7 +57,7 @@ def call(arithmetic: Arithmetic, function: Callable[..., Any], values: list[Valu
 
 
 def _name_of(function: Any) -> str | None:
-    """Return the name by which the compiler knows a function, or None."""
+    """Return the name of a function in the compiler, or None."""
     own = getattr(function, "__name__", "")
     if isinstance(function, np.ufunc):
         name = _NAMES_OF_NUMPY.get(own, own)
@@ -74,7 +74,7 @@ def _length(value: Value) -> Value:
         return value.shape[0]
     if hasattr(value, "__len__"):
         return len(value)
-    message = "len(...) is known of arrays and of what is known while compiling only"
+    message = "len(...) needs an array, or a value that is known at compile time"
     raise Refusal(message)
 
 
@@ -142,7 +142,7 @@ def _square(arithmetic: Arithmetic, value: Value) -> Value:
 
 def _sign(arithmetic: Arithmetic, value: Value) -> Value:
     negative, positive = (arithmetic.compared(operation, value, 0.0) for operation in (ast.Lt(), ast.Gt()))
-    # What is not a number has no sign.
+    # The sign of NaN is NaN.
     return arithmetic.chosen(
         positive, 1.0, arithmetic.chosen(negative, -1.0, arithmetic.binary(ast.Mult(), value, 0.0))
     )

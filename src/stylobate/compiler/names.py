@@ -1,4 +1,4 @@
-"""Names of a function under construction: what they mean, and what is assigned to them."""
+"""Names of a function under construction, and assignments to them."""
 
 import ast
 from collections.abc import Iterable, Mapping
@@ -12,23 +12,23 @@ from stylobate.compiler.sources import Source
 from stylobate.compiler.values import Array, Kind, Number, Value
 
 _NOTHING = object()
-"""Stands for the value of a name that has none any more."""
+"""Marks a name that no longer has a value."""
 
 
 class Names(Expressions):
-    """The names that a function assigns to, and those of its module.
+    """Names that a function assigns to, and names of its module.
 
-    A name to which a condition or loop assigns that is decided while running has room in memory, from the beginning of
-    that until something else is assigned to it; any other one means its value.
+    A name that a run-time condition or loop assigns to has a slot in memory, from the start of the condition or loop
+    until its next assignment outside. All other names directly have their value.
 
     Parameters
     ----------
     source
         The function.
     arithmetic
-        Writes its instructions.
+        Writer of its instructions.
     kinds
-        Kinds that the room of a name must at least have.
+        Minimum kind of the slot of each name.
     """
 
     def __init__(self, source: Source, arithmetic: Arithmetic, kinds: Mapping[str, Kind]) -> None:
@@ -39,10 +39,10 @@ class Names(Expressions):
         self._chosen = _assigned_by_control_flow(source.body)
         self._own = assigned_in(source.body) | set(source.signature.parameters)
         self._depth = 0
-        """Of conditions and loops that are decided while running."""
+        """Depth of run-time conditions and loops."""
 
     def read(self, name: str) -> Value:
-        """Return what a name means here."""
+        """Return the value of a name."""
         value = self._bound.get(name, _NOTHING)
         if value is not _NOTHING:
             return value
@@ -58,7 +58,7 @@ class Names(Expressions):
             raise Refusal(message) from None
 
     def assign(self, name: str, value: Value) -> None:
-        """Give a name a value."""
+        """Assign a value to a name."""
         if self.arithmetic.lanes or name not in self._chosen or not self._depth:
             self._bound[name] = value
             return
@@ -66,12 +66,12 @@ class Names(Expressions):
         self.put(name, value)
 
     def settle(self, node: ast.AST) -> None:
-        """Put into their room the names that are known here and that a condition or loop may assign to.
+        """Store known values in slots if a condition or loop can assign to their names.
 
         Raises
         ------
         Refusal
-            If the value of one has no room: it could not be chosen while running.
+            If a value cannot be stored, so that it cannot be chosen at run time.
         """
         for name in assigned_in([node]) & self._bound.keys():
             if self._bound[name] is _NOTHING:
@@ -83,12 +83,12 @@ class Names(Expressions):
             self.put(name, value)
 
     def forget(self, node: ast.AST) -> None:
-        """Take the values from the names that are assigned to here: passes side by side hand none on."""
+        """Remove the values of the names that `node` assigns to: vectorised passes do not share values."""
         for name in assigned_in([node]):
             self._bound[name] = _NOTHING
 
     def put(self, name: str, value: Value) -> None:
-        """Put a value into the room of a name."""
+        """Store a value in the slot of a name."""
         if name not in self._slots:
             self._slots[name] = slots.slot_for(self.arithmetic, value, self._kinds.get(name, Kind.BOOLEAN))
         try:
@@ -98,7 +98,7 @@ class Names(Expressions):
             raise
 
     def generated(self, node: ast.GeneratorExp) -> tuple[Value, ...]:
-        """Return the values of a generator, as a tuple; its names mean nothing outside of it."""
+        """Return the values of a generator as a tuple; its names do not exist outside."""
         if len(node.generators) > 1:
             message = "a generator with two loops; write one in the other"
             raise Refusal(message)
@@ -108,7 +108,7 @@ class Names(Expressions):
             self._bind(one.target, item)
             conditions = [self.condition(test) for test in one.ifs]
             if any(isinstance(condition, Number) for condition in conditions):
-                message = "the conditions of a generator are known while compiling"
+                message = "the conditions of a generator must be known at compile time"
                 raise Refusal(message)
             if all(conditions):
                 out.append(self.value(node.elt))
@@ -116,7 +116,7 @@ class Names(Expressions):
         return tuple(out)
 
     def _bind(self, target: ast.expr, item: Value) -> None:
-        """Let the names of a generator mean the parts of an item."""
+        """Assign the parts of an item to the names of a generator."""
         if isinstance(target, ast.Name):
             self._bound[target.id] = item
             return
@@ -125,14 +125,14 @@ class Names(Expressions):
             self._bind(part, value)
 
     def assign_to(self, target: ast.expr, value: Value) -> None:
-        """Give what stands on the left of an assignment a value."""
+        """Assign a value to the target of an assignment."""
         match target:
             case ast.Name():
                 self.assign(target.id, value)
             case ast.Tuple() | ast.List():
                 items = self.items(value)
                 if len(items) != len(target.elts):
-                    message = f"{ast.unparse(target)} take {len(target.elts)} values, not {len(items)}"
+                    message = f"{ast.unparse(target)} needs {len(target.elts)} values, not {len(items)}"
                     raise Refusal(message)
                 for part, item in zip(target.elts, items, strict=True):
                     self.assign_to(part, item)
@@ -151,15 +151,15 @@ class Names(Expressions):
     def _array(self, target: ast.Subscript) -> Array:
         owner = self.value(target.value)
         if not isinstance(owner, Array):
-            message = f"{ast.unparse(target.value)} is no array"
+            message = f"{ast.unparse(target.value)} is not an array"
             raise Refusal(message)
         return owner
 
     def place(self, target: ast.Subscript) -> tuple[Array, int]:
-        """Return the element that is assigned to; see `arrays.place`."""
+        """Return the element of an assignment, see `arrays.place`."""
         owner, indices = self._array(target), self.indices(target)
         if len(indices) != len(owner.shape) or any(map(_is_slice, indices)):
-            message = f"{ast.unparse(target)} is no single element of an array; write a loop"
+            message = f"{ast.unparse(target)} is not a single element of an array; write a loop"
             raise Refusal(message)
         return arrays.place(self.arithmetic, owner, indices)
 
@@ -169,7 +169,7 @@ def _is_slice(index: Value) -> bool:
 
 
 def assigned_in(statements: Iterable[ast.AST]) -> set[str]:
-    """Return the names that statements assign to; those of generators stay in them."""
+    """Return the names that statements assign to, without the names inside generators."""
     return set().union(*map(_assigned_by, statements))
 
 

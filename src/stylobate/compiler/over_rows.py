@@ -1,4 +1,4 @@
-"""A function of a model at many places: compiled, and called for one row of numbers after another."""
+"""Compiled evaluation of a function of a model for many rows of numbers."""
 
 from collections.abc import Callable
 from functools import cache
@@ -14,21 +14,21 @@ from stylobate.errors import UnsupportedError
 
 Floats = npt.NDArray[np.float64]
 
-# For fewer rows than this nothing is compiled.
+# Minimum number of rows for compilation.
 _FEW = 64
 
 
 def over_rows(function: Callable[..., Any], rows: Floats, *, name: str) -> Floats:
-    """Return what `function` gives for each row of numbers, shape (n, results).
+    """Evaluate `function` for each row of numbers; return shape (n, results).
 
     Parameters
     ----------
     function
-        Of floats; returns a tuple of them. One that cannot be compiled is called as it is.
+        Function of floats that returns a tuple of floats. It is called as plain Python if it cannot be compiled.
     rows
-        Its arguments, shape (n, arguments).
+        Arguments, shape (n, arguments).
     name
-        What it belongs to, for messages.
+        Name for messages, such as that of the model.
     """
     if not len(rows):
         return np.empty((0, 0))

@@ -1,4 +1,4 @@
-"""Modules of plain Python from which functions are compiled: written for a model, or bound to one."""
+"""Modules of plain Python for compilation: generated for a model, or bound to one."""
 
 import types
 from collections.abc import Callable, Mapping, Sequence
@@ -13,35 +13,35 @@ Functions = Mapping[str, Callable[..., Any]]
 
 
 class Program(Protocol):
-    """A module that is made when it is needed, and the texts on which it depends."""
+    """Module that is created on demand, and the texts that determine it."""
 
     @property
     def texts(self) -> Sequence[str]:
-        """What the module is made of."""
+        """Texts that determine the module."""
 
     def module(self, name: str, functions: Functions) -> types.ModuleType:
-        """Return the module, of plain Python, in which `functions` of a model stand under their names."""
+        """Return the module of plain Python that contains the `functions` of a model under their names."""
 
 
 @dataclass(frozen=True, eq=False)
 class Written:
-    """A module whose text is written by the package; it takes functions from the `imported` modules."""
+    """Module with generated text, which uses functions of the `imported` modules."""
 
     text: str
     imported: Sequence[types.ModuleType] = ()
 
     @property
     def texts(self) -> Sequence[str]:
-        """The text, and those of what it imports."""
+        """Text of the module, and texts of the imported modules."""
         return [self.text, *map(text_of, self.imported)]
 
     def module(self, name: str, functions: Functions) -> types.ModuleType:
-        """Return the module; tracebacks and debuggers find its lines."""
+        """Return the module; its lines are available to tracebacks and debuggers."""
         return written_module(name, self.text, functions)
 
 
 class Unbound:
-    """Stands in a module for a name that each program gives a meaning of its own."""
+    """Placeholder in a module for a name that each program binds."""
 
     def __init__(self, name: str) -> None:
         self.name = name
@@ -52,19 +52,19 @@ class Unbound:
 
 @dataclass(frozen=True, eq=False)
 class Bound:
-    """Modules as they stand, with the names that they leave open given a meaning.
+    """Ordinary modules, with their open names bound.
 
     Parameters
     ----------
     modules
-        Their functions call each other, and what is bound, instead of what they import.
+        Modules whose functions call each other and the bound names instead of their imports.
     names
-        What names mean, those that are `Unbound` and any others; a name that is not here means a function of the model,
-        of the written part, or of one of the modules.
+        Values of the `Unbound` names and of others; any other name is a function of the model, of the generated part,
+        or of one of the modules.
     written
-        A part whose text is written, whose functions are bound too; None for no such part.
+        Part with generated text, whose functions are bound too; None for no such part.
     imported
-        Modules whose functions and constants they use as they are.
+        Modules whose functions and constants are used unchanged.
     """
 
     modules: Sequence[types.ModuleType]
@@ -74,13 +74,13 @@ class Bound:
 
     @property
     def texts(self) -> Sequence[str]:
-        """The texts of all modules, and what is bound in words."""
+        """Texts of all modules, and a text of the bound names."""
         words = repr(sorted((name, repr(value)) for name, value in self.names.items()))
         written = self.written.texts if self.written is not None else ()
         return [words, *written, *map(text_of, (*self.modules, *self.imported))]
 
     def module(self, name: str, functions: Functions) -> types.ModuleType:
-        """Return a module with the functions of all; tracebacks and debuggers find their lines where they stand."""
+        """Return a module with the functions of all modules; tracebacks and debuggers show their own files."""
         written = {} if self.written is None else vars(self.written.module(f"{name}_written", functions))
         scopes: dict[str, dict[str, Any]] = {module.__name__: {} for module in self.modules}
         own = {
@@ -104,12 +104,12 @@ class Bound:
 
 
 def _belongs_to(value: object, modules: set[str]) -> bool:
-    """Return whether a value is a function that stands in one of the modules."""
+    """Return whether a value is a function defined in one of the modules."""
     return isinstance(value, types.FunctionType) and value.__module__ in modules
 
 
 def _with_names(function: types.FunctionType, names: dict[str, Any]) -> types.FunctionType:
-    """Return a function with other names round it."""
+    """Return a copy of a function with other global names."""
     made = types.FunctionType(function.__code__, names, function.__name__, function.__defaults__)
     made.__kwdefaults__ = function.__kwdefaults__
     made.__module__ = function.__module__
@@ -119,5 +119,5 @@ def _with_names(function: types.FunctionType, names: dict[str, Any]) -> types.Fu
 
 @cache
 def text_of(module: types.ModuleType) -> str:
-    """Return the text of a module that stands in a file."""
+    """Return the source text of a module."""
     return Path(module.__file__ or "").read_text(encoding="utf-8")

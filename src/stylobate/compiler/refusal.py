@@ -1,26 +1,26 @@
-"""What is not of the accepted language is refused, with its place and a remedy."""
+"""Errors of the compiler: unsupported code, with its location and a remedy."""
 
 import ast
 
 
 class CompileError(Exception):
-    """A function cannot be compiled; one line says where, why and what to write instead."""
+    """A function cannot be compiled; the message has location, reason and remedy."""
 
 
 class Refusal(Exception):  # noqa: N818  becomes a CompileError where the place is known
-    """Something in a function is refused.
+    """A function contains unsupported code.
 
     Parameters
     ----------
     reason
-        What it is, and the remedy.
+        Reason and remedy.
     """
 
 
 class LanesRefusal(Refusal):
-    """Something is refused in lanes only."""
+    """A function contains code that is unsupported only in loops over lanes."""
 
 
 def at_its_place(reason: object, node: ast.AST, file: str, function: str) -> CompileError:
-    """Return the error of a refusal, with file and line."""
+    """Return the error for a refusal, with file and line."""
     return CompileError(f"{file}:{getattr(node, 'lineno', '?')}: in {function}: {reason}")

@@ -1,4 +1,4 @@
-"""Room in memory for names that control flow assigns to; LLVM keeps most of it in registers."""
+"""Memory slots for names that control flow assigns to; LLVM keeps most of them in registers."""
 
 from dataclasses import replace
 
@@ -18,7 +18,7 @@ from stylobate.compiler.values import (
 
 
 class WiderKindError(Exception):
-    """A number was put into room that is too narrow for its kind: the function is compiled again with more."""
+    """A slot is too narrow for the kind of a number: the function is compiled again with a wider slot."""
 
     def __init__(self, kind: Kind) -> None:
         super().__init__(kind)
@@ -27,19 +27,19 @@ class WiderKindError(Exception):
 
 
 def can_be_stored(value: Value) -> bool:
-    """Return whether a value is made of numbers and views, so that it can be chosen while running."""
+    """Return whether a value consists of numbers and views, so that it can be chosen at run time."""
     if isinstance(value, tuple):
         return all(map(can_be_stored, value))
     return isinstance(value, Number | Array) or is_known_number(value)
 
 
 def has_array(value: Value) -> bool:
-    """Return whether a value is an array, or holds one."""
+    """Return whether a value is an array or contains one."""
     return any(map(has_array, value)) if isinstance(value, tuple) else isinstance(value, Array)
 
 
 def slot_for(arithmetic: Arithmetic, value: Value, least: Kind = Kind.BOOLEAN) -> Value:
-    """Return room for a value of this structure, each number of it at least of a kind."""
+    """Return slots for a value of this structure, with numbers of at least the kind `least`."""
 
     def room(part: Value) -> Value:
         if isinstance(part, Array):
@@ -57,14 +57,14 @@ def slot_for(arithmetic: Arithmetic, value: Value, least: Kind = Kind.BOOLEAN) -
 
 
 def store(arithmetic: Arithmetic, slot: Value, value: Value) -> None:
-    """Put a value into its room.
+    """Store a value in its slot.
 
     Raises
     ------
     WiderKindError
         If a number does not fit.
     Refusal
-        If it has another structure.
+        If the value has another structure.
     """
     match slot, value:
         case Slot(), _ if isinstance(value, Number) or is_known_number(value):
@@ -90,7 +90,7 @@ def store(arithmetic: Arithmetic, slot: Value, value: Value) -> None:
 
 
 def load(arithmetic: Arithmetic, slot: Value) -> Value:
-    """Return the value that stands in a room."""
+    """Load the value of a slot."""
 
     def found(part: Value) -> Value:
         if isinstance(part, Slot):

@@ -1,4 +1,4 @@
-"""Functions as text: their syntax trees, with the names that they use."""
+"""Source of functions: their syntax trees, with the names that they use."""
 
 import ast
 import builtins
@@ -21,20 +21,20 @@ _Functions = dict[tuple[str, int], tuple[list[_Node], types.CodeType | None]]
 
 @dataclass(frozen=True, slots=True)
 class Source:
-    """A function as it is written.
+    """Source of a function.
 
     Parameters
     ----------
     name, file
-        As messages name it.
+        Name and file in messages.
     arguments, body
-        Its syntax tree; a lambda returns its one expression.
+        Syntax tree; the body of a lambda is one return statement.
     signature
-        Its arguments with their default values.
+        Arguments with default values.
     names
-        What stands in its module, and in functions round it.
+        Names of its module and of enclosing functions.
     fast
-        Whether it is marked so.
+        Whether the function is marked `fast`.
     """
 
     name: str
@@ -46,23 +46,23 @@ class Source:
     fast: bool
 
     def find(self, name: str) -> Any:
-        """Return what a name of the module means.
+        """Return the value of a name of the module.
 
         Raises
         ------
         KeyError
-            If nothing has this name.
+            If the name does not exist.
         """
         return self.names[name] if name in self.names else vars(builtins)[name]
 
 
 def source_of(function: Callable[..., Any]) -> Source:
-    """Return a function as it is written.
+    """Return the source of a function.
 
     Raises
     ------
     CompileError
-        If its text cannot be read, or is not that of the function.
+        If the text cannot be read, or does not belong to the function.
     """
     plain = plain_function(function)
     node = _node_of(plain.__code__)
@@ -75,12 +75,12 @@ def source_of(function: Callable[..., Any]) -> Source:
 
 
 def plain_function(function: Callable[..., Any]) -> types.FunctionType:
-    """Return the Python function behind a static method, or one that another library compiled."""
+    """Return the Python function of a static method, or of a function that another library compiled."""
     plain: Any = function
     while not isinstance(plain, types.FunctionType) and (hasattr(plain, "py_func") or hasattr(plain, "__wrapped__")):
         plain = getattr(plain, "py_func", None) or plain.__wrapped__
     if not isinstance(plain, types.FunctionType):
-        message = f"{getattr(function, '__name__', repr(function))} is no function written in Python"
+        message = f"{getattr(function, '__name__', repr(function))} is not a function written in Python"
         raise CompileError(message)
     return plain
 
@@ -106,9 +106,9 @@ def _node_of(code: types.CodeType) -> _Node:
 
 
 def _is_same(a: types.CodeType, b: types.CodeType, *, exact: bool) -> bool:
-    """Return whether two codes do the same; else whether they use the same names and constants in the same lines.
+    """Return whether two codes are equal or, if not `exact`, use the same names and constants in the same lines.
 
-    Within a module Python writes calls of its imported names otherwise than by themselves.
+    The code of a call of an imported name differs between a whole module and a single function.
     """
 
     def described(code: types.CodeType) -> tuple[object, ...]:
@@ -126,7 +126,7 @@ def _functions_of(text: str, file: str) -> _Functions:
     try:
         tree = ast.parse(text, file)
         whole = compile(tree, file, "exec", dont_inherit=True)
-    except SyntaxError:  # changed since it was imported, or a page with programs in it
+    except SyntaxError:  # changed since its import, or a document that contains programs
         return {}
     codes = {(code.co_name, code.co_firstlineno): code for code in _codes_in(whole)}
     nodes: dict[tuple[str, int], list[_Node]] = {}
@@ -137,7 +137,7 @@ def _functions_of(text: str, file: str) -> _Functions:
 
 
 def _within_other_text(lines: list[str], name: str, first: int) -> tuple[list[_Node], types.CodeType | None]:
-    """Return a function that begins in this line, of a file that is no program as a whole."""
+    """Return a function that begins in this line of a file that is not a program as a whole."""
     try:
         text = textwrap.dedent("".join(inspect.getblock(lines[first - 1 :])))
     except (IndexError, SyntaxError):

@@ -1,11 +1,11 @@
-"""Functions and modules of LLVM, as text."""
+"""Text of LLVM functions and modules."""
 
 from dataclasses import dataclass, field
 
 
 @dataclass(slots=True, eq=False)
 class Block:
-    """Instructions that run one after the other; the last one leads elsewhere."""
+    """Basic block: instructions in sequence; the last one jumps or returns."""
 
     label: str
     lines: list[str] = field(default_factory=list)
@@ -14,7 +14,7 @@ class Block:
 
 
 class FunctionText:
-    """The text of a function under construction; instructions are added to the block that was begun last."""
+    """Text of a function under construction; instructions are added to the last block that was begun."""
 
     def __init__(self) -> None:
         self._count = 0
@@ -38,36 +38,36 @@ class FunctionText:
         return name
 
     def allocated(self, kind: str) -> str:
-        """Return a pointer to room for a value of this type, which lasts as long as the function runs."""
+        """Return a pointer to memory for a value of this type, with the lifetime of the function call."""
         name = self.name()
         self._allocations.append(f"{name} = alloca {kind}")
         return name
 
     def new_block(self) -> Block:
-        """Return a block to branch to; `begin` puts it behind the others."""
+        """Return a new block for branches; `begin` appends it to the function."""
         self._count += 1
         return Block(f"b{self._count}")
 
     def begin(self, block: Block) -> None:
-        """Add instructions to this block from now on; one that no other leads to has ended before it begins."""
+        """Make this the current block; an unreachable block counts as ended."""
         self._blocks.append(block)
         self.block = block
         block.ended = not block.reached
 
     def jump(self, block: Block) -> None:
-        """Go on at a block, unless this one has ended already."""
+        """Jump to a block, unless the current block has ended."""
         if not self.block.ended:
             block.reached = True
         self.end(f"br label %{block.label}")
 
     def branch(self, condition: str, yes: Block, no: Block) -> None:
-        """Go on at one of two blocks."""
+        """Branch to one of two blocks."""
         if not self.block.ended:
             yes.reached = no.reached = True
         self.end(f"br i1 {condition}, label %{yes.label}, label %{no.label}")
 
     def end(self, line: str) -> None:
-        """End the block with this instruction, unless it has ended already."""
+        """End the block with this instruction, unless it has ended."""
         if not self.block.ended:
             self.block.lines.append(line)
             self.block.ended = True
@@ -84,7 +84,7 @@ class FunctionText:
 
 
 class ModuleText:
-    """The text of a module under construction."""
+    """Text of a module under construction."""
 
     def __init__(self) -> None:
         self._declared: dict[str, str] = {}
@@ -92,12 +92,12 @@ class ModuleText:
         self._functions: list[str] = []
 
     def declared(self, name: str, result: str, arguments: list[str]) -> str:
-        """Return the name of a function that is defined elsewhere."""
+        """Declare an external function; return its name."""
         self._declared[name] = f"declare {result} @{name}({', '.join(arguments)})"
         return f"@{name}"
 
     def table(self, numbers: list[str]) -> str:
-        """Return a pointer to constant numbers in a row, given as texts with their type."""
+        """Return a pointer to a constant row of numbers, which are texts with their type."""
         key = tuple(numbers)
         if key not in self._constants:
             self._constants[key] = f"@table{len(self._constants)}"
@@ -108,7 +108,7 @@ class ModuleText:
         self._functions.append(f"define {head} #0 {{\n{body}\n}}")
 
     def text(self, attributes: str) -> str:
-        """Return the module, its functions with these attributes."""
+        """Return the text of the module, with these attributes of its functions."""
         tables = (
             f"{name} = internal unnamed_addr constant [{len(numbers)} x double] [{', '.join(numbers)}]"
             for numbers, name in self._constants.items()

@@ -1,8 +1,8 @@
-"""A folder of machine code that only this user can have written, and that is read only if it is whole.
+"""Cache folder of machine code that only this user can write; damaged entries are not read.
 
-Whatever is read from here is executed. A folder or a file of another user, or one that others can write to, is
-therefore never used, and a file whose bytes are not those that were written counts as missing. Nothing here depends on
-the compiler: an entry is a name and bytes.
+The content of an entry is executed. Therefore a folder or file that belongs to another user, or that other users can
+write to, is never used, and a damaged file counts as missing. An entry is a name and bytes; the cache does not depend
+on the compiler.
 """
 
 import hashlib
@@ -18,7 +18,7 @@ from stylobate.errors import FileError
 from stylobate.files import written_aside
 
 VARIABLE = "STYLOBATE_CACHE"
-"""The environment variable that names the folder."""
+"""Environment variable with the name of the folder."""
 
 _log = logging.getLogger("stylobate")
 
@@ -30,12 +30,12 @@ _WRITABLE_BY_OTHERS = stat.S_IWGRP | stat.S_IWOTH
 
 @dataclass(frozen=True, slots=True)
 class TrustedCache:
-    """Entries by name in a folder of one user.
+    """Cache of entries by name in a folder of one user.
 
     Parameters
     ----------
     folder
-        Need not exist: the first entry makes it, for its owner alone.
+        Folder; the first entry creates it if necessary, with access for its owner alone.
 
     Raises
     ------
@@ -48,7 +48,7 @@ class TrustedCache:
     def __post_init__(self) -> None:
         try:
             problem = _distrust(self.folder.stat())
-        except OSError:  # not there, or not to be reached: entries are missing, and writing one says why
+        except OSError:  # missing or inaccessible: entries are missing, and `write` raises the error
             return
         if problem:
             message = (
@@ -60,7 +60,7 @@ class TrustedCache:
     def read(self, name: str, *, quiet: bool = False) -> bytes | None:
         """Return an entry, or None if it is missing; a damaged or untrusted one counts as missing.
 
-        Such a one is named by a warning, unless `quiet`.
+        A warning names a damaged or untrusted entry, unless `quiet`.
         """
         path = self.folder / name
         try:
@@ -79,12 +79,12 @@ class TrustedCache:
         return None
 
     def write(self, name: str, data: bytes) -> None:
-        """Write an entry whole or not at all.
+        """Write an entry completely or not at all.
 
         Raises
         ------
         OSError, FileError
-            If the disk is full, the folder read-only and the like; nothing half written is left.
+            If the disk is full, the folder is read-only or the like; no partial file remains.
         """
         self.folder.mkdir(mode=stat.S_IRWXU, parents=True, exist_ok=True)
         with (
@@ -95,7 +95,7 @@ class TrustedCache:
 
     @contextmanager
     def held(self, name: str) -> Iterator[None]:
-        """Hold an entry, so that other processes that make the same one wait; without locks they do not wait."""
+        """Lock an entry, so that other processes that compute it wait; without file locks they do not wait."""
         from filelock import FileLock  # noqa: PLC0415  only compiling needs locks; filelock takes long to load
 
         lock = FileLock(self.folder / f"{name}.lock")
@@ -116,8 +116,8 @@ def _seal(name: str, data: bytes) -> bytes:
 
 
 def _distrust(status: os.stat_result) -> str:
-    """Return why a file or folder is not to be trusted, or nothing; the administrator is trusted."""
-    if not hasattr(os, "geteuid"):  # Windows keeps the folders of users apart
+    """Return the reason not to trust a file or folder, or ""; the administrator is trusted."""
+    if not hasattr(os, "geteuid"):  # Windows separates the folders of users
         return ""
     if status.st_uid not in (os.geteuid(), 0):
         return "it belongs to another user"

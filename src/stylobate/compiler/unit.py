@@ -1,4 +1,4 @@
-"""A unit of compiled code: functions, each of them once for every structure of arguments that it is called with."""
+"""Unit of compiled code: functions, each compiled once for each structure of its arguments."""
 
 import ast
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
@@ -18,14 +18,14 @@ from stylobate.compiler.values import Array, Element, Kind, Number, Value, parts
 
 @dataclass(frozen=True, slots=True)
 class ArrayArgument:
-    """An array that is passed to compiled code, its elements without gaps.
+    """Contiguous array argument of compiled code.
 
     Parameters
     ----------
     shape
-        Lengths; None where each call passes them.
+        Lengths; None for lengths that each call passes.
     element
-        What it holds.
+        Type of the elements.
     """
 
     shape: tuple[int | None, ...]
@@ -44,11 +44,11 @@ class Unit:
     Parameters
     ----------
     lanes
-        Numbers in a vector; 0 makes loops over lanes one pass after the other.
+        Numbers in a vector; 0 disables vectorisation.
     fast
-        Functions whose arithmetic is fast as if they were marked so.
+        Functions that are compiled as if they were marked `fast`.
     exact
-        Whether no arithmetic is fast: then numbers are those of plain Python.
+        Whether no arithmetic is fast, so that results equal those of plain Python.
     """
 
     def __init__(self, *, lanes: int, fast: Collection[Callable[..., Any]] = (), exact: bool = False) -> None:
@@ -61,9 +61,9 @@ class Unit:
         self._within: list[FunctionType] = []
 
     def export(self, function: Callable[..., Any], name: str, arguments: Sequence[ArrayArgument | Kind]) -> None:
-        """Add a function that is called from outside: with numbers, and pointers followed by lengths not known before.
+        """Add an exported function, whose arguments are numbers and pointers, each followed by its unknown lengths.
 
-        It returns a number of 64 bits: whole, or whether something holds.
+        The function returns a whole number of 64 bits or a condition.
         """
         text = FunctionText()
         head: list[str] = []
@@ -79,7 +79,7 @@ class Unit:
     def call(
         self, caller: Body, function: Callable[..., Any], values: list[Value], keywords: Mapping[str, Value]
     ) -> Value:
-        """Return the result of a function that another one calls: a call, or in lanes its instructions in place."""
+        """Return the result of a function that `caller` calls; in lanes the function is inlined."""
         try:
             plain = plain_function(function)
         except CompileError as error:
@@ -103,7 +103,7 @@ class Unit:
     def _lane_by_lane(
         self, arithmetic: Arithmetic, function: FunctionType, values: Sequence[Value], *, fast: bool
     ) -> Value:
-        """Return the results of calls for each lane by itself: slowly, of a function with branches or loops."""
+        """Return the results of separate calls for each lane, slowly, for a function with branches or loops."""
         results = []
         for lane in range(arithmetic.lanes):
             single = [arithmetic.of_lane(value, lane) for value in values]
@@ -117,7 +117,7 @@ class Unit:
 
     def _specialised(self, function: FunctionType, values: Sequence[Value], *, fast: bool) -> _Made:
         key = (function, fast, *map(_structure, values))
-        self._known.append(values)  # alive, so that no other object takes the identity of one in a key
+        self._known.append(values)  # keeps the objects alive whose identities are in keys
         if key not in self._made:
             source = self._source(function)
             with self._entered(function):
@@ -153,7 +153,7 @@ class Unit:
 
 
 def _argument(arithmetic: Arithmetic, argument: ArrayArgument | Kind, head: list[str]) -> Value:
-    """Return what is passed from outside; its number, or pointer and lengths, are added to the head."""
+    """Return an argument of an exported function; its number, or pointer and lengths, are added to the head."""
     if isinstance(argument, Kind):
         return _parameter(Number(argument, ""), head)
     pointer = f"%x{len(head)}"
@@ -172,7 +172,7 @@ def _argument(arithmetic: Arithmetic, argument: ArrayArgument | Kind, head: list
 
 
 def _parameter(value: Value, head: list[str]) -> Value:
-    """Return an argument as the called function sees it; what is passed is added to its head."""
+    """Return a parameter of an internal function; its numbers and pointers are added to the head."""
 
     def passed(part: Value) -> Value:
         if isinstance(part, Number):
@@ -191,7 +191,7 @@ def _parameter(value: Value, head: list[str]) -> Value:
 
 
 def _operands(value: Value) -> Iterator[str]:
-    """Yield what is passed for an argument, in the order of `_parameter`."""
+    """Yield the operands of an argument, in the order of `_parameter`."""
     if isinstance(value, Number):
         yield value.operand
     elif isinstance(value, Array):
@@ -204,7 +204,7 @@ def _operands(value: Value) -> Iterator[str]:
 
 
 def _structure(value: Value) -> Any:
-    """Return the structure of an argument: a function is compiled once for each."""
+    """Return the structure of an argument; a function is compiled once for each structure."""
     match value:
         case Number():
             return value.kind
@@ -219,7 +219,7 @@ def _structure(value: Value) -> Any:
 
 
 def _bound(source: Source, values: list[Value], keywords: Mapping[str, Value]) -> dict[str, Value]:
-    """Return the arguments of a call by name, defaults among them."""
+    """Return the arguments of a call by name, including defaults."""
     try:
         bound = source.signature.bind(*values, **keywords)
     except TypeError as error:

@@ -1,7 +1,7 @@
-"""What the compiler knows of a value: numbers that are computed later, arrays, lanes, and all that is known now.
+"""Values in the compiler: numbers that are computed at run time, arrays, lane indices, and known values.
 
-Whatever else Python can hold, such as a number that is known, a tuple, a class or a module, stands for itself: an
-expression of known values is evaluated while the compiler reads it.
+All other Python objects, such as a known number, a tuple, a class or a module, represent themselves: an expression of
+known values is evaluated at compile time.
 """
 
 import struct
@@ -13,11 +13,11 @@ from typing import Any
 import numpy as np
 
 Value = Any
-"""A `Number`, `Array` or `LaneIndex`, a tuple of values, or anything that is known while compiling."""
+"""A `Number`, `Array` or `LaneIndex`, a tuple of values, or any object that is known at compile time."""
 
 
 class Kind(IntEnum):
-    """Kinds of numbers; of two that meet, the later one holds both."""
+    """Kind of a number; each kind can represent the numbers of the kinds before it."""
 
     BOOLEAN = 0
     INTEGER = 1
@@ -25,22 +25,22 @@ class Kind(IntEnum):
 
     @property
     def type(self) -> str:
-        """Its type in LLVM."""
+        """Type in LLVM."""
         return ("i1", "i64", "double")[self]
 
 
 @dataclass(frozen=True, slots=True)
 class Number:
-    """A number that the compiled code computes.
+    """Number that the compiled code computes.
 
     Parameters
     ----------
     kind
-        Its kind.
+        Kind of the number.
     text
-        How instructions name it.
+        Name of the number in instructions.
     lanes
-        How many numbers it is, one beside the other; 0 for a single one.
+        Number of lanes; 0 for a single number.
     """
 
     kind: Kind
@@ -49,26 +49,26 @@ class Number:
 
     @property
     def type(self) -> str:
-        """Its type in LLVM."""
+        """Type in LLVM."""
         return type_of(self.kind, self.lanes)
 
     @property
     def operand(self) -> str:
-        """Its type and its name."""
+        """Type and name."""
         return f"{self.type} {self.text}"
 
 
 class Element(IntEnum):
-    """What an array holds."""
+    """Type of the elements of an array."""
 
     FLOAT = 8
     SIGNAL = 1
-    """Bytes that another thread may set meanwhile: read each time."""
+    """Bytes that another thread may set at any time: each access reads memory."""
 
 
 @dataclass(frozen=True, slots=True)
 class Array:
-    """An array, or a view into one: a pointer, and for each axis the length and the stride in elements.
+    """Array, or view into an array: a pointer, and for each axis the length and the stride in elements.
 
     Constants of a module are not writable.
     """
@@ -82,7 +82,7 @@ class Array:
 
 @dataclass(frozen=True, slots=True)
 class LaneIndex:
-    """The index of a loop over lanes, with what is added to it."""
+    """Index of a loop over lanes, with a constant offset."""
 
     first: Number
     offset: int = 0
@@ -90,7 +90,7 @@ class LaneIndex:
 
 @dataclass(frozen=True, slots=True)
 class Slot:
-    """A place in memory that holds a number under a name which control flow assigns to."""
+    """Memory of a number whose name control flow assigns to."""
 
     kind: Kind
     pointer: str
@@ -102,12 +102,12 @@ def type_of(kind: Kind, lanes: int = 0) -> str:
 
 
 def is_known_number(value: Value) -> bool:
-    """Return whether a value is a number that is known while compiling."""
+    """Return whether a value is a number that is known at compile time."""
     return isinstance(value, bool | int | float | np.bool_ | np.integer | np.floating)
 
 
 def kind_of(value: Value) -> Kind:
-    """Return the kind of a number, known or not."""
+    """Return the kind of a known or unknown number."""
     if isinstance(value, Number):
         return value.kind
     if isinstance(value, bool | np.bool_):
@@ -116,7 +116,7 @@ def kind_of(value: Value) -> Kind:
 
 
 def constant(value: float, kind: Kind, lanes: int = 0) -> Number:
-    """Return a known number as one of the compiled code."""
+    """Return a known number as a number of the compiled code."""
     if kind is Kind.FLOAT:
         text = f"0x{struct.unpack('<Q', struct.pack('<d', value))[0]:016X}"
     else:
@@ -127,7 +127,7 @@ def constant(value: float, kind: Kind, lanes: int = 0) -> Number:
 
 
 def parts(value: Value) -> Iterator[Number]:
-    """Yield the numbers of a value that are passed when it is an argument or a result."""
+    """Yield the numbers of a value that are passed in calls and results."""
     if isinstance(value, Number):
         yield value
     elif isinstance(value, tuple):
@@ -139,7 +139,7 @@ def parts(value: Value) -> Iterator[Number]:
 
 
 def rebuilt(value: Value, make: Callable[[Value], Value]) -> Value:
-    """Return a tuple of the same structure, each value in it replaced by what `make` returns of it."""
+    """Apply `make` to each value of a nested tuple; return the same structure."""
     if not isinstance(value, tuple):
         return make(value)
     made = [rebuilt(part, make) for part in value]

@@ -1,4 +1,4 @@
-"""Modules whose text is written by the package for a model."""
+"""Modules with generated text for a model."""
 
 import linecache
 import sys
@@ -9,13 +9,13 @@ from typing import Any
 PACKAGE = "stylobate_kernels"
 
 _texts: dict[str, list[str]] = {}
-"""Lines by the name of the file that there is not; `linecache`, which tracebacks read, may forget them."""
+"""Lines by virtual file name; a copy, since `linecache`, which tracebacks use, may drop them."""
 
 
 def written_module(name: str, text: str, functions: Mapping[str, Callable[..., Any]]) -> types.ModuleType:
-    """Return the module of a text, in which functions of a model stand under these names.
+    """Return the module of a text, with the functions of a model under these names.
 
-    Its functions are plain Python; what compiles them, tracebacks and debuggers find their lines.
+    Its functions are plain Python; their lines are available to the compiler, tracebacks and debuggers.
     """
     module = types.ModuleType(f"{PACKAGE}.{name}")
     module.__file__ = f"<{module.__name__}>"
@@ -28,7 +28,7 @@ def written_module(name: str, text: str, functions: Mapping[str, Callable[..., A
 
 
 def lines_of(file: str) -> list[str]:
-    """Return the lines of a file of functions: of a written module, or as it stands on disk."""
+    """Return the lines of a generated module or of a file on disk."""
     if file in _texts:
         return _texts[file]
     linecache.checkcache(file)

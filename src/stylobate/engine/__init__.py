@@ -1,6 +1,6 @@
 """Integration: single runs with dense output and events, and many runs at once.
 
-The public names, imported when they are first used, are those of `__init__.pyi`.
+`__init__.pyi` lists the public names; they are imported at their first use.
 """
 
 import lazy_loader

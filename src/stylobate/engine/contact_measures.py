@@ -1,4 +1,4 @@
-"""Measures of a run whose contact changes: how far the column went, how long each kind of contact lasted."""
+"""Measures of a run whose contact changes: displacement, paths, and duration of each kind of contact."""
 
 import math
 from collections.abc import Mapping
@@ -14,7 +14,7 @@ from stylobate.engine.trajectory import Trajectory
 from stylobate.models.sliding import Contact
 from stylobate.models.sliding.equations import JAM
 
-# Nodes of Gauss's rule on [0, 1] for the lengths of paths, to each step.
+# Nodes and weights of Gauss's rule on [0, 1] for the lengths of paths in each step.
 _NODES, _WEIGHTS = (part / 2.0 for part in np.polynomial.legendre.leggauss(4))
 _NODES = _NODES + 0.5
 
@@ -25,16 +25,16 @@ def contact_measures(arrays: Mapping[str, Any], motion: BaseMotion, trajectory: 
     Parameters
     ----------
     arrays
-        What the summary of an ensemble reports of the run.
+        Results of the run from the summary of an ensemble.
     motion, trajectory
-        Of the base, and of the column.
+        Motion of the base, and of the column.
 
     Returns
     -------
     dict
-        `time_resting` … [s]; `residual_displacement` of the centre of the footprint, with its parts along x and y, and
-        `walking_distance`, the length of its path [m]; `slip_distance`, that of the path of the contact on the plane
-        [m]; `residual_twist` [rad]; the numbers of `impacts` and `slips`; `least_painleve_denominator`.
+        `time_resting` … [s]; `residual_displacement` of the centre of the footprint, with its components along x and y,
+        and `walking_distance`, the length of its path [m]; `slip_distance`, the length of the path of the contact on
+        the plane [m]; `residual_twist` [rad]; the numbers of `impacts` and `slips`; `least_painleve_denominator`.
     """
     model = trajectory.model
     names, length = model.state_names, model.column.mass_height
@@ -58,7 +58,7 @@ def contact_measures(arrays: Mapping[str, Any], motion: BaseMotion, trajectory: 
 
 
 def _paths(motion: BaseMotion, trajectory: Trajectory) -> tuple[float, float, float]:
-    """Return the lengths of the paths of footprint and slip [h], and Painlevé's least denominator."""
+    """Return the lengths of the paths of footprint and slip [h], and the minimum Painlevé denominator."""
     model, lengths = trajectory.model, trajectory.ends - trajectory.starts
     moving = np.flatnonzero((trajectory.contacts != Contact.RESTING) & (lengths > 0.0))
     if not moving.size:
@@ -78,7 +78,7 @@ def _paths(motion: BaseMotion, trajectory: Trajectory) -> tuple[float, float, fl
 
 
 def _least_denominator(trajectory: Trajectory, slipping: Floats) -> float:
-    """Return Painlevé's least denominator at states of a rim that slips, with pushes behind them; 1 without any."""
+    """Return the minimum Painlevé denominator at states of a slipping rim, with accelerations appended; 1 if none."""
     model = trajectory.model
     if not len(slipping):
         return 1.0

@@ -1,4 +1,4 @@
-"""Find the largest demands on the contact in a run, and warn of what a real contact would not have borne."""
+"""Peak contact demands of a run, and warnings about slip and lift-off that the model excludes."""
 
 from dataclasses import dataclass
 from enum import IntEnum
@@ -12,14 +12,14 @@ from stylobate.models import Model
 from stylobate.models.contact import contact_loads
 from stylobate.results.samples import Samples
 
-# The largest load is sought in narrower and narrower intervals about it, each divided into so many equal parts.
+# Search for a peak load: number of successively narrower intervals, and equal parts of each.
 _NARROWINGS, _PARTS = 3, 128
-# When a load first exceeds a limit is sought in the same way: five divisions leave 2⁻⁵⁰ of the first interval.
+# The same for the first time beyond a limit: five divisions leave 2⁻⁵⁰ of the first interval.
 _DIVISIONS, _DIVIDED = 5, 1024
 
 
 class Load(IntEnum):
-    """A load of the contact; the normal force is counted downwards, so that the largest of each is sought."""
+    """Load of the contact; the sign of the normal force is reversed, so that each peak is a maximum."""
 
     FRICTION = 0
     PIVOTING = 1
@@ -28,7 +28,7 @@ class Load(IntEnum):
 
 @dataclass(frozen=True, slots=True)
 class Demands:
-    """The largest demands on the contact in a run, while the column moves and while it stands.
+    """Peak contact demands of a run, while the column moves and while it stands.
 
     Parameters
     ----------
@@ -36,7 +36,7 @@ class Demands:
         `peak_friction_demand`, `peak_pivoting_demand` and `minimum_normal_force`, the last over m g; empty if the
         model defines no contact forces.
     warnings
-        A line for each thing that a real contact would not have borne.
+        A line for each limit of a real contact that the run exceeds.
     """
 
     measures: dict[str, float]
@@ -51,9 +51,9 @@ class Demands:
         samples: Samples,
         friction_coefficient: float | None,
     ) -> "Demands":
-        """Return the demands of a run, sought on dense output about the largest at the `samples` and the steps.
+        """Return the demands of a run, from the dense output near the maximum over `samples` and steps.
 
-        Close to the vertical the contact bears most for a moment that steps resolve and samples may miss.
+        Close to the vertical a load can have a short peak, which steps resolve and samples may miss.
         """
         if model.contact is None or model.switches or "friction_demand" not in samples.variables:
             return cls({}, ())
@@ -67,19 +67,19 @@ class Demands:
         warnings = []
         if pull >= 0.0:
             when = _from(loads.first_beyond(Load.PULL, 0.0))
-            warnings.append(f"it would lift off{when}: the contact would have to pull, which this model lets it do")
+            warnings.append(f"it would lift off{when}: the contact would have to pull, which this model allows")
         if friction_coefficient is not None and friction > friction_coefficient:
             when = _from(loads.first_beyond(Load.FRICTION, friction_coefficient))
             warnings.append(
                 f"it would slip{when}: more friction is needed than friction_coefficient {friction_coefficient:.4g} "
-                f"gives, {_in_words(friction)}; this model never slips{_before_rocking(model, friction_coefficient)}"
+                f"provides, {_in_words(friction)}; this model never slips{_before_rocking(model, friction_coefficient)}"
             )
         return cls(measures, tuple(warnings))
 
 
 def _in_words(demand: float) -> str:
     return (
-        f"at most {demand:.4g} times the normal force in all of the run"
+        f"at most {demand:.4g} times the normal force during the run"
         if np.isfinite(demand)
         else "without bound where nothing presses on the base"
     )
@@ -101,7 +101,7 @@ def _from(time: float | None) -> str:
 
 @dataclass(frozen=True, slots=True)
 class _Loads:
-    """What the contact bears in a run: at samples and steps, and at any other time.
+    """Contact loads of a run at samples and steps, and at any other time.
 
     Parameters
     ----------
@@ -117,7 +117,7 @@ class _Loads:
 
     @classmethod
     def of(cls, model: Model, forcing: Forcing, trajectory: Trajectory, samples: Samples) -> "_Loads":
-        """Take the loads at the samples, at the ends of the steps, and closely where the column stands."""
+        """Return the loads at the samples, at the ends of the steps, and at more times while the column stands."""
         steps = np.append(trajectory.starts, trajectory.end)
         weight = model.column.mass * model.column.gravity
         sampled = [
@@ -132,7 +132,7 @@ class _Loads:
         return cls(model, forcing, trajectory, tau, np.concatenate(values, axis=1)[:, order])
 
     def largest(self) -> Floats:
-        """Return the largest value of each load, shape (3,), each sought about the largest one known."""
+        """Return the maximum of each load, shape (3,), from a search near the maximum of the known values."""
         loads, last = np.arange(len(Load)), self.tau.size - 1
         top = np.argmax(self.values, axis=1)
         largest: Floats = self.values[loads, top]
@@ -148,7 +148,7 @@ class _Loads:
         return largest
 
     def first_beyond(self, load: Load, limit: float) -> float | None:
-        """Return when a load first exceeds a limit [s]; None if it does so between two of the times only."""
+        """Return the first time [s] of a load above a limit; None if it is above only between two known times."""
         beyond = np.flatnonzero(self.values[load] > limit)
         if not beyond.size:
             return None
@@ -157,7 +157,7 @@ class _Loads:
         for _ in range(_DIVISIONS):
             tau = np.linspace(low, high, _DIVIDED + 1)
             exceeds = self.at(tau)[load] > limit
-            exceeds[-1] = True  # known, but for rounding
+            exceeds[-1] = True  # known; rounding could hide it
             first = int(np.argmax(exceeds))
             low, high = tau[max(first - 1, 0)], tau[first]
         return float(high) * self.model.time_scale
@@ -169,6 +169,6 @@ class _Loads:
 
 def _loads(model: Model, forcing: Forcing, trajectory: Trajectory, tau: Floats) -> Floats:
     """Return the loads at times of a run, shape (3, n), numbered by `Load`."""
-    with np.errstate(invalid="ignore", over="ignore"):  # infinite next to rest, and where the ground would pull
+    with np.errstate(invalid="ignore", over="ignore"):  # infinite next to rest, and if the base would pull
         loads = contact_loads(model, trajectory.states(tau), forcing.along(tau), trajectory.resting(tau))
     return np.stack([loads.friction, loads.pivoting, -loads.normal])

@@ -1,19 +1,19 @@
-"""The coefficients of DOP853, the pair of order 8(5, 3) with dense output of order 7.
+"""Coefficients of DOP853, the pair of order 8(5, 3) with dense output of order 7.
 
 E. Hairer, S. P. Nørsett, G. Wanner, "Solving Ordinary Differential Equations I", 2nd ed., sections II.5 and II.6, and
-their program dop853.f. They stand here so that kernels are written without loading SciPy, which has the same.
+their program dop853.f. SciPy has the same numbers; this copy lets kernels be written without loading SciPy.
 """
 
 from collections.abc import Mapping, Sequence
 
 Weights = Mapping[int, float]
-"""By stage; none of the others."""
+"""Weights by stage; other stages have the weight zero."""
 
 STAGES = 12
-"""One more gives the slope at the end of a step."""
+"""Number of stages; one more stage gives the slope at the end of a step."""
 
 EXTRA_STAGES = 3
-"""More for the dense output."""
+"""Number of additional stages for the dense output."""
 
 
 def _table(rows: Sequence[Weights], columns: int) -> tuple[tuple[float, ...], ...]:
@@ -50,7 +50,7 @@ B = _table(({0: 0.054293734116568765, 5: 4.450312892752409, 6: 1.891517899314500
 
 C = (0.0, 0.05260015195876773, 0.0789002279381516, 0.1183503419072274, 0.2816496580927726,
     0.3333333333333333, 0.25, 0.3076923076923077, 0.6512820512820513, 0.6, 0.8571428571428571, 1.0)
-"""Parts of the step at which stages stand."""
+"""Times of the stages as fractions of the step."""
 
 E3, E5 = _table((
     {0: -0.18980075407240762, 5: 4.450312892752409, 6: 1.8915178993145003, 7: -5.801203960010585,
@@ -75,7 +75,7 @@ A_EXTRA = _table((
 """Weights of the slopes in the stages of the dense output, shape (3, 16)."""
 
 C_EXTRA = (0.1, 0.2, 0.7777777777777778)
-"""Parts of the step at which these stand."""
+"""Times of the additional stages as fractions of the step."""
 
 D = _table((
     {0: -8.428938276109013, 5: 0.5667149535193777, 6: -3.0689499459498917, 7: 2.38466765651207,

@@ -1,11 +1,11 @@
-"""Decide which runs are in doubt, and with what numbers such a run is repeated.
+"""Runs in doubt: criteria, and the tolerances with which such runs are repeated.
 
 The outcome of a run depends on two numbers of the method: the energy below which the column counts as standing, and
 the tolerance of the integrator. Both matter if a small change of the state can grow until it decides the outcome. In
-6000 runs of columns under an earthquake, and as many of planar blocks under two more, each outcome that a finer rest
-threshold changed was of a column that had come to rest and was released again, and had overturned or tilted beyond
-half of its tipping angle. Another tolerance changed three of them, each beyond its tipping angle; and of 7200 runs
-under long harmonic shaking those that overturned late or were still moving at the end.
+6000 runs of columns under an earthquake, and as many of planar blocks under two more, a finer rest threshold changed
+outcomes only of columns that had come to rest, were uplifted again, and overturned or tilted beyond half of their
+tipping angle. Another tolerance changed three outcomes, each of a column beyond its tipping angle. In 7200 runs under
+long harmonic shaking it changed outcomes of columns that overturned late or were still moving at the end.
 """
 
 import numpy as np
@@ -15,16 +15,16 @@ from stylobate.engine.tolerances import RTOL_RANGE
 from stylobate.errors import Outcome
 
 FINER_REST = 0.01
-"""Rest is entered below this part of the energy when a run is repeated."""
+"""Factor of the rest energy when a run is repeated."""
 
 LARGE_TILT = 0.5
-"""A column released from rest again is in doubt if it tilts beyond this part of its tipping angle."""
+"""A column that is uplifted from rest again is in doubt if it tilts beyond this fraction of its tipping angle."""
 
 NEAR_BALANCE = 0.95
-"""A column that stands up again from beyond this part of its tipping angle is in doubt."""
+"""A column that comes back from beyond this fraction of its tipping angle is in doubt."""
 
 LATE = 40.0
-"""A column that overturns after so many units of its time is in doubt: small changes had time to grow."""
+"""A column that overturns after this many units of its time is in doubt, because small changes had time to grow."""
 
 FALLEN = (Outcome.OVERTURNED, Outcome.LIMIT_REACHED)
 """Outcomes that differ from all others: only a change from these to others, or back, makes a run uncertain."""
@@ -47,13 +47,13 @@ def in_doubt(
     overturned
         Whether the column overturned.
     decided
-        Dimensionless time at which that was decided.
+        Dimensionless time at which the outcome was decided.
     peak_tilt
         Peak tilt [rad].
     released_again
-        Whether the column came to rest in the run and was released again.
+        Whether the column came to rest in the run and was uplifted again.
     slenderness
-        c, the tangent of the tipping angle.
+        c = tan α_c.
     """
     fell, again = np.asarray(overturned), np.asarray(released_again)
     share = np.asarray(peak_tilt) / np.arctan(np.asarray(slenderness, dtype=float))

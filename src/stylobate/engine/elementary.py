@@ -1,4 +1,4 @@
-"""Elementary functions without branches and without calls into the C library, so that lanes take them side by side."""
+"""Elementary functions without branches and without calls into the C library, which compilers can vectorise."""
 
 import math
 
@@ -9,7 +9,7 @@ from stylobate.compiler.marks import fast
 
 @fast
 def cos_turns(u: float) -> float:
-    """Return cos 2πu, `u` in turns, right to 3e-16: the best odd polynomial of degree 15 for sin 2πs, |s| ≤ ¼."""
+    """Return cos 2πu with an error of 3e-16, by the minimax odd polynomial of degree 15 for sin 2πs, |s| ≤ ¼."""
     s: float = 0.25 - abs(u - np.floor(u + 0.5))
     z = s * s
     series = -0.6913364032112558
@@ -25,15 +25,15 @@ def cos_turns(u: float) -> float:
 
 @fast
 def winding(x0: float, y0: float, x1: float, y1: float, momentum: float) -> float:
-    """Return +1 or −1 if the way from (x0, y0) to (x1, y1) crosses the negative x axis anticlockwise or clockwise.
+    """Return +1 or −1 if the path from (x0, y0) to (x1, y1) crosses the negative x axis anticlockwise or clockwise.
 
-    Within a right angle it is the short way; beyond, past the origin, the side on which the `momentum` x ẏ − y ẋ
-    says it passes.
+    Within a right angle the path is the shorter one. Beyond, the sign of the `momentum` x ẏ − y ẋ decides on which side
+    of the origin it passes.
     """
     cross = x0 * y1 - y0 * x1
     sense = cross if x0 * x1 + y0 * y1 > 0.0 else momentum
     upper = (1.0 if y1 >= 0.0 else 0.0) - (1.0 if y0 >= 0.0 else 0.0)
-    # Grows as the azimuth, from −π to π, grows from the first point to the second.
+    # Positive if the azimuth, from −π to π, is larger at the second point.
     growth = upper if upper != 0.0 else cross
     forward = (1.0 if sense > 0.0 else 0.0) * (1.0 if growth < 0.0 else 0.0)
     backward = (1.0 if sense < 0.0 else 0.0) * (1.0 if growth > 0.0 else 0.0)
@@ -42,9 +42,9 @@ def winding(x0: float, y0: float, x1: float, y1: float, momentum: float) -> floa
 
 @fast
 def turning_point(start: float, end: float, slope: float, end_slope: float, sign: float) -> tuple[float, float]:
-    """Return where on [0, 1] the cubic through two values with two slopes has its extreme, and its value there.
+    """Return place on [0, 1] and value of the extreme of the cubic with these end values and slopes.
 
-    `sign` is 1 for a maximum, −1 for a minimum; meaningful only where the slopes have opposite signs.
+    `sign` is 1 for a maximum, −1 for a minimum; meaningful only if the slopes have opposite signs.
     """
     rise = end - start
     b = 3.0 * rise - 2.0 * slope - end_slope

@@ -1,4 +1,4 @@
-"""Choose the duration of a run, and decide whether a column that moves after its base motion could overturn later."""
+"""Duration of a run, and survival of a column that still moves after the base motion."""
 
 import math
 
@@ -21,7 +21,7 @@ def duration_of(duration: float | None, model: Model, motion: BaseMotion) -> flo
     Raises
     ------
     ParameterError
-        If it is not positive; or if there is none, and the base stays at rest or never does.
+        If the duration is not positive; or if there is none, and the base is always at rest or never comes to rest.
     """
     if duration is not None:
         return require_positive("duration", duration, "s")
@@ -33,11 +33,10 @@ def duration_of(duration: float | None, model: Model, motion: BaseMotion) -> flo
 
 
 def survival(model: Model, motion: BaseMotion, trajectory: Trajectory) -> tuple[Outcome, str]:
-    """Return outcome and reason of a column that moves at the end of a run, under a base motion that ends or none.
+    """Return outcome and reason of a column that moves at the end of a run, after its base motion or without any.
 
-    After the base motion the energy of a column can only fall: see `energy_over_balance`. A column that cannot overturn
-    any more has SURVIVED the base motion. Free motion survives nothing: without a base motion it is STILL_MOVING, with
-    the same reason.
+    After the base motion the energy of a column can only fall, see `energy_over_balance`. A column that can no longer
+    overturn has the outcome SURVIVED, or STILL_MOVING if there was no base motion.
     """
     end = trajectory.end * model.time_scale
     if not has_ended(end, motion.duration):
@@ -61,10 +60,10 @@ def has_ended(time: npt.ArrayLike, duration: npt.ArrayLike) -> npt.NDArray[np.bo
 
 
 def energy_over_balance(model: Model, states: Floats) -> Floats:
-    """Return the energy over that of the balance, shape (n,), for `states` of shape (number of states, n).
+    """Return the energy over the energy of the balance, shape (n,), for `states` of shape (number of states, n).
 
-    A column at a smaller tilt than that of its balance, with less energy, cannot overturn on a base at rest. The result
-    is infinite beyond the balance, and for a model without a `balance` of its own, which makes no such claim.
+    A column with a smaller tilt and less energy than at its balance cannot overturn on a base at rest. The result is
+    infinite beyond the balance, and for a model without its own `balance`.
     """
     balance, energy = model.balance, model.energy(states)
     if balance is None or energy is None or not belongs_to_equations(type(model), "balance", "energy"):

@@ -1,4 +1,4 @@
-"""Many runs at once: `simulate_ensemble`."""
+"""Integration of many runs: `simulate_ensemble`."""
 
 import json
 from collections.abc import Callable, Mapping
@@ -109,8 +109,9 @@ def simulate_ensemble(
     -------
     xarray.Dataset
         Over the dimensions of the arguments: `outcome` (codes, see its `flag_meanings`), the time of its decision, the
-        end state, maximum and minimum tilt, turns of the contact point; over the last periods mean tilt, phase of the
-        lean to the base acceleration, mean rolling rate and repetition. Values that a run does not have are NaN.
+        end state, peak and minimum tilt, turns of the contact point; over the last periods mean tilt, phase of the tilt
+        vector relative to the base acceleration, mean rolling rate and repetition. Values that a run does not have are
+        NaN.
 
         * With `strobes`: `strobe_tilt` and `strobe_tilt_rate`, in the order of time.
         * With `samples`: `sample_time`, `sampled_tilt` and `sampled_tilt_rate`. They and the stroboscopic samples are
@@ -174,7 +175,7 @@ def simulate_ensemble(
         announce(expected_steps(model, frequency, longest), options.max_steps)
     _check_own_model(model, runs)
     arrays = empty(model, options, len(runs))
-    # What differs between the runs stands in the coordinates.
+    # The coordinates hold the arguments that differ between the runs.
     arguments = {"tilt": tilt, "tilt_rate": tilt_rate, "spin": spin, "duration": duration, **changes}
     same = {name: np.asarray(value).tolist() for name, value in arguments.items() if name not in runs.coordinates}
     if terms_of(moved) is None and len(runs):
@@ -188,7 +189,7 @@ def simulate_ensemble(
 
     if _followed(plan, runs, arrays, threads, progress) and _rechecked(plan, runs, arrays, threads):
         return result()
-    message = "interrupted; `partial` has what had been computed"
+    message = "interrupted; `partial` has the finished runs"
     raise Interrupted(message, result())
 
 
@@ -267,7 +268,7 @@ def _dataset(
     for name, array in runs.coordinates.items():
         for label, index in array.coords.items():
             coordinates.setdefault(str(label), index)
-        # Along a dimension of its own name it is the index, which is there already.
+        # An array along a dimension of its own name is the index, which exists already.
         if name not in coordinates:
             coordinates[name] = array.variable
     data = xr.Dataset(

@@ -1,4 +1,4 @@
-"""One run through the kernels, with the trace of its motion and its events."""
+"""Computation of one run by the kernels, with the trace of its motion and its events."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -37,9 +37,9 @@ _LAST_EVENTS = {
 
 @dataclass(frozen=True, slots=True)
 class Followed:
-    """A run that was followed to its end: as a batch of one, its motion, its events, and its last periods.
+    """Finished run: its batch of one, its motion, its events, and the measures of its last periods.
 
-    `last_guard` is the number of the guard that ended a kind of contact last; −1 for none.
+    `last_guard` is the index of the guard of the last contact change; −1 for none.
     """
 
     batch: Batch
@@ -50,20 +50,20 @@ class Followed:
 
     @classmethod
     def of(cls, plan: Plan, run: Runs, paused: Callable[[float, float], None]) -> "Followed":
-        """Follow the only run of `run`.
+        """Compute the only run of `run`.
 
         Parameters
         ----------
         plan, run
-            As for ensembles.
+            Plan and run as for ensembles.
         paused
-            Called as `paused(steps, time [s])` after some steps each, when the trace is taken out.
+            Called as `paused(steps, time [s])` whenever the trace is full.
         """
         plan = plan if plan.traces else replace(plan, traces=EVERY + plan.layout.trace_room)
         batch = Batch.of(plan, run)
         batch.advance(np.zeros(1, dtype=np.uint8), paused)
         entries = np.concatenate([*batch.traces, np.empty((0, plan.layout.trace_width))])
-        batch.traces.clear()  # a long run takes much memory
+        batch.traces.clear()  # saves memory for long runs
         happened = entries[:, Trace.KIND] >= TraceKind.RELEASE
         stretches = entries[~happened] if not happened.all() else _nothing_moved(batch)
         line = batch.table[0, [Setup.LINE_X, Setup.LINE_Y]].tolist()
@@ -80,11 +80,11 @@ class Followed:
 
     @property
     def status(self) -> Status:
-        """Why the run ended."""
+        """Status at the end of the run."""
         return Status(int(self.batch.log(Log.STATUS)[0]))
 
     def log(self, column: Log) -> float:
-        """Return what the kernel noted."""
+        """Return a column of the log of the kernel."""
         return float(self.batch.log(column)[0])
 
 
@@ -98,7 +98,7 @@ def _event_in(model: Model, entry: Floats) -> str:
 
 
 def _nothing_moved(batch: Batch) -> Floats:
-    """Return the stretch of a run that ended where it began."""
+    """Return the only trace entry of a run that ended at its start."""
     entry = np.zeros((1, batch.plan.layout.trace_width))
     entry[0, Trace.KIND] = TraceKind.PLANE_STEP if batch.planar[0] else TraceKind.STEP
     entry[0, Trace.LENGTH] = 1.0

@@ -1,4 +1,4 @@
-"""A base motion as a model sees it: dimensionless time, accelerations in g."""
+"""Base motion in the units of a model: dimensionless time, accelerations in g."""
 
 import math
 from dataclasses import dataclass
@@ -16,7 +16,7 @@ Floats = npt.NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True)
 class Forcing:
-    """`motion` in the units of `model`."""
+    """Base motion in the units of a model."""
 
     motion: BaseMotion
     time_scale: float
@@ -24,7 +24,7 @@ class Forcing:
 
     @classmethod
     def of(cls, model: Model, motion: BaseMotion) -> "Forcing":
-        """Return `motion` as `model` sees it."""
+        """Return `motion` in the units of `model`."""
         return cls(motion, model.time_scale, model.column.gravity)
 
     def along(self, tau: Floats) -> Floats:
@@ -43,7 +43,7 @@ class Forcing:
 
 
 def common_line(*vectors: tuple[float, float]) -> tuple[float, float] | None:
-    """Return the unit vector to which all `vectors` are parallel to 8 ulp, or None; zero vectors fit any line."""
+    """Return the unit vector parallel to all `vectors` to 8 ulp, or None; zero vectors are parallel to any line."""
     longest = max(vectors, key=lambda vector: math.hypot(*vector), default=(0.0, 0.0))
     length = math.hypot(*longest)
     if length == 0.0:

@@ -1,4 +1,4 @@
-"""A trajectory as labelled arrays in SI units."""
+"""Samples of a trajectory as labelled arrays in SI units."""
 
 import math
 from collections.abc import Callable
@@ -19,14 +19,14 @@ from stylobate.results.samples import Labelled, Samples
 if TYPE_CHECKING:
     import xarray as xr
 
-# Default samples: this many to each period of the forcing and unit of the column's own time, within the bounds.
+# Default number of samples: per period of the forcing, per unit of time of the column, minimum and maximum.
 _PER_PERIOD, _PER_UNIT = 48, 24
 _FEWEST, _MOST = 1001, 50_001
 
 
 @dataclass(frozen=True, slots=True)
 class Recorded:
-    """The samples of a run, the demands on its contact, warnings, and the means to take samples at other times."""
+    """Samples of a run, contact demands, warnings, and a function for samples at other times."""
 
     data: Samples
     measures: dict[str, float]
@@ -56,7 +56,7 @@ def history(
     def spread(count: int) -> Samples:
         return _samples(model, motion, trajectory, np.linspace(0.0, end, count))
 
-    # What is measured does not depend on how many samples are kept.
+    # The measures must not depend on the number of samples in the result.
     seen = spread(usual)
     data = seen if samples in (None, usual) else spread(samples)
     demands = Demands.of(model, Forcing.of(model, motion), trajectory, seen, friction_coefficient)
@@ -108,6 +108,6 @@ def _of_base(values: Floats, units: str, long_name: str) -> Labelled:
 
 
 def default_count(model: Model, motion: BaseMotion, end: float) -> int:
-    """Return how many samples are kept of a run, where nobody asks for another number."""
+    """Return the default number of samples of a run."""
     periods = end * motion.highest_frequency * model.time_scale / (2.0 * math.pi)
     return int(np.clip(math.ceil(_PER_PERIOD * periods + _PER_UNIT * end) + 1, _FEWEST, _MOST))

@@ -1,4 +1,4 @@
-"""Periodic orbits that are known before an ensemble runs, so that runs that have converged to one can end early."""
+"""Known periodic orbits: runs of an ensemble that have converged to one of these orbits end early."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -16,12 +16,12 @@ Floats = npt.NDArray[np.float64]
 ArrayLike: TypeAlias = "npt.ArrayLike | xr.DataArray"
 
 MOST_ORBITS = 16
-"""An ensemble compares its runs with so many orbits at most."""
+"""Maximum number of known orbits of an ensemble."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class KnownOrbit:
-    """A stable periodic orbit of one base period, common to all runs or different for each run.
+    """Stable periodic orbit of one base period, common to all runs or different for each run.
 
     Each number has the shapes of `simulate_ensemble`: one for all runs, an array with the dimension `run`, or a
     DataArray. NaN in any number of a run means that this run has no such orbit.
@@ -31,7 +31,7 @@ class KnownOrbit:
     tilt, tilt_rate
         Tilt vector [rad] and its rate [rad/s] at phase zero of the base motion, where stroboscopic samples are taken.
     spin
-        Angular velocity about the axis at phase zero [rad/s], of models with a spin.
+        Angular velocity about the axis at phase zero [rad/s], for models with a spin.
     multiplier
         Largest modulus of the Floquet multipliers of all states of the model, between 0 and 1. The multipliers of
         planar disturbances alone do not suffice.
@@ -77,14 +77,14 @@ KnownOrbits: TypeAlias = KnownOrbit | Sequence[KnownOrbit]
 
 @dataclass(frozen=True, slots=True)
 class OrbitsOfRuns:
-    """The known orbits of each run, in SI units.
+    """Known orbits of each run, in SI units.
 
     Parameters
     ----------
     tilt, tilt_rate
         Shape (n, orbits, 2).
     spin, multiplier, turns, mean_tilt
-        Shape (n, orbits). The multiplier is NaN where a run has no such orbit.
+        Shape (n, orbits). The multiplier is NaN if a run has no such orbit.
     """
 
     tilt: Floats
@@ -96,7 +96,7 @@ class OrbitsOfRuns:
 
     @classmethod
     def of(cls, flat: Sequence[Mapping[str, Floats]]) -> "OrbitsOfRuns":
-        """Return the orbits of which these are the numbers, flat over the runs."""
+        """Return the orbits with these numbers, flat over the runs."""
         numbers = {name: np.stack([one[name] for one in flat], axis=1) for name in cls.__slots__}
         unknown = np.isnan(numbers["tilt"]).any(axis=-1) | np.isnan(numbers["tilt_rate"]).any(axis=-1)
         for name in ("spin", "multiplier", "turns", "mean_tilt"):
@@ -105,7 +105,7 @@ class OrbitsOfRuns:
         return cls(**numbers)
 
     def part(self, chosen: slice | npt.NDArray[np.intp]) -> "OrbitsOfRuns":
-        """Return those of some of the runs."""
+        """Return the orbits of some of the runs."""
         return OrbitsOfRuns(*(getattr(self, name)[chosen] for name in self.__slots__))
 
 
@@ -115,7 +115,7 @@ def as_orbits(given: KnownOrbits | None) -> tuple[KnownOrbit, ...]:
     Raises
     ------
     ParameterError
-        If something else is given, or too many.
+        If the argument has another type, or there are too many orbits.
     """
     orbits = () if given is None else (given,) if isinstance(given, KnownOrbit) else given
     if not isinstance(orbits, Sequence) or not all(isinstance(one, KnownOrbit) for one in orbits):

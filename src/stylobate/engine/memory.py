@@ -1,4 +1,4 @@
-"""How much memory results may take: a request that cannot fit is refused before anything is computed."""
+"""Memory limit of results: a request that does not fit is refused before the computation."""
 
 import math
 import os
@@ -7,9 +7,9 @@ from stylobate.errors import ParameterError
 
 
 def memory_of_the_machine() -> float:
-    """Return the physical memory of this machine [bytes]; infinite where the system does not report it.
+    """Return the physical memory of this machine [bytes]; infinite if the system does not report it.
 
-    The limit of a container may be lower still.
+    The limit of a container may be lower.
     """
     try:
         return float(os.sysconf("SC_PAGE_SIZE")) * float(os.sysconf("SC_PHYS_PAGES"))
@@ -23,11 +23,11 @@ def require_memory(size: float, runs: int, remedy: str) -> None:
     Parameters
     ----------
     size
-        What the results take [bytes].
+        Size of the results [bytes].
     runs
-        How many runs they are of.
+        Number of runs.
     remedy
-        What to do instead, as an imperative.
+        Remedy in the message, as an imperative.
 
     Raises
     ------

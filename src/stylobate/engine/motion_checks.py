@@ -1,4 +1,4 @@
-"""Check by sampling that a base motion keeps the promises on which integration and criteria rest."""
+"""Checks of base motions by sampling: bounds, directions, duration, period, highest frequency and breaks."""
 
 import math
 from collections.abc import Callable, Iterator
@@ -17,27 +17,27 @@ from stylobate.errors import ParameterError
 
 Floats = npt.NDArray[np.float64]
 
-# Times at which every motion is looked at, and one of a user's own.
+# Number of samples of each motion, and of a motion that a user has defined.
 _SAMPLES, _SAMPLES_OF_OWN = 257, 1025
 _COMPONENTS = 3
 
-# Relative room for rounding in bounds, directions and periods.
+# Relative tolerances of bounds, directions and durations, and of periods.
 _ROUNDING, _REPEATS = 1e-9, 1e-6
-# Rounding of the difference of two phases, in units of that of a phase.
+# Rounding error of the difference of two phases, in units of the error of one phase.
 _PHASES_APART = 4.0
 
-# Releases are sought by parabolas through three samples. The fraction of the peak acceleration that these may miss:
-# 6e-5 at the true frequency, this much at a seventh of it.
+# The search for uplift uses parabolas through three samples. This is the error allowed to them, as a fraction of the
+# peak acceleration; the error is 6e-5 at the true frequency, and this value at a seventh of it.
 _MISSED = 0.02
 _MOST_PAIRS, _POINTS = 4000, 4096
 
 
 def check_motion(motion: BaseMotion, duration: float) -> None:
-    """Raise ParameterError if `motion` breaks a promise in a run of `duration` [s].
+    """Raise ParameterError if `motion` contradicts its declarations in a run of `duration` [s].
 
-    The package's own motions are checked for finite accelerations within their bound; those of a user, also inside a
-    sum or a copy, for directions, vertical range, duration, period, highest frequency and breaks too. What happens
-    between samples is not seen.
+    All motions are checked for finite accelerations within their bound. Motions that a user has defined, also inside a
+    sum or a copy, are checked for directions, vertical range, duration, period, highest frequency and breaks too.
+    Errors between samples are not detected.
     """
     check_kinds(motion)
     time = np.linspace(0.0, duration, _SAMPLES)
@@ -47,7 +47,7 @@ def check_motion(motion: BaseMotion, duration: float) -> None:
 
 
 def check_kinds(motion: BaseMotion) -> None:
-    """Raise ParameterError unless each member of a user's own motion returns numbers, as many as it must."""
+    """Raise ParameterError unless each member of a user-defined motion returns the right number of numbers."""
     for own in own_motions(motion):
         for name, (get, convert, wanted) in _KINDS.items():
             value = get(own)
@@ -59,7 +59,7 @@ def check_kinds(motion: BaseMotion) -> None:
 
 
 def _vectors(value: Any, count: int | None, size: int) -> None:
-    """Raise ValueError or TypeError unless `value` holds so many vectors, any number for None, of this size."""
+    """Raise ValueError or TypeError unless `value` holds `count` vectors (any number for None) of this size."""
     found = [np.array(vector, dtype=float).shape for vector in value]
     if any(shape != (size,) for shape in found) or count not in (None, len(found)):
         raise ValueError
@@ -95,7 +95,7 @@ _KINDS: dict[str, _Kind] = {
 
 
 def own_motions(motion: BaseMotion) -> Iterator[BaseMotion]:
-    """Yield the motions of a user's own of which `motion` is made."""
+    """Yield the user-defined motions in `motion`."""
     if not _is_of_the_package(motion) or not _is_of_the_package(getattr(motion, "waveform", motion)):
         yield motion
     elif isinstance(motion, Sum):
@@ -121,7 +121,7 @@ def _check_bound(name: str, motion: BaseMotion, time: Floats) -> Floats:
         message = f"{name} must have a finite acceleration, got {parts[0][broken][0]!r} at t = {time[broken][0]!r} s"
         raise ParameterError(message)
     largest, bound = float(np.hypot(found[0], found[1]).max()), motion.peak_horizontal(0.0)
-    # The phases of two components are rounded apart where they are large.
+    # Large phases of two components have different rounding errors.
     frequency = motion.highest_frequency if math.isfinite(motion.highest_frequency) else 0.0
     unresolved = _PHASES_APART * np.finfo(float).eps * frequency * float(time[-1])
     if not largest <= bound * (1.0 + _ROUNDING + unresolved):
@@ -201,7 +201,7 @@ def _problem_of_period(motion: BaseMotion, duration: float) -> str:
         return ""
     if not 0.0 < period < math.inf:
         return f"period: must be positive (got {period!r} s). Return the common period, or None."
-    # Late: what a motion begins with, such as a ramp, is over.
+    # After the start, such as a ramp, is over.
     begin = max(duration, *motion.breaks, 0.0) if motion.breaks else duration
     time = begin + period * np.linspace(0.0, 1.0, _SAMPLES)
     now, later = (np.stack(motion.derivative(t, ACCELERATION)) for t in (time, time + period))
@@ -215,7 +215,7 @@ def _problem_of_period(motion: BaseMotion, duration: float) -> str:
 
 
 def _problem_of_resolution(motion: BaseMotion, duration: float) -> str:
-    """Return a line if parabolas through the samples on which releases are sought miss the acceleration."""
+    """Return a problem if parabolas through the samples of the search for uplift miss the acceleration."""
     frequency = motion.highest_frequency
     if not 0.0 <= frequency < math.inf:
         return f"highest_frequency: must be zero or positive (got {frequency!r} rad/s). Return it in rad/s."
@@ -223,7 +223,7 @@ def _problem_of_resolution(motion: BaseMotion, duration: float) -> str:
     if not starts.size:
         return ""
     half = max(4, _POINTS // (2 * starts.size))
-    # Inside: at its ends a pair may see the other side of a break.
+    # The ends are excluded, because they may lie on the other side of a break.
     share = np.clip(np.linspace(0.0, 1.0, 2 * half + 1), _ROUNDING, 1.0 - _ROUNDING)
     time = starts[:, np.newaxis] + lengths[:, np.newaxis] * share
     found = np.stack(motion.derivative(time.ravel(), ACCELERATION)).reshape(_COMPONENTS, *time.shape)
@@ -249,7 +249,7 @@ def _problem_of_resolution(motion: BaseMotion, duration: float) -> str:
 
 
 def _pairs_of_steps(motion: BaseMotion, end: float) -> tuple[Floats, Floats]:
-    """Return starts and lengths of pairs of the steps on which releases are sought, between breaks; not all if many."""
+    """Return starts and lengths of (some) pairs of sampling steps between breaks, as in the search for uplift."""
     stops = [0.0, *sorted(time for time in motion.breaks if 0.0 < time < end), end]
     pieces = np.array([(a, b) for a, b in pairwise(stops) if b > a]).reshape(-1, 2)
     pieces = pieces[_spread(len(pieces))]
@@ -265,12 +265,12 @@ def _pairs_of_steps(motion: BaseMotion, end: float) -> tuple[Floats, Floats]:
 
 
 def _spread(count: int, most: int = _MOST_PAIRS) -> npt.NDArray[np.intp]:
-    """Return the numbers below `count`, or so many as `most` of them, evenly spread."""
+    """Return the numbers below `count`, or `most` of them evenly spaced."""
     return np.arange(count) if count <= most else np.linspace(0, count - 1, most).astype(np.intp)
 
 
 def _jump(motion: BaseMotion, time: Floats, found: Floats) -> tuple[float, float] | None:
-    """Return when the acceleration jumps between these times and by how much, or None if it only changes fast."""
+    """Return time and size of a jump of the acceleration between these times, or None if it only changes fast."""
     first: float | None = None
     for _ in range(4):
         change = np.abs(np.diff(found, axis=1)).max(axis=0)

@@ -1,4 +1,4 @@
-"""How many steps a run is expected to take, and a sign of life from one that takes many: messages to the log."""
+"""Expected number of steps of a run, and log messages on its progress."""
 
 import logging
 import math
@@ -8,30 +8,30 @@ from stylobate.models import Model
 LOG = logging.getLogger("stylobate")
 
 EVERY = 1000
-"""After so many steps a run reports how far it is."""
+"""Number of steps between reports of the progress of a run."""
 
-# DOP853 takes at least two steps a period of the base motion, and is stable up to about so much times a rate of decay.
+# Minimum number of steps of DOP853 per period of the base motion, and the stability limit of step times decay rate.
 _STEPS_PER_PERIOD, _STABLE = 2.0, 6.0
 _RATES = ("damping", "spin_damping")
 
 
 def step_limit(most: int) -> str:
-    """Return the reason of a run that `most` steps did not bring to its end."""
+    """Return the reason of a run that reached its limit of `most` steps."""
     return f"its step limit is reached, max_steps = {most}; raise max_steps, shorten the run or loosen rtol"
 
 
 def unseen(most: int) -> str:
-    """Return the reason of a run in which `most` periods of the base motion released no standing column, with more."""
+    """Return the reason of a run whose column stood for `most` periods of a base motion that has more periods."""
     return f"it stands for {most} periods of the base motion, as many as max_steps allows to search; raise max_steps"
 
 
 def expected_steps(model: Model, frequency: float, end: float) -> float:
-    """Return the least number of steps of a run that moves to its end.
+    """Return the minimum number of steps of a run that moves to its end.
 
     Parameters
     ----------
     model
-        Its damping and spin damping limit steps by stability.
+        Model, whose damping and spin damping limit the steps by stability.
     frequency
         Highest dimensionless frequency of the base motion.
     end
@@ -42,7 +42,7 @@ def expected_steps(model: Model, frequency: float, end: float) -> float:
 
 
 def announce(expected: float, most: int) -> None:
-    """Log a warning if a run that moves to its end will need more steps than it may take."""
+    """Log a warning if a run that moves to its end needs more than `most` steps."""
     if expected > most:
         LOG.warning(
             "about %.2g steps are expected and max_steps is %d: a run that moves to its end fails there; shorten it",
@@ -52,5 +52,5 @@ def announce(expected: float, most: int) -> None:
 
 
 def report(steps: int, most: int, time: float, end: float) -> None:
-    """Log how far a run is, after so many `steps` of at most so many; times in s."""
+    """Log the progress of a run: `steps` of at most `most`, `time` of `end` [s]."""
     LOG.info("%d steps of at most %d, at %.4g of %.4g s", steps, most, time, end)

@@ -1,4 +1,4 @@
-"""Numbers that a study can vary by name, with their units and the values that they accept."""
+"""Parameters that a study can vary by name, with their units and valid values."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -16,7 +16,7 @@ Floats = npt.NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True)
 class VariedQuantity:
-    """Name, unit and accepted values of a number that a study varies."""
+    """Name, unit and valid values of a parameter that a study varies."""
 
     long_name: str
     units: str
@@ -45,11 +45,14 @@ _QUANTITIES = {
     "duration": _positive("duration", "s"),
     **{name: _declared(parameter.quantity) for name, parameter in parameters_of(Column).items()},
     "slenderness": _positive("slenderness", "1"),
-    "size": _positive("size, in that of the column given", "1"),
+    "size": _positive("size relative to the given column", "1"),
     **{name: _declared(quantity) for name, quantity in model_quantities().items()},
     **{f"{part}{name}": _declared(one) for name, one in motion_quantities().items() for part in ("", "motion.")},
     "motion": VariedQuantity(
-        "number of the base motion", "1", lambda values: (values >= 0.0) & (values % 1.0 == 0.0), "be whole, from 0 on"
+        "number of the base motion",
+        "1",
+        lambda values: (values >= 0.0) & (values % 1.0 == 0.0),
+        "be a whole number from 0 on",
     ),
     "acceleration": _not_negative("peak horizontal acceleration of the base", "m s-2"),
     "scale": VariedQuantity("factor of the base motion", "1"),
@@ -58,15 +61,15 @@ _QUANTITIES = {
     "rotation": VariedQuantity("rotation of the base motion", "rad"),
     "delay": VariedQuantity("delay of the base motion", "s"),
     **{f"amplitude_{axis}": VariedQuantity(f"acceleration of the base along {axis}", "m s-2") for axis in "xyz"},
-    "phase_difference": VariedQuantity("phase of the base along y less that along x", "rad"),
+    "phase_difference": VariedQuantity("phase of the base along y minus phase along x", "rad"),
 }
 
-# The parameters of a user's own model.
+# Parameters of a user-defined model.
 _ANY = VariedQuantity("", "")
 
 
 def quantity_of(name: str) -> VariedQuantity:
-    """Return the quantity `name`; of a name that is not known here, one that accepts any finite number."""
+    """Return the quantity `name`; an unknown name has a quantity that accepts any finite number."""
     return _QUANTITIES.get(name, _ANY)
 
 

@@ -1,4 +1,4 @@
-"""Column, model and base motion with some of their numbers changed by name."""
+"""Changes of parameters of column, model and base motion by name."""
 
 from collections.abc import Iterable, Mapping
 from dataclasses import fields, is_dataclass, replace
@@ -25,35 +25,35 @@ COLUMN_NAMES = (
     "slenderness",
     "size",
 )
-"""Its fields; `slenderness` changes the radius, `size` all lengths at the same density."""
+"""Parameters of the column; `slenderness` changes the radius, `size` all lengths at the same density."""
 
 MOTION_NAMES = ("motion", "angular_frequency", "start_phase", "acceleration", "scale", "rotation", "delay")
-"""In the order in which they are applied; `angular_frequency` and `start_phase` are declared numbers as others are."""
+"""Changes of the motion in the order of application; `angular_frequency` and `start_phase` are declared parameters."""
 
 ELLIPSE_NAMES = ("amplitude_x", "amplitude_y", "amplitude_z", "phase_difference")
-"""Of one harmonic motion, before all others; ensembles do not vary them."""
+"""Parameters of one harmonic motion, applied before all others; ensembles do not vary them."""
 
 _CHANGES = {"rotation": 0.0, "delay": 0.0, "scale": 1.0, "size": 1.0}
-"""What every motion and column takes, with the number that changes nothing."""
+"""Changes that apply to any motion or column, with the value that changes nothing."""
 
 _OWN = "motion."
-"""Before the name of a number of the motion that something else has too: see `motion_names`."""
+"""Prefix of a parameter of the motion whose name is ambiguous, see `motion_names`."""
 
-# What a name changes besides itself: with the other it would be said twice, and differently.
-_CONTRARY = {"slenderness": ("radius",), "size": ("radius", "mass_height")}
+# Parameters that a name changes too: both together would contradict each other.
+_CONTRADICTING = {"slenderness": ("radius",), "size": ("radius", "mass_height")}
 
 
 def model_names(model: Model) -> tuple[str, ...]:
-    """Return the names of the numbers of `model` itself, the fields of its dataclass."""
+    """Return the names of the parameters of `model` itself, the fields of its dataclass."""
     if not is_dataclass(model):
         return ()
     return tuple(field.name for field in fields(model) if field.name != "column" and field.init)
 
 
 def motion_names(model: Model, motion: BaseMotion | None) -> tuple[str, ...]:
-    """Return the names of the declared numbers of `motion`; of any of the package, where that is not known.
+    """Return the names of the declared parameters of `motion`; of all motions of the package for None.
 
-    One whose name the column, the model, a change of the motion or a result has too is called "motion." and its name.
+    The prefix "motion." marks a name that the column, the model, a change of the motion or a result also has.
     """
     from stylobate.engine.ensembles.summaries import QUANTITIES  # noqa: PLC0415  the two modules need each other
 
@@ -63,14 +63,14 @@ def motion_names(model: Model, motion: BaseMotion | None) -> tuple[str, ...]:
 
 
 def split(model: Model, values: Mapping[str, _T]) -> tuple[dict[str, _T], dict[str, _T]]:
-    """Return those of the `values` that change the column and its `model`, and those that change the motion."""
+    """Split the `values` into changes of the column and its `model`, and changes of the motion."""
     own = {*COLUMN_NAMES, *model_names(model)} - {*MOTION_NAMES, *ELLIPSE_NAMES}
     of_model = {name: value for name, value in values.items() if name in own}
     return of_model, {name: value for name, value in values.items() if name not in own}
 
 
 def declared_names(motion: BaseMotion, values: Mapping[str, object]) -> dict[str, str]:
-    """Return the names in `values` of declared numbers of `motion`, each with what it is called there.
+    """Return the names in `values` of declared parameters of `motion`, each with its name in the motion.
 
     Raises
     ------
@@ -81,7 +81,7 @@ def declared_names(motion: BaseMotion, values: Mapping[str, object]) -> dict[str
     names = {name: name.removeprefix(_OWN) for name in values if name not in changes}
     for name, own in names.items():
         if own not in numbers_of(motion):
-            message = f"{name}: the base motion has no such number {_having(motion)}"
+            message = f"{name}: the base motion has no such number {_own_numbers(motion)}"
             raise UnsupportedError(message)
     return names
 
@@ -95,20 +95,20 @@ def check_names(
     others: Iterable[str] = (),
     ellipse: bool = False,
 ) -> None:
-    """Raise ParameterError if one of the `names` is none that can be changed, or two say contrary things.
+    """Raise ParameterError if one of the `names` is not a parameter, or two contradict each other.
 
     Parameters
     ----------
     model, motion
-        Whose numbers are changed; None where the motion is not known.
+        Model and motion whose parameters change; None if the motion is not known.
     names
-        What is to be changed.
+        Names of the parameters to change.
     where
-        The argument that names them.
+        Argument that contains the names.
     others
-        What it may name besides parameters, such as components of the start.
+        Other valid names, such as components of the start.
     ellipse
-        Whether it may name those of one harmonic motion.
+        Whether the parameters of one harmonic motion are valid.
     """
     names = tuple(names)
     known = (*others, *COLUMN_NAMES, *model_names(model), *MOTION_NAMES, *(ELLIPSE_NAMES if ellipse else ()))
@@ -117,7 +117,7 @@ def check_names(
         if name not in known:
             message = f"{where}: {name} is not known here; known are {', '.join(known)}"
             raise ParameterError(message)
-    for name, changed in _CONTRARY.items():
+    for name, changed in _CONTRADICTING.items():
         for other in changed:
             if name in names and other in names:
                 message = f"{where}: {name} changes the {other}, which is given too; leave one of them out"
@@ -125,27 +125,27 @@ def check_names(
 
 
 def with_parameters(model: Model, motion: BaseMotion, /, **values: float) -> tuple[Model, BaseMotion]:
-    """Change numbers of `model` and `motion` by name: the objects of one run of an ensemble.
+    """Change parameters of `model` and `motion` by name: the objects of one run of an ensemble.
 
     Parameters
     ----------
     model, motion
-        What is changed; both stay as they are.
+        Model and motion, which are not modified.
     **values
-        Of the column: radius, mass_height [m], mass [kg], transverse_inertia, axial_inertia [kg m²], gravity [m/s²],
-        slenderness (by its radius), size (all lengths times it). Of the model: its own fields, such as damping. Of the
-        motion, applied in this order: motion (which of those in a `OneOf`); of a harmonic motion amplitude_x,
-        amplitude_y, amplitude_z [m/s²] and phase_difference (phase of y less that of x) [rad]; the numbers that its
-        class declares, such as angular_frequency [rad/s], start_phase [rad], or the cycles of a pulse; acceleration
-        [m/s²] (its largest horizontal one; of a sum, the sum of those of its parts), scale (a factor), rotation [rad]
-        about the vertical, delay [s]. A name that the column or the model has too stands for theirs: "motion." before
-        it makes it that of the motion.
+        Column: radius, mass_height [m], mass [kg], transverse_inertia, axial_inertia [kg m²], gravity [m/s²],
+        slenderness (changes the radius), size (factor of all lengths). Model: its own fields, such as damping. Motion,
+        in this order: motion (index in a `OneOf`); for a harmonic motion amplitude_x, amplitude_y, amplitude_z [m/s²]
+        and phase_difference (phase of y minus phase of x) [rad]; the parameters that its class declares, such as
+        angular_frequency [rad/s], start_phase [rad], or the cycles of a pulse; acceleration [m/s²] (peak horizontal
+        acceleration; for a sum, the sum of the peaks of its parts), scale (a factor), rotation [rad] about the
+        vertical, delay [s]. A name that the column or the model also has means theirs; the prefix "motion." selects the
+        motion.
 
     Raises
     ------
     ParameterError
-        If a name is not known, a value out of range, or two names say contrary things: slenderness changes the radius,
-        size the lengths.
+        If a name is not known, a value is out of range, or two names contradict each other: slenderness changes the
+        radius, size the lengths.
     UnsupportedError
         If the motion has no such number.
 
@@ -164,7 +164,7 @@ def with_parameters(model: Model, motion: BaseMotion, /, **values: float) -> tup
 
 
 def changed_model(model: Model, values: Mapping[str, float]) -> Model:
-    """Return `model` with these numbers of its column and its own."""
+    """Return `model` with these parameters of the column and the model."""
     if not values:
         return model
     own = {name: value for name, value in values.items() if name not in COLUMN_NAMES}
@@ -182,7 +182,7 @@ def _changed_column(column: Column, values: Mapping[str, float]) -> Column:
 
 
 def changed_motion(motion: BaseMotion, values: Mapping[str, float]) -> BaseMotion:
-    """Return `motion` with these numbers: of the ellipse, the declared ones, then in the order of MOTION_NAMES."""
+    """Return `motion` with these parameters: of the ellipse, declared ones, then in the order of MOTION_NAMES."""
     if "motion" in values:
         motion = _one_of(motion, values["motion"])
     ellipse = {name: values[name] for name in ELLIPSE_NAMES if name in values}
@@ -204,44 +204,44 @@ def changed_motion(motion: BaseMotion, values: Mapping[str, float]) -> BaseMotio
 def _one_of(motion: BaseMotion, number: float) -> BaseMotion:
     chosen = with_choice(motion, number)
     if chosen is None:
-        message = f"motion can be chosen in a OneOf only; {_said(motion)}"
+        message = f"motion can be chosen in a OneOf only; {_got(motion)}"
         raise UnsupportedError(message)
     return chosen
 
 
 def peak_acceleration(motion: BaseMotion) -> float:
-    """Return sup |a_h| of `motion`, by which an `acceleration` scales it [m/s²].
+    """Return sup |a_h| of `motion`, the reference of the parameter `acceleration` [m/s²].
 
     Raises
     ------
     UnsupportedError
-        If it has no horizontal acceleration.
+        If the motion has no horizontal acceleration.
     """
     largest = motion.peak_horizontal(0.0)
     if not largest > 0.0:
-        message = f"acceleration cannot be changed: the motion has no horizontal acceleration; {_said(motion)}"
+        message = f"acceleration cannot be changed: the motion has no horizontal acceleration; {_got(motion)}"
         raise UnsupportedError(message)
     return largest
 
 
 def harmonic_part(motion: BaseMotion, name: str) -> Harmonic:
-    """Return the one harmonic motion of which `motion` is made.
+    """Return the harmonic motion inside `motion`.
 
     Raises
     ------
     UnsupportedError
-        If there is none, or more than one; `name` is what needs it.
+        If `motion` is not one harmonic motion, which the parameter `name` needs.
     """
     if isinstance(motion, Transformed):
         return harmonic_part(motion.motion, name)
     if type(motion) is not Harmonic:
-        message = f"{name} can be changed in a Harmonic motion only; {_said(motion)}"
+        message = f"{name} can be changed in a Harmonic motion only; {_got(motion)}"
         raise UnsupportedError(message)
     return motion
 
 
-def _said(motion: BaseMotion) -> str:
-    """Return what was got; where that is a base at rest, with the remedy."""
+def _got(motion: BaseMotion) -> str:
+    """Return the motion in words; for a base at rest with a remedy."""
     if isinstance(motion, Sum) and not motion.motions:
         return "got a base at rest; give a base motion, such as a circular one"
     return f"got {motion!r}"
@@ -260,7 +260,7 @@ def _changed_harmonic(motion: BaseMotion, values: Mapping[str, float]) -> BaseMo
 
 
 def present_value(model: Model, motion: BaseMotion, name: str) -> float:
-    """Return the number called `name` as it is; of a change, such as `rotation` or `scale`, what changes nothing.
+    """Return the present value of the parameter `name`; for a change, such as `rotation`, the value without effect.
 
     Raises
     ------
@@ -289,13 +289,13 @@ def present_value(model: Model, motion: BaseMotion, name: str) -> float:
 
 
 def _ellipse(motion: Harmonic) -> Mapping[str, float]:
-    """Return the numbers of ELLIPSE_NAMES."""
+    """Return the parameters ELLIPSE_NAMES of a harmonic motion."""
     x, y, z = motion.amplitude
     first, second, _ = motion.phase
     return dict(zip(ELLIPSE_NAMES, (x, y, z, second - first), strict=True))
 
 
-def _having(motion: BaseMotion) -> str:
+def _own_numbers(motion: BaseMotion) -> str:
     if motion == BASE_AT_REST:
         return "(got a base at rest). Give a base motion, such as a circular one."
     names = ", ".join(numbers_of(motion))

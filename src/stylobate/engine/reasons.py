@@ -1,4 +1,4 @@
-"""Why the outcome of a single run is what it is, in one line, and the numbers that it rests on."""
+"""Reason of the outcome of a single run in one line, and measures of the last periods."""
 
 import math
 
@@ -23,17 +23,17 @@ _ENDINGS = {
 _STANDS = {True: "can neither tip nor move it", False: "cannot uplift it"}
 _JAMMED = "its contact jams: with friction as large as this no motion of a rigid body follows (Painlevé's paradox)"
 _UPRIGHT = {
-    Outcome.SLID: "it stands upright, and its base slides on the plane to the end",
+    Outcome.SLID: "it stands upright, and its base face slides on the plane to the end",
     Outcome.LIFTED_OFF: "it stays upright, and leaves the plane again and again",
 }
 _UNPROVED = "its tilt reached π/2, which counts as overturned"
 _RELEASED = "it may still be uplifted: follow it longer"
 _TOO_SMALL = "its step became smaller than the rounding of the time"
 _RACING = (
-    "; it passes the vertical so closely that the contact point races round the rim, and no passage costs energy: "
+    "; it passes the vertical so closely that the contact point runs fast round the rim, and no passage loses energy: "
     "set restitution below 1"
 )
-# Passages of the vertical closer than this take many steps [units of c].
+# Passages through the vertical closer than this take many steps [units of c].
 _RACES = 1e-3
 
 
@@ -50,7 +50,7 @@ def reason_of(model: Model, motion: BaseMotion, followed: Followed, outcome: Out
 
 
 def _at_its_end(model: Model, motion: BaseMotion, followed: Followed, outcome: Outcome) -> str:
-    """Return the reason of the outcome of a run whose time was up."""
+    """Return the reason of the outcome of a run that reached its duration."""
     if outcome is Outcome.AT_REST:
         return _standing(model, motion, followed)
     if outcome in (Outcome.STILL_MOVING, Outcome.SURVIVED) and math.isfinite(motion.duration):
@@ -60,7 +60,7 @@ def _at_its_end(model: Model, motion: BaseMotion, followed: Followed, outcome: O
 
 
 def _failure(model: Model, followed: Followed) -> str:
-    """Return why the integration of a run failed."""
+    """Return the reason of a failed integration."""
     most = int(followed.batch.plan.options.max_steps)
     match followed.status:
         case Status.STEP_LIMIT:
@@ -85,7 +85,7 @@ def _standing(model: Model, motion: BaseMotion, followed: Followed) -> str:
 
 
 def _races(model: Model, followed: Followed) -> bool:
-    """Return whether close passages without loss, which the model could have, explain the number of steps."""
+    """Return whether close passages explain the number of steps, and the model could have a loss but has none."""
     lossless = model.impact_map is not None and model.loss_tilt == 0.0
     return lossless and followed.log(Log.CLOSEST_PASSAGE) < _RACES * model.column.slenderness
 
@@ -97,7 +97,7 @@ def bounds_of(followed: Followed) -> tuple[float, float]:
 
 
 def late_measures(followed: Followed) -> dict[str, float]:
-    """Return what is measured over the last periods, where they were looked at."""
+    """Return the measures of the last periods if these were completed."""
     late = followed.late
     if np.isnan(late.span[0]):
         return {}
@@ -117,7 +117,7 @@ def late_measures(followed: Followed) -> dict[str, float]:
     return measures
 
 
-# Samples to each of the last periods, of which the peak tilt in them is the largest.
+# Samples per period for the peak tilt in the last periods.
 _SAMPLES = 64
 
 

@@ -1,4 +1,4 @@
-"""The result of a single run: its outcome, why, its motion, and what was measured."""
+"""Result of a single run: outcome, reason, motion, events and measures."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -28,18 +28,18 @@ from stylobate.results import Event
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RunResult:
-    """The result of a run.
+    """Result of a run.
 
     Parameters
     ----------
     outcome, reason, decided_at, uncertain, planar, events, thresholds, measures
         As in a `Response`.
     trajectory
-        Its motion.
+        Motion of the column.
     atol
         Absolute tolerance [rad].
     repeated
-        Repeats a run in doubt; returns a warning if it then has another outcome.
+        Repeats a run in doubt; returns a warning if the outcome changes.
     """
 
     outcome: Outcome
@@ -58,7 +58,7 @@ class RunResult:
 def run_result(
     model: Model, motion: BaseMotion, options: Options, start: Start, functions: Sequence[EventFunction]
 ) -> RunResult:
-    """Follow a run by the kernels of ensembles, and return its result."""
+    """Compute a run by the kernels of ensembles, and return its result."""
     run = one_run(start)
     plan = Plan(model, MotionPlan.of(motion, {}, run.duration), options)
 
@@ -119,7 +119,7 @@ def run_result(
 
 
 def _repeated(plan: Plan, run: Runs, outcome: Outcome) -> tuple[str, ...]:
-    """Repeat a run in doubt; return a warning if it then has another outcome."""
+    """Repeat a run in doubt; return a warning if the outcome changes."""
     again = plan.repeated()
     batch = Batch.of(again, run)
     batch.advance(np.zeros(1, dtype=np.uint8))
@@ -127,6 +127,6 @@ def _repeated(plan: Plan, run: Runs, outcome: Outcome) -> tuple[str, ...]:
     if other is Outcome.FAILED or (other in FALLEN) == (outcome in FALLEN):
         return ()
     return (
-        f"the outcome depends on numbers of the integration: with rest_energy {float(batch.rest_energy[0]):.2g} "
+        f"the outcome depends on the settings of the integration: with rest_energy {float(batch.rest_energy[0]):.2g} "
         f"and rtol {again.options.rtol:.2g} it is {other.name}",
     )

@@ -1,4 +1,4 @@
-"""One run, for a user to look at: `simulate`."""
+"""Integration of one run: `simulate`."""
 
 import math
 from collections.abc import Callable, Sequence
@@ -82,10 +82,10 @@ def simulate(
     tilt_limit
         Tilt that ends the run [rad]; none by default.
     rest_energy
-        ε: with friction, rest is entered below the energy ε c² where the base motion holds the column down. By default
-        the smaller of 1e-4 and 0.015/ν², ν being the mean dimensionless frequency of the base motion; if that can
-        release the column again, at most a hundredth of the energy with which it does, but not below 1e-8, and not
-        below 1e-5 under a record or a brief motion.
+        Rest energy ε: with damping, a column whose energy is below ε c² comes to rest if the base motion holds it down.
+        The default is the smaller of 1e-4 and 0.015/ν², where ν is the mean dimensionless frequency of the base motion.
+        If the base motion can uplift the column again, the default is at most a hundredth of the energy after uplift,
+        but not below 1e-8, or 1e-5 under a record or a brief motion.
     max_steps
         Maximum number of integration steps; a longer run ends as FAILED. The log warns if more steps are expected.
     samples
@@ -93,10 +93,10 @@ def simulate(
     rules
         Thresholds that classify a motion as rolling, rocking or modulated.
     recheck
-        Repeat a run in doubt with a hundredth of the rest energy and ten times the tolerance: one that was released
-        again after it had come to rest and then overturned or tilted beyond half of its tipping angle, that came back
-        from 0.95 of its tipping angle or more, or that overturned after 40/ω0 or more. If the column then overturns
-        instead of surviving, or the other way round, the result is `uncertain`, and a warning says so.
+        Repeat a run in doubt with a hundredth of the rest energy and ten times the tolerance. A run is in doubt if the
+        column was uplifted again after rest and then overturned or tilted beyond half of its tipping angle, came back
+        from 0.95 of its tipping angle or more, or overturned after 40/ω0 or more. If the repeated run overturns and the
+        first one does not, or the reverse, the result is `uncertain`, and has a warning.
     events
         Event functions, as `EventFunction` or plain functions of time and state with the optional attributes
         `direction` and `terminal`. Their zeros are recorded in `Response.events`; a terminal one ends the run, which

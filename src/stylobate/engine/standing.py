@@ -1,4 +1,4 @@
-"""What the contact bears while the column stands: |a_h|/(g + a_z) of friction, m (g + a_z) of normal force."""
+"""Contact loads while the column stands: friction demand |a_h|/(g + a_z), normal force m (g + a_z)."""
 
 import math
 from dataclasses import dataclass
@@ -9,7 +9,7 @@ from stylobate.engine.forcing import Floats, Forcing
 from stylobate.engine.tolerances import SAMPLES_PER_PERIOD
 from stylobate.models.contact import per_normal_force
 
-# Samples that memory holds in any case.
+# Maximum number of samples, to limit memory.
 _MOST = 500_000
 
 
@@ -22,7 +22,7 @@ class StandingLoads:
     tau
         Dimensionless times, shape (n,).
     friction
-        Friction demand |a_h|/(g + a_z), shape (n,): infinite where nothing presses on the base.
+        Friction demand |a_h|/(g + a_z), shape (n,): infinite if the normal force is zero.
     normal
         Normal force over the weight, 1 + a_z/g, shape (n,).
     """
@@ -33,11 +33,11 @@ class StandingLoads:
 
 
 def loads_while_standing(forcing: Forcing, start: float, end: float) -> StandingLoads:
-    """Return the loads from `start` to `end`, at times close enough to find the extremes from.
+    """Return the loads from `start` to `end`, at times close enough to locate the extremes.
 
-    These are the breaks of the base motion, at which the extremes of one that is linear between them lie, and 64
-    samples to its shortest period; over one period only where it repeats from there on. Of more than 500 000
-    samples, which only a motion without a period has, so many are taken, evenly spread.
+    The times are the breaks of the base motion (the extremes of a piecewise linear motion are there) and 64 samples per
+    shortest period. One period is enough if the motion is periodic after its last break. The number of samples is at
+    most 500 000; only a motion without a period can need more.
     """
     breaks = np.array(forcing.stops(end))
     within = breaks[(breaks > start) & (breaks < end)]

@@ -1,4 +1,4 @@
-"""The computed motion of one run: a polynomial for each step, from the trace that its kernel kept."""
+"""Trajectory of one run: a polynomial for each step, from the trace of its kernel."""
 
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -12,9 +12,9 @@ from stylobate.models import Model
 
 Floats = npt.NDArray[np.float64]
 
-# Nodes of Gauss's rule in each step, by which what is carried along is integrated.
+# Nodes of Gauss's rule in each step, for the integration of passive states.
 _NODES = 0.5 + 0.5 * np.polynomial.legendre.leggauss(8)[0]
-# Row k holds the integrals from 0 to 1 … of the polynomial through the nodes that is 1 at node k, by powers of u.
+# Row k holds the antiderivative of the polynomial that is 1 at node k and 0 at the other nodes, by powers of u.
 _ANTIDERIVATIVES = np.array(
     [
         np.polynomial.Polynomial.fit(_NODES, row, len(_NODES) - 1, domain=(0.0, 1.0), window=(0.0, 1.0)).integ().coef
@@ -25,20 +25,20 @@ _ANTIDERIVATIVES = np.array(
 
 @dataclass(frozen=True)
 class Trajectory:
-    """The motion between the start of a run and its end, as a function of dimensionless time.
+    """Motion of a run from its start to its end, as a function of dimensionless time.
 
     Parameters
     ----------
     model
-        Whose states they are.
+        Model of the column.
     stretches
-        Entries of the trace that are no events, shape (n, columns).
+        Entries of the trace that are not events, shape (n, columns).
     line
-        Unit vector of the line of motion in a plane.
+        Unit vector of the line of planar motion.
     carried
-        What is carried along, at the start.
+        Initial passive states.
     end
-        When the run ended.
+        End of the run.
     """
 
     model: Model
@@ -49,33 +49,33 @@ class Trajectory:
 
     @property
     def steps(self) -> int:
-        """Integration steps taken."""
+        """Number of integration steps."""
         return int(np.isin(self._kinds, (TraceKind.STEP, TraceKind.PLANE_STEP)).sum())
 
     @property
     def starts(self) -> Floats:
-        """When each stretch begins."""
+        """Start of each stretch."""
         return self.stretches[:, Trace.START]
 
     @property
     def ends(self) -> Floats:
-        """When each stretch ends: as the next one begins."""
+        """End of each stretch, the start of the next one."""
         return np.append(self.starts[1:], self.end)
 
     @cached_property
     def on_base(self) -> npt.NDArray[np.bool_]:
-        """In which stretches the column stands on its base, at rest or sliding."""
+        """Whether the column stands on its base, at rest or sliding, in each stretch."""
         stands = np.asarray(self._kinds == TraceKind.STAND)
         return stands | (self.contacts <= 1) if self.model.switches else stands
 
     @property
     def contacts(self) -> npt.NDArray[np.int8]:
-        """The kind of contact in each stretch, of a model that changes between kinds of contact."""
+        """Kind of contact in each stretch, for a model that changes between kinds of contact."""
         return np.asarray(self._terms[0, len(self.model.state_names) - 1], dtype=np.int8)
 
     @property
     def standing(self) -> list[tuple[float, float]]:
-        """From when to when the column stood on its base."""
+        """Start and end of each interval in which the column stands on its base."""
         stands = self._kinds == TraceKind.STAND
         return list(zip(self.starts[stands].tolist(), self.ends[stands].tolist(), strict=True))
 
@@ -87,8 +87,8 @@ class Trajectory:
     def states(self, tau: Floats, stretch: int | None = None) -> Floats:
         """Return the states, shape (number of states, n), at times between the start and the end.
 
-        Where one stretch ends and the next begins with other velocities, after an impact, they are those of the next,
-        or of the `stretch` of this number.
+        At the time of an impact the velocities are those after the impact, or those of the stretch with the index
+        `stretch`.
         """
         which = self._at(tau) if stretch is None else np.full(tau.shape, stretch)
         states = self._lifted(self._within(which, self._share(which, tau)), which)
@@ -97,18 +97,18 @@ class Trajectory:
         return np.concatenate([states, self._carried_at(which, tau)])
 
     def resting(self, tau: Floats) -> npt.NDArray[np.bool_]:
-        """Return where the column stands on its base, shape (n,)."""
+        """Return whether the column stands on its base, shape (n,)."""
         return np.asarray(self.on_base[self._at(tau)])
 
     def azimuth(self, tau: Floats, tilt: Floats) -> Floats:
-        """Return the azimuth of the lean [rad], followed round, of the `tilt` vectors, shape (2, n), at `tau`.
+        """Return the continuous azimuth [rad] of the `tilt` vectors, shape (2, n), at `tau`.
 
-        NaN where the column stands upright; in a plane it is not followed.
+        The azimuth is NaN if the column stands upright; in planar motion it is not continuous.
         """
         which = self._at(tau)
         x, y = tilt
         here = np.arctan2(y, x) / (2.0 * np.pi)
-        # Within a stretch the lean turns one way, by less than a turn.
+        # Within a stretch the tilt vector rotates in one direction by less than a turn.
         middle = 0.5 * (self.stretches[:, Trace.AZIMUTH] + self.stretches[:, Trace.END_AZIMUTH])[which]
         kinds = self._kinds[which]
         turns = np.where(kinds == TraceKind.PLANE_STEP, 0.0, np.round(middle - here))
@@ -121,7 +121,7 @@ class Trajectory:
 
     @cached_property
     def _terms(self) -> Floats:
-        """The states at the starts, and the coefficients, shape (8, number of states, n): quick to pick from."""
+        """States at the starts, and coefficients, shape (8, number of states, n), contiguous for fast selection."""
         terms = self.stretches[:, len(Trace) :].reshape(len(self.stretches), TRACE_TERMS, -1)
         return np.ascontiguousarray(terms.transpose(1, 2, 0))
 
@@ -132,7 +132,7 @@ class Trajectory:
         return np.asarray((tau - self.starts[which]) / self.stretches[which, Trace.LENGTH])
 
     def _within(self, which: npt.NDArray[np.intp], share: Floats) -> Floats:
-        """Return what the polynomials of these stretches give; states by their own numbers, in a plane tilt and rate.
+        """Return the values of the polynomials of these stretches: states, or tilt and rate for planar motion.
 
         E. Hairer, S. P. Nørsett, G. Wanner, "Solving Ordinary Differential Equations I", 2nd ed., section II.6.
         """
@@ -143,7 +143,7 @@ class Trajectory:
         return np.asarray(np.take(self._terms[0], which, axis=1) + change)
 
     def _lifted(self, states: Floats, which: npt.NDArray[np.intp]) -> Floats:
-        """Return the `states` of the model, out of those of these stretches."""
+        """Return the states of the model from the `states` of these stretches."""
         planar = self._kinds[which] == TraceKind.PLANE_STEP
         if not planar.any():
             return states[: len(self.model.state_names)]
@@ -159,7 +159,7 @@ class Trajectory:
 
     @cached_property
     def _carried(self) -> tuple[Floats, Floats]:
-        """What is carried along at the start of each stretch (n, c), and its integrals by powers of the share."""
+        """Passive states at the start of each stretch (n, c), and their increments by powers of the share."""
         assert self.model.carried_rates is not None
         count, carried = len(self.stretches), len(self.carried)
         terms = np.zeros((count, len(_NODES) + 1, carried))
@@ -185,7 +185,7 @@ class Trajectory:
 
 
 def _polynomials(terms: Floats, which: npt.NDArray[np.intp], share: Floats) -> Floats:
-    """Return the polynomials of these numbers, coefficients of shape (n, powers, c), at shares, one for each."""
+    """Return the values at `share` of the polynomials with these indices, coefficients of shape (n, powers, c)."""
     value = np.zeros((which.size, terms.shape[2]))
     for power in reversed(range(terms.shape[1])):
         value = value * share[:, np.newaxis] + terms[which, power]

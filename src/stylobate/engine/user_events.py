@@ -1,4 +1,4 @@
-"""Event functions of a user: their zeros are located on the dense output while a run is integrated."""
+"""Event functions of a user, and the location of their zeros on the dense output of a run."""
 
 import math
 from collections.abc import Callable, Sequence
@@ -16,9 +16,9 @@ from stylobate.models import Model
 from stylobate.results import Event
 from stylobate.results.response import EVENT_KINDS
 
-# Points of each step at which event functions are evaluated.
+# Number of points per step at which event functions are evaluated.
 _SAMPLES = 5
-# While the column stands: points to each half of the shortest period of the base motion, and at least and at most.
+# Points while the column stands: per half of the shortest period of the base motion, minimum, and maximum.
 _PER_HALF_PERIOD, _FEWEST, _MOST = 8, 65, 100_001
 
 
@@ -29,7 +29,7 @@ class EventFunction:
     Parameters
     ----------
     name
-        The kind of the events in `Response.events`.
+        Kind of the events in `Response.events`.
     function
         Called with the time [s] and the state; returns a number that changes sign at an event. The state is a dict of
         the variables of `Response.data` at that time, in SI units: "tilt" and "tilt_rate" (arrays of x and y),
@@ -79,7 +79,7 @@ def checked_events(events: Sequence[EventFunction | Callable[..., float]]) -> tu
     Raises
     ------
     ParameterError
-        If one of them is not callable, or its name is that of another event.
+        If a function is not callable, or two events have the same name.
     """
     if isinstance(events, EventFunction) or not isinstance(events, Sequence):
         message = f"events: must be a list of event functions (got {events!r}). Put a single one in brackets."
@@ -105,7 +105,7 @@ def _checked(where: str, given: object) -> EventFunction:
 
 
 class _State(dict[str, Any]):
-    """What an event function sees; the variables that the model adds are computed when one of them is used."""
+    """State for an event function; the outputs of the model are computed at the first use of one."""
 
     def __init__(self, model: Model, states: Floats, acceleration: Floats, *, resting: bool) -> None:
         scale, gravity = model.time_scale, model.column.gravity
@@ -130,7 +130,7 @@ class _State(dict[str, Any]):
 def own_events(
     functions: Sequence[EventFunction], model: Model, motion: BaseMotion, trajectory: Trajectory
 ) -> tuple[list[Event], float | None]:
-    """Return the events of a user's `functions` in a run, in their order, and the time of one that ends it [s]."""
+    """Return the events of the `functions` of a user in order, and the time of an event that ends the run [s]."""
     recorder = EventRecorder(tuple(functions), model, Forcing.of(model, motion), [])
     if functions:
         resting = trajectory.resting(trajectory.starts)
@@ -144,7 +144,7 @@ def own_events(
 
 @dataclass(slots=True)
 class EventRecorder:
-    """Locates the events of a run's event functions, step by step, and adds them to the `events` of the run."""
+    """Recorder that locates the zeros of event functions step by step, and adds them to the `events` of a run."""
 
     functions: tuple[EventFunction, ...]
     model: Model
@@ -159,14 +159,14 @@ class EventRecorder:
     def search(
         self, start: float, end: float, states: Callable[[Floats], Floats], *, resting: bool = False
     ) -> float | None:
-        """Record the events from `start` to `end`; return the time of one that ends the run, or None.
+        """Record the events from `start` to `end`; return the time of an event that ends the run, or None.
 
         Parameters
         ----------
         start, end
             A step up to its first event of another kind, in dimensionless time.
         states
-            States, shape (number of states, n), at n times inside.
+            Function that returns the states, shape (number of states, n), at n times within the step.
         resting
             Whether the column stands.
         """
@@ -215,7 +215,7 @@ def _crosses(old: float, new: float, direction: float) -> bool:
 
 
 def _root(value: Callable[[float], float], low: float, high: float) -> float:
-    """Return the zero in a bracket, which is empty where an impact changes the sign."""
+    """Return the zero in a bracket, which has no length if an impact changes the sign."""
     if low == high:
         return low
     from scipy.optimize import brentq  # noqa: PLC0415  SciPy takes a while to load

@@ -1,4 +1,4 @@
-"""What a finished run amounts to: the rules of the outcomes, with their thresholds."""
+"""Rules that decide the outcome of a run from its last periods, and their reasons."""
 
 import math
 from dataclasses import dataclass
@@ -11,12 +11,12 @@ from stylobate.engine.kernel.columns import SLACK
 from stylobate.errors import Outcome
 from stylobate.results import OutcomeRules
 
-# A motion that lost or won this many turns against the forcing does not follow it.
+# Maximum difference in turns between motion and forcing over the last periods, for rolling at the mean rate.
 _LESS_THAN_ONE_TURN = 0.5
 
 
 class Ground(IntEnum):
-    """On what an outcome rests that the last periods decide."""
+    """Ground of an outcome that the last periods decide."""
 
     NO_PERIOD = 0
     SHORT = 1
@@ -37,43 +37,46 @@ _VERDICTS = {
         "set duration to at least {steady:.4g} s",
     ),
     Ground.ROLLS: (Outcome.ROLLING, "it rolled once round in each of the last {n} periods and repeats"),
-    Ground.ROCKS: (Outcome.ROCKING, "it repeats over the last {n} periods without travelling round"),
+    Ground.ROCKS: (
+        Outcome.ROCKING,
+        "it repeats over the last {n} periods, and the contact point does not travel round",
+    ),
     Ground.SHORT_FOR_MODULATION: (
         Outcome.STILL_MOVING,
         "the run is shorter than the {twice} periods of the base motion that show modulation; "
         "set duration to at least {modulated:.4g} s",
     ),
-    Ground.DRIFTS: (Outcome.STILL_MOVING, "its last {both} periods are no steady motion"),
+    Ground.DRIFTS: (Outcome.STILL_MOVING, "its last {both} periods show no steady motion"),
     Ground.MODULATED: (Outcome.MODULATED, "it rolls at the mean rate of the base motion, its tilt modulated"),
     Ground.NOT_SETTLED: (
         Outcome.STILL_MOVING,
         "it rolls at the mean rate of the base motion and has not settled; follow it longer",
     ),
-    Ground.UNSTEADY: (Outcome.STILL_MOVING, "its last {n} periods are no steady motion"),
+    Ground.UNSTEADY: (Outcome.STILL_MOVING, "its last {n} periods show no steady motion"),
 }
 
 
 def outcome_on(ground: Ground) -> Outcome:
-    """Return the outcome that rests on `ground`."""
+    """Return the outcome of a ground."""
     return _VERDICTS[ground][0]
 
 
 @dataclass(frozen=True, slots=True)
 class Evidence:
-    """What the last n periods of runs show; numbers or arrays of one shape.
+    """Measures of the last n periods of runs; numbers or arrays of one shape.
 
     Parameters
     ----------
     turned
-        How far the lean travelled round [turns].
+        Change of the azimuth of the tilt vector [turns].
     minimum_tilt
-        [units of c].
+        Minimum tilt [units of c].
     repetition
-        The largest difference of states one period apart, over the peak tilt or rate.
+        Maximum difference of states one period apart, over the peak tilt or rate.
     repetition_before
-        The same over the n periods before; NaN where the run is too short for them.
+        The same over the n periods before; NaN if the run is too short.
     drift
-        Change of the mean lag behind the forcing from those periods to the last [turns].
+        Change of the mean lag behind the forcing from the n periods before to the last n periods [turns].
     """
 
     turned: npt.ArrayLike
@@ -84,7 +87,7 @@ class Evidence:
 
 
 def grounds(evidence: Evidence, rules: OutcomeRules) -> npt.NDArray[np.int8]:
-    """Return on which `Ground` the outcome of each run rests."""
+    """Return the `Ground` of the outcome of each run."""
     n = rules.periods
     turned, repetition = np.abs(evidence.turned), np.asarray(evidence.repetition)
     before = np.asarray(evidence.repetition_before)
@@ -117,13 +120,13 @@ def grounds(evidence: Evidence, rules: OutcomeRules) -> npt.NDArray[np.int8]:
 
 
 def reason_on(ground: Ground, n: int, period: float) -> str:
-    """Return the reason that rests on `ground`; periods of the base motion have this length [s]."""
+    """Return the reason of a ground; `n` is the number of last periods, `period` the period of the base motion [s]."""
     needed = {"steady": _rounded_up((n + 1) * period), "modulated": _rounded_up((2 * n + 1) * period)}
     return _VERDICTS[ground][1].format(n=n, more=n + 1, both=2 * n, twice=2 * n + 1, **needed)
 
 
 def _rounded_up(value: float) -> float:
-    """Return the least number of four digits that is not less than `value`, which is not negative.
+    """Round a number that is not negative up to four digits.
 
     >>> _rounded_up(43.98229715), _rounded_up(0.0)
     (43.99, 0.0)

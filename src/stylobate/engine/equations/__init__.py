@@ -1,1 +1,1 @@
-"""A model's equations as expressions: recorded from its functions, differentiated, expanded in series."""
+"""Symbolic expressions of the equations of a model: recording, differentiation, and series expansion."""

@@ -1,7 +1,7 @@
-"""Expressions of straight-line arithmetic, recorded from a function, differentiated, and written out as source.
+"""Symbolic expressions of straight-line arithmetic: recording from a function, differentiation, and source code.
 
-A model's equations are plain Python functions of floats. Called with expressions in place of floats they leave behind
-what they compute; from that follow their partial derivatives, exact but for rounding.
+The equations of a model are plain Python functions of floats. A call with expressions in place of floats records their
+operations, which give partial derivatives that are exact up to rounding.
 """
 
 from __future__ import annotations
@@ -20,9 +20,9 @@ Number = float | int
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Expression:
-    """A number that is not known yet: an input, or an operation on other expressions.
+    """Symbolic number: an input, or an operation on other expressions.
 
-    Two expressions of one recording that say the same are the same object.
+    Equal expressions of one recording are the same object.
     """
 
     record: Recording
@@ -93,8 +93,8 @@ class Expression:
 
     def __float__(self) -> float:
         message = (
-            "equations that use a function that cannot be recorded cannot be differentiated automatically; known are "
-            f"{', '.join(FUNCTIONS)} of math; give the model a `jacobian`"
+            "equations that use a function that cannot be recorded cannot be differentiated automatically; use "
+            f"{', '.join(FUNCTIONS)} of math, or give the model a `jacobian`"
         )
         raise UnsupportedError(message)
 
@@ -114,7 +114,7 @@ _LARGEST_POWER = 8
 
 @dataclass(slots=True)
 class Recording:
-    """The expressions of one function, each kept once."""
+    """Expressions of one function, each stored once."""
 
     kept: dict[tuple[Any, ...], Expression] = field(default_factory=dict)
 
@@ -125,7 +125,7 @@ class Recording:
     def made(
         self, operation: str, operands: tuple[Expression, ...], value: float = math.nan, name: str = ""
     ) -> Expression:
-        """Return the expression of this operation on these operands."""
+        """Return the expression for this operation on these operands."""
         key = (operation, tuple(map(id, operands)), repr(value), name)
         if key not in self.kept:
             self.kept[key] = Expression(self, operation, operands, value, name)
@@ -179,11 +179,11 @@ class Recording:
         return self.made(operation, (a, b))
 
     def applied(self, name: str, *arguments: Expression | Number) -> Expression:
-        """Return a function of the mathematical library."""
+        """Return the expression for a function of the mathematical library."""
         return self.made(name, tuple(self.known(argument) for argument in arguments))
 
     def derivatives(self, results: Sequence[Expression], by: Sequence[Expression]) -> list[list[Expression]]:
-        """Return the partial derivatives of `results`, rows, by the inputs `by`, columns."""
+        """Return the partial derivatives of `results` (rows) with respect to the inputs `by` (columns)."""
         columns = []
         for wanted in by:
             found: dict[int, Expression] = {}
@@ -205,7 +205,7 @@ class Recording:
         return total
 
     def in_order(self, results: Sequence[Expression]) -> list[Expression]:
-        """Return all expressions behind `results`, operands first."""
+        """Return all expressions that `results` depend on, operands first."""
         ordered: dict[int, Expression] = {}
         waiting = [(result, False) for result in reversed(results)]
         while waiting:
@@ -220,7 +220,7 @@ class Recording:
         return list(ordered.values())
 
     def source(self, results: Sequence[Expression]) -> tuple[list[str], list[str]]:
-        """Return lines of source that compute `results`, and what they are called there."""
+        """Return lines of source that compute `results`, and the names of the results in the source."""
         names: dict[int, str] = {}
         lines: list[str] = []
         for expression in self.in_order(results):
@@ -240,7 +240,7 @@ def _is(expression: Expression, value: float) -> bool:
 
 
 def number_source(value: float) -> str:
-    """Return a number as it stands in source."""
+    """Return the source of a number."""
     return repr(value) if math.isfinite(value) else f"math.{value!r}".replace("math.-inf", "-math.inf")
 
 
@@ -248,9 +248,9 @@ _SIGNS = {"add": "+", "subtract": "-", "multiply": "*", "divide": "/"}
 
 
 def operation_source(expression: Expression, operands: list[str]) -> str:
-    """Return an operation as it stands in source, its operands being these."""
+    """Return the source of an operation on these operands."""
     if expression.operation in _SIGNS:
-        # A negative number in brackets: -x ** 2 and 1 - -x read badly.
+        # Brackets around a negative number, for readability.
         left, right = (f"({o})" if o.startswith("-") else o for o in operands)
         return f"{left} {_SIGNS[expression.operation]} {right}"
     if expression.operation == "power":
@@ -262,7 +262,7 @@ def _of(name: str, argument: Expression) -> Expression:
     return argument.record.applied(name, argument)
 
 
-# Of each operation the partial derivatives by its operands: result first, then operands.
+# Partial derivatives of each operation with respect to its operands; arguments: the result, then the operands.
 _PARTIALS: dict[str, Callable[..., tuple[Any, ...]]] = {
     "input": lambda _: (),
     "constant": lambda _: (),

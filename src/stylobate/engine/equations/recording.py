@@ -1,4 +1,4 @@
-"""Recording a model's equations: what its function computes, as expressions."""
+"""Recording of the equations of a model as expressions."""
 
 import itertools
 import math
@@ -14,25 +14,25 @@ from stylobate.engine.equations.expressions import FUNCTIONS, Expression, Record
 
 Function = Callable[..., Any]
 
-# What stands in these packages is taken as it is.
+# Functions of these packages are not copied.
 _LIBRARIES = ("numpy",)
 
 _number = itertools.count()
 
 
 def recorded(function: Function, arguments: tuple[Any, ...]) -> Any:
-    """Return what `function` returns for these expressions and numbers.
+    """Return the value of `function` for these expressions and numbers.
 
     Raises
     ------
     UnsupportedError
-        If it compares expressions, or does with them what cannot be differentiated.
+        If the function compares expressions, or uses an operation that cannot be differentiated.
     """
     return _for_expressions(function)(*arguments)
 
 
 def _for_expressions(function: Function) -> Function:
-    """Return a copy of `function`, and of the functions it calls, whose mathematics takes expressions."""
+    """Return a copy of `function`, and of the functions that it calls, whose mathematics accepts expressions."""
     plain = plain_function(function)
     called = {name: _for_expressions(value) for name, value in _called_functions(plain)}
     names = {name: _recording_value(value) for name, value in plain.__globals__.items()}
@@ -41,7 +41,7 @@ def _for_expressions(function: Function) -> Function:
 
 
 def _called_functions(function: types.FunctionType) -> list[tuple[str, Function]]:
-    """Return the plain functions that `function` calls, by names of its module such as f, module.f or Class.f."""
+    """Return the plain functions that `function` calls, by their names in its module: f, module.f or Class.f."""
     found: dict[str, Function] = {}
     for name in global_names(function.__code__):
         root, *path = name.split(".")
@@ -57,10 +57,10 @@ def _called_functions(function: types.FunctionType) -> list[tuple[str, Function]
 def _with_functions(
     names: Mapping[str, Any], functions: Mapping[str, Function], code: types.CodeType
 ) -> dict[str, Any]:
-    """Return `names` with these functions in their places.
+    """Return `names` with these functions in place of the originals.
 
-    For a function called as Class.f, or as module.f, a module takes the place of what it stands in, with all that the
-    `code` uses of it: the class itself stays as it is.
+    For a function called as Class.f or module.f, a new module with all names that the `code` uses replaces the class or
+    module, which is not modified.
     """
     names = dict(names)
     spaces: dict[str, types.ModuleType] = {}

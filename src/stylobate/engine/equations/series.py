@@ -1,6 +1,6 @@
-"""Taylor series of recorded expressions: source that computes coefficient after coefficient.
+"""Taylor series of recorded expressions: source code of the recurrences of their coefficients.
 
-The coefficients of a sum, product, quotient or square root follow from those of its operands, order by order: R. E.
+The coefficients of a sum, product, quotient or square root follow from those of its operands order by order: R. E.
 Moore, "Methods and Applications of Interval Analysis" (SIAM, 1979), section 3.4; À. Jorba, M. Zou, "A software package
 for the numerical integration of ODEs by means of high-order Taylor methods", Experimental Mathematics 14 (2005).
 """
@@ -14,24 +14,24 @@ _KNOWN = ("input", "constant", "add", "subtract", "multiply", "divide", "sqrt")
 
 
 class Series:
-    """The Taylor series of expressions in time.
+    """Taylor series of expressions in time.
 
-    Coefficient k of the input or expression `name` stands in the source as `name_k`; what does not change with time has
-    only one, called by its name alone.
+    Coefficient k of the input or expression `name` is `name_k` in the source. A constant has only one coefficient, with
+    the name of the constant.
 
     Parameters
     ----------
     record
-        Where the expressions were recorded.
+        Recording of the expressions.
     results
-        What is wanted.
+        Expressions whose series are needed.
     moving
         Names of the inputs that change with time; the others are fixed.
 
     Raises
     ------
     UnsupportedError
-        If the expressions hold an operation without a recurrence.
+        If the expressions contain an operation without a recurrence.
     """
 
     def __init__(self, record: Recording, results: Sequence[Expression], moving: Collection[str]) -> None:
@@ -45,19 +45,19 @@ class Series:
             if expression.name in moving or any(self._moves(operand) for operand in expression.operands):
                 self._moving.add(id(expression))
             if self._moves(expression) and expression.operation not in _KNOWN:
-                message = f"no recurrence is known here for the Taylor coefficients of {expression.operation}"
+                message = f"no recurrence is implemented for the Taylor coefficients of {expression.operation}"
                 raise UnsupportedError(message)
             self._names[id(expression)] = expression.name or f"v{len(self._names)}"
 
     def lines(self, k: int) -> list[str]:
-        """Return lines that compute coefficient `k` of all expressions, those of lower orders being known."""
+        """Return lines that compute coefficient `k` of all expressions from the coefficients of lower orders."""
         out: list[str] = []
         for expression in self._expressions:
             out += self._coefficient_lines(expression, k)
         return out
 
     def result(self, index: int, k: int) -> str:
-        """Return what coefficient `k` of a result is called, or its value."""
+        """Return the name of coefficient `k` of a result, or its value."""
         return self._coefficient(self._results[index], k) or "0.0"
 
     def _moves(self, expression: Expression) -> bool:
@@ -67,7 +67,7 @@ class Series:
         return self._coefficient(id(expression), k)
 
     def _coefficient(self, key: int, k: int) -> str | None:
-        """Return what coefficient `k` is called; None for one that is zero."""
+        """Return the name of coefficient `k`, or None if it is zero."""
         if (key, k) in self._aliases:
             return self._aliases[key, k]
         name = self._names[key]
@@ -92,7 +92,7 @@ class Series:
             before, text = self._quotient(expression, k)
         elif operation == "sqrt" and self._moves(expression):
             before, text = self._root(expression, k)
-        else:  # a function of what is fixed
+        else:  # a function of constants
             text = operation_source(expression, [str(self._of(operand, 0)) for operand in expression.operands])
         if text is None or text.removeprefix("-").replace("_", "").isalnum():  # zero, or another, or its negative
             text = f"({text})" if text and text.startswith("-") else text
@@ -111,7 +111,7 @@ class Series:
         return _sum(self._pair(a, j, b, k - j) for j in _oldest_first(range(k + 1)))
 
     def _square(self, a: Expression, orders: range) -> str | None:
-        """Return Σ a_j a_l over the pairs of `orders` that lie symmetric in it, each pair that is twice there once."""
+        """Return the source of Σ a_j a_l over the symmetric pairs of `orders`; equal pairs are computed once."""
         first, last = orders.start, orders.stop - 1
         pairs = _sum(self._pair(a, first + j, a, last - j) for j in reversed(range(len(orders) // 2)))
         middle = self._pair(a, (first + last) // 2, a, (first + last) // 2) if len(orders) % 2 else None
@@ -143,7 +143,7 @@ class Series:
         return [], text and f"({text}) * half_{name}"
 
     def _reciprocal(self, expression: Expression) -> tuple[list[str], str]:
-        """Return what 1/a_0 is called, and the lines that compute it the first time."""
+        """Return the lines that compute 1/a_0 for the first time, and its name."""
         value = self._of(expression, 0)
         name = f"per_{self._names[id(expression)]}"
         if name in self._reciprocals:
@@ -153,7 +153,7 @@ class Series:
 
 
 def _oldest_first(orders: range) -> list[int]:
-    """Return the orders from the middle outwards: what was found last comes last, and the sum need not wait for it."""
+    """Return the orders from the middle outwards, so that sums do not wait for the latest coefficients."""
     middle = 0.5 * (orders.start + orders.stop - 1)
     return sorted(orders, key=lambda order: abs(order - middle))
 
@@ -163,7 +163,7 @@ def _sum(terms: Iterable[str | None]) -> str | None:
 
 
 def _added(a: str | None, b: str | None, sign: str) -> str | None:
-    """Return the source of a ± b, None being zero."""
+    """Return the source of a ± b; None means zero."""
     if a is None or b is None:
         return a or (b and (f"-{b}" if sign == "-" else b))
     return f"{a} {sign} {b}"
