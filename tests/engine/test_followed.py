@@ -40,7 +40,7 @@ CASES = {
         *(sb.PlanarRocking(COLUMN, restitution=0.8), STRONG, STILL, STILL, 2.0),
         "STAND PLANE_STEP uplift impact rest",
     ),
-    "leaps past the upright": (
+    "analytical step past the vertical": (
         sb.Slender(COLUMN),
         BASE_AT_REST,
         (0.3 * C, 0.0),
@@ -91,7 +91,7 @@ def test_states_and_events_agree_with_an_independent_integration(case):
 def assert_alike(model, run, other):
     assert [event.kind for event in run.events] == [event.kind for event in other.events]
     times = [np.array([event.time for event in one.events]) for one in (run, other)]
-    # A leap past the upright is right to a part of 1e-6 of its speed, which shifts what comes after it.
+    # An analytical step past the vertical has a relative error of 1e-6 in its speed, which shifts the later motion.
     np.testing.assert_allclose(*times, rtol=0.0, atol=3e-6)
     time = np.linspace(0.0, run.trajectory.end * model.time_scale * (1.0 - 1e-9), 400)
     apart = np.abs(time[:, np.newaxis] - times[0]).min(axis=1, initial=1.0)
@@ -170,11 +170,11 @@ def test_a_step_that_is_taken_back_leaves_no_trace():
 
 
 @pytest.mark.parametrize("share", [0.0, 0.5, 1.0])
-def test_a_run_may_end_at_or_within_a_leap(share):
-    model, motion, tilt, rate, _, _ = CASES["leaps past the upright"]
-    whole = followed("leaps past the upright")[0].trajectory
-    leap = whole.stretches[whole.stretches[:, Trace.KIND] == TraceKind.ANALYTICAL_STEP][0]
-    end = leap[Trace.START] + share * leap[Trace.LENGTH]
+def test_a_run_may_end_at_or_within_an_analytical_step(share):
+    model, motion, tilt, rate, _, _ = CASES["analytical step past the vertical"]
+    whole = followed("analytical step past the vertical")[0].trajectory
+    step = whole.stretches[whole.stretches[:, Trace.KIND] == TraceKind.ANALYTICAL_STEP][0]
+    end = step[Trace.START] + share * step[Trace.LENGTH]
     duration = end * model.time_scale
     plan = plan_of(model, motion, duration, rtol=RTOL)
     run = Followed.of(plan, one_run(Start(tilt, rate, duration)), ignored)
@@ -270,9 +270,9 @@ def test_what_is_counted_of_contacts_is_what_the_trace_shows(case):
     assert told.noted[0, Change.IMPACTS] == sum(kind in ("land", "face_impact") for kind in kinds)
     trajectory = run.trajectory
     # A short time in which one kind becomes another counts to that.
-    leaps = np.flatnonzero(trajectory.stretches[:, Trace.KIND] == TraceKind.ANALYTICAL_STEP)
+    analytical = np.flatnonzero(trajectory.stretches[:, Trace.KIND] == TraceKind.ANALYTICAL_STEP)
     contacts, lengths = trajectory.contacts.copy(), trajectory.ends - trajectory.starts
-    contacts[leaps] = contacts[leaps + 1]
+    contacts[analytical] = contacts[analytical + 1]
     for kind, times in zip((k for k in Contact if k is not Contact.JAMMED), told.times.values(), strict=True):
         lasted = lengths[contacts == kind].sum()
         assert times[0] == pytest.approx(lasted, rel=1e-9, abs=1e-12)

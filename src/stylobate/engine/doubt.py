@@ -63,5 +63,5 @@ def in_doubt(
 
 
 def other_tolerance(rtol: float) -> float:
-    """Return the relative tolerance with which a run is repeated: ten times that given, at most the largest allowed."""
+    """Return the relative tolerance for a repeated run: ten times `rtol`, at most the largest valid tolerance."""
     return min(_OTHER_TOLERANCE * rtol, RTOL_RANGE[1])

@@ -105,7 +105,7 @@ def simulate(
     Returns
     -------
     Response
-        Outcome and history. OVERTURNED is proved by the model's no-return criterion where it has one.
+        Outcome and history. OVERTURNED is proved by the no-return criterion of the model if it has one.
 
     Raises
     ------

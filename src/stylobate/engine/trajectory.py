@@ -168,9 +168,9 @@ class Trajectory:
             each, nodes = np.repeat(steps, len(_NODES)), np.tile(_NODES, steps.size)
             rates = self._carried_rates(self._within(each, nodes).T).reshape(steps.size, len(_NODES), carried)
             terms[steps] = np.einsum("nkc,kp->npc", rates, _ANTIDERIVATIVES)
-        leaps = np.flatnonzero(self._kinds == TraceKind.ANALYTICAL_STEP)
-        if leaps.size:
-            terms[leaps, 1] = self._carried_rates(self._terms[0][:, leaps].T)
+        analytical = np.flatnonzero(self._kinds == TraceKind.ANALYTICAL_STEP)
+        if analytical.size:
+            terms[analytical, 1] = self._carried_rates(self._terms[0][:, analytical].T)
         each = np.arange(count)
         gained = _polynomials(terms, each, self._share(each, self.ends))
         gained *= self.stretches[:, Trace.LENGTH][:, np.newaxis]
