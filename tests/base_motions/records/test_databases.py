@@ -103,12 +103,12 @@ def test_velocities_alone_are_refused_with_the_remedy(download):
     path = download / "RSN1_QUAKE_AB000.VT2"
     with pytest.raises(FileError) as raised:
         sb.read_record(path)
-    what = "accelerations are wanted, this is velocity. Read the .AT2 file of this component"
+    what = "the file holds velocity, not acceleration. Read the .AT2 file of this component"
     assert str(raised.value) == f"{path}, line 3: {what}"
     for other in download.iterdir():
         if other != path:
             other.unlink()
-    with pytest.raises(FileError, match="this is velocity"):
+    with pytest.raises(FileError, match="holds velocity, not acceleration"):
         sb.read_records(download)
 
 
@@ -120,7 +120,7 @@ def test_esm_files_tell_step_unit_and_direction(tmp_path):
         record = sb.read_record(written(tmp_path, asc(values, stream), name))
         np.testing.assert_allclose(record.samples[:, axis], expected, rtol=1e-14)
         assert (record.step, record.axes) == (0.005, ("xyz"[axis],))
-        assert f"in cm/s² as the file says: Some Quake, 1990-01-02 134128, AB.CDE, {stream}" in record.provenance[0]
+        assert f"in cm/s² as the file states: Some Quake, 1990-01-02 134128, AB.CDE, {stream}" in record.provenance[0]
         assert note in record.provenance
     assert sb.read_record(tmp_path / name, format=RecordFormat.ASC) == record
 
@@ -134,13 +134,13 @@ def test_a_stream_without_a_compass_letter_points_nowhere(tmp_path):
 @pytest.mark.parametrize(
     ("changes", "message"),
     [
-        ({"NDATA": "24"}, r"line 40: the header says 24 samples, the file has 23"),
+        ({"NDATA": "24"}, r"line 40: the header states 24 samples, the file has 23"),
         ({"NDATA": "many"}, r"line 10: NDATA must be a whole number, got 'many'"),
         ({"SAMPLING_INTERVAL_S": "0"}, r"line 9: SAMPLING_INTERVAL_S must be positive, got 0.0"),
         ({"SAMPLING_INTERVAL_S": None}, r"line 1: incomplete header of an ASC file: SAMPLING_INTERVAL_S is missing"),
         ({"UNITS": "stone"}, r"line 12: unknown unit 'stone'"),
         ({"UNITS": ""}, r"names no unit: state units"),
-        ({"DATA_TYPE": "VELOCITY"}, r"line 15: accelerations are wanted, this is velocity. Read the file .* with ACC"),
+        ({"DATA_TYPE": "VELOCITY"}, r"line 15: the file holds velocity, not acceleration. Read the file .* with ACC"),
     ],
 )
 def test_a_broken_esm_file_gets_one_clear_line(tmp_path, changes, message):

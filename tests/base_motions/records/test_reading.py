@@ -41,7 +41,7 @@ def test_at2_files_of_both_kinds_are_read(tmp_path, content, packed):
     record = sb.read_record(path)
     np.testing.assert_allclose(record.samples[:, 0], VALUES * STANDARD_GRAVITY, rtol=1e-15)
     assert (record.step, record.start, record.name, record.axes) == (0.005, 0.0, "a", ("x",))
-    assert record.provenance[0].endswith("in g as the file says: Some Quake, 1/2/1990, Some Site, 90")
+    assert record.provenance[0].endswith("in g as the file states: Some Quake, 1/2/1990, Some Site, 90")
 
 
 def test_a_vertical_component_acts_along_z(tmp_path):
@@ -76,7 +76,7 @@ def test_units_are_never_guessed(tmp_path):
         sb.read_record(path)
     with pytest.raises(ParameterError, match=r"units must be .* got 'furlong'"):
         sb.read_record(path, "furlong")
-    with pytest.raises(ParameterError, match=r"units must be left out or 'g', which the file says, got 'm/s2'"):
+    with pytest.raises(ParameterError, match=r"units must be left out or 'g', which the file states, got 'm/s2'"):
         sb.read_record(written(tmp_path, "a.at2", NEW), "m/s2")
 
 
@@ -163,20 +163,20 @@ BROKEN = {
     "short": (
         NEW.replace("  -.2000000E-04   .5000000E+00\n", ""),
         None,
-        r"line 5: the header says 7 samples, the file has 5",
+        r"line 5: the header states 7 samples, the file has 5",
     ),
-    "long": (NEW + " .1 .2\n", None, r"line 7: the header says 7 samples, the file has 9"),
+    "long": (NEW + " .1 .2\n", None, r"line 7: the header states 7 samples, the file has 9"),
     "token": (NEW.replace("-.2000000E-04", "-.2oo0000E-04"), None, r"line 6: not a number: '-.2oo0000E-04'"),
     "nan": (NEW.replace(".5000000E+00", "NaN"), None, r"line 6: not a finite number: 'NaN'"),
     "count": (NEW.replace("NPTS=      7", "NPTS=    7.5"), None, r"line 4: NPTS must be a whole number, got '7.5'"),
     "none": (
         NEW.replace("NPTS=      7", "NPTS=      1"),
         None,
-        r"line 4: two samples at least are wanted, NPTS says 1",
+        r"line 4: NPTS must be at least 2 samples, got 1",
     ),
     "no step": (NEW.replace(".0050", ""), None, r"line 4: the time step DT is missing"),
     "step": (NEW.replace(".0050", "0.000"), None, r"line 4: the time step DT must be positive, got 0.0"),
-    "velocity": (NEW.replace("ACCELERATION", "VELOCITY"), None, r"line 3: accelerations are wanted, this is velocity"),
+    "velocity": (NEW.replace("ACCELERATION", "VELOCITY"), None, r"line 3: the file holds velocity, not acceleration"),
     "unit": (NEW.replace("OF G", "OF STONE"), None, r"line 3: unknown unit 'STONE'"),
     "empty": ("\n \n", "g", r": the file is empty"),
     "remarks": ("# nothing\n", "g", r": the file has no numbers"),
@@ -190,7 +190,7 @@ BROKEN = {
     "wide": (
         "0 1 2\n1 2 3\n",
         "g",
-        r"line 1: 3 columns: one \(acceleration\) or two \(time, acceleration\) are wanted",
+        r"line 1: 3 columns: one \(acceleration\) or two \(time, acceleration\) are expected",
     ),
     "word": (TABLE.replace("-0.25", "minus"), "g", r"line 3: not a number: 'minus'"),
     "one": ("0.0 1.0\n", "g", r"line 1: the file is too short: one sample"),

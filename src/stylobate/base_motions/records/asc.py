@@ -73,7 +73,7 @@ def read_asc(text: Text) -> Component:
             raise text.fault(header.places.get(key, 0), what)
     kind = header.get("DATA_TYPE").lower()
     if kind and kind != "acceleration":
-        what = f"accelerations are wanted, this is {kind}. Read the file of this component with ACC in its name"
+        what = f"the file holds {kind}, not acceleration. Read the file of this component with ACC in its name"
         raise text.fault(header.places["DATA_TYPE"], what)
     step = text.number(header.places["SAMPLING_INTERVAL_S"], header.get("SAMPLING_INTERVAL_S"))
     if step <= 0.0:

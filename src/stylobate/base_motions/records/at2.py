@@ -97,7 +97,7 @@ def _unit(text: Text, header: int) -> str | None:
     for index, line in enumerate(text.lines[:header]):
         if _OTHERS.match(line):
             what = line.split()[0].lower()
-            raise text.fault(index, f"accelerations are wanted, this is {what}. Read the .AT2 file of this component")
+            raise text.fault(index, f"the file holds {what}, not acceleration. Read the .AT2 file of this component")
         if found := _UNITS.search(line):
             unit = unit_of(found["unit"])
             if unit is None:

@@ -116,7 +116,7 @@ class Text:
         if not _WHOLE.fullmatch(token):
             raise self.fault(index, f"{name} must be a whole number, got {token!r}")
         if int(token) < 2:  # noqa: PLR2004  a step has two ends
-            raise self.fault(index, f"two samples at least are wanted, {name} says {token}")
+            raise self.fault(index, f"{name} must be at least 2 samples, got {token}")
         return int(token)
 
     def rows(self, tokens: Sequence[tuple[int, list[str]]]) -> Floats:
@@ -145,5 +145,5 @@ class Text:
         values = self.rows([(at, [token]) for at, row in tokens for token in row]) if found else np.empty((0, 1))
         if count is not None and found != count:
             last = tokens[-1][0] if tokens else after
-            raise self.fault(last, f"the header says {count} samples, the file has {found}")
+            raise self.fault(last, f"the header states {count} samples, the file has {found}")
         return values[:, 0]

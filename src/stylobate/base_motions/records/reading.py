@@ -213,8 +213,8 @@ def _scale(component: Component, path: Path, units: str | None) -> tuple[float, 
         message = f"{path}: the file names no unit: state units, {KNOWN}"
         raise FileError(message)
     if component.unit is not None and given is not None and component.unit != given:
-        message = f"{path}: units must be left out or {component.unit!r}, which the file says, got {units!r}"
+        message = f"{path}: units must be left out or {component.unit!r}, which the file states, got {units!r}"
         raise ParameterError(message)
     unit = component.unit or given
     assert unit is not None
-    return in_si(unit), f"in {unit}" + (" as the file says" if component.unit else " as given")
+    return in_si(unit), f"in {unit}" + (" as the file states" if component.unit else " as given")

@@ -27,7 +27,7 @@ def read_table(text: Text, step: float | None) -> Component:
     width = len(tokens[0][1])
     if width > _TIME_AND_ACCELERATION:
         text.rows(tokens[:1])
-        what = "one (acceleration) or two (time, acceleration) are wanted. Name them in the first line"
+        what = "one (acceleration) or two (time, acceleration) are expected. Name them in the first line"
         raise text.fault(tokens[0][0], f"{width} columns: {what}")
     for at, row in tokens:
         if len(row) != width:

@@ -42,13 +42,13 @@ def read_waveform(path: Path, content: bytes) -> Component:
         message = f"{path}: ObsPy cannot read it: {error}"
         raise FileError(message) from error
     if len(stream) != 1:
-        message = f"{path}: one trace without gaps is wanted, the file holds {len(stream)}"
+        message = f"{path}: the file must hold one trace without gaps, got {len(stream)} traces"
         raise FileError(message)
     (trace,) = stream
     stats = trace.stats
     samples = np.ma.filled(np.ma.asarray(trace.data, dtype=float), np.nan) * float(stats.calib)
     if len(samples) < 2 or not np.all(np.isfinite(samples)):  # noqa: PLR2004  a step has two ends
-        message = f"{path}: two finite samples at least are wanted, without gaps"
+        message = f"{path}: the trace must have at least two finite samples without gaps"
         raise FileError(message)
     return Component(
         samples=samples,

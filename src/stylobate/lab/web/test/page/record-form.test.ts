@@ -6,7 +6,7 @@ test("what the server asks for is named as the form names it", () => {
   const said = {
     'a.txt: the file names no unit: state units, "g", "m/s²" or "cm/s²"':
       "a.txt: the file names no unit: choose its unit above.",
-    "a.AT2: units must be left out or 'g', which the file says, got 'm/s2'":
+    "a.AT2: units must be left out or 'g', which the file states, got 'm/s2'":
       "a.AT2: the file states the unit g; choose “unit: from the file”.",
     "a.txt, line 2: a single column has no time step: state step, in s":
       "a.txt, line 2: a single column has no time step: enter the time step above.",
