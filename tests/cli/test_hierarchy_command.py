@@ -172,7 +172,7 @@ def test_maps_take_models(capsys):
         ),
         (
             ["response", *COLUMN, *MOTION[:4], "--model", "rolling", "--angular-frequency-range", "1", "2"],
-            "got rolling, of which theory.full_rolling gives steady rolling and orbits.continue_branch orbits",
+            "got rolling. Use theory.full_rolling for its steady rolling, or orbits.continue_branch for its orbits",
         ),
         (
             ["boundary", *COLUMN, *LINE[:4], *RANGES, "--model", "planar-rocking"],
@@ -188,7 +188,7 @@ def test_maps_take_models(capsys):
         (["hierarchy", *CASE, "--scaled-to", "-1"], "--scaled-to must be followed by a positive slenderness, got -1.0"),
         (
             ["hierarchy", *CASE, "--tilt", "1.2", "0", "--scaled-to", ".2"],
-            "becomes (2.4, 0) rad where the case is scaled",
+            "becomes (2.4, 0) rad at slenderness",
         ),
         (["hierarchy", *CASE, "--model", "rolling"], "--model: hierarchy runs all models (got 'rolling'). Remove it."),
         (["hierarchy", *COLUMN], "duration is missing"),

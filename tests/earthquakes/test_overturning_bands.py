@@ -235,7 +235,7 @@ def test_a_record_has_no_frequency_to_vary():
 def test_a_radius_that_varies_alone_is_remarked_on_and_a_size_is_not():
     cases = [{"radius": [0.1]}, {"mass_height": [1.0], "damping": [0.1]}]
     for over in cases:
-        message = f"^over: {next(iter(over))} changes without mass .*; size scales a column"
+        message = f"^over: {next(iter(over))} varies without mass .* Vary size to scale a column"
         with pytest.warns(UnlikelyInputWarning, match=message):
             Cases.of(VISCOUS, SINE, over)
     for over in ({"size": [2.0]}, {"slenderness": [0.2]}, {"radius": [0.1], "transverse_inertia": [1.0]}):

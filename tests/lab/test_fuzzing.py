@@ -60,7 +60,7 @@ OF_ANY_SIZE, OF_RUNS = operations(LEAST, MOST), operations(LEAST_OF_A_RUN, MOST_
 def check(answer):
     """Raise where an answer is a fault; the client has compared it with the description."""
     assert "Traceback" not in answer.text
-    assert answer.status_code < 500 or "was given up after" in answer.text, answer.text
+    assert answer.status_code < 500 or "was stopped after" in answer.text, answer.text
     if answer.status_code >= 400:
         assert all(line and "\n" not in line for line in answer.json()["problems"])
 

@@ -164,7 +164,7 @@ def test_a_run_beyond_its_time_and_one_without_a_process_get_two_answers():
         busy = client.post("/api/simulate", json={**CIRCLE, "duration": 1.0})
         assert (busy.status_code, "busy for 0.5 s" in busy.json()["problems"][0]) == (503, True)
         assert slow.result().status_code == 504
-        assert "given up after 2 s" in slow.result().json()["problems"][0]
+        assert "stopped after 2 s" in slow.result().json()["problems"][0]
         while (answer := client.post("/api/simulate", json={**CIRCLE, "duration": 1.0})).status_code == 503:
             pass
         assert answer.status_code == 200

@@ -185,7 +185,7 @@ def test_values_in_values_are_refused_beyond_a_depth(client, nested):
         body = {"kind": "map", "description": {"tilt": value}} if path == "/api/jobs" else {"tilt": value}
         answer = client.post(path, json=body)
         assert answer.status_code == 422
-        assert "deeper" in problems_of(answer)[0]
+        assert "depth of at most" in problems_of(answer)[0]
 
 
 def test_a_body_of_untold_length_is_cut_at_the_limit(client):
@@ -210,14 +210,14 @@ def test_no_file_of_this_machine_is_read(client, name, wrap):
     motion = wrap({"kind": "record", name: "/etc/passwd"})
     values = {"column": {"shape": "dimensionless", "slenderness": 0.1}, "motion": motion, "duration": 5.0}
     (problem,) = problems_of(client.post("/api/simulate", json=values))
-    assert "upload the record" in problem
+    assert "Upload the record" in problem
 
 
 def test_an_upload_that_is_not_here_is_told(client):
     motion = {"kind": "record", "upload": "0" * 64}
     values = {"column": {"shape": "dimensionless", "slenderness": 0.1}, "motion": motion, "duration": 5.0}
     (problem,) = problems_of(client.post("/api/simulate", json=values))
-    assert "upload its files again" in problem
+    assert "Upload its files again" in problem
 
 
 @pytest.mark.parametrize(
@@ -247,8 +247,8 @@ SWEEP = {"kind": "linear_sweep", "acceleration": 1.0, "frequencies": [1.0, 1e9],
             {"kind": "gabor", "velocity": 1.0, "frequency": 1.0, "oscillations": 1e12},
             "oscillations must be positive and at most 100",
         ),
-        ({"kind": "sum", "motions": [{"kind": "rest"}] * 101}, "made of 100 motions"),
-        ({"kind": "sum", "motions": [{"kind": "sum", "motions": [{"kind": "rest"}] * 40}] * 3}, "made of 100 motions"),
+        ({"kind": "sum", "motions": [{"kind": "rest"}] * 101}, "combine 100 motions"),
+        ({"kind": "sum", "motions": [{"kind": "sum", "motions": [{"kind": "rest"}] * 40}] * 3}, "combine 100 motions"),
         (SWEEP, "a sweep may have 200000 cycles"),
         ({**QUAKE, "tail": 1e12}, "4000000 samples"),
         ({**QUAKE, "tail": "1e12"}, "4000000 samples"),
@@ -286,7 +286,7 @@ def test_an_uploaded_record_of_many_samples_is_refused(client):
         motion = {"kind": "record", "upload": upload, "tail": tail}
         answer = client.post("/api/describe", json={"column": column, "motion": motion, "duration": 5.0})
         assert answer.status_code == status, answer.text
-    assert "1e+08; shorten tail" in problems_of(answer)[0]
+    assert "1e+08. Shorten tail" in problems_of(answer)[0]
 
 
 def upload(client, name, content, **reading):

@@ -111,7 +111,7 @@ def test_where_nothing_rolls_it_is_told():
 
 def test_an_orbit_of_another_base_motion_or_column_is_refused():
     weak = sb.Harmonic.straight(acceleration=0.04, angular_frequency=2.5)
-    with pytest.raises(ParameterError, match="orbit must be one under"):
+    with pytest.raises(ParameterError, match="orbit must be an orbit under"):
         sb.studies.exact_response(
             MODEL, LINE, angular_frequency=(2.0, 3.0), orbit=sb.orbits.periodic_orbit(MODEL, weak)
         )
@@ -198,6 +198,6 @@ def test_bad_input_is_told_in_one_line(options, told):
 
 def test_a_range_without_rolling_asks_for_no_guess():
     weak = sb.Harmonic.straight(acceleration=0.001, angular_frequency=3.0)
-    with pytest.raises(NoOrbitError, match="make the acceleration larger") as error:
+    with pytest.raises(NoOrbitError, match="increase the acceleration") as error:
         sb.studies.exact_response(MODEL, weak, angular_frequency=(1.0, 2.0))
     assert "guess" not in str(error.value)

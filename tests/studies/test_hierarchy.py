@@ -135,7 +135,7 @@ def saved_dataset():
         ({"reference": "sliding"}, "reference must be a model of this case, slender, slender rolling"),
         ({"slenderness": []}, "slenderness must be a list of positive numbers"),
         ({"slenderness": [0.1, -0.1]}, "slenderness must be a list of positive numbers"),
-        ({"slenderness": [0.2], "tilt": (1.2, 0.0)}, r"becomes \(2.4, 0\) rad where the case is scaled to"),
+        ({"slenderness": [0.2], "tilt": (1.2, 0.0)}, r"becomes \(2.4, 0\) rad at slenderness 0.2"),
         ({"slenderness": [0.2, 4.0]}, "cannot be scaled to slenderness 4: axial_inertia"),
         ({"foo": 2}, "foo is no argument of model_hierarchy"),
         ({"samples": 1}, "samples must be a whole number"),

@@ -92,7 +92,7 @@ def test_unsettled_runs_do_not_hide_the_boundary_of_the_safe_starts(caplog):
     found = sb.studies.uncertainty_exponent(model, motion, **arguments)
     dropped, told = int(found["dropped"].sum()), int(found["pairs"].sum())
     assert dropped > 12  # the runs are too short for many
-    assert f"dropped {dropped} of 120 starts" in caplog.text
+    assert f"dropped {dropped} of 120 initial conditions" in caplog.text
     assert told == 120 - dropped
     safe = sb.studies.uncertainty_exponent(model, motion, **arguments, overturning_only=True)
     assert (found["uncertain"] >= safe["uncertain"]).all()

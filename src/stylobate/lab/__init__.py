@@ -1,6 +1,6 @@
-"""The laboratory: a local page that shows the response of a column while its numbers change.
+"""Laboratory: a local web page that shows the response of a column while its parameters change.
 
-The public names, imported when they are first used, are those of `__init__.pyi`.
+`__init__.pyi` lists the public names, which are imported on first use.
 """
 
 import lazy_loader

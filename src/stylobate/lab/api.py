@@ -1,4 +1,4 @@
-"""What the page, or any program on this machine, can ask the laboratory for. See docs/reference/http-api.md."""
+"""HTTP API of the laboratory, for the page and for any program on this machine. See docs/reference/http-api.md."""
 
 import logging
 from collections.abc import Callable
@@ -38,7 +38,7 @@ _JOBS: dict[str, type[Any]] = {
 
 @dataclass(frozen=True, slots=True)
 class Api:
-    """The endpoints, over what they share."""
+    """The endpoints and the state that they share."""
 
     limits: Limits
     runs: Crew
@@ -62,17 +62,17 @@ class Api:
         ]
 
     async def about(self, request: Request) -> Response:
-        """What there is: models, motions, columns with their numbers; presets; limits."""
+        """Return the options: models, motions and columns with their parameters; presets; limits."""
         del request
         return JSONResponse(about(self.limits))
 
     async def schema(self, request: Request) -> Response:
-        """The description of these endpoints (OpenAPI)."""
+        """Return the description of the endpoints (OpenAPI)."""
         del request
         return JSONResponse(schema(self.limits))
 
     async def describe(self, request: Request) -> Response:
-        """The description as TOML and as Python, and what follows for the column, without a run."""
+        """Return the description as TOML and as Python, and the derived numbers of the column, without a run."""
         given = await self._described(request)
 
         def about() -> dict[str, Any]:
@@ -82,23 +82,23 @@ class Api:
         return JSONResponse(await to_thread.run_sync(about))
 
     async def simulate(self, request: Request) -> Response:
-        """One run."""
+        """Compute one run."""
         given = await self._described(request)
         limited = replace(given, values={"max_steps": min(self.limits.usual_steps, self.limits.steps), **given.values})
         return Response(await self._run("run", limited, request), media_type="application/json")
 
     async def response(self, request: Request) -> Response:
-        """Amplitude and phase of steady rolling over frequency, by theory."""
+        """Compute amplitude and phase of steady rolling over frequency, from theory."""
         given = await self._described(request)
         return JSONResponse(await to_thread.run_sync(lambda: response(given.values)))
 
     async def start(self, request: Request) -> Response:
-        """The start on steady rolling: by theory, or on the exact orbit where theory is approximate."""
+        """Compute initial conditions on steady rolling: from theory, or on the exact orbit if theory is approximate."""
         given = await self._described(request)
         return JSONResponse(await self._run("start", given.values, request))
 
     async def upload(self, request: Request) -> Response:
-        """Keep the files of a record and report what they hold."""
+        """Store the files of a record and report their contents."""
         body = await json_body(request, self.limits.records)
         problems = beyond_size({name: value for name, value in body.items() if name != "files"})
         if problems:
@@ -126,7 +126,7 @@ class Api:
         return JSONResponse({"id": self.jobs.begin(kind, given.values).identity}, status_code=202)
 
     async def follow(self, request: Request) -> Response:
-        """How a job stands, with the events from the number `after` on."""
+        """Return the state of a job, with the events from the number `after` on."""
         after = request.query_params.get("after", "0")
         if not (after.isascii() and after.isdigit() and len(after) < 10):  # noqa: PLR2004  digits of a count
             raise RefusedError(422, [f"after must be a number of events, got {after!r}"])
@@ -138,17 +138,17 @@ class Api:
         return JSONResponse(self.jobs.report(job.identity, 0) | {"events": []})
 
     async def file(self, request: Request) -> Response:
-        """The picture that a job has made."""
+        """Return the GIF of a job."""
         result = self.jobs[request.path_params["identity"]].result
         if not isinstance(result, bytes):
-            raise RefusedError(404, ["this job has no file, or not yet"])
+            raise RefusedError(404, ["this job has no file (yet)"])
         return Response(result, media_type="image/gif")
 
     async def _described(self, request: Request) -> Described:
         return described(await json_body(request, self.limits.body), self.uploads, self.limits)
 
     async def _run(self, kind: str, values: Any, request: Request) -> Any:
-        """Return the result of a task that somebody waits for; it ends when they wait no more, or after its time."""
+        """Return the result of a task; end the task when the caller disconnects or its time limit passes."""
         answer: Answer | None = None
         limits = self.limits
         try:
@@ -160,7 +160,7 @@ class Api:
             problem = f"all {limits.runs} worker processes were busy for {limits.wait:g} s. Try again."
             raise RefusedError(503, [problem]) from None
         except* TimeoutError:
-            problem = f"the run was given up after {limits.run_time:g} s. Shorten its duration or run it in Python."
+            problem = f"the run was stopped after {limits.run_time:g} s. Shorten its duration or run it in Python."
             raise RefusedError(504, [problem]) from None
         match answer:
             case Finished(result):
@@ -172,11 +172,11 @@ class Api:
             case Broken(trace):
                 _log.error(trace)
                 raise RefusedError(500, [broken(trace)])
-        raise RefusedError(400, ["the request was taken back"])
+        raise RefusedError(400, ["the caller cancelled the request"])
 
 
 async def _when_gone(request: Request, act: Callable[[], None]) -> None:
-    """Act when the sender of `request` has gone."""
+    """Call `act` when the sender of `request` disconnects."""
     while (await request.receive())["type"] != "http.disconnect":
         pass
     act()

@@ -31,18 +31,18 @@ def create_app(
     limits: Limits | None = None,
     ready: Callable[[], object] | None = None,
 ) -> Starlette:
-    """Return the application, for a server that knows ASGI.
+    """Return the application, for an ASGI server.
 
     Parameters
     ----------
     hosts
-        Values of the header Host under which it is reached, such as "127.0.0.1:8642"; others are refused.
+        Accepted values of the header Host, such as "127.0.0.1:8642"; requests with others are refused.
     token
-        What requests must show, where other machines can reach it.
+        Token that requests must contain if other machines can reach the application.
     limits
-        How much it may be asked for.
+        Limits on requests.
     ready
-        Called when requests can be answered.
+        Called when the application can answer requests.
     """
     bounds = limits or Limits()
     inner = Router()
@@ -85,7 +85,7 @@ async def _refusal(request: Request, error: Exception) -> Response:
 
 
 async def _mistake(request: Request, error: Exception) -> Response:
-    """Answer with what the library says of the values."""
+    """Answer with the library's messages about the values."""
     del request
     problems = error.problems if isinstance(error, ConfigError) else str(error).splitlines()
     return JSONResponse({"problems": list(problems)}, status_code=422)

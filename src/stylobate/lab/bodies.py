@@ -1,4 +1,4 @@
-"""Bodies of requests: JSON objects of limited size, or a refusal with one line."""
+"""Bodies of requests: JSON objects of limited size."""
 
 import json
 from typing import Any, NoReturn
@@ -14,7 +14,7 @@ async def json_body(request: Request, limit: int) -> dict[str, Any]:
     Raises
     ------
     RefusedError
-        If it is of another type, too large, no JSON, or no object.
+        If the body has another type, is too large, is not JSON, or is not an object.
     """
     kind = request.headers.get("content-type", "").partition(";")[0].strip().lower()
     if kind != "application/json":
@@ -44,9 +44,9 @@ async def _bytes(request: Request, limit: int) -> bytes:
 
 
 def _too_large(limit: int) -> NoReturn:
-    raise RefusedError(413, [f"a request may have {limit} bytes; this one has more"])
+    raise RefusedError(413, [f"a request may have at most {limit} bytes"])
 
 
 def _refuse_constant(name: str) -> NoReturn:
-    message = f"{name} is no number of JSON"
+    message = f"{name} is not a JSON number"
     raise ValueError(message)

@@ -1,4 +1,4 @@
-"""Maps over the numbers that describe a case, such as turns a minute or a height, which sweeps do not know by name."""
+"""Maps over numbers of a description that sweeps do not support, such as revolutions per minute or a height."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
@@ -26,14 +26,14 @@ _MOVED = ("angular_frequency", "acceleration")
 
 
 def units_of(name: str) -> str:
-    """Return the unit of a number that describes a case; of what the study refuses, none."""
+    """Return the unit of a number of a description; empty for a name that the study refuses."""
     return next((part[name].cf_units for part in CASE_NUMBERS.values() if name in part), "")
 
 
 def case_numbers(values: Mapping[str, Any], over: Mapping[str, Floats]) -> dict[str, tuple[str, ...]]:
-    """Return the axes that are numbers of the described column or motion, by part; nothing where sweeps know them all.
+    """Return the axes that are numbers of the described column or motion, by part; empty if sweeps support them all.
 
-    A body that is given by its mass and inertia is known to sweeps by its radius; any other has others then.
+    Sweeps can vary the radius of a body with given mass and inertia; for other bodies mass and inertia depend on it.
     """
     given = values["column"].get("shape") == "given"
     found = {
@@ -49,24 +49,24 @@ def case_map(
 ) -> xr.Dataset:
     """Compute a map whose axes are numbers of the described case.
 
-    Each run is of the column and motion that the case describes with the numbers of its cell.
+    Each run has the column and motion of the case with the numbers of its cell.
 
     Parameters
     ----------
     setup, values
         Model, motion and options of the map, and the plain values that describe it.
     executor, progress
-        As in `run_sweep`. The runs come in one row, those of the second axis together.
+        As in `run_sweep`. The runs form one row, with the second axis varying fastest.
 
     Returns
     -------
     xarray.Dataset
-        An overturning map, or a contact map of a model that slides, over `run`.
+        An overturning map, or a contact map if the model slides, over `run`.
 
     Raises
     ------
     ConfigError, ParameterError
-        If an axis has a value that cannot be.
+        If an axis has an impossible value.
     """
     options = {name: value for name, value in setup.options.items() if name != "over"}
     sweep = Sweep.points(_without_height(setup.model), setup.motion, at=_at(values, setup.options["over"]), **options)
@@ -75,13 +75,13 @@ def case_map(
 
 
 def _without_height(model: Model) -> Model:
-    """Return `model` with a body of no particular height: each run brings its own."""
+    """Return `model` without the height of its body, which differs between runs."""
     bare: Model = replace(model, column=replace(model.column, height=None))  # type: ignore[type-var]  # a dataclass
     return bare
 
 
 def _at(values: Mapping[str, Any], over: Mapping[str, Floats]) -> dict[str, Floats]:
-    """Return the quantities of sweeps for each cell, in rows of the second axis."""
+    """Return the quantities of sweeps for each cell, with the second axis varying fastest."""
     cells = dict(zip(over, (grid.ravel() for grid in np.meshgrid(*over.values(), indexing="ij")), strict=True))
     found: dict[str, Floats] = {}
     for part, names in case_numbers(values, over).items():

@@ -1,4 +1,4 @@
-"""Connections of the server: so many at once, and requests that arrive in time."""
+"""Connections of the server: a maximum number at once, and a time limit for requests."""
 
 import asyncio
 import json
@@ -10,23 +10,24 @@ from uvicorn.protocols.http.h11_impl import H11Protocol
 from stylobate.lab.limits import Limits
 
 BACKLOG = 32
-"""Connections that are accepted in one turn of the loop, before the limit can act on them."""
+"""Connections that one iteration of the event loop accepts before the limit applies to them."""
 
 _RESERVED = 96
-"""Descriptors for everything but connections: files, the pipes to worker processes, what one turn accepts."""
+"""Descriptors besides connections: files, pipes to worker processes, connections accepted in one iteration."""
 
 _FEWEST = 8
 
 
 class BoundedConnection(H11Protocol):
-    """A connection that must send its request in time, and gives way to others when there are too many.
+    """A connection with a time limit for its request, which is closed if there are too many connections.
 
     Attributes
     ----------
     receiving
-        How long a request may take to arrive, head and body [s].
+        Time limit for the arrival of a request, head and body [s].
     most
-        Connections at once. Beyond it the one that has owed a request for longest is closed, else the new one.
+        Maximum number of connections. Beyond it, the connection that has been incomplete for longest is closed, or else
+        the new one.
     """
 
     receiving: float
@@ -35,7 +36,7 @@ class BoundedConnection(H11Protocol):
     _late: asyncio.TimerHandle | None = None
 
     def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]
-        """Take the connection, or close one."""
+        """Accept the connection, or close one."""
         super().connection_made(transport)
         self._expect()
         ours = [one for one in self.connections if isinstance(one, BoundedConnection)]
@@ -44,7 +45,7 @@ class BoundedConnection(H11Protocol):
             min((one for one in held if one.owes), key=lambda one: one.begun).transport.abort()
 
     def data_received(self, data: bytes) -> None:
-        """Take a part of a request."""
+        """Receive a part of a request."""
         super().data_received(data)
         if not self.owes:
             self._expect_no_more()
@@ -52,7 +53,7 @@ class BoundedConnection(H11Protocol):
             self._expect()
 
     def connection_lost(self, exc: Exception | None) -> None:
-        """Forget the connection."""
+        """Remove the connection."""
         self._expect_no_more()
         super().connection_lost(exc)
 
@@ -88,7 +89,7 @@ def bounded(limits: Limits) -> type[BoundedConnection]:
 
 
 def _descriptors() -> int:
-    """Return how many file descriptors this process may have."""
+    """Return the maximum number of file descriptors of this process."""
     if sys.platform == "win32":
         return sys.maxsize
     import resource  # noqa: PLC0415  not on Windows

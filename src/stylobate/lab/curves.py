@@ -1,4 +1,4 @@
-"""Response curves, of theory and of exact orbits, as plain values."""
+"""Response curves, from theory and from exact orbits, as plain values."""
 
 from collections.abc import Mapping
 from itertools import count
@@ -15,11 +15,11 @@ from stylobate.orbits.saving import SUPERCRITICAL_OF
 from stylobate.text import plural
 
 _ORBITS = 400
-"""Of a family each way: a plot shows no more, and close to the upright families go on for thousands."""
+"""Maximum number of orbits of a family each way, enough for a plot; near the vertical, families have thousands."""
 
 
 def response(values: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the curves of theory that `values` describe; milliseconds. What no machine number can be is none."""
+    """Compute the curves of theory that `values` describe, within milliseconds; numbers that overflow are None."""
     setup = config.ResponseConfig.parse(values).build()
     low, high = setup.options["range"]
     frequencies = np.linspace(low, high, setup.options["points"])
@@ -53,7 +53,7 @@ def plain_curves(curves: xr.Dataset) -> dict[str, Any]:
 
 
 def exact_curves(values: Mapping[str, Any], emit: Emit) -> dict[str, Any]:
-    """Return the exact orbits that `values` describe; progress reports how far they were followed."""
+    """Compute the exact orbits that `values` describe; progress states the number of orbits and the last frequency."""
     setup = config.ResponseConfig.parse(values).build()
 
     number = count(1)

@@ -1,4 +1,4 @@
-"""Maps and basins that fill in while they are computed."""
+"""Maps and basins, shown progressively during their computation."""
 
 import os
 from collections.abc import Callable, Mapping
@@ -18,7 +18,7 @@ from stylobate.lab.progressive_executor import Cells, Refining
 
 
 def overturning_plane(values: Mapping[str, Any], emit: Emit) -> dict[str, Any]:
-    """Compute the map of outcomes over two quantities; for a sliding model, of kinds of contact."""
+    """Compute the map of outcomes over two quantities; for a sliding model, the map of kinds of contact."""
     setup = config.MapConfig.parse(values).build()
     study = conveying.contact_map if setup.model.switches else studies.overturning_map
     if case_numbers(values, setup.options["over"]):
@@ -31,10 +31,10 @@ def overturning_plane(values: Mapping[str, Any], emit: Emit) -> dict[str, Any]:
 
 
 def basin_plane(values: Mapping[str, Any], emit: Emit) -> dict[str, Any]:
-    """Return which attractor each start of a grid leads to."""
+    """Compute the attractor of each initial condition of a grid."""
     setup = config.BasinConfig.parse(values).build()
     if "count" in setup.options:
-        message = "basin.random is for the command line; the laboratory draws a grid: give basin.x and basin.y"
+        message = "basin.random: the laboratory computes grids only. Give basin.x and basin.y, or use the command line."
         raise ParameterError(message)
     study = partial(studies.basins, setup.model, setup.motion)
     found = _watched(study, setup, emit, keywords=setup.options)
@@ -61,7 +61,7 @@ def _watched(
     keywords: Mapping[str, Any],
     flat: bool = False,
 ) -> xr.Dataset:
-    """Run `study` and emit the outcomes as they come; a study whose runs lie in one row is `flat`."""
+    """Run `study` and emit the outcomes as soon as they are known; `flat` if the runs of the study form one row."""
     over = setup.options["over"]
     axes = {
         place: {"name": name, "values": numbers(values), **(attributes_of(name) or {"units": units_of(name)})}
@@ -84,7 +84,7 @@ def _watched(
 
 
 def _finer(found: xr.Dataset, variable: str, names: Any, setup: config.Setup) -> dict[str, Any]:
-    """Return the cells once more, by what is known of them at the end."""
+    """Return the cells with their final classes."""
     codes = found[variable].transpose(*found["outcome"].dims).to_numpy()
     codes = codes.reshape([len(values) for values in setup.options["over"].values()])
     listed = [[index, str(name)] for index, name in enumerate(names)]

@@ -1,4 +1,4 @@
-"""Who may speak with the laboratory: pages it served itself, in a browser on this machine."""
+"""Access control of the laboratory: only its own pages, in a browser on this machine."""
 
 import secrets
 from collections.abc import Collection
@@ -32,27 +32,26 @@ _UNKNOWN = (
 
 
 def _follows_a_link(request: Request) -> bool:
-    """Return whether a browser opens the page in a tab of its own, from wherever the link was."""
+    """Return whether a browser opens the page in its own tab, for a link on any site."""
     headers, navigation = request.headers, {"sec-fetch-mode": "navigate", "sec-fetch-dest": "document"}
     opens = request.method == "GET" and request.url.path in _PAGE
     return opens and all(headers.get(name) == value for name, value in navigation.items())
 
 
 class Guard:
-    """Middleware that refuses foreign hosts and origins and lets pages load nothing from elsewhere.
+    """Middleware that refuses foreign hosts and origins and prevents pages from loading foreign content.
 
-    A site that the user visits may send requests to this machine, and may point a name of its own at it (rebinding of
-    DNS): the first has a foreign Origin, the second a foreign Host. A link on another site opens the page, nothing
-    else.
+    A site that the user visits may send requests to this machine, and may resolve its own name to this machine (DNS
+    rebinding): the first has a foreign Origin, the second a foreign Host. A link on another site only opens the page.
 
     Parameters
     ----------
     app
-        What is guarded.
+        The guarded application.
     hosts
-        Values of the header Host that are known, such as "127.0.0.1:8642".
+        Accepted values of the header Host, such as "127.0.0.1:8642".
     token
-        What requests must show, in the query, in the cookie that follows from it, or as `Authorization: Bearer`.
+        Token that requests must contain in the query, in the cookie derived from it, or as `Authorization: Bearer`.
     """
 
     def __init__(self, app: ASGIApp, hosts: Collection[str], token: str | None = None) -> None:
@@ -61,7 +60,7 @@ class Guard:
         self._hosts = frozenset(host.lower() for host in hosts)
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Answer a request, or have it answered."""
+        """Answer a request, or pass it to the application."""
         if scope["type"] != "http":
             await self._app(scope, receive, send)
             return
@@ -80,7 +79,7 @@ class Guard:
         return None if problem is None else JSONResponse({"problems": [problem]}, status_code=403)
 
     def _asked_for_token(self, request: Request) -> Response | None:
-        """Refuse a request without the token; where the address of the page has it, put it into a cookie."""
+        """Refuse a request without the token; if the address of the page contains the token, set a cookie."""
         if self._token is None:
             return None
         name = f"stylobate-lab-{(request.scope.get('server') or ('', 0))[1]}"
@@ -102,7 +101,7 @@ class Guard:
         headers = request.headers
         host = headers.get("host", "").lower()
         if host not in self._hosts:
-            return f"Host {host!r} is not known here; open {self._address} or start with --allow-host"
+            return f"Host {host!r} is not allowed. Open {self._address} or start with --allow-host."
         origin = headers.get("origin")
         if origin is not None and origin.lower() not in {f"http://{known}" for known in self._hosts}:
             return f"Origin {origin!r} may not use this laboratory"

@@ -1,4 +1,4 @@
-"""Long work in the background: with progress, events as they come, cancelled or dropped when nobody asks for it."""
+"""Background jobs: progress, events, cancellation, and removal of abandoned jobs."""
 
 import logging
 import secrets
@@ -23,7 +23,7 @@ _log = logging.getLogger("stylobate.lab")
 
 
 class State(Enum):
-    """Where a job stands."""
+    """State of a job."""
 
     WAITING = "waiting"
     RUNNING = "running"
@@ -37,7 +37,7 @@ _OPEN = (State.WAITING, State.RUNNING)
 
 @dataclass(slots=True)
 class Job:
-    """A task of some `kind` and what has come of it."""
+    """A task of some `kind`, its state and its events."""
 
     kind: str
     identity: str = field(default_factory=lambda: secrets.token_urlsafe(12))
@@ -52,7 +52,7 @@ class Job:
     scope: anyio.CancelScope = field(default_factory=anyio.CancelScope)
 
     def heard(self, message: Message) -> None:
-        """Take a message on the way."""
+        """Process a message during the computation."""
         self.state = State.RUNNING
         match message:
             case Found(value):
@@ -63,7 +63,7 @@ class Job:
                 self.note = line
 
     def end(self, answer: Answer) -> None:
-        """Take how the task ended."""
+        """Process the answer at the end of the task."""
         self.note = ""
         match answer:
             case Finished(result):
@@ -105,33 +105,33 @@ class Jobs:
 
     def __getitem__(self, identity: str) -> Job:
         if identity not in self._known:
-            raise RefusedError(404, ["this job is not known (any more); ask for it again"])
+            raise RefusedError(404, ["this job does not exist (any more). Begin it again."])
         return self._known[identity]
 
     def begin(self, kind: str, values: Mapping[str, Any]) -> Job:
-        """Return a new job.
+        """Begin a new job and return it.
 
         Raises
         ------
         RefusedError
-            If too many wait.
+            If too many jobs wait.
         """
         waiting = sum(job.state is State.WAITING for job in self._known.values())
         if waiting >= self.limits.waiting:
-            raise RefusedError(429, [f"{waiting} jobs wait already; cancel one or try again when one is done"])
+            raise RefusedError(429, [f"{waiting} jobs are already waiting. Cancel one, or try again when one is done."])
         job = Job(kind)
         self._known[job.identity] = job
         self.group.start_soon(self._run, job, values)
         return job
 
     def report(self, identity: str, after: int) -> dict[str, Any]:
-        """Describe how a job stands in plain values, with the events from the number `after` on."""
+        """Return the state of a job as plain values, with the events from the number `after` on."""
         job = self[identity]
         earlier = takewhile(lambda one: one is not job, self._known.values())
         return job.report(after, sum(one.state in _OPEN for one in earlier))
 
     def cancel(self, identity: str) -> Job:
-        """Return the job, cancelled unless it had ended."""
+        """Cancel the job unless it has ended, and return it."""
         job = self[identity]
         if job.state in _OPEN:
             job.state = State.CANCELLED
@@ -139,7 +139,7 @@ class Jobs:
         return job
 
     async def watch(self) -> None:
-        """Drop jobs that nobody has asked for in a while, for ever."""
+        """Remove abandoned jobs periodically; never returns."""
         while True:
             await anyio.sleep(min(5.0, self.limits.abandoned / 2.0))
             for job in list(self._known.values()):
@@ -151,7 +151,7 @@ class Jobs:
         with job.scope:
             try:
                 answer: Answer = await self.crew.perform(job.kind, values, job.heard)
-            except Exception:  # noqa: BLE001  a mistake in one job is not to end the others
+            except Exception:  # noqa: BLE001  a mistake in one job must not end the others
                 answer = Broken(traceback.format_exc())
             job.end(answer)
 
@@ -159,4 +159,4 @@ class Jobs:
 def broken(trace: str) -> str:
     """Return the line that reports a mistake in the program."""
     last = trace.strip().splitlines()[-1]
-    return f"the laboratory made a mistake of its own: {last}; please report it with the link of this page"
+    return f"internal error of the laboratory: {last}. Please report it with the link of this page."

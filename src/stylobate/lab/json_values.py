@@ -1,4 +1,4 @@
-"""Numbers as JSON has them: lists of rounded floats, null where a number is none."""
+"""Numbers for JSON: lists of rounded floats, with null for numbers that are not finite."""
 
 import math
 from collections.abc import Mapping
@@ -10,16 +10,16 @@ import numpy.typing as npt
 from stylobate.results.plain import plain_numbers
 
 _DIGITS = 9
-"""Digits that are sent: a page shows fewer."""
+"""Significant digits in answers; the page shows fewer."""
 
 
 def numbers(values: npt.ArrayLike) -> list[Any]:
-    """Return an array as lists, None where a number is not finite."""
+    """Return an array as lists, with None for numbers that are not finite."""
     return plain_numbers(values, _DIGITS)
 
 
 def number(value: float) -> float | None:
-    """Return a number, None where it is not finite."""
+    """Return a number, or None if it is not finite."""
     return float(value) if math.isfinite(value) else None
 
 

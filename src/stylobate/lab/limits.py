@@ -1,11 +1,11 @@
-"""How much one request, and all together, may ask of the laboratory."""
+"""Limits of the laboratory: size and duration of requests, runs and jobs."""
 
 from dataclasses import dataclass
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Limits:
-    """What the laboratory refuses to exceed; each refusal names the limit.
+    """Limits on requests, runs and jobs; each refusal names its limit.
 
     Attributes
     ----------
@@ -16,39 +16,38 @@ class Limits:
     unpacked
         Size of a file of a record when it is unpacked [bytes].
     receiving
-        How long a request may take to arrive [s].
+        Time limit for the arrival of a request [s].
     connections
-        Connections at once.
+        Maximum number of connections.
     uploads
-        Size of all records kept [bytes]; the oldest go first.
+        Size of all stored records [bytes]; the oldest are removed first.
     duration
         Length of a run [s].
     steps
-        Steps of the integration of a run, at most.
+        Maximum number of integration steps of a run.
     usual_steps
-        Steps of a run that states no `max_steps`: a run that needs more ends as failed, with its motion so far, well
+        Maximum steps of a run without `max_steps`: a run that needs more ends as failed, with its motion so far, well
         before `run_time`.
     points
         Frequencies of a response curve.
     cells
         Runs of a map or basin.
     motions
-        Motions of which a base motion is made.
+        Number of motions that a base motion combines.
     record_samples
-        Samples of all its records together.
+        Samples of all records of a base motion together.
     run_time
-        How long a single run may be computed [s].
+        Time limit for the computation of a single run [s].
     wait
-        How long a single run may wait for one of the processes that compute them [s]; on a busy machine they start
-        slowly.
+        Time limit for a single run to wait for a worker process [s]; on a busy machine processes start slowly.
     runs
         Single runs computed at once.
     jobs
-        Maps and the like computed at once.
+        Number of jobs, such as maps, computed at once.
     waiting
-        Jobs that wait.
+        Number of waiting jobs.
     abandoned
-        A job is dropped when nobody has asked for it for so long [s].
+        Time without requests after which a job is removed [s].
     """
 
     body: int = 1 << 20
@@ -72,7 +71,7 @@ class Limits:
     abandoned: float = 120.0
 
     def of_numbers(self) -> dict[str, tuple[float, str]]:
-        """Return the largest value of each number of a run that is limited, with its unit, by name."""
+        """Return the maximum of each limited number of a run, with its unit, by name."""
         return {
             "duration": (self.duration, "s"),
             "max_steps": (self.steps, "steps"),

@@ -1,4 +1,4 @@
-"""Messages of the laboratory's processes to the server, during a computation and at its end."""
+"""Messages from worker processes to the server, during a computation and at its end."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -14,14 +14,14 @@ class Ready:
 
 @dataclass(frozen=True, slots=True)
 class Found:
-    """Something found on the way."""
+    """A partial result."""
 
     value: Mapping[str, Any]
 
 
 @dataclass(frozen=True, slots=True)
 class Progress:
-    """So many of all runs are done."""
+    """Number of completed runs, and of all runs."""
 
     done: int
     total: int
@@ -29,7 +29,7 @@ class Progress:
 
 @dataclass(frozen=True, slots=True)
 class Note:
-    """One line about what goes on, such as that a kernel is compiled."""
+    """One line about the state of the computation, such as the compilation of a kernel."""
 
     line: str
 
@@ -43,20 +43,20 @@ class Finished:
 
 @dataclass(frozen=True, slots=True)
 class Refused:
-    """The task cannot be done, one line for each reason."""
+    """The task is refused, with one line for each reason."""
 
     problems: tuple[str, ...]
 
 
 @dataclass(frozen=True, slots=True)
 class Lost:
-    """The process that computed ended before it answered, with this exit code; a signal's number is negative."""
+    """The worker process ended before its answer, with this exit code; a signal's number is negative."""
 
     exit_code: int | None
 
     @property
     def problem(self) -> str:
-        """One line that says what happened and what to try."""
+        """One line with the problem and the remedy."""
         how = f" by signal {-self.exit_code}" if self.exit_code is not None and self.exit_code < 0 else ""
         return (
             f"the worker process was ended{how} from outside before it answered, possibly because memory ran out. "
@@ -66,6 +66,6 @@ class Lost:
 
 @dataclass(frozen=True, slots=True)
 class Broken:
-    """The task failed by a mistake of the program's own; the traceback is for its developers."""
+    """The task failed because of an internal error; the traceback is for developers."""
 
     trace: str

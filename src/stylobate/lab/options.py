@@ -1,4 +1,4 @@
-"""What the laboratory offers to choose from: columns, models, motions, their numbers, and presets."""
+"""Options of the laboratory: columns, models and motions with their parameters, and presets."""
 
 from collections.abc import Iterable
 from dataclasses import asdict
@@ -20,11 +20,11 @@ from stylobate.lab.presets import presets
 
 
 def about(limits: Limits) -> dict[str, Any]:
-    """Return what there is to choose from, as plain values."""
+    """Return all options as plain values."""
     motions = (
         {**kind, "ends": is_to_end(kind)}
         for kind in _kinds(_members(MotionConfig), "kind")
-        if kind["kind"] not in composite_kinds()  # these are for files
+        if kind["kind"] not in composite_kinds()  # available in files only
     )
     return {
         "version": version("stylobate"),
@@ -48,7 +48,7 @@ def about(limits: Limits) -> dict[str, Any]:
 
 
 def _members(union: Any) -> tuple[type[Config], ...]:
-    """Return the descriptions that an annotated union is of."""
+    """Return the members of an annotated union of configurations."""
     members: tuple[type[Config], ...] = get_args(get_args(union)[0])
     return members
 

@@ -1,4 +1,4 @@
-"""The files of the page: built at packaging time, and served from one folder only."""
+"""Files of the page: built at packaging time, and served from one folder only."""
 
 from importlib.resources import files
 from pathlib import Path
@@ -27,17 +27,17 @@ The API under /api works without it; see the documentation.
 
 
 def page_folder() -> Path:
-    """Return the folder that holds the page where it was built."""
+    """Return the folder of the built page."""
     return Path(str(files("stylobate.lab"))) / "page"
 
 
 def page_is_built() -> bool:
-    """Return whether there is a page to serve."""
+    """Return whether the page is built."""
     return (page_folder() / "index.html").is_file()
 
 
 def page_routes() -> list[Route]:
-    """Return a route for each file of the page, none for anything else; without a page one that says so."""
+    """Return a route for each file of the page and nothing else; without a page, a route that reports it missing."""
     if not page_is_built():
         return [Route("/", _no_page, methods=["GET"])]
     found = {f"/{path.name}": path for path in sorted(page_folder().iterdir()) if path.suffix in _TYPES}
@@ -46,7 +46,7 @@ def page_routes() -> list[Route]:
 
 
 class _Served:
-    """Answers with one file."""
+    """Application that answers with one file."""
 
     def __init__(self, path: Path) -> None:
         self._path = path

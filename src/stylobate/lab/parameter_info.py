@@ -1,4 +1,4 @@
-"""The numbers one can set: symbol, unit, what they are, and the range of a slider where one range serves all."""
+"""Parameters of the page: symbol, unit, description, and range of the slider if one range suits all cases."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -12,7 +12,7 @@ from stylobate.quantities import Quantity
 
 @dataclass(frozen=True, slots=True)
 class Number:
-    """How a number is shown; without a range a slider takes one about the present value."""
+    """Symbol, unit, description and slider of a number; without a range the slider is centred on the present value."""
 
     symbol: str = ""
     unit: str = ""
@@ -23,7 +23,7 @@ class Number:
 
 
 def _declared() -> Mapping[str, Number]:
-    """Return the numbers of columns, models and base motions, as they are declared there."""
+    """Return the numbers of columns, models and base motions, from their declarations."""
     return {
         name: Number(one.symbol, one.unit, one.text, first, last, one.choices)
         for name, one in {**column_quantities(), **model_quantities(), **motion_quantities()}.items()
@@ -42,7 +42,7 @@ OF_ANY_COLUMN = {
     **{
         name: one
         for name, one in column_quantities().items()
-        if hasattr(Column, name) and name != "height"  # which not all have
+        if hasattr(Column, name) and name != "height"  # not every column has a height
     },
     "frequency_scale": Quantity(unit="rad/s", text="ω0"),
     "frequency_parameter": Quantity(unit="rad/s", text="frequency parameter √(m g R/K)"),
@@ -52,14 +52,14 @@ OF_ANY_COLUMN = {
 _PATHS_AND_RATES = ("m", "m/s", "Hz", "1/min")
 
 CASE_NUMBERS = {
-    # A sweep varies a radius without the mass, which depends on it in a body of a described shape.
+    # A sweep varies a radius at constant mass; the mass of a body of a described shape depends on its radius.
     "column": {name: one for name, one in column_quantities().items() if name not in COLUMN_NAMES or name == "radius"},
-    # From paths and rates acceleration and angular frequency follow, which a sweep knows.
+    # Displacements and rates, from which acceleration and angular frequency follow; a sweep supports these.
     "motion": {
         name: one for name, one in motion_quantities().items() if one.unit in _PATHS_AND_RATES and one.components == 1
     },
 }
-"""What an axis can be besides the quantities of sweeps, by the part that it describes."""
+"""Numbers that an axis can vary besides the quantities of sweeps, by the part that they describe."""
 
 VARIED = frozenset(
     {*COLUMN_NAMES, *MOTION_NAMES, *model_quantities(), *CASE_NUMBERS["column"], *CASE_NUMBERS["motion"]}

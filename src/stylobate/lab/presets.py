@@ -1,4 +1,4 @@
-"""Presets: motions worth seeing, from `presets.toml` beside this file."""
+"""Presets: example motions, from `presets.toml` beside this file."""
 
 import tomllib
 from dataclasses import dataclass
@@ -8,7 +8,7 @@ from typing import Any
 
 @dataclass(frozen=True, slots=True)
 class Preset:
-    """A description with a title, a line about it, and the outcome that it is to show."""
+    """A description with a title, a one-line comment, and the expected outcome."""
 
     identity: str
     title: str
@@ -16,11 +16,11 @@ class Preset:
     outcome: str
     description: dict[str, Any]
     view: dict[str, Any]
-    """How the page shows it: the start that is followed, the tab, what is drawn over time; by default as suits."""
+    """View on the page: branch of the initial conditions, tab, quantities over time; by default chosen by the page."""
 
 
 def presets() -> tuple[Preset, ...]:
-    """Return all presets, the first of them shown at the start."""
+    """Return all presets; the page opens with the first one."""
     text = (files("stylobate.lab") / "presets.toml").read_text(encoding="utf-8")
     return tuple(
         Preset(one["id"], one["title"], one["about"], one["outcome"], one["description"], one.get("view", {}))

@@ -1,4 +1,4 @@
-"""An executor for those who watch: every eighth run along each axis first, then what lies between."""
+"""Progressive executor for maps: every eighth run along each axis first, then the runs between them."""
 
 import time
 from collections.abc import Callable, Generator, Iterable, Iterator, Mapping
@@ -15,21 +15,21 @@ Cells = npt.NDArray[np.int64]
 _STRIDES = (8, 4, 2, 1)
 _FIRST_PIECE, _LARGEST_PIECE = 32, 4096
 _SHOWN_EVERY = 0.4
-"""How often something new should be seen [s]; the pieces grow until they take about so long."""
+"""Time between updates [s]; the pieces grow until they take about this long."""
 
 
 @dataclass(frozen=True, slots=True)
 class Refining:
-    """Threads of this process that compute a plane of runs from coarse to fine.
+    """Executor with threads of this process that compute a plane of runs from coarse to fine.
 
     Parameters
     ----------
     show
-        Called with the stride, the places of runs in the plane, shape (n, 2), and their outcomes, shape (n,).
+        Called with the stride, the indices of runs in the plane, shape (n, 2), and their outcomes, shape (n,).
     threads
-        How many; None for all cores.
+        Number of threads; None for all cores.
     shape
-        Of the plane, where the runs come in one row, those of its second axis together; None for those of a grid.
+        Shape of the plane if the runs form one row, with the second axis varying fastest; None if they form a grid.
     """
 
     show: Callable[[int, Cells, Cells], None]
@@ -62,13 +62,13 @@ class Refining:
 
 
 def _places(task: Task) -> Cells:
-    """Return the place in the plane of each run of `task`, shape (n, 2)."""
+    """Return the indices in the plane of each run of `task`, shape (n, 2)."""
     across = np.meshgrid(*(np.arange(part.start, part.stop) for part in task.block.slices), indexing="ij")
     return np.stack([axis.ravel() for axis in across], axis=-1)
 
 
 def _pieces(places: Cells) -> Iterator[tuple[int, Cells]]:
-    """Yield each stride with some of the runs that it adds, more of them while they take little time."""
+    """Yield each stride with some of the runs that it adds; fast pieces are followed by larger ones."""
     seen = np.zeros(len(places), dtype=bool)
     size = _FIRST_PIECE
     for stride in _STRIDES:

@@ -1,10 +1,10 @@
-"""What the laboratory answers where it does not do what was asked: a status and one line for each reason."""
+"""Refusal of a request: an HTTP status and one line for each reason."""
 
 from collections.abc import Sequence
 
 
 class RefusedError(Exception):
-    """A request that is not granted.
+    """A refused request.
 
     Attributes
     ----------

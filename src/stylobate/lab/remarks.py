@@ -1,4 +1,4 @@
-"""Warnings of likely slips, collected for the page: nobody reads them in the terminal of the server."""
+"""Warnings about unlikely input, collected for the page, since users do not see the terminal of the server."""
 
 import warnings
 from collections.abc import Iterator, Mapping
@@ -11,10 +11,10 @@ from stylobate.errors import UnlikelyInputWarning
 
 @contextmanager
 def remarks(values: Mapping[str, Any]) -> Iterator[list[str]]:
-    """Collect each `UnlikelyInputWarning` warning that is issued inside, once, as a line; issue the others afterwards.
+    """Collect each `UnlikelyInputWarning` issued in the context, once, as a line; issue other warnings afterwards.
 
-    Files of `values` go by their name, without the folder in which the server keeps them. The filters of warnings are
-    those of the whole process: use it where no other thread computes.
+    The lines contain the names of files in `values` without the server's folder. The filters of warnings apply to the
+    whole process: use this context only if no other thread computes.
     """
     lines: list[str] = []
     with warnings.catch_warnings(record=True) as issued:

@@ -1,4 +1,4 @@
-"""What a request describes: the names of the command line, but no file of this machine, and no more than the limits."""
+"""Parsing of requests: the names of the command line, without files of this machine, and within the limits."""
 
 import math
 from collections.abc import Callable, Mapping
@@ -11,24 +11,24 @@ from stylobate.lab.size_limits import number_of, problems_of_size
 from stylobate.lab.uploads import Upload, Uploads
 
 _DEEPEST = 24
-"""How deep values may lie in values; a copy of a sum of motions takes three."""
+"""Maximum depth of nested values; a copy of a sum of motions takes three."""
 
 
 @dataclass(frozen=True, slots=True)
 class Described:
-    """Plain values of a description: `values` to compute with, `shown` to show, in which uploads go by file name."""
+    """Plain values of a description: `values` to compute with, `shown` for users, with the file names of uploads."""
 
     values: dict[str, Any]
     shown: dict[str, Any]
 
 
 def described(body: Mapping[str, Any], uploads: Uploads, limits: Limits) -> Described:
-    """Return what the `body` of a request describes.
+    """Parse the description in the `body` of a request.
 
     Raises
     ------
     RefusedError
-        If it names files of this machine, an upload that is not here, or exceeds a limit.
+        If the description names files of this machine or a missing upload, or exceeds a limit.
     """
     found = Described(
         dict(_with_uploads(body, lambda digest: uploads[digest], Upload.motion)),
@@ -46,7 +46,7 @@ def _with_uploads(
     describe: Callable[[Upload], dict[str, Any]],
     depth: int = 0,
 ) -> dict[str, Any]:
-    """Return `values` with the motion `upload` replaced by its record, wherever it stands."""
+    """Return `values` with the motion `upload` replaced by its record, at any depth."""
     if values.get("kind") == "record" or (set(values) & {"path", "upload", "file_sha256"}):
         _refuse_files(values)
         if "upload" in values:
@@ -55,7 +55,7 @@ def _with_uploads(
 
     def inside(value: object, depth: int) -> object:
         if depth > _DEEPEST:
-            raise RefusedError(422, [f"values may hold values to a depth of {_DEEPEST}; these go deeper"])
+            raise RefusedError(422, [f"values may be nested to a depth of at most {_DEEPEST}"])
         if isinstance(value, Mapping):
             return _with_uploads(value, find, describe, depth)
         return [inside(one, depth + 1) for one in value] if isinstance(value, list) else value
@@ -66,13 +66,13 @@ def _with_uploads(
 def _refuse_files(values: Mapping[str, Any]) -> None:
     for name in ("path", "file_sha256", "source"):
         if name in values:
-            raise RefusedError(422, [f"{name}: the laboratory reads no files of this machine; upload the record"])
+            raise RefusedError(422, [f"{name}: the laboratory does not read files of this machine. Upload the record."])
 
 
 def _beyond(body: Mapping[str, Any], limits: Limits) -> list[str]:
     """Return a line for each number beyond its limit."""
     problems = [
-        f"{name} may be at most {bound:g} {unit} here, got {body[name]!r}; use stylobate in Python for more"
+        f"{name} may be at most {bound:g} {unit} in the laboratory, got {body[name]!r}. Use Python for more."
         for name, (bound, unit) in limits.of_numbers().items()
         if number_of(body.get(name)) > bound
     ]
@@ -82,7 +82,7 @@ def _beyond(body: Mapping[str, Any], limits: Limits) -> list[str]:
     if any(axes):
         cells = max(cells, math.prod(_length(axis) for axis in axes))
     if cells > limits.cells:
-        problems.append(f"a map may have {limits.cells} runs here, got {cells:g}; use stylobate map for more")
+        problems.append(f"a map may have {limits.cells} runs in the laboratory, got {cells:g}. Use stylobate map.")
     return problems
 
 

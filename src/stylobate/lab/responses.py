@@ -1,4 +1,4 @@
-"""Runs and records as plain values that JSON can hold."""
+"""Answers: runs, columns and records as plain values for JSON."""
 
 from typing import Any
 
@@ -16,7 +16,7 @@ from stylobate.results.summary import column_rows, measure_rows
 
 
 def plain_run(run: Response, model: Model) -> dict[str, Any]:
-    """Return what a page shows of `run`: its outcome, its history, and how it is drawn."""
+    """Convert a run to plain values: outcome, histories and motion to draw."""
     return {
         "outcome": run.outcome.name,
         "label": run.outcome.label,
@@ -36,13 +36,13 @@ def plain_run(run: Response, model: Model) -> dict[str, Any]:
 
 
 def snippets(given: Described) -> dict[str, str]:
-    """Return what is described as a TOML file and as a Python program."""
+    """Return the description as a TOML file and as a Python program."""
     description = config.SimulationConfig.parse(given.shown)
     return {"toml": config.as_toml(given.shown), "python": config.as_python(description)}
 
 
 def plain_column(model: Model) -> dict[str, float]:
-    """Return the numbers of the column that decide."""
+    """Return the decisive numbers of the column."""
     column = model.column
     return {
         **{name: float(getattr(column, name)) for name in OF_ANY_COLUMN},
@@ -51,7 +51,7 @@ def plain_column(model: Model) -> dict[str, float]:
 
 
 def _series(run: Response, model: Model) -> dict[str, Any]:
-    """Return the histories that a page draws: numbers over time, lengths along the plane from where they began."""
+    """Return the histories for the page: numbers over time, and displacements along the plane from the start."""
     data = run.data
     histories = {name: numbers(data[name]) for name in _HISTORIES if name in data}
     if "normal_force" in data:

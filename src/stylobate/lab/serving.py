@@ -1,4 +1,4 @@
-"""Serving the laboratory on this machine."""
+"""Server of the laboratory on this machine."""
 
 import secrets
 import signal
@@ -22,7 +22,7 @@ LOOPBACK = ("127.0.0.1", "localhost", "::1")
 _ALL = ("0.0.0.0", "::", "")  # noqa: S104  addresses that stand for all of this machine's
 _HIGHEST_PORT = 65535
 _ELSEWHERE = ("192.0.2.1", 9)
-"""An address of no machine (RFC 5737): it shows by which address of its own this machine reaches others."""
+"""An address of no machine (RFC 5737), for finding the address by which this machine reaches others."""
 
 
 def serve(
@@ -38,27 +38,27 @@ def serve(
     Parameters
     ----------
     host, port
-        Where to listen. Port 0 takes any that is free. At a `host` that other machines can reach, requests need the
-        token in the address.
+        Address to listen on. Port 0 takes any free port. If other machines can reach `host`, requests need the token in
+        the address.
     allowed_hosts
-        Names by which browsers reach it besides `host` and those of this machine's own.
+        Names by which browsers reach the laboratory besides `host` and the names of this machine.
     limits
-        How much it may be asked for.
+        Limits on requests.
     started
-        Called with the address when it answers; opens a browser by default.
+        Called with the address once the server answers; opens a browser by default.
 
     Raises
     ------
     ParameterError
-        If the port is none.
+        If the port is not a valid port.
     FileError
-        If it cannot be listened on, for example because it is taken.
+        If the server cannot listen on the port, for example because it is in use.
     """
     if not 0 <= port <= _HIGHEST_PORT:
         message = f"port must lie between 0 and {_HIGHEST_PORT}, got {port!r}"
         raise ParameterError(message)
     with listening(host, port) as place:
-        # What is heavy waits until it is known that there is a place to listen.
+        # Heavy imports wait until the socket listens.
         from stylobate.lab.app import create_app  # noqa: PLC0415
 
         found = place.getsockname()[1]
@@ -67,7 +67,7 @@ def serve(
         hosts = {f"{_bracketed(name)}:{found}" for name in (host, *LOOPBACK, *own, *allowed_hosts)}
         name = own[0] if own and host in _ALL else host
         address = f"http://{_bracketed(name)}:{found}/" + ("" if token is None else f"?token={token}")
-        # The browser that is opened waits in the queue of the socket until the server takes it.
+        # The browser's connection waits in the queue of the socket until the server accepts it.
         app = create_app(hosts=hosts, token=token, limits=limits, ready=lambda: started(address))
         _end_with_the_terminal()
         server_of(app, limits).run(sockets=[place])
@@ -93,7 +93,7 @@ def server_of(app: "ASGIApp", limits: Limits | None = None) -> "uvicorn.Server":
 def listening(host: str, port: int) -> socket.socket:
     """Return a socket that listens, or raise FileError."""
     family = socket.AF_INET6 if ":" in host else socket.AF_INET
-    # With the protocol named, asyncio sends answers at once; else each would wait for an acknowledgement of its head.
+    # With a named protocol, asyncio sends answers at once; otherwise each answer would wait for an acknowledgement.
     place = socket.socket(family, socket.SOCK_STREAM, socket.IPPROTO_TCP)
     try:
         place.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
@@ -101,7 +101,7 @@ def listening(host: str, port: int) -> socket.socket:
         place.listen()
     except OSError as error:
         place.close()
-        message = f"cannot listen on {host}:{port}: {error.strerror or error}; give another --port, or 0 for any"
+        message = f"cannot listen on {host}:{port}: {error.strerror or error}. Give another --port, or 0 for any."
         raise FileError(message) from None
     return place
 
@@ -110,22 +110,22 @@ def own_names() -> tuple[str, ...]:
     """Return the addresses and names by which other machines may reach this one, the usual address first."""
     name = socket.gethostname()
     found = [name, f"{name}.local"]
-    with suppress(OSError):  # a name that resolves nowhere
+    with suppress(OSError):  # the name may not resolve
         found += sorted({str(info[4][0]) for info in socket.getaddrinfo(name, None)})
-    with suppress(OSError), socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as outward:  # perhaps without a network
-        outward.connect(_ELSEWHERE)  # of a datagram socket: nothing is sent
+    with suppress(OSError), socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as outward:  # there may be no network
+        outward.connect(_ELSEWHERE)  # a datagram socket sends nothing
         found.insert(0, outward.getsockname()[0])
     return tuple(dict.fromkeys(found))
 
 
 def _end_with_the_terminal() -> None:
-    """Take the end of the terminal as Ctrl-C is taken: worker processes and files are cleared away."""
+    """Handle the end of the terminal like Ctrl-C: end worker processes and remove files."""
 
     def interrupt(number: int, frame: FrameType | None) -> None:
         del number, frame
         signal.raise_signal(signal.SIGTERM)
 
-    alone = threading.current_thread() is threading.main_thread()  # signals are set there only
+    alone = threading.current_thread() is threading.main_thread()  # only the main thread can set signals
     if alone and hasattr(signal, "SIGHUP") and signal.getsignal(signal.SIGHUP) is signal.SIG_DFL:
         signal.signal(signal.SIGHUP, interrupt)
 

@@ -1,4 +1,4 @@
-"""How large the objects of a request would be: estimated before they are built."""
+"""Size limits: estimates of the size of a request's objects before they are built."""
 
 import math
 from collections.abc import Iterator, Mapping
@@ -11,17 +11,17 @@ from stylobate.lab.limits import Limits
 from stylobate.lab.uploads import Uploads
 
 LEAST, MOST = SMALLEST, LARGEST
-"""Sizes of numbers other than zero."""
+"""Minimum and maximum size of numbers other than zero."""
 
 HIGHEST_DEGREE = 20
-"""Of filters and baselines; they are badly conditioned long before."""
+"""Maximum degree of filters and baselines, which are badly conditioned far below it."""
 
 _SHOWN = 4
 _LONGEST_NAME = 40
 
 
 def number_of(value: object) -> float:
-    """Return a plain value as a number where it is one, or spells one; else zero."""
+    """Return a plain value as a number if it is or spells one; else zero."""
     try:
         return float(value) if isinstance(value, (int, float, str)) else 0.0
     except ValueError:
@@ -31,33 +31,33 @@ def number_of(value: object) -> float:
 
 
 def problems_of_size(body: Mapping[str, Any], uploads: Uploads, limits: Limits) -> list[str]:
-    """Return one line for each part of a description that is too large, or has numbers beyond those of any column.
+    """Return one line for each part of a description that is too large, and for each number of an unreasonable size.
 
     Raises
     ------
     RefusedError
-        If it names an upload that is not here.
+        If the description names a missing upload.
     """
     problems = beyond_size(body)
     motions = list(islice(_motions(body), limits.motions + 1))
     if len(motions) > limits.motions:
-        return [*problems, f"motion may be made of {limits.motions} motions here, got more; use stylobate in Python"]
+        return [*problems, f"motion may combine {limits.motions} motions in the laboratory. Use Python for more."]
     problems += [line for motion in motions for line in (*_sweep(motion, limits), *_steps(motion))]
     if problems:
         return problems
     samples = sum(_samples(motion, uploads) for motion in motions)
     if samples > limits.record_samples:
-        remedy = f"got {samples:.3g}; shorten tail and padding, or take a larger step"
-        problems.append(f"motion: records may have {limits.record_samples} samples in all here, {remedy}")
+        remedy = f"got {samples:.3g}. Shorten tail and padding, or take a larger step."
+        problems.append(f"motion: records may have {limits.record_samples} samples together, {remedy}")
     return problems
 
 
 def beyond_size(values: Mapping[str, Any]) -> list[str]:
-    """Return one line for each of the first numbers, at any depth, whose size no column or record has."""
+    """Return one line for each of the first numbers, at any depth, whose size is unreasonable."""
     beyond = (
         f"{name} must be zero or between {LEAST:g} and {MOST:g} in size, got {value!r}"
         for name, value in _numbers(values)
-        if not (value == 0.0 or LEAST <= abs(value) <= MOST or math.isnan(value))  # what is no number is refused later
+        if not (value == 0.0 or LEAST <= abs(value) <= MOST or math.isnan(value))  # NaN is refused later
     )
     return list(islice(beyond, _SHOWN))
 
@@ -76,12 +76,12 @@ def _numbers(body: Mapping[str, Any]) -> Iterator[tuple[str, float]]:
 
 
 def _shown(key: object) -> str:
-    """Return a name of the user's on one line."""
+    """Return a user's name on one line."""
     return repr(str(key)[:_LONGEST_NAME])[1:-1]
 
 
 def _motions(body: Mapping[str, Any]) -> Iterator[Mapping[str, Any]]:
-    """Yield the base motion and those of which it is made."""
+    """Yield the base motion and the motions that it combines."""
     waiting = [body.get("motion")]
     while waiting:
         motion = waiting.pop()
@@ -98,15 +98,13 @@ def _sweep(motion: Mapping[str, Any], limits: Limits) -> list[str]:
     cycles = max(map(number_of, frequencies), default=0.0) * number_of(motion.get("length"))
     if cycles <= limits.steps:
         return []
-    return [
-        f"motion: a sweep may have {limits.steps} cycles here, got {cycles:.3g}; shorten it or lower its frequencies"
-    ]
+    return [f"motion: a sweep may have {limits.steps} cycles, got {cycles:.3g}. Shorten it or lower its frequencies."]
 
 
 def _steps(motion: Mapping[str, Any]) -> list[str]:
-    """Return a line for each step of processing of a degree that is too high."""
+    """Return a line for each step of processing with too high a degree."""
     return [
-        f"motion.processing: {name} may be at most {HIGHEST_DEGREE}, got {step[name]!r}; 4 is usual of filters"
+        f"motion.processing: {name} may be at most {HIGHEST_DEGREE}, got {step[name]!r}. Filters usually have 4."
         for step in _processing(motion)
         for name in ("order", "degree")
         if number_of(step.get(name)) > HIGHEST_DEGREE
@@ -119,7 +117,7 @@ def _processing(motion: Mapping[str, Any]) -> list[Mapping[str, Any]]:
 
 
 def _samples(motion: Mapping[str, Any], uploads: Uploads) -> float:
-    """Return how many samples a record has while it is processed; none of another motion."""
+    """Return the maximum number of samples of a record during its processing; zero for another motion."""
     if motion.get("kind") != "record":
         return 0.0
     samples, step = _as_read(motion, uploads)
@@ -134,7 +132,7 @@ def _samples(motion: Mapping[str, Any], uploads: Uploads) -> float:
 
 
 def _as_read(motion: Mapping[str, Any], uploads: Uploads) -> tuple[float, float]:
-    """Return number and step [s] of the samples of a record before anything is done to it."""
+    """Return number and step [s] of the samples of a record before processing."""
     if "upload" in motion:
         found = uploads[motion["upload"]]
         return found.samples, number_of(motion.get("step")) or found.step

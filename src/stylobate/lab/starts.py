@@ -1,4 +1,4 @@
-"""Starts on steady rolling, which a page follows while its reader changes the frequency."""
+"""Initial conditions on steady rolling, which the page updates while the user changes the frequency."""
 
 from collections.abc import Mapping
 from typing import Any, Literal
@@ -19,10 +19,10 @@ from stylobate.models import Model
 from stylobate.theory.averaging import circular_components
 
 _NO_CIRCLE = 1e-12
-"""A base moves in a circle if the circle against it is smaller than this fraction of it."""
+"""A base motion is circular if its counter-rotating circle is smaller than this fraction of the main circle."""
 
 _NEAR = 0.5
-"""The mean tilt of an exact orbit on the branch differs from the averaged tilt by less than this fraction of it."""
+"""Maximum difference between the mean tilt of an exact orbit on the branch and the averaged tilt, as a fraction."""
 
 _ONLY_UPPER = "start: averaged branch, approximate; exact orbits are computed for the upper branch only"
 _NONE_FOUND = "start: averaged branch, approximate; no exact orbit was found from it"
@@ -31,7 +31,7 @@ _ASYMMETRIC = "start: the exact orbit has bifurcated from the branch and lacks i
 
 
 class StartConfig(Config):
-    """The case whose steady rolling is wanted: `column`, `model`, a horizontal harmonic `motion`, and which branch."""
+    """The case of steady rolling: `column`, `model`, a horizontal harmonic `motion`, and the branch."""
 
     column: ColumnConfig
     model: ModelConfig = described_model("slender")
@@ -40,21 +40,21 @@ class StartConfig(Config):
 
 
 def start(values: Mapping[str, Any]) -> dict[str, Any]:
-    """Compute the start on steady rolling that `values` describe.
+    """Compute the initial conditions on steady rolling that `values` describe.
 
-    Under a circular motion the closed form is exact. Under an elliptic or straight motion it is averaged, and too far
-    from the motion to start on it: the upper branch then starts on the exact periodic orbit, if one is found.
+    Under a circular motion the closed form is exact. Under an elliptic or straight motion it is averaged, and not
+    close enough to the motion: the upper branch then starts on the exact periodic orbit, if one is found.
 
     Returns
     -------
     dict
-        "tilt" [rad], "tilt_rate" and "spin" [rad/s], the spin 0 for a model that cannot turn about its axis;
+        "tilt" [rad], "tilt_rate" and "spin" [rad/s], the spin is 0 for a model without spin;
         "warnings", one line if the start is approximate, or its orbit unstable or bifurcated from the branch.
 
     Raises
     ------
     ConfigError, ParameterError, UnsupportedError
-        If the case cannot be, or has no steady rolling on the branch in closed form.
+        If the case is invalid, or has no steady rolling on the branch in closed form.
     """
     given = StartConfig.parse(values)
     model, motion = built_parts(given.column, given.model, given.motion, [])
@@ -79,10 +79,10 @@ def _is_circular(motion: Harmonic) -> bool:
 
 
 def _orbit_near(model: Model, motion: Harmonic, known: Mapping[str, Any]) -> orbits.PeriodicOrbit | None:
-    """Compute the exact orbit that belongs to an averaged start, or None.
+    """Compute the exact orbit of an averaged start; return None if none is found.
 
-    Newton's method from the averaged start itself leads to other orbits; followed from the circular motion, it keeps
-    to the branch.
+    Newton's method from the averaged start itself converges to other orbits; continuation from the circular motion
+    stays on the branch.
     """
     try:
         orbit = orbits.periodic_orbit(model, motion)

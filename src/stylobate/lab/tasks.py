@@ -1,4 +1,4 @@
-"""What the processes of the laboratory can compute, by name. Each takes plain values and returns plain values."""
+"""Tasks of worker processes by name; each takes plain values and returns plain values."""
 
 import json
 import math
@@ -12,16 +12,16 @@ from stylobate.lab.request_parsing import Described
 from stylobate.lab.responses import plain_record, plain_run, snippets
 
 _USUAL_LENGTH = 12.0
-"""How long a moving picture lasts [s], unless its base swings so fast that it must be slower."""
+"""Usual duration of an animation [s]; longer if the base oscillates too fast to be visible."""
 _PICTURES_PER_SECOND, _PICTURES_PER_PERIOD, _MOST_PICTURES = 25.0, 12.0, 1400
 
 _SAMPLES_PER_PERIOD, _FEWEST_SAMPLES, _MOST_SAMPLES = 48, 601, 2000
 
-# Imports inside tasks are heavy, and few of the processes do such tasks.
+# Imports inside tasks are heavy, and few processes need them.
 
 
 def run(given: Described, emit: Emit) -> bytes:
-    """Return one run with all that is drawn of it, as JSON: so much is written where nobody else waits for it."""
+    """Compute one run with its histories and motion, as JSON, so that the server need not encode it."""
     del emit
     with remarks(given.values) as remarked:
         setup = config.SimulationConfig.parse(given.values).build()
@@ -33,14 +33,14 @@ def run(given: Described, emit: Emit) -> bytes:
 
 
 def _enough(setup: config.Setup) -> int:
-    """Return how many samples draw a run smoothly: a page shows no more, and waits for each."""
+    """Return the number of samples for a smooth plot of a run; the page cannot show more."""
     frequency = max(setup.motion.highest_frequency, setup.model.column.frequency_scale)
     swings = setup.options["duration"] * frequency / (2.0 * math.pi)
     return int(min(max(_SAMPLES_PER_PERIOD * swings, _FEWEST_SAMPLES), _MOST_SAMPLES))
 
 
 def record(values: Mapping[str, Any], emit: Emit) -> dict[str, Any]:
-    """Return what a record holds, and the warnings that were issued while its files were read."""
+    """Read a record; return its contents, and the warnings about its files."""
     del emit
     with remarks(values) as remarked:
         found = plain_record(config.RecordMotion.parse(values).build())
@@ -48,7 +48,7 @@ def record(values: Mapping[str, Any], emit: Emit) -> dict[str, Any]:
 
 
 def start(values: Mapping[str, Any], emit: Emit) -> dict[str, Any]:
-    """Compute the start on a branch of steady rolling."""
+    """Compute initial conditions on a branch of steady rolling."""
     from stylobate.lab.starts import start as start_on_branch  # noqa: PLC0415
 
     del emit
@@ -56,7 +56,7 @@ def start(values: Mapping[str, Any], emit: Emit) -> dict[str, Any]:
 
 
 def exact(values: Mapping[str, Any], emit: Emit) -> dict[str, Any]:
-    """Return exact periodic orbits over a range of frequencies, with their bifurcations."""
+    """Compute exact periodic orbits over a range of frequencies, with their bifurcations."""
     from stylobate.lab.curves import exact_curves  # noqa: PLC0415
 
     return exact_curves(values, emit)
@@ -70,14 +70,14 @@ def overturning(values: Mapping[str, Any], emit: Emit) -> dict[str, Any]:
 
 
 def basin(values: Mapping[str, Any], emit: Emit) -> dict[str, Any]:
-    """Return where starts lead."""
+    """Compute basins of attraction over two initial conditions."""
     from stylobate.lab.grids import basin_plane  # noqa: PLC0415
 
     return basin_plane(values, emit)
 
 
 def animation(values: Mapping[str, Any], emit: Emit) -> bytes:
-    """Return a run as a moving picture (GIF), long ones faster than they are."""
+    """Animate a run as a GIF; long runs are shown faster."""
     from stylobate.plots.animation import animate  # noqa: PLC0415
 
     setup = config.SimulationConfig.parse(values).build()
@@ -88,7 +88,7 @@ def animation(values: Mapping[str, Any], emit: Emit) -> bytes:
 
 
 def speed_of_pictures(setup: config.Setup, end: float) -> float:
-    """Return how fast a run is shown: in about twelve seconds, but so slowly that each swing of the base is seen."""
+    """Return the speed of the animation of a run: about twelve seconds, but with each period of the base visible."""
     frequency = setup.motion.highest_frequency / (2.0 * math.pi)
     swings = setup.motion.period is not None and frequency > 0.0
     seen = _PICTURES_PER_SECOND / (_PICTURES_PER_PERIOD * frequency) if swings else math.inf
@@ -96,7 +96,7 @@ def speed_of_pictures(setup: config.Setup, end: float) -> float:
 
 
 def warm_up() -> None:
-    """Import and compile what every run needs."""
+    """Import and compile the code that every run needs."""
     values = {"column": {"shape": "dimensionless", "slenderness": 0.1}, "tilt": [0.02, 0.0], "duration": 1.0}
     run(Described(values, values), lambda _: None)
 

@@ -1,4 +1,4 @@
-"""Records that were uploaded: files in a folder of the laboratory's own, known by their digest."""
+"""Uploaded records: files in a folder of the laboratory, identified by their digest."""
 
 import base64
 import binascii
@@ -24,7 +24,7 @@ _PIECE = 1 << 16
 
 @dataclass(frozen=True, slots=True)
 class Upload:
-    """The files of one event, as they are on disk, how they are to be read, and how many samples that gives."""
+    """The files of one event on disk, the options for reading them, and the resulting number of samples."""
 
     digest: str
     paths: tuple[Path, ...]
@@ -34,24 +34,24 @@ class Upload:
 
     @property
     def size(self) -> int:
-        """Their size [bytes]."""
+        """Size of the files [bytes]."""
         return sum(path.stat().st_size for path in self.paths)
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Their names."""
+        """Names of the files."""
         return tuple(path.name for path in self.paths)
 
     def motion(self) -> dict[str, Any]:
-        """Return the plain values of the record, files by their path here."""
-        return {**self.as_read(), "single": True}  # one component is remarked on when the files are read
+        """Return the plain values of the record, with the paths of its files."""
+        return {**self.as_read(), "single": True}  # the warning about one component belongs to the upload
 
     def as_read(self) -> dict[str, Any]:
-        """Return the plain values with which the files are read for the first time, with all remarks."""
+        """Return the plain values for the first reading of the files, which issues all warnings."""
         return self._motion([str(path) for path in self.paths])
 
     def as_json(self) -> dict[str, Any]:
-        """Return the plain values of the record, files by their name."""
+        """Return the plain values of the record, with the names of its files."""
         return {**self._motion(list(self.names)), "single": True}
 
     def _motion(self, paths: list[str]) -> dict[str, Any]:
@@ -60,9 +60,9 @@ class Upload:
 
 @dataclass(slots=True)
 class Uploads:
-    """All uploads, in `folder`, of at most `limit` bytes together; those not used for longest go first.
+    """All uploads, in `folder`, of at most `limit` bytes together; the least recently used are removed first.
 
-    No file may have more than `unpacked` bytes where it is packed.
+    A packed file may have at most `unpacked` bytes when unpacked.
     """
 
     folder: Path
@@ -73,18 +73,18 @@ class Uploads:
     def __getitem__(self, digest: object) -> Upload:
         found = self._known.get(digest) if isinstance(digest, str) else None
         if found is None:
-            problem = f"motion.upload: the record {str(digest)[:12]!r} is not here (any more); upload its files again"
+            problem = f"motion.upload: record {str(digest)[:12]!r} is not stored (any more). Upload its files again."
             raise RefusedError(422, [problem])
         self._known.move_to_end(found.digest)
         return found
 
     def add(self, body: Mapping[str, Any]) -> Upload:
-        """Keep the files in the `body` of a request and return them.
+        """Store the files in the `body` of a request and return them.
 
         Raises
         ------
         RefusedError
-            If a name, a content or a unit is none.
+            If a name, a content or a unit is invalid.
         """
         files, reading = _files(body), _reading(body)
         for name, content in files.items():
@@ -104,11 +104,11 @@ class Uploads:
         return self._known[known]
 
     def measured(self, upload: Upload, samples: int, step: float) -> None:
-        """Remember how many samples an upload has, and the `step` between them [s]."""
+        """Record the number of samples of an upload, and the `step` between them [s]."""
         self._known[upload.digest] = replace(upload, samples=samples, step=step)
 
     def drop(self, upload: Upload) -> None:
-        """Forget an upload, and its files."""
+        """Remove an upload and its files."""
         self._known.pop(upload.digest, None)
         shutil.rmtree(self.folder / upload.digest, ignore_errors=True)
 
@@ -128,11 +128,11 @@ def _files(body: Mapping[str, Any]) -> dict[str, bytes]:
 
 
 def _require_unpacked_size(name: str, content: bytes, most: int) -> None:
-    """Refuse a gzip file of more than so many bytes when unpacked; no more than these are unpacked, piece by piece."""
+    """Refuse a gzip file of more than `most` bytes when unpacked, without unpacking more than these."""
     if not content.startswith(_GZIP):
         return
     size = 0
-    with suppress(OSError, EOFError, zlib.error), gzip.open(io.BytesIO(content)) as unpacked:  # broken: reading says so
+    with suppress(OSError, EOFError, zlib.error), gzip.open(io.BytesIO(content)) as unpacked:  # reported later
         while size <= most and (piece := unpacked.read(_PIECE)):
             size += len(piece)
     if size > most:
@@ -154,7 +154,7 @@ def _file(index: int, file: object) -> tuple[str, bytes]:
 
 
 def _is_plain(name: str) -> bool:
-    """Return whether `name` is that of a file on any system, and names no folder."""
+    """Return whether `name` is a valid file name on any system, without a folder."""
     alone = PurePosixPath(name).name == name == PureWindowsPath(name).name
     return alone and 0 < len(name.encode(errors="replace")) <= _LONGEST_NAME and name.isprintable() and name[0] != "."
 
@@ -163,7 +163,7 @@ def _reading(body: Mapping[str, Any]) -> dict[str, Any]:
     known: dict[str, tuple[type, ...]] = {"units": (str,), "step": (int, float)}
     unknown = sorted(set(body) - {"files", *known})
     if unknown:
-        raise RefusedError(422, [f"{unknown[0]} is not known here; remove it"])
+        raise RefusedError(422, [f"{unknown[0]} is unknown. Remove it."])
     reading = {name: body[name] for name in known if body.get(name) is not None}
     for name, value in reading.items():
         if not isinstance(value, known[name]) or isinstance(value, bool):

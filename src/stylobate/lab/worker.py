@@ -1,4 +1,4 @@
-"""A process that computes for the laboratory: one task after the other, received and answered through a pipe."""
+"""Worker process of the laboratory: one task after the other, received and answered through a pipe."""
 
 import logging
 import multiprocessing
@@ -14,8 +14,8 @@ from stylobate.processes import end_when_closed
 
 
 def work(connection: Connection) -> None:
-    """Do what the other end of `connection` asks for, until it is closed."""
-    # Ctrl-C in the terminal is for the server, which then ends its workers.
+    """Perform the tasks that arrive through `connection` until it is closed."""
+    # Ctrl-C in the terminal concerns the server, which then ends its workers.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     server = multiprocessing.parent_process()
     if server is not None:
@@ -29,7 +29,7 @@ def work(connection: Connection) -> None:
         while True:
             kind, values = connection.recv()
             connection.send(_done(tasks.TASKS[kind], values, connection.send))
-    except (EOFError, OSError):  # the server is gone
+    except (EOFError, OSError):  # the server has ended
         os._exit(0)
 
 
@@ -43,15 +43,15 @@ def _done(task: Callable[[Any, Emit], Any], values: Any, emit: Emit) -> Finished
     except StylobateError as error:
         return Refused(tuple(str(error).splitlines()) or (type(error).__name__,))
     except MemoryError:
-        return Refused(("this needs more memory than there is; make the record, the duration or the grid smaller",))
+        return Refused(("out of memory: make the record, the duration or the grid smaller",))
     except OSError:  # of the pipe
         raise
-    except Exception:  # noqa: BLE001  whatever it is, the process goes on with the next task
+    except Exception:  # noqa: BLE001  after any error the process continues with the next task
         return Broken(traceback.format_exc())
 
 
 class _LogSender(logging.Handler):
-    """Sends the server what the library logs."""
+    """Send the library's log records to the server."""
 
     def __init__(self, connection: Connection) -> None:
         super().__init__()

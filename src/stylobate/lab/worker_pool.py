@@ -1,4 +1,4 @@
-"""The processes that compute for the laboratory: as many at once as allowed, none kept busy for nobody."""
+"""Pool of worker processes: a maximum number at once, with cancelled tasks ended."""
 
 import asyncio
 import logging
@@ -33,19 +33,19 @@ _NAME = "stylobate lab"
 """Name of each process."""
 
 GRACE = 1.5
-"""How long a task that nobody waits for any more may take to its end before its process is ended [s].
+"""Time that a cancelled task may take to its end before its process is ended [s].
 
-A new process takes longer to start than most runs to end.
+A new process takes longer to start than most runs take to end.
 """
 
 
 class LostError(Exception):
-    """A process ended before it answered.
+    """A process ended before its answer.
 
     Attributes
     ----------
     exit_code
-        Its exit code, where that is known.
+        Its exit code, if known.
     """
 
     def __init__(self, exit_code: int | None = None) -> None:
@@ -59,7 +59,7 @@ class BusyError(Exception):
 
 @dataclass(slots=True, eq=False)
 class Worker:
-    """One process, the pipe to it, and what came through."""
+    """One process, the pipe to it, and the received messages."""
 
     process: BaseProcess
     connection: Connection
@@ -68,30 +68,30 @@ class Worker:
 
     @classmethod
     async def started(cls) -> "Worker":
-        """Start a process. It says when it is ready."""
+        """Start a process, which sends a message when it is ready."""
         process, connection = await _started()
         hears, heard = anyio.create_memory_object_stream[Any](math.inf)
         return cls(process, connection, heard, hears)
 
     async def listen(self, threads: CapacityLimiter) -> None:
-        """Take what the process says, until it ends."""
+        """Receive messages from the process until it ends."""
         with self.hears:
             try:
                 while True:
                     said = await to_thread.run_sync(self.connection.recv, limiter=threads, abandon_on_cancel=True)
                     self.hears.send_nowait(said)
             except (EOFError, OSError, TypeError, anyio.BrokenResourceError):
-                pass  # a pipe that is closed here between two parts of what is read has no number: TypeError
+                pass  # TypeError: the pipe was closed here between two parts of a message
 
     async def next(self) -> Any:
-        """Return what it says next, or raise LostError."""
+        """Return the next message of the process, or raise LostError."""
         try:
             return await self.heard.receive()
         except (anyio.EndOfStream, anyio.ClosedResourceError):
             raise LostError from None
 
     def end(self) -> None:
-        """End the process, whatever it does."""
+        """End the process, even during a task."""
         self.process.kill()
         self.connection.close()
         self.process.join()
@@ -99,9 +99,9 @@ class Worker:
 
 
 async def _started() -> tuple[BaseProcess, Connection]:
-    """Start a process in a thread: it may wait for the imports of the fork server, and the end of the program may not.
+    """Start a process in a thread, because the start may wait for imports and must not delay the end of the program.
 
-    A process that nobody takes any more ends when the pipe to it is closed.
+    A process without a caller ends when its pipe is closed.
     """
     started: Future[tuple[BaseProcess, Connection]] = Future()
     started.set_running_or_notify_cancel()
@@ -109,7 +109,7 @@ async def _started() -> tuple[BaseProcess, Connection]:
     def start() -> None:
         try:
             started.set_result(_process())
-        except Exception as error:  # noqa: BLE001  raised where somebody waits
+        except Exception as error:  # noqa: BLE001  raised for the caller
             started.set_exception(error)
 
     threading.Thread(target=start, daemon=True).start()
@@ -117,10 +117,10 @@ async def _started() -> tuple[BaseProcess, Connection]:
 
 
 def _process() -> tuple[BaseProcess, Connection]:
-    """Start a process that computes.
+    """Start a worker process.
 
     On Linux a fork server imports what every process needs, once, and forks each process from itself in milliseconds.
-    Elsewhere each process imports for itself, because system libraries may not survive a fork.
+    Elsewhere each process has its own imports, because system libraries may not survive a fork.
     """
     context: BaseContext
     if sys.platform == "linux":
@@ -137,7 +137,7 @@ def _process() -> tuple[BaseProcess, Connection]:
 
 @dataclass(slots=True)
 class Crew:
-    """At most `limit` processes, which live in tasks of `group`; those that are idle are kept for the next task."""
+    """At most `limit` processes, which live in tasks of `group`; idle processes wait for the next task."""
 
     limit: int
     group: TaskGroup
@@ -150,16 +150,16 @@ class Crew:
     _threads: CapacityLimiter = field(init=False)
 
     def __post_init__(self) -> None:
-        # A thread listens to each process; those that were ended take a moment to fall silent.
+        # A thread listens to each process; threads of ended processes stop a moment later.
         self._threads = CapacityLimiter(4 * self.limit)
 
     def warm_up(self) -> None:
-        """Have one process ready before the first task.
+        """Start one process before the first task.
 
         Raises
         ------
         RuntimeError
-            If this is such a process itself, which imports the user's program and thereby starts a laboratory.
+            If this is a worker process, which imports the user's program and thereby starts a laboratory.
         """
         if multiprocessing.current_process().name == _NAME:
             message = "laboratory: a worker process started another. Call serve under `if __name__ == '__main__':`."
@@ -175,7 +175,7 @@ class Crew:
         wait: float | None = None,
         limit: float | None = None,
     ) -> Answer:
-        """Return how the task of this `kind` ended; messages on the way go to `report`.
+        """Perform a task of this `kind` and return its answer; other messages go to `report`.
 
         If the caller is cancelled, the task is ended unless it ends within the grace.
 
@@ -187,7 +187,7 @@ class Crew:
             If the task took longer than `limit` [s].
         """
         if self._idle or self._room():
-            report(Note("a process starts, which takes long the first time"))  # it will not have to wait for others
+            report(Note("a process starts, which takes long the first time"))  # the task need not wait for others
         try:
             with anyio.fail_after(wait):
                 worker = await self._ready()
@@ -201,7 +201,7 @@ class Crew:
             with anyio.fail_after(limit):
                 answer = await _answer(worker, report)
         except (LostError, OSError) as error:
-            if isinstance(error, TimeoutError):  # an OSError too
+            if isinstance(error, TimeoutError):  # is also an OSError
                 self.group.start_soon(self._settle, worker)
                 raise
             self._discard(worker)
@@ -213,14 +213,14 @@ class Crew:
         return answer
 
     def end(self) -> None:
-        """End all processes, for good."""
+        """End all processes permanently."""
         self._open = False
         for worker in list(self._all):
             self._discard(worker)
 
     async def _ready(self) -> Worker:
-        """Return an idle process; one more is started where that is allowed."""
-        self._failed = None  # a process that failed to start before, when nobody waited, says nothing of the next
+        """Return an idle process; start one more if the limit allows."""
+        self._failed = None  # an earlier failure to start, without a waiting task, does not concern the next process
         while True:
             while self._idle:
                 worker = self._idle.pop()
@@ -246,7 +246,7 @@ class Crew:
     async def _start(self) -> None:
         try:
             worker = await Worker.started()
-        except Exception:  # noqa: BLE001  whatever it is, who waits gets an answer
+        except Exception:  # noqa: BLE001  any caller that waits gets an answer
             _log.exception("a worker process could not be started")
             self._failed = LostError()
             self._notify()
@@ -260,7 +260,7 @@ class Crew:
         self.group.start_soon(worker.listen, self._threads)
         try:
             while not isinstance(await worker.next(), Ready):
-                pass  # what is logged at the start
+                pass  # log records at the start
         except LostError:
             self._discard(worker)
             self._failed = LostError(worker.process.exitcode)
@@ -268,7 +268,7 @@ class Crew:
             self._release(worker)
 
     async def _settle(self, worker: Worker) -> None:
-        """Take back a process whose task nobody waits for; one that goes on with it is replaced."""
+        """Take back a process with a cancelled task; replace the process if the task continues too long."""
         try:
             with anyio.move_on_after(GRACE):
                 await _answer(worker, lambda _: None)

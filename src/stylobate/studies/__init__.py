@@ -1,6 +1,6 @@
 """Studies of many runs: maps and basins, responses and their stability, model hierarchies, sweeps.
 
-The public names, imported when they are first used, are those of `__init__.pyi`.
+`__init__.pyi` lists the public names, which are imported on first use.
 """
 
 import lazy_loader

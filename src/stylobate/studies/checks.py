@@ -1,4 +1,4 @@
-"""What studies let vary: the starts of one system, and one parameter."""
+"""Checks of the quantities that a study varies: initial conditions of one system, and one parameter."""
 
 import warnings
 from collections.abc import Iterable, Mapping
@@ -12,11 +12,11 @@ from stylobate.quantities import parameters_of
 from stylobate.studies.sweeps.quantities import STARTS, Floats, check_quantities, checked_values
 
 SYSTEM_STARTS = (*STARTS, "start_phase")
-"""What can differ between runs of one column under one base motion."""
+"""Quantities that can differ between runs of one column under one base motion."""
 
 
 def require_starts(where: str, over: Mapping[str, object]) -> None:
-    """Raise ParameterError unless `over` names starts only, which leave column and base motion as they are."""
+    """Raise ParameterError unless `over` names only initial conditions, which do not change column and base motion."""
     if not isinstance(over, Mapping) or not over:
         message = f'{where} must name starts, such as {where}={{"tilt_x": …, "tilt_rate_x": …}}; got {over!r}'
         raise ParameterError(message)
@@ -38,7 +38,7 @@ def one_parameter(model: Model, along: Mapping[str, npt.ArrayLike], over: Mappin
     Raises
     ------
     ParameterError
-        If there are more names, or no values, or `over` names it too, or it is no quantity that can vary.
+        If there are more names, no values, or the name is also in `over` or cannot vary.
     """
     if not isinstance(along, Mapping) or len(along) != 1:
         message = f'along must name one parameter with its values, such as {{"acceleration": […]}}; got {along!r}'
@@ -55,13 +55,13 @@ def one_parameter(model: Model, along: Mapping[str, npt.ArrayLike], over: Mappin
 
 
 def remark_on_lengths(where: str, names: Iterable[str]) -> None:
-    """Warn if one length of a column varies and nothing else of its body: the result is no larger column."""
+    """Warn if one length of a column varies without its mass and inertia: the result is not a scaled column."""
     given = set(names)
     alone = [name for name in _LENGTHS if name in given]
     if alone and given.isdisjoint(_OF_THE_BODY):
         message = (
-            f"{where}: {alone[0]} changes without mass and moments of inertia, which belong to another body then; "
-            "size scales a column at one shape and density, slenderness its radius with the axial inertia"
+            f"{where}: {alone[0]} varies without mass and moments of inertia, so the runs have different bodies. Vary "
+            "size to scale a column at constant shape and density, or slenderness to vary its radius and axial inertia"
         )
         warnings.warn(message, UnlikelyInputWarning, stacklevel=3)
 
@@ -79,7 +79,7 @@ def _require_some(where: str, name: str, values: Floats) -> None:
 
 
 def require_no_tilt_limit(options: Mapping[str, object]) -> None:
-    """Raise ParameterError if `options` name a tilt limit: a run stopped there is not known to overturn, or not to."""
+    """Raise ParameterError if `options` name a tilt limit: for a run stopped there, overturning is undecided."""
     if options.get("tilt_limit") is not None:
         given = options["tilt_limit"]
         message = f"tilt_limit must be left out: a run stopped at it is not known to overturn or not; got {given!r} rad"

@@ -1,4 +1,4 @@
-"""Orbits by which the runs of studies end early: steady rolling in closed form, and exact periodic orbits."""
+"""Known orbits at which runs of studies end early: steady rolling in closed form, and exact periodic orbits."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -25,14 +25,14 @@ Floats = npt.NDArray[np.float64]
 Steady: TypeAlias = tuple[Floats, Floats, Floats, Floats]
 """Tilt [rad], phase [rad], spin [ω0], and the rate [ω0] at which the slowest disturbance grows; NaN where unstable."""
 
-# A harmonic motion is circular if the other of its two circles is smaller than this part.
+# A harmonic motion is circular if its smaller circular component is below this fraction of the larger one.
 _CIRCULAR = 1e-12
 # Numbers of a circular motion that may vary between runs.
 _OF_CIRCLES = ("angular_frequency", "start_phase", "acceleration", "scale", "rotation", "delay")
 
 
 def require_closed_form(model: Model, motion: BaseMotion, names: Sequence[str]) -> None:
-    """Raise UnsupportedError unless steady rolling has a closed form, where numbers of these `names` vary."""
+    """Raise UnsupportedError unless steady rolling has a closed form while numbers of these `names` vary."""
     form = rolling_form_of(model)
     harmonic = as_harmonic(motion)
     remedy = "Leave out end_converged, or pass `orbits` to stylobate.studies.basins."
@@ -50,12 +50,12 @@ def require_closed_form(model: Model, motion: BaseMotion, names: Sequence[str]) 
 
 
 def known_rolling(model: Model, motion: BaseMotion, values: Mapping[str, Floats], count: int) -> KnownOrbit:
-    """Compute steady rolling of each run of a sweep in closed form, where it is stable.
+    """Compute stable steady rolling of each run of a sweep in closed form.
 
     Parameters
     ----------
     model, motion
-        What all runs have in common; see `require_closed_form`.
+        Model and base motion of all runs; see `require_closed_form`.
     values
         Numbers of column, model and motion that differ between the runs, by name, shape (n,).
     count
@@ -64,13 +64,13 @@ def known_rolling(model: Model, motion: BaseMotion, values: Mapping[str, Floats]
     of_model, of_motion = split(model, values)
     bodies = _Bodies.of(model, of_model)
     harmonic = as_harmonic(motion)
-    assert harmonic is not None  # `require_closed_form` has seen to it
+    assert harmonic is not None  # ensured by `require_closed_form`
     frame = RollingFrame.of(model, replace(harmonic, start_phase=0.0))
     scale = of_motion.get("scale", np.ones(1))
     drive = of_motion.get("acceleration", frame.drive * model.column.gravity) * np.abs(scale) / bodies.gravity
     nu = of_motion.get("angular_frequency", np.array(harmonic.angular_frequency)) * bodies.time_scale
     offset = frame.offset + of_motion.get("rotation", np.zeros(1)) + np.where(scale < 0.0, np.pi, 0.0)
-    nu, drive, time_scale = np.broadcast_arrays(nu, drive, bodies.time_scale)  # one of each where none varies
+    nu, drive, time_scale = np.broadcast_arrays(nu, drive, bodies.time_scale)  # numbers that do not vary have one value
     tilt, psi, spin, growth = _steady(bodies, nu, drive)
     azimuth = frame.sense * psi + offset
     vector = tilt[:, np.newaxis] * np.stack([np.cos(azimuth), np.sin(azimuth)], axis=-1)
@@ -94,7 +94,7 @@ def _is_circular(motion: Harmonic) -> bool:
 
 @dataclass(frozen=True, slots=True)
 class _Bodies:
-    """Numbers of the models of runs, shape (n,), or (1,) where all have one model."""
+    """Numbers of the models of runs, shape (n,), or (1,) if all runs have the same model."""
 
     law: RollingLaw
     eta: Floats
@@ -107,13 +107,13 @@ class _Bodies:
 
     @classmethod
     def of(cls, model: Model, values: Mapping[str, Floats]) -> "_Bodies":
-        """Return the numbers of `model` with these `values`; each combination of them is made once."""
+        """Return the numbers of `model` with these `values`; each combination of values is built once."""
         rows = np.stack(list(values.values()), axis=-1) if values else np.zeros((1, 0))
         different, place = np.unique(rows, axis=0, return_inverse=True)
         models = [changed_model(model, dict(zip(values, row.tolist(), strict=True))) for row in different]
         forms = [closed_form_of(one) for one in models]
         form = closed_form_of(model)
-        assert form is not None  # `require_closed_form` has seen to it
+        assert form is not None  # ensured by `require_closed_form`
         numbers = [
             (
                 one.eta,
@@ -132,7 +132,7 @@ class _Bodies:
 
 
 def _steady(bodies: _Bodies, nu: Floats, a0: Floats) -> Steady:
-    """Return steady rolling of each run; of several stable branches the one of the minimum tilt."""
+    """Return steady rolling of each run; of several stable branches, the branch with the smallest tilt."""
     c, eta, zeta = bodies.slenderness, bodies.eta, bodies.zeta
     shape = {"inertia_ratio": bodies.inertia_ratio, "axial_ratio": bodies.axial_ratio}
     if bodies.law is RollingLaw.SLENDER:
@@ -160,12 +160,12 @@ def _where_stable(
 
 
 def known_orbit_of(orbit: PeriodicOrbit, model: Model, motion: BaseMotion) -> KnownOrbit:
-    """Return a periodic orbit of `model` under `motion` as the runs of a study are compared with it.
+    """Convert a periodic orbit of `model` under `motion` to the form with which runs of a study are compared.
 
     Raises
     ------
     ParameterError
-        If it is an orbit of another model or base motion, unstable, longer than one period, or one in a plane.
+        If the orbit has another model or base motion, or is unstable, longer than one period or planar.
     """
     if not isinstance(orbit, PeriodicOrbit):
         message = f"orbits must be periodic orbits, as of stylobate.orbits.periodic_orbit (got {orbit!r})"
@@ -175,7 +175,7 @@ def known_orbit_of(orbit: PeriodicOrbit, model: Model, motion: BaseMotion) -> Kn
         raise ParameterError(message)
     modulus = float(np.abs(orbit.multipliers[0]))
     if orbit.planar or orbit.periods != 1 or not 0.0 < modulus < 1.0:
-        message = f"orbits: each must be stable, of one period, in space (got {orbit!r}). Leave it out."
+        message = f"orbits: each must be stable, of one period and not planar (got {orbit!r}). Leave it out."
         raise ParameterError(message)
     start_phase = getattr(as_harmonic(orbit.motion), "start_phase", 0.0)
     until = -start_phase / (2.0 * math.pi) % 1.0
@@ -193,5 +193,5 @@ def known_orbit_of(orbit: PeriodicOrbit, model: Model, motion: BaseMotion) -> Kn
 
 
 def _without_phase(motion: BaseMotion) -> BaseMotion:
-    """Return a harmonic motion at phase zero: its orbits at that phase are the same whatever the phase at t = 0."""
+    """Return a harmonic motion with phase zero at t = 0; its orbits, sampled at phase zero, do not change."""
     return replace(motion, start_phase=0.0) if isinstance(motion, Harmonic) else motion

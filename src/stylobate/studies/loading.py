@@ -1,4 +1,4 @@
-"""Read any result that stylobate saved: `load`."""
+"""`load`: read any saved result."""
 
 from pathlib import Path
 
@@ -22,12 +22,12 @@ def load(path: str | Path) -> results.Response | results.Assessment | Orbits | x
     Returns
     -------
     Response, PeriodicOrbit, Branch, BifurcationCurve, Assessment or xarray.Dataset
-        What was saved; the result of a study or a sweep as a Dataset. Of a store a variable is read when it is used.
+        The saved result; the result of a study or a sweep is a Dataset. Variables of a store are read on first use.
 
     Raises
     ------
     FileError
-        If the file cannot be read, is damaged, or holds no result of stylobate.
+        If the file cannot be read, is damaged, or holds no result.
     """
     try:
         path = Path(path)

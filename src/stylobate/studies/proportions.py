@@ -1,4 +1,4 @@
-"""Proportions counted in a sample, with the interval they leave open."""
+"""Confidence intervals of proportions counted in a sample."""
 
 from statistics import NormalDist
 
@@ -11,22 +11,22 @@ Floats = npt.NDArray[np.float64]
 
 
 def wilson_interval(count: npt.ArrayLike, total: npt.ArrayLike, *, confidence: float = 0.95) -> tuple[Floats, Floats]:
-    """Return the interval that a proportion `count`/`total` leaves open.
+    """Return the confidence interval of a proportion `count`/`total`.
 
     The score interval of Wilson, "Probable inference, the law of succession, and statistical inference", J. Am. Stat.
-    Assoc. 22 (1927). It never leaves 0…1 and stays honest where nothing, or everything, was counted.
+    Assoc. 22 (1927). It lies within 0…1 and remains valid for counts of none and of all.
 
     Parameters
     ----------
     count, total
-        How many of how many, of any shapes that broadcast.
+        Count and total, of any shapes that broadcast.
     confidence
-        Share of such intervals that hold the true proportion, between 0 and 1.
+        Confidence level: share of such intervals that contain the true proportion, between 0 and 1.
 
     Returns
     -------
     tuple
-        Lower and upper end; 0 and 1 where `total` is 0.
+        Lower and upper end; 0 and 1 if `total` is 0.
 
     Raises
     ------
@@ -46,7 +46,7 @@ def wilson_interval(count: npt.ArrayLike, total: npt.ArrayLike, *, confidence: f
     share, weight = k / some, z * z / some
     middle = (share + weight / 2.0) / (1.0 + weight)
     half = z * np.sqrt(share * (1.0 - share) / some + weight / (4.0 * some)) / (1.0 + weight)
-    # At the ends middle and half are equal but for rounding.
+    # At counts of none and of all, middle and half are equal except for rounding.
     low = np.where((n > 0.0) & (k > 0.0), np.maximum(middle - half, 0.0), 0.0)
     high = np.where((n > 0.0) & (k < n), np.minimum(middle + half, 1.0), 1.0)
     return low, high
@@ -64,9 +64,9 @@ def require_confidence(confidence: float) -> float:
 def fraction_interval(
     count: npt.ArrayLike, unsettled: npt.ArrayLike, total: npt.ArrayLike, *, confidence: float = 0.95
 ) -> tuple[Floats, Floats]:
-    """Return the interval that a fraction leaves open, of runs some of which are still `unsettled`.
+    """Return the confidence interval of a fraction of runs, some of which are still `unsettled`.
 
-    At its lower end none of these is counted, at its upper end all; see `wilson_interval`.
+    The lower end counts no unsettled run, the upper end counts all of them; see `wilson_interval`.
     """
     low, _ = wilson_interval(count, total, confidence=confidence)
     _, high = wilson_interval(np.add(count, unsettled), total, confidence=confidence)

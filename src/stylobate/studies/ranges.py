@@ -1,4 +1,4 @@
-"""Ranges and lists of numbers that studies of orbits are asked for."""
+"""Checks of ranges and lists of numbers in arguments of studies of orbits."""
 
 import math
 from collections.abc import Sequence
@@ -10,12 +10,12 @@ from stylobate.errors import ParameterError, require_positive, require_size
 from stylobate.models.declared import model_quantities
 from stylobate.quantities import Quantity
 
-# Of the motion; those of models have their own bounds.
+# Parameters of the motion; parameters of models have their own bounds.
 _OF_MOTIONS = {"acceleration": Quantity(ge=0.0)}
 
 
 def require_frequencies(ends: Sequence[float]) -> tuple[float, float]:
-    """Return the lowest and highest frequency [rad/s], or raise ParameterError unless they rise from above zero."""
+    """Return the lowest and highest frequency [rad/s]; raise ParameterError unless positive and increasing."""
     low, high = _two("angular_frequency", ends, "rad/s")
     if not 0.0 < low < high < math.inf:
         message = f"angular_frequency must rise from above zero, got {low!r} to {high!r} rad/s"
@@ -26,7 +26,7 @@ def require_frequencies(ends: Sequence[float]) -> tuple[float, float]:
 
 
 def require_bounds(ends: Sequence[float], parameter: str) -> tuple[float, float]:
-    """Return the lowest and highest value of a parameter, or raise ParameterError unless they are such a pair."""
+    """Return the lowest and highest value of a parameter; raise ParameterError unless they are valid and increasing."""
     low, high = _two("bounds", ends, parameter)
     if not -math.inf < low < high < math.inf:
         message = f"bounds must rise from one number to another, got {low!r} to {high!r}"
@@ -38,7 +38,7 @@ def require_bounds(ends: Sequence[float], parameter: str) -> tuple[float, float]
 
 
 def require_values(values: Sequence[float], parameter: str) -> npt.NDArray[np.float64]:
-    """Return the values of a parameter as an array, or raise ParameterError unless they are numbers it can have."""
+    """Return the values of a parameter as an array; raise ParameterError unless the parameter can have these values."""
     found = _numbers("values", values)
     if found.size == 0:
         message = f"values must hold a value of {parameter} at least, got {values!r}"
@@ -51,14 +51,12 @@ def _require_inside(name: str, values: Sequence[float] | npt.NDArray[np.float64]
     known = model_quantities().get(parameter) or _OF_MOTIONS.get(parameter)
     outside = [float(value) for value in values if known is not None and not known.accepts(value)]
     if known is not None and outside:
-        message = (
-            f"{name}: values of {parameter} must {known.demand} (got {outside[0]!r}). Leave out what lies outside."
-        )
+        message = f"{name}: values of {parameter} must {known.demand} (got {outside[0]!r}). Leave them out."
         raise ParameterError(message)
 
 
 def require_rising_frequencies(frequencies: Sequence[float]) -> npt.NDArray[np.float64]:
-    """Return frequencies [rad/s] as an array, or raise ParameterError unless two or more rise from above zero."""
+    """Return frequencies [rad/s] as an array; raise ParameterError unless two or more, positive and increasing."""
     found = _numbers("angular_frequency", frequencies)
     if found.size < _LEAST or found[0] <= 0.0 or np.any(np.diff(found) <= 0.0):
         message = (

@@ -125,7 +125,7 @@ def test_a_store_that_another_process_makes_meanwhile_is_left_alone(sweep, undam
     if resume:
         run_sweep(sweep, store=path, resume=True, chunk_size=5)
     else:
-        with pytest.raises(FileError, match=r"exists; continue it with resume=True"):
+        with pytest.raises(FileError, match=r"exists\. Continue it with resume=True"):
             run_sweep(sweep, store=path, chunk_size=5)
     assert files_of(path) == files_of(undamaged)
     assert list(tmp_path.iterdir()) == [path]
@@ -149,4 +149,4 @@ def test_of_processes_that_begin_one_store_at_once_none_dies(resume, undamaged, 
     assert files_of(path) == files_of(undamaged)
     assert list(tmp_path.iterdir()) == [path]
     assert len(lines) == (0 if resume == "resume" else 2)
-    assert all("exists; continue it with resume=True" in line for line in lines)
+    assert all("exists. Continue it with resume=True" in line for line in lines)

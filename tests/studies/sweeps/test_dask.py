@@ -116,7 +116,7 @@ def test_a_chunk_that_kills_every_worker_is_named(points, client):
 
         return deadly
 
-    with pytest.raises(StylobateError, match=r"4 workers died on chunk 1 of 1 runs; give them more memory, or"):
+    with pytest.raises(StylobateError, match=r"4 workers died on chunk 1 of 1 runs\. Give them more memory, or"):
         run_sweep(points, executor=Through(Dask(client=client), change), chunk_size=1)
 
 

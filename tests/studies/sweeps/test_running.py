@@ -186,7 +186,10 @@ def test_a_text_that_names_no_executor_is_refused(text):
     [
         ({"resume": True}, "resume needs the store"),
         ({"chunk_size": 0}, "chunk_size must be a whole number of at least 1, got 0"),
-        ({"executor": "dask"}, r"executor must be Threads\(...\) or Dask\(...\), got 'dask'; executor_from\("),
+        (
+            {"executor": "dask"},
+            r"executor must be Threads\(...\) or Dask\(...\), got 'dask'. Make one from a text by executor_from\(",
+        ),
         ({"store": ""}, "store must name the folder of a store, such as \"map.zarr\", or be None; got ''"),
         ({"store": 3}, "store must name the folder of a store, .* got 3"),
     ],

@@ -61,7 +61,7 @@ def test_resume_begins_where_there_is_no_store(points, path, assert_same_arrays,
 def test_a_store_that_exists_is_left_alone(points, path):
     run_sweep(points, store=path)
     before = {file: file.read_bytes() for file in path.rglob("*") if file.is_file()}
-    with pytest.raises(FileError, match=r"sweep\.zarr exists; continue it with resume=True, or give another store"):
+    with pytest.raises(FileError, match=r"sweep\.zarr exists\. Continue it with resume=True, or give another store"):
         run_sweep(points, store=path)
     assert {file: file.read_bytes() for file in path.rglob("*") if file.is_file()} == before
 
@@ -121,14 +121,14 @@ def test_another_version_is_refused_and_named(points, path, monkeypatch):
     monkeypatch.setattr(Sweep, "describe", lambda sweep: {**describe_now(sweep), "version": "0.0.1"})
     run_sweep(points, store=path)
     monkeypatch.setattr(Sweep, "describe", describe_now)
-    with pytest.raises(FileError, match=rf"it was made by stylobate 0\.0\.1, this is {sb.__version__}"):
+    with pytest.raises(FileError, match=rf"the store was made by stylobate 0\.0\.1, this is {sb.__version__}"):
         run_sweep(points, store=path, resume=True)
 
 
 def test_another_chunk_size_is_refused(points, path):
     run_sweep(points, store=path, chunk_size=2)
     run_sweep(points, store=path, chunk_size=2, resume=True)
-    with pytest.raises(FileError, match=r"is cut into chunks of \[2\] runs, not of 1; leave chunk_size out"):
+    with pytest.raises(FileError, match=r"has chunks of \[2\] runs, not of 1\. Leave chunk_size out"):
         run_sweep(points, store=path, chunk_size=1, resume=True)
 
 
@@ -149,7 +149,7 @@ def test_a_sweep_that_does_not_fit_on_the_disk_does_not_begin(grid, path, monkey
     usage = shutil.disk_usage(path.parent.parent)._replace(free=3_000_000)
     monkeypatch.setattr(shutil, "disk_usage", lambda where: usage)
     large = Sweep.grid(MODEL, MOTION, over={"damping": np.linspace(0, 1, 10**4), "scale": np.ones(10**4)}, duration=1)
-    with pytest.raises(FileError, match=r"the sweep needs up to 1\d\.\d GB at .* and the disk has 3 MB free; choose"):
+    with pytest.raises(FileError, match=r"the sweep needs up to 1\d\.\d GB at .* and the disk has 3 MB free\. Choose"):
         run_sweep(large, store=path)
     assert not list(path.parent.iterdir())
     run_sweep(grid, store=path)
@@ -176,7 +176,7 @@ def test_a_disk_that_fills_up_is_told_and_the_store_goes_on(points, path, monkey
 
     with monkeypatch.context() as patch:
         patch.setattr("stylobate.studies.sweeps.sinks.Store.write", full)
-        with pytest.raises(FileError, match=r"No space left on device; resume=True continues it"):
+        with pytest.raises(FileError, match=r"No space left on device\. Continue it with resume=True"):
             run_sweep(points, store=path)
     assert_same_arrays(run_sweep(points, store=path, resume=True), undisturbed(points))
 

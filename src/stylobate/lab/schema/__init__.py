@@ -1,4 +1,4 @@
-"""The description of the laboratory's endpoints for programs: OpenAPI, requests as the descriptions have them."""
+"""OpenAPI description of the laboratory's endpoints."""
 
 from importlib.metadata import version
 from typing import Any
@@ -18,10 +18,10 @@ def schema(limits: Limits) -> dict[str, Any]:
     return {
         "openapi": "3.1.0",
         "info": {
-            "title": "The laboratory of stylobate",
+            "title": "stylobate laboratory",
             "version": version("stylobate"),
-            "description": f"Requests may have {limits.body} bytes, those with records {limits.records}. "
-            f"Numbers are in SI units, angles in rad, of sizes from {LEAST:g} to {MOST:g} or zero.",
+            "description": f"Requests may have {limits.body} bytes, uploads of records {limits.records}. Numbers are "
+            f"in SI units, angles in rad; their size must be zero or between {LEAST:g} and {MOST:g}.",
         },
         "paths": paths(),
         "components": {"schemas": {**components(limits), **CATALOGUE, **RUNS, **CURVES, **JOBS}},

@@ -1,4 +1,4 @@
-"""The endpoints: what each takes, what it answers, and what it may refuse."""
+"""Endpoints in OpenAPI: request, answer and possible errors of each."""
 
 from typing import Any
 
@@ -6,30 +6,30 @@ from stylobate.lab.schema import examples
 from stylobate.lab.schema.notation import Schema, ref, table
 
 _REFUSALS = {
-    400: "The body is no JSON, or ended early.",
+    400: "The body is not JSON, or ended early.",
     403: "A foreign Host or Origin.",
-    401: "No token, where other machines can reach the laboratory.",
-    404: "There is no such job (any more), or it has no file.",
+    401: "The token is missing or wrong; needed if other machines can reach the laboratory.",
+    404: "The job does not exist (any more), or has no file.",
     408: "The request did not arrive in time.",
     413: "The body is too large.",
-    415: "The body is of another type than application/json.",
-    422: "The values cannot be: one line for each mistake.",
-    429: "Too many jobs wait.",
-    500: "A mistake in the program.",
+    415: "The content type of the body is not application/json.",
+    422: "The values are invalid: one line for each mistake.",
+    429: "Too many jobs are waiting.",
+    500: "Internal error.",
     502: "The worker process was ended from outside, possibly because memory ran out.",
     503: "No worker process became free in time; try again.",
-    504: "The run took longer than runs may take; the same request would take as long again.",
+    504: "The run exceeded the time limit; the same request would exceed it again.",
 }
 
 _OF_ALL = (401, 403, 408)
 _OF_BODIES = (*_OF_ALL, 400, 413, 415, 422)
 _OF_RUNS = (*_OF_BODIES, 500, 502, 503, 504)
 
-_JOB = {"name": "identity", "in": "path", "required": True, "schema": {"type": "string"}, "description": "of the job"}
+_JOB = {"name": "identity", "in": "path", "required": True, "schema": {"type": "string"}, "description": "the job"}
 _AFTER = {
     "name": "after",
     "in": "query",
-    "description": "the number of events that are known already",
+    "description": "number of events that the caller has already received",
     "schema": {"type": "integer", "minimum": 0, "maximum": 999_999_999, "default": 0},
 }
 
@@ -37,12 +37,12 @@ _AFTER = {
 def paths() -> dict[str, Any]:
     """Return the endpoints by path and method."""
     return {
-        "/api/about": {"get": _endpoint("about", "What there is to choose from", ref("About"))},
+        "/api/about": {"get": _endpoint("about", "Options", ref("About"))},
         "/api/schema": {"get": _endpoint("schema", "This description", table("OpenAPI 3.1.", {}, others={}))},
         "/api/describe": {
             "post": _endpoint(
                 "describe",
-                "TOML and Python of a run, and the numbers of its column",
+                "Description of a run as TOML and Python, and the numbers of its column",
                 ref("Described"),
                 _OF_BODIES,
                 body=("Simulation", examples.RUNS),
@@ -54,7 +54,7 @@ def paths() -> dict[str, Any]:
         "/api/response": {
             "post": _endpoint(
                 "response",
-                "Response curves of theory",
+                "Response curves from theory",
                 ref("ResponseCurves"),
                 _OF_BODIES,
                 body=("Response", examples.RESPONSES),
@@ -63,7 +63,7 @@ def paths() -> dict[str, Any]:
         "/api/start": {
             "post": _endpoint(
                 "start",
-                "The start on steady rolling, by theory or on the exact orbit",
+                "Initial conditions on steady rolling, from theory or on the exact orbit",
                 ref("Start"),
                 _OF_RUNS,
                 body=("SteadyRollingStart", examples.STARTS),
@@ -71,7 +71,7 @@ def paths() -> dict[str, Any]:
         },
         "/api/records": {
             "post": _endpoint(
-                "upload", "Keep a record", ref("UploadedRecord"), _OF_RUNS, body=("Record", examples.RECORDS)
+                "upload", "Upload a record", ref("UploadedRecord"), _OF_RUNS, body=("Record", examples.RECORDS)
             )
         },
         "/api/jobs": {
@@ -87,7 +87,7 @@ def paths() -> dict[str, Any]:
         "/api/jobs/{identity}": {
             "parameters": [_JOB],
             "get": {
-                **_endpoint("follow", "How a job stands", ref("Job"), (*_OF_ALL, 404, 422)),
+                **_endpoint("follow", "State of a job", ref("Job"), (*_OF_ALL, 404, 422)),
                 "parameters": [_AFTER],
             },
             "delete": _endpoint("cancel", "Cancel a job", ref("Job"), (*_OF_ALL, 404)),
@@ -108,7 +108,7 @@ def _endpoint(
     status: int = 200,
     body: tuple[str, dict[str, Any]] | None = None,
 ) -> dict[str, Any]:
-    """Return one endpoint; without an `answer` it is a picture; a `body` is the name of its component, and examples."""
+    """Return one endpoint; without an `answer` it returns a GIF; a `body` is a component's name, and examples."""
     content: dict[str, Any] = {"image/gif": {}} if answer is None else {"application/json": {"schema": answer}}
     problems = {"application/json": {"schema": ref("Problems")}}
     found: dict[str, Any] = {

@@ -1,4 +1,4 @@
-"""Requests that can be sent as they stand."""
+"""Examples of requests, ready to send."""
 
 import base64
 from typing import Any
@@ -17,18 +17,18 @@ _START = {"tilt": [0.03, 0.0], "tilt_rate": [0.0, 0.07]}
 _RECORD = b"0.00 0.000\n0.01 0.120\n0.02 0.310\n0.03 0.080\n0.04 -0.210\n0.05 0.000\n"
 
 RUNS: dict[str, Any] = {name: _PRESETS[name] for name in (presets()[0].identity, "temple")}
-"""Of runs."""
+"""Examples of runs."""
 
 RESPONSES: dict[str, Any] = {"circle": {**_CIRCLE, "angular_frequency_range": [0.5, 4.0], "points": 100}}
-"""Of response curves."""
+"""Examples of response curves."""
 
 STARTS: dict[str, Any] = {"circle": {**_CIRCLE, "branch": "upper"}}
-"""Of starts on steady rolling."""
+"""Examples of initial conditions on steady rolling."""
 
 RECORDS: dict[str, Any] = {
     "text": {"files": [{"name": "shock.txt", "content": base64.b64encode(_RECORD).decode()}], "units": "g"}
 }
-"""Of records to be kept."""
+"""Examples of records to upload."""
 
 JOBS: dict[str, Any] = {
     "map": {
@@ -54,4 +54,4 @@ JOBS: dict[str, Any] = {
     "exact": {"kind": "exact", "description": {**_CIRCLE, "angular_frequency_range": [1.2, 2.0]}},
     "animation": {"kind": "animation", "description": {**_CIRCLE, **_START, "duration": 2.0}},
 }
-"""Of jobs."""
+"""Examples of jobs."""

@@ -1,4 +1,4 @@
-"""What is answered of what there is to choose from, and of records."""
+"""Schemas of the options, of uploaded records and of refusals."""
 
 from dataclasses import fields
 
@@ -7,30 +7,30 @@ from stylobate.lab.limits import Limits
 from stylobate.lab.schema.notation import Schema, flag, listed, number, or_none, ref, table, text, whole, word
 
 _PARAMETER = table(
-    "A number one can set.",
+    "A parameter.",
     {
-        "name": text("as in descriptions"),
-        "symbol": text("as in the literature; empty without one"),
-        "unit": text("empty without one"),
-        "about": text("what it is"),
-        "default": {"description": "null without one"},
-        "needed": flag("whether it must be given"),
-        "varies": flag("whether maps can vary it"),
-        "from": or_none(number("lower end of a slider; null where none serves all")),
-        "to": or_none(number("its upper end")),
+        "name": text("name as in descriptions"),
+        "symbol": text("symbol in the literature; empty if there is none"),
+        "unit": text("unit; empty if there is none"),
+        "about": text("one-line description"),
+        "default": {"description": "default value; null if there is none"},
+        "needed": flag("whether the parameter is required"),
+        "varies": flag("whether maps can vary the parameter"),
+        "from": or_none(number("lower end of the slider; null if no range suits all cases")),
+        "to": or_none(number("upper end of the slider")),
     },
-    {"choices": listed("where there are few", {"type": ["integer", "string"]})},
+    {"choices": listed("possible values, if there are few", {"type": ["integer", "string"]})},
 )
 
 _KIND = table(
     "A kind of column, model or motion.",
     {
-        "kind": text("as in descriptions"),
-        "name": text("in words"),
-        "about": text("a line about it"),
-        "parameters": listed("its numbers", _PARAMETER),
+        "kind": text("kind as in descriptions"),
+        "name": text("name in words"),
+        "about": text("one-line description"),
+        "parameters": listed("parameters", _PARAMETER),
     },
-    {"ends": flag("of motions: whether it comes to an end, so that a run needs no duration")},
+    {"ends": flag("for motions: whether the motion ends, so that a run needs no duration")},
 )
 
 
@@ -39,24 +39,24 @@ def _kinds(about: str) -> Schema:
 
 
 _ABOUT = table(
-    "What there is to choose from.",
+    "Options of the laboratory.",
     {
-        "version": text("of stylobate"),
-        "limits": table("How much may be asked for.", {field.name: number() for field in fields(Limits)}),
-        "shapes": _kinds("of columns"),
-        "models": _kinds("of models"),
-        "motions": _kinds("of base motions"),
-        "samples": listed("records that are here", table("", {"name": text(), "about": text()})),
+        "version": text("version of stylobate"),
+        "limits": table("Limits on requests.", {field.name: number() for field in fields(Limits)}),
+        "shapes": _kinds("kinds of columns"),
+        "models": _kinds("kinds of models"),
+        "motions": _kinds("kinds of base motions"),
+        "samples": listed("sample records", table("", {"name": text(), "about": text()})),
         "presets": listed(
-            "motions worth seeing",
+            "example motions",
             table(
                 "",
                 {
                     "id": text(),
                     "title": text(),
                     "about": text(),
-                    "description": {"type": "object", "description": "to be sent to /api/simulate"},
-                    "view": {"type": "object", "description": "how the page shows it"},
+                    "description": {"type": "object", "description": "body for /api/simulate"},
+                    "view": {"type": "object", "description": "view on the page"},
                 },
             ),
         ),
@@ -66,8 +66,8 @@ _ABOUT = table(
                 "",
                 {
                     "name": word("", [one.name for one in Outcome]),
-                    "value": text("in words"),
-                    "code": whole("in maps"),
+                    "value": text("outcome in words"),
+                    "code": whole("code in maps"),
                 },
             ),
         ),
@@ -75,16 +75,16 @@ _ABOUT = table(
 )
 
 _UPLOADED = table(
-    "A record that is kept.",
+    "An uploaded record.",
     {
-        "upload": text('its digest, for the motion {"kind": "record", "upload": …}'),
-        "name": text("of the event"),
-        "samples": whole("how many"),
-        "step": number("between them [s]"),
-        "duration": number("[s]"),
-        "peaks": table("Largest accelerations [m/s²].", {}, {axis: number(f"along {axis} [m/s²]") for axis in "xyz"}),
-        "provenance": listed("where it comes from, one line each", {"type": "string"}),
-        "warnings": listed("what may be wrong with its files, one line each", {"type": "string"}),
+        "upload": text('digest, for the motion {"kind": "record", "upload": …}'),
+        "name": text("name of the event"),
+        "samples": whole("number of samples"),
+        "step": number("time step [s]"),
+        "duration": number("duration [s]"),
+        "peaks": table("Peak accelerations [m/s²].", {}, {axis: number(f"along {axis} [m/s²]") for axis in "xyz"}),
+        "provenance": listed("origin, one line each", {"type": "string"}),
+        "warnings": listed("possible mistakes in its files, one line each", {"type": "string"}),
     },
 )
 
@@ -93,7 +93,7 @@ CATALOGUE = {
     "Kind": _KIND,
     "UploadedRecord": _UPLOADED,
     "Problems": table(
-        "Why a request was refused.", {"problems": listed("one line each", {"type": "string"}, minItems=1)}
+        "Reasons for the refusal of a request.", {"problems": listed("one line each", {"type": "string"}, minItems=1)}
     ),
 }
-"""The components."""
+"""Components of the OpenAPI document."""

@@ -1,4 +1,4 @@
-"""What can be asked for: the descriptions of the command line, but for files of this machine, within the limits."""
+"""Schemas of requests: the descriptions of the command line, without files of this machine, within the limits."""
 
 from collections.abc import Collection, Mapping
 from dataclasses import fields
@@ -35,17 +35,17 @@ def _in_words(about: str, unit: str) -> str:
 
 _TEXTS = {
     **{name: _in_words(one.quantity.text, one.quantity.unit) for name, one in run_numbers().items()},
-    "duration": "duration of a run [s]; may be left out under a record, a pulse or a sine sweep",
+    "duration": "duration of a run [s]; optional under a record, a pulse or a sine sweep",
     "rules": "numbers of the rules that decide outcomes",
     "demands": "whether to compute contact demands",
-    "angular_frequency_range": "from, to [rad/s]",
-    "points": "frequencies of the curves",
-    "branch": "of steady rolling: upper, that of the larger tilt, or lower",
+    "angular_frequency_range": "lowest and highest angular frequency [rad/s]",
+    "points": "number of frequencies of the curves",
+    "branch": "branch of steady rolling: upper (the larger tilt) or lower",
 }
 
 
 _TAGS = ("shape", "kind", "method")
-"""By these columns, models and motions, and steps of processing are told apart."""
+"""Keys that distinguish columns, models, motions and steps of processing."""
 
 _ENDING = (*(kind for kind in MOTIONS if is_to_end({"kind": kind})), *composite_kinds())
 
@@ -74,11 +74,11 @@ _BOUNDS: dict[str, Schema] = {
     "tail": {"minimum": 0},
     **{name: {"minimum": 1, "maximum": HIGHEST_DEGREE} for name in ("order", "degree")},
 }
-"""What numbers can be; some have further conditions, which the refusal states."""
+"""Bounds of numbers; some numbers have further conditions, which the refusal states."""
 
 
 def components(limits: Limits) -> dict[str, Schema]:
-    """Return the components of all that can be sent."""
+    """Return the components of all requests."""
     found: dict[str, Schema] = {}
     for name, description in _DESCRIPTIONS.items():
         body = description.model_json_schema(ref_template="#/components/schemas/{model}")
@@ -89,7 +89,7 @@ def components(limits: Limits) -> dict[str, Schema]:
 
 
 def _finite(schema: Any) -> Any:
-    """Return a schema in which numbers have bounds, at any depth."""
+    """Return a schema with bounds on all numbers, at any depth."""
     if isinstance(schema, list):
         return [_finite(part) for part in schema]
     if not isinstance(schema, dict):
@@ -99,7 +99,7 @@ def _finite(schema: Any) -> Any:
 
 
 def _within(body: Schema, limits: Limits) -> Schema:
-    """Return the schema of a description with what its numbers are, and the limits."""
+    """Return the schema of a description with texts for its numbers, and the limits."""
     most = {name: bound for name, (bound, _) in limits.of_numbers().items()}
     properties: dict[str, Schema] = body["properties"]
     for name, schema in properties.items():
@@ -118,7 +118,7 @@ def _within(body: Schema, limits: Limits) -> Schema:
 
 
 def _until_the_end(body: Schema) -> Schema:
-    """Return the schema of a run, which needs a duration unless its motion is one that ends, or of such."""
+    """Return the schema of a run, which requires a duration unless its motion, or a part of it, ends."""
     ending = {"type": "object", "properties": {"kind": {"enum": list(_ENDING)}}}
     lasting = [
         {"required": ["duration"], "properties": {"duration": {"type": "number"}}},
@@ -128,16 +128,16 @@ def _until_the_end(body: Schema) -> Schema:
 
 
 def _only(union: Schema, kinds: Collection[str]) -> Schema:
-    """Return the union of those motions that are of these `kinds`."""
+    """Return the union of the motions of these `kinds`."""
     mapping = {kind: place for kind, place in union["discriminator"]["mapping"].items() if kind in kinds}
     places = [{"$ref": place} for place in dict.fromkeys(mapping.values())]
     return {**union, "discriminator": {**union["discriminator"], "mapping": mapping}, "oneOf": places}
 
 
 def _part(schema: Schema) -> Schema:
-    """Return the schema of a column, a model, a motion or a step with what its numbers are and can be."""
+    """Return the schema of a column, a model, a motion or a step, with texts and bounds for its numbers."""
     properties = schema.get("properties", {})
-    own = not {"motion", "motions", "method"} & set(properties)  # motions of motions and steps state it themselves
+    own = not {"motion", "motions", "method"} & set(properties)  # composite motions and steps state their own texts
     for name, body in properties.items():
         if own:
             body |= {**_described(name), **body}
@@ -154,7 +154,7 @@ def _bound(name: str, schema: Schema) -> None:
 
 
 def _of_numbers(schema: Schema) -> Schema:
-    """Return the part of a schema that is of numbers, where there may be null too."""
+    """Return the part of a schema that describes numbers, if the schema also allows null."""
     parts: list[Schema] = schema.get("anyOf", [schema])
     return next(part for part in parts if part["type"] != "null")
 
@@ -167,35 +167,37 @@ def _described(name: str) -> Schema:
 
 
 def _uploaded(record: Schema) -> Schema:
-    """Return the schema of a record that is uploaded rather than read from a path."""
+    """Return the schema of a record, with an upload in place of a path."""
     digest = or_none(text("digest of an uploaded record"))
     kept: Mapping[str, Any] = {
         name: body for name, body in record["properties"].items() if name not in ("path", "file_sha256")
     }
-    about = "A record: one that was uploaded (`upload`), or the `sample` that comes with the package; one of them."
+    about = "A record: either uploaded (`upload`), or a `sample` of the package."
     return {**record, "description": about, "properties": {**kept, "upload": digest}}
 
 
 def _job() -> Schema:
-    """Return the schema of a request for a job: which description it takes depends on its kind."""
+    """Return the schema of a request for a job, whose description depends on its kind."""
     kinds = [
         table("", {"kind": {"const": kind}, "description": ref(description)}) for kind, description in _OF_JOBS.items()
     ]
-    return {"description": "Long work of some kind, and of what.", "oneOf": kinds}
+    return {"description": "A job: its kind and description.", "oneOf": kinds}
 
 
 _BASE64 = "^(?:[A-Za-z0-9+/]{4})*(?:[A-Za-z0-9+/]{2}==|[A-Za-z0-9+/]{3}=)?$"
 
 _RECORD = table(
-    "The files of a record, its components.",
+    "The files of a record: its components.",
     {
         "files": listed(
-            "of one event",
+            "files of one event",
             table(
                 "",
                 {
-                    "name": text("without a folder", pattern=r"^[A-Za-z0-9_-][A-Za-z0-9_. -]*$", maxLength=120),
-                    "content": text("of the file", contentEncoding="base64", pattern=_BASE64),
+                    "name": text(
+                        "file name without a folder", pattern=r"^[A-Za-z0-9_-][A-Za-z0-9_. -]*$", maxLength=120
+                    ),
+                    "content": text("content of the file", contentEncoding="base64", pattern=_BASE64),
                 },
             ),
             most=3,
@@ -203,7 +205,7 @@ _RECORD = table(
         )
     },
     {
-        "units": or_none(text("of the acceleration, such as g or cm/s²; null where the file states it")),
-        "step": {"type": ["number", "null"], "description": "between samples [s]; null where the file states it"},
+        "units": or_none(text("unit of the acceleration, such as g or cm/s²; null if the file states the unit")),
+        "step": {"type": ["number", "null"], "description": "time step [s]; null if the file states the step"},
     },
 )

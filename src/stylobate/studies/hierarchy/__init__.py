@@ -1,1 +1,1 @@
-"""Models of one column side by side."""
+"""Comparison of models of one column."""

@@ -1,4 +1,4 @@
-"""The models of the hierarchy, and one case that all of them run."""
+"""Models of the hierarchy, and a case for all of them."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -14,7 +14,7 @@ from stylobate.results import OutcomeRules, Response
 
 
 class RunArguments(TypedDict, total=False):
-    """What all models are run with: the arguments of `simulate` of these names."""
+    """Arguments of `simulate` that all models share."""
 
     rtol: float
     atol: float | None
@@ -44,11 +44,11 @@ class Case:
     Parameters
     ----------
     column, motion
-        The column, and how its base moves.
+        The column and its base motion.
     dissipation
-        Dissipation parameters by name; each model takes those that it declares. None stands for its default.
+        Dissipation parameters by name; each model uses the parameters that it declares. None selects the default.
     tilt, tilt_rate, spin
-        Start [rad], [rad/s], [rad/s].
+        Initial conditions [rad], [rad/s], [rad/s].
     """
 
     column: Column
@@ -59,9 +59,9 @@ class Case:
     spin: float
 
     def scaled_to(self, slenderness: float) -> "Case":
-        """Return the case that is the same to small tilts: tilt, its rate and the base motion in proportion to c.
+        """Return the case that is equivalent for small tilts: tilt, tilt rate and base motion are proportional to c.
 
-        Height and transverse inertia stay, and with them ω0 and κ; so does the spin.
+        Height, transverse inertia and spin stay constant, and with them ω0 and κ.
         """
         factor = slenderness / self.column.slenderness
         return Case(
@@ -75,13 +75,13 @@ class Case:
 
     @property
     def in_a_plane(self) -> bool:
-        """Whether start and base motion lie in one vertical plane, and no spin leads out of it."""
+        """Whether initial conditions and base motion are planar, without spin."""
         directions = (self.tilt, self.tilt_rate, *self.motion.directions())
         moving = any(any(direction) for direction in directions)
         return self.spin == 0.0 and (not moving or common_line(*directions) is not None)
 
     def models(self) -> tuple[Model, ...]:
-        """Return the models from the simplest on; planar rocking is the last, where the motion lies in a plane."""
+        """Return the models, the simplest first; planar rocking is last, if the motion is planar."""
         models = (Slender, SlenderRolling, Wobbling, Rolling, *((PlanarRocking,) if self.in_a_plane else ()))
         return tuple(self._model(model) for model in models)
 
@@ -93,7 +93,7 @@ class Case:
     def run(
         self, model: Model, duration: float, friction_coefficient: float | None, arguments: Mapping[str, Any]
     ) -> Response:
-        """Return the run of one model; one that cannot turn starts without spin."""
+        """Run one model; a model without spin starts without spin."""
         return simulate(
             model,
             self.motion,

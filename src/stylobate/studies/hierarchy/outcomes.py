@@ -1,4 +1,4 @@
-"""Where two models of a column disagree on the outcome, over two parameters."""
+"""Map of outcome differences between two models of a column, over two parameters."""
 
 import json
 from collections.abc import Mapping
@@ -20,7 +20,7 @@ from stylobate.studies.sweeps.recipe import RunOptions
 
 
 class Comparison(Enum):
-    """How the outcomes of two models compare, in the order of the codes."""
+    """Comparison of the outcomes of two models, in the order of the codes."""
 
     BOTH_STAY = "overturns in neither"
     ONLY_FIRST = "overturns in the first only"
@@ -42,31 +42,31 @@ def outcome_differences(
     progress: Progress | None = None,
     **options: Unpack[RunOptions],
 ) -> xr.Dataset:
-    """Map over two parameters where two models of a column disagree whether it overturns.
+    """Compare, over two parameters, whether a column overturns in two models.
 
-    With models that differ in one assumption, such as `Slender` and `SlenderRolling`, this is where that assumption
+    If the models differ in one assumption, such as `Slender` and `SlenderRolling`, the map shows where this assumption
     decides the outcome.
 
     Parameters
     ----------
     first, second
-        The models, of one column as a rule.
+        The models, usually of one column.
     motion, over, duration, periods, executor, progress, **options
-        As in `overturning_map`; `over` names what both models know.
+        As in `overturning_map`; `over` names parameters of both models.
 
     Returns
     -------
     xarray.Dataset
         Of kind "outcome differences": over the two names `comparison`, codes of `Comparison`; `first_outcome`,
-        `second_outcome`, and `first_peak_tilt`, `second_peak_tilt` [rad], with demands=True also those on the
-        contact; `count` and `share` over `comparison_name`.
+        `second_outcome`, and `first_peak_tilt`, `second_peak_tilt` [rad], with demands=True also the contact demands of
+        both; `count` and `share` over `comparison_name`.
 
     Raises
     ------
     ParameterError
         If an argument is out of range.
     Interrupted
-        After Ctrl-C; its `partial` is the overturning map of the model that was being computed.
+        After Ctrl-C; `partial` is the overturning map of the model that was interrupted.
 
     Examples
     --------
@@ -106,7 +106,7 @@ def _compared(first: npt.NDArray[np.int8], second: npt.NDArray[np.int8]) -> npt.
     return np.where((first == NOT_COMPUTED) | (second == NOT_COMPUTED), NOT_COMPUTED, codes).astype(np.int8)
 
 
-# What is kept of each model's runs; the demands where they were asked for.
+# Variables of each model's runs in the result; demands only if they were computed.
 _COMPARED = ("outcome", "peak_tilt", "peak_friction_demand", "peak_pivoting_demand", "minimum_normal_force")
 
 

@@ -13,22 +13,22 @@ from stylobate.results import Response
 
 Floats = npt.NDArray[np.float64]
 
-# What is called late, as a part of the run; of a periodic base motion whole periods, as many as there is room for.
+# Late part of the run, as a fraction; for a periodic base motion, the whole periods that it contains.
 _LATE = 0.2
 
-# Times at which means are taken.
+# Number of times for means.
 _TIMES = 400
 
 
 @dataclass(frozen=True, slots=True)
 class Course:
-    """A run, and how long it was to last [s]; one that came to rest before stands to the end."""
+    """A run and its requested duration [s]; a run that came to rest early stands until the end."""
 
     run: Response
     duration: float
 
     def history(self, time: Floats) -> tuple[Floats, Floats]:
-        """Return tilt vectors [rad], shape (n, 2), and spin [rad/s] at `time`; NaN after the end, or without spin."""
+        """Return tilt vectors [rad], shape (n, 2), and spin [rad/s] at `time`; NaN after the end or without a spin."""
         end = float(self.run.data["time"][-1])
         known = time <= end
         tilt, spin = np.full((time.size, 2), np.nan), np.full(time.size, np.nan)
@@ -52,5 +52,5 @@ class Course:
 
 
 def largest_distance(first: xr.DataArray, second: xr.DataArray) -> float:
-    """Return the largest distance of two histories of the tilt vector while both are known [rad]."""
+    """Return the maximum distance of two histories of the tilt vector while both are known [rad]."""
     return float(np.nanmax(np.hypot(*(first.to_numpy() - second.to_numpy()).T)))

@@ -1,4 +1,4 @@
-"""One case through all models of the hierarchy: what each assumption costs."""
+"""Comparison of all models of the hierarchy in one case: the effect of each assumption."""
 
 import json
 import math
@@ -21,7 +21,7 @@ from stylobate.results.outcomes import outcome_attributes
 from stylobate.studies.hierarchy.models import Case, HierarchyArguments, RunArguments
 from stylobate.studies.hierarchy.runs import Course, Floats, largest_distance
 
-# Times at which models are compared, unless the user asks for histories of another length.
+# Number of times at which models are compared, unless the user requests histories of another length.
 _TIMES = 2001
 
 _OF_SIMULATE = tuple(RunArguments.__annotations__)
@@ -43,42 +43,41 @@ def model_hierarchy(
 ) -> xr.Dataset:
     """Run one case with every model of the hierarchy and compare the results.
 
-    The models are slender, slender rolling, wobbling and rolling; where start and base motion lie in a vertical plane
+    The models are slender, slender rolling, wobbling and rolling; if initial conditions and base motion are planar,
     also planar rocking.
 
     Parameters
     ----------
     column, motion
-        The column, and how its base moves; None is a base at rest.
+        The column and its base motion; None is a base at rest.
     tilt, tilt_rate, spin
-        Start [rad], [rad/s], [rad/s]; models that cannot turn start without spin.
+        Initial conditions [rad], [rad/s], [rad/s]; models without spin ignore `spin`.
     duration
-        How long to follow each run [s].
+        Duration of each run [s].
     slenderness
-        Slendernesses to which the case is scaled, shape (n,): tilt, its rate and the base motion in proportion to c,
-        radius by `Column.with_slenderness`. To small tilts all of them are the same case.
+        Slendernesses to which the case is scaled, shape (n,): tilt, tilt rate and base motion proportional to c, radius
+        by `Column.with_slenderness`. For small tilts all these cases are equivalent.
     friction_coefficient
-        Of the contact; runs warn where more is needed.
+        Friction coefficient of the contact; runs warn if they need more.
     reference
-        The model from which differences are taken.
+        The model from which differences are computed.
     samples
-        Number of samples of the histories that are kept; none by default.
+        Number of samples of the histories in the result; none by default.
     **arguments
-        Dissipation parameters: damping η of all models; spin_damping ζ of the models that may turn; of the models at
-        finite tilt rolling_resistance, a lever arm in radii, and restitution e at a passage near the vertical, by
-        default Housner's in planar rocking and 1 elsewhere. Arguments of `simulate`: rtol, atol, tilt_limit,
-        rest_energy, max_steps, rules.
+        Dissipation parameters: damping η of all models; spin_damping ζ of the models with free axial rotation. Models
+        at finite tilt also have rolling_resistance, a lever arm in radii, and restitution e at a passage near the
+        vertical, by default Housner's in planar rocking and 1 elsewhere. Arguments of `simulate`: rtol, atol,
+        tilt_limit, rest_energy, max_steps, rules.
 
     Returns
     -------
     xarray.Dataset
-        Of kind "model hierarchy", over `model`, and `slenderness` where it is given: `outcome`, `uncertain`,
-        `peak_tilt`,
-        `mean_late_tilt`, `mean_late_spin` (over the last fifth of the run; NaN where it ended before, or cannot spin),
-        peak demands on the contact, `minimum_normal_force` over the weight, `steps`, `warnings`; differences from
-        the `reference`; `deviation` (model, other_model), the largest distance of the tilt vectors while both runs last
-        [rad]. With two slendernesses or more `deviation_order`, the power of c with which `deviation`/c falls. With
-        `samples` the histories `amplitude` [rad] and `spin` [rad/s] over `time`.
+        Of kind "model hierarchy", over `model`, and over `slenderness` if it is given: `outcome`, `uncertain`,
+        `peak_tilt`, `mean_late_tilt`, `mean_late_spin` (over the last fifth of the run; NaN if the run ended before, or
+        has no spin), peak contact demands, `minimum_normal_force` over weight, `steps`, `warnings`; differences from
+        the `reference`; `deviation` (model, other_model), the maximum distance of the tilt vectors while both runs last
+        [rad]. Two or more slendernesses also give `deviation_order`, the power of c with which `deviation`/c falls;
+        `samples` also gives the histories `amplitude` [rad] and `spin` [rad/s] over `time`.
 
     Raises
     ------
@@ -180,7 +179,7 @@ def _slendernesses(given: npt.ArrayLike) -> Floats:
 
 
 def _scaled(case: Case, slendernesses: Floats) -> list[Case]:
-    """Return the case at each slenderness, or raise ParameterError where it would begin beyond π/2."""
+    """Return the case at each slenderness; raise ParameterError if it would start beyond a tilt of π/2."""
     found = []
     for c in slendernesses:
         try:
@@ -192,8 +191,8 @@ def _scaled(case: Case, slendernesses: Floats) -> list[Case]:
         if math.hypot(*one.tilt) >= 0.5 * math.pi:
             message = (
                 f"tilt {case.tilt!r} rad at slenderness {case.column.slenderness:.6g} becomes "
-                f"({one.tilt[0]:.6g}, {one.tilt[1]:.6g}) rad where the case is scaled to slenderness {c:.6g}, and must "
-                "stay below π/2 in length; scale to less, or tilt less"
+                f"({one.tilt[0]:.6g}, {one.tilt[1]:.6g}) rad at slenderness {c:.6g}, and must be below π/2 in length. "
+                "Scale to a smaller slenderness, or tilt less"
             )
             raise ParameterError(message)
     return found
@@ -204,7 +203,7 @@ _MEASURES = {
     "mean_late_tilt": ("rad", "mean tilt angle over the last fifth of the run"),
     "mean_late_spin": ("rad s-1", "mean spin over the last fifth of the run"),
     "peak_friction_demand": ("1", "peak friction force over normal force"),
-    "peak_pivoting_demand": ("1", "largest moment about the vertical over normal force and radius"),
+    "peak_pivoting_demand": ("1", "peak moment about the vertical over normal force and radius"),
     "minimum_normal_force": ("1", "minimum normal force over weight"),
     "decided_at": ("s", "time at which the outcome was decided"),
     "steps": ("1", "integration steps"),
@@ -236,7 +235,7 @@ def _compared(case: Case, runs: Sequence[Response], time: Floats, duration: floa
             "deviation": (
                 ("model", "other_model"),
                 deviation,
-                {"units": "rad", "long_name": "largest distance of the tilt vectors"},
+                {"units": "rad", "long_name": "maximum distance of the tilt vectors"},
             ),
             "amplitude": (
                 ("model", "time"),
@@ -250,7 +249,7 @@ def _compared(case: Case, runs: Sequence[Response], time: Floats, duration: floa
 
 
 def _with_order(found: xr.Dataset) -> xr.Dataset:
-    """Add the power of c with which the deviation over c falls, by least squares; NaN where there is no deviation."""
+    """Add the power of c with which the deviation over c falls, by least squares; NaN without a deviation."""
     c = found["slenderness"].to_numpy()
     relative = (found["deviation"] / found["slenderness"]).transpose("slenderness", ...).to_numpy()
     with np.errstate(divide="ignore", invalid="ignore"):

@@ -1,1 +1,1 @@
-"""What happens over a plane of numbers: outcomes, basins and attractors, integrity and uncertainty."""
+"""Maps over two or more numbers: outcomes, basins and attractors, integrity and uncertainty."""

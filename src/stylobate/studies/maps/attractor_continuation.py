@@ -1,4 +1,4 @@
-"""Attractors followed along a parameter: which of one value is which of the next."""
+"""Continuation of attractors along a parameter: matching between successive values."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -12,9 +12,9 @@ from stylobate.studies.maps.stroboscopic import cycle_distance
 
 @dataclass(frozen=True, slots=True)
 class Branches:
-    """Attractors along a parameter: each branch as it was `last` seen, and the branch of each attractor in `places`.
+    """Branches of attractors along a parameter: the `last` attractor of each branch, and the branches by attractor.
 
-    `places` has for each value of the parameter one number for each of its attractors.
+    `places` holds, for each value of the parameter, the index of the branch of each attractor.
     """
 
     last: tuple[Attractor, ...]
@@ -22,24 +22,24 @@ class Branches:
 
 
 def follow_branches(along: Sequence[Sequence[Attractor]], tolerance: float) -> Branches:
-    """Return the branches of the attractors found at successive values of a parameter.
+    """Match the attractors at successive values of a parameter to branches.
 
-    Attractors are matched to branches of the same kind and period as these were last seen, so that the distances of
-    their dimensionless strobed states have the least sum. What is farther from every branch than the `tolerance`, or
-    left over, begins a branch; a branch that is lost and found again keeps its place. Attractors without a period are
-    matched by their kind alone: one strobed state of many does not locate them.
+    Attractors are matched to the last attractors of branches of the same kind and period, so that the sum of the
+    distances of their dimensionless stroboscopic samples is minimal. An attractor that is farther from every branch
+    than the `tolerance`, or left over, begins a branch; a branch that reappears keeps its index. Attractors without a
+    period are matched by their kind alone: one sample of many does not locate them.
 
     Parameters
     ----------
     along
         The attractors at each value, in the order of the parameter.
     tolerance
-        Largest distance of the dimensionless strobed states of an orbit from those of its branch.
+        Maximum distance between the dimensionless stroboscopic samples of an orbit and of its branch.
 
     Returns
     -------
     Branches
-        By kind and period, then in the order of their appearance.
+        Branches by kind and period, then in the order of their appearance.
     """
     last: list[Attractor] = []
     places = [_matched(attractors, last, tolerance) for attractors in along]
@@ -51,7 +51,7 @@ def follow_branches(along: Sequence[Sequence[Attractor]], tolerance: float) -> B
 
 
 def _matched(attractors: Sequence[Attractor], last: list[Attractor], tolerance: float) -> list[int]:
-    """Return the branch of each of `attractors`, and note them in `last`."""
+    """Return the branch of each of `attractors`, and record the attractors in `last`."""
     chosen = [-1] * len(attractors)
     distances = np.array([[_distance(found, branch, tolerance) for branch in last] for found in attractors])
     if distances.size:
@@ -67,7 +67,7 @@ def _matched(attractors: Sequence[Attractor], last: list[Attractor], tolerance: 
     return chosen
 
 
-# Stands for an infinite distance, which the assignment cannot take; states are of order one.
+# Replaces an infinite distance, which the assignment does not accept; states are of order one.
 _APART = 1e9
 
 

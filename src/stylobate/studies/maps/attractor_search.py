@@ -1,4 +1,4 @@
-"""Attractors found in the runs of one column under one base motion, none of them listed in advance."""
+"""Search for attractors in the runs of one column under one base motion, without a list in advance."""
 
 import json
 from collections.abc import Iterator, Sequence
@@ -24,11 +24,11 @@ from stylobate.studies.maps.stroboscopic import (
 )
 
 UNSETTLED = -2
-"""The label of a run that has reached no attractor by its end: followed longer it may."""
+"""The label of a run that has not reached an attractor by its end."""
 
 NOT_SETTLED = "not settled"
-"""What such runs are listed as, beside the attractors."""
-REMEDY = "not settled: follow them for more periods and with more strobes, 32 at least"
+"""The name of such runs in the table of attractors."""
+REMEDY = "not settled: run them for more periods and with more strobes, at least 32"
 
 AT_REST, ROCKING, OVERTURNED = "at rest", "rocking", "overturned"
 ROLLING = {1: "rolling anticlockwise", -1: "rolling clockwise"}
@@ -44,31 +44,30 @@ ENDINGS = {
 KINDS = (AT_REST, *ROLLING.values(), ROCKING, *MODULATED.values(), *APERIODIC.values(), *ENDINGS.values(), NOT_SETTLED)
 """All kinds, in the order in which attractors are listed."""
 
-# Mean turns of the contact point in a forcing period that count as none, or as one: within half a turn in ten.
+# Tolerance of the mean turns of the contact point per forcing period for zero or one turn: half a turn in ten.
 _TURNING = 0.05
-# Outcomes of runs that move to their end; a column that stands at the end may rest for a part of each period only.
+# Outcomes of runs that move until their end; a column at rest at the end may rest for only a part of each period.
 _MOVING = (Outcome.ROLLING, Outcome.ROCKING, Outcome.MODULATED, Outcome.STILL_MOVING, Outcome.AT_REST)
 
 
 @dataclass(frozen=True, slots=True)
 class Attractor:
-    """One thing that runs come to.
+    """An attractor of a set of runs.
 
     Attributes
     ----------
     kind
-        What it is, in words.
+        Kind in words.
     period
-        After how many forcing periods it repeats; 0 where it does not.
+        Number of forcing periods after which it repeats; 0 if it does not repeat.
     turns
-        Mean turns of the contact point in a forcing period, anticlockwise positive. NaN for an orbit whose period does
-        not divide the periods over which the mean rolling rate was taken (`OutcomeRules.periods`): the mean then shows
-        its sense, not its turns.
+        Mean turns of the contact point per forcing period, anticlockwise positive. NaN for an orbit whose period does
+        not divide the averaging periods of the rolling rate (`OutcomeRules.periods`): the mean shows only the sign.
     mean_tilt
-        Mean tilt over the last periods of its runs [rad]; 0 at rest, NaN where it ends a run.
+        Mean tilt over the last periods of its runs [rad]; 0 at rest, NaN if the attractor ends a run.
     states
-        Dimensionless strobed states (`OrbitScales.states`), shape (period, 2); a single one where it has no period,
-        none where it ends a run.
+        Dimensionless stroboscopic samples (`OrbitScales.states`), shape (period, 2); a single sample without a period,
+        none if the attractor ends a run.
     """
 
     kind: str
@@ -80,13 +79,13 @@ class Attractor:
 
 @dataclass(frozen=True, slots=True)
 class Found:
-    """The `attractors` of some runs, and the place in them of each run: `labels`, of the shape of the runs."""
+    """The `attractors` of some runs, and the index of the attractor of each run: `labels`, in the shape of the runs."""
 
     attractors: tuple[Attractor, ...]
     labels: Integers
 
     def listed(self) -> "Found":
-        """Return the same with the runs that have not settled listed last, if there are any, as if an attractor."""
+        """Return the result with unsettled runs, if any, listed last like an attractor."""
         unsettled = self.labels == UNSETTLED
         if not unsettled.any():
             return self
@@ -96,32 +95,32 @@ class Found:
 
 
 def find_attractors(runs: xr.Dataset, scales: OrbitScales, rules: AttractorRules) -> Found:
-    """Return the attractors that `runs` of one column under one base motion have come to, and which run came to which.
+    """Find the attractors of `runs` of one column under one base motion, and the attractor of each run.
 
-    The outcome shows rest, overturning and what else ends a run. A run that moves to its end is on a periodic
-    orbit if its strobed states repeat; the set of their strobed states tells orbits apart. A motion that goes on
-    without repeating (`keeps_moving`) is modulated rolling if it turns with the forcing, else aperiodic (quasi-periodic
-    or chaotic), and labelled by its sense; all others are unsettled, whatever the outcome of the run alone. A column
-    that stands at every strobe counts as at rest.
+    The outcome identifies rest, overturning and other ends of a run. A run that moves until its end is on a periodic
+    orbit if its stroboscopic samples repeat; the set of samples identifies the orbit. A motion that persists without
+    repeating (`keeps_moving`) is modulated rolling if it turns with the forcing, else aperiodic (quasi-periodic or
+    chaotic), and labelled by its sense. All other runs are unsettled, whatever their own outcome. A column that stands
+    at every sample counts as at rest.
 
     Parameters
     ----------
     runs
-        Result of an ensemble or sweep with strobes.
+        Result of an ensemble or sweep with `strobes`.
     scales
-        Units of the strobed states, and the period of the forcing.
+        Units of the stroboscopic samples, and the period of the forcing.
     rules
-        When states repeat, and when two orbits are one.
+        Tolerances by which attractors are identified.
 
     Returns
     -------
     Found
-        The attractors in an order that depends on them alone, and labels: UNSETTLED, NOT_COMPUTED, or their place.
+        The attractors in an order that depends only on them, and labels: UNSETTLED, NOT_COMPUTED, or their index.
 
     Raises
     ------
     ParameterError
-        If the runs were followed without strobes, or all that move for too short to have them.
+        If the runs have no stroboscopic samples, or all moving runs are too short for them.
     """
     if "strobe_tilt" not in runs:
         message = (
@@ -141,7 +140,7 @@ def find_attractors(runs: xr.Dataset, scales: OrbitScales, rules: AttractorRules
 
 @dataclass(frozen=True, slots=True)
 class _Flat:
-    """The data that identify attractors, flat over the runs: strobed states of shape (n, strobes, 2)."""
+    """The data that identify attractors, flat over the runs, with samples of shape (n, strobes, 2)."""
 
     outcome: npt.NDArray[np.int8]
     strobes: Complexes
@@ -165,7 +164,7 @@ class _Flat:
         )
 
     def require_strobes(self) -> None:
-        """Raise ParameterError if there are runs that move to their end and none of them has all its strobes."""
+        """Raise ParameterError if there are runs that move until their end and none of them has all samples."""
         outcomes = [outcome for outcome in _MOVING if outcome is not Outcome.AT_REST]
         moving = np.isin(self.outcome, outcomes)
         if moving.any() and np.isnan(self.strobes[moving]).any(axis=(1, 2)).all():
@@ -178,7 +177,7 @@ class _Flat:
 
 
 def _periods_of_mean(runs: xr.Dataset) -> int:
-    """Return over how many of the last periods the mean rolling rate of `runs` was taken."""
+    """Return the number of last periods over which the rolling rate of `runs` was averaged."""
     rules = json.loads(runs.attrs.get("provenance", "{}")).get("rules")
     return int(rules["periods"]) if isinstance(rules, dict) and "periods" in rules else OutcomeRules().periods
 
@@ -210,10 +209,10 @@ def _orbits(
     groups, leaders = group_cycles(cycles, left, tolerance)
     for group, leader in enumerate(leaders):
         members = candidates[groups == group]
-        # An orbit of k periods makes a whole number of turns in them; none where the rate is unknown, or where the
-        # lean only changes sides.
+        # An orbit of k periods makes a whole number of turns in them; none if the rate is unknown, or if the lean only
+        # changes sides.
         mean = 0.0 if is_flat(cycles[leader], tolerance) else _median(runs.turns[members], otherwise=0.0)
-        counted = not mean or runs.periods_of_mean % period == 0  # else a part of the orbit is in the mean once more
+        counted = not mean or runs.periods_of_mean % period == 0  # else the mean counts a part of the orbit twice
         turns = round(period * mean) / period if counted else np.nan
         kind = kind_of_orbit(turns if counted else mean * (abs(mean) > _TURNING))
         yield Attractor(kind, period, turns, _median(runs.mean_tilt[members]), _ordered(cycles[leader])), members
@@ -228,7 +227,7 @@ def _unrepeated(runs: _Flat, candidates: Integers, rules: AttractorRules) -> Ite
         for sense, kind in kinds.items():
             members = settled[chosen & (senses == sense)]
             if members.size:
-                # It fills a curve or more: the state that leans farthest stands for it, whatever the order of the runs.
+                # The samples fill a curve or more: the state of largest tilt represents them, for any order of runs.
                 last = runs.strobes[members, -1]
                 farthest = last[np.argmax(np.abs(last[:, 0]))]
                 mean = _median(runs.turns[members])
@@ -236,14 +235,14 @@ def _unrepeated(runs: _Flat, candidates: Integers, rules: AttractorRules) -> Ite
 
 
 def kind_of_orbit(turns: float) -> str:
-    """Return what a periodic orbit is that makes so many turns in a forcing period: rolling, or rocking if none."""
+    """Return the kind of a periodic orbit with this number of turns per forcing period: rolling, or rocking if none."""
     return ROLLING[int(np.sign(turns))] if turns else ROCKING
 
 
 def with_turns(found: Found, turns: Floats, tolerance: float) -> tuple[Found, Integers]:
-    """Return `found` with the orbits whose turns were not known as these `turns` show them, and the new order.
+    """Return `found` with kinds by these `turns` for orbits whose turns were unknown, and the new order.
 
-    The order has for each place the one that its attractor had before.
+    The order holds for each index the previous index of its attractor.
     """
     attractors = [
         replace(one, turns=float(value), kind=kind_of_orbit(value))
@@ -262,7 +261,7 @@ def with_turns(found: Found, turns: Floats, tolerance: float) -> tuple[Found, In
 
 
 def _ordered(cycle: Complexes) -> Complexes:
-    """Return the states of an orbit begun with the one that leans farthest."""
+    """Return the states of an orbit, starting with the state of largest tilt."""
     return np.roll(cycle, -int(np.argmax(np.abs(cycle[:, 0]))), axis=0)
 
 
@@ -272,9 +271,9 @@ def _median(values: Floats, *, otherwise: float = np.nan) -> float:
 
 
 def rank(attractor: Attractor, tolerance: float) -> tuple[float, ...]:
-    """Return the place of an attractor: by kind and period, then by tilt, the largest first, then by its state.
+    """Return the sort key of an attractor: by kind and period, then by tilt, the largest first, then by its state.
 
-    Rounded to the `tolerance`, so that two orbits alike but for rounding keep their places.
+    Numbers are rounded to the `tolerance`, so that rounding errors do not change the order of two orbits.
     """
     first = attractor.states[0] if len(attractor.states) else np.zeros(2, dtype=complex)
     state = np.round(np.array([np.abs(first).max(), *first.real, *first.imag]) / tolerance)
@@ -282,7 +281,7 @@ def rank(attractor: Attractor, tolerance: float) -> tuple[float, ...]:
 
 
 def names_of(attractors: Sequence[Attractor]) -> list[str]:
-    """Return a name for each: its kind, its period if longer than the forcing's, and a number where several agree."""
+    """Return a name for each attractor: kind, period if longer than the forcing's, and a number if names agree."""
     plain = [found.kind + (f", period {found.period}" if found.period > 1 else "") for found in attractors]
     return [
         f"{name} ({plain[:place].count(name) + 1})" if plain.count(name) > 1 else name

@@ -1,4 +1,4 @@
-"""Attractors of one column under one base motion, found from many starts."""
+"""Attractors of one column under one base motion, from many initial conditions."""
 
 from collections.abc import Mapping, Sequence
 from functools import partial
@@ -52,31 +52,32 @@ def attractors(
     progress: Progress | None = None,
     **options: Unpack[RunOptions],
 ) -> xr.Dataset:
-    """Return what a column can come to under one base motion, and how often it does so from random starts.
+    """Find the attractors of a column under one base motion, and their fractions, from random initial conditions.
 
-    Nothing is listed in advance: at rest, rolling in either sense, rocking and other periodic motions, modulated
-    rolling, aperiodic motions and overturning are classified from the runs by the rules of `label_attractors`.
+    The rules of `label_attractors` classify the runs without a list in advance: at rest, rolling in either sense,
+    rocking and other periodic motions, modulated rolling, aperiodic motions and overturning.
 
     Parameters
     ----------
     model, motion
         The column and its base motion.
     over
-        Range of each start that varies: tilt_x, tilt_y [rad], tilt_rate_x, tilt_rate_y [rad/s], start_phase [rad].
+        Range of each initial condition that varies: tilt_x, tilt_y [rad], tilt_rate_x, tilt_rate_y [rad/s],
+        start_phase [rad].
     count, rng
-        Number of starts, drawn uniformly, and the seed or numpy.random.Generator they are drawn with.
+        Number of initial conditions, drawn uniformly; seed or numpy.random.Generator.
     duration, periods
-        How long to follow each [s], or for how many periods of the base motion: long enough to settle, before the
-        strobed states that identify it. Damping η forgets a start as exp(−ηω0 t/2): to a thousandth in 14/(ηω0).
+        Duration of each run [s], or its number of periods of the base motion: long enough to settle before the
+        stroboscopic samples. With damping η, transients decay as exp(−ηω0 t/2): to a thousandth in 14/(ηω0).
     attractor_rules
-        When states repeat, and when two orbits are one.
+        Tolerances by which attractors are identified.
     confidence
-        Of the intervals of the fractions.
+        Confidence level of the intervals of the fractions.
     store, executor, resume, progress
         As in `run_sweep`.
     **options
-        What all runs have in common: tilt, tilt_rate, rtol, rules, strobes (by default 32, or half of what
-        shorter runs hold) …
+        Arguments of all runs: tilt, tilt_rate, rtol, rules, strobes (by default 32, or half of the periods of a
+        shorter run) …
 
     Returns
     -------
@@ -86,7 +87,7 @@ def attractors(
     Raises
     ------
     ParameterError
-        If an argument is out of range, a name in `over` changes the system, or runs are too short for the strobes.
+        If an argument is out of range, a name in `over` changes the system, or runs are too short for the samples.
     """
     require_starts("over", over)
     sweep = Sweep.random(
@@ -141,7 +142,7 @@ def label_attractors(
     Returns
     -------
     xarray.Dataset
-        The runs without their stroboscopic samples, with `attractor` (−1 where not computed). Over `attractor_index`,
+        The runs without their stroboscopic samples, with `attractor` (−1 if not computed). Over `attractor_index`,
         by kind and size, "not settled" last: `attractor_name`, `attractor_kind`, `attractor_period` [forcing periods, 0
         for none], `attractor_turns` [per forcing period; NaN if unknown], mean and maximum tilt [rad], `count`,
         `fraction` of all runs computed, `fraction_low` and `fraction_high`. Over `orbit_point`, the peak tilt first:
@@ -169,7 +170,7 @@ def label_attractors(
 
 
 def attractor_table(attractors: Sequence[Attractor], scales: OrbitScales) -> xr.Dataset:
-    """Return names, periods, turns and strobed states of `attractors` over `attractor_index`."""
+    """Return names, periods, turns and stroboscopic samples of `attractors` over `attractor_index`."""
     points = max((len(attractor.states) for attractor in attractors), default=1)
     states = np.full((len(attractors), max(points, 1), 2), np.nan, dtype=complex)
     for i, attractor in enumerate(attractors):
@@ -186,10 +187,10 @@ def attractor_table(attractors: Sequence[Attractor], scales: OrbitScales) -> xr.
             "attractor_turns": (
                 _TABLE,
                 np.array([attractor.turns for attractor in attractors], dtype=float),
-                {"units": "1", "long_name": "turns of the contact point in a forcing period"},
+                {"units": "1", "long_name": "turns of the contact point per forcing period"},
             ),
-            "attractor_tilt": (along, tilt, {"units": "rad", "long_name": "tilt at the strobe"}),
-            "attractor_tilt_rate": (along, tilt_rate, {"units": "rad s-1", "long_name": "rate of tilt at the strobe"}),
+            "attractor_tilt": (along, tilt, {"units": "rad", "long_name": "stroboscopic tilt"}),
+            "attractor_tilt_rate": (along, tilt_rate, {"units": "rad s-1", "long_name": "stroboscopic tilt rate"}),
         },
         coords={
             _TABLE: np.arange(len(attractors)),
@@ -201,10 +202,10 @@ def attractor_table(attractors: Sequence[Attractor], scales: OrbitScales) -> xr.
 
 
 def shares(found: Found, confidence: float) -> xr.Dataset:
-    """Return how many runs came to each attractor, and the fraction with its interval.
+    """Return the number of runs that reach each attractor, and the fraction with its interval.
 
-    Where a run that has not settled would come to is not known: the lower end counts none of them to the attractor, the
-    upper end all.
+    The attractor of an unsettled run is unknown: the lower end counts no unsettled run towards the attractor, the upper
+    end counts all of them.
     """
     found = found.listed()
     labels = found.labels.ravel()
@@ -216,7 +217,7 @@ def shares(found: Found, confidence: float) -> xr.Dataset:
     interval = f"end of the {100.0 * confidence:g} % interval of the fraction"
     return xr.Dataset(
         {
-            "count": (_TABLE, count, {"units": "1", "long_name": "runs that came to it"}),
+            "count": (_TABLE, count, {"units": "1", "long_name": "runs that reach it"}),
             "fraction": (_TABLE, count / max(computed, 1), {"units": "1", "long_name": "fraction of the runs"}),
             "fraction_low": (_TABLE, low, {"units": "1", "long_name": f"lower {interval}"}),
             "fraction_high": (_TABLE, high, {"units": "1", "long_name": f"upper {interval}"}),
@@ -227,7 +228,7 @@ def shares(found: Found, confidence: float) -> xr.Dataset:
 
 
 def rule_attributes(rules: AttractorRules, confidence: float) -> dict[str, Any]:
-    """Return the attributes that state the rules by which attractors were identified."""
+    """Return the attributes with the rules by which attractors were identified."""
     return {
         "repeat_tolerance": rules.repeat_tolerance,
         "match_tolerance": rules.match_tolerance,

@@ -81,8 +81,8 @@ def basin_fractions(
     -------
     xarray.Dataset
         Of kind "basin fractions", over the parameter and `attractor_index`: `count`, `fraction` of the runs computed
-        with `fraction_low` and `fraction_high` (counting none, and all, of the unsettled runs towards it); `present`
-        where the attractor was found, and there `mean_tilt` [rad] of its runs and its stroboscopic samples. Over the
+        with `fraction_low` and `fraction_high` (counting none, and all, of the unsettled runs towards it); `present` is
+        True if the attractor was found, and then `mean_tilt` [rad] and the stroboscopic samples are known. Over the
         parameter `unsettled` and `computed` count runs. "Not settled" is listed last.
 
     Raises
@@ -117,14 +117,14 @@ def basin_fractions(
 def fractions_along(
     runs: xr.Dataset, *, name: str, scales: Sequence[OrbitScales], rules: AttractorRules, confidence: float
 ) -> xr.Dataset:
-    """Return the basin fractions of `runs` that stand in blocks, one for each value of the parameter `name`.
+    """Return the basin fractions of `runs`, which form one block for each value of the parameter `name`.
 
     Parameters
     ----------
     runs
-        Over `run`, with the coordinate `name`.
+        Runs over `run`, with the coordinate `name`.
     scales
-        Units of the strobed states at each value.
+        Units of the stroboscopic samples at each value.
     """
     count = runs.sizes["run"] // max(len(scales), 1)
     blocks = [runs.isel(run=slice(i * count, (i + 1) * count)) for i in range(len(scales))]
@@ -161,7 +161,7 @@ def _fractions(name: str, found: Sequence[Found], branches: Branches, confidence
     dims, interval = (name, "attractor_index"), f"end of its {100.0 * confidence:g} % interval"
     return xr.Dataset(
         {
-            "count": (dims, count, {"units": "1", "long_name": "runs that came to it"}),
+            "count": (dims, count, {"units": "1", "long_name": "runs that reach it"}),
             "present": (dims, present, {"long_name": "found at this value"}),
             "fraction": (dims, np.where(known, count / total, np.nan), {"units": "1", "long_name": "basin fraction"}),
             "fraction_low": (dims, np.where(known, low, np.nan), {"units": "1", "long_name": f"lower {interval}"}),
@@ -189,14 +189,14 @@ def _states(name: str, found: Sequence[Found], branches: Branches, scales: Seque
     return xr.Dataset(
         {
             "mean_tilt": (along, mean_tilt, {"units": "rad", "long_name": "mean tilt"}),
-            "attractor_tilt": (dims, tilt, {"units": "rad", "long_name": "tilt at the strobe"}),
-            "attractor_tilt_rate": (dims, tilt_rate, {"units": "rad s-1", "long_name": "rate of tilt at the strobe"}),
+            "attractor_tilt": (dims, tilt, {"units": "rad", "long_name": "stroboscopic tilt"}),
+            "attractor_tilt_rate": (dims, tilt_rate, {"units": "rad s-1", "long_name": "stroboscopic tilt rate"}),
         }
     )
 
 
 def scales_at(model: Model, motion: BaseMotion | None, name: str, value: float) -> OrbitScales:
-    """Return the units of strobed states where the parameter `name` has this `value`."""
+    """Return the units of stroboscopic samples at this `value` of the parameter `name`."""
     if name in SYSTEM_STARTS or name == "duration":
         return OrbitScales.of(model, motion)
     return OrbitScales.of(*with_parameters(model, BASE_AT_REST if motion is None else motion, **{name: value}))

@@ -96,7 +96,7 @@ def basins(
     if orbits:
         options["known_orbits"] = [known_orbit_of(orbit, model, motion or BASE_AT_REST) for orbit in orbits]
     if count is not None:
-        ranges: Mapping[str, Sequence[float]] = over  # type: ignore[assignment]  # the sweep refuses what is no range
+        ranges: Mapping[str, Sequence[float]] = over  # type: ignore[assignment]  # the sweep refuses invalid ranges
         sweep = Sweep.random(
             model,
             motion,

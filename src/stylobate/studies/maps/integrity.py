@@ -161,9 +161,9 @@ def _ratios(measured: xr.Dataset) -> dict[str, Any]:
         "integrity_low": (
             dim,
             low,
-            {"units": "1", "long_name": "least integrity on a boundary smooth on the scale of the grid"},
+            {"units": "1", "long_name": "lower bound of the integrity, for a boundary smooth on the scale of the grid"},
         ),
-        "integrity_high": (dim, high, {"units": "1", "long_name": "largest integrity on such a boundary"}),
+        "integrity_high": (dim, high, {"units": "1", "long_name": "upper bound of the integrity, for such a boundary"}),
     }
 
 

@@ -1,4 +1,4 @@
-"""The paths of orbits, followed once from a strobed state."""
+"""Paths of orbits, each integrated once from a stroboscopic sample."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -12,9 +12,9 @@ from stylobate.models import Model
 from stylobate.studies.maps.attractor_search import Attractor
 from stylobate.studies.maps.stroboscopic import Floats, OrbitScales
 
-# Turn from one sample to the next up to which it is certain to which side it went.
+# Maximum turn between samples for which its sense is certain.
 _LARGEST_TURN = np.pi / 2.0
-# Times along a path, and the forcing periods for which a motion that does not repeat is followed.
+# Number of times along a path, and of forcing periods for a motion that does not repeat.
 _SAMPLES, _PERIODS_UNREPEATED = 1025, 20
 
 
@@ -26,18 +26,18 @@ def orbit_paths(
     Parameters
     ----------
     model, motion
-        The column and its base motion. Paths are followed under a harmonic motion only, whose steady part is known.
+        The column and its base motion. Only a harmonic motion has paths, because its steady part is known.
     attractors
-        What was found.
+        The attractors.
     scales
         Units of the attractors' states.
 
     Returns
     -------
     xarray.Dataset
-        `orbit_tilt` (attractor_index, orbit_sample, axis) [rad], at equal times over the period (20 forcing periods
-        for one that does not repeat); `attractor_mean_tilt` and `attractor_peak_tilt` (attractor_index) [rad]. NaN
-        where the attractor ends a run, has not been reached, or its path is not known.
+        `orbit_tilt` (attractor_index, orbit_sample, axis) [rad], at equal times over the period (20 forcing periods for
+        an attractor that does not repeat); `attractor_mean_tilt` and `attractor_peak_tilt` (attractor_index) [rad]. NaN
+        if the attractor ends a run, has not been reached, or its path is unknown.
     """
     tilt = np.full((len(attractors), _SAMPLES, 2), np.nan)
     mean = np.array([attractor.mean_tilt for attractor in attractors])
@@ -64,10 +64,10 @@ def orbit_paths(
 
 
 def turns_of_paths(paths: xr.Dataset, attractors: Sequence[Attractor]) -> Floats:
-    """Return how often each orbit turns round the upright in a forcing period, anticlockwise, counted along its path.
+    """Count the turns of each orbit round the vertical per forcing period along its path, anticlockwise positive.
 
-    NaN where the attractor has no period or no path, or where the path leads past the upright so closely that its
-    azimuth cannot be followed from sample to sample.
+    NaN if the attractor has no period or no path, or if the path passes so close to the vertical that the change of its
+    azimuth between samples is ambiguous.
     """
     x, y = np.moveaxis(paths["orbit_tilt"].to_numpy(), -1, 0)
     steps = np.angle((x[:, 1:] + 1j * y[:, 1:]) * (x[:, :-1] - 1j * y[:, :-1]))
@@ -90,5 +90,5 @@ def _followed(
 
 
 def _steady(motion: BaseMotion | None) -> Harmonic | None:
-    """Return the motion from its phase zero on, its ramp long past."""
+    """Return the harmonic motion from phase zero, without ramp."""
     return replace(motion, start_phase=0.0, ramp=0.0) if isinstance(motion, Harmonic) else None

@@ -39,7 +39,7 @@ def overturning_map(
     Parameters
     ----------
     model, motion
-        The column and its base motion. What `over` names replaces their values.
+        The column and its base motion. The quantities in `over` replace their values.
     over
         Two names with their values: parameters of the column, the model or the base motion, such as
         angular_frequency [rad/s], acceleration [m/s²], start_phase [rad], damping, size; or components of the initial

@@ -1,4 +1,4 @@
-"""A power law through counted shares, by maximum likelihood."""
+"""Power-law fit to counted shares, by maximum likelihood."""
 
 from dataclasses import dataclass
 
@@ -9,9 +9,9 @@ from scipy.special import xlogy
 
 from stylobate.studies.maps.stroboscopic import Floats
 
-# Shares above this are near saturation, where no power law holds.
+# Shares above this are near saturation, and the power law does not hold.
 _LARGEST_SHARE = 0.5
-# Of the simplex that finds the largest likelihood, in log f.
+# Tolerance of the simplex that maximises the likelihood, in log f.
 _FIT_TOLERANCE = 1e-9
 _LEAST_POINTS = 2
 
@@ -23,14 +23,14 @@ class PowerLaw:
     Attributes
     ----------
     exponent, prefactor
-        Of the law; NaN with fewer than two points.
+        Parameters of the law; NaN with fewer than two points.
     standard_error
-        Of the exponent, from the Fisher information of the binomial counts, times the root of `misfit` where that is
-        above 1.
+        Standard error of the exponent, from the Fisher information of the binomial counts; multiplied by the root of
+        `misfit` if the misfit is above 1.
     misfit
-        Deviance to a degree of freedom: about 1 if the law holds, far above where it does not. NaN for two points.
+        Deviance per degree of freedom: about 1 if the law holds, far above 1 otherwise. NaN for two points.
     used
-        Which points the fit rests on.
+        Whether the fit uses each point.
     """
 
     exponent: float
@@ -45,17 +45,17 @@ class PowerLaw:
 
 
 def fit_power_law(x: Floats, count: npt.ArrayLike, total: npt.ArrayLike) -> PowerLaw:
-    """Return the power law that makes the shares `count`/`total` at `x` most likely.
+    """Fit a power law to the shares `count`/`total` at `x` by maximum likelihood.
 
-    Counts are binomial, so that points where nothing was counted weigh as much as they inform. Points where more than
-    half were counted are left out: there the share is near saturation.
+    Counts are binomial, so that points with a count of zero have the right weight. Points with more than half of the
+    total are left out, because their share is near saturation.
 
     Parameters
     ----------
     x
-        Positive, shape (n,).
+        Positive numbers, shape (n,).
     count, total
-        How many of how many at each.
+        Count and total at each.
     """
     k, n = np.asarray(count, dtype=float), np.asarray(total, dtype=float)
     used = (n > 0.0) & (k <= _LARGEST_SHARE * n)
@@ -77,7 +77,7 @@ def fit_power_law(x: Floats, count: npt.ArrayLike, total: npt.ArrayLike) -> Powe
 
 
 def _most_likely(x: Floats, k: Floats, n: Floats) -> tuple[tuple[float, float], float]:
-    """Return level and slope of log f against `x` of the largest likelihood, and the deviance there."""
+    """Return level and slope of log f against `x` of maximum likelihood, and their deviance."""
 
     def deviance(law: Floats) -> float:
         share = np.exp(law[0] + law[1] * x)
@@ -88,7 +88,7 @@ def _most_likely(x: Floats, k: Floats, n: Floats) -> tuple[tuple[float, float], 
 
     found = k > 0.0
     slope, level = np.polyfit(x[found], np.log(k[found] / n[found]), 1, w=np.sqrt(k[found]))
-    # Where the law through the counts would pass 1, it begins lower.
+    # If the law through the counts would exceed 1, the search starts lower.
     level -= max(0.0, float(np.max(level + slope * x)) + 0.1)
     best = minimize(
         deviance,

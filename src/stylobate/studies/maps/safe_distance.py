@@ -1,4 +1,4 @@
-"""The distance from a state to the nearest overturning start on a grid of starts."""
+"""Distance from a state to the nearest overturning initial condition on a grid."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -15,21 +15,21 @@ from stylobate.studies.maps.stroboscopic import Floats
 from stylobate.studies.sweeps.quantities import STARTS, checked_values
 
 UNRESOLVED = (Outcome.FAILED, Outcome.LIFTED_OFF, Outcome.LIMIT_REACHED)
-"""Outcomes of runs that end before they show whether the column overturns."""
+"""Outcomes of runs that end before overturning is decided."""
 
 
 @dataclass(frozen=True, slots=True)
 class Metric:
-    """How distances between starts are measured.
+    """Metric of distances between initial conditions.
 
     Attributes
     ----------
     axes
-        Values of each component of the start along the grid [rad or rad/s], increasing.
+        Values of each component along the grid [rad or rad/s], increasing.
     units
-        c for tilts [rad], cω0 for rates of tilt [rad/s].
+        Units of distances: c for tilts [rad], cω0 for tilt rates [rad/s].
     reference
-        The state from which distances are taken.
+        The state from which distances are measured.
     """
 
     axes: Mapping[str, Floats]
@@ -43,7 +43,7 @@ class Metric:
         Raises
         ------
         ParameterError
-            If a component has fewer than two values or they do not increase, or the reference is not in the grid.
+            If a component has fewer than two values, its values do not increase, or the reference is not in the grid.
         """
         axes = {name: _increasing(name, values) for name, values in over.items() if name in STARTS}
         if not axes:
@@ -73,7 +73,7 @@ class Metric:
         )
 
     def distances(self, dims: tuple[str, ...]) -> Floats:
-        """Return the distance of every start of the grid over `dims`; it broadcasts along what is no start."""
+        """Return the distance of every grid point over `dims`; other dimensions than components have length 1."""
         squares = np.zeros((1,) * len(dims))
         for name, axis in self.axes.items():
             shape = tuple(axis.size if dim == name else 1 for dim in dims)
@@ -82,24 +82,24 @@ class Metric:
 
 
 def distance_to_overturning(outcome: xr.DataArray, metric: Metric) -> xr.Dataset:
-    """Return the distance from the reference to the nearest start of the grid that overturned, and what it leaves open.
+    """Compute the distance from the reference to the nearest grid point that overturned, with bounds.
 
-    A grid start that overturns at the distance d proves that the boundary is no farther than d. It may be nearer by
-    up to the diagonal of a cell: a boundary that is straight on the scale of the cells, at the distance r, has a grid
-    start behind it within r and a diagonal. Folds and tongues finer than the cells may come nearer still.
+    A grid point at the distance d that overturns proves that the boundary is no farther than d. The boundary may be
+    nearer by up to the diagonal of a cell: if it is straight on the scale of the cells, at the distance r, there is a
+    grid point behind it within r plus a diagonal. Folds and tongues finer than the cells may be nearer.
 
     Parameters
     ----------
     outcome
         Codes of the outcomes over the grid.
     metric
-        How distances are measured on it.
+        Metric on the grid.
 
     Returns
     -------
     xarray.Dataset
-        `distance`; `distance_low` and `distance_high`, between which the boundary is; `at_least` (nothing overturned
-        within the known part of the grid, to which the distance reaches: then `distance_high` is infinite);
+        `distance`; `distance_low` and `distance_high`, between which the boundary lies; `at_least` (nothing overturned
+        within the known part of the grid: then `distance` reaches to its edge, and `distance_high` is infinite);
         `resolution`, and `nearest` over `start`.
     """
     dims = tuple(str(dim) for dim in outcome.dims)
@@ -114,20 +114,20 @@ def distance_to_overturning(outcome: xr.DataArray, metric: Metric) -> xr.Dataset
     distance, diagonal = min(nearest, known), 2.0 * metric.resolution
     return xr.Dataset(
         {
-            "distance": ((), distance, {"units": "1", "long_name": "distance to the nearest overturning start"}),
+            "distance": ((), distance, {"units": "1", "long_name": "distance to the nearest overturning run"}),
             "distance_low": (
                 (),
                 max(distance - diagonal, 0.0),
-                {"units": "1", "long_name": "least distance of a boundary that is smooth on the scale of the grid"},
+                {"units": "1", "long_name": "lower bound for a boundary smooth on the scale of the grid"},
             ),
             "distance_high": (
                 (),
                 np.inf if at_least else distance,
-                {"units": "1", "long_name": "largest distance of the boundary"},
+                {"units": "1", "long_name": "upper bound of the distance of the boundary"},
             ),
             "at_least": ((), at_least, {"long_name": "nothing overturned nearer than this"}),
             "resolution": ((), metric.resolution, {"units": "1", "long_name": "half the diagonal of a cell"}),
-            "nearest": ("start", start, {"long_name": "nearest overturning start"}),
+            "nearest": ("start", start, {"long_name": "nearest overturning initial condition"}),
         },
         coords={"start": np.array(list(metric.axes))},
     )

@@ -1,4 +1,4 @@
-"""Orbits in stroboscopic samples: which runs repeat, after how many periods, and which are on the same orbit."""
+"""Periodic orbits in stroboscopic samples: detection of repetition, period and identical orbits."""
 
 from dataclasses import dataclass
 from typing import Self
@@ -15,15 +15,15 @@ Floats = npt.NDArray[np.float64]
 Integers = npt.NDArray[np.int64]
 
 
-# Stands for no difference at all where its logarithm is taken; far below any that is resolved.
+# Replaces a difference of zero in logarithms; far below the resolution.
 _LEAST = 1e-12
 
 
-# Differences in each half of the strobes that give their mean and its error: of 32 strobes.
+# Minimum number of differences in each half of the samples for a mean and its error: that of 32 samples.
 _ENOUGH_DIFFERENCES = 15
-# An orbit that a run may be nearing has at most this part of the strobes for its period, so that its returns are many …
+# Minimum number of samples per period of an orbit that a run may approach, so that it returns often …
 _RETURNS = 4
-# … and returns to within this part of what the run moves from strobe to strobe.
+# … and maximum distance of a return, as a fraction of the distance between successive samples.
 _NEAR = 0.1
 
 
@@ -72,7 +72,7 @@ class AttractorRules:
 
 @dataclass(frozen=True, slots=True)
 class OrbitScales:
-    """Units in which strobed states are compared: `tilt` [rad], `tilt_rate` [rad/s]; and the forcing's `period` [s]."""
+    """Units for comparing stroboscopic samples: `tilt` [rad], `tilt_rate` [rad/s]; and the forcing's `period` [s]."""
 
     tilt: float
     tilt_rate: float
@@ -80,7 +80,7 @@ class OrbitScales:
 
     @classmethod
     def of(cls, model: Model, motion: BaseMotion | None) -> Self:
-        """Return the tilt and rate of free rolling (5) at the frequency of `motion`; c and cω0 where it has none."""
+        """Return the tilt and rate of free rolling (5) at the frequency of `motion`; c and cω0 without a frequency."""
         c, scale = model.column.slenderness, 1.0 / model.time_scale
         period = None if motion is None else motion.period
         if period is None:
@@ -105,26 +105,26 @@ class OrbitScales:
 
 
 def repeating_periods(strobes: Complexes, rules: AttractorRules) -> tuple[Integers, Floats]:
-    """Return after how many periods strobed states repeat.
+    """Determine the number of periods after which stroboscopic samples repeat.
 
     Parameters
     ----------
     strobes
-        Dimensionless states of n runs at m successive strobes, shape (n, m, 2), the newest last.
+        Dimensionless states of n runs in m successive samples, shape (n, m, 2), the newest last.
     rules
-        By how much states may differ from the last ones, and by how much those of an orbit must differ.
+        Maximum difference from the last samples, and minimum difference between samples of an orbit.
 
     Returns
     -------
     tuple
-        The smallest such number up to m/2, shape (n,), 0 where there is none, and the difference that is left.
+        The smallest such number up to m/2, shape (n,), 0 if there is none, and the remaining difference.
     """
     runs, window = strobes.shape[:2]
     periods, left = np.zeros(runs, dtype=np.int64), np.full(runs, np.inf)
     place = np.arange(window) - window
     for k in range(1, window // 2 + 1):
         open_runs = periods == 0
-        # The last k states, repeated backwards through the window; NaN (no strobe) never repeats.
+        # The last k states, repeated backwards through the window; NaN (no sample) never repeats.
         difference = np.abs(strobes[open_runs] - strobes[open_runs][:, window - k + place % k]).max(axis=(1, 2))
         repeats = difference < rules.repeat_tolerance
         for divisor in (d for d in range(1, k) if k % d == 0):
@@ -137,14 +137,14 @@ def repeating_periods(strobes: Complexes, rules: AttractorRules) -> tuple[Intege
 
 
 def keeps_moving(strobes: Complexes, rules: AttractorRules) -> npt.NDArray[np.bool_]:
-    """Return which motions go on as they are, without repeating: they neither die down, grow nor near an orbit.
+    """Return whether motions persist without repeating: they neither decay, grow nor approach an orbit.
 
-    Judged by the differences of successive strobed states (`strobes` of shape (n, m, 2)): those of a run that creeps
-    towards an orbit shrink from the first half of the strobes to the second. In the logarithm a constant rate of decay
-    ρ is a straight line: over h differences in each half the means differ by ρh, √(6h) of their standard errors (10
-    for h = 16) whatever the rate, while those of a stationary run differ by about one. Fewer than 15 differences in
-    each half (32 strobes) do not suffice: no run of them counts as going on. Nor does one that moves from strobe to
-    strobe by no more than what counts as repeating.
+    The criterion uses the differences of successive samples (`strobes` of shape (n, m, 2)), which shrink from the first
+    half of the samples to the second if a run slowly approaches an orbit. In the logarithm a constant rate of decay ρ
+    is a straight line: over h differences in each half the means differ by ρh, √(6h) of their standard errors (10 for
+    h = 16) for any rate, while the means of a stationary run differ by about one. Fewer than 15 differences in each
+    half (32 samples) do not suffice, and the run does not count as persistent. Nor does a run whose successive samples
+    differ by no more than the tolerance for repeating.
 
     Returns
     -------
@@ -161,10 +161,10 @@ def keeps_moving(strobes: Complexes, rules: AttractorRules) -> npt.NDArray[np.bo
 
 
 def _nears_an_orbit(strobes: Complexes, rules: AttractorRules) -> npt.NDArray[np.bool_]:
-    """Return which runs near an orbit of several periods, shape (n,).
+    """Return whether runs approach an orbit of several periods, shape (n,).
 
-    From strobe to strobe they move as the orbit does, by as much from first to last. But after its k periods they come
-    back closely, and ever more so. Judged at the k after which a run comes back most closely.
+    Successive samples of such a run differ as those of the orbit do, equally from first to last. But after the k
+    periods of the orbit the run returns closely, each time more closely. The criterion uses the k of closest return.
     """
     periods = range(1, max(strobes.shape[1] // _RETURNS, 1) + 1)
     returns = [_differences(strobes, k) for k in periods]
@@ -177,13 +177,13 @@ def _nears_an_orbit(strobes: Complexes, rules: AttractorRules) -> npt.NDArray[np
 
 
 def _differences(strobes: Complexes, periods: int) -> Floats:
-    """Return how far apart states are that lie so many periods from each other, shape (n, m − periods)."""
+    """Return the distances between states that are this many periods apart, shape (n, m − periods)."""
     apart = np.abs(strobes[:, periods:] - strobes[:, :-periods]).max(axis=2)
     return np.asarray(np.maximum(apart, _LEAST))
 
 
 def _growth(differences: Floats, rules: AttractorRules) -> tuple[Floats, Floats]:
-    """Return by how much the logarithm of differences grows from the first half to the second, and what is nothing."""
+    """Return the growth of the logarithm of differences from the first half to the second, and its tolerance."""
     half = differences.shape[1] // 2
     before, after = np.log(differences[:, :half]), np.log(differences[:, -half:])
     error = np.sqrt((before.var(axis=1) + after.var(axis=1)) / (half - 1))
@@ -192,21 +192,21 @@ def _growth(differences: Floats, rules: AttractorRules) -> tuple[Floats, Floats]
 
 
 def is_flat(cycle: Complexes, tolerance: float) -> bool:
-    """Return whether an orbit runs in a vertical plane: no angular momentum about the vertical at any strobe.
+    """Return whether an orbit is planar: no angular momentum about the vertical at any sample.
 
     Parameters
     ----------
     cycle
         Dimensionless states, shape (k, 2).
     tolerance
-        Of the angular momentum, as a part of the peak tilt times the largest rate.
+        Tolerance of the angular momentum, as a fraction of the peak tilt times the peak rate.
     """
     tilt, rate = cycle.T
     return bool(np.abs(np.imag(np.conj(tilt) * rate)).max() < tolerance * np.abs(tilt).max() * np.abs(rate).max())
 
 
 def cycle_distance(cycles: Complexes, cycle: Complexes) -> Floats:
-    """Return how far orbits of k states are from another, shape (n,), wherever each of them begins.
+    """Return the distances of orbits of k states from another orbit, shape (n,), for any first state.
 
     Parameters
     ----------
@@ -222,15 +222,15 @@ def cycle_distance(cycles: Complexes, cycle: Complexes) -> Floats:
 def group_cycles(cycles: Complexes, left: Floats, tolerance: float) -> tuple[Integers, Integers]:
     """Gather orbits of k states into groups.
 
-    Each group has for its leader the run that repeats best among those in no group yet, and holds whatever is closer
-    to it than `tolerance`: the order of the runs does not matter.
+    The leader of each group is the run that repeats best among the remaining runs, and the group holds all runs closer
+    to the leader than `tolerance`: the order of the runs does not matter.
 
     Parameters
     ----------
     cycles
         Shape (n, k, 2).
     left
-        By how much each misses repeating, shape (n,).
+        Remaining difference of each run from repetition, shape (n,).
 
     Returns
     -------
@@ -238,7 +238,7 @@ def group_cycles(cycles: Complexes, left: Floats, tolerance: float) -> tuple[Int
         The group of each run, shape (n,), and the leader of each group.
     """
     flat = cycles.reshape(len(cycles), -1)
-    # Among equally good runs the state decides, not the order.
+    # If runs repeat equally well, the state decides, not the order.
     order = np.lexsort((*flat.real.T, *flat.imag.T, left))
     groups, leaders = np.full(len(cycles), -1, dtype=np.int64), list[int]()
     for candidate in order:

@@ -1,4 +1,4 @@
-"""How many strobed states the runs of a study keep: enough to identify attractors, and no more than there are."""
+"""Number of stroboscopic samples of the runs of a study, sufficient to identify attractors."""
 
 import math
 from dataclasses import replace
@@ -10,25 +10,25 @@ from stylobate.studies.sweeps import Sweep
 from stylobate.studies.sweeps.designs import whole
 
 USUAL_STROBES = 32
-"""Strobed states that are kept where nobody asks for another number."""
+"""Default number of stroboscopic samples."""
 
-# Strobes that identify an orbit of two periods: it repeats after half as many. Period one needs two strobes.
+# Samples that identify an orbit of two periods: it repeats after half as many. Period one needs two samples.
 _FOR_TWO_PERIODS, _FOR_ONE = 4, 2
-# Room for rounding in the number of periods, in periods.
+# Tolerance for rounding of the number of periods, in periods.
 _ROUNDING = 1e-9
 
 
 def with_strobes(sweep: Sweep, asked: int | None) -> Sweep:
-    """Return `sweep` with strobes: those `asked` for, else 32, else half of those that its shortest run holds.
+    """Return `sweep` with the number of samples `asked` for, else 32, else half of the periods of its shortest run.
 
-    Of a run shorter than 32 periods the first half is for settling. Without a periodic base motion there are no
-    strobes, and only rest and overturning are identified.
+    The first half of a run shorter than 32 periods serves for settling. Without a periodic base motion there are no
+    samples, and only rest and overturning are identified.
 
     Raises
     ------
     ParameterError
-        If the shortest run holds fewer strobes than are asked for, or fewer than 8, whose second half identifies orbits
-        of one and two periods; or if fewer than two are asked for, which identify nothing.
+        If the shortest run has fewer periods than `asked`, or fewer than 8, whose second half identifies orbits of one
+        and two periods; or if `asked` is below two, which identifies nothing.
     """
     chosen = USUAL_STROBES if asked is None else require_whole("strobes", asked, least=_FOR_ONE)
     held = _whole_periods(sweep)
@@ -46,7 +46,7 @@ def with_strobes(sweep: Sweep, asked: int | None) -> Sweep:
 
 
 def _whole_periods(sweep: Sweep) -> int | None:
-    """Return how many whole periods the run of fewest periods lasts; None where the base motion has no period."""
+    """Return the number of whole periods of the shortest run; None if the base motion has no period."""
     values = sweep.design.coordinates(whole(sweep.design))
     if not all(array.size for array in values.values()):
         return None
@@ -65,7 +65,7 @@ def _shortest(sweep: Sweep) -> float:
         return float(np.min(values["duration"]))
     if sweep.duration is not None:
         return sweep.duration
-    assert sweep.periods is not None  # a sweep has one of the three
+    assert sweep.periods is not None  # a sweep has one of these
     if "angular_frequency" in values:
         return sweep.periods * 2.0 * math.pi / float(np.max(values["angular_frequency"]))
     assert sweep.motion.period is not None  # a sweep refuses periods of a motion without one

@@ -30,9 +30,9 @@ from stylobate.studies.sweeps.labelled import labelled_sweep
 from stylobate.studies.sweeps.quantities import checked_values
 from stylobate.studies.sweeps.recipe import RunOptions
 
-# Shifts where nobody names others: this many, geometric, between these parts of the range of the start shifted.
+# Default shifts: this many, geometric, between these fractions of the range of the shifted component.
 _USUAL_SHIFTS = np.geomspace(1e-5, 3e-2, 8)
-# A share of dropped starts above which a warning is due.
+# Share of dropped initial conditions above which a warning is logged.
 _MANY_DROPPED = 0.1
 
 _log = logging.getLogger("stylobate")
@@ -145,8 +145,8 @@ def _warn_of_dropped(found: xr.Dataset) -> None:
     dropped, classified = int(found["dropped"].sum()), int(found["pairs"].sum())
     if dropped > _MANY_DROPPED * (dropped + classified):
         _log.warning(
-            "uncertainty_exponent dropped %d of %d starts, undecided whether uncertain; "
-            "follow the runs longer to settle them",
+            "uncertainty_exponent dropped %d of %d initial conditions as undecided. "
+            "Run them longer so that they settle",
             dropped,
             dropped + classified,
         )
@@ -167,9 +167,9 @@ def _labelled(
 
 
 def overturned_or_not(runs: xr.Dataset) -> Integers:
-    """Return 1 for each run that overturned and 0 for those that did not.
+    """Return 1 for each run that overturned and 0 for each run that did not.
 
-    UNSETTLED where that is not known: the run failed, lifted off or was stopped at a tilt limit; also NOT_COMPUTED.
+    UNSETTLED if overturning is undecided: the run failed, lifted off or was stopped at a tilt limit; also NOT_COMPUTED.
     """
     codes = runs["outcome"].to_numpy().astype(np.int64)
     states: Integers = (codes == Outcome.OVERTURNED).astype(np.int64)
@@ -183,9 +183,9 @@ def _attractor_of_each(runs: xr.Dataset, scales: OrbitScales, rules: AttractorRu
 
 
 def shifted_starts(base: Mapping[str, Floats], shifted: str, epsilon: Floats) -> dict[str, Floats]:
-    """Return the `base` starts, and after them all those with `shifted` lowered by ε, then raised by it.
+    """Return the `base` initial conditions, followed by all with `shifted` lowered by ε, then all with it raised by ε.
 
-    The starts stand in blocks of one length, one for each ε.
+    The initial conditions form blocks of equal length, one for each ε.
     """
     change = np.repeat(epsilon, base[shifted].size // epsilon.size)
     moved = {shifted: np.concatenate([base[shifted], base[shifted] - change, base[shifted] + change])}
@@ -200,19 +200,19 @@ def exponent_of(
     dimension: int,
     confidence: float = 0.95,
 ) -> xr.Dataset:
-    """Return the uncertainty exponent from the final `states` of the runs of `shifted_starts`.
+    """Estimate the uncertainty exponent from the final `states` of the runs of `shifted_starts`.
 
     Parameters
     ----------
     states
-        A number for each run that encodes its final state, negative where that is not known: NOT_COMPUTED or UNSETTLED.
+        Code of the final state of each run, negative if unknown: NOT_COMPUTED or UNSETTLED.
     epsilon
         The shifts.
     overturned
-        1 for each run that overturned, 0 for those that did not, negative where that is not known: it may tell apart
-        states that are not known.
+        1 for each run that overturned, 0 for each run that did not, negative if undecided. It can distinguish runs
+        whose states are unknown.
     dimension
-        Number D of the starts that vary.
+        Number D of initial conditions that vary.
     confidence
         Confidence level of the intervals of the fractions.
     """
@@ -229,13 +229,13 @@ def exponent_of(
     interval = f"end of its {100.0 * confidence:g} % interval"
     return xr.Dataset(
         {
-            "uncertain": ("epsilon", uncertain, {"units": "1", "long_name": "uncertain starts"}),
-            "pairs": ("epsilon", pairs, {"units": "1", "long_name": "starts classified as uncertain or not"}),
-            "dropped": ("epsilon", dropped, {"units": "1", "long_name": "starts dropped as undecided"}),
+            "uncertain": ("epsilon", uncertain, {"units": "1", "long_name": "uncertain initial conditions"}),
+            "pairs": ("epsilon", pairs, {"units": "1", "long_name": "initial conditions classified"}),
+            "dropped": ("epsilon", dropped, {"units": "1", "long_name": "initial conditions dropped as undecided"}),
             "fraction": (
                 "epsilon",
                 np.where(pairs > 0, uncertain / np.maximum(pairs, 1), np.nan),
-                {"units": "1", "long_name": "fraction of uncertain starts"},
+                {"units": "1", "long_name": "fraction of uncertain initial conditions"},
             ),
             "fraction_low": ("epsilon", low, {"units": "1", "long_name": f"lower {interval}"}),
             "fraction_high": ("epsilon", high, {"units": "1", "long_name": f"upper {interval}"}),
@@ -248,7 +248,7 @@ def exponent_of(
                 dimension - law.exponent,
                 {"units": "1", "long_name": f"dimension of the boundary within {dimension}"},
             ),
-            "misfit": ((), law.misfit, {"units": "1", "long_name": "deviance of the fit to a degree of freedom"}),
+            "misfit": ((), law.misfit, {"units": "1", "long_name": "deviance of the fit per degree of freedom"}),
         },
         coords={"epsilon": epsilon},
         attrs={"kind": "uncertainty exponent", "confidence": confidence},
@@ -256,7 +256,7 @@ def exponent_of(
 
 
 def _compared(states: npt.NDArray[np.integer]) -> tuple[npt.NDArray[np.bool_], npt.NDArray[np.bool_]]:
-    """Return whether each start differs for certain from that lowered and that raised, and whether it agrees so."""
+    """Return whether the state of each base run certainly differs from that of a shifted run, and whether all agree."""
     base, shifted = states[:1], states[1:]
     known = (base >= 0) & (shifted >= 0)
     return known & (base != shifted), known & (base == shifted)

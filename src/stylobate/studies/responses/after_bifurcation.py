@@ -29,7 +29,7 @@ def after_bifurcation(
     """Count the outcomes of runs near the orbit of a bifurcation, at values of the parameter around it.
 
     Beyond a supercritical loss of stability the runs reach the attractors that branch off, as long as these exist.
-    Beyond a subcritical one they leave for distant attractors.
+    Beyond a subcritical loss the runs reach distant attractors.
 
     Parameters
     ----------

@@ -99,5 +99,5 @@ def averaged_motion(
     )
 
 
-# The averaged equations are left where the tilt is below or above these [units of c].
+# The averaged motion ends if the tilt is below or above these [units of c].
 _SMALLEST, _LARGEST = 1e-6, 100.0

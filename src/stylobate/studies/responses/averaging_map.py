@@ -1,4 +1,4 @@
-"""Where averaging is right: predicted stability and amplitude against exact orbits."""
+"""Validity of averaging: predicted stability and amplitude compared with exact orbits."""
 
 import json
 from collections.abc import Callable, Sequence
@@ -92,7 +92,7 @@ def averaging_map(
             "exact": (dims, exact, states),
             "averaged": (dims, averaged, states),
             "error": (dims, error, {"units": "1", "long_name": "exact mean tilt over averaged tilt, less 1"}),
-            "swing": (dims, swing, {"units": "1", "long_name": "largest exact tilt over averaged tilt"}),
+            "swing": (dims, swing, {"units": "1", "long_name": "peak exact tilt over averaged tilt"}),
         },
         coords={
             parameter: (parameter, chosen, attributes_of(parameter)),
@@ -117,10 +117,10 @@ def _followed(model: Model, motion: BaseMotion, frequencies: Floats, sense: int 
 
 
 def _at(branch: Branch, amplitude: Floats, frequencies: Floats) -> tuple[npt.NDArray[np.int8], Floats, Floats]:
-    """Return stability, and error and swing against the averaged `amplitude` at each point, at these frequencies.
+    """Return stability, and error and swing relative to the averaged `amplitude`, at these frequencies.
 
-    Stability changes at bifurcations only, which are points of the branch; ratios to the averaged amplitude, which
-    change slowly, are interpolated between points. Where a branch is folded, its first orbit counts.
+    Stability changes only at bifurcations, which are points of the branch; ratios to the averaged amplitude, which
+    change slowly, are interpolated between points. If a branch is folded, its first orbit counts.
     """
     at, stable = (np.array(of) for of in zip(*((p.value, is_stable(p.multipliers)) for p in branch.path), strict=True))
 

@@ -1,4 +1,4 @@
-"""Frequency response with exact periodic orbits, beside that of theory."""
+"""Frequency response with exact periodic orbits, compared with theory."""
 
 import json
 from collections.abc import Callable, Sequence
@@ -20,7 +20,7 @@ from stylobate.studies.responses.orbit_families import Followed, between_bifurca
 from stylobate.studies.responses.response_curves import response_curves
 
 _AVERAGED_POINTS = 400
-# Two base motions, or two models, are one if their numbers agree to this part of the largest.
+# Two base motions, or two models, are equal if their numbers agree to this fraction of the largest number.
 _SAME, _PHASES = 1e-9, 16
 _BIFURCATION_UNITS = {"angular_frequency": "rad s-1", "mean_tilt": "rad", "peak_tilt": "rad"}
 
@@ -105,7 +105,7 @@ def exact_response(
 
 
 def _require_of(orbit: PeriodicOrbit, model: Model, motion: BaseMotion, bounds: tuple[float, float]) -> None:
-    """Raise ParameterError unless it is an orbit of this model under this motion, but for a frequency in the bounds."""
+    """Raise ParameterError unless the orbit has this model and motion, with any frequency within the bounds."""
     require_orbit(orbit)
     numbers, own = ((*one.parameters, one.column.slenderness, one.time_scale) for one in (model, orbit.model))
     if type(orbit.model) is not type(model) or not np.allclose(own, numbers, rtol=_SAME, atol=0.0):
@@ -119,7 +119,7 @@ def _require_of(orbit: PeriodicOrbit, model: Model, motion: BaseMotion, bounds: 
     times = np.arange(_PHASES) / _PHASES * float(orbit.motion.period or 1.0)
     wanted, given = (one.acceleration(times) for one in (at, orbit.motion))
     if np.abs(wanted - given).max() > _SAME * np.abs(wanted).max():
-        message = f"orbit must be one under {motion!r} at whatever frequency, got one under {orbit.motion!r}"
+        message = f"orbit must be an orbit under {motion!r} at any frequency, got one under {orbit.motion!r}"
         raise ParameterError(message)
 
 
@@ -129,7 +129,7 @@ def _joined(families: Sequence[Followed]) -> xr.Dataset:
     for index, family in enumerate(families):
         branch = between_bifurcations(family.branch)
         data = branch.points
-        # On a bifurcation, rounding alone decides.
+        # At a bifurcation, only rounding decides.
         located = np.isin([point.value for point in branch.path], places)
         data["stable"] = data["stable"] & ~xr.DataArray(located, dims="point")
         table = data[[name for name in data.data_vars if str(name).startswith("bifurcation_")]]
@@ -158,7 +158,7 @@ def _joined(families: Sequence[Followed]) -> xr.Dataset:
 
 
 def _by_theory(model: Model, motion: BaseMotion, low: float, high: float, sense: int) -> dict[str, object]:
-    """Return the curves of theory for rolling in this sense, nothing where it has none."""
+    """Return the curves of theory for rolling in this sense; empty if there are none."""
     try:
         curves = response_curves(model, motion, angular_frequency=np.linspace(low, high, _AVERAGED_POINTS))
     except (UnsupportedError, ParameterError):

@@ -1,4 +1,4 @@
-"""An orbit to begin with, somewhere in a range of frequencies."""
+"""First orbit for a continuation within a range of frequencies."""
 
 import logging
 
@@ -13,26 +13,26 @@ from stylobate.orbits import PeriodicOrbit, periodic_orbit
 _log = logging.getLogger("stylobate")
 
 _TRIES = 24
-# What a search from a guess asks for, and a range of frequencies does not.
+# Start of the message of a search without a guess.
 _ASKED = "guess must be given: "
 
 
 def first_orbit(
     model: Model, motion: BaseMotion, angular_frequency: tuple[float, float], sense: int | None
 ) -> PeriodicOrbit:
-    """Return rolling by theory at the highest frequency of the range [rad/s] at which it is found.
+    """Find a rolling orbit from theory, at the highest frequency of the range [rad/s] at which the search succeeds.
 
     Raises
     ------
     NoOrbitError
-        If it is found at none that was tried.
+        If no orbit is found at the frequencies that were tried.
     UnsupportedError
-        If theory knows no rolling of this model under this motion.
+        If theory has no rolling of this model under this motion.
     """
     low, high = angular_frequency
     reason: Exception | None = None
     for frequency in np.geomspace(high, max(low, 1e-3 * high), _TRIES):
-        _log.info("%.4g rad/s is tried for a first orbit", frequency)
+        _log.info("searching for a first orbit at %.4g rad/s", frequency)
         changed = with_parameters(model, motion, angular_frequency=float(frequency))
         try:
             return periodic_orbit(*changed, sense=sense)
@@ -43,14 +43,14 @@ def first_orbit(
             message = f"no orbit is known to begin with: {reason_given}"
             raise UnsupportedError(message) from None
     message = (
-        f"no orbit was found between {low!r} and {high!r} rad/s: {_sentence(reason)}; widen the range, or "
-        "make the acceleration larger"
+        f"no orbit was found between {low!r} and {high!r} rad/s: {_sentence(reason)}. Widen the range, or "
+        "increase the acceleration"
     )
     raise NoOrbitError(message)
 
 
 def _unknown(model: Model, motion: BaseMotion) -> str:
-    """Return of what theory has no rolling, and the remedy: the repr of a motion would fill a screen."""
+    """Describe the model and motion without rolling in theory, and the remedy, without the long repr of a motion."""
     harmonic = as_harmonic(motion)
     if harmonic is None:
         under = f"under {type(motion).__name__} motion"

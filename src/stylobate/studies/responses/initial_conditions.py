@@ -82,7 +82,7 @@ def steady_start(model: Model, motion: Harmonic, *, branch: str = "upper", sense
 
 
 def _closed_form(model: Model, branch: str) -> ClosedForm:
-    """Return the closed form of steady rolling of a model, or raise an error of one line where it does not hold."""
+    """Return the closed form of steady rolling of a model; raise an error if it does not apply."""
     form = rolling_form_of(model)
     if form is None:
         message = (
@@ -99,8 +99,8 @@ def _closed_form(model: Model, branch: str) -> ClosedForm:
         raise ParameterError(message)
     if form.law in (RollingLaw.FREE_TWIST, RollingLaw.FULL) and form.eta > 0.0 and form.zeta == 0.0:
         message = (
-            f"{name_by_symbol(type(model), 'ζ')} must be above zero where there is damping, got 0.0: without it the "
-            "base spins the column up for ever, and there is no steady rolling"
+            f"{name_by_symbol(type(model), 'ζ')} must be above zero if there is damping, got 0.0: without it the "
+            "spin grows without bound, and there is no steady rolling"
         )
         raise ParameterError(message)
     return form

@@ -18,8 +18,8 @@ from stylobate.orbits.arguments import require_subject
 Floats = npt.NDArray[np.float64]
 
 _ENDINGS = {
-    Status.DONE: "followed to the end",
-    Status.LOST: "came to the upright",
+    Status.DONE: "reached the end",
+    Status.LOST: "passed through the vertical",
     Status.GONE: "overturned",
     Status.FAILED: "the integration failed",
 }
@@ -128,7 +128,7 @@ def lyapunov_exponents(
 
 @dataclass(frozen=True, slots=True)
 class _Course:
-    """Where the motion is at a whole number of periods, and the directions carried with it."""
+    """State of the motion after a whole number of periods, and the directions integrated with it."""
 
     system: PeriodicSystem
     state: Floats
@@ -138,7 +138,7 @@ class _Course:
     status: Status = Status.DONE
 
     def following(self) -> "_Course":
-        """Return the course a period later; one that has ended stays as it is."""
+        """Return the course one period later; a course that has ended does not change."""
         if self.status is not Status.DONE:
             return self
         flow = self.system.carry(self.state, 0.0, 1.0, side=self.side)
@@ -167,7 +167,7 @@ def _start(
     if number > system.order:
         message = f"count must be at most {system.order}, the order of the equations, got {number}"
         raise ParameterError(message)
-    # Directions of which none is one of the equations' own.
+    # Directions that are not eigenvectors of the equations.
     first = np.linalg.qr(np.vander(np.arange(1.0, system.order + 1.0), increasing=True))[0][:, :number]
     return _Course(system, state, 0.0, first, np.zeros(number))
 
@@ -188,7 +188,7 @@ def _summary(growths: Floats, periods: int, blocks: int, period: float) -> xr.Da
             "lyapunov_exponent": ("exponent", mean / period, {**rate, "long_name": "Lyapunov exponent"}),
             "error": ("exponent", error / period, {**rate, "long_name": "error of the Lyapunov exponent"}),
             "per_period": ("exponent", mean, {**log, "long_name": "Lyapunov exponent, per period"}),
-            "per_period_error": ("exponent", error, {**log, "long_name": "its error, per period"}),
+            "per_period_error": ("exponent", error, {**log, "long_name": "error of the Lyapunov exponent, per period"}),
             "running": (("period", "exponent"), running, {**rate, "long_name": "Lyapunov exponent so far"}),
             "periods_counted": ((), counted, {**log, "long_name": "periods counted"}),
         },

@@ -1,4 +1,4 @@
-"""Families of orbits as they are drawn: each followed once and split at its bifurcations."""
+"""Families of orbits for diagrams: each is continued once and split at its bifurcations."""
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
@@ -14,10 +14,10 @@ from stylobate.orbits.bifurcations import orbit_at
 from stylobate.orbits.shooting import arcs_of, shots
 
 _BORN = (Kind.PITCHFORK, Kind.PERIOD_DOUBLING, Kind.BRANCH_POINT)
-# Two orbits are images of each other if their tilts agree to this part of c, and what their multipliers add up to to
-# this part of it: orbits are known far better, and others differ by far more.
+# Two orbits are related by symmetry if their tilts agree to this fraction of c, and the sums of their multipliers to
+# this relative tolerance. Orbits are known much better, and different orbits differ by much more.
 _ALIKE, _ALIKE_MULTIPLIERS = 1e-6, 1e-3
-# By so many points a family is known that begins at a bifurcation.
+# Number of points of a known family that starts at a bifurcation.
 _PROBED = 8
 
 
@@ -36,7 +36,7 @@ def born(
     control: StepControl | None,
     progress: Callable[[float], None] | None = None,
 ) -> Iterator[Followed]:
-    """Follow what is born on a branch, once for each pair of images, and once what begins and ends on the branch."""
+    """Continue the bifurcating branches of a branch; a pair related by symmetry, or by both ends, is continued once."""
     if generations <= 0:
         return
     siblings: list[Branch] = []
@@ -58,9 +58,9 @@ def born(
 
 
 def between_bifurcations(branch: Branch) -> Branch:
-    """Return the branch with an orbit more between any two bifurcations that have none between them.
+    """Return the branch with an additional orbit between any two bifurcations without one.
 
-    Stability changes at bifurcations only: with an orbit between each two, it is known all along.
+    Stability changes only at bifurcations: an orbit between each two shows the stability everywhere.
     """
     located = {id(one.point) for one in branch.bifurcations}
     path = list(branch.path[:1])
@@ -82,9 +82,9 @@ def _middle(first: Point, second: Point) -> Point | None:
 
 
 def _meet(probe: Branch, other: Branch) -> bool:
-    """Return whether an orbit of one family is one of the other, a whole or half number of periods later, or mirrored.
+    """Return whether an orbit of one family is in the other, up to a shift in time by half periods or a mirror image.
 
-    Such images have the same tilts and multipliers.
+    Orbits related by such symmetries have the same tilts and multipliers.
     """
     if probe.path[0].family.periods != other.path[0].family.periods:
         return False
@@ -101,9 +101,9 @@ def _meet(probe: Branch, other: Branch) -> bool:
 
 
 def _from_birth_to_death(family: Branch, birth: Bifurcation, known: tuple[Bifurcation, ...]) -> Branch:
-    """Return a family from the orbit that bears it to that into which it goes, if it does.
+    """Return a family from the orbit of its parent branch up to the orbit at which it ends, if it ends.
 
-    Beyond an orbit of half its length, a family goes on with the same orbits, begun half their length later.
+    Beyond an orbit of half its length, a family repeats the same orbits, shifted by half their length.
     """
     path, found, ends = list(family.path), family.bifurcations, family.ends
     death: tuple[Point, ...] = ()
@@ -130,13 +130,13 @@ def _nearest(point: Point, known: list[Bifurcation]) -> Bifurcation:
 
 
 def _halves_apart(point: Point) -> np.ndarray[tuple[int, ...], np.dtype[np.float64]]:
-    """Return by how much an orbit differs from itself half its length later; zero for one of half the length."""
+    """Return the difference of an orbit from itself half its length later; zero for an orbit of half the length."""
     states = point.chain.states
     return np.asarray(states[0] - states[len(states) // 2])
 
 
 def _at(bifurcation: Bifurcation, of: Branch) -> tuple[Point, ...]:
-    """Return the orbit of a bifurcation as a point of the family that is born there; nothing if it cannot be."""
+    """Return the orbit of a bifurcation as a point of the bifurcating branch; empty if that is impossible."""
     family: Family = of.path[0].family
     system = family.at(bifurcation.parameter)
     states = arcs_of(system, orbit_at(bifurcation.point).state, family.periods, len(of.path[0].chain.states))

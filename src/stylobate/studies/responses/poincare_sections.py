@@ -1,4 +1,4 @@
-"""Poincaré sections: the states of columns once in each period of the base motion."""
+"""Poincaré sections: states of columns once per period of the base motion."""
 
 import json
 from collections.abc import Callable
@@ -84,8 +84,8 @@ def poincare_section(
         )
         raise UnsupportedError(message)
     points = periods - skip + 1
-    # Samples at equal times, one a period, and those of the periods skipped left out: strobes would keep phase zero
-    # of the base motion, which is t = 0 only for a start phase of zero.
+    # Samples at equal times, one per period, without those of the skipped periods. Stroboscopic samples have phase
+    # zero of the base motion, which is t = 0 only for a start phase of zero.
     runs = simulate_ensemble(
         model,
         motion,
@@ -103,14 +103,14 @@ def poincare_section(
     names = {"sampled_tilt": "section_tilt", "sampled_tilt_rate": "section_tilt_rate"}
     section = late[[*names, *_FOLLOWED]].rename(names).assign_coords(period=np.arange(skip, periods + 1))
     section["period"].attrs = {"long_name": "periods of the base motion since t = 0", "units": "1"}
-    section["section_tilt"].attrs["long_name"] = "tilt vector once a period"
-    section["section_tilt_rate"].attrs["long_name"] = "rate of the tilt vector once a period"
+    section["section_tilt"].attrs["long_name"] = "tilt vector once per period"
+    section["section_tilt_rate"].attrs["long_name"] = "rate of the tilt vector once per period"
     given = json.loads(runs.attrs["provenance"])
     provenance = {**given, "periods": periods, "skip": skip}
     return section.assign_attrs(kind="Poincaré section", provenance=json.dumps(provenance))
 
 
-# Steps that a run may take in a period; a column that swings near rest takes many.
+# Maximum steps per period; a column that rocks near rest needs many.
 _STEPS_A_PERIOD, _LEAST_STEPS = 1000, 200_000
 
 

@@ -69,7 +69,7 @@ def response_curves(
         if size > _NO_PART * largest
     ]
     if not senses:
-        message = f"motion: its acceleration is zero beside gravity (got {motion!r}). Make it stronger."
+        message = f"motion: its acceleration is negligible beside gravity (got {motion!r}). Increase it."
         raise ParameterError(message)
     dims = ("sense", "branch", "angular_frequency")
     stacked = {
@@ -102,17 +102,17 @@ def response_curves(
     )
 
 
-# A circular part smaller than this share of the other is rounding: the base moves on a circle.
+# A circular component smaller than this fraction of the other is rounding: the base motion is circular.
 _NO_PART = 1e-12
 
 
 def _damping(model: Model) -> float:
-    """Return η of a model with the equations of the slender one, or raise an error."""
+    """Return η of a model with the equations of the slender model, or raise an error."""
     form = rolling_form_of(model)
     if form is None or form.law is not RollingLaw.SLENDER:
         message = f"response_curves needs the slender model, which has a closed form; got {model.name}"
         if form is not None:
-            message += f", of which theory.{form.law.value} gives steady rolling and orbits.continue_branch orbits"
+            message += f". Use theory.{form.law.value} for its steady rolling, or orbits.continue_branch for its orbits"
         raise UnsupportedError(message)
     return form.eta
 

@@ -1,4 +1,4 @@
-"""The frame that turns with one circular part of a harmonic base motion: (7) and (10) live in it."""
+"""The frame of equations (7) and (10), which turns with one circular component of a harmonic base motion."""
 
 import math
 from dataclasses import dataclass
@@ -21,11 +21,11 @@ class RollingFrame:
     nu
         Dimensionless frequency ν.
     drive
-        Amplitude a0 of the circular part that drives rolling in this sense [g].
+        Amplitude a0 of the circular component that drives rolling in this sense [g].
     sense
         +1 anticlockwise, −1 clockwise.
     offset
-        Where the frame points at t = 0 [rad].
+        Azimuth of the frame at t = 0 [rad].
     time_scale
         Unit of dimensionless time, 1/ω0 [s].
     """
@@ -38,7 +38,7 @@ class RollingFrame:
 
     @classmethod
     def of(cls, model: Model, motion: Harmonic, sense: int | None = None) -> Self:
-        """Return the frame of `motion`; by default in the sense of its larger circular part.
+        """Return the frame of `motion`; by default in the sense of its larger circular component.
 
         Raises
         ------
@@ -59,7 +59,7 @@ class RollingFrame:
             nu=motion.angular_frequency * model.time_scale,
             drive=abs(part) / model.column.gravity,
             sense=turning,
-            # The parts are given at the phase of axis 1.
+            # The components are given at the phase of axis 1.
             offset=math.atan2(part.imag, part.real) + turning * (motion.start_phase + phi1),
             time_scale=model.time_scale,
         )

@@ -1,4 +1,4 @@
-"""A slow sweep: one column followed while a parameter goes through its values step by step."""
+"""Slow sweep: integration of a column while a parameter steps through its values."""
 
 import json
 from collections.abc import Callable, Mapping
@@ -20,11 +20,11 @@ from stylobate.results import OutcomeRules
 from stylobate.results.outcomes import NOT_COMPUTED, outcome_attributes
 from stylobate.studies.sweeps.quantities import Floats, checked_values
 
-# Samples in a period, of which the mean tilt is made.
+# Samples per period for the mean tilt.
 _SAMPLES = 64
-# The end of a run is met to this part of its length.
+# Relative tolerance of the end of a run.
 _SLACK = 1e-9
-# Several beats of a modulation, by which it is distinguished from what has not settled.
+# Periods with several beats of a modulation, to distinguish it from an unsettled motion.
 _PERIODS_LOOKED_AT = 25
 
 _ENDINGS = (Outcome.OVERTURNED, Outcome.LIMIT_REACHED, Outcome.LIFTED_OFF, Outcome.FAILED)
@@ -32,7 +32,7 @@ _NUMBERS = {
     "mean_tilt": ("mean tilt", "rad"),
     "minimum_tilt": ("minimum tilt", "rad"),
     "peak_tilt": ("peak tilt", "rad"),
-    "turns_per_period": ("turns a period", "1"),
+    "turns_per_period": ("turns per period", "1"),
 }
 _VECTORS = {
     "end_tilt": ("tilt vector at the end of the step", "rad"),
@@ -158,7 +158,7 @@ def slow_sweep(
 
 @dataclass(frozen=True, slots=True)
 class _Hold:
-    """How columns are followed at one value of the parameter each: for `settling`, then for `watched` periods."""
+    """Integration of columns at one value of the parameter each: for `settling`, then for `watched` periods."""
 
     model: Model
     motion: BaseMotion
@@ -168,7 +168,7 @@ class _Hold:
     options: Mapping[str, Any]
 
     def followed(self, at: Floats, period: Floats, tilt: Floats, tilt_rate: Floats) -> dict[str, npt.NDArray[Any]]:
-        """Return what the columns do at these values from these states, each of m rows; NaN for one that ended."""
+        """Return the results at these values from these states, each of m rows; NaN for columns that have ended."""
         ended = np.zeros(at.size, dtype=bool)
         outcome = np.zeros(at.size, dtype=np.int8)
         if self.settling:
@@ -194,7 +194,7 @@ class _Hold:
             "peak_tilt": runs["peak_tilt"].to_numpy(),
             "turns_per_period": runs["turns"].to_numpy() / self.watched,
         }
-        # What came to rest for good ended early: it stands, whatever it did before.
+        # A run that came to rest permanently ended early: the column stands.
         outcome = runs["outcome"].to_numpy()
         early = runs["end_time"].to_numpy() < (1.0 - _SLACK) * self.watched * period
         for column in found.values():

@@ -1,4 +1,4 @@
-"""Where rolling loses its stability, over the frequency of the base motion and a second parameter."""
+"""Stability boundary of rolling over the frequency of the base motion and a second parameter."""
 
 import json
 from collections.abc import Sequence
@@ -29,9 +29,9 @@ from stylobate.studies.responses.orbit_families import between_bifurcations
 from stylobate.studies.responses.response_curves import response_curves
 
 _THEORY_POINTS = 201
-# A bifurcation this near to a curve, in parts of the widths of the bounds, lies on it.
+# A bifurcation within this distance from a curve, as a fraction of the widths of the bounds, lies on the curve.
 _ON_CURVE = 2e-3
-# A curve bends off the chord of two of its points by less than this part of the chord.
+# Maximum deviation of a curve from the chord of two of its points, as a fraction of the chord.
 _BENT = 0.05
 _FOLLOWED = (Kind.FOLD, Kind.PITCHFORK, Kind.PERIOD_DOUBLING, Kind.NEIMARK_SACKER)
 
@@ -97,7 +97,7 @@ def stability_boundary(
     require_subject(model, motion)
     low, high = require_bounds(bounds, parameter)
     frequencies = require_frequencies(angular_frequency)
-    _require_friction(model, parameter, low)
+    _require_damping(model, parameter, low)
     chosen = np.linspace(low, high, 5) if values is None else np.asarray(values, dtype=float)
     if chosen.size == 0 or not np.all((chosen >= low) & (chosen <= high)):
         message = f"values must lie between the bounds {(low, high)!r}, got {values!r}"
@@ -133,7 +133,7 @@ def stability_boundary(
 
 
 def losses(branch: Branch) -> list[Bifurcation]:
-    """Return the bifurcations of a branch at which stability is lost or won."""
+    """Return the bifurcations of a branch at which stability is lost or gained."""
     found = []
     for one in branch.bifurcations:
         place = next(index for index, point in enumerate(branch.path) if point is one.point)
@@ -144,20 +144,20 @@ def losses(branch: Branch) -> list[Bifurcation]:
     return found
 
 
-def _require_friction(model: Model, parameter: str, least: float) -> None:
-    """Raise ParameterError without friction: orbits are neutrally stable then at best, and nothing is decided."""
+def _require_damping(model: Model, parameter: str, least: float) -> None:
+    """Raise ParameterError without damping: orbits are then neutrally stable at best."""
     if parameter == "damping":
         require_positive("bounds: damping", least)
     elif not model.comes_to_rest:
         message = (
-            "damping must be above zero, got 0.0: without friction no motion decays, rolling is neutrally stable at "
-            "best, and where it is lost is not decided"
+            "damping must be above zero, got 0.0: without damping rolling is neutrally stable at best, and has no "
+            "stability boundary"
         )
         raise ParameterError(message)
 
 
 def _everywhere(stable: set[bool]) -> str:
-    """Return how rolling was wherever it was looked at."""
+    """Describe the stability of rolling at all points checked."""
     return " or ".join(name for name, seen in (("stable", True), ("unstable", False)) if seen in stable)
 
 
@@ -168,7 +168,7 @@ def _on(
     frequencies: tuple[float, float],
     bounds: tuple[float, float],
 ) -> bool:
-    """Return whether a bifurcation lies on a curve known already."""
+    """Return whether a bifurcation lies on a known curve."""
     if curve.kind is not one.kind:
         return False
     widths = np.array([frequencies[1] - frequencies[0], bounds[1] - bounds[0]])
@@ -178,7 +178,7 @@ def _on(
         return bool(np.linalg.norm(path[0] - here) < _ON_CURVE)
     along = np.diff(path, axis=0)
     squares = np.sum(along**2, axis=1)
-    # A curve begun on the bound of a parameter may have a point twice: a chord of no length.
+    # A curve that starts on the bound of a parameter may have a point twice: a chord of length zero.
     share = np.sum((here - path[:-1]) * along, axis=1) / np.where(squares > 0.0, squares, 1.0)
     gaps = np.linalg.norm(path[:-1] + np.clip(share, 0.0, 1.0)[:, np.newaxis] * along - here, axis=1)
     return bool(np.any(gaps < _ON_CURVE + _BENT * np.sqrt(squares)))
@@ -215,7 +215,7 @@ def _joined(curves: list[BifurcationCurve], parameter: str) -> xr.Dataset:
 def _of_theory(
     model: Model, motion: BaseMotion, parameter: str, bounds: tuple[float, float], sense: int | None
 ) -> dict[str, object]:
-    """Return theory's critical frequency over the parameter; nothing where it has none."""
+    """Return theory's critical frequency over the parameter; empty if there is none."""
     values = np.linspace(*bounds, _THEORY_POINTS)
     critical = np.full(values.size, np.nan)
     averaged = False

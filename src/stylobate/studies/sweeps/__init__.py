@@ -1,4 +1,4 @@
-"""Sweeps: one description of many runs, cut into chunks, computed here or on a cluster, stored and resumed."""
+"""Sweeps: one description of many runs, divided into chunks, computed locally or on a cluster, stored and resumed."""
 
 from stylobate.studies.sweeps.dask_executor import Dask
 from stylobate.studies.sweeps.executors import Executor, Threads

@@ -1,31 +1,31 @@
-"""Blocks: the pieces into which the runs of a sweep are cut, one task and one chunk of the store each."""
+"""Blocks of the runs of a sweep: each is one task and one chunk of the store."""
 
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
 DISK_BLOCK = 4096
-"""What the smallest file takes on disk [bytes]."""
+"""Size of the smallest file on disk [bytes]."""
 
-# A sweep is cut into about so many blocks, each no smaller and no larger than these numbers of runs.
+# Target number of blocks of a sweep; minimum and maximum number of runs in a block.
 _USUAL_COUNT, _SMALLEST, _LARGEST = 64, 1024, 16384
 
 
 @dataclass(frozen=True, slots=True)
 class Block:
-    """A rectangular piece of the array of runs; `index` is its place among all blocks."""
+    """A rectangular piece of the array of runs; `index` is its number among all blocks."""
 
     index: int
     slices: tuple[slice, ...]
 
     @property
     def shape(self) -> tuple[int, ...]:
-        """Its length along each dimension."""
+        """Length of the block along each dimension."""
         return tuple(part.stop - part.start for part in self.slices)
 
     @property
     def size(self) -> int:
-        """The number of runs in it."""
+        """Number of runs in the block."""
         return math.prod(self.shape)
 
 
@@ -38,7 +38,7 @@ class Blocks:
 
     @classmethod
     def of(cls, shape: tuple[int, ...], runs: int | None = None) -> "Blocks":
-        """Return blocks of at most `runs` runs, the last dimensions whole as far as that goes."""
+        """Return blocks of at most `runs` runs, which span the last dimensions completely if possible."""
         room = usual_size(math.prod(shape)) if runs is None else runs
         edges = []
         for length in reversed(shape):
@@ -70,5 +70,5 @@ class Blocks:
 
 
 def usual_size(runs: int) -> int:
-    """Return the largest number of runs in a block, for a sweep of so many `runs`, where nobody asks for another."""
+    """Return the default maximum number of runs in a block of a sweep of `runs` runs."""
     return min(max(_SMALLEST, -(-runs // _USUAL_COUNT)), _LARGEST)

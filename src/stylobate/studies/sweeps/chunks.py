@@ -1,4 +1,4 @@
-"""Chunk files of a store: which of them are whole, and what that makes of the blocks of a sweep."""
+"""Chunk files of a store: their integrity, and the resulting state of the blocks of a sweep."""
 
 import json
 from collections.abc import Mapping
@@ -14,13 +14,13 @@ from stylobate.studies.sweeps.blocks import Blocks
 METADATA = "zarr.json"
 """Name of the file with the metadata of an array or a store."""
 MARK, OUTCOME = "done", "outcome"
-"""Names of the arrays that are written last: the mark of a block after its outcomes, these after the other data."""
-# The codec `crc32c` of Zarr ends a chunk with so many bytes.
+"""Names of the arrays that are written last: the outcomes after the other data, then the mark of a block."""
+# Zarr's codec `crc32c` appends this number of bytes to a chunk.
 _CHECKSUM = 4
 
 
 class State(Enum):
-    """What the chunk files of a block hold."""
+    """State of the chunk files of a block."""
 
     DONE = auto()
     OPEN = auto()
@@ -36,9 +36,9 @@ class Chunks:
     path
         The store.
     blocks
-        Into which its runs are cut.
+        Blocks of its runs.
     variables
-        For each result the number of its dimensions after those of the runs.
+        Number of dimensions of each result besides the dimensions of the runs.
     """
 
     path: Path
@@ -46,8 +46,8 @@ class Chunks:
     variables: Mapping[str, int]
 
     def state(self, index: int) -> State:
-        """Return the state of a block: DAMAGED if a file is not as it was written, or one is lost."""
-        # Looked for in the reverse of the order of writing: another process may be writing this block.
+        """Return the state of a block: DAMAGED if a file has changed since it was written, or is missing."""
+        # Checked in the reverse order of writing: another process may be writing this block.
         present = {name: file for name, file in reversed(self.files(index).items()) if file.exists()}
         lost = not self.variables.keys() <= present.keys()
         if (lost and (MARK in present or OUTCOME in present)) or not all(map(is_whole, present.values())):
@@ -59,7 +59,7 @@ class Chunks:
         return {index: self.state(index) for index in range(len(self.blocks))}
 
     def forget(self, index: int) -> None:
-        """Remove the files of a block, those first that say that others are there."""
+        """Remove the files of a block, in the reverse order of writing."""
         for file in reversed(self.files(index).values()):
             file.unlink(missing_ok=True)
 
@@ -72,12 +72,12 @@ class Chunks:
 
 
 def chunk_file(array: Path, place: tuple[int, ...]) -> Path:
-    """Return the file of the chunk of an `array` at this place."""
+    """Return the file of the chunk of an `array` at this index."""
     return array.joinpath("c", *map(str, place))
 
 
 def chunk_counts(array: Path) -> tuple[int, ...]:
-    """Return into how many chunks an `array` is cut along each dimension, by its metadata."""
+    """Return the number of chunks of an `array` along each dimension, from its metadata."""
     metadata = json.loads((array / METADATA).read_bytes())
     edges = metadata["chunk_grid"]["configuration"]["chunk_shape"]
     return tuple(-(-length // edge) for length, edge in zip(metadata["shape"], edges, strict=True))
@@ -90,7 +90,7 @@ def files_along(array: Path) -> list[Path]:
 
 
 def is_whole(file: Path) -> bool:
-    """Return whether a chunk file can be read and has the checksum that was written with it."""
+    """Return whether a chunk file can be read and matches its checksum."""
     try:
         content = file.read_bytes()
     except OSError:

@@ -1,4 +1,4 @@
-"""Computing one block of a sweep: what every executor does, wherever it does it."""
+"""Computation of one block of a sweep, shared by all executors."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -24,7 +24,7 @@ def silent(*_: object) -> None:
 
 @dataclass(frozen=True, slots=True)
 class Task:
-    """One block of runs with the values that vary."""
+    """One block of runs with the values of the quantities that vary."""
 
     block: Block
     values: Mapping[str, Floats]
@@ -32,7 +32,7 @@ class Task:
 
 @dataclass(frozen=True, slots=True)
 class Computed:
-    """The results of a task, flat over its runs; `interrupted` if Ctrl-C came before all were computed."""
+    """The results of a task, flat over its runs; `interrupted` if Ctrl-C stopped it before all were computed."""
 
     arrays: Arrays
     interrupted: bool = False
@@ -41,7 +41,7 @@ class Computed:
 def compute(
     recipe: Recipe, values: Mapping[str, Floats], threads: int | None, progress: Progress | None = None
 ) -> Computed:
-    """Return the results of the runs made by `recipe` at these `values`."""
+    """Compute the runs of `recipe` at these `values`."""
     arguments = recipe.arguments(values)
     try:
         result = simulate_ensemble(recipe.model, recipe.motion, **arguments, threads=threads, progress=progress)

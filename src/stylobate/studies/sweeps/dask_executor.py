@@ -1,4 +1,4 @@
-"""Blocks computed by Dask workers: on this machine, on a cluster behind a scheduler, or through a client you made."""
+"""Executor with Dask workers: on this machine, on a cluster with a scheduler, or through a given client."""
 
 import logging
 import signal
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from stylobate.studies.sweeps.executors import Work
 
-# So many tasks wait for each thread of the workers, so that none of them is ever idle.
+# Number of tasks that wait for each thread of the workers, so that no thread is idle.
 _AHEAD = 2
 
 
@@ -70,14 +70,14 @@ class Dask:
         StylobateError
             If no scheduler answers at the address, if it is lost, or if a block killed several workers in a row.
         """
-        del progress  # a block is short, and its worker elsewhere
+        del progress  # a block is short, and its worker is another process
         distributed = _distributed()
         with ExitStack() as stack:
             client = self._client(distributed, stack)
             try:
                 yield from _flow(distributed, client, work, iter(tasks))
             except (distributed.comm.CommClosedError, CancelledError) as error:
-                message = f"the Dask scheduler was lost; a sweep with a store goes on with resume=True ({error})"
+                message = f"the Dask scheduler was lost ({error}). Continue a sweep with a store by resume=True"
                 raise StylobateError(message) from error
 
     def _client(self, distributed: "ModuleType", stack: ExitStack) -> Any:
@@ -96,7 +96,7 @@ def _local_client(distributed: Any, workers: int | None, stack: ExitStack) -> An
     """Return a client of workers on this machine, which end with `stack`."""
 
     class LeavesCtrlC(distributed.WorkerPlugin):  # type: ignore[misc]  # distributed is imported when it is used
-        """Leaves Ctrl-C, which a terminal sends to all processes, to the one that hands out the tasks."""
+        """Ignore Ctrl-C, which a terminal sends to all processes, in workers."""
 
         def setup(self, worker: object) -> None:
             del worker
@@ -115,14 +115,14 @@ def _local_client(distributed: Any, workers: int | None, stack: ExitStack) -> An
 def _flow(
     distributed: "ModuleType", client: Any, work: "Work", tasks: Iterator[Task]
 ) -> Generator[tuple[Task, Computed], None, None]:
-    """Yield results while a bounded number of tasks is on its way."""
+    """Yield results while a bounded number of tasks is submitted."""
     sweep = uuid.uuid4().hex
     waiting: dict[Any, Task] = {}
 
     def submitted(count: int) -> list[Any]:
         new = []
         for task in islice(tasks, count):
-            # A key of its own: Dask must not take an earlier sweep's result for this one's.
+            # A unique key: Dask must not return the result of an earlier sweep.
             key = f"stylobate-{sweep}-{task.block.index}"
             future = client.submit(work, task, threads=1, progress=None, key=key, pure=False)
             waiting[future] = task
@@ -130,7 +130,7 @@ def _flow(
         return new
 
     def room() -> int:
-        # Workers may come and go.
+        # The number of workers may change.
         threads = int(sum(client.nthreads().values()))
         return _AHEAD * max(1, threads) - len(waiting)
 
@@ -150,8 +150,8 @@ def _result(distributed: "ModuleType", future: Any, task: Task) -> Computed:
         result: Computed = future.result()
     except distributed.KilledWorker as error:
         message = (
-            f"{error.allowed_failures + 1} workers died on chunk {task.block.index} of {task.block.size} runs; "
-            "give them more memory, or a smaller chunk_size"
+            f"{error.allowed_failures + 1} workers died on chunk {task.block.index} of {task.block.size} runs. "
+            "Give them more memory, or reduce chunk_size"
         )
         raise StylobateError(message) from error
     return result
@@ -159,7 +159,7 @@ def _result(distributed: "ModuleType", future: Any, task: Task) -> Computed:
 
 def _distributed() -> "ModuleType":
     try:
-        import distributed  # noqa: PLC0415  an extra, loaded when it is used
+        import distributed  # noqa: PLC0415  an extra, loaded on first use
     except ImportError:
         message = 'Dask needs the package dask.distributed: pip install "stylobate[cluster]"'
         raise UnsupportedError(message) from None

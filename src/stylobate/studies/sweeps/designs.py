@@ -1,4 +1,4 @@
-"""Designs: which values the runs of a sweep have. A grid, random points in a box, or points that are given."""
+"""Designs of sweeps, which set the values of the runs: a grid, random points in a box, or given points."""
 
 import hashlib
 from collections.abc import Mapping, Sequence
@@ -13,9 +13,9 @@ from stylobate.errors import MOST_RUNS, ParameterError, require_whole
 from stylobate.results.random_numbers import Rng, seed_of
 from stylobate.studies.sweeps.quantities import Floats, checked_values
 
-# Random points are drawn in groups of this many, each from a stream of its own: they do not depend on the blocks.
+# Size of groups of random points, each with its own stream, so that the points do not depend on the blocks.
 _GROUP = 4096
-# What drawing a random run and keeping its result takes at least.
+# Minimum memory for drawing a random run and storing its result [bytes].
 _BYTES_OF_A_START = 64
 
 
@@ -24,7 +24,7 @@ class Design(Protocol):
 
     @property
     def argument(self) -> str:
-        """The argument that named what varies."""
+        """The argument with the names of the quantities that vary."""
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -36,7 +36,7 @@ class Design(Protocol):
 
     @property
     def shape(self) -> tuple[int, ...]:
-        """Their lengths."""
+        """Lengths of the dimensions."""
 
     def values(self, slices: tuple[slice, ...]) -> dict[str, Floats]:
         """Return the values of the runs in a piece of the array, flat, in C order."""
@@ -72,12 +72,12 @@ class Grid:
 
     @property
     def dims(self) -> tuple[str, ...]:
-        """One dimension a quantity."""
+        """One dimension per quantity."""
         return self.names
 
     @property
     def shape(self) -> tuple[int, ...]:
-        """The number of values of each."""
+        """Number of values of each quantity."""
         return tuple(axis.size for axis in self.axes.values())
 
     def values(self, slices: tuple[slice, ...]) -> dict[str, Floats]:
@@ -87,7 +87,7 @@ class Grid:
 
     @property
     def coordinate_dims(self) -> dict[str, str]:
-        """Each along its own dimension."""
+        """Each quantity along its own dimension."""
         return {name: name for name in self.names}
 
     def coordinates(self, slices: tuple[slice, ...]) -> dict[str, Floats]:
@@ -110,7 +110,7 @@ class Box:
 
     @classmethod
     def of(cls, over: Mapping[str, Sequence[float]], count: int, rng: Rng) -> "Box":
-        """Return random points in the box `over` these bounds; of a generator one number is drawn as the seed."""
+        """Return random points in the box `over` these bounds; a generator provides one number as the seed."""
         _require_names("over", over)
         bounds = {name: _bounds(name, pair) for name, pair in over.items()}
         number = require_whole("count", count, least=0, most=MOST_RUNS)
@@ -124,12 +124,12 @@ class Box:
 
     @property
     def dims(self) -> tuple[str, ...]:
-        """The runs."""
+        """The dimension of the runs."""
         return ("run",)
 
     @property
     def shape(self) -> tuple[int, ...]:
-        """Their number."""
+        """Number of runs."""
         return (self.count,)
 
     def values(self, slices: tuple[slice, ...]) -> dict[str, Floats]:
@@ -140,7 +140,7 @@ class Box:
         groups = [self._shares(group) for group in range(first, last)]
         shares = np.concatenate(groups) if groups else np.empty((0, low.size))
         chosen = shares[part.start - first * _GROUP : part.stop - first * _GROUP]
-        # Weighted so that a bound is met exactly and none is passed.
+        # Weighted so that the bounds can be reached exactly but never exceeded.
         columns = np.clip((1.0 - chosen) * low + chosen * high, low, high).T
         return {name: np.ascontiguousarray(column) for name, column in zip(self.names, columns, strict=True)}
 
@@ -150,7 +150,7 @@ class Box:
 
     @property
     def coordinate_dims(self) -> dict[str, str]:
-        """All along the runs."""
+        """All quantities along the runs."""
         return dict.fromkeys(self.names, "run")
 
     def coordinates(self, slices: tuple[slice, ...]) -> dict[str, Floats]:
@@ -177,7 +177,7 @@ class Points:
         Raises
         ------
         ParameterError
-            If they are not all of one length.
+            If the arrays have different lengths.
         """
         _require_names("at", at)
         columns = {name: checked_values("at", name, values) for name, values in at.items()}
@@ -195,12 +195,12 @@ class Points:
 
     @property
     def dims(self) -> tuple[str, ...]:
-        """The runs."""
+        """The dimension of the runs."""
         return ("run",)
 
     @property
     def shape(self) -> tuple[int, ...]:
-        """Their number."""
+        """Number of runs."""
         return (next(iter(self.columns.values())).size,)
 
     def values(self, slices: tuple[slice, ...]) -> dict[str, Floats]:
@@ -210,7 +210,7 @@ class Points:
 
     @property
     def coordinate_dims(self) -> dict[str, str]:
-        """All along the runs."""
+        """All quantities along the runs."""
         return dict.fromkeys(self.names, "run")
 
     def coordinates(self, slices: tuple[slice, ...]) -> dict[str, Floats]:
@@ -223,12 +223,12 @@ class Points:
 
 
 def whole(design: Design) -> tuple[slice, ...]:
-    """Return the slices of all the runs of `design`."""
+    """Return the slices of all runs of `design`."""
     return tuple(slice(0, length) for length in design.shape)
 
 
 def digest(values: Floats) -> dict[str, Any]:
-    """Return number, ends and SHA-256 of `values`, which stand for them in a description."""
+    """Return number, ends and SHA-256 of `values`, which represent the values in a description."""
     ends = {"first": float(values[0]), "last": float(values[-1])} if values.size else {}
     bits = np.ascontiguousarray(values, dtype="<f8").tobytes()
     return {"count": int(values.size), **ends, "sha256": hashlib.sha256(bits).hexdigest()}

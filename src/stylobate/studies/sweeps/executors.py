@@ -1,4 +1,4 @@
-"""Executors compute the blocks of a sweep: the protocol, and threads of this process."""
+"""Executors of the blocks of a sweep: the protocol, and threads of this process."""
 
 from collections.abc import Generator, Iterable
 from dataclasses import dataclass
@@ -9,7 +9,7 @@ from stylobate.studies.sweeps.computing import Computed, Progress, Task
 
 
 class Work(Protocol):
-    """What is done with a task; it can be pickled."""
+    """Function that computes a task; it can be pickled."""
 
     def __call__(self, task: Task, *, threads: int | None, progress: Progress | None) -> Computed:
         """Return the results of `task`, or no arrays if they have been stored."""
@@ -20,8 +20,8 @@ class Executor(Protocol):
 
     Notes
     -----
-    For developers: yield (task, result) in any order. Take tasks from `tasks` as they are needed, not all at once;
-    `progress`, called with runs done and runs in all of one task, may be left alone.
+    For developers: yield (task, result) in any order. Take tasks from `tasks` as needed, not all at once. Calls of
+    `progress`, with completed runs and all runs of one task, are optional.
     """
 
     def results(

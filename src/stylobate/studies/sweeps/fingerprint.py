@@ -1,4 +1,4 @@
-"""Fingerprints of what has no description: a model or motion of a user's own class."""
+"""Fingerprints of objects without a description: models and motions of user-defined classes."""
 
 import hashlib
 import inspect
@@ -15,7 +15,7 @@ from stylobate.models import Model
 
 # Packages whose classes are identified by their versions.
 _NOT_ITS_OWN = ("stylobate", "builtins", "abc", "typing", "numpy")
-# The functions of the contract `Model` that ensembles compile and single runs call.
+# The functions of the protocol `Model` that ensembles compile and single runs call.
 _STATIC_FUNCTIONS = (
     "rates",
     "lean",
@@ -33,8 +33,8 @@ _ADDRESS = re.compile(r" at 0x[0-9a-f]+")
 def identity_of(thing: object) -> dict[str, Any]:
     """Return an identity of `thing`, the same in every process: repr, class, hashes of its state and source.
 
-    The source is that of the classes involved which are not stylobate's own; what those call is not looked at, but for
-    a model's static functions: their code and that of the functions they call is its equations.
+    The source is that of all involved classes outside stylobate. Functions that these classes call are not included,
+    except for a model's static functions: their code, and the code of functions that they call, is its equations.
     """
     equations = {"equations_sha256": _hash(_equations(thing))} if isinstance(thing, Model) else {}
     return {
@@ -48,7 +48,7 @@ def identity_of(thing: object) -> dict[str, Any]:
 
 
 def _equations(model: Model) -> Iterator[str]:
-    """Yield the fingerprints of the static functions in which a model's physics stands."""
+    """Yield the fingerprints of the static functions with a model's physics."""
     for name in _STATIC_FUNCTIONS:
         if (function := getattr(model, name, None)) is not None:
             yield name
@@ -56,7 +56,7 @@ def _equations(model: Model) -> Iterator[str]:
 
 
 def _state(thing: Any, above: tuple[int, ...] = ()) -> Iterator[str]:
-    """Yield the values of which `thing` consists; `above` are the things it is part of."""
+    """Yield the values of which `thing` consists; `above` are the objects that contain it."""
     if id(thing) in above:  # part of itself
         return
     above = (*above, id(thing))
@@ -90,7 +90,7 @@ def _values(thing: Any) -> dict[str, Any]:
 
 
 def _sources(thing: Any, above: tuple[int, ...] = ()) -> Iterator[str]:
-    """Yield the sources of the classes of `thing` and of its parts, but for those of stylobate and of Python."""
+    """Yield the sources of the classes of `thing` and of its parts, except classes of stylobate and of Python."""
     if id(thing) in above:
         return
     above = (*above, id(thing))

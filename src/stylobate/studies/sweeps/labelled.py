@@ -1,4 +1,4 @@
-"""Sweeps with their answers labelled, those of an interrupted one too."""
+"""Sweeps with labelled results, also after an interruption."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -21,12 +21,12 @@ def labelled_sweep(
     resume: bool = False,
     progress: Progress | None = None,
 ) -> xr.Dataset:
-    """Run `sweep` and return what `label` makes of its runs; the other arguments are those of `run_sweep`.
+    """Run `sweep` and return its runs labelled by `label`; the other arguments are those of `run_sweep`.
 
     Raises
     ------
     Interrupted
-        On Ctrl-C; its `partial` is labelled too, unless that is what was interrupted.
+        On Ctrl-C; `partial` is also labelled, unless the labelling was interrupted.
     """
     try:
         runs = run_sweep(sweep, store=store, executor=executor, resume=resume, progress=progress)
@@ -35,5 +35,5 @@ def labelled_sweep(
     try:
         return label(runs)
     except KeyboardInterrupt:
-        message = "interrupted while the runs were labelled; all of them are kept, without labels"
+        message = "interrupted during the labelling; `partial` has all runs, without labels"
         raise Interrupted(message, runs) from None

@@ -1,4 +1,4 @@
-"""The layout of a sweep's results: which variables, of which type and size, and what stands where nothing is known."""
+"""Layout of a sweep's results: variables, types, sizes and fill values."""
 
 import math
 from collections.abc import Mapping
@@ -16,7 +16,7 @@ from stylobate.studies.sweeps.blocks import DISK_BLOCK, Block, Blocks
 from stylobate.studies.sweeps.designs import Design, whole
 from stylobate.studies.sweeps.recipe import Recipe
 
-# Bytes of a value of a coordinate.
+# Size of a value of a coordinate [bytes].
 _FLOAT = 8
 
 
@@ -32,36 +32,36 @@ class Variable:
 
     @property
     def fill(self) -> Any:
-        """What stands for a run that has not been computed: −1 for the outcome, NaN, 0 or False."""
+        """Value for a run that is not computed: −1 for the outcome, NaN, 0 or False."""
         if self.name == "outcome":
             return NOT_COMPUTED
         return self.dtype.type(np.nan if self.dtype.kind == "f" else 0)
 
     @property
     def bytes_of_a_run(self) -> int:
-        """What the result of one run takes in memory [bytes]."""
+        """Memory of the result of one run [bytes]."""
         return self.dtype.itemsize * math.prod(self.shape)
 
     def empty(self, runs: tuple[int, ...]) -> npt.NDArray[Any]:
-        """Return an array for so many runs, nothing computed."""
+        """Return an array of this shape of runs, filled with the value for runs that are not computed."""
         return np.full((*runs, *self.shape), self.fill, self.dtype)
 
 
 @dataclass(frozen=True, slots=True)
 class Layout:
-    """The `variables` of a sweep's results, and the `labels` along the dimensions that each run has."""
+    """The `variables` of a sweep's results, and the `labels` along the dimensions of each run."""
 
     variables: tuple[Variable, ...]
     labels: Mapping[str, list[Any]]
 
 
 def layout_of(recipe: Recipe, names: tuple[str, ...]) -> Layout:
-    """Return the layout of a sweep's results over `names`, from an ensemble of no run; mistakes in its options raise.
+    """Determine the layout of a sweep's results over `names` from an ensemble without runs.
 
     Raises
     ------
     ParameterError
-        If an option or a name that varies is not what `simulate_ensemble` takes.
+        If `simulate_ensemble` does not accept an option, or a name that varies.
     """
     nothing = {name: np.empty(0) for name in names}
     sample = simulate_ensemble(recipe.model, recipe.motion, **recipe.arguments(nothing))
@@ -89,7 +89,7 @@ def dataset(
 
 
 def bytes_on_disk(layout: Layout, design: Design, blocks: Blocks) -> int:
-    """Return what the results and coordinates take on disk at most [bytes]: no compression, whole disk blocks."""
+    """Return the maximum size of results and coordinates on disk [bytes]: no compression, whole disk blocks."""
     if not len(blocks):
         return DISK_BLOCK
     places = [design.dims.index(dim) for dim in design.coordinate_dims.values()]
@@ -98,11 +98,11 @@ def bytes_on_disk(layout: Layout, design: Design, blocks: Blocks) -> int:
 
 
 def bytes_of_block(layout: Layout, block: Block) -> int:
-    """Return what one `block` takes on disk at most, its mark included [bytes]."""
+    """Return the maximum size of one `block` on disk, with its mark [bytes]."""
     sizes = (variable.bytes_of_a_run * block.size for variable in layout.variables)
     return DISK_BLOCK + sum(_on_disk(size) for size in sizes)
 
 
 def _on_disk(size: int) -> int:
-    """Return what a chunk of so many bytes takes at most; its compressed form can be larger by 1/256 and 72 bytes."""
+    """Return the maximum size of a chunk on disk; its compressed form can be larger by 1/256 and 72 bytes."""
     return -(-(size + size // 256 + 72) // DISK_BLOCK) * DISK_BLOCK

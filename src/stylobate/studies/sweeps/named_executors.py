@@ -1,4 +1,4 @@
-"""Executors by their names on the command line."""
+"""Executors by name, for the command line."""
 
 from stylobate.errors import ParameterError
 from stylobate.studies.sweeps.dask_executor import Dask

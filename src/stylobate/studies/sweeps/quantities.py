@@ -1,4 +1,4 @@
-"""What a sweep can vary: names, units and the numbers they accept."""
+"""Quantities that a sweep can vary: names, units and accepted numbers."""
 
 from collections.abc import Iterable
 
@@ -14,14 +14,14 @@ from stylobate.models import Model
 Floats = npt.NDArray[np.float64]
 
 STARTS = ("tilt_x", "tilt_y", "tilt_rate_x", "tilt_rate_y")
-"""The components of the start."""
+"""Components of the initial conditions."""
 
 OF_A_RUN = (*STARTS, "spin", "duration")
-"""What can vary besides the parameters of `simulate_ensemble`."""
+"""Quantities that can vary besides the parameters of `simulate_ensemble`."""
 
 
 def check_quantities(where: str, model: Model, names: Iterable[str], motion: BaseMotion | None = None) -> None:
-    """Raise ParameterError if one of the `names` in the argument `where` cannot vary, or two say contrary things."""
+    """Raise ParameterError if one of the `names` in the argument `where` cannot vary, or two are contradictory."""
     check_names(model, motion, names, where=where, others=OF_A_RUN)
 
 
@@ -31,18 +31,18 @@ def checked_values(where: str, name: str, values: npt.ArrayLike) -> Floats:
     Parameters
     ----------
     where
-        The argument that names it with its values; or, such as scales, holds its values alone.
+        The argument with names and values; or, such as scales, with the values alone.
     name, values
         The quantity and its values.
 
     Raises
     ------
     ParameterError
-        If they are no list of numbers, or one of them is not what the quantity accepts.
+        If the values are not a list of numbers, or the quantity does not accept one of them.
     """
     argument = where if where in (name, f"{name}s") else f"{where}[{name!r}]"
     try:
-        array = np.array(values, dtype=np.float64)  # a copy: what a sweep describes does not change
+        array = np.array(values, dtype=np.float64)  # a copy: a sweep is immutable
     except (TypeError, ValueError):
         message = f"{argument} must be a list of numbers, got {values!r}"
         raise ParameterError(message) from None

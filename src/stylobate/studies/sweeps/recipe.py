@@ -1,4 +1,4 @@
-"""The recipe of a run: what all runs of a sweep share, and how a run is made of it and the values that vary."""
+"""Recipe of the runs of a sweep: the shared arguments, combined with the values that vary."""
 
 import math
 from collections.abc import Mapping, Sequence

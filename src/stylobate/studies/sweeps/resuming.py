@@ -1,17 +1,17 @@
-"""What differs between the description of a stored sweep and that of the one at hand, in words."""
+"""Differences between the description of a stored sweep and of the present sweep, in words."""
 
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-# So many differences are listed; more of them say that it is another sweep altogether.
+# Maximum number of listed differences; more show that the sweeps are unrelated.
 _LISTED = 3
 
 
 def differences(stored: Mapping[str, Any], given: Mapping[str, Any]) -> list[str]:
-    """Return one phrase for each of the first differences, the version before all others; none if there is none."""
+    """Return one phrase for each of the first differences, with the version first; empty if there is none."""
     if stored.get("version") != given.get("version"):
-        return [f"it was made by stylobate {stored.get('version')}, this is {given.get('version')}"]
+        return [f"the store was made by stylobate {stored.get('version')}, this is {given.get('version')}"]
     before, now = dict(_leaves(_by_name(stored))), dict(_leaves(_by_name(given)))
     names = [*now, *(name for name in before if name not in now)]
     found = [_difference(name, before.get(name), now.get(name)) for name in names if before.get(name) != now.get(name)]
@@ -20,7 +20,7 @@ def differences(stored: Mapping[str, Any], given: Mapping[str, Any]) -> list[str
 
 
 def _by_name(values: Any) -> Any:
-    """Return `values` with files of records identified by name and content: in another folder they are the same."""
+    """Return `values` with records identified by name and content, independent of their folder."""
     if isinstance(values, list):
         return [_by_name(value) for value in values]
     if not isinstance(values, Mapping):
@@ -35,7 +35,7 @@ def _by_name(values: Any) -> Any:
 def _leaves(values: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
     for name, value in values.items():
         if isinstance(value, Mapping) and "sha256" not in value:
-            # What varies goes by its own name.
+            # Quantities that vary have their own names.
             yield from _leaves(value, "" if name == "values" else f"{prefix}{name}.")
         else:
             yield f"{prefix}{name}", value

@@ -71,8 +71,8 @@ def run_sweep(
         raise ParameterError(message)
     if executor is not None and not hasattr(executor, "results"):
         message = (
-            f"executor must be Threads(...) or Dask(...), got {executor!r}; "
-            'executor_from("dask://host:port") makes one of a text'
+            f"executor must be Threads(...) or Dask(...), got {executor!r}. "
+            'Make one from a text by executor_from("dask://host:port")'
         )
         raise ParameterError(message)
     if chunk_size is not None:
@@ -108,7 +108,7 @@ def _sink(sweep: Sweep, path: Path | None, chunk_size: int | None, *, resume: bo
         try:
             return OnDisk(sweep, layout, blocks, create_store(path, sweep, layout, blocks), frozenset())
         except FileError:
-            if not (resume and path.exists()):  # otherwise another process made it meanwhile: go on with that
+            if not (resume and path.exists()):  # otherwise continue the store that another process has just created
                 raise
     found, blocks, done = continue_store(path, sweep, layout, chunk_size)
     return OnDisk(sweep, layout, blocks, found, done)
@@ -117,7 +117,7 @@ def _sink(sweep: Sweep, path: Path | None, chunk_size: int | None, *, resume: bo
 def _fill(sink: Sink, sweep: Sweep, executor: Executor, progress: Progress) -> None:
     done, total = sink.runs_done, sweep.runs
     progress(done, total)
-    if done == total:  # nothing to do, and no workers to be started for it
+    if done == total:  # nothing to do: start no workers
         return
 
     def within(part: int, whole: int) -> None:

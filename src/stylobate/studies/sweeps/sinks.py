@@ -1,4 +1,4 @@
-"""Where results go: arrays in memory, or a store on disk."""
+"""Sinks for the results of a sweep: arrays in memory, or a store on disk."""
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
@@ -20,7 +20,7 @@ from stylobate.studies.sweeps.sweep import Sweep
 
 
 class Sink(Protocol):
-    """Where the results of a sweep go."""
+    """Destination of the results of a sweep."""
 
     @property
     def todo(self) -> Iterable[Block]:
@@ -28,11 +28,11 @@ class Sink(Protocol):
 
     @property
     def runs_done(self) -> int:
-        """The runs that need not be computed, at the beginning."""
+        """Number of runs that are already computed at the beginning."""
 
     @property
     def work(self) -> Work:
-        """What an executor does with each task."""
+        """Function that an executor calls with each task."""
 
     def accept(self, task: Task, result: Computed) -> None:
         """Take the result of a task."""
@@ -68,11 +68,11 @@ class InMemory:
 
     @property
     def work(self) -> Work:
-        """Compute, and return the results."""
+        """Function that computes and returns the results."""
         return _Compute(self.sweep.recipe)
 
     def accept(self, task: Task, result: Computed) -> None:
-        """Put the results where they belong."""
+        """Copy the results into the arrays."""
         block = task.block
         for name, values in result.arrays.items():
             self.arrays[name][block.slices] = values.reshape(*block.shape, *values.shape[1:])
@@ -99,20 +99,20 @@ class OnDisk:
 
     @property
     def runs_done(self) -> int:
-        """The runs in blocks with the mark."""
+        """Number of runs in blocks with the mark."""
         return sum(self.blocks[index].size for index in self.done)
 
     @property
     def work(self) -> Work:
-        """Compute what is missing of a block, and store it."""
+        """Function that computes and stores the missing runs of a block."""
         names = tuple(variable.name for variable in self.layout.variables)
         return _ComputeAndStore(self.sweep.recipe, Path(self.store.path).absolute(), names)
 
     def accept(self, task: Task, result: Computed) -> None:
-        """Do nothing: it is stored."""
+        """Do nothing: the worker has stored the result."""
 
     def dataset(self) -> xr.Dataset:
-        """Return what the store holds."""
+        """Return the contents of the store."""
         return open_sweep(self.store.path)
 
 
@@ -134,7 +134,7 @@ class _ComputeAndStore:
         try:
             return self._stored(Store(self.path), task, threads, progress)
         except OSError as error:
-            message = f"cannot write {self.path}: {error.strerror or error}; resume=True continues it"
+            message = f"cannot write {self.path}: {error.strerror or error}. Continue it with resume=True"
             raise FileError(message) from error
 
     def _stored(self, store: Store, task: Task, threads: int | None, progress: Progress | None) -> Computed:
@@ -148,12 +148,12 @@ class _ComputeAndStore:
                 arrays[name][missing] = computed
         try:
             store.write(task.block, arrays, done=not result.interrupted)
-        except KeyboardInterrupt:  # what is computed is kept first
+        except KeyboardInterrupt:  # save the computed runs first
             store.write(task.block, arrays, done=not result.interrupted)
             raise
         return Computed({}, result.interrupted)
 
 
 def tasks_of(sweep: Sweep, blocks: Iterable[Block]) -> Iterator[Task]:
-    """Yield a task for each of `blocks`, made when it is asked for."""
+    """Yield a task for each of `blocks`, on demand."""
     return (Task(block, {n: np.asarray(v) for n, v in sweep.design.values(block.slices).items()}) for block in blocks)

@@ -1,8 +1,8 @@
-"""The store of a sweep: a Zarr group with one chunk of every variable for each task.
+"""Store of a sweep: a Zarr group with one chunk of every variable for each task.
 
-The data of a task are written before its mark `done`, and the outcomes after the rest of the data: a run whose outcome
-is there is there as a whole, whatever happened in between. No two tasks share a chunk of any array, and writing a task
-again writes the same.
+The outcomes of a task are written after its other data, and the mark `done` last: a run with a stored outcome is
+complete, whatever interrupted the task. No two tasks share a chunk of any array, and writing a task again gives the
+same files.
 """
 
 import hashlib
@@ -34,7 +34,7 @@ from stylobate.studies.sweeps.sweep import Sweep
 from stylobate.text import plural
 
 zarr: Any = lazy_loader.load("zarr")
-"""Loaded when the first store is opened: a tenth of a second that other sweeps need not wait."""
+"""Loaded when the first store is opened, which saves other sweeps a tenth of a second."""
 
 _log = logging.getLogger("stylobate")
 
@@ -49,7 +49,7 @@ _CODECS: tuple[dict[str, Any], ...] = (
 
 @dataclass(frozen=True, slots=True)
 class Store:
-    """The store at `path`, which exists."""
+    """An existing store at `path`."""
 
     path: Path
 
@@ -80,7 +80,7 @@ class Store:
         return {index for index, state in self.chunks().states().items() if state is State.DONE}
 
     def chunks(self, attributes: Mapping[str, Any] | None = None) -> Chunks:
-        """Return its chunk files; `attributes` are those of the store if they have been read."""
+        """Return the chunk files; `attributes` are the attributes of the store, if already read."""
         attributes = attributes or _read_attributes(self.path)
         blocks = Blocks(tuple(attributes["shape"]), tuple(attributes["chunks"]))
         beyond = {name: len(chunk_counts(self.path / name)) - len(blocks.shape) for name in attributes["variables"]}
@@ -88,14 +88,14 @@ class Store:
 
 
 def create_store(path: Path, sweep: Sweep, layout: Layout, blocks: Blocks) -> Store:
-    """Return a new store at `path`, with coordinates and attributes and nothing computed.
+    """Create a store at `path` with coordinates and attributes, without computed runs.
 
-    It is made beside its place and moved there when it is whole.
+    The store is written beside `path` and moved there when complete.
 
     Raises
     ------
     FileError
-        If there is something at `path`, if the disk has no room for the whole sweep, or if it cannot be written.
+        If `path` exists, the disk has no room for the whole sweep, or the store cannot be written.
     """
     _require_new(path)
     try:
@@ -111,28 +111,28 @@ def create_store(path: Path, sweep: Sweep, layout: Layout, blocks: Blocks) -> St
             _fill_new(group, sweep, layout, blocks)
             group.attrs[_SEAL] = _metadata_digest(beside, attributes)
     except FileError:
-        _require_new(path)  # another process may have made it meanwhile
+        _require_new(path)  # another process may have created it in the meantime
         raise
     return Store(path)
 
 
 def _require_new(path: Path) -> None:
     if path.exists():
-        message = f"{path} exists; continue it with resume=True, or give another store"
+        message = f"{path} exists. Continue it with resume=True, or give another store"
         raise FileError(message)
 
 
 def continue_store(
     path: Path, sweep: Sweep, layout: Layout, chunk_size: int | None
 ) -> tuple[Store, Blocks, frozenset[int]]:
-    """Return the store at `path`, the blocks into which it is cut, and the indices of those that are done.
+    """Return the store at `path`, its blocks, and the indices of the completed blocks.
 
-    Blocks that are damaged are emptied, with a warning in the log.
+    Damaged blocks are emptied, with a warning in the log.
 
     Raises
     ------
     FileError
-        If it is no store of a sweep, or that of another sweep or version; the message names what differs.
+        If `path` is not the store of a sweep, or of another sweep or version; the message names the differences.
     """
     attributes = _read_attributes(path)
     found = differences(json.loads(attributes["provenance"]), json.loads(json.dumps(sweep.describe())))
@@ -143,7 +143,7 @@ def continue_store(
         raise FileError(message)
     blocks = Blocks(sweep.shape, tuple(attributes["chunks"]))
     if chunk_size is not None and Blocks.of(sweep.shape, chunk_size) != blocks:
-        message = f"{path} is cut into chunks of {list(blocks.edges)} runs, not of {chunk_size}; leave chunk_size out"
+        message = f"{path} has chunks of {list(blocks.edges)} runs, not of {chunk_size}. Leave chunk_size out"
         raise FileError(message)
     chunks = Store(path).chunks(attributes)
     states = chunks.states()
@@ -159,7 +159,7 @@ def _compute_again(chunks: Chunks, damaged: list[int]) -> None:
     runs = sum(chunks.blocks[index].size for index in damaged)
     _log.warning("%s is damaged: %s are computed again", chunks.path, plural(runs, "run"))
     for index in damaged:
-        if chunks.state(index) is State.DAMAGED:  # another process may have computed it meanwhile
+        if chunks.state(index) is State.DAMAGED:  # another process may have computed it in the meantime
             chunks.forget(index)
 
 
@@ -198,7 +198,7 @@ def open_sweep(path: str | Path, *, load: bool = False) -> xr.Dataset:
         if "flag_values" in variable.attrs:
             variable.attrs["flag_values"] = np.array(variable.attrs["flag_values"], dtype=variable.dtype)
     data = data.set_coords(attributes["coordinates"].split()).assign_coords(attributes["labels"])
-    data = data[attributes["variables"]]  # in their order, with their coordinates
+    data = data[attributes["variables"]]  # in the order of the sweep, with coordinates
     kept = {name: attributes[name] for name in ("kind", "provenance")}
     data.attrs = {**kept, "runs_done": runs_done}
     return data.load() if load else data
@@ -238,7 +238,7 @@ def _fill_new(group: Any, sweep: Sweep, layout: Layout, blocks: Blocks) -> None:
             compressors=_CODECS,
             attributes=dict(attributes_of(name)),
         )
-    # Random and given points may be many: they are written piece by piece.
+    # Random and given points may be numerous: they are written piece by piece.
     for slices in (block.slices for block in blocks) if design.dims == ("run",) else (whole(design),):
         for name, values in design.coordinates(slices).items():
             _array(group, name)[slices[design.dims.index(design.coordinate_dims[name])]] = values
@@ -263,7 +263,7 @@ def attributes_of_result(sweep: Sweep) -> dict[str, Any]:
 
 
 def _read_attributes(path: Path) -> dict[str, Any]:
-    """Return the attributes of the store at `path`, whose metadata and axes are found to be as they were written."""
+    """Return the attributes of the store at `path`, after a check of its metadata and axes."""
     try:
         attributes: dict[str, Any] = dict(json.loads((path / METADATA).read_bytes())["attributes"])
     except (OSError, ValueError, KeyError, TypeError) as error:
@@ -285,7 +285,7 @@ def _read_attributes(path: Path) -> dict[str, Any]:
 
 
 def _metadata_digest(path: Path, attributes: Mapping[str, Any]) -> str | None:
-    """Return a digest of these attributes and of the metadata of the arrays at `path`; None if something is lost."""
+    """Return a digest of these attributes and of the metadata of the arrays at `path`; None if a file is missing."""
     digest = hashlib.sha256(json.dumps(attributes, sort_keys=True).encode())
     try:
         for name in (MARK, *attributes["variables"], *attributes["coordinates"].split()):
@@ -297,7 +297,7 @@ def _metadata_digest(path: Path, attributes: Mapping[str, Any]) -> str | None:
 
 @contextmanager
 def _every_chunk_written() -> Iterator[None]:
-    """Let Zarr write chunks that hold nothing but the value of missing ones: a chunk that is not there is lost."""
+    """Let Zarr write also chunks of fill values only, so that an absent chunk is a lost chunk."""
     with zarr.config.set({"array.write_empty_chunks": True}):
         yield
 
@@ -306,8 +306,8 @@ def _require_room(path: Path, needed: int) -> None:
     free = shutil.disk_usage(path.parent).free
     if needed > free:
         message = (
-            f"the sweep needs up to {_size(needed)} at {path} and the disk has {_size(free)} free; "
-            "choose another disk, fewer runs, or fewer samples and strobes"
+            f"the sweep needs up to {_size(needed)} at {path} and the disk has {_size(free)} free. "
+            "Choose another disk, fewer runs, or fewer samples and strobes"
         )
         raise FileError(message)
 

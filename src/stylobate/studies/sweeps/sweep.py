@@ -34,7 +34,7 @@ class Sweep:
     Parameters
     ----------
     model, motion
-        The column and its base motion. What varies replaces their values.
+        The column and its base motion. Quantities that vary replace their values.
     design
         Values of the quantities that vary.
     duration
@@ -152,7 +152,7 @@ class Sweep:
 
     @property
     def shape(self) -> tuple[int, ...]:
-        """Their lengths."""
+        """Lengths of the dimensions."""
         return self.design.shape
 
     @property
@@ -166,12 +166,12 @@ class Sweep:
 
     @property
     def layout(self) -> Layout:
-        """The layout of its results; mistakes in its options raise."""
+        """Layout of the results; mistakes in the options raise an error."""
         return layout_of(self.recipe, self.design.names)
 
     @property
     def recipe(self) -> Recipe:
-        """How each run is made, without the values that vary: what a worker needs to know."""
+        """Recipe of each run, without the values that vary, for workers."""
         return Recipe(self.model, self.motion, self.duration, self.periods, self.options)
 
     def describe(self) -> dict[str, Any]:
@@ -179,14 +179,14 @@ class Sweep:
         options: dict[str, Any] = {**self.options}
         options["rules"] = asdict(options["rules"] or OutcomeRules())
         options["known_orbits"] = [orbit.plain() for orbit in options["known_orbits"]]
-        for name in ("known_orbits", "end_converged"):  # stores made without them stay as they are
+        for name in ("known_orbits", "end_converged"):  # absent in stores made without them
             if not options[name]:
                 del options[name]
         provenance = provenance_of_run(self.model, self.motion, **options)
         for name, thing in (("model", self.model), ("motion", self.motion)):
             if provenance[name].get("kind") == "other":
                 provenance[name] = identity_of(thing)
-            elif names_code(provenance[name]):  # which can change while its place and its numbers stay
+            elif names_code(provenance[name]):  # code can change while its path and its numbers do not
                 provenance[f"{name} code"] = identity_of(thing)
         return {**provenance, "duration": self.duration, "periods": self.periods, "design": self.design.describe()}
 

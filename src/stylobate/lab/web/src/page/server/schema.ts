@@ -1,10 +1,10 @@
 /** Types of the server's answers, written by tools/page_types.py from its OpenAPI document. Do not edit. */
 
-/** What there is to choose from. */
+/** Options of the laboratory. */
 export type About = {
-  /** of stylobate */
+  /** version of stylobate */
   readonly version: string;
-  /** How much may be asked for. */
+  /** Limits on requests. */
   readonly limits: {
     readonly body: number;
     readonly records: number;
@@ -26,56 +26,56 @@ export type About = {
     readonly waiting: number;
     readonly abandoned: number;
   };
-  /** of columns */
+  /** kinds of columns */
   readonly shapes: readonly Kind[];
-  /** of models */
+  /** kinds of models */
   readonly models: readonly Kind[];
-  /** of base motions */
+  /** kinds of base motions */
   readonly motions: readonly Kind[];
-  /** records that are here */
+  /** sample records */
   readonly samples: readonly ({
     readonly name: string;
     readonly about: string;
   })[];
-  /** motions worth seeing */
+  /** example motions */
   readonly presets: readonly ({
     readonly id: string;
     readonly title: string;
     readonly about: string;
-    /** to be sent to /api/simulate */
+    /** body for /api/simulate */
     readonly description: Readonly<Record<string, unknown>>;
-    /** how the page shows it */
+    /** view on the page */
     readonly view: Readonly<Record<string, unknown>>;
   })[];
   /** the possible outcomes */
   readonly outcomes: readonly ({
     readonly name: "AT_REST" | "ROCKING" | "ROLLING" | "MODULATED" | "OVERTURNED" | "STILL_MOVING" | "LIMIT_REACHED" | "LIFTED_OFF" | "FAILED" | "SLID" | "SURVIVED" | "STOPPED";
-    /** in words */
+    /** outcome in words */
     readonly value: string;
-    /** in maps */
+    /** code in maps */
     readonly code: number;
   })[];
 };
 
-/** The result of a basin: where each start leads. */
+/** The result of a basin: the attractor of each initial condition. */
 export type BasinResult = {
   /** runs whose outcome rounding error could change */
   readonly uncertain: number;
-  /** runs in all */
+  /** number of runs */
   readonly runs: number;
   /** a row for each value of x */
   readonly codes: readonly (readonly number[])[];
-  /** codes and what they mean */
+  /** codes and their meanings */
   readonly names: readonly (readonly [number, string])[];
-  /** what starts lead to */
+  /** the attractors */
   readonly attractors: readonly ({
-    /** as in names */
+    /** name as in names */
     readonly name: string;
-    /** the kind of outcome */
+    /** kind of outcome */
     readonly kind: string;
-    /** in periods of the base; 0 where it has none */
+    /** period in periods of the base; 0 if there is none */
     readonly period: number;
-    /** of all starts */
+    /** share of all initial conditions */
     readonly fraction: number | null;
     /** lower end of its interval */
     readonly fraction_low: number | null;
@@ -84,13 +84,13 @@ export type BasinResult = {
   })[];
 };
 
-/** A job that begins. */
+/** A new job. */
 export type Begun = {
-  /** by which it is asked for */
+  /** identity of the job in requests */
   readonly id: string;
 };
 
-/** The numbers of the column that decide. */
+/** The decisive numbers of the column. */
 export type ColumnNumbers = {
   /** radius of the base [m] */
   readonly radius: number;
@@ -114,23 +114,23 @@ export type ColumnNumbers = {
   readonly frequency_scale: number;
   /** frequency parameter √(m g R/K) [rad/s] */
   readonly frequency_parameter: number;
-  /** c g, the horizontal acceleration that tips the standing column [m/s²] */
+  /** c g, the horizontal acceleration at which the standing column uplifts [m/s²] */
   readonly uplift_acceleration: number;
 };
 
-/** The result of a map of a model that slides: what the column does. */
+/** The result of a map of a model that slides: kinds of contact. */
 export type ContactMapResult = {
   /** runs whose outcome rounding error could change */
   readonly uncertain: number;
-  /** runs in all */
+  /** number of runs */
   readonly runs: number;
   /** a row for each value of x */
   readonly codes: readonly (readonly number[])[];
-  /** codes and what they mean */
+  /** codes and their meanings */
   readonly names: readonly (readonly [number, string])[];
 };
 
-/** What a description says, without a run. */
+/** The snippets and the column of a description, without a run. */
 export type Described = {
   /** the description as a file for the command line */
   readonly toml: string;
@@ -139,7 +139,7 @@ export type Described = {
   readonly column: ColumnNumbers;
 };
 
-/** The motion at equal steps in time, to be drawn: lengths in m in the frame of the base, z upwards. Null for what the model does not provide. */
+/** The motion to draw, at equal time steps: lengths in m in the frame of the base, z upwards. Null for quantities that the model does not provide. */
 export type DrawnMotion = {
   /** The body. */
   readonly column: {
@@ -164,28 +164,28 @@ export type DrawnMotion = {
   };
   /** [s] */
   readonly time: readonly number[];
-  /** vector θ(cos β, sin β) [rad] */
+  /** tilt vector θ(cos β, sin β) [rad] */
   readonly tilt: readonly (readonly [number, number])[];
-  /** its rate [rad/s] */
+  /** rate of the tilt vector [rad/s] */
   readonly tilt_rate: readonly (readonly [number, number])[];
-  /** χ, angle of turn about the axis [rad] */
+  /** twist χ about the axis [rad] */
   readonly twist: readonly number[];
   readonly spin: readonly number[] | null;
   /** centre of the circle on the base about which the contact point lies [m] */
   readonly footprint: readonly (readonly [number, number])[];
   /** [m] */
   readonly contact_point: readonly (readonly [number, number])[];
-  /** 1 where the whole base touches */
+  /** 1 if the whole base face is in contact */
   readonly resting: readonly (0 | 1)[];
   readonly clearance: readonly number[] | null;
   /** displacement of the base [m] */
   readonly base: readonly (readonly [number, number, number])[];
   /** unit quaternion w, x, y, z */
   readonly rotation: readonly (readonly [number, number, number, number])[];
-  /** of the bottom circle [m] */
+  /** centre of the bottom circle [m] */
   readonly centre: readonly (readonly [number, number, number])[];
   readonly friction_demand: readonly (number | null)[] | null;
-  /** of the contact, where it is known */
+  /** friction coefficient of the contact, if known */
   readonly friction_coefficient: number | null;
   /** the outcome */
   readonly outcome: "AT_REST" | "ROCKING" | "ROLLING" | "MODULATED" | "OVERTURNED" | "STILL_MOVING" | "LIMIT_REACHED" | "LIFTED_OFF" | "FAILED" | "SLID" | "SURVIVED" | "STOPPED";
@@ -198,9 +198,9 @@ export type DrawnMotion = {
 
 /** Exact periodic orbits, the result of a job `exact`. */
 export type ExactOrbits = {
-  /** orbits that go over into one another; all lists of a family are of one length */
+  /** families of orbits; all lists of a family have the same length */
   readonly families: readonly ({
-    /** which family */
+    /** name of the family */
     readonly name: string;
     /** [rad/s] */
     readonly angular_frequency: readonly number[];
@@ -212,16 +212,16 @@ export type ExactOrbits = {
     readonly peak_tilt: readonly number[];
     /** [rad] */
     readonly phase: readonly (number | null)[];
-    /** whether it is stable */
+    /** whether the motion is stable */
     readonly stable: readonly boolean[];
-    /** at t = 0, along x and y [rad] */
+    /** tilt at t = 0, along x and y [rad] */
     readonly tilt: readonly (readonly [number, number])[];
-    /** at t = 0 [rad/s] */
+    /** tilt rate at t = 0 [rad/s] */
     readonly tilt_rate: readonly (readonly [number, number])[];
   })[];
-  /** where stability changes */
+  /** bifurcations of the family */
   readonly bifurcations: readonly ({
-    /** such as Neimark-Sacker */
+    /** kind, such as Neimark-Sacker */
     readonly kind: string;
     /** [rad/s] */
     readonly angular_frequency: number;
@@ -232,147 +232,147 @@ export type ExactOrbits = {
   })[];
 };
 
-/** How a job stands. */
+/** The state of a job. */
 export type Job = {
-  /** by which it is asked for */
+  /** identity of the job in requests */
   readonly id: string;
-  /** what it computes */
+  /** kind of computation */
   readonly kind: "exact" | "map" | "basin" | "animation";
-  /** where it stands */
+  /** state */
   readonly state: "waiting" | "running" | "done" | "failed" | "cancelled";
-  /** runs that are done */
+  /** number of completed runs */
   readonly done: number;
-  /** runs in all; 0 while that is not known */
+  /** number of runs; 0 while unknown */
   readonly total: number;
-  /** a line about what goes on, such as that a kernel is compiled */
+  /** a line about the computation, such as the compilation of a kernel */
   readonly note: string;
-  /** what was found, from the event `after` on */
+  /** events, from the number `after` on */
   readonly events: readonly (PlaneBegun | PlaneCells)[];
-  /** what to give as `after` the next time */
+  /** value of `after` in the next request */
   readonly next: number;
-  /** why it failed, one line each */
+  /** reasons for the failure, one line each */
   readonly problems: readonly string[];
-  /** what it found, when it is done; null until then, and of an animation, which has a file */
+  /** the result when the job is done; null before, and for an animation, which has a file */
   readonly result: ExactOrbits | MapResult | ContactMapResult | BasinResult | null;
 };
 
 /** A kind of column, model or motion. */
 export type Kind = {
-  /** as in descriptions */
+  /** kind as in descriptions */
   readonly kind: string;
-  /** in words */
+  /** name in words */
   readonly name: string;
-  /** a line about it */
+  /** one-line description */
   readonly about: string;
-  /** its numbers */
+  /** parameters */
   readonly parameters: readonly ({
-    /** as in descriptions */
+    /** name as in descriptions */
     readonly name: string;
-    /** as in the literature; empty without one */
+    /** symbol in the literature; empty if there is none */
     readonly symbol: string;
-    /** empty without one */
+    /** unit; empty if there is none */
     readonly unit: string;
-    /** what it is */
+    /** one-line description */
     readonly about: string;
-    /** null without one */
+    /** default value; null if there is none */
     readonly default: unknown;
-    /** whether it must be given */
+    /** whether the parameter is required */
     readonly needed: boolean;
-    /** whether maps can vary it */
+    /** whether maps can vary the parameter */
     readonly varies: boolean;
-    /** lower end of a slider; null where none serves all */
+    /** lower end of the slider; null if no range suits all cases */
     readonly from: number | null;
-    /** its upper end */
+    /** upper end of the slider */
     readonly to: number | null;
-    /** where there are few */
+    /** possible values, if there are few */
     readonly choices?: readonly (number | string)[];
   })[];
-  /** of motions: whether it comes to an end, so that a run needs no duration */
+  /** for motions: whether the motion ends, so that a run needs no duration */
   readonly ends?: boolean;
 };
 
-/** The result of a map: how often which outcome came. */
+/** The result of a map: frequencies of the outcomes. */
 export type MapResult = {
   /** runs whose outcome rounding error could change */
   readonly uncertain: number;
-  /** runs in all */
+  /** number of runs */
   readonly runs: number;
-  /** Of all runs, by outcome. */
+  /** Shares of outcomes. */
   readonly shares: {
-    /** that ended at rest */
+    /** share that ended at rest */
     readonly "at rest": number | null;
-    /** that ended rocking */
+    /** share that ended rocking */
     readonly rocking: number | null;
-    /** that ended rolling */
+    /** share that ended rolling */
     readonly rolling: number | null;
-    /** that ended modulated */
+    /** share that ended modulated */
     readonly modulated: number | null;
-    /** that ended overturned */
+    /** share that ended overturned */
     readonly overturned: number | null;
-    /** that ended still moving */
+    /** share that ended still moving */
     readonly "still moving": number | null;
-    /** that ended limit reached */
+    /** share that ended limit reached */
     readonly "limit reached": number | null;
-    /** that ended lifted off */
+    /** share that ended lifted off */
     readonly "lifted off": number | null;
-    /** that ended failed */
+    /** share that ended failed */
     readonly failed: number | null;
-    /** that ended slid */
+    /** share that ended slid */
     readonly slid: number | null;
-    /** that ended survived */
+    /** share that ended survived */
     readonly survived: number | null;
-    /** that ended stopped */
+    /** share that ended stopped */
     readonly stopped: number | null;
   };
 };
 
-/** Numbers of the run as a whole, null where one is not finite. Models may add further ones. */
+/** Numbers of the run as a whole, null if not finite. Models may add further numbers. */
 export type Measures = {
   /** [rad] */
   readonly peak_tilt: number | null;
-  /** the same over the slenderness */
+  /** peak tilt over the slenderness */
   readonly peak_tilt_over_c: number | null;
   /** [s] */
   readonly time_of_peak_tilt: number | null;
   /** [rad] */
   readonly minimum_tilt: number | null;
-  /** minimum tilt at a passage of the upright [rad]; null without a passage */
+  /** minimum tilt at a passage through the vertical [rad]; null if none */
   readonly least_passage: number | null;
-  /** of the contact point round the rim */
+  /** turns of the contact point round the rim */
   readonly turns: number | null;
-  /** of the integration */
+  /** steps of the integration */
   readonly steps: number | null;
-  /** over the last periods of the base [rad/s] */
+  /** mean rolling rate over the last periods of the base [rad/s] */
   readonly mean_rolling_rate?: number | null;
-  /** by how much the last periods differ, over the slenderness */
+  /** difference of the last periods, over the slenderness */
   readonly repetition?: number | null;
-  /** over the last periods [rad] */
+  /** mean tilt over the last periods [rad] */
   readonly mean_tilt_late?: number | null;
-  /** over the last periods [rad] */
+  /** minimum tilt over the last periods [rad] */
   readonly minimum_tilt_late?: number | null;
-  /** over the last periods [rad] */
+  /** peak tilt over the last periods [rad] */
   readonly peak_tilt_late?: number | null;
-  /** of the modulation over the last periods */
+  /** change of the modulation over the last periods */
   readonly modulation_change?: number | null;
-  /** of the mean rate, by the turns */
+  /** error of the mean rolling rate, from the turns */
   readonly rolling_rate_error?: number | null;
-  /** friction over normal force; null where nothing presses */
+  /** peak friction over normal force; null without a normal force */
   readonly peak_friction_demand?: number | null;
-  /** moment over normal force and radius */
+  /** peak moment over normal force and radius */
   readonly peak_pivoting_demand?: number | null;
-  /** over the weight */
+  /** minimum normal force over weight */
   readonly minimum_normal_force?: number | null;
-  /** resting [s] */
+  /** time resting [s] */
   readonly time_resting?: number | null;
-  /** sliding [s] */
+  /** time sliding [s] */
   readonly time_sliding?: number | null;
-  /** rolling [s] */
+  /** time rolling [s] */
   readonly time_rolling?: number | null;
-  /** slipping [s] */
+  /** time slipping [s] */
   readonly time_slipping?: number | null;
-  /** flying [s] */
+  /** time flying [s] */
   readonly time_flying?: number | null;
-  /** of the centre of the footprint [m] */
+  /** residual displacement of the centre of the footprint [m] */
   readonly residual_displacement?: number | null;
   /** [m] */
   readonly residual_displacement_x?: number | null;
@@ -384,85 +384,85 @@ export type Measures = {
   readonly walking_distance?: number | null;
   /** length of the path of the contact on the plane [m] */
   readonly slip_distance?: number | null;
-  /** how often it struck the plane */
+  /** number of impacts on the plane */
   readonly impacts?: number | null;
-  /** how often it began to slip */
+  /** number of starts of slip */
   readonly slips?: number | null;
-  /** 1 without friction; a contact jams at 0 */
+  /** 1 without friction; dynamic jamming at 0 */
   readonly least_painleve_denominator?: number | null;
   readonly [name: string]: unknown;
 };
 
-/** The first event of a map or basin: its axes, and what the codes of cells mean. */
+/** The first event of a map or basin: its axes, and the meanings of the codes of cells. */
 export type PlaneBegun = {
   readonly axes: {
     /** A quantity that varies. */
     readonly x: {
-      /** as in the description */
+      /** name as in the description */
       readonly name: string;
       /** in SI units */
       readonly values: readonly (number | null)[];
-      /** in words */
+      /** name in words */
       readonly long_name?: string;
-      /** such as rad s-1 */
+      /** unit such as rad s-1 */
       readonly units?: string;
     };
     /** A quantity that varies. */
     readonly y: {
-      /** as in the description */
+      /** name as in the description */
       readonly name: string;
       /** in SI units */
       readonly values: readonly (number | null)[];
-      /** in words */
+      /** name in words */
       readonly long_name?: string;
-      /** such as rad s-1 */
+      /** unit such as rad s-1 */
       readonly units?: string;
     };
   };
-  /** codes and what they mean */
+  /** codes and their meanings */
   readonly names: readonly (readonly [number, string])[];
 };
 
-/** Cells that were computed, from coarse to fine. */
+/** Computed cells, from coarse to fine. */
 export type PlaneCells = {
-  /** of all values along x and y those of so many steps are known now */
+  /** step between known values along x and y */
   readonly stride: number;
   readonly cells: readonly (readonly [number, number, number])[];
 };
 
-/** Why a request was refused. */
+/** Reasons for the refusal of a request. */
 export type Problems = {
   /** one line each */
   readonly problems: readonly string[];
 };
 
-/** Steady rolling over frequency, by theory; all lists as long as `angular_frequency`. */
+/** Steady rolling over frequency, from theory; all lists are as long as `angular_frequency`. */
 export type ResponseCurves = {
   /** [rad/s] */
   readonly angular_frequency: readonly number[];
   /** one for each sense and branch */
   readonly branches: readonly ({
-    /** which way it rolls, seen from above */
+    /** sense of rolling, seen from above */
     readonly sense: "anticlockwise" | "clockwise";
-    /** which of the two solutions */
+    /** one of the two solutions */
     readonly branch: "lower" | "upper";
-    /** tilt [rad], null where there is no such rolling */
+    /** tilt [rad], null if there is no such rolling */
     readonly amplitude: readonly (number | null)[];
-    /** of the lean to the base acceleration [rad], null where there is no such rolling */
+    /** phase of the lean relative to the base acceleration [rad], null if there is no such rolling */
     readonly phase: readonly (number | null)[];
-    /** whether it is stable */
+    /** whether the motion is stable */
     readonly stable: readonly boolean[];
   })[];
-  /** tilt of free rolling [rad], null where there is no such rolling */
+  /** tilt of free rolling [rad], null if there is no such rolling */
   readonly backbone: readonly (number | null)[];
-  /** where the upper branch loses its stability */
+  /** frequencies at which the upper branch loses its stability */
   readonly critical: readonly ({
-    /** which way it rolls, seen from above */
+    /** sense of rolling, seen from above */
     readonly sense: "anticlockwise" | "clockwise";
-    /** [rad/s], null where there is none */
+    /** [rad/s], null if there is none */
     readonly angular_frequency: number | null;
   })[];
-  /** whether the curves are approximate, by averaging, rather than exact */
+  /** whether the curves are approximate (averaging) rather than exact */
   readonly averaged: boolean;
 };
 
@@ -472,27 +472,27 @@ export type Run = {
   readonly outcome: "AT_REST" | "ROCKING" | "ROLLING" | "MODULATED" | "OVERTURNED" | "STILL_MOVING" | "LIMIT_REACHED" | "LIFTED_OFF" | "FAILED" | "SLID" | "SURVIVED" | "STOPPED";
   /** the outcome in words */
   readonly label: "at rest" | "rocking" | "rolling" | "modulated" | "overturned" | "still moving" | "limit reached" | "lifted off" | "failed" | "slid" | "survived" | "stopped";
-  /** why it is that outcome */
+  /** reason for the outcome */
   readonly reason: string;
-  /** when that was decided [s] */
+  /** time at which the outcome was decided [s] */
   readonly decided_at: number;
   /** whether rounding error could change the outcome */
   readonly uncertain: boolean;
-  /** whether it moved in one vertical plane */
+  /** whether the motion stayed in one vertical plane */
   readonly planar: boolean;
   /** one line each */
   readonly warnings: readonly string[];
-  /** uplifts, impacts and others */
+  /** uplifts, impacts and other events */
   readonly events: readonly ({
-    /** what happened */
+    /** kind of event */
     readonly kind: string;
-    /** when [s] */
+    /** time [s] */
     readonly time: number;
   })[];
   readonly measures: Measures;
   /** labels and values */
   readonly summary: readonly (readonly [string, string])[];
-  /** The numbers by which the outcome was decided. */
+  /** The thresholds that decided the outcome. */
   readonly thresholds: Readonly<Record<string, number | null>>;
   readonly column: ColumnNumbers;
   readonly drawn: DrawnMotion;
@@ -503,15 +503,15 @@ export type Run = {
   readonly python: string;
 };
 
-/** Histories, all as long as `time`; null where a number is not finite. Models may add further ones. */
+/** Histories, all as long as `time`; null for numbers that are not finite. Models may add further histories. */
 export type Series = {
   /** [s] */
   readonly time: readonly number[];
-  /** along x, y, z [m/s²] */
+  /** base acceleration along x, y, z [m/s²] */
   readonly base_acceleration: readonly (readonly [number, number, number])[];
   /** tilt θ [rad] */
   readonly amplitude: readonly (number | null)[];
-  /** β, where it leans to [rad]; null where it stands upright */
+  /** azimuth β of the lean [rad]; null if the column stands upright */
   readonly azimuth?: readonly (number | null)[];
   /** rate of the azimuth [rad/s] */
   readonly rolling_rate?: readonly (number | null)[];
@@ -521,44 +521,44 @@ export type Series = {
   readonly friction_demand?: readonly (number | null)[];
   /** moment over normal force and radius */
   readonly pivoting_demand?: readonly (number | null)[];
-  /** over the weight */
+  /** normal force over weight */
   readonly normal_force?: readonly (number | null)[];
   /** 0 resting, 1 sliding, 2 rolling, 3 slipping, 4 flying, 5 jammed */
   readonly contact?: readonly (0 | 1 | 2 | 3 | 4 | 5)[];
   /** height of the lowest point above the base [m] */
   readonly clearance?: readonly (number | null)[];
-  /** of the centre of the footprint since the start [m] */
+  /** displacement of the centre of the footprint since the start [m] */
   readonly displacement?: readonly (readonly (number | null)[])[];
-  /** of the contact on the plane [m/s] */
+  /** slip speed of the contact on the plane [m/s] */
   readonly slip_speed?: readonly (number | null)[];
   readonly [name: string]: unknown;
 };
 
-/** Where a run begins. */
+/** Initial conditions of a run. */
 export type Start = {
-  /** along x and y [rad] */
+  /** tilt along x and y [rad] */
   readonly tilt: readonly [number, number];
   /** [rad/s] */
   readonly tilt_rate: readonly [number, number];
   /** angular velocity about the axis [rad/s] */
   readonly spin: number;
-  /** whether the start is approximate or its orbit unstable, one line each */
+  /** one line if the start is approximate, or its orbit unstable */
   readonly warnings: readonly string[];
 };
 
-/** A record that is kept. */
+/** An uploaded record. */
 export type UploadedRecord = {
-  /** its digest, for the motion {"kind": "record", "upload": …} */
+  /** digest, for the motion {"kind": "record", "upload": …} */
   readonly upload: string;
-  /** of the event */
+  /** name of the event */
   readonly name: string;
-  /** how many */
+  /** number of samples */
   readonly samples: number;
-  /** between them [s] */
+  /** time step [s] */
   readonly step: number;
-  /** [s] */
+  /** duration [s] */
   readonly duration: number;
-  /** Largest accelerations [m/s²]. */
+  /** Peak accelerations [m/s²]. */
   readonly peaks: {
     /** along x [m/s²] */
     readonly x?: number;
@@ -567,8 +567,8 @@ export type UploadedRecord = {
     /** along z [m/s²] */
     readonly z?: number;
   };
-  /** where it comes from, one line each */
+  /** origin, one line each */
   readonly provenance: readonly string[];
-  /** what may be wrong with its files, one line each */
+  /** possible mistakes in its files, one line each */
   readonly warnings: readonly string[];
 };
