@@ -61,7 +61,7 @@ def _saved(
 
 
 def _description(figure: Figure) -> str:
-    """Return what the panels of a figure show, by their titles and axes, as a text that stands for the figure."""
+    """Describe the panels of a figure by their titles and axes, as the alternative text of the figure."""
     suptitle = getattr(figure, "_suptitle", None)
     panels = [suptitle.get_text()] if suptitle else []
     panels += [

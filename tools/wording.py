@@ -22,12 +22,14 @@ RULES = {
     r"(?i)\b(?:nought|anew|likewise|whoever|many an?\b|hang(?:s|ing)? on|vouch(?:es|ed)?|mend(?:s|ed|ing)?)\b": (
         "zero, again, also, anyone, many, depends on, guarantee, repair"
     ),
+    r"\"\"\"(?:Return|Say|Tell|Note|Give)s? (?:what|how|where|why)\b": "a verb and a noun: Return the outcome of …",
+    r"(?i)\bthe upright\b(?! (?:column|base|format|position))": "the vertical",
+    r"(?i)(?<![`\"_])\bstrobed\b": "stroboscopic (Poincaré)",
 }
 
 PAGE_RULES = {
     r"(?i)\bin a plane\b": "planar",
     r"(?i)\bin space\b": "three-dimensional",
-    r"(?i)\bthe upright\b": "the vertical",
     r"(?i)\bno-return tilts?\b": "point of no return",
     r"(?i)\bmade records?\b": "synthetic ground motions",
     r"(?i)\bcreep(?:s|ing)?\b": "is conveyed, mean transport velocity",

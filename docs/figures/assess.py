@@ -39,7 +39,7 @@ def assessed(store: Path) -> Assessment:
 
 
 def head(found: Assessment, spectra: Figure) -> Figure:
-    """Return how the report begins: title, verdicts, findings, spectra; drawn, for the page itself needs a browser."""
+    """Draw the first page of the report: title, verdicts, findings, spectra; the page itself needs a browser."""
     figure = Figure(figsize=(7.4, 9.4))
     words, below = figure.subplots(2, 1, height_ratios=(6.0, 3.4))
     for axes in (words, below):

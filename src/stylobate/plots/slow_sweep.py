@@ -27,7 +27,7 @@ _MOST_NAMED, _MOST_MARKED = 8, 30
 @figure_of("slow sweep")
 @styled
 def plot_slow_sweep(found: xr.Dataset) -> Figure:
-    """Return a figure of tilt and turns a period against the parameter of a slow sweep.
+    """Return a figure of tilt and turns per period against the parameter of a slow sweep.
 
     Lines are means over the last periods at each value, bands reach from the minimum to maximum tilt. Full triangles
     point right if the parameter rises, hollow triangles left if it falls. A cross marks overturning, at the last mean

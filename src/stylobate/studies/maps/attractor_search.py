@@ -124,7 +124,7 @@ def find_attractors(runs: xr.Dataset, scales: OrbitScales, rules: AttractorRules
     """
     if "strobe_tilt" not in runs:
         message = (
-            "runs must have strobed states, from which attractors are identified; follow them with strobes=32, say"
+            "runs must have stroboscopic samples, from which attractors are identified. Follow them with strobes=32"
         )
         raise ParameterError(message)
     shape, flat = runs["outcome"].shape, _Flat.of(runs, scales)

@@ -98,7 +98,7 @@ export class Look {
     event.stopPropagation();
   };
 
-  /** Turn about the upright, up or down, and go nearer or back. */
+  /** Turn about the vertical, up or down, and go nearer or back. */
   #turn(about: number, down: number, scale: number): void {
     if (about !== 0 || down !== 0 || scale !== 1) this.#moved = true;
     const { target, minDistance, maxDistance } = this.#controls;
