@@ -126,7 +126,7 @@ def test_a_store_goes_on_after_ctrl_c_and_ends_as_if_undisturbed(tmp_path, capsy
     assert 0 < first["computed"] < first["runs"] == 2000
     interrupted.undo()
     assert run([*LARGE, "--output", str(store)]) == 2
-    assert "continue it with --resume" in capsys.readouterr().err
+    assert "Continue it with --resume" in capsys.readouterr().err
     assert run(["map", str(store), "--resume", "--json"]) == 0
     told = json.loads(capsys.readouterr().out)
     assert told["computed"] == 2000
