@@ -82,8 +82,8 @@ def slipping_boundary(
         * Over `angular_frequency` and `branch`: `rolling_amplitude` [rad], `rolling_stable` and `required_friction` of
           steady rolling without slip.
         * Over `friction_coefficient`, `angular_frequency` and `branch`: `slips`, whether rolling needs more friction
-        than available. * With `slipping_branch` instead: `slipping_amplitude` [rad], `slip_speed` [m/s], `slip_power`
-        [W] and
+          than available.
+        * With `slipping_branch` instead: `slipping_amplitude` [rad], `slip_speed` [m/s], `slip_power` [W] and
           `slipping_stable` of steady rolling with slip, NaN without such rolling.
         * Over the two: `steady_rolling`, a `RollingRegime`.
         * Over `friction_coefficient`: `rolling_from`, `rolling_to`, `slipping_from` and `slipping_to` [rad/s], the
