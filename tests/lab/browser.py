@@ -90,3 +90,10 @@ class Watched:
 def shown(page: Page) -> None:
     """Wait until the page shows the motion of what is set."""
     page.wait_for_function("() => window.stylobate?.laboratory.answer && !document.querySelector('.stage.busy')")
+
+
+def moved(page: Page, name: str, value: float) -> None:
+    """Set the number of this name in its field."""
+    field = page.locator(f"input.number[id^='{name}']").first
+    field.fill(str(value))
+    field.press("Enter")

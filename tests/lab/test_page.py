@@ -5,7 +5,7 @@ import statistics
 
 import numpy as np
 import pytest
-from tests.lab.browser import new_page, shown
+from tests.lab.browser import moved, new_page, shown
 from tests.lab.conftest import laboratory
 
 import stylobate as sb
@@ -16,13 +16,6 @@ from stylobate.results.summary import measure_rows
 PRESETS = {preset.identity: preset for preset in presets()}
 # What the page reads back from the drawn column: doubles, interpolated on samples of seven digits.
 DRAWN = 2e-6
-
-
-def moved(page, name, value):
-    """Set the number of this name in its field."""
-    field = page.locator(f"input.number[id^='{name}']").first
-    field.fill(str(value))
-    field.press("Enter")
 
 
 def test_it_loads_without_an_error_and_without_a_request_to_elsewhere(watched):
@@ -153,87 +146,6 @@ def test_a_broken_link_is_told_and_the_usual_case_shown(browser, address):
     assert page.get_by_role("alert").filter(has_text="nonsense").is_visible()
     assert page.evaluate("() => window.stylobate.laboratory.answer.outcome") == "ROLLING"
     page.close()
-
-
-def test_a_click_in_the_map_starts_that_motion_and_its_link_restores_it(watched, browser):
-    page = watched.page
-    page.get_by_role("tab", name="Overturning map").click()
-    plane = "window.stylobate.laboratory.plane('map')"
-    panel = page.locator(".plane-panel.map")
-    panel.locator("summary").click()
-    panel.get_by_label("cells").select_option(index=0)
-    panel.get_by_role("button", name="Compute").click()
-    page.wait_for_function(f"() => {plane}.axes && !{plane}.running", timeout=180_000)
-    x, y = page.evaluate(f"() => {plane}.clientPlace([3, 1])")
-    axes = page.evaluate(f"() => {plane}.axes")
-    page.mouse.click(x, y)
-    frequency = "window.stylobate.state().description.motion.angular_frequency"
-    page.wait_for_function(f"() => Math.abs({frequency} - {axes['x']['values'][3]}) < 1e-9")
-    shown(page)
-    motion = page.evaluate("() => window.stylobate.state().description.motion")
-    assert motion["acceleration"] == pytest.approx(axes["y"]["values"][1])
-    cell = page.evaluate(f"() => {plane}.filled")
-    assert cell is not None
-    other = new_page(browser)
-    other.goto(page.evaluate("() => location.href"))
-    shown(other)
-    assert other.evaluate("() => window.stylobate.state().description.motion") == motion
-    other.close()
-
-
-AXES = {
-    "x": {"name": "angular_frequency", "values": [1.0, 2.0, 3.0], "units": "rad s-1"},
-    "y": {"name": "acceleration", "values": [0.02, 0.05, 0.1], "units": "m s-2"},
-}
-
-
-def job_that_never_ends(page, note=""):
-    """Answer the page's jobs with one that never ends, and return the requests that end it."""
-    ended = []
-    events = [{"axes": AXES, "names": [[1, "overturned"]]}, {"stride": 1, "cells": [[1, 1, 1]]}]
-    done = 0 if note else 1
-
-    def answer(route):
-        request = route.request
-        if request.method == "DELETE":
-            ended.append(request.url)
-        report = {
-            "id": "one",
-            "kind": "map",
-            "state": "running",
-            "done": done,
-            "total": 9,
-            "note": note,
-            "events": events if "after=0" in request.url else [],
-            "next": 2,
-            "problems": [],
-            "result": None,
-        }
-        route.fulfill(status=202 if request.method == "POST" else 200, json=report)
-
-    page.route(re.compile(r"/api/jobs"), answer)
-    page.get_by_role("tab", name="Overturning map").click()  # of the slender model: it fills in unasked
-    return ended
-
-
-def test_a_map_of_an_earlier_case_is_marked_cancelled_and_no_longer_clickable(watched):
-    page = watched.page
-    ended = job_that_never_ends(page)
-    plane = "window.stylobate.laboratory.plane('map')"
-    page.wait_for_function(f"() => {plane}.filled")
-    moved(page, "damping", 0.2)
-    panel = page.locator(".plane-panel.map.stale")
-    panel.get_by_text("This picture shows an earlier case").wait_for()
-    assert len(ended) == 1
-    shown(page)  # the start is on the branch at the new damping
-    before = page.evaluate("() => window.stylobate.state().description")
-    page.mouse.click(*page.evaluate(f"() => {plane}.clientPlace([2, 2])"))
-    assert page.evaluate("() => window.stylobate.state().description") == before
-
-
-def test_a_map_that_has_computed_nothing_yet_says_why(watched):
-    job_that_never_ends(watched.page, note="compiling rolling, space motion")
-    watched.page.locator(".plane-panel.map .readout").get_by_text("Compiling rolling, space motion…").wait_for()
 
 
 def test_a_run_that_takes_long_is_cancelled(watched):

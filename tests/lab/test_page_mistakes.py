@@ -6,7 +6,6 @@ import pytest
 from tests.lab.browser import shown
 
 STATE = "window.stylobate.state()"
-MAP = "window.stylobate.laboratory.plane('map')"
 
 
 def field_of(page, name):
@@ -15,30 +14,6 @@ def field_of(page, name):
 
 def described(page, field):
     return page.locator(f"#{field.get_attribute('aria-describedby')}").inner_text()
-
-
-def test_nothing_is_computed_over_an_axis_that_is_none(page):
-    page.get_by_role("tab", name="Overturning map").click()
-    page.wait_for_function(f"() => {MAP}.axes && !{MAP}.running", timeout=180_000)
-    panel = page.locator(".plane-panel.map")
-    panel.locator("summary").click()
-    start, end = panel.get_by_label("x from"), panel.get_by_label("x to")
-    compute = panel.get_by_role("button", name="Compute")
-    kept = start.input_value()
-    for text, line in (("9999", "does not rise"), ("abc", "'abc' is not a number")):
-        start.fill(text)
-        start.press("Enter")
-        panel.locator(".problem").get_by_text("angular frequency: ").filter(has_text=line).wait_for()
-        assert compute.is_disabled()
-        assert start.get_attribute("aria-invalid") == end.get_attribute("aria-invalid") == "true"
-    field_of(page, "damping").fill("0.12")  # another answer leaves what is written, and why it is refused
-    shown(page)
-    assert start.input_value() == "abc"
-    assert compute.is_disabled()
-    start.fill(kept)
-    start.press("Enter")
-    panel.locator(".problem").wait_for(state="hidden")
-    assert compute.is_enabled()
 
 
 def test_a_text_that_is_no_number_has_its_line_in_place_of_an_earlier_one(page):

@@ -112,14 +112,3 @@ def test_a_record_of_two_stations_or_of_one_component_is_remarked_on(page):
     chosen.set_input_files(files=files[:1])
     beside.filter(has_text="one horizontal component (a_000.AT2)").wait_for()
     page.wait_for_function(f"() => {ANSWER}.warnings.every((line) => !line.includes('stations'))")
-
-
-def test_a_basin_fills_in_unasked_and_holds_the_standing_column(page):
-    page.get_by_role("tab", name="Basin").click()
-    plane = "window.stylobate.laboratory.plane('basin')"
-    page.wait_for_function(f"() => {plane}.axes && !{plane}.running", timeout=180_000)
-    for place in "xy":
-        values = page.evaluate(f"() => {plane}.axes.{place}.values")
-        assert min(values, key=abs) == pytest.approx(0.0, abs=1e-12)
-    (left, low), (right, high) = (page.evaluate(f"() => {plane}.clientPlace({cell})") for cell in ([0, 0], [9, 9]))
-    assert right - left == pytest.approx(low - high, rel=1e-6)

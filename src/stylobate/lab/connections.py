@@ -9,11 +9,11 @@ from uvicorn.protocols.http.h11_impl import H11Protocol
 
 from stylobate.lab.limits import Limits
 
-BACKLOG = 32
-"""Connections that one iteration of the event loop accepts before the limit applies to them."""
+BACKLOG = 16
+"""Connections that one iteration of the event loop accepts. The limit applies to them three iterations later."""
 
-_RESERVED = 96
-"""Descriptors besides connections: files, pipes to worker processes, connections accepted in one iteration."""
+_RESERVED = 3 * BACKLOG + 48
+"""Descriptors besides connections: files, pipes to worker processes, connections accepted in three iterations."""
 
 _FEWEST = 8
 
