@@ -7,6 +7,7 @@ import sys
 
 import numpy as np
 import pytest
+from PIL import Image
 
 import stylobate as sb
 from stylobate.cli.commands import COMMANDS
@@ -76,13 +77,17 @@ def test_response_as_json_has_every_curve(capsys):
 
 
 def test_simulate_animates_the_run_it_prints(tmp_path, capsys):
-    page = tmp_path / "run.html"
-    assert run(["simulate", *COLUMN, *MOTION, *START, "--animation", str(page), "--speed", "4", "--json"]) == 0
-    assert json.loads(capsys.readouterr().out)["outcome"]
-    assert page.read_text(encoding="utf-8").startswith("<!")
+    shown = tmp_path / "run.gif"
+    pictures = []
+    for speed in ("4", "8"):
+        assert run(["simulate", *COLUMN, *MOTION, *START, "--animation", str(shown), "--speed", speed, "--json"]) == 0
+        assert json.loads(capsys.readouterr().out)["outcome"]
+        with Image.open(shown) as animation:
+            pictures.append(animation.n_frames)
+    assert pictures[0] > 1.5 * pictures[1]
     for options, line in (
         (["--animation", "run.avi"], "path must end with .gif, .mp4 or .html, got 'run.avi'"),
-        (["--animation", str(page), "--speed", "0"], "speed must be positive, got 0.0"),
+        (["--animation", str(shown), "--speed", "0"], "speed must be positive, got 0.0"),
         (["--speed", "2"], "--speed: simulate does not use it"),
     ):
         assert run(["simulate", *COLUMN, *MOTION, *START, *options]) == 2

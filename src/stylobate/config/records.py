@@ -143,7 +143,6 @@ class RecordMotion(Reading):
         """
         if not (self.single or self.axis or (self.columns and isinstance(self.path, str))):
             remark_on_missing_components(record)
-        self._checked_files()
         steps = (*self.processing, *self._last())
         reading = self.model_dump(exclude_defaults=True, exclude={"path", "file_sha256", "processing", *_LAST})
         if self.path is None:
