@@ -46,6 +46,7 @@ def test_branches_are_compared_under_their_names(symmetric, asymmetric):
     named = texts(axes)
     assert named[:2] == ["symmetric", "asymmetric"]
     assert len(set(named)) == len(named)
+    assert texts(sb.plot([symmetric, symmetric]).axes[0]) == ["pitchfork, supercritical", "bold: stable"]
 
 
 def test_branches_over_different_parameters_have_no_common_axis(symmetric):
