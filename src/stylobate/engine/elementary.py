@@ -23,6 +23,11 @@ def cos_turns(u: float) -> float:
     return s * series
 
 
+def length(x: float, y: float) -> float:
+    """Return the length of a vector, several times as fast as `math.hypot`; squares below 1e-308 count as zero."""
+    return math.sqrt(x * x + y * y)
+
+
 @fast
 def winding(x0: float, y0: float, x1: float, y1: float, momentum: float) -> float:
     """Return +1 or −1 if the path from (x0, y0) to (x1, y1) crosses the negative x axis anticlockwise or clockwise.

@@ -274,6 +274,7 @@ def _fill_setup(
         Setup.MINIMUM_VERTICAL: motions.minimum_vertical,
         Setup.MAXIMUM_VERTICAL: motions.maximum_vertical,
         Setup.TIME_SCALE: models.time_scale,
+        Setup.PER_SECOND: 1.0 / models.time_scale,
         Setup.FREQUENCY: motions.frequency,
         Setup.PERIOD: motions.period,
         Setup.STROBE: (-motions.phase - np.floor(-motions.phase)) * motions.period,

@@ -16,12 +16,12 @@ Floats = npt.NDArray[np.float64]
 
 DEGREE = 15
 # Columns of a row before its coefficients; the same number is in the kernels.
-_BEFORE = 6
+_BEFORE = 7
 # Pieces are at most half the shortest period long. They are halved until the error is below this fraction of the peak
 # acceleration; the second number is the maximum number of halvings.
 _ACCURACY, _HALVINGS = 1e-11, 12
 _MOST_PIECES = 2_000_000
-# A piece continues the previous one if the jump of the acceleration is below this fraction of its maximum.
+# A piece is continued by the next one if the jump of the acceleration is below this fraction of its maximum.
 _NO_JUMP = 1e-10
 # Relative distance in time from a break at which the acceleration is evaluated.
 _ASIDE = 4.0 * float(np.finfo(float).eps)
@@ -31,9 +31,9 @@ _ASIDE = 4.0 * float(np.finfo(float).eps)
 class Table:
     """Pieces of polynomials, a row each.
 
-    A row holds start and end [s]; sup |a_h|, inf and sup a_z after its start [m/s²]; 1 if the acceleration continues
-    the previous piece without a jump, else 0; and the coefficients for x, y and z, lowest power first. Their variable
-    is the time from the middle of the piece over half its length.
+    A row holds start and end [s]; sup |a_h|, inf and sup a_z after its start [m/s²]; 1 if the next piece continues
+    the acceleration without a jump, else 0; the reciprocal of half the length [1/s]; and the coefficients for x, y and
+    z, lowest power first. Their variable is the time from the middle of the piece over half its length.
     """
 
     rows: Floats
@@ -45,8 +45,10 @@ class Table:
         powers = coefficients.shape[-1]
         starts, ends = coefficients @ (-1.0) ** np.arange(powers), coefficients.sum(axis=-1)
         jumps = np.abs(starts[1:] - ends[:-1]).max(axis=-1, initial=0.0)
-        continues = np.append(0.0, jumps <= _NO_JUMP * np.abs(coefficients).max(initial=0.0))
-        return cls(np.column_stack([spans, bounds, continues, coefficients.reshape(len(spans), -1)]), powers - 1)
+        continued = np.append(jumps <= _NO_JUMP * np.abs(coefficients).max(initial=0.0), 0.0)
+        per_half = 2.0 / np.diff(spans)
+        rows = np.column_stack([spans, bounds, continued, per_half, coefficients.reshape(len(spans), -1)])
+        return cls(rows, powers - 1)
 
     @property
     def coefficients(self) -> Floats:

@@ -39,7 +39,8 @@ class Setup(_FromZero):
     MINIMUM_VERTICAL = auto()
     MAXIMUM_VERTICAL = auto()
     TIME_SCALE = auto()
-    """Unit of time [s]."""
+    PER_SECOND = auto()
+    """Unit of time [s], and its reciprocal."""
     FREQUENCY = auto()
     """Highest angular frequency in the base motion; 0 for a base at rest."""
     PERIOD = auto()
@@ -131,6 +132,8 @@ class Lane(_FromZero):
     """Index of the run; -1 if the lane has none."""
     PIECE = auto()
     """Index of the polynomial of the base motion."""
+    CONTINUED = auto()
+    """Flag: the next polynomial continues this one without a jump."""
     H = auto()
     """Step to try."""
     TRIED = auto()
@@ -141,6 +144,8 @@ class Lane(_FromZero):
     """Flag: the aimed event is reached when the tilt reaches its bound, else when it grows; -1 at a lossy passage."""
     STOP = auto()
     """Time that the next step must not pass."""
+    OTHER_STOP = auto()
+    """The same for a base motion of one polynomial."""
     WANTED = auto()
     """Next step that the error allows, before it is cut at the next stop."""
     MADE = auto()
@@ -161,6 +166,8 @@ class Lane(_FromZero):
     """Tilt and squared speeds below which the driver checks for rest."""
     NO_RETURN = auto()
     """Point of no return: tilt beyond which the model proves that the column overturns."""
+    LEAST_FORCE = auto()
+    """Minimum force that will hold a standing column down; negative if uplift is possible."""
     TILT = auto()
     RADIAL = auto()
     """Tilt times its rate."""

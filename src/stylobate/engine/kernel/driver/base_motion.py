@@ -5,6 +5,7 @@ A leg is an interval of the base motion with one formula: a piece of the tabulat
 
 import math
 
+from stylobate.engine.elementary import length
 from stylobate.engine.kernel.bound import (
     CAN_PROVE_NO_RETURN,
     DEGREE,
@@ -20,8 +21,9 @@ from stylobate.engine.kernel.bound import (
 from stylobate.engine.kernel.driver.equations import model_no_return
 from stylobate.engine.kernel.layout import Table
 
-# Columns of a piece: its first coefficient, and the flag of a piece that continues the previous one without a jump.
-COEFFICIENTS_AT, CONTINUES = 6, 5
+# Columns of a piece: flag of a piece that the next one continues without a jump, reciprocal of half the length, and
+# first coefficient.
+CONTINUED, PER_HALF, COEFFICIENTS_AT = 5, 6, 7
 
 
 def set_leg(buf: Table, i: int, table: Table, pieces: Table, t: float) -> None:
@@ -70,12 +72,12 @@ def set_terms(buf: Table, i: int, motion: Table, t: float) -> None:
 def set_piece(buf: Table, i: int, motion: Table, pieces: Table, t: float) -> None:
     """Load the polynomial that begins at `t`."""
     delay, first, last = motion[4], int(motion[5]), int(motion[5] + motion[6]) - 1
-    scale = buf[R.TIME_SCALE, i]
-    time = t * scale * (1.0 + 4e-16)  # a leg that begins at a knot has passed it
+    time = t * buf[R.TIME_SCALE, i] * (1.0 + 4e-16)  # a leg that begins at a knot has passed it
     if time < delay:
         for row in range(FIRST_FORCING, FIRST_FORCING + 2 + (2 - PLANAR + VERTICAL) * FORCING_ROWS):
             buf[row, i] = 0.0
-        buf[R.LEG_ENDS, i] = delay / scale
+        buf[R.CONTINUED, i] = 0.0
+        buf[R.LEG_ENDS, i] = delay * buf[R.PER_SECOND, i]
         return
     load_piece(buf, i, motion, pieces, piece_at(pieces, first + int(buf[R.PIECE, i]), first, last, delay, time))
 
@@ -84,12 +86,13 @@ def load_piece(buf: Table, i: int, motion: Table, pieces: Table, index: int) -> 
     """Load the polynomial in row `index`, and the bounds of the base motion after its start."""
     factor, cos, sin, vertical, delay = motion[0], motion[1], motion[2], motion[3], motion[4]
     first, count = int(motion[5]), int(motion[6])
-    scale = buf[R.TIME_SCALE, i]
+    per_second = buf[R.PER_SECOND, i]
     piece = pieces[index]
     start, end = piece[0], piece[1]
     buf[R.PIECE, i] = index - first
-    buf[FIRST_FORCING, i] = (0.5 * (start + end) + delay) / scale
-    buf[FIRST_FORCING + 1, i] = 2.0 * scale / (end - start)
+    buf[R.CONTINUED, i] = piece[CONTINUED]
+    buf[FIRST_FORCING, i] = (0.5 * (start + end) + delay) * per_second
+    buf[FIRST_FORCING + 1, i] = piece[PER_HALF] * buf[R.TIME_SCALE, i]
     for k in range(FORCING_ROWS):
         x, y = piece[COEFFICIENTS_AT + k], piece[COEFFICIENTS_AT + FORCING_ROWS + k]
         x, y = factor * (cos * x - sin * y), factor * (sin * x + cos * y)
@@ -109,20 +112,17 @@ def load_piece(buf: Table, i: int, motion: Table, pieces: Table, index: int) -> 
     buf[R.MINIMUM_VERTICAL, i] = least
     buf[R.MAXIMUM_VERTICAL, i] = max(up, down)
     if changed:
-        set_no_return(buf, i)
-    buf[R.LEG_ENDS, i] = (end + delay) / scale if index - first < count - 1 else math.inf
+        set_bounds(buf, i)
+    buf[R.LEG_ENDS, i] = (end + delay) * per_second if index - first < count - 1 else math.inf
 
 
 def continues_in_next_piece(buf: Table, i: int, table: Table, pieces: Table) -> bool:
     """Load the next piece if it continues this leg without a jump, so that slopes are valid; return whether it does."""
-    motion = table[int(buf[R.RUN, i]), MOTION_AT:]
-    delay, index = motion[4], int(motion[5] + buf[R.PIECE, i])
-    leg_end = buf[R.LEG_ENDS, i]
-    # Before a delayed motion begins no piece is loaded; a very short piece can have no length, by rounding.
-    if (pieces[index, 1] + delay) / buf[R.TIME_SCALE, i] != leg_end or pieces[index + 1, CONTINUES] == 0.0:
+    if buf[R.CONTINUED, i] == 0.0:
         return False
-    load_piece(buf, i, motion, pieces, index + 1)
-    return buf[R.LEG_ENDS, i] > leg_end
+    motion, leg_end = table[int(buf[R.RUN, i]), MOTION_AT:], buf[R.LEG_ENDS, i]
+    load_piece(buf, i, motion, pieces, int(motion[5] + buf[R.PIECE, i]) + 1)
+    return buf[R.LEG_ENDS, i] > leg_end  # a very short piece can have no length, by rounding
 
 
 def piece_at(pieces: Table, near: int, first: int, last: int, delay: float, time: float) -> int:
@@ -142,7 +142,10 @@ def piece_at(pieces: Table, near: int, first: int, last: int, delay: float, time
     return first
 
 
-def set_no_return(buf: Table, i: int) -> None:
+def set_bounds(buf: Table, i: int) -> None:
+    """Set the point of no return and the minimum holding force under the remaining base motion."""
+    pushed = buf[R.LARGEST_HORIZONTAL, i] + length(buf[R.SLOPE_X, i], buf[R.SLOPE_Y, i])
+    buf[R.LEAST_FORCE, i] = buf[R.CAPACITY, i] * minimum_weight(buf, i) - pushed
     bound = math.inf
     if CAN_PROVE_NO_RETURN:
         bound = model_no_return(buf, i, buf[R.LARGEST_HORIZONTAL, i], buf[R.MINIMUM_VERTICAL, i])
@@ -159,16 +162,14 @@ def forcing_rate(buf: Table, i: int) -> float:
             y = buf[row, i]
             row += 2
         z = buf[row, i] if VERTICAL else 0.0
-        return per_half * (math.hypot(x, y) + buf[R.SLENDERNESS, i] * abs(z))
+        return per_half * (length(x, y) + buf[R.SLENDERNESS, i] * abs(z))
     vertical = max(abs(buf[R.MINIMUM_VERTICAL, i]), abs(buf[R.MAXIMUM_VERTICAL, i]))
     return buf[R.FREQUENCY, i] * (buf[R.LARGEST_HORIZONTAL, i] + buf[R.SLENDERNESS, i] * vertical)
 
 
-def minimum_force(buf: Table, i: int) -> float:
-    """Return the minimum force that will hold a standing column down; it is negative if uplift is possible."""
-    pushed = buf[R.LARGEST_HORIZONTAL, i] + math.hypot(buf[R.SLOPE_X, i], buf[R.SLOPE_Y, i])
-    return buf[R.CAPACITY, i] * (1.0 + buf[R.MINIMUM_VERTICAL, i] + buf[R.SLOPE_Z, i]) - pushed
+def minimum_weight(buf: Table, i: int) -> float:
+    return 1.0 + buf[R.MINIMUM_VERTICAL, i] + buf[R.SLOPE_Z, i]
 
 
 def held_for_good(buf: Table, i: int) -> bool:
-    return minimum_force(buf, i) >= 0.0 and 1.0 + buf[R.MINIMUM_VERTICAL, i] + buf[R.SLOPE_Z, i] > 0.0
+    return buf[R.LEAST_FORCE, i] >= 0.0 and minimum_weight(buf, i) > 0.0

@@ -18,7 +18,7 @@ from stylobate.engine.kernel.bound import (
     handle,
 )
 from stylobate.engine.kernel.columns import STATE, Status
-from stylobate.engine.kernel.driver.base_motion import set_leg, set_no_return
+from stylobate.engine.kernel.driver.base_motion import set_bounds, set_leg
 from stylobate.engine.kernel.driver.convergence import start_watching, watch
 from stylobate.engine.kernel.driver.moving import azimuth_now, square_of_speed
 from stylobate.engine.kernel.driver.observation import observe
@@ -54,7 +54,7 @@ def enter(buf: Table, i: int, table: Table, pieces: Table, run: int) -> int:
     set_break(buf, i, table)
     if ORBITS:
         start_watching(buf, i, table)
-    set_no_return(buf, i)
+    set_bounds(buf, i)
     set_leg(buf, i, table, pieces, t)
     return begin(buf, i, table, pieces)
 

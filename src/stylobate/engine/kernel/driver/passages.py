@@ -2,6 +2,7 @@
 
 import math
 
+from stylobate.engine.elementary import length
 from stylobate.engine.kernel.bound import CAN_LOSE, CAN_REST, R
 from stylobate.engine.kernel.columns import TraceKind
 from stylobate.engine.kernel.driver.equations import lean_of_new, model_impact, model_passage
@@ -23,8 +24,8 @@ def cross_vertical(buf: Table, i: int, table: Table, pieces: Table) -> int:
     t, speed = buf[R.TIME, i], buf[R.STATE + 1, i]
     buf[R.REACHED_VERTICAL, i] = 1.0
     buf[R.STATE, i] = 0.0
-    rests = CAN_REST and buf[R.REST_ENERGY, i] > 0.0 and rest_margin(buf, i, t, 0.0, abs(speed)) > 0.0
-    if speed == 0.0 or rests:
+    can_rest = CAN_REST and buf[R.REST_ENERGY, i] > 0.0
+    if speed == 0.0 or (can_rest and rest_margin(buf, i, accelerations(buf, i, t), 0.0, abs(speed)) > 0.0):
         return settle(buf, i, table, pieces, t)
     costs = CAN_LOSE and buf[R.PASSAGE_TILT, i] > 0.0
     trace_event(buf, i, table, TraceKind.IMPACT if costs else TraceKind.PASSAGE, t)
@@ -41,7 +42,7 @@ def loses_energy(buf: Table, i: int) -> bool:
     set_within(buf, i, 0.0)
     x, y, vx, vy = lean_of_new(buf, i)
     # A passage that has just been handled does not count again.
-    return x * vx + y * vy < -JUST_MET * math.hypot(x, y) * math.hypot(vx, vy)
+    return x * vx + y * vy < -JUST_MET * length(x, y) * length(vx, vy)
 
 
 def apply_impact(buf: Table, i: int, table: Table, pieces: Table) -> int:
@@ -55,7 +56,7 @@ def apply_impact(buf: Table, i: int, table: Table, pieces: Table) -> int:
 
 def nears_vertical(buf: Table, i: int) -> bool:
     """Return whether the column approaches the vertical so closely that the passage is an analytical step."""
-    c, speed = buf[R.SLENDERNESS, i], math.hypot(buf[R.VX, i], buf[R.VY, i])
+    c, speed = buf[R.SLENDERNESS, i], length(buf[R.VX, i], buf[R.VY, i])
     near = buf[R.RADIAL, i] < 0.0 and buf[R.TILT, i] < PASSAGE_FROM * min(c, speed)
     return near and abs(buf[R.MOMENTUM, i]) < PASSAGE_OFFSET * c * speed
 
@@ -67,7 +68,7 @@ def pass_analytically(buf: Table, i: int, table: Table) -> None:
     elapsed, state = model_passage(buf, i, ax, ay, az)
     if t + elapsed > next_stop(buf, i):
         return
-    momentum, speed = buf[R.MOMENTUM, i], math.hypot(buf[R.VX, i], buf[R.VY, i])
+    momentum, speed = buf[R.MOMENTUM, i], length(buf[R.VX, i], buf[R.VY, i])
     # The contact point travels half a turn; the momentum gives the direction.
     azimuth = azimuth_now(buf, i) + math.copysign(0.5, momentum)
     trace_analytical_step(buf, i, table, elapsed, state, azimuth)

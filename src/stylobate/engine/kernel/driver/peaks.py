@@ -1,8 +1,6 @@
 """Peak tilt and minimum tilt within a step."""
 
-import math
-
-from stylobate.engine.elementary import winding
+from stylobate.engine.elementary import length, winding
 from stylobate.engine.kernel.bound import ORDER, PLANAR, SERIES, R
 from stylobate.engine.kernel.driver.equations import lean_of_new, row_state
 from stylobate.engine.kernel.driver.moving import set_lean
@@ -25,15 +23,15 @@ def measure_peak(buf: Table, i: int) -> float:
         before, after = lean_before(buf, i), lean_after(buf, i)
     limit = buf[R.TILT_LIMIT, i]
     low, high = 0.0, 1.0
-    tilt = 0.0
+    x = y = 0.0
     for _ in range(40):
         u = 0.5 * (low + high)
         x, y, vx, vy = lean_within(buf, i, u, before, after)
-        tilt = math.hypot(x, y)
         if x * vx + y * vy > 0.0:
             low = u
         else:
             high = u
+    tilt = length(x, y)
     if tilt <= limit:
         if tilt > buf[R.PEAK_TILT, i]:
             buf[R.PEAK_TILT, i] = tilt
@@ -43,7 +41,7 @@ def measure_peak(buf: Table, i: int) -> float:
     for _ in range(40):
         u = 0.5 * (low + high)
         x, y, _, _ = lean_within(buf, i, u, before, after)
-        if math.hypot(x, y) > limit:
+        if length(x, y) > limit:
             high = u
         else:
             low = u

@@ -2,6 +2,7 @@
 
 import math
 
+from stylobate.engine.elementary import length
 from stylobate.engine.kernel.bound import DEGREE, R
 from stylobate.engine.kernel.driver.base_motion import held_for_good
 from stylobate.engine.kernel.driver.push import accelerations
@@ -16,7 +17,7 @@ RELEASE_MARGIN = 8.0 * 2.220446049250313e-16
 
 def excess(buf: Table, i: int, t: float) -> float:
     ax, ay, az = accelerations(buf, i, t)
-    pushed = math.hypot(ax + buf[R.SLOPE_X, i], ay + buf[R.SLOPE_Y, i])
+    pushed = length(ax + buf[R.SLOPE_X, i], ay + buf[R.SLOPE_Y, i])
     return pushed - buf[R.CAPACITY, i] * (1.0 + az + buf[R.SLOPE_Z, i])
 
 

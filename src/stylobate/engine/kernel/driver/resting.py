@@ -2,12 +2,13 @@
 
 import math
 
+from stylobate.engine.elementary import length
 from stylobate.engine.kernel.bound import CAN_DEPART, CAN_GO_TO_PLANE, PLANAR, R
 from stylobate.engine.kernel.columns import Status, TraceKind
-from stylobate.engine.kernel.driver.base_motion import forcing_rate, held_for_good, minimum_force
+from stylobate.engine.kernel.driver.base_motion import forcing_rate, held_for_good
 from stylobate.engine.kernel.driver.equations import lean_of_new, model_at_rest, model_departure, model_rest_energy
 from stylobate.engine.kernel.driver.moving import azimuth_now, is_at_rest, set_state, start_moving
-from stylobate.engine.kernel.driver.push import accelerations
+from stylobate.engine.kernel.driver.push import Accelerations, accelerations
 from stylobate.engine.kernel.driver.release import RELEASE_MARGIN
 from stylobate.engine.kernel.driver.release_search import next_release, search_end
 from stylobate.engine.kernel.driver.standing_loads import record_standing_loads
@@ -19,24 +20,27 @@ from stylobate.engine.tolerances import DEPARTURE, STILL, SWINGS_APART
 from stylobate.models.model import Push
 
 
-def holding_force(buf: Table, i: int, ax: float, ay: float, az: float) -> float:
+def holding_force(buf: Table, i: int, push: Accelerations) -> float:
     """Return the force that holds a standing column down; its future minimum, if that is not negative."""
-    force = minimum_force(buf, i)
-    return force if force >= 0.0 else buf[R.CAPACITY, i] * (1.0 + az) - math.hypot(ax, ay)
+    ax, ay, az = push
+    force = buf[R.LEAST_FORCE, i]
+    return force if force >= 0.0 else buf[R.CAPACITY, i] * (1.0 + az) - length(ax, ay)
 
 
-def rest_margin(buf: Table, i: int, t: float, tilt: float, speed: float) -> float:
-    """Return an indicator that is positive if a column of this tilt and speed comes to rest at `t`."""
-    ax, ay, az = accelerations(buf, i, t)
-    energy = model_rest_energy(buf, i, tilt, speed, az)
-    force = holding_force(buf, i, ax, ay, az)
-    change = 2.0 * math.sqrt(2.0 * max(energy, 0.0)) * forcing_rate(buf, i)
+def rest_margin(buf: Table, i: int, push: Accelerations, tilt: float, speed: float) -> float:
+    """Return an indicator that is positive if a column of this tilt and speed comes to rest now."""
+    force = holding_force(buf, i, push)
+    energy = model_rest_energy(buf, i, tilt, speed, push[2])
     square = buf[R.SLENDERNESS, i] ** 2
-    dies = force - math.sqrt(SWINGS_APART * change)
-    if minimum_force(buf, i) < 0.0:
-        return min(buf[R.REST_ENERGY, i] * square - energy, dies)
-    share = buf[R.REST_ENERGY_FOR_GOOD, i]
-    return max(min(share, STILL) * square - energy, min(share * square - energy, dies))
+    held = buf[R.LEAST_FORCE, i] >= 0.0
+    share = buf[R.REST_ENERGY_FOR_GOOD, i] if held else buf[R.REST_ENERGY, i]
+    small = share * square - energy
+    if force < 0.0 or small <= 0.0:
+        return min(force, small)
+    # During a swing the force changes by 2 √(2 energy) times its rate; SWINGS_APART times this is less than force².
+    apart = SWINGS_APART * forcing_rate(buf, i)
+    dies = min(small, force**4 - 8.0 * max(energy, 0.0) * apart * apart)
+    return max(min(share, STILL) * square - energy, dies) if held else dies
 
 
 def rest_within_step(buf: Table, i: int) -> float:
@@ -76,9 +80,8 @@ def first_rest(buf: Table, i: int, start: float, h: float, low: float, high: flo
 
 def margin_within_step(buf: Table, i: int, start: float, h: float, u: float, closely: bool) -> float:
     """Return `rest_margin` at a fraction of the step, from cubics or, if `closely`, from the dense output."""
-    t = start + u * h
-    ax, ay, az = accelerations(buf, i, t)
-    force = holding_force(buf, i, ax, ay, az)
+    push = accelerations(buf, i, start + u * h)
+    force = holding_force(buf, i, push)
     if force <= 0.0:  # then the margin is not positive either
         return force
     if closely:
@@ -86,7 +89,7 @@ def margin_within_step(buf: Table, i: int, start: float, h: float, u: float, clo
     else:
         set_within(buf, i, u * h)
     x, y, vx, vy = lean_of_new(buf, i)
-    return rest_margin(buf, i, t, math.hypot(x, y), math.hypot(vx, vy))
+    return rest_margin(buf, i, push, length(x, y), length(vx, vy))
 
 
 def settle(buf: Table, i: int, table: Table, pieces: Table, t: float) -> int:

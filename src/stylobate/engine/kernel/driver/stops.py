@@ -2,6 +2,7 @@
 
 import math
 
+from stylobate.engine.elementary import length
 from stylobate.engine.kernel.bound import BREAKS_AT, DEGREE, PLANAR, R
 from stylobate.engine.kernel.columns import LOOKS, NOTE, SLACK, Status, Window
 from stylobate.engine.kernel.driver.base_motion import continues_in_next_piece, set_leg
@@ -68,7 +69,13 @@ def next_stop(buf: Table, i: int) -> float:
 
 def set_next_stop(buf: Table, i: int) -> None:
     """Set the next stop, and limit the next step to it."""
-    stop = next_stop(buf, i)
+    within = min(buf[R.LOOKS_AT, i], buf[R.SAMPLES_AT, i], buf[R.STROBES_AT, i])
+    buf[R.OTHER_STOP, i] = min(buf[R.END, i], buf[R.LIFTS_AT, i], buf[R.BREAKS_AT, i], within)
+    limit_step(buf, i)
+
+
+def limit_step(buf: Table, i: int) -> None:
+    stop = min(buf[R.LEG_ENDS, i], buf[R.OTHER_STOP, i])
     buf[R.STOP, i] = stop
     buf[R.H, i] = min(buf[R.WANTED, i], stop - buf[R.TIME, i])
 
@@ -78,14 +85,11 @@ def passes_knot(buf: Table, i: int, table: Table, pieces: Table) -> bool:
     # A flag of 1 with a stop reached has no other cause.
     if DEGREE < 0 or buf[R.FLAG, i] != 1.0 or buf[R.REACHED, i] != 1.0 or buf[R.RUN, i] < 0.0:
         return False
-    t, leg_end = buf[R.TIME, i], buf[R.LEG_ENDS, i]
-    others = min(buf[R.END, i], buf[R.LIFTS_AT, i], buf[R.BREAKS_AT, i], buf[R.LOOKS_AT, i])
-    if t != leg_end or t >= min(others, buf[R.SAMPLES_AT, i], buf[R.STROBES_AT, i]):
-        return False
-    if not continues_in_next_piece(buf, i, table, pieces):
+    t = buf[R.TIME, i]
+    if t != buf[R.LEG_ENDS, i] or t >= buf[R.OTHER_STOP, i] or not continues_in_next_piece(buf, i, table, pieces):
         return False
     buf[R.FLAG, i] = 0.0
-    set_next_stop(buf, i)
+    limit_step(buf, i)
     return True
 
 
@@ -166,8 +170,8 @@ def take_look(buf: Table, i: int, t: float) -> None:
     x, y, vx, vy = lean_now(buf, i)
     azimuth = azimuth_now(buf, i)
     place = R.LOOK + 4 * (index % LOOKS)
-    change = math.hypot(x - buf[place, i], y - buf[place + 1, i])
-    rate_change = math.hypot(vx - buf[place + 2, i], vy - buf[place + 3, i])
+    change = length(x - buf[place, i], y - buf[place + 1, i])
+    rate_change = length(vx - buf[place + 2, i], vy - buf[place + 3, i])
     buf[place, i] = x
     buf[place + 1, i] = y
     buf[place + 2, i] = vx
@@ -185,8 +189,8 @@ def take_look(buf: Table, i: int, t: float) -> None:
         for column, value in (
             (Window.TILT_CHANGE, change),
             (Window.RATE_CHANGE, rate_change),
-            (Window.TILT_SIZE, math.hypot(x, y)),
-            (Window.RATE_SIZE, math.hypot(vx, vy)),
+            (Window.TILT_SIZE, length(x, y)),
+            (Window.RATE_SIZE, length(vx, vy)),
         ):
             buf[first + column, i] = max(buf[first + column, i], value)
         weight = 0.5 if index in (begin, end) else 1.0
@@ -195,5 +199,5 @@ def take_look(buf: Table, i: int, t: float) -> None:
         buf[first + Window.LAG_BACKWARD, i] += weight * (azimuth + forced)
     if index == middle:
         buf[R.WATCHED, i] = 1.0
-        buf[R.LATE_MINIMUM_TILT, i] = math.hypot(x, y)
+        buf[R.LATE_MINIMUM_TILT, i] = length(x, y)
         record_window(buf, i, t)
