@@ -6,6 +6,7 @@ from collections import namedtuple
 import numpy as np
 import pytest
 
+from stylobate.compiler import machine
 from stylobate.compiler.marks import lanes
 from stylobate.compiler.refusal import CompileError
 
@@ -109,6 +110,33 @@ RIGHT = [
 def test_the_result_is_that_of_python(function):
     (compiled, _), (plain, _) = both_ways(function, X, np.zeros(12))
     np.testing.assert_array_equal(compiled[1], plain[1])
+
+
+def of_four(x, k):
+    return x[k] + 1.0, x[k] * 2.0, x[k] - x[9 - k], x[9 - k] / 3.0
+
+
+def many_calls(x, out):
+    for k in range(10):
+        a, b, _, d = of_four(x, k)
+        for _ in range(k):
+            _, e, f, _ = of_four(x, 9 - k)
+            a += e * f
+        out[k] = a - b * d
+
+
+@pytest.mark.parametrize("threshold", [0, 225])
+def test_results_of_calls_that_are_not_inlined_are_those_of_python(threshold, monkeypatch):
+    def tuned(**options):
+        tuning = own(**options)
+        tuning.inlining_threshold = threshold
+        return tuning
+
+    own = machine.llvm.create_pipeline_tuning_options
+    monkeypatch.setattr(machine.llvm, "create_pipeline_tuning_options", tuned)
+    (compiled, _), (plain, _) = both_ways(many_calls, X, np.zeros(12))
+    np.testing.assert_array_equal(compiled[1], plain[1])
+    assert "fld" not in machine.assembly(text_of(many_calls, X, np.zeros(12)))
 
 
 def value_of_or(x):

@@ -137,7 +137,9 @@ class Unit:
                 continue
             result = body.finished()
             name = f"{source.name}.{len(self._made)}"
-            self.module.define(f'internal {_type_of(result)} @"{name}"({", ".join(head)})', _with_return(text, result))
+            if _is_stored(result):
+                head.insert(0, f"ptr noalias {_RESULT}")
+            self.module.define(f'internal {_returned(result)} @"{name}"({", ".join(head)})', _with_return(text, result))
             return _Made(name, result)
 
     @contextmanager
@@ -230,20 +232,42 @@ def _bound(source: Source, values: list[Value], keywords: Mapping[str, Value]) -
 
 
 def _called(arithmetic: Arithmetic, made: _Made, values: Sequence[Value]) -> Value:
-    operands = ", ".join(operand for value in values for operand in _operands(value))
-    kind = _type_of(made.result)
-    call = f'call {kind} @"{made.name}"({operands})'
+    text, kind = arithmetic.text, _type_of(made.result)
+    operands = [operand for value in values for operand in _operands(value)]
+    room = text.allocated(kind) if _is_stored(made.result) else ""
+    if room:
+        operands.insert(0, f"ptr {room}")
+    call = f'call {_returned(made.result)} @"{made.name}"({", ".join(operands)})'
+    result = ""
+    if room or kind == "void":
+        text.line(call)
+    else:
+        result = text.value(call)
     if kind == "void":
-        arithmetic.text.line(call)
         return None
-    result = arithmetic.text.value(call)
-    numbers = iter(range(len(list(parts(made.result)))))
+    places = iter(range(len(list(parts(made.result)))))
 
     def taken(part: Number) -> Number:
-        text = arithmetic.text.value(f"extractvalue {kind} {result}, {next(numbers)}")
-        return Number(part.kind, text)
+        place = next(places)
+        if not room:
+            return Number(part.kind, text.value(f"extractvalue {kind} {result}, {place}"))
+        return Number(part.kind, text.value(f"load {part.type}, ptr {_place(text, kind, room, place)}"))
 
     return rebuilt(made.result, taken)
+
+
+# Registers for results are few: for more floats than two, LLVM uses those of the x87 unit, which are slow and whose stack
+# it does not keep balanced. More results are stored in memory of the caller; inlining removes the detour.
+_MOST_RETURNED, _RESULT = 2, "%result"
+
+
+def _is_stored(result: Value) -> bool:
+    """Return whether a result is stored where the first argument points."""
+    return len(list(parts(result))) > _MOST_RETURNED
+
+
+def _returned(result: Value) -> str:
+    return "void" if _is_stored(result) else _type_of(result)
 
 
 def _type_of(result: Value) -> str:
@@ -251,10 +275,16 @@ def _type_of(result: Value) -> str:
     return f"{{ {', '.join(types)} }}" if types else "void"
 
 
+def _place(text: FunctionText, kind: str, pointer: str, place: int) -> str:
+    return text.value(f"getelementptr inbounds {kind}, ptr {pointer}, i32 0, i32 {place}")
+
+
 def _with_return(text: FunctionText, result: Value) -> str:
-    kind = _type_of(result)
-    whole = "poison"
-    for position, number in enumerate(parts(result)):
-        whole = text.value(f"insertvalue {kind} {whole}, {number.operand}, {position}")
-    text.end("ret void" if kind == "void" else f"ret {kind} {whole}")
+    kind, whole = _type_of(result), "poison"
+    for place, number in enumerate(parts(result)):
+        if _is_stored(result):
+            text.line(f"store {number.operand}, ptr {_place(text, kind, _RESULT, place)}")
+        else:
+            whole = text.value(f"insertvalue {kind} {whole}, {number.operand}, {place}")
+    text.end("ret void" if _returned(result) == "void" else f"ret {kind} {whole}")
     return text.body()
