@@ -1,7 +1,11 @@
-"""What all tests share: equations (1) written out once more, and settings of hypothesis and of linear algebra."""
+"""What all tests share: equations (1) written out once more, and settings of hypothesis, linear algebra and Ctrl-C."""
 
 import os
+import signal
 
+# Shells let their background jobs ignore Ctrl-C, which tests send.
+if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 # Read when NumPy is first imported. Processes that test side by side would wait for each other's threads.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 

@@ -256,8 +256,8 @@ def _called(arithmetic: Arithmetic, made: _Made, values: Sequence[Value]) -> Val
     return rebuilt(made.result, taken)
 
 
-# Registers for results are few: for more floats than two, LLVM uses those of the x87 unit, which are slow and whose stack
-# it does not keep balanced. More results are stored in memory of the caller; inlining removes the detour.
+# Registers for results are few: for more floats than two, LLVM uses those of the x87 unit, which are slow and whose
+# stack it does not keep balanced. More results are stored in memory of the caller; inlining removes the detour.
 _MOST_RETURNED, _RESULT = 2, "%result"
 
 
