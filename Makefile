@@ -20,13 +20,14 @@ $(BIN)/python:
 	@$(PYTHON) -m venv $(VENV)
 	@$(BIN)/python -m pip install --quiet --upgrade 'pip>=25.1'
 
-# One stamp for each set of dependencies, renewed when pyproject.toml changes.
+# One stamp for each set of dependencies, renewed when pyproject.toml changes. Python compiles a module when it is first
+# imported; pip would compile all of them, for half a minute.
 $(VENV)/.core: pyproject.toml | $(BIN)/python
-	$(BIN)/python -m pip install --quiet --editable .
+	$(BIN)/python -m pip install --quiet --no-compile --editable .
 	@touch $@
 
 $(VENV)/.%: pyproject.toml | $(VENV)/.core
-	$(BIN)/python -m pip install --quiet --group $*
+	$(BIN)/python -m pip install --quiet --no-compile --group $*
 	@touch $@
 
 demo: $(VENV)/.core  ## reproduce, check and draw the source paper into stylobate-paper/
