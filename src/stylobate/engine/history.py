@@ -64,7 +64,9 @@ def history(
 
 
 def _samples(model: Model, motion: BaseMotion, trajectory: Trajectory, time: Floats) -> Samples:
+    column = model.column
     tau = np.minimum(time / model.time_scale, trajectory.end)
+    acceleration = motion.acceleration(time)
     states, resting = trajectory.states(tau), trajectory.resting(tau)
     tilt, rate = model.tilt(states), model.tilt_rate(states) / model.time_scale
     amplitude = np.hypot(*tilt)
@@ -81,12 +83,11 @@ def _samples(model: Model, motion: BaseMotion, trajectory: Trajectory, time: Flo
         "resting": Labelled(("time",), resting, {"long_name": "stands on its base"}),
         "base_displacement": _of_base(motion.displacement(time), "m", "base displacement"),
         "base_velocity": _of_base(motion.velocity(time), "m s-1", "base velocity"),
-        "base_acceleration": _of_base(motion.acceleration(time), "m s-2", "base acceleration"),
+        "base_acceleration": _of_base(acceleration, "m s-2", "base acceleration"),
     }
-    for name, output in model.outputs(states, Forcing.of(model, motion).along(tau), resting).items():
+    for name, output in model.outputs(states, acceleration.T / column.gravity, resting).items():
         make = _along_time if output.values.ndim == 1 else _along_axis
         variables[name] = make(output.values, output.units, output.long_name)
-    column = model.column
     attributes = {
         "slenderness": column.slenderness,
         "base_radius": column.radius,

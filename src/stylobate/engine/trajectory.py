@@ -155,27 +155,26 @@ class Trajectory:
     def _carried_at(self, which: npt.NDArray[np.intp], tau: Floats) -> Floats:
         begun, terms = self._carried
         gained = _polynomials(terms, which, self._share(which, tau))
-        return np.asarray((begun[which] + self.stretches[which, Trace.LENGTH][:, np.newaxis] * gained).T)
+        return np.asarray(np.take(begun, which, axis=1) + self.stretches[which, Trace.LENGTH] * gained)
 
     @cached_property
     def _carried(self) -> tuple[Floats, Floats]:
-        """Passive states at the start of each stretch (n, c), and their increments by powers of the share."""
+        """Passive states at the start of each stretch (c, n), and their increments by powers of the share (p, c, n)."""
         assert self.model.carried_rates is not None
         count, carried = len(self.stretches), len(self.carried)
-        terms = np.zeros((count, len(_NODES) + 1, carried))
+        terms = np.zeros((len(_NODES) + 1, carried, count))
         steps = np.flatnonzero(self._kinds == TraceKind.STEP)
         if steps.size:
             each, nodes = np.repeat(steps, len(_NODES)), np.tile(_NODES, steps.size)
             rates = self._carried_rates(self._within(each, nodes).T).reshape(steps.size, len(_NODES), carried)
-            terms[steps] = np.einsum("nkc,kp->npc", rates, _ANTIDERIVATIVES)
+            terms[..., steps] = np.einsum("nkc,kp->pcn", rates, _ANTIDERIVATIVES)
         analytical = np.flatnonzero(self._kinds == TraceKind.ANALYTICAL_STEP)
         if analytical.size:
-            terms[analytical, 1] = self._carried_rates(self._terms[0][:, analytical].T)
+            terms[1][:, analytical] = self._carried_rates(self._terms[0][:, analytical].T).T
         each = np.arange(count)
-        gained = _polynomials(terms, each, self._share(each, self.ends))
-        gained *= self.stretches[:, Trace.LENGTH][:, np.newaxis]
-        begun = np.array(self.carried) + np.cumsum(np.vstack([np.zeros(carried), gained[:-1]]), axis=0)
-        return begun, terms
+        gained = _polynomials(terms, each, self._share(each, self.ends)) * self.stretches[:, Trace.LENGTH]
+        before = np.cumsum(np.hstack([np.zeros((carried, 1)), gained[:, :-1]]), axis=1)
+        return np.array(self.carried)[:, np.newaxis] + before, terms
 
     def _carried_rates(self, states: Floats) -> Floats:
         assert self.model.carried_rates is not None
@@ -185,8 +184,9 @@ class Trajectory:
 
 
 def _polynomials(terms: Floats, which: npt.NDArray[np.intp], share: Floats) -> Floats:
-    """Return the values at `share` of the polynomials with these indices, coefficients of shape (n, powers, c)."""
-    value = np.zeros((which.size, terms.shape[2]))
-    for power in reversed(range(terms.shape[1])):
-        value = value * share[:, np.newaxis] + terms[which, power]
+    """Return the values at `share` of the polynomials with these indices, coefficients of shape (powers, c, n)."""
+    value = np.zeros((terms.shape[1], which.size))
+    for coefficients in reversed(terms):
+        value *= share
+        value += np.take(coefficients, which, axis=1)
     return value

@@ -74,6 +74,7 @@ class Record(BaseMotion):
     origin: RecordOrigin | None = None
     _velocity: Floats = field(init=False)
     _displacement: Floats = field(init=False)
+    _slope: Floats = field(init=False)
     _largest: Floats = field(init=False)
     _lowest: Floats = field(init=False)
     _highest: Floats = field(init=False)
@@ -88,6 +89,7 @@ class Record(BaseMotion):
         velocity, displacement = integrals(samples, self.step)
         object.__setattr__(self, "_velocity", velocity)
         object.__setattr__(self, "_displacement", displacement)
+        object.__setattr__(self, "_slope", np.diff(samples, axis=0) / self.step)
         object.__setattr__(self, "_largest", largest_from_each(np.hypot(samples[:, 0], samples[:, 1])))
         # the acceleration ends at zero, so zero is always among the later values
         object.__setattr__(self, "_lowest", -largest_from_each(np.maximum(-samples[:, 2], 0.0)))
@@ -170,15 +172,15 @@ class Record(BaseMotion):
         since = np.minimum(np.maximum(t - self.start, 0.0), length)
         knot = np.minimum((since / self.step).astype(int), len(self.samples) - 2)
         s = (since - self.step * knot)[..., np.newaxis]
-        a = self.samples[knot]
-        slope = (self.samples[knot + 1] - a) / self.step
+        a, slope = np.take(self.samples, knot, axis=0), np.take(self._slope, knot, axis=0)
         if order == ACCELERATION:
             moving = (t >= self.start) & (t <= self.end)
             values = np.where(moving[..., np.newaxis], a + slope * s, 0.0)
         elif order == VELOCITY:
-            values = self._velocity[knot] + s * (a + slope * s / 2.0)
+            values = np.take(self._velocity, knot, axis=0) + s * (a + slope * s / 2.0)
         else:
-            values = self._displacement[knot] + s * (self._velocity[knot] + s * (a / 2.0 + slope * s / 6.0))
+            velocity, displacement = np.take(self._velocity, knot, axis=0), np.take(self._displacement, knot, axis=0)
+            values = displacement + s * (velocity + s * (a / 2.0 + slope * s / 6.0))
             values = values + self._velocity[-1] * np.maximum(t - self.start - length, 0.0)[..., np.newaxis]
         return values[..., 0], values[..., 1], values[..., 2]
 
