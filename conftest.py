@@ -14,9 +14,8 @@ from sybil.parsers.myst import PythonCodeBlockParser, SkipParser
 # pytest puts a module that it imports first in the place of the function of that name in its package.
 import stylobate.studies  # noqa: F401
 
-# Parts of kernels make sense behind the head that is written for each kernel only; programs of the documentation run
-# while the site is built.
-collect_ignore_glob = ["src/stylobate/engine/kernel/driver/*", "src/stylobate/engine/flow/pattern.py", "docs/*.py"]
+# Programs of the documentation run while the site is built.
+collect_ignore_glob = ["docs/*.py"]
 
 
 def _enter_folder(namespace: dict[str, Any]) -> None:

@@ -30,7 +30,7 @@ from .one_core import use_one_core
 from .workloads import MIX_DISTINCT, WORKLOADS, Workload
 
 _FOLDER = Path(__file__).parents[2] / "docs" / "_static" / "benchmarks"
-_OBSERVATION, _STEP = "                    observe(buf, i)\n", "            step(buf, width)\n"
+_OBSERVATION, _STEP = "        observe(buf, i)\n", "            step(buf, width)\n"
 # Number of steps of all runs of "rolling" before other work is due.
 _STEPS = 1000
 _STEPS_ALONE = """

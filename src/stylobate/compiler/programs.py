@@ -50,6 +50,18 @@ class Unbound:
         return f"<{self.name}, which no program has bound>"
 
 
+def placeholders(module: str, declared: Mapping[str, Any]) -> Callable[[str], Unbound]:
+    """Return the function `__getattr__` of a module that only declares names, so that other modules can import them."""
+
+    def placeholder(name: str) -> Unbound:
+        if name in declared:
+            return Unbound(name)
+        message = f"{module} declares no name {name}"
+        raise AttributeError(message)
+
+    return placeholder
+
+
 @dataclass(frozen=True, eq=False)
 class Bound:
     """Ordinary modules, with their open names bound.

@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from stylobate.base_motions import BaseMotion
 from stylobate.engine.ensembles.harmonics import terms_of
-from stylobate.engine.flow.modules import flow_of
+from stylobate.engine.flow.flows import flow_of
 from stylobate.engine.flow.tableau import Status
 from stylobate.engine.forcing import common_line
 from stylobate.engine.parameters import present_value, with_parameters

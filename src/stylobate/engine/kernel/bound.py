@@ -6,7 +6,7 @@
 from collections.abc import Callable
 from typing import Any
 
-from stylobate.compiler.programs import Unbound
+from stylobate.compiler.programs import placeholders
 
 WIDTH: int
 GRAIN: int
@@ -113,9 +113,4 @@ begin: Callable[..., int]
 handle: Callable[..., int]
 """Handles the event of a lane; returns the final status if the run ends, else WAITING."""
 
-
-def __getattr__(name: str) -> Any:
-    if name in __annotations__:
-        return Unbound(name)
-    message = f"no kernel binds {name}"
-    raise AttributeError(message)
+__getattr__ = placeholders(__name__, __annotations__)

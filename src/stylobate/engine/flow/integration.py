@@ -1,37 +1,33 @@
-"""Flow of a model over a part of the period of the base motion, with its derivatives: text of a compiled module.
+"""Integration of a model's motion, with its derivatives, over a part of the period of the base motion.
 
-A module consists of a head, which defines the names of `head` for one model, and of a copy of the text after the mark.
 The state of order n is the first column of a matrix of n rows. The next columns are its derivatives with respect to the
-initial state and to one parameter of the system.
+initial state and to one parameter of the system. `flows` binds the open names to a model.
 
 DOP853: E. Hairer, S. P. Nørsett, G. Wanner, "Solving Ordinary Differential Equations I", 2nd ed., section II.5.
 """
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 
 from stylobate.engine.elementary import turning_point, winding
+from stylobate.engine.flow.bound import (
+    ACCELERATIONS,
+    LOSES,
+    NUMBERS,
+    ORDER,
+    PLANAR,
+    from_plane,
+    impact_map,
+    jacobian,
+    rates,
+    tilt_of,
+)
 from stylobate.engine.flow.tableau import DOP_A, DOP_C, DOP_E3, DOP_E5, Status
-
-if TYPE_CHECKING:
-    from stylobate.engine.flow.head import (
-        ACCELERATIONS,
-        NUMBERS,
-        ORDER,
-        PLANAR,
-        jacobian_into,
-        lean_of,
-        rates_into,
-        speed_after_passage,
-    )
 
 Table = npt.NDArray[np.float64]
 Vector = npt.NDArray[np.float64]
-
-# --- the module's text begins here ---
 
 # Step control as in SciPy: safety factor, bounds of the step ratio, and lower bound of the error.
 SAFETY, LEAST_FACTOR, LARGEST_FACTOR, LEAST_ERROR = 0.9, 0.2, 10.0, 1e-12
@@ -42,6 +38,58 @@ MOST_STEPS = 200_000
 MET, MOST_TRIES = 1e-15, 60
 # Difference step for the derivative of the loss at a passage, as a fraction of the change of the parameters.
 LOSS_STEP = 1e-6
+
+
+# Equations of the model
+
+
+def arguments_of(state: Vector, push: Vector, side: float, numbers: Vector) -> tuple[float, ...]:
+    """Return the arguments of the rates and of their derivatives."""
+    states = tuple(state[j] for j in range(ORDER))
+    accelerations = tuple(push[k] for k in range(ACCELERATIONS))
+    if PLANAR:
+        return (*states, side, *accelerations, *parameters_of(numbers))
+    return (*states, *accelerations, *parameters_of(numbers))
+
+
+def parameters_of(numbers: Vector) -> tuple[float, ...]:
+    """Return the parameters of the model."""
+    return tuple(numbers[j] for j in range(NUMBERS))
+
+
+def rates_into(state: Vector, push: Vector, side: float, numbers: Vector, out: Vector) -> None:
+    """Set the rates of a state."""
+    found = rates(*arguments_of(state, push, side, numbers))
+    for j in range(ORDER):
+        out[j] = found[j]
+
+
+def jacobian_into(state: Vector, push: Vector, side: float, numbers: Vector, out: Table) -> None:
+    """Set the derivatives of the rates; the columns are those of states, accelerations and parameters."""
+    rows = jacobian(*arguments_of(state, push, side, numbers))
+    for i in range(ORDER):
+        for j in range(ORDER + ACCELERATIONS + NUMBERS):
+            out[i, j] = rows[i][j]
+
+
+def lean_of(state: Vector, numbers: Vector) -> tuple[float, float, float, float]:
+    """Return the tilt vector and its rate; along x if planar."""
+    if PLANAR:
+        return state[0], 0.0, state[1], 0.0
+    return tilt_of(*tuple(state[j] for j in range(ORDER)), *parameters_of(numbers))
+
+
+def speed_after_passage(rate: float, numbers: Vector) -> float:
+    """Return the tilt rate after a planar passage through the vertical."""
+    if not LOSES:
+        return rate
+    parameters = parameters_of(numbers)
+    state = impact_map(*from_plane(0.0, rate, 1.0, 0.0, *parameters), *parameters)
+    _, _, vx, _ = tilt_of(*state, *parameters)
+    return vx
+
+
+# Steps
 
 
 def accelerations_into(s: float, terms: Table, out: Vector) -> None:

@@ -1,0 +1,86 @@
+"""Flows of models: their integration, bound to a model and compiled."""
+
+from collections.abc import Callable
+from functools import cache
+from typing import Any
+
+from stylobate.compiler.compiled import Compiled
+from stylobate.compiler.programs import Bound, Written
+from stylobate.compiler.unit import ArrayArgument
+from stylobate.compiler.values import Kind
+from stylobate.engine import elementary
+from stylobate.engine.equations.expressions import Expression, Recording
+from stylobate.engine.equations.recording import recorded
+from stylobate.engine.flow import integration, tableau
+from stylobate.errors import UnsupportedError
+from stylobate.models import Model
+
+
+@cache
+def flow_of(model: type[Model], states: int, numbers: int, *, planar: bool) -> Compiled:
+    """Return the flow of a class of models with these numbers of states and parameters, three-dimensional or planar.
+
+    Raises
+    ------
+    UnsupportedError
+        If the equations cannot be differentiated.
+    """
+    rates = model.planar_rates if planar else model.rates
+    if rates is None:
+        message = f"model {model.name} has no equations of planar motion"
+        raise UnsupportedError(message)
+    loses = planar and model.impact_map is not None
+    needed = ["impact_map", "from_plane", "tilt_of"] if loses else [] if planar else ["tilt_of"]
+    functions: dict[str, Callable[..., Any]] = {"rates": rates, **{name: getattr(model, name) for name in needed}}
+    order, accelerations = (2, 2) if planar else (states, 3)
+    written = None
+    if planar or model.jacobian is None:
+        written = Written(_jacobian_source(rates, order, accelerations, numbers, planar=planar))
+    else:
+        functions["jacobian"] = model.jacobian
+    vector, terms = ArrayArgument((numbers,)), ArrayArgument((None, 1 + 2 * accelerations))
+    return Compiled(
+        name="flow",
+        program=Bound(
+            modules=[integration],
+            names={
+                "ORDER": order,
+                "ACCELERATIONS": accelerations,
+                "NUMBERS": numbers,
+                "PLANAR": planar,
+                "LOSES": loses,
+            },
+            written=written,
+            imported=[elementary, tableau],
+        ),
+        functions=functions,
+        arguments=(
+            ArrayArgument((order, order + 2)),
+            *[Kind.FLOAT] * 3,
+            terms,
+            vector,
+            ArrayArgument((1 + numbers,)),
+            terms,
+            ArrayArgument((4,)),
+            ArrayArgument((5,)),
+        ),
+        model=model.name,
+        description=f"{model.name}, flow in {'plane' if planar else 'space'} with its derivatives",
+    )
+
+
+def _jacobian_source(rates: Callable[..., Any], states: int, accelerations: int, numbers: int, *, planar: bool) -> str:
+    """Return the source of `jacobian`, which computes the derivatives of the recorded rates."""
+    state = [f"y{j}" for j in range(states)]
+    rest = [*(f"a{k}" for k in range(accelerations)), *(f"p{j}" for j in range(numbers))]
+    arguments = [*state, *(["side"] if planar else []), *rest]
+    record = Recording()
+    inputs = {name: record.input(name) for name in arguments}
+    results = [record.known(result) for result in recorded(rates, tuple(inputs.values()))]
+    variables: list[Expression] = [inputs[name] for name in (*state, *rest)]
+    table = record.derivatives(results, variables)
+    lines, names = record.source([entry for row in table for entry in row])
+    columns = len(variables)
+    rows = [f"({', '.join(names[i * columns : (i + 1) * columns])})" for i in range(states)]
+    body = "\n".join(f"    {line}" for line in [*lines, f"return {', '.join(rows)}"])
+    return f"import math\n\n\ndef jacobian({', '.join(arguments)}):\n{body}\n"
