@@ -133,7 +133,7 @@ class Terms:
         return times[:, np.any(np.isfinite(times), axis=0)]
 
     def columns(self, time_scale: Floats, gravity: Floats, *, windowed: bool) -> Floats:
-        """Return the columns of a kernel: per term the turns per unit of time, amplitudes [g] and phases [turns]."""
+        """Return the columns of a kernel, those of `Wave` for each term."""
         scale = time_scale[:, np.newaxis]
         phase = np.angle(self.amplitude) + self.phase_at_start[..., np.newaxis]
         parts = [self.angular_frequency * scale / (2.0 * math.pi)]

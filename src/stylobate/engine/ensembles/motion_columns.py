@@ -15,6 +15,7 @@ from stylobate.engine.ensembles.harmonics import Term, Terms, factors, terms_of
 from stylobate.engine.ensembles.model_columns import ModelColumns
 from stylobate.engine.ensembles.polynomials import Table, one_after_another, tabulated
 from stylobate.engine.ensembles.stretched import tabulated_alike
+from stylobate.engine.kernel.columns import Tabulated
 from stylobate.engine.kernel.forcing import Harmonics, KernelForcing, Polynomials
 from stylobate.engine.parameters import changed_motion, declared_names, peak_acceleration
 from stylobate.engine.thresholds import least_rest_energy
@@ -233,4 +234,13 @@ def _table_columns(
     scaled, which = factor / models.gravity, plan.member(values, count)
     delay = values.get("delay", np.zeros(count))
     first, number = plan.first[which], plan.lengths[which]
-    return np.stack([scaled, np.cos(rotation), np.sin(rotation), scaled, delay, first, number], axis=1)
+    columns = {
+        Tabulated.FACTOR: scaled,
+        Tabulated.COS: np.cos(rotation),
+        Tabulated.SIN: np.sin(rotation),
+        Tabulated.VERTICAL: scaled,
+        Tabulated.DELAY: delay,
+        Tabulated.FIRST: first,
+        Tabulated.COUNT: number,
+    }
+    return np.stack([columns[column] for column in Tabulated], axis=1)

@@ -10,13 +10,12 @@ from numpy.polynomial import chebyshev
 
 from stylobate.base_motions import BaseMotion
 from stylobate.base_motions.base import ACCELERATION
+from stylobate.engine.kernel.columns import Piece
 from stylobate.errors import UnsupportedError
 
 Floats = npt.NDArray[np.float64]
 
 DEGREE = 15
-# Columns of a row before its coefficients; the same number is in the kernels.
-_BEFORE = 7
 # Pieces are at most half the shortest period long. They are halved until the error is below this fraction of the peak
 # acceleration; the second number is the maximum number of halvings.
 _ACCURACY, _HALVINGS = 1e-11, 12
@@ -29,12 +28,7 @@ _ASIDE = 4.0 * float(np.finfo(float).eps)
 
 @dataclass(frozen=True, slots=True)
 class Table:
-    """Pieces of polynomials, a row each.
-
-    A row holds start and end [s]; sup |a_h|, inf and sup a_z after its start [m/s²]; 1 if the next piece continues
-    the acceleration without a jump, else 0; the reciprocal of half the length [1/s]; and the coefficients for x, y and
-    z, lowest power first. Their variable is the time from the middle of the piece over half its length.
-    """
+    """Pieces of polynomials, a row each with the columns of `Piece`."""
 
     rows: Floats
     degree: int
@@ -53,14 +47,14 @@ class Table:
     @property
     def coefficients(self) -> Floats:
         """Coefficients of all pieces, shape (pieces, 3, degree + 1)."""
-        return self.rows[:, _BEFORE:].reshape(len(self.rows), 3, -1)
+        return self.rows[:, len(Piece) :].reshape(len(self.rows), 3, -1)
 
     def raised(self, degree: int) -> "Table":
         """Return the same pieces as polynomials of a higher `degree`."""
         count = len(self.rows)
         coefficients = np.zeros((count, 3, degree + 1))
         coefficients[:, :, : self.degree + 1] = self.coefficients
-        return Table(np.column_stack([self.rows[:, :_BEFORE], coefficients.reshape(count, -1)]), degree)
+        return Table(np.column_stack([self.rows[:, : len(Piece)], coefficients.reshape(count, -1)]), degree)
 
 
 def one_after_another(tables: Sequence[Table]) -> Table:

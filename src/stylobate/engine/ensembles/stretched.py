@@ -8,6 +8,7 @@ import numpy.typing as npt
 from stylobate.base_motions import BaseMotion
 from stylobate.base_motions.base import ACCELERATION
 from stylobate.engine.ensembles.polynomials import Table, tabulated
+from stylobate.engine.kernel.columns import Piece
 
 Floats = npt.NDArray[np.float64]
 
@@ -41,20 +42,23 @@ def _stretched(table: Table, of: BaseMotion, motion: BaseMotion, end: float) -> 
     size = of.peak_horizontal(0.0)
     if len(before) != len(after) or len(before) == 1 or not size > 0.0:
         return None
-    going = table.rows[:, 1] <= before[-1]
+    going = table.rows[:, Piece.END] <= before[-1]
     if np.any(table.coefficients[~going]):
         return None  # it never ends
     strength = motion.peak_horizontal(0.0) / size
-    spans = np.interp(table.rows[going, :2], before, after)
+    spans = np.interp(table.rows[going][:, [Piece.START, Piece.END]], before, after)
     rest = (after[-1], max(end, after[-1] + 1.0))
     coefficients = np.append(strength * table.coefficients[going], np.zeros((1, *table.coefficients.shape[1:])), axis=0)
-    bounds = np.append(strength * table.rows[going, 2:5], np.zeros((1, 3)), axis=0)
+    bounds = np.append(
+        strength * table.rows[going, Piece.LARGEST_HORIZONTAL : Piece.CONTINUED], np.zeros((1, 3)), axis=0
+    )
     found = Table.of(np.vstack([spans, rest]), bounds, coefficients)
     return found if _fits(found, motion, size * strength) else None
 
 
 def _fits(table: Table, motion: BaseMotion, size: float) -> bool:
-    middle, half = 0.5 * table.rows[:, :2].sum(axis=1), 0.5 * (table.rows[:, 1] - table.rows[:, 0])
+    starts, ends = table.rows[:, Piece.START], table.rows[:, Piece.END]
+    middle, half = 0.5 * (starts + ends), 0.5 * (ends - starts)
     times = middle[:, np.newaxis] + half[:, np.newaxis] * _TEST_POINTS
     powers = _TEST_POINTS ** np.arange(table.degree + 1)[:, np.newaxis]
     tabulated_values = table.coefficients @ powers  # piece, axis, time

@@ -2,8 +2,8 @@
 
 The table is one float64 array with a row for each run. A row holds, in this order: `Setup`, `Log`, two windows, the
 looks of a period, the state, `Change` if the contact of the model can change, an `Orbit` for each known orbit, the
-parameters of the model, the numbers of the base motion, its breaks, samples, stroboscopic samples, and the trace of
-the run if there is one. A look is a check of the tilt vector at one of the equally spaced times of the last periods.
+parameters of the model, the numbers of the base motion (a `Wave` for each term, or `Tabulated`), its breaks, samples,
+stroboscopic samples, and the trace of the run if there is one. A look is a check of the tilt vector at one of the equally spaced times of the last periods.
 """
 
 from enum import IntEnum, auto
@@ -64,6 +64,59 @@ class Setup(_FromZero):
     SLOPE_Y = auto()
     SLOPE_Z = auto()
     """Contribution of an inclined plane to the base acceleration; it is in the equations, not in the base motion."""
+
+
+class Wave(_FromZero):
+    """Numbers of one term of a harmonic base motion: Σ a cos 2π(ft + φ), in the units of `Setup`."""
+
+    TURNS = auto()
+    """Turns f per unit of time."""
+    SIZE_X = auto()
+    PHASE_X = auto()
+    SIZE_Y = auto()
+    PHASE_Y = auto()
+    SIZE_Z = auto()
+    PHASE_Z = auto()
+    """Amplitudes a [g] and phases φ [turns]."""
+    ONSET = auto()
+    BEGINS = auto()
+    ENDS = auto()
+    """Time before which the term is zero, and interval in which it rises; only if a term has an onset or a ramp."""
+
+
+class Tabulated(_FromZero):
+    """Numbers of a base motion that is tabulated by polynomials."""
+
+    FACTOR = auto()
+    COS = auto()
+    SIN = auto()
+    """Factor and rotation of the horizontal acceleration."""
+    VERTICAL = auto()
+    """Factor of the vertical acceleration."""
+    DELAY = auto()
+    """Delay [s]."""
+    FIRST = auto()
+    COUNT = auto()
+    """Row of the first polynomial, and number of polynomials."""
+
+
+class Piece(_FromZero):
+    """First columns of a polynomial of a tabulated base motion; coefficients for x, y and z follow, lowest power first.
+
+    The variable is the time from the middle of the piece over half its length.
+    """
+
+    START = auto()
+    END = auto()
+    """Interval [s]."""
+    LARGEST_HORIZONTAL = auto()
+    MINIMUM_VERTICAL = auto()
+    MAXIMUM_VERTICAL = auto()
+    """sup |a_h|, inf a_z and sup a_z after the start [m/s²]."""
+    CONTINUED = auto()
+    """1 if the next piece continues the acceleration without a jump, else 0."""
+    PER_HALF = auto()
+    """Reciprocal of half the length [1/s]."""
 
 
 class Log(_FromZero):

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from typing import Protocol
 
+from stylobate.engine.kernel.columns import Tabulated, Wave
 from stylobate.engine.kernel.layout import Rows
 
 
@@ -53,8 +54,8 @@ class Harmonics(KernelForcing):
 
     @property
     def columns(self) -> int:
-        """Columns of each term: frequency, amplitude and phase along x, y, z; onset, begin and end of its rise."""
-        return self.terms * (7 + 3 * self.windowed)
+        """Number of columns, those of `Wave` for each term."""
+        return self.terms * (len(Wave) if self.windowed else Wave.ONSET)
 
     def reserve(self, rows: Rows) -> None:
         """Add the rows of all terms, term by term."""
@@ -92,8 +93,8 @@ class Polynomials(KernelForcing):
 
     @property
     def columns(self) -> int:
-        """Columns: factor, cos and sin of a rotation, vertical factor, delay [s], first piece, number of pieces."""
-        return 7
+        """Number of columns, those of `Tabulated`."""
+        return len(Tabulated)
 
     def reserve(self, rows: Rows) -> None:
         """Add the rows of the present piece."""

@@ -18,12 +18,12 @@ from stylobate.engine.kernel.bound import (
     WINDOWED,
     R,
 )
+from stylobate.engine.kernel.columns import Piece, Tabulated, Wave
 from stylobate.engine.kernel.driver.equations import model_no_return
 from stylobate.engine.kernel.layout import Table
 
-# Columns of a piece: flag of a piece that the next one continues without a jump, reciprocal of half the length, and
-# first coefficient.
-CONTINUED, PER_HALF, COEFFICIENTS_AT = 5, 6, 7
+# First coefficient of a piece.
+COEFFICIENTS_AT = len(Piece)
 
 
 def set_leg(buf: Table, i: int, table: Table, pieces: Table, t: float) -> None:
@@ -37,31 +37,32 @@ def set_leg(buf: Table, i: int, table: Table, pieces: Table, t: float) -> None:
 
 
 def set_terms(buf: Table, i: int, motion: Table, t: float) -> None:
-    columns = 7 + 3 * WINDOWED
+    """Set the terms of a harmonic base motion."""
+    columns = len(Wave) if WINDOWED else Wave.ONSET
     for term in range(TERMS):
-        source = term * columns
+        wave = motion[term * columns :]
         row = FIRST_FORCING + term * FORCING_ROWS
-        buf[row, i] = motion[source]
+        buf[row, i] = wave[Wave.TURNS]
         if PLANAR:
             # The acceleration along the line is a sum of two cosines of one frequency.
             ux, uy = buf[R.LINE_X, i], buf[R.LINE_Y, i]
-            fx, fy = 2.0 * math.pi * motion[source + 2], 2.0 * math.pi * motion[source + 4]
-            cos = ux * motion[source + 1] * math.cos(fx) + uy * motion[source + 3] * math.cos(fy)
-            sin = ux * motion[source + 1] * math.sin(fx) + uy * motion[source + 3] * math.sin(fy)
+            fx, fy = 2.0 * math.pi * wave[Wave.PHASE_X], 2.0 * math.pi * wave[Wave.PHASE_Y]
+            cos = ux * wave[Wave.SIZE_X] * math.cos(fx) + uy * wave[Wave.SIZE_Y] * math.cos(fy)
+            sin = ux * wave[Wave.SIZE_X] * math.sin(fx) + uy * wave[Wave.SIZE_Y] * math.sin(fy)
             buf[row + 1, i] = math.hypot(cos, sin)
             buf[row + 2, i] = math.atan2(sin, cos) / (2.0 * math.pi)
             row += 3
         else:
             for k in range(4):
-                buf[row + 1 + k, i] = motion[source + 1 + k]
+                buf[row + 1 + k, i] = wave[Wave.SIZE_X + k]
             row += 5
         if VERTICAL:
-            buf[row, i] = motion[source + 5]
-            buf[row + 1, i] = motion[source + 6]
+            buf[row, i] = wave[Wave.SIZE_Z]
+            buf[row + 1, i] = wave[Wave.PHASE_Z]
             row += 2
         if WINDOWED:
-            onset, begins, ends = motion[source + 7], motion[source + 8], motion[source + 9]
-            full = 0.0 if t < onset else 0.5 if t < ends else 1.0
+            begins, ends = wave[Wave.BEGINS], wave[Wave.ENDS]
+            full = 0.0 if t < wave[Wave.ONSET] else 0.5 if t < ends else 1.0
             per_turn = 0.5 / (ends - begins) if ends > begins else 0.0
             buf[row, i] = full
             buf[row + 1, i] = 0.5 if full == 0.5 else 0.0  # noqa: PLR2004
@@ -71,7 +72,8 @@ def set_terms(buf: Table, i: int, motion: Table, t: float) -> None:
 
 def set_piece(buf: Table, i: int, motion: Table, pieces: Table, t: float) -> None:
     """Load the polynomial that begins at `t`."""
-    delay, first, last = motion[4], int(motion[5]), int(motion[5] + motion[6]) - 1
+    delay, first = motion[Tabulated.DELAY], int(motion[Tabulated.FIRST])
+    last = int(motion[Tabulated.FIRST] + motion[Tabulated.COUNT]) - 1
     time = t * buf[R.TIME_SCALE, i] * (1.0 + 4e-16)  # a leg that begins at a knot has passed it
     if time < delay:
         for row in range(FIRST_FORCING, FIRST_FORCING + 2 + (2 - PLANAR + VERTICAL) * FORCING_ROWS):
@@ -84,15 +86,16 @@ def set_piece(buf: Table, i: int, motion: Table, pieces: Table, t: float) -> Non
 
 def load_piece(buf: Table, i: int, motion: Table, pieces: Table, index: int) -> None:
     """Load the polynomial in row `index`, and the bounds of the base motion after its start."""
-    factor, cos, sin, vertical, delay = motion[0], motion[1], motion[2], motion[3], motion[4]
-    first, count = int(motion[5]), int(motion[6])
+    factor, cos, sin = motion[Tabulated.FACTOR], motion[Tabulated.COS], motion[Tabulated.SIN]
+    vertical, delay = motion[Tabulated.VERTICAL], motion[Tabulated.DELAY]
+    number, count = index - int(motion[Tabulated.FIRST]), int(motion[Tabulated.COUNT])
     per_second = buf[R.PER_SECOND, i]
     piece = pieces[index]
-    start, end = piece[0], piece[1]
-    buf[R.PIECE, i] = index - first
-    buf[R.CONTINUED, i] = piece[CONTINUED]
-    buf[FIRST_FORCING, i] = (0.5 * (start + end) + delay) * per_second
-    buf[FIRST_FORCING + 1, i] = piece[PER_HALF] * buf[R.TIME_SCALE, i]
+    end = piece[Piece.END]
+    buf[R.PIECE, i] = number
+    buf[R.CONTINUED, i] = piece[Piece.CONTINUED]
+    buf[FIRST_FORCING, i] = (0.5 * (piece[Piece.START] + end) + delay) * per_second
+    buf[FIRST_FORCING + 1, i] = piece[Piece.PER_HALF] * buf[R.TIME_SCALE, i]
     for k in range(FORCING_ROWS):
         x, y = piece[COEFFICIENTS_AT + k], piece[COEFFICIENTS_AT + FORCING_ROWS + k]
         x, y = factor * (cos * x - sin * y), factor * (sin * x + cos * y)
@@ -105,7 +108,8 @@ def load_piece(buf: Table, i: int, motion: Table, pieces: Table, index: int) -> 
             buf[row, i] = y
         if VERTICAL:
             buf[row + FORCING_ROWS, i] = vertical * piece[COEFFICIENTS_AT + 2 * FORCING_ROWS + k]
-    largest, up, down = abs(factor) * piece[2], vertical * piece[3], vertical * piece[4]
+    largest = abs(factor) * piece[Piece.LARGEST_HORIZONTAL]
+    up, down = vertical * piece[Piece.MINIMUM_VERTICAL], vertical * piece[Piece.MAXIMUM_VERTICAL]
     least = min(up, down)
     changed = largest != buf[R.LARGEST_HORIZONTAL, i] or least != buf[R.MINIMUM_VERTICAL, i]
     buf[R.LARGEST_HORIZONTAL, i] = largest
@@ -113,7 +117,7 @@ def load_piece(buf: Table, i: int, motion: Table, pieces: Table, index: int) -> 
     buf[R.MAXIMUM_VERTICAL, i] = max(up, down)
     if changed:
         set_bounds(buf, i)
-    buf[R.LEG_ENDS, i] = (end + delay) * per_second if index - first < count - 1 else math.inf
+    buf[R.LEG_ENDS, i] = (end + delay) * per_second if number < count - 1 else math.inf
 
 
 def continues_in_next_piece(buf: Table, i: int, table: Table, pieces: Table) -> bool:
@@ -121,21 +125,21 @@ def continues_in_next_piece(buf: Table, i: int, table: Table, pieces: Table) -> 
     if buf[R.CONTINUED, i] == 0.0:
         return False
     motion, leg_end = table[int(buf[R.RUN, i]), MOTION_AT:], buf[R.LEG_ENDS, i]
-    load_piece(buf, i, motion, pieces, int(motion[5] + buf[R.PIECE, i]) + 1)
+    load_piece(buf, i, motion, pieces, int(motion[Tabulated.FIRST] + buf[R.PIECE, i]) + 1)
     return buf[R.LEG_ENDS, i] > leg_end  # a very short piece can have no length, by rounding
 
 
 def piece_at(pieces: Table, near: int, first: int, last: int, delay: float, time: float) -> int:
     """Return the index of the last piece that begins no later than `time`; `near` is the index of the last query."""
-    if pieces[near, 0] + delay <= time:
+    if pieces[near, Piece.START] + delay <= time:
         first = near
-        if near == last or pieces[near + 1, 0] + delay > time:
+        if near == last or pieces[near + 1, Piece.START] + delay > time:
             return near
-        if near + 1 == last or pieces[near + 2, 0] + delay > time:
+        if near + 1 == last or pieces[near + 2, Piece.START] + delay > time:
             return near + 1
     while first < last:
         middle = (first + last + 1) // 2
-        if pieces[middle, 0] + delay <= time:
+        if pieces[middle, Piece.START] + delay <= time:
             first = middle
         else:
             last = middle - 1
