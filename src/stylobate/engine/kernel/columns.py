@@ -3,7 +3,8 @@
 The table is one float64 array with a row for each run. A row holds, in this order: `Setup`, `Log`, two windows, the
 looks of a period, the state, `Change` if the contact of the model can change, an `Orbit` for each known orbit, the
 parameters of the model, the numbers of the base motion (a `Wave` for each term, or `Tabulated`), its breaks, samples,
-stroboscopic samples, and the trace of the run if there is one. A look is a check of the tilt vector at one of the equally spaced times of the last periods.
+stroboscopic samples, and the trace of the run if there is one. A look is a check of the tilt vector at one of the
+equally spaced times of the last periods.
 """
 
 from enum import IntEnum, auto
