@@ -41,8 +41,9 @@ def control_step(buf: Table, width: int) -> None:
         if not PLANAR:
             follow_azimuth(buf, i)
     for i in lanes(width):
+        nearer = approach(buf, i)
         keep_step(buf, i)
-        choose_next_step(buf, i)
+        choose_next_step(buf, i, nearer)
         flag_lane(buf, i)
 
 
@@ -241,7 +242,7 @@ def keep(buf: Table, i: int, target: int, source: int, go: float) -> None:
     buf[target, i] = new if go > 0.0 else old
 
 
-def choose_next_step(buf: Table, i: int) -> None:
+def choose_next_step(buf: Table, i: int, nearer: float) -> None:
     """Advance the time if the step is accepted, and choose the next step."""
     h, t = buf[R.H, i], buf[R.TIME, i]
     go, ok, stop = buf[R.GO, i], buf[R.OK, i], buf[R.STOP, i]
@@ -253,13 +254,30 @@ def choose_next_step(buf: Table, i: int) -> None:
     now = t + h * go
     now = stop if reached > 0.0 else now
     buf[R.TIME, i] = now
-    wanted = min(wanted_by_series(buf, i, h, ok) if SERIES else wanted_by_error(buf, i, h), buf[R.LONGEST_STEP, i])
+    wanted = wanted_by_series(buf, i, h, ok) if SERIES else wanted_by_error(buf, i, h) * nearer
+    wanted = min(wanted, buf[R.LONGEST_STEP, i])
     buf[R.REJECTED, i] = 1.0 - ok
     # A rejected step back to an event remains aimed; otherwise it would continue backwards in time.
     buf[R.AIMED, i] = buf[R.AIMED, i] * (1.0 if h < 0.0 else ok)
     buf[R.WANTED, i] = wanted
     buf[R.H, i] = min(wanted, stop - now)
     buf[R.STEPS, i] = buf[R.STEPS, i] + go
+
+
+def approach(buf: Table, i: int) -> float:
+    """Return the factor by which the singularities of the equations come nearer within an accepted step; at most 1.
+
+    On a straight path they lie at the complex times at which the squared tilt is zero, as far away as the tilt over the
+    speed. The step that the error allows is a part of this distance.
+    """
+    if PLANAR or SWITCHING or SERIES:
+        return 1.0
+    before = buf[R.VX, i] * buf[R.VX, i] + buf[R.VY, i] * buf[R.VY, i]
+    after = buf[R.NEW_VX, i] * buf[R.NEW_VX, i] + buf[R.NEW_VY, i] * buf[R.NEW_VY, i]
+    tilt0, tilt1 = buf[R.TILT, i], buf[R.NEW_TILT, i]
+    ratio = math.sqrt(tilt1 * tilt1 * before / (tilt0 * tilt0 * after + TINY))
+    inward = buf[R.GO, i] * (1.0 if buf[R.NEW_RADIAL, i] < 0.0 else 0.0)
+    return min(1.0, max(LEAST_FACTOR, ratio)) if inward > 0.0 else 1.0
 
 
 def wanted_by_error(buf: Table, i: int, h: float) -> float:
