@@ -195,7 +195,7 @@ def test_a_run_out_of_steps_has_failed_and_says_why(max_steps):
 
 def test_a_run_out_of_steps_by_close_passages_without_loss_names_them_and_the_remedy():
     column = sb.Column.dimensionless(slenderness=0.1)
-    start = {"tilt": (0.02, 0.0), "tilt_rate": (-0.05, 1e-7), "duration": 100.0, "max_steps": 40}
+    start = {"tilt": (0.02, 0.0), "tilt_rate": (-0.05, 1e-7), "duration": 100.0, "max_steps": 60}
     reasons = [sb.simulate(sb.Rolling(column, restitution=e), **start).reason for e in (1.0, 0.99)]
     assert ["set restitution below 1" in reason for reason in reasons] == [True, False]
     assert all("step limit" in reason for reason in reasons)

@@ -52,7 +52,8 @@ def test_reflection_swaps_the_two_senses():
     left, right = run(1), run(-1)
     assert left.outcome is right.outcome
     mirrored = right.data.tilt.to_numpy() * [1.0, -1.0]
-    np.testing.assert_allclose(left.data.tilt, mirrored, rtol=0.0, atol=1e-12)
+    # The two phases round differently by 1e-16; steps and motion amplify this while the motion settles.
+    np.testing.assert_allclose(left.data.tilt, mirrored, rtol=0.0, atol=1e-11)
     np.testing.assert_allclose(left.data.azimuth, -right.data.azimuth, rtol=0.0, atol=1e-9)
     assert left.measures["turns"] == pytest.approx(-right.measures["turns"], rel=1e-12)
     assert left.measures["turns"] > 5.0
