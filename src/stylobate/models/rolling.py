@@ -46,26 +46,28 @@ def balance(
     outward, across = ax * ux + ay * uy, ay * ux - ax * uy
     transverse, inertia = 1.0 - kappa, kappa * axial * c * c  # I_t, I_a
     height, slope = cos + c * sine, c * cos - sine  # ρ', z'
-    freedom = 1.0 + axial - kappa  # Λ
     # K θ̈ = −(1 + a_z) z' − ρ' a_d − κρ'β̇ w + (1 − κ)β̇² sin θ cos θ − I_a β̇ sin θ w3 + M2,  w = c w3 − β̇ sin θ
-    gyration = kappa * c * (height + axial * c * sine) * w3
-    whirl = around * (around * sine * (cos + kappa * c * sine) - gyration)
+    whirl = -around * (w1 * (cos + kappa * c * sine) + kappa * c * (height + axial * c * sine) * w3)
     moment = whirl - (1.0 + az) * slope - height * outward - eta * w2
     rolling = w1 * cos + w3 * sine  # the angular rate about d
     falling, normal, drag = tilt_acceleration(moment, w2, rolling, sine, cos, 1.0 + az, c, kappa, resistance)
-    # The couples: −ηw1; −D0 ω_z about the vertical, D0 = ζ I_a Λ/i_a; rolling resistance about d.
-    pivoting = zeta * kappa * c * c * freedom * (w3 * cos - w1 * sine)
-    m1 = pivoting * sine - eta * w1 - drag * rolling * cos
-    m3 = -pivoting * cos - drag * rolling * sine
-    # T_n (1 + κ/I_t + 1/i_a) = a_n + κw2 (w3 I_a/I_t − c w1) − κM1/I_t − κcM3/I_a
-    given = kappa * (w2 * (inertia * w3 - transverse * c * w1) - m1) + transverse * (across - m3 / (axial * c))
-    friction = axial / freedom * given
-    # ẇ1 = w2 β̇ cos θ + (T_n + M1 − I_a w2 w3)/I_t;  ẇ3 = (c T_n + M3)/I_a
-    driven = (friction + m1 - inertia * w2 * w3) / transverse
-    spin_rate = (c * friction + m3) / inertia
+    # The couples: −ηw1; −ζP ω_z about the vertical, P = I_a Λ/i_a; rolling resistance about d.
+    spin_inertia = kappa * c * c * (1.0 + axial - kappa)  # P
+    pivoting = zeta * spin_inertia * (w3 * cos - w1 * sine)
+    dragged = drag * rolling
+    m1 = pivoting * sine - eta * w1 - dragged * cos
+    m3 = -pivoting * cos - dragged * sine
+    # I_t (ẇ1 − w2 β̇ cos θ) = T_n + M1 − I_a w2 w3 and I_a ẇ3 = c T_n + M3 under rolling without slip, solved for the
+    # rates: with F = M1 − I_a w2 w3 and A = a_n − κc w1 w2,
+    # P (ẇ1 − w2 β̇ cos θ) = κc (c (F + i_a (F + A)) − M3),  P ẇ3 = c (I_t A − κF) + M3.
+    turned, carried = m1 - inertia * w2 * w3, across - kappa * c * w1 * w2
+    per_inertia = 1.0 / spin_inertia
+    driven = kappa * c * (per_inertia * (c * (turned + axial * (turned + carried)) - m3))
+    spin_rate = per_inertia * (c * (transverse * carried - kappa * turned) + m3)
+    friction = (inertia * spin_rate - m3) / c  # T_n
     # α̈ along u and across, from θ̈ and from ẇ1 = −d(β̇ sin θ)/dτ.
-    inward = falling - tilt * around * around
-    sideways = 2.0 * w2 * around * (1.0 - cos / per_angle) - driven / per_angle
+    inward = falling - turning * around
+    sideways = (2.0 * w2 * around * (per_angle - cos) - driven) / per_angle
     # T_d = a_d + κ(ρ'θ̈ + z'θ̇² + β̇ w)
     swept = outward + kappa * (height * falling + slope * w2 * w2 + around * (c * w3 + w1))
     return (

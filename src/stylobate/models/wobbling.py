@@ -46,34 +46,36 @@ def balance(
     ux, uy = x / tilt, y / tilt
     per_angle, cos = sine_over_angle(square), cosine(square)
     sine = per_angle * tilt
-    around = (vy * ux - vx * uy) / tilt  # β̇
-    w1, w2 = -sine * around, vx * ux + vy * uy
+    turning = vy * ux - vx * uy  # θ β̇
+    around = turning / tilt  # β̇
+    w1, w2 = -per_angle * turning, vx * ux + vy * uy
     outward, across = ax * ux + ay * uy, ay * ux - ax * uy
-    inertia = kappa * axial * c * c  # I_a
     height, slope = cos + c * sine, c * cos - sine  # ρ', z'
     # w3 = q w1: q = tan(θ/2) where ω·(e3 + Z) = 0, q = tan θ where ω·Z = 0.
-    up = cos + _LEVEL
-    per_sine = rubber / up + (1.0 - rubber) / (1.0 + cos)
-    q, q_rate = per_sine * sine, rubber / (up * up) + (1.0 - rubber) / (1.0 + cos)
+    per_up = 1.0 / (cos + _LEVEL)
+    bound, bisected = rubber * per_up, (1.0 - rubber) / (1.0 + cos)
+    q = (bound + bisected) * sine
     w3 = q * w1
-    gyration = kappa * c * (height + axial * c * sine) * w3
-    whirl = around * (around * sine * (cos + kappa * c * sine) - gyration)
+    whirl = -around * (w1 * (cos + kappa * c * sine) + kappa * c * (height + axial * c * sine) * w3)
     moment = whirl - (1.0 + az) * slope - height * outward - eta * w2
     rolling = w1 * cos + w3 * sine
     falling, normal, drag = tilt_acceleration(moment, w2, rolling, sine, cos, 1.0 + az, c, kappa, resistance)
-    m1, m3 = -eta * w1 - drag * rolling * cos, -drag * rolling * sine
-    # M ẇ1 = M β̇θ̇ cos θ + …, M = I_t + q²I_a + κ(1 + qc)²; with β̇ cos θ = −w1 (q/sin θ)(cos θ/q) the rest is regular.
+    dragged = drag * rolling
+    m1, m3 = -eta * w1 - dragged * cos, -dragged * sine
+    # M (ẇ1 − β̇θ̇ cos θ) = (1 + qc) a_n + M1 + qM3 − B (1 + q' − q cos θ/sin θ) w1w2, B = κc(1 + qc) + q I_a,
+    # M = I_t + q²I_a + κ(1 + qc)²
+    inertia = kappa * axial * c * c  # I_a
     reach = 1.0 + q * c
-    mass = 1.0 - kappa + q * q * inertia + kappa * reach * reach
-    turning = w1 * w2 * (cos * per_sine * (kappa * c * reach + q * inertia) - q * (1.0 + q_rate) * inertia)
-    driven = (turning + reach * (across - kappa * c * (1.0 + q_rate) * w1 * w2) + m1 + q * m3) / mass
+    coupling = kappa * c * reach + q * inertia
+    growth = 1.0 + bound * (per_up - cos) + bisected * (1.0 - cos)
+    driven = (reach * across + m1 + q * m3 - coupling * growth * w1 * w2) / (1.0 + q * (kappa * c + coupling))
     w1_rate = around * cos * w2 + driven
-    w3_rate = q * w1_rate + q_rate * w2 * w1
+    w3_rate = q * w1_rate + (bound * per_up + bisected) * w2 * w1
     # T_n = a_n − κ(ẇ − ρ'θ̇β̇); the couple that prevents rotation acts along e3 + Z, or along Z.
     friction = across - kappa * (c * w3_rate + w1_rate - height * w2 * around)
-    couple = (inertia * w3_rate - c * friction - m3) * (rubber / up + 1.0 - rubber)
-    inward = falling - tilt * around * around
-    sideways = 2.0 * w2 * around * (1.0 - cos / per_angle) - driven / per_angle
+    couple = (inertia * w3_rate - c * friction - m3) * (bound + 1.0 - rubber)
+    inward = falling - turning * around
+    sideways = (2.0 * w2 * around * (per_angle - cos) - driven) / per_angle
     swept = outward + kappa * (height * falling + slope * w2 * w2 + around * (c * w3 + w1))
     return inward * ux - sideways * uy, inward * uy + sideways * ux, normal, swept, friction, couple
 
