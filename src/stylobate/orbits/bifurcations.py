@@ -7,7 +7,7 @@ from enum import Enum
 import numpy as np
 from scipy.optimize import brentq
 
-from stylobate.engine.flow.tableau import Status
+from stylobate.engine.flow.status import Status
 from stylobate.orbits.arclength import Floats, Point, corrected
 from stylobate.orbits.conditions import Condition, conditions_between
 from stylobate.orbits.multipliers import without_damping

@@ -11,7 +11,7 @@ import numpy as np
 import xarray as xr
 
 from stylobate.config import provenance_of_run
-from stylobate.engine.flow.tableau import Status
+from stylobate.engine.flow.status import Status
 from stylobate.engine.parameter_quantities import attributes_of
 from stylobate.engine.parameters import present_value
 from stylobate.errors import NoOrbitError, ParameterError, require_finite

@@ -13,7 +13,7 @@ import xarray as xr
 
 from stylobate.config import provenance_of_run
 from stylobate.engine.flow.periodic import Numbers, PeriodicSystem
-from stylobate.engine.flow.tableau import Status
+from stylobate.engine.flow.status import Status
 from stylobate.engine.parameter_quantities import attributes_of
 from stylobate.engine.parameters import present_value
 from stylobate.errors import NoOrbitError, ParameterError, StylobateError

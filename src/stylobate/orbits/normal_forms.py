@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from stylobate.engine.flow.periodic import PeriodicSystem
-from stylobate.engine.flow.tableau import Status
+from stylobate.engine.flow.status import Status
 
 Floats = npt.NDArray[Any]
 Complexes = npt.NDArray[Any]

@@ -7,7 +7,7 @@ import numpy as np
 import numpy.typing as npt
 
 from stylobate.engine.flow.periodic import Flow, Numbers, PeriodicSystem
-from stylobate.engine.flow.tableau import Status
+from stylobate.engine.flow.status import Status
 from stylobate.errors import NoOrbitError
 
 Floats = npt.NDArray[np.float64]

@@ -12,7 +12,7 @@ import xarray as xr
 from stylobate.base_motions import BaseMotion
 from stylobate.config import config_of
 from stylobate.engine.flow.periodic import PeriodicSystem
-from stylobate.engine.flow.tableau import Status
+from stylobate.engine.flow.status import Status
 from stylobate.errors import FileError
 from stylobate.models import Model
 from stylobate.orbits.arclength import Family, Point

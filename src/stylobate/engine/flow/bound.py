@@ -6,6 +6,8 @@ from stylobate.compiler.programs import placeholders
 
 ORDER: int
 """Number of equations."""
+COLUMNS: int
+"""Number of columns of state and derivatives: at least `ORDER` + 2, in whole vectors."""
 ACCELERATIONS: int
 """Number of acceleration components: three, or two (along the plane and vertical) if planar."""
 NUMBERS: int

@@ -1,5 +1,6 @@
 """Flows of models: their integration, bound to a model and compiled."""
 
+import math
 from collections.abc import Callable
 from functools import cache
 from typing import Any
@@ -8,12 +9,15 @@ from stylobate.compiler.compiled import Compiled
 from stylobate.compiler.programs import Bound, Written
 from stylobate.compiler.unit import ArrayArgument
 from stylobate.compiler.values import Kind
-from stylobate.engine import elementary
+from stylobate.engine import dop853, elementary, sums
 from stylobate.engine.equations.expressions import Expression, Recording
 from stylobate.engine.equations.recording import recorded
-from stylobate.engine.flow import integration, tableau
+from stylobate.engine.flow import integration, status
 from stylobate.errors import UnsupportedError
 from stylobate.models import Model
+
+_VECTOR = 8
+"""Maximum number of floats in a vector of a processor."""
 
 
 @cache
@@ -45,17 +49,18 @@ def flow_of(model: type[Model], states: int, numbers: int, *, planar: bool) -> C
             modules=[integration],
             names={
                 "ORDER": order,
+                "COLUMNS": columns_of(order),
                 "ACCELERATIONS": accelerations,
                 "NUMBERS": numbers,
                 "PLANAR": planar,
                 "LOSES": loses,
             },
             written=written,
-            imported=[elementary, tableau],
+            imported=[dop853, elementary, status, sums],
         ),
         functions=functions,
         arguments=(
-            ArrayArgument((order, order + 2)),
+            ArrayArgument((order, columns_of(order))),
             *[Kind.FLOAT] * 3,
             terms,
             vector,
@@ -67,6 +72,11 @@ def flow_of(model: type[Model], states: int, numbers: int, *, planar: bool) -> C
         model=model.name,
         description=f"{model.name}, flow in {'plane' if planar else 'space'} with its derivatives",
     )
+
+
+def columns_of(order: int) -> int:
+    """Return the number of columns of state and derivatives in whole vectors."""
+    return _VECTOR * math.ceil((order + 2) / _VECTOR)
 
 
 def _jacobian_source(rates: Callable[..., Any], states: int, accelerations: int, numbers: int, *, planar: bool) -> str:

@@ -1,19 +1,24 @@
 """Integration of a model's motion, with its derivatives, over a part of the period of the base motion.
 
 The state of order n is the first column of a matrix of n rows. The next columns are its derivatives with respect to the
-initial state and to one parameter of the system. `flows` binds the open names to a model.
+initial state and to one parameter of the system; columns that fill the last vector are zero. `flows` binds the open
+names to a model.
 
 DOP853: E. Hairer, S. P. Nørsett, G. Wanner, "Solving Ordinary Differential Equations I", 2nd ed., section II.5.
 """
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
+from stylobate.compiler.marks import fast, lanes
+from stylobate.engine.dop853 import E3, E5, STAGES, A, B, C
 from stylobate.engine.elementary import turning_point, winding
 from stylobate.engine.flow.bound import (
     ACCELERATIONS,
+    COLUMNS,
     LOSES,
     NUMBERS,
     ORDER,
@@ -24,7 +29,8 @@ from stylobate.engine.flow.bound import (
     rates,
     tilt_of,
 )
-from stylobate.engine.flow.tableau import DOP_A, DOP_C, DOP_E3, DOP_E5, Status
+from stylobate.engine.flow.status import Status
+from stylobate.engine.sums import weighted
 
 Table = npt.NDArray[np.float64]
 Vector = npt.NDArray[np.float64]
@@ -38,6 +44,45 @@ MOST_STEPS = 200_000
 MET, MOST_TRIES = 1e-15, 60
 # Difference step for the derivative of the loss at a passage, as a fraction of the change of the parameters.
 LOSS_STEP = 1e-6
+
+STAGE_NUMBERS = tuple(range(1, STAGES + 1))
+WEIGHTS, NODES = (*A, B), (*C, 1.0)
+"""Weights of the slopes in each stage, and its time in steps; the last stage is the end of the step."""
+
+
+class System(NamedTuple):
+    """Numbers of the equations, and their derivatives with respect to one parameter of the system.
+
+    Parameters
+    ----------
+    period
+        Period of the base motion.
+    terms
+        Harmonic terms of the base motion, see `set_accelerations`.
+    numbers
+        Parameters of the model.
+    change
+        Derivatives of the period and of `numbers`.
+    term_change
+        Derivatives of the `terms`.
+    """
+
+    period: float
+    terms: Table
+    numbers: Vector
+    change: Vector
+    term_change: Table
+
+
+class Room(NamedTuple):
+    """Arrays for intermediate results: of an evaluation of the equations, and of the error of a step."""
+
+    push: Vector
+    push_change: Vector
+    rates: Vector
+    jacobian: Table
+    error5: Table
+    error3: Table
 
 
 # Equations of the model
@@ -59,17 +104,15 @@ def parameters_of(numbers: Vector) -> tuple[float, ...]:
 
 def rates_into(state: Vector, push: Vector, side: float, numbers: Vector, out: Vector) -> None:
     """Set the rates of a state."""
-    found = rates(*arguments_of(state, push, side, numbers))
-    for j in range(ORDER):
-        out[j] = found[j]
+    for j, rate in enumerate(rates(*arguments_of(state, push, side, numbers))):
+        out[j] = rate
 
 
 def jacobian_into(state: Vector, push: Vector, side: float, numbers: Vector, out: Table) -> None:
     """Set the derivatives of the rates; the columns are those of states, accelerations and parameters."""
-    rows = jacobian(*arguments_of(state, push, side, numbers))
-    for i in range(ORDER):
-        for j in range(ORDER + ACCELERATIONS + NUMBERS):
-            out[i, j] = rows[i][j]
+    for i, row in enumerate(jacobian(*arguments_of(state, push, side, numbers))):
+        for j, derivative in enumerate(row):
+            out[i, j] = derivative
 
 
 def lean_of(state: Vector, numbers: Vector) -> tuple[float, float, float, float]:
@@ -92,92 +135,74 @@ def speed_after_passage(rate: float, numbers: Vector) -> float:
 # Steps
 
 
-def accelerations_into(s: float, terms: Table, out: Vector) -> None:
-    """Set the accelerations at `s` turns; a row of `terms` has a multiple of the frequency, then pairs cos, sin."""
+def set_accelerations(s: float, system: System, room: Room) -> None:
+    """Set the accelerations at `s` turns, and their derivatives with respect to the parameter.
+
+    A row of the terms has a multiple of the frequency, then pairs of coefficients of cosine and sine.
+    """
+    terms, term_change = system.terms, system.term_change
     for k in range(ACCELERATIONS):
-        out[k] = 0.0
+        room.push[k] = room.push_change[k] = 0.0
     for term in range(len(terms)):
         angle = 2.0 * math.pi * terms[term, 0] * s
         cos, sin = math.cos(angle), math.sin(angle)
         for k in range(ACCELERATIONS):
-            out[k] += terms[term, 1 + 2 * k] * cos + terms[term, 2 + 2 * k] * sin
+            room.push[k] += terms[term, 1 + 2 * k] * cos + terms[term, 2 + 2 * k] * sin
+            room.push_change[k] += term_change[term, 1 + 2 * k] * cos + term_change[term, 2 + 2 * k] * sin
 
 
-def slopes_into(
-    y: Table,
-    s: float,
-    side: float,
-    period: float,
-    terms: Table,
-    numbers: Vector,
-    change: Vector,
-    term_change: Table,
-    work: Table,
-    out: Table,
-) -> None:
-    """Set the rates of state and derivatives per turn of the base motion.
-
-    `change` holds the changes of the period and of the model parameters, `term_change` the changes of the terms.
-    """
-    push, push_change, rates = work[0], work[1], work[2]
-    jacobian = work[3:]
-    accelerations_into(s, terms, push)
-    accelerations_into(s, term_change, push_change)
-    rates_into(y[:, 0], push, side, numbers, rates)
-    jacobian_into(y[:, 0], push, side, numbers, jacobian)
+@fast
+def slopes_into(y: Table, s: float, side: float, system: System, room: Room, out: Table) -> None:
+    """Set the rates of state and derivatives per turn of the base motion."""
+    set_accelerations(s, system, room)
+    rates_into(y[:, 0], room.push, side, system.numbers, room.rates)
+    jacobian_into(y[:, 0], room.push, side, system.numbers, room.jacobian)
     for i in range(ORDER):
-        out[i, 0] = period * rates[i]
-        for column in range(1, ORDER + 2):
-            total = 0.0
-            for j in range(ORDER):
-                total += jacobian[i, j] * y[j, column]
-            out[i, column] = period * total
-        total = 0.0
+        for column in lanes(COLUMNS):
+            total = sum(room.jacobian[i, j] * y[j, column] for j in range(ORDER))
+            out[i, column] = system.period * total
+        out[i, 0] = system.period * room.rates[i]
+        change = 0.0
         for k in range(ACCELERATIONS):
-            total += jacobian[i, ORDER + k] * push_change[k]
+            change += room.jacobian[i, ORDER + k] * room.push_change[k]
         for k in range(NUMBERS):
-            total += jacobian[i, ORDER + ACCELERATIONS + k] * change[1 + k]
-        out[i, ORDER + 1] += period * total + change[0] * rates[i]
+            change += room.jacobian[i, ORDER + ACCELERATIONS + k] * system.change[1 + k]
+        out[i, ORDER + 1] += system.period * change + system.change[0] * room.rates[i]
 
 
-def stages_into(
-    y: Table,
-    s: float,
-    h: float,
-    side: float,
-    period: float,
-    terms: Table,
-    numbers: Vector,
-    change: Vector,
-    term_change: Table,
-    work: Table,
-    k: npt.NDArray[np.float64],
-    new: Table,
+def make_step(
+    y: Table, s: float, h: float, side: float, system: System, room: Room, k: npt.NDArray[np.float64], new: Table
 ) -> None:
-    """Make a step of length `h` to `new`; `k[0]` holds the slopes at its start, `k[12]` receives those at its end."""
-    for stage in range(1, 13):
-        for i in range(ORDER):
-            for column in range(ORDER + 2):
-                total = 0.0
-                for before in range(stage):
-                    total += DOP_A[stage, before] * k[before, i, column]
-                new[i, column] = y[i, column] + h * total
-        slopes_into(new, s + DOP_C[stage] * h, side, period, terms, numbers, change, term_change, work, k[stage])
+    """Make a step of length `h` to `new`; `k[0]` holds the slopes at its start, `k[-1]` gets those at its end."""
+    for stage in STAGE_NUMBERS:
+        set_stage(y, h, stage, k, new)
+        slopes_into(new, s + NODES[stage] * h, side, system, room, k[stage])
 
 
-def error_of(y: Table, new: Table, h: float, k: npt.NDArray[np.float64], rtol: float, atol: float) -> float:
+@fast
+def set_stage(y: Table, h: float, stage: int, k: npt.NDArray[np.float64], new: Table) -> None:
+    """Set the state at a stage from the slopes of the earlier ones."""
+    for i in range(ORDER):
+        for column in lanes(COLUMNS):
+            slopes = tuple(k[earlier, i, column] for earlier in range(stage))
+            new[i, column] = y[i, column] + h * weighted(WEIGHTS[stage], slopes)
+
+
+@fast
+def error_of(y: Table, new: Table, h: float, k: npt.NDArray[np.float64], room: Room, rtol: float, atol: float) -> float:
     """Return the error of a step over its tolerance; the derivative with respect to a parameter is not included."""
+    for i in range(ORDER):
+        for column in lanes(COLUMNS):
+            slopes = tuple(k[stage, i, column] for stage in range(STAGES + 1))
+            room.error5[i, column] = weighted(E5, slopes)
+            room.error3[i, column] = weighted(E3, slopes)
     e5 = e3 = 0.0
     for i in range(ORDER):
         for column in range(ORDER + 1):
-            q5 = q3 = 0.0
-            for stage in range(13):
-                q5 += DOP_E5[stage] * k[stage, i, column]
-                q3 += DOP_E3[stage] * k[stage, i, column]
             floor = atol if column == 0 else rtol
-            scale = floor + rtol * max(abs(y[i, column]), abs(new[i, column]))
-            e5 += (q5 / scale) ** 2
-            e3 += (q3 / scale) ** 2
+            scale = 1.0 / (floor + rtol * max(abs(y[i, column]), abs(new[i, column])))
+            e5 += (room.error5[i, column] * scale) ** 2
+            e3 += (room.error3[i, column] * scale) ** 2
     spread = e5 + 0.01 * e3
     return abs(h) * e5 / math.sqrt(spread * ORDER * (ORDER + 1)) if spread > 0.0 else 0.0
 
@@ -212,30 +237,26 @@ def record_extremes(
     s: float,
     h: float,
     side: float,
-    period: float,
-    terms: Table,
-    numbers: Vector,
-    change: Vector,
-    term_change: Table,
-    work: Table,
+    system: System,
+    room: Room,
     k: npt.NDArray[np.float64],
     new: Table,
     near: npt.NDArray[np.float64],
     middle: Table,
     record: Vector,
 ) -> None:
-    """Record the extremes of the tilt within a step; `near` and `middle` are work arrays for another step.
+    """Record the extremes of the tilt within a step; `near` and `middle` are arrays for another step.
 
     A cubic over the whole step has an accuracy of only 1e-4, so that an extreme is computed again from a state near it.
     """
     least, largest = record[0], record[1]
-    at = record_tilt(y, new, period * h, numbers, record)
+    at = record_tilt(y, new, system.period * h, system.numbers, record)
     if 0.0 < at < 1.0:
         record[0], record[1] = least, largest
         near[0] = k[0]
-        stages_into(y, s, at * h, side, period, terms, numbers, change, term_change, work, near, middle)
-        record_tilt(y, middle, period * at * h, numbers, record)
-        record_tilt(middle, new, period * (1.0 - at) * h, numbers, record)
+        make_step(y, s, at * h, side, system, room, near, middle)
+        record_tilt(y, middle, system.period * at * h, system.numbers, record)
+        record_tilt(middle, new, system.period * (1.0 - at) * h, system.numbers, record)
 
 
 def step_to_vertical(
@@ -243,12 +264,8 @@ def step_to_vertical(
     s: float,
     h: float,
     side: float,
-    period: float,
-    terms: Table,
-    numbers: Vector,
-    change: Vector,
-    term_change: Table,
-    work: Table,
+    system: System,
+    room: Room,
     k: npt.NDArray[np.float64],
     new: Table,
 ) -> float:
@@ -266,21 +283,22 @@ def step_to_vertical(
         speed = side * k[12, 0, 0]
         h = h - aside / speed if speed < 0.0 else low
         h = h if low < h < high else 0.5 * (low + high)
-        stages_into(y, s, h, side, period, terms, numbers, change, term_change, work, k, new)
+        make_step(y, s, h, side, system, room, k, new)
     return h
 
 
-def cross_vertical(y: Table, s: float, side: float, terms: Table, numbers: Vector, change: Vector, work: Table) -> bool:
+def cross_vertical(y: Table, s: float, side: float, system: System, room: Room) -> bool:
     """Pass the vertical in planar motion: speed, acceleration and derivatives jump; return False at a grazing passage.
 
     With the loss v⁺ = e v⁻ the derivatives are multiplied by the saltation matrix ((e, 0), ((a⁺ − e a⁻)/v⁻, e)).
     """
-    push, before, after = work[0], work[1], work[2]
+    numbers, push = system.numbers, room.push
+    before, after = np.zeros(ORDER), np.zeros(ORDER)
     y[0, 0] = 0.0
     speed = y[1, 0]
     if speed * side >= 0.0:
         return False
-    accelerations_into(s, terms, push)
+    set_accelerations(s, system, room)
     rates_into(y[:, 0], push, side, numbers, before)
     left = speed_after_passage(speed, numbers)
     kept_part = left / speed
@@ -293,10 +311,18 @@ def cross_vertical(y: Table, s: float, side: float, terms: Table, numbers: Vecto
     # Derivative of the loss itself with respect to the parameter.
     larger, smaller = np.zeros(NUMBERS), np.zeros(NUMBERS)
     for j in range(NUMBERS):
-        larger[j] = numbers[j] + LOSS_STEP * change[1 + j]
-        smaller[j] = numbers[j] - LOSS_STEP * change[1 + j]
+        larger[j] = numbers[j] + LOSS_STEP * system.change[1 + j]
+        smaller[j] = numbers[j] - LOSS_STEP * system.change[1 + j]
     y[1, ORDER + 1] += (speed_after_passage(speed, larger) - speed_after_passage(speed, smaller)) / (2.0 * LOSS_STEP)
     return True
+
+
+def azimuth(y: Table, numbers: Vector) -> float:
+    """Return the azimuth of the tilt vector [turns], −½ to ½; 0 if planar."""
+    if PLANAR:
+        return 0.0
+    x, z, _, _ = lean_of(y[:, 0], numbers)
+    return math.atan2(z, x) / (2.0 * math.pi)
 
 
 def flow(
@@ -314,50 +340,64 @@ def flow(
     """Integrate `y` from `begin` to `end` [turns of the base motion]; return the `Status`.
 
     `limits`: relative and absolute tolerance, minimum and maximum tilt. `record`: minimum and maximum tilt so far,
-    number of steps, side of the vertical (planar motion only), and passages across the negative x axis.
+    number of steps, side of the vertical (planar motion only), and turns of the tilt vector.
     """
+    before = azimuth(y, numbers)
+    status = follow(y, begin, end, System(period, terms, numbers, change, term_change), limits, record)
+    record[4] += azimuth(y, numbers) - before
+    return status
+
+
+def follow(y: Table, begin: float, end: float, system: System, limits: Vector, record: Vector) -> int:
+    """Integrate `y` as `flow` does; of the turns only passages across the negative x axis are counted."""
     rtol, atol, least, largest = limits
-    k = np.zeros((13, ORDER, ORDER + 2))
-    work = np.zeros((3 + ORDER, ORDER + ACCELERATIONS + NUMBERS))
-    new = np.zeros((ORDER, ORDER + 2))
-    near, middle = np.zeros((13, ORDER, ORDER + 2)), np.zeros((ORDER, ORDER + 2))
+    room = Room(
+        push=np.zeros(ACCELERATIONS),
+        push_change=np.zeros(ACCELERATIONS),
+        rates=np.zeros(ORDER),
+        jacobian=np.zeros((ORDER, ORDER + ACCELERATIONS + NUMBERS)),
+        error5=np.zeros((ORDER, COLUMNS)),
+        error3=np.zeros((ORDER, COLUMNS)),
+    )
+    k, new = np.zeros((STAGES + 1, ORDER, COLUMNS)), np.zeros((ORDER, COLUMNS))
+    near, middle = np.zeros((STAGES + 1, ORDER, COLUMNS)), np.zeros((ORDER, COLUMNS))
     side = record[3]
     s, h = begin, min(FIRST_STEP, end - begin)
     rejected = False
-    slopes_into(y, s, side, period, terms, numbers, change, term_change, work, k[0])
+    slopes_into(y, s, side, system, room, k[0])
     while s < end:
         too_short = h < SHORTEST_STEP * max(1.0, abs(s)) and end - s > h
         if too_short or record[2] >= MOST_STEPS:
             return Status.FAILED
         last = h >= end - s
         h = end - s if last else h
-        stages_into(y, s, h, side, period, terms, numbers, change, term_change, work, k, new)
-        error = error_of(y, new, h, k, rtol, atol)
+        make_step(y, s, h, side, system, room, k, new)
+        error = error_of(y, new, h, k, room, rtol, atol)
         if not error < 1.0:
             h *= max(LEAST_FACTOR, SAFETY / error**0.125) if error < math.inf else LEAST_FACTOR
             rejected = True
             continue
         passed = PLANAR and side * new[0, 0] < 0.0
         if passed:
-            h = step_to_vertical(y, s, h, side, period, terms, numbers, change, term_change, work, k, new)
-        record_extremes(y, s, h, side, period, terms, numbers, change, term_change, work, k, new, near, middle, record)
+            h = step_to_vertical(y, s, h, side, system, room, k, new)
+        record_extremes(y, s, h, side, system, room, k, new, near, middle, record)
         if passed:
             record[0] = 0.0
             record[2] += 1
             s += h
             y[:, :] = new
-            if not cross_vertical(y, s, side, terms, numbers, change, work):
+            if not cross_vertical(y, s, side, system, room):
                 return Status.LOST
             side = record[3] = -side
-            slopes_into(y, s, side, period, terms, numbers, change, term_change, work, k[0])
+            slopes_into(y, s, side, system, room, k[0])
             h = FIRST_STEP
             continue
         if not PLANAR:
-            count_turns(y, new, numbers, record)
+            count_turns(y, new, system.numbers, record)
         s = end if last else s + h
         record[2] += 1
         y[:, :] = new
-        k[0] = k[12]
+        k[0] = k[STAGES]
         factor = min(LARGEST_FACTOR, max(LEAST_FACTOR, SAFETY / max(error, LEAST_ERROR) ** 0.125))
         h = min(h * (min(factor, 1.0) if rejected else factor), LONGEST_STEP)
         rejected = False

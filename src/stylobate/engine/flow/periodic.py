@@ -10,8 +10,8 @@ import numpy.typing as npt
 
 from stylobate.base_motions import BaseMotion
 from stylobate.engine.ensembles.harmonics import terms_of
-from stylobate.engine.flow.flows import flow_of
-from stylobate.engine.flow.tableau import Status
+from stylobate.engine.flow.flows import columns_of, flow_of
+from stylobate.engine.flow.status import Status
 from stylobate.engine.forcing import common_line
 from stylobate.engine.parameters import present_value, with_parameters
 from stylobate.errors import StylobateError, UnsupportedError
@@ -84,9 +84,14 @@ class PeriodicSystem:
     line: tuple[float, float] | None = None
     rtol: float = 1e-12
     numbers: Numbers = field(init=False, repr=False)
+    safe_tilt: float = field(init=False, repr=False)
+    """Point of no return for any periodic motion, at most a right angle."""
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "numbers", _numbers(self.model, self.motion, self.line))
+        gravity = self.model.column.gravity
+        largest, least = self.motion.peak_horizontal(0.0) / gravity, self.motion.vertical_range(0.0)[0] / gravity
+        object.__setattr__(self, "safe_tilt", min(self.model.least_safe_tilt(largest, least), 0.5 * math.pi))
 
     @property
     def order(self) -> int:
@@ -102,14 +107,6 @@ class PeriodicSystem:
     def scale(self) -> float:
         """Slenderness c, the unit of tilts and their rates."""
         return self.model.column.slenderness
-
-    @property
-    def safe_tilt(self) -> float:
-        """Point of no return for any periodic motion, at most a right angle."""
-        gravity = self.model.column.gravity
-        largest = self.motion.peak_horizontal(0.0) / gravity
-        least = self.motion.vertical_range(0.0)[0] / gravity
-        return min(self.model.least_safe_tilt(largest, least), 0.5 * math.pi)
 
     def changed(self, **values: float) -> Self:
         """Return the system with these parameters of column, model or motion changed; see `with_parameters`."""
@@ -183,7 +180,7 @@ class PeriodicSystem:
         """
         order, numbers = self.order, self.numbers
         flow = flow_of(type(self.model), len(self.model.state_names), len(self.model.parameters), planar=self.planar)
-        table = np.zeros((order, order + 2))
+        table = np.zeros((order, columns_of(order)))
         table[:, 0] = state
         table[:, 1 : order + 1] = np.eye(order)
         if change is None:
@@ -220,15 +217,8 @@ class PeriodicSystem:
             float(record[1]),
             int(record[2]),
             float(record[3]),
-            float(record[4]) + self._azimuth(table[:, 0]) - self._azimuth(state),
+            float(record[4]),
         )
-
-    def _azimuth(self, state: Floats) -> float:
-        """Return the azimuth of the tilt vector [turns], −½ to ½; 0 if planar."""
-        if self.planar:
-            return 0.0
-        x, y, _, _ = self.model.tilt_of(*state, *self.model.parameters)
-        return math.atan2(float(y), float(x)) / (2.0 * math.pi)
 
 
 def require_periodic(motion: BaseMotion) -> float:

@@ -13,7 +13,7 @@ from stylobate.compiler.compiled import Compiled
 from stylobate.compiler.programs import Bound, Written
 from stylobate.compiler.unit import ArrayArgument
 from stylobate.compiler.values import Element
-from stylobate.engine import dop853, elementary, radau, tolerances
+from stylobate.engine import dop853, elementary, radau, sums, tolerances
 from stylobate.engine.kernel import columns, driver, linear_equations, roots
 from stylobate.engine.kernel import shape as shapes
 from stylobate.engine.kernel.expansion import expand_source
@@ -33,7 +33,7 @@ _IN_LANES = ("rates", "tilt_of", "contact", "guards", "project")
 _OPTIONAL = ("rest_energy", "no_return_tilt", "departure", "passage", "at_rest", "impact_map")
 """Functions that a model may lack."""
 
-_USED_AS_THEY_ARE = (columns, dop853, elementary, linear_equations, radau, roots, shapes, tolerances)
+_USED_AS_THEY_ARE = (columns, dop853, elementary, linear_equations, radau, roots, shapes, sums, tolerances)
 
 
 @dataclass(frozen=True, slots=True)

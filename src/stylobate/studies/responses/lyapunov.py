@@ -10,7 +10,7 @@ import xarray as xr
 from stylobate.base_motions import BaseMotion
 from stylobate.config import provenance_of_run
 from stylobate.engine.flow.periodic import PeriodicSystem, plane_of
-from stylobate.engine.flow.tableau import Status
+from stylobate.engine.flow.status import Status
 from stylobate.errors import ParameterError, require_positive, require_vector, require_whole
 from stylobate.models import Model
 from stylobate.orbits.arguments import require_subject

@@ -38,13 +38,12 @@ from stylobate.engine.kernel.driver import (
     step,
     step_control,
     stops,
-    sums,
     tracing,
     within,
 )
 
 _COMMON = (
-    *(sums, push, equations, stages, series, guards, step_control, demands, observation, step),
+    *(push, equations, stages, series, guards, step_control, demands, observation, step),
     *(base_motion, moving, within, tracing, stops, release, release_search, standing_loads, peaks, convergence, batch),
 )
 _SMOOTH = (resting, lift_off, passages, events, starting)

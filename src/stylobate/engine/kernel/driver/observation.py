@@ -13,9 +13,9 @@ from stylobate.engine.elementary import cos_turns
 from stylobate.engine.kernel.bound import ORDER, PLANAR, SERIES, R
 from stylobate.engine.kernel.driver.equations import lean_of, row_state
 from stylobate.engine.kernel.driver.series import series_terms
-from stylobate.engine.kernel.driver.sums import polynomial
 from stylobate.engine.kernel.layout import Table
 from stylobate.engine.kernel.shape import NODES
+from stylobate.engine.sums import polynomial
 
 _GAUSS = np.polynomial.legendre.leggauss(NODES)  # on −1 … 1
 PLACES, WEIGHTS = 0.5 + 0.5 * _GAUSS[0], 0.5 * _GAUSS[1]

@@ -12,9 +12,9 @@ from stylobate.engine.elementary import turning_point
 from stylobate.engine.kernel.bound import COEFFICIENTS, DEGREES, INTEGRALS, ORDER, RATES_OF, R, expand
 from stylobate.engine.kernel.driver.equations import State, numbers, rates_at
 from stylobate.engine.kernel.driver.push import push_series
-from stylobate.engine.kernel.driver.sums import polynomial, reciprocals, value_and_slope
 from stylobate.engine.kernel.layout import Table
 from stylobate.engine.kernel.shape import SERIES_ORDER
+from stylobate.engine.sums import polynomial, reciprocals, value_and_slope
 
 # Maximum ratio of a step to the step that the previous coefficients allowed, and to the previous step.
 ROOM, MOST_GROWTH = 1.5, 10.0

@@ -11,9 +11,9 @@ from stylobate.engine.dop853 import A_EXTRA, C_EXTRA, STAGES, A, B, C, D
 from stylobate.engine.kernel.bound import ORDER, WIDTH, R
 from stylobate.engine.kernel.driver.equations import State, rates_at, rates_under, row_state
 from stylobate.engine.kernel.driver.push import accelerations, end_push, keep_end_push
-from stylobate.engine.kernel.driver.sums import weighted
 from stylobate.engine.kernel.layout import Table
 from stylobate.engine.kernel.shape import DENSE_TERMS
+from stylobate.engine.sums import weighted
 
 STAGE_NUMBERS = tuple(range(1, STAGES + 1))
 STAGE_WEIGHTS = (*A, B)

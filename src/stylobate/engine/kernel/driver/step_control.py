@@ -12,8 +12,8 @@ from stylobate.engine.kernel.bound import ORDER, PLANAR, SERIES, SLIDING, SLIP_X
 from stylobate.engine.kernel.driver.equations import lean_of_new
 from stylobate.engine.kernel.driver.series import extremes_by_series, falls_and_rises, rises_and_falls
 from stylobate.engine.kernel.driver.stages import slopes_of
-from stylobate.engine.kernel.driver.sums import reciprocals, weighted
 from stylobate.engine.kernel.layout import Table
+from stylobate.engine.sums import reciprocals, weighted
 from stylobate.engine.tolerances import PASSAGE_FROM, PASSAGE_OFFSET, SLIP_SHARE
 
 # Step control as in SciPy: safety factor, bounds of the step ratio, and lower bound of the error.

@@ -1,0 +1,15 @@
+"""Status of a flow at its end."""
+
+from enum import IntEnum
+
+
+class Status(IntEnum):
+    """Status of a flow at its end."""
+
+    DONE = 0
+    LOST = 1
+    """The motion came to the vertical, where the derivatives do not exist."""
+    GONE = 2
+    """The motion exceeded the peak tilt."""
+    FAILED = 3
+    """There were too many steps, or a step was too short."""
