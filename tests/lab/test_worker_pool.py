@@ -12,23 +12,23 @@ import pytest
 from stylobate.lab import worker_pool
 from stylobate.lab.messages import Finished, Lost
 from stylobate.lab.request_parsing import Described
-from stylobate.lab.worker_pool import Crew, LostError, Worker
+from stylobate.lab.worker_pool import LostError, Worker, WorkerPool
 
 VALUES = {"column": {"shape": "dimensionless", "slenderness": 0.1}, "tilt": [0.02, 0.0], "duration": 1.0}
 
 
 def performed(limit=1):
-    """Return how a run ended in a new crew, and what `/proc` says of each process that was started for it."""
+    """Return how a run ended in a new pool, and what `/proc` says of each process that was started for it."""
     answers, stats = [], []
 
     async def perform():
         before = multiprocessing.active_children()
         async with anyio.create_task_group() as group:
-            crew = Crew(limit, group)
-            answers.append(await crew.perform("run", Described(VALUES, VALUES), lambda _: None))
+            pool = WorkerPool(limit, group)
+            answers.append(await pool.perform("run", Described(VALUES, VALUES), lambda _: None))
             started = [process for process in multiprocessing.active_children() if process not in before]
             stats.extend(stat(process.pid) for process in started)
-            crew.end()
+            pool.end()
             group.cancel_scope.cancel()
 
     anyio.run(perform)
@@ -62,7 +62,7 @@ def test_a_process_that_cannot_be_started_is_reported(monkeypatch, caplog, error
 def test_a_laboratory_that_a_process_starts_as_it_imports_the_users_program_is_refused(monkeypatch):
     monkeypatch.setattr(multiprocessing.current_process(), "_name", "stylobate lab")
     with pytest.raises(RuntimeError, match="__main__"):
-        Crew(1, None).warm_up()
+        WorkerPool(1, None).warm_up()
 
 
 def test_a_start_that_hangs_does_not_delay_the_end(monkeypatch):
@@ -74,7 +74,7 @@ def test_a_start_that_hangs_does_not_delay_the_end(monkeypatch):
 
     async def begin_and_end():
         async with anyio.create_task_group() as group:
-            Crew(1, group).warm_up()
+            WorkerPool(1, group).warm_up()
             await anyio.sleep(0.01)
             group.cancel_scope.cancel()
 

@@ -79,7 +79,7 @@ def _prepared(saved: "xr.Dataset | None", options: Options) -> "tuple[Callable[.
 
 def _with_speeds(saved: "xr.Dataset", source: Path | None) -> "xr.Dataset":
     """Return a saved drift; add speeds and throw numbers to the runs of a store."""
-    from stylobate.conveying.transport import walked  # noqa: PLC0415
+    from stylobate.conveying.transport import drift_of_runs  # noqa: PLC0415
 
     if "transport_speed" in saved:
         return saved
@@ -87,7 +87,7 @@ def _with_speeds(saved: "xr.Dataset", source: Path | None) -> "xr.Dataset":
         message = f"{source}: no drift (got a {saved.attrs['kind']}). Show it with stylobate map."
         raise FileError(message)
     setup = conveying.config.DriftConfig.of_saved(provenance_of(saved), axes_of(saved)).build()
-    return walked(saved, setup.model, setup.motion)
+    return drift_of_runs(saved, setup.model, setup.motion)
 
 
 def _summary(result: "xr.Dataset") -> dict[str, Any]:

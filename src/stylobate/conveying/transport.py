@@ -101,12 +101,12 @@ def drift(
     sweep = Sweep.grid(model, motion, over=over, periods=periods, **options)
 
     def label(runs: xr.Dataset) -> xr.Dataset:
-        return walked(runs, model, motion)
+        return drift_of_runs(runs, model, motion)
 
     return labelled_sweep(sweep, label, store=store, executor=executor, resume=resume, progress=progress)
 
 
-def walked(runs: xr.Dataset, model: Model, motion: BaseMotion) -> xr.Dataset:
+def drift_of_runs(runs: xr.Dataset, model: Model, motion: BaseMotion) -> xr.Dataset:
     """Convert `runs` of this `model` and `motion` to a drift: add speeds, classes and throw numbers."""
     # A run at permanent rest ends before its last periods: its mean velocity is zero.
     stands = (runs["outcome"] == Outcome.AT_REST) & runs["mean_twist_rate"].isnull()

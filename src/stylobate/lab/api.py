@@ -24,7 +24,7 @@ from stylobate.lab.responses import plain_column, snippets
 from stylobate.lab.schema import schema
 from stylobate.lab.size_limits import beyond_size
 from stylobate.lab.uploads import Uploads
-from stylobate.lab.worker_pool import Answer, BusyError, Crew
+from stylobate.lab.worker_pool import Answer, BusyError, WorkerPool
 
 _log = logging.getLogger("stylobate.lab")
 
@@ -41,7 +41,7 @@ class Api:
     """The endpoints and the state that they share."""
 
     limits: Limits
-    runs: Crew
+    runs: WorkerPool
     jobs: Jobs
     uploads: Uploads
 

@@ -21,7 +21,7 @@ from stylobate.lab.limits import Limits
 from stylobate.lab.pages import page_routes
 from stylobate.lab.refusals import RefusedError
 from stylobate.lab.uploads import Uploads
-from stylobate.lab.worker_pool import Crew
+from stylobate.lab.worker_pool import WorkerPool
 
 
 def create_app(
@@ -54,7 +54,7 @@ def create_app(
             folder = Path(stack.enter_context(tempfile.TemporaryDirectory(prefix="stylobate-lab-")))
             group = await stack.enter_async_context(anyio.create_task_group())
             stack.callback(group.cancel_scope.cancel)
-            runs, work = Crew(bounds.runs, group), Crew(bounds.jobs, group)
+            runs, work = WorkerPool(bounds.runs, group), WorkerPool(bounds.jobs, group)
             stack.callback(runs.end)
             stack.callback(work.end)
             jobs = Jobs(work, bounds, group)

@@ -16,7 +16,7 @@ from anyio.abc import TaskGroup
 from stylobate.lab.limits import Limits
 from stylobate.lab.messages import Broken, Finished, Found, Lost, Note, Progress, Refused
 from stylobate.lab.refusals import RefusedError
-from stylobate.lab.worker_pool import Answer, Crew, Message
+from stylobate.lab.worker_pool import Answer, Message, WorkerPool
 from stylobate.text import plural
 
 _log = logging.getLogger("stylobate.lab")
@@ -96,9 +96,9 @@ class Job:
 
 @dataclass(slots=True)
 class Jobs:
-    """All jobs; they run in `crew`, in tasks of `group`."""
+    """All jobs; they run in `pool`, in tasks of `group`."""
 
-    crew: Crew
+    pool: WorkerPool
     limits: Limits
     group: TaskGroup
     _known: dict[str, Job] = field(default_factory=dict)
@@ -150,7 +150,7 @@ class Jobs:
     async def _run(self, job: Job, values: Mapping[str, Any]) -> None:
         with job.scope:
             try:
-                answer: Answer = await self.crew.perform(job.kind, values, job.heard)
+                answer: Answer = await self.pool.perform(job.kind, values, job.heard)
             except Exception:  # noqa: BLE001  a mistake in one job must not end the others
                 answer = Broken(traceback.format_exc())
             job.end(answer)

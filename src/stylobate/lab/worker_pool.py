@@ -136,7 +136,7 @@ def _process() -> tuple[BaseProcess, Connection]:
 
 
 @dataclass(slots=True)
-class Crew:
+class WorkerPool:
     """At most `limit` processes, which live in tasks of `group`; idle processes wait for the next task."""
 
     limit: int

@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 _BISECTIONS = 52
-# Bisections for a growth past a bound: the cubic is right to 1e-4 of the step, and the steps aimed at the event are exact.
+# Bisections for a growth past a bound: the cubic is right to 1e-4 of the step, and steps aimed at the event are exact.
 _FEW_BISECTIONS = 14
 # The search for a first return begins at this fraction of the step, doubles up to the second number, and then
 # continues at equal steps.

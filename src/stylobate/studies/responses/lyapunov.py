@@ -104,30 +104,30 @@ def lyapunov_exponents(
     start = [
         require_vector(name, np.ravel(value).tolist(), 2) for name, value in (("tilt", tilt), ("tilt_rate", tilt_rate))
     ]
-    course = _start(model, motion, start[0], start[1], count, require_positive("rtol", rtol))
+    frame = _start(model, motion, start[0], start[1], count, require_positive("rtol", rtol))
     skipped = 0
-    while course.status is Status.DONE and skipped < skip:
-        course = course.following()
-        skipped += course.status is Status.DONE
+    while frame.status is Status.DONE and skipped < skip:
+        frame = frame.following()
+        skipped += frame.status is Status.DONE
     growths: list[Floats] = []
-    while course.status is Status.DONE and len(growths) < periods:
-        course = course.following()
-        if course.status is Status.DONE:
-            growths.append(course.growth)
+    while frame.status is Status.DONE and len(growths) < periods:
+        frame = frame.following()
+        if frame.status is Status.DONE:
+            growths.append(frame.growth)
     assert motion.period is not None  # PeriodicSystem refuses a motion without
     kept = {"tilt": start[0], "tilt_rate": start[1], "periods": periods, "skip": skip, "blocks": blocks, "rtol": rtol}
-    found = _summary(np.reshape(growths, (len(growths), course.directions.shape[1])), periods, blocks, motion.period)
+    found = _summary(np.reshape(growths, (len(growths), frame.directions.shape[1])), periods, blocks, motion.period)
     return found.assign_attrs(
         kind="Lyapunov exponents",
-        ending=_ENDINGS[course.status],
+        ending=_ENDINGS[frame.status],
         periods_skipped=skipped,
-        planar=int(course.system.planar),
+        planar=int(frame.system.planar),
         provenance=json.dumps(provenance_of_run(model, motion, **kept)),
     )
 
 
 @dataclass(frozen=True, slots=True)
-class _Course:
+class _Frame:
     """State of the motion after a whole number of periods, and the directions integrated with it."""
 
     system: PeriodicSystem
@@ -137,16 +137,16 @@ class _Course:
     growth: Floats
     status: Status = Status.DONE
 
-    def following(self) -> "_Course":
-        """Return the course one period later; a course that has ended does not change."""
+    def following(self) -> "_Frame":
+        """Return the frame one period later; a frame that has ended does not change."""
         if self.status is not Status.DONE:
             return self
         flow = self.system.carry(self.state, 0.0, 1.0, side=self.side)
         if flow.status is not Status.DONE:
-            return _Course(self.system, self.state, self.side, self.directions, self.growth, flow.status)
+            return _Frame(self.system, self.state, self.side, self.directions, self.growth, flow.status)
         directions, stretched = np.linalg.qr(flow.by_start @ self.directions)
         side = flow.side if self.system.planar else 0.0
-        return _Course(self.system, flow.end, side, directions, np.log(np.abs(np.diag(stretched))))
+        return _Frame(self.system, flow.end, side, directions, np.log(np.abs(np.diag(stretched))))
 
 
 def _start(
@@ -156,7 +156,7 @@ def _start(
     tilt_rate: tuple[float, ...],
     count: int | None,
     rtol: float,
-) -> _Course:
+) -> _Frame:
     state = np.array(model.start((tilt[0], tilt[1]), (tilt_rate[0], tilt_rate[1])), dtype=float)
     line = plane_of(model, motion, state)
     system = PeriodicSystem(model, motion, line, rtol)
@@ -169,7 +169,7 @@ def _start(
         raise ParameterError(message)
     # Directions that are not eigenvectors of the equations.
     first = np.linalg.qr(np.vander(np.arange(1.0, system.order + 1.0), increasing=True))[0][:, :number]
-    return _Course(system, state, 0.0, first, np.zeros(number))
+    return _Frame(system, state, 0.0, first, np.zeros(number))
 
 
 def _summary(growths: Floats, periods: int, blocks: int, period: float) -> xr.Dataset:
