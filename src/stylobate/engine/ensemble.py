@@ -92,7 +92,7 @@ def simulate_ensemble(
         Number of stroboscopic samples kept, the last ones: states at which the base motion has phase zero
         (Ωt + start_phase a whole number of turns), one per period.
     demands
-        Whether to compute the contact demand too; steps then take about a fifth longer.
+        Whether to compute the contact demand too; steps then take about a quarter longer.
     recheck
         Whether to repeat runs in doubt as `simulate` does, and to mark runs with another outcome as `uncertain`. One in
         six runs under earthquakes is in doubt; in three dimensions the repetition takes about as long as all runs.
