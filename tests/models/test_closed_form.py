@@ -46,6 +46,7 @@ class Sprung(sb.Slender):
     """A slender column on a spring −kα: other equations."""
 
     stiffness: Annotated[float, sb.Quantity(symbol="k", text="stiffness", ge=0.0)] = 0.0
+    contact = None
 
     @staticmethod
     def rates(x, y, vx, vy, ax, ay, az, c, eta, kappa, k):

@@ -51,8 +51,8 @@ def simulate(
 
     The run is integrated by DOP853 (Hairer, Nørsett, Wanner, "Solving Ordinary Differential Equations I") between
     events: uplift, rest, overturning, the tilt limit, lift-off. If initial state and base motion lie in one vertical
-    plane to 8 ulp, the run is integrated in that plane. A kernel is compiled at the first use of a model; the results
-    equal those of `simulate_ensemble` to the bit.
+    plane to 8 ulp, the run is integrated in that plane. A kernel is compiled at the first use of a model; steps,
+    outcome and measures equal those of `simulate_ensemble` to the bit.
 
     Parameters
     ----------

@@ -82,7 +82,7 @@ def tilt_acceleration(
     weight
         1 + a_z.
     c, kappa, resistance
-        c, κ and the lever arm δ of rolling resistance, in units of the radius.
+        c, κ, and the lever arm δ/r of rolling resistance in units of the radius.
     """
     height, slope = cos + c * sine, c * cos - sine
     # M = −δN ω_h/√(|ω_h|² + ε²)

@@ -57,8 +57,8 @@ def balance(
     dragged = drag * rolling
     m1 = pivoting * sine - eta * w1 - dragged * cos
     m3 = -pivoting * cos - dragged * sine
-    # I_t (ẇ1 − w2 β̇ cos θ) = T_n + M1 − I_a w2 w3 and I_a ẇ3 = c T_n + M3 under rolling without slip, solved for the
-    # rates: with F = M1 − I_a w2 w3 and A = a_n − κc w1 w2,
+    # I_t (ẇ1 − w2 β̇ cos θ) = T_n + M1 − I_a w2 w3 and I_a ẇ3 = c T_n + M3, with rolling without slip,
+    # T_n = a_n − κ(c ẇ3 + ẇ1 − ρ'θ̇β̇), solved for the rates: with F = M1 − I_a w2 w3 and A = a_n − κc w1 w2,
     # P (ẇ1 − w2 β̇ cos θ) = κc (c (F + i_a (F + A)) − M3),  P ẇ3 = c (I_t A − κF) + M3.
     turned, carried = m1 - inertia * w2 * w3, across - kappa * c * w1 * w2
     per_inertia = 1.0 / spin_inertia

@@ -150,7 +150,7 @@ class Slender(TiltVectorModel):
         """Return energy [J], angular momentum about the vertical [kg m²/s] and contact loads.
 
         Energy is ½|α̇|² + cA − ½A² in units of J0 ω0², 0 at rest; angular momentum A²β̇ in units of J0 ω0: the two
-        integrals of free motion (page "theory", free vibration). The centre of pressure [m] lies at −h a_h/(1 + a_z)
+        integrals of free motion (page "free motion"). The centre of pressure [m] lies at −h a_h/(1 + a_z)
         from the axis while the column stands, at the contact point of the rim while it leans. Normal force [N],
         friction over it, and moment about the vertical over normal force and radius: see `contact_outputs`.
         """

@@ -62,8 +62,8 @@ def balance(
     falling, normal, drag = tilt_acceleration(moment, w2, rolling, sine, cos, 1.0 + az, c, kappa, resistance)
     dragged = drag * rolling
     m1, m3 = -eta * w1 - dragged * cos, -dragged * sine
-    # M (ẇ1 − β̇θ̇ cos θ) = (1 + qc) a_n + M1 + qM3 − B (1 + q' − q cos θ/sin θ) w1w2, B = κc(1 + qc) + q I_a,
-    # M = I_t + q²I_a + κ(1 + qc)²
+    # D (ẇ1 − β̇θ̇ cos θ) = (1 + qc) a_n + M1 + qM3 − B (1 + q' − q cos θ/sin θ) w1w2, B = κc(1 + qc) + q I_a,
+    # D = I_t + q²I_a + κ(1 + qc)² = 1 + q(κc + B), as I_t + κ = 1
     inertia = kappa * axial * c * c  # I_a
     reach = 1.0 + q * c
     coupling = kappa * c * reach + q * inertia

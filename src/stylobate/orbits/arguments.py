@@ -7,13 +7,14 @@ from stylobate.base_motions import BASE_AT_REST, BaseMotion
 from stylobate.engine.flow.periodic import PeriodicSystem
 from stylobate.errors import ParameterError, require_not_negative
 from stylobate.models import Model
+from stylobate.models.consistency import check_once
 from stylobate.orbits.bifurcations import Bifurcation
 from stylobate.orbits.orbit import PeriodicOrbit
 from stylobate.orbits.tracing import StepControl
 
 
 def require_subject(model: Model, motion: BaseMotion) -> None:
-    """Raise ParameterError unless these are a model and a base motion."""
+    """Raise ParameterError unless these are a model and a base motion, ModelError if the model contradicts itself."""
     if isinstance(model, BaseMotion) and isinstance(motion, Model):
         message = (
             f"model must come before motion: got {type(model).__name__} as model, {type(motion).__name__} as motion"
@@ -25,6 +26,7 @@ def require_subject(model: Model, motion: BaseMotion) -> None:
     if not isinstance(motion, BaseMotion) or motion == BASE_AT_REST:
         message = f"motion must be a periodic base motion such as Harmonic.circular(...), got {motion!r}"
         raise ParameterError(message)
+    check_once(model)
 
 
 def require_orbit(orbit: PeriodicOrbit) -> None:

@@ -334,3 +334,50 @@ def test_units_do_not_matter():
     np.testing.assert_allclose(ours.numbers.terms, plain.numbers.terms, rtol=1e-14, atol=1e-17)
     flow, expected = ours.carry(IN_SPACE, 0.0, 1.0), plain.carry(IN_SPACE, 0.0, 1.0)
     np.testing.assert_allclose(flow.end, expected.end, rtol=0.0, atol=GLOBAL * C)
+
+
+@pytest.mark.parametrize("broken", [math.nan, math.inf])
+def test_a_state_that_is_no_number_fails(broken):
+    system = PeriodicSystem(MODEL, CIRCLE)
+    assert system.carry(np.array([broken, 0.0, 0.0, 0.0]), 0.0, 1.0).status is Status.FAILED
+
+
+class LossyByItsSpeed(sb.Slender):
+    """The slender column that loses more of a faster passage: e = 0.9 − 2 |v|."""
+
+    name = "lossy by its speed"
+
+    @property
+    def loss_tilt(self):
+        return 1e-4
+
+    @staticmethod
+    def impact_map(x, y, vx, vy, _c, _eta, _kappa):
+        left = 0.9 - 2.0 * math.sqrt(vx * vx + vy * vy)
+        return x, y, left * vx, left * vy
+
+
+def test_a_loss_that_is_not_proportional_to_the_speed_has_right_derivatives():
+    system = PeriodicSystem(LossyByItsSpeed(MODEL.column, damping=ETA), STRAIGHT, LINE)
+    flow = system.carry(IN_PLANE, 0.0, 1.0)
+    assert flow.status is Status.DONE
+    assert flow.minimum_tilt == 0.0
+    for j, unit in enumerate(np.eye(2)):
+        found = central(lambda h, unit=unit: system.carry(IN_PLANE + h * unit, 0.0, 1.0).end, 0.0, 1e-5)
+        np.testing.assert_allclose(flow.by_start[:, j], found, rtol=1e-5, atol=1e-6 * np.abs(flow.by_start).max())
+
+
+class WithNumPy(sb.Slender):
+    """The slender column with an array in its equations."""
+
+    name = "with NumPy"
+
+    @staticmethod
+    def rates(x, y, vx, vy, ax, ay, az, c, eta, kappa):
+        lean = float(np.linalg.norm(np.array([x, y])))
+        return vx, vy, x - c * x / lean - eta * vx - ax, y - c * y / lean - eta * vy - ay
+
+
+def test_equations_with_arrays_are_refused_by_what_to_write():
+    with pytest.raises(UnsupportedError, match=r"cannot be differentiated: .*functions of math"):
+        PeriodicSystem(WithNumPy(MODEL.column), CIRCLE).carry(IN_SPACE, 0.0, 1.0)

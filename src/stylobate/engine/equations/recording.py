@@ -11,6 +11,7 @@ import numpy as np
 from stylobate.compiler.fingerprint import global_names
 from stylobate.compiler.sources import plain_function
 from stylobate.engine.equations.expressions import FUNCTIONS, Expression, Recording
+from stylobate.errors import UnsupportedError
 
 Function = Callable[..., Any]
 
@@ -28,7 +29,11 @@ def recorded(function: Function, arguments: tuple[Any, ...]) -> Any:
     UnsupportedError
         If the function compares expressions, or uses an operation that cannot be differentiated.
     """
-    return _for_expressions(function)(*arguments)
+    try:
+        return _for_expressions(function)(*arguments)
+    except TypeError as error:  # such as an array of NumPy
+        message = f"the equations cannot be differentiated: {error}; write them with numbers and functions of math"
+        raise UnsupportedError(message) from error
 
 
 def _for_expressions(function: Function) -> Function:

@@ -40,10 +40,11 @@ SAFETY, LEAST_FACTOR, LARGEST_FACTOR, LEAST_ERROR = 0.9, 0.2, 10.0, 1e-12
 # Steps in turns of the base motion.
 FIRST_STEP, LONGEST_STEP, SHORTEST_STEP = 0.01, 0.125, 1e-13
 MOST_STEPS = 200_000
-# Tolerance of the tilt at a passage through the vertical [units of c], and maximum number of iterations.
+# Tolerance of the tilt at a passage through the vertical [rad], and maximum number of iterations.
 MET, MOST_TRIES = 1e-15, 60
-# Difference step for the derivative of the loss at a passage, as a fraction of the change of the parameters.
-LOSS_STEP = 1e-6
+# Difference steps for the derivatives of the loss at a passage, as fractions of the change of the parameters and of the
+# speed.
+LOSS_STEP, SPEED_STEP = 1e-6, 1e-3
 
 STAGE_NUMBERS = tuple(range(1, STAGES + 1))
 WEIGHTS, NODES = (*A, B), (*C, 1.0)
@@ -132,6 +133,16 @@ def speed_after_passage(rate: float, numbers: Vector) -> float:
     return vx
 
 
+def loss_slope(rate: float, numbers: Vector) -> float:
+    """Return the derivative of `speed_after_passage` by the tilt rate before, by five points."""
+    if not LOSES:
+        return 1.0
+    h = SPEED_STEP * rate
+    near = speed_after_passage(rate + h, numbers) - speed_after_passage(rate - h, numbers)
+    far = speed_after_passage(rate + 2.0 * h, numbers) - speed_after_passage(rate - 2.0 * h, numbers)
+    return (8.0 * near - far) / (12.0 * h)
+
+
 # Steps
 
 
@@ -204,7 +215,8 @@ def error_of(y: Table, new: Table, h: float, k: npt.NDArray[np.float64], room: R
             e5 += (room.error5[i, column] * scale) ** 2
             e3 += (room.error3[i, column] * scale) ** 2
     spread = e5 + 0.01 * e3
-    return abs(h) * e5 / math.sqrt(spread * ORDER * (ORDER + 1)) if spread > 0.0 else 0.0
+    # NaN is kept, so that the step is rejected.
+    return 0.0 if spread == 0.0 else abs(h) * e5 / math.sqrt(spread * ORDER * (ORDER + 1))
 
 
 def record_tilt(y: Table, new: Table, duration: float, numbers: Vector, record: Vector) -> float:
@@ -280,7 +292,7 @@ def step_to_vertical(
         else:
             high = h
         # Newton's step, or the midpoint if Newton's step leaves the bracket.
-        speed = side * k[12, 0, 0]
+        speed = side * k[STAGES, 0, 0]
         h = h - aside / speed if speed < 0.0 else low
         h = h if low < h < high else 0.5 * (low + high)
         make_step(y, s, h, side, system, room, k, new)
@@ -290,7 +302,8 @@ def step_to_vertical(
 def cross_vertical(y: Table, s: float, side: float, system: System, room: Room) -> bool:
     """Pass the vertical in planar motion: speed, acceleration and derivatives jump; return False at a grazing passage.
 
-    With the loss v⁺ = e v⁻ the derivatives are multiplied by the saltation matrix ((e, 0), ((a⁺ − e a⁻)/v⁻, e)).
+    With the loss v⁺ = f(v⁻) the derivatives are multiplied by the saltation matrix
+    ((v⁺/v⁻, 0), ((a⁺ − f' a⁻)/v⁻, f')).
     """
     numbers, push = system.numbers, room.push
     before, after = np.zeros(ORDER), np.zeros(ORDER)
@@ -301,12 +314,12 @@ def cross_vertical(y: Table, s: float, side: float, system: System, room: Room) 
     set_accelerations(s, system, room)
     rates_into(y[:, 0], push, side, numbers, before)
     left = speed_after_passage(speed, numbers)
-    kept_part = left / speed
+    kept_part, slope = left / speed, loss_slope(speed, numbers)
     y[1, 0] = left
     rates_into(y[:, 0], push, -side, numbers, after)
-    jump = (after[1] - kept_part * before[1]) / speed
+    jump = (after[1] - slope * before[1]) / speed
     for column in range(1, ORDER + 2):
-        y[1, column] = kept_part * y[1, column] + jump * y[0, column]
+        y[1, column] = slope * y[1, column] + jump * y[0, column]
         y[0, column] *= kept_part
     # Derivative of the loss itself with respect to the parameter.
     larger, smaller = np.zeros(NUMBERS), np.zeros(NUMBERS)
@@ -390,7 +403,7 @@ def follow(y: Table, begin: float, end: float, system: System, limits: Vector, r
                 return Status.LOST
             side = record[3] = -side
             slopes_into(y, s, side, system, room, k[0])
-            h = FIRST_STEP
+            h, rejected = FIRST_STEP, False
             continue
         if not PLANAR:
             count_turns(y, new, system.numbers, record)

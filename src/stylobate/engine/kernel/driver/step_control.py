@@ -193,7 +193,7 @@ def mark_slow(buf: Table, i: int, h: float) -> None:
     if SERIES:
         buf[R.SLOW, i] = 1.0
         return
-    pull = h * buf[R.SLENDERNESS, i]
+    pull = h * buf[R.SLENDERNESS, i] * (1.0 + max(0.0, buf[R.MAXIMUM_VERTICAL, i]))
     x = buf[R.NEW_VX, i] - buf[R.VX, i]
     y = buf[R.NEW_VY, i] - buf[R.VY, i]
     change = x * x + y * y + pull * pull
