@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
+from stylobate.engine.endings import ENDINGS
 from stylobate.engine.ensembles.batch import Batch, Plan
 from stylobate.engine.ensembles.broadcasting import Runs
 from stylobate.engine.ensembles.outcomes import Late, late_periods
@@ -23,15 +24,6 @@ _EVENTS = {
     TraceKind.REST: "rest",
     TraceKind.IMPACT: "impact",
     TraceKind.PASSAGE: "passage",
-}
-_LAST_EVENTS = {
-    Status.OVERTURNED: "overturned",
-    Status.LIMIT: "limit",
-    Status.LIFTED: "lifted",
-    Status.STEP_LIMIT: "failed",
-    Status.STEP_TOO_SMALL: "failed",
-    Status.UNSEEN: "failed",
-    Status.ENDLESS: "failed",
 }
 
 
@@ -72,7 +64,8 @@ class Followed:
         trajectory = Trajectory(plan.model, stretches, (line[0], line[1]), carried, end)
         scale = plan.model.time_scale
         named = [(_event_in(plan.model, entry), float(entry[Trace.START])) for entry in entries[happened]]
-        named.append((_LAST_EVENTS.get(Status(int(batch.log(Log.STATUS)[0])), ""), end))
+        ending = ENDINGS.get(Status(int(batch.log(Log.STATUS)[0])))
+        named.append((ending.event if ending else "", end))
         events = tuple(Event(name, time * scale) for name, time in named if name)
         changes = entries[entries[:, Trace.KIND] == TraceKind.CONTACT]
         last_guard = int(changes[-1, len(Trace)]) if len(changes) else -1

@@ -6,6 +6,7 @@ import numpy as np
 
 from stylobate.base_motions import BaseMotion
 from stylobate.engine.end_of_motion import survival
+from stylobate.engine.endings import ENDINGS
 from stylobate.engine.ensembles.outcomes import grounds_of
 from stylobate.engine.followed import Followed
 from stylobate.engine.kernel.columns import Log, Status
@@ -15,20 +16,13 @@ from stylobate.errors import Outcome
 from stylobate.models import Model
 from stylobate.text import plural
 
-_ENDINGS = {
-    Status.OVERTURNED: "its tilt grows beyond the tilt from which it could come back",
-    Status.LIMIT: "its tilt reached tilt_limit",
-    Status.LIFTED: "the base accelerates downwards faster than gravity",
-}
 _STANDS = {True: "can neither tip nor move it", False: "cannot uplift it"}
-_JAMMED = "its contact jams: with friction as large as this no motion of a rigid body follows (Painlevé's paradox)"
 _UPRIGHT = {
     Outcome.SLID: "it stands upright, and its base face slides on the plane to the end",
     Outcome.LIFTED_OFF: "it stays upright, and leaves the plane again and again",
 }
 _UNPROVED = "its tilt reached π/2, which counts as overturned"
 _RELEASED = "it may still be uplifted: follow it longer"
-_TOO_SMALL = "its step became smaller than the rounding of the time"
 _RACING = (
     "; it passes the vertical so closely that the contact point runs fast round the rim, and no passage loses energy: "
     "set restitution below 1"
@@ -46,7 +40,8 @@ def reason_of(model: Model, motion: BaseMotion, followed: Followed, outcome: Out
         return _UNPROVED
     if status is Status.RESTED:
         return f"it stands, and the base motion to come {_STANDS[model.switches]}"
-    return _ENDINGS.get(status) or _UPRIGHT.get(outcome) or _at_its_end(model, motion, followed, outcome)
+    reason = ENDINGS[status].reason if status in ENDINGS else ""
+    return reason or _UPRIGHT.get(outcome) or _at_its_end(model, motion, followed, outcome)
 
 
 def _at_its_end(model: Model, motion: BaseMotion, followed: Followed, outcome: Outcome) -> str:
@@ -69,10 +64,8 @@ def _failure(model: Model, followed: Followed) -> str:
             return unseen(most)
         case Status.ENDLESS:
             return f"its contact changes without end ({model.guard_names[followed.last_guard]})"
-        case Status.JAMMED:
-            return _JAMMED
-        case _:
-            return _TOO_SMALL
+        case status:
+            return ENDINGS[status].reason
 
 
 def _standing(model: Model, motion: BaseMotion, followed: Followed) -> str:

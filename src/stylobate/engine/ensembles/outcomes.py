@@ -6,6 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from stylobate.engine.end_of_motion import energy_over_balance, has_ended
+from stylobate.engine.endings import ENDINGS
 from stylobate.engine.ensembles.batch import Batch
 from stylobate.engine.ensembles.contacts import upright_outcomes
 from stylobate.engine.kernel.columns import BEFORE, LATE, LOOKS, SLACK, STATE, Log, Setup, Status, Window
@@ -14,21 +15,11 @@ from stylobate.errors import Outcome
 
 Floats = npt.NDArray[np.float64]
 
-# Outcomes of runs that ended in the kernel; the last periods decide the other outcomes.
-_ENDINGS = {
-    Status.RESTED: Outcome.AT_REST,
-    Status.OVERTURNED: Outcome.OVERTURNED,
-    Status.LIMIT: Outcome.LIMIT_REACHED,
-    Status.LIFTED: Outcome.LIFTED_OFF,
-    Status.STEP_LIMIT: Outcome.FAILED,
-    Status.STEP_TOO_SMALL: Outcome.FAILED,
-    Status.UNSEEN: Outcome.FAILED,
-    Status.ENDLESS: Outcome.FAILED,
-    Status.JAMMED: Outcome.FAILED,
-}
 _OTHERS = -1
-_ENDING_OF_STATUS = np.array([_ENDINGS.get(status, _OTHERS) for status in Status], dtype=np.int8)
-
+_OUTCOME_OF_STATUS = np.array(
+    [ENDINGS[status].outcome if status in ENDINGS else _OTHERS for status in Status], dtype=np.int8
+)
+"""Outcomes of runs that ended in the kernel; the last periods decide the other outcomes."""
 
 _OUTCOME_OF_GROUND = np.array([outcome_on(kind) for kind in Ground], dtype=np.int8)
 
@@ -153,7 +144,7 @@ def outcomes(batch: Batch, late: Late) -> npt.NDArray[np.int8]:
     codes = _OUTCOME_OF_GROUND[grounds_of(batch, late)]
     codes = np.where(_survive(batch, codes == Outcome.STILL_MOVING), Outcome.SURVIVED, codes)
     codes = np.where(batch.log(Log.STANDS) > 0.0, Outcome.AT_REST, codes)
-    endings = _ENDING_OF_STATUS[batch.log(Log.STATUS).astype(np.intp)]
+    endings = _OUTCOME_OF_STATUS[batch.log(Log.STATUS).astype(np.intp)]
     codes = np.where(endings == _OTHERS, codes, endings).astype(np.int8)
     reached = batch.converged
     if reached is not None:
