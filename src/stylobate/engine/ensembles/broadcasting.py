@@ -195,7 +195,9 @@ def _check(flat: Mapping[str, Floats]) -> None:
     for name, array in flat.items():
         broken = ~np.isfinite(array)
         if broken.any():
-            message = f"{name} must be finite, got {float(array[broken][0])!r}"
+            run = int(np.flatnonzero(broken.reshape(len(array), -1).any(axis=1))[0])
+            where = f" in run {run}" if len(array) > 1 else ""
+            message = f"{name} must be finite, got {float(array[broken][0])!r}{where}"
             raise ParameterError(message)
         require_size(name, float(np.abs(array).max(initial=0.0)), "kg" if name in _MASS_NAMES else "")
     tilts = np.hypot(*flat["tilt"].T)
