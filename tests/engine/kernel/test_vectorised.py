@@ -111,7 +111,7 @@ def test_steps_that_follow_loads_work_on_all_lanes_at_once(model, planar, assemb
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    ("name", "arguments"), [("evaluate", (Kind.FLOAT,)), ("guard", (Kind.FLOAT,)), ("step", (Kind.INTEGER,))]
+    ("name", "arguments"), [("evaluate", (Kind.FLOAT,)), ("evaluate_guards", ()), ("step", (Kind.INTEGER,))]
 )
 def test_equations_and_margins_of_changing_contact_work_on_all_lanes_at_once(name, arguments, assembly_of):
     counts, _ = arithmetic_of(assembly_of(name, "harmonic", "dop853", False, Sliding, after=arguments))
