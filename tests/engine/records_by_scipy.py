@@ -15,7 +15,7 @@ REST = 1e-6
 """At rest below this energy, in units of c² of the body's own scale."""
 SHORT = 1e-12
 """An interval shorter than this is over [s]."""
-OFF = 1e-10
+OFF = 1e-16
 """A column that is released begins this far from the vertical, in units of c."""
 
 

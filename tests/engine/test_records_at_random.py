@@ -37,16 +37,16 @@ def block_cases():
         )
 
 
-def followed_slender(model, scale, tail):
+def followed_slender(model, scale, tail, rtol):
     column = model.column
     body = SlenderBody(column.slenderness, model.damping, column.frequency_scale, column.gravity)
-    return follow_slender(body, RECORD, scale, tail)
+    return follow_slender(body, RECORD, scale, tail, rtol)
 
 
-def followed_block(model, scale, tail):
+def followed_block(model, scale, tail, rtol):
     column = model.column
     body = Block(column.radius, column.mass_height, column.transverse_inertia / column.mass, column.gravity)
-    return follow_block(body, ALONG_X, scale, tail)
+    return follow_block(body, ALONG_X, scale, tail, rtol)
 
 
 @pytest.mark.slow
@@ -56,20 +56,47 @@ def followed_block(model, scale, tail):
     ids=["slender columns", "blocks"],
 )
 def test_single_runs_under_a_record_agree_with_an_integration_of_their_own_equations(cases, record, follow):
-    certain, worst = 0, 0.0
+    certain, unknown, worst = 0, 0, 0.0
     for model, scale in cases():
         tail = 20.0 / model.column.frequency_parameter
         run = sb.simulate(model, record.scaled(scale), duration=record.duration + tail, rtol=1e-9)
-        own = follow(model, scale, tail)
+        own, again = follow(model, scale, tail, 1e-9), follow(model, scale, tail, 1e-11)
         if run.uncertain:
             continue
         certain += 1
         assert (run.outcome is sb.Outcome.OVERTURNED) == own.overturned, (model, scale, run.outcome, own)
         releases = sum(event.kind == "uplift" for event in run.events)
         if not own.overturned and not own.released_again and releases <= 1:
-            # Without a rest in between there is no threshold: what differs is the error of both integrations.
-            largest = run.measures["peak_tilt"]
-            worst = max(worst, abs(largest - own.largest) / math.atan(model.column.slenderness))
+            # Without a rest in between there is no threshold: what differs is the error of both integrations. Hundreds
+            # of passages near the vertical leave no digit of a peak, in either of them.
+            angle = math.atan(model.column.slenderness)
+            if abs(own.largest - again.largest) > 1e-4 * angle:
+                unknown += 1
+                continue
+            worst = max(worst, abs(run.measures["peak_tilt"] - again.largest) / angle)
     assert certain > 0.9 * RUNS
+    assert unknown <= 0.02 * RUNS
     # peak tilts of the other integration are those at its steps, a knot apart at most: short by θ̈ Δt²/8.
     assert worst < 2e-3
+
+
+def test_a_peak_without_a_certain_digit_has_a_warning():
+    # The column hops 200 times at a thousandth of its tipping angle: its peak changes with every tolerance.
+    model, scale = list(slender_cases())[82]
+    duration = RECORD.duration + 20.0 / model.column.frequency_parameter
+    run = sb.simulate(model, RECORD.scaled(scale), duration=duration, rtol=1e-9)
+    assert any("peak_tilt" in line and "no certain digit" in line for line in run.warnings)
+    assert not run.uncertain
+    other = sb.simulate(model, RECORD.scaled(scale), duration=duration, rtol=1e-8, recheck=False)
+    assert not other.warnings
+    assert abs(other.measures["peak_tilt"] / run.measures["peak_tilt"] - 1.0) > 0.1
+
+
+def test_a_peak_that_many_passages_do_not_change_has_no_warning():
+    # Damped by η = 0.05: 60 passages in steady rocking that is not steady yet.
+    column = sb.Column.dimensionless(0.1)
+    motion = sb.Harmonic.straight(acceleration=0.105 * column.gravity, angular_frequency=4.0 * column.frequency_scale)
+    run = sb.simulate(sb.Slender(column, damping=0.05), motion, duration=25.0 / column.frequency_scale)
+    assert run.outcome is sb.Outcome.STILL_MOVING
+    assert sum(event.kind == "passage" for event in run.events) > 40
+    assert not run.warnings

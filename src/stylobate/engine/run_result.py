@@ -8,7 +8,7 @@ import numpy as np
 
 from stylobate.base_motions import BaseMotion
 from stylobate.engine.contact_measures import contact_measures
-from stylobate.engine.doubt import FALLEN
+from stylobate.engine.doubt import FALLEN, FIRST_DIGIT, MANY_PASSAGES, UNSETTLED
 from stylobate.engine.ensembles.batch import Batch, Plan
 from stylobate.engine.ensembles.broadcasting import Runs, one_run
 from stylobate.engine.ensembles.motion_columns import MotionPlan
@@ -39,7 +39,7 @@ class RunResult:
     atol
         Absolute tolerance [rad].
     repeated
-        Repeats a run in doubt; returns a warning if the outcome changes.
+        Repeats a run in doubt; returns whether the outcome changes, and warnings.
     """
 
     outcome: Outcome
@@ -52,7 +52,7 @@ class RunResult:
     measures: dict[str, float]
     trajectory: Trajectory
     atol: float
-    repeated: Callable[[], tuple[str, ...]]
+    repeated: Callable[[], tuple[bool, tuple[str, ...]]]
 
 
 def run_result(
@@ -114,19 +114,35 @@ def run_result(
         },
         trajectory=trajectory,
         atol=float(table[Setup.ATOL]),
-        repeated=partial(_repeated, plan, run, outcome) if arrays["in_doubt"] and stopped_at is None else tuple,
+        repeated=partial(_repeated, plan, run, outcome, float(arrays["peak_tilt"]))
+        if stopped_at is None and (arrays["in_doubt"] or _irregular(outcome, trajectory, events))
+        else _not_repeated,
     )
 
 
-def _repeated(plan: Plan, run: Runs, outcome: Outcome) -> tuple[str, ...]:
-    """Repeat a run in doubt; return a warning if the outcome changes."""
+def _irregular(outcome: Outcome, trajectory: Trajectory, events: Sequence[Event]) -> bool:
+    """Return whether the column passed the vertical so often that its peak tilt may depend on the tolerance."""
+    passages = trajectory.half_turns + sum(event.kind in ("passage", "impact") for event in events)
+    return outcome in UNSETTLED and passages > MANY_PASSAGES
+
+
+def _not_repeated() -> tuple[bool, tuple[str, ...]]:
+    return False, ()
+
+
+def _repeated(plan: Plan, run: Runs, outcome: Outcome, peak: float) -> tuple[bool, tuple[str, ...]]:
+    """Repeat a run in doubt; return whether the outcome changes, with warnings about outcome and peak tilt."""
     again = plan.repeated()
     batch = Batch.of(again, run)
     batch.advance(np.zeros(1, dtype=np.uint8))
-    other = Outcome(int(summaries(batch)["outcome"][0]))
-    if other is Outcome.FAILED or (other in FALLEN) == (outcome in FALLEN):
-        return ()
-    return (
-        f"the outcome depends on the settings of the integration: with rest_energy {float(batch.rest_energy[0]):.2g} "
-        f"and rtol {again.options.rtol:.2g} it is {other.name}",
-    )
+    found = summaries(batch)
+    other, other_peak = Outcome(int(found["outcome"][0])), float(found["peak_tilt"][0])
+    if other is Outcome.FAILED:
+        return False, ()
+    settings = f"with rest_energy {float(batch.rest_energy[0]):.2g} and rtol {again.options.rtol:.2g} it is"
+    changed = (other in FALLEN) != (outcome in FALLEN)
+    if changed:
+        return True, (f"the outcome depends on the settings of the integration: {settings} {other.name}",)
+    if outcome in FALLEN or abs(other_peak - peak) < FIRST_DIGIT * peak:
+        return False, ()
+    return False, (f"peak_tilt {peak:.2g} rad has no certain digit: {settings} {other_peak:.2g} rad",)

@@ -96,7 +96,8 @@ def simulate(
         Repeat a run in doubt with a hundredth of the rest energy and ten times the tolerance. A run is in doubt if the
         column was uplifted again after rest and then overturned or tilted beyond half of its tipping angle, came back
         from 0.95 of its tipping angle or more, or overturned after 40/ω0 or more. If the repeated run overturns and the
-        first one does not, or the reverse, the result is `uncertain`, and has a warning.
+        first one does not, or the reverse, the result is `uncertain`, and has a warning. A run that passed the vertical
+        more than 40 times without a steady motion is repeated too; a peak tilt that changes by a tenth has a warning.
     events
         Event functions, as `EventFunction` or plain functions of time and state with the optional attributes
         `direction` and `terminal`. Their zeros are recorded in `Response.events`; a terminal one ends the run, which
@@ -157,12 +158,12 @@ def simulate(
     announce(expected_steps(model, moved.highest_frequency * model.time_scale, duration / model.time_scale), max_steps)
     result = run_result(model, moved, options, Start(start_tilt, start_rate, duration, turning), functions)
     recorded = history(model, moved, result.trajectory, samples, friction_coefficient=friction_coefficient)
-    doubts = result.repeated() if recheck else ()
+    changes, doubts = result.repeated() if recheck else (False, ())
     return Response(
         outcome=result.outcome,
         reason=result.reason,
         decided_at=result.decided_at,
-        uncertain=result.uncertain or bool(doubts),
+        uncertain=result.uncertain or changes,
         planar=result.planar,
         data=recorded.data,
         events=result.events,

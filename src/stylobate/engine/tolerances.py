@@ -32,8 +32,15 @@ SWINGS_APART = 5.0
 STILL = 1e-5
 """Energy [c²] below which a column is at rest, whatever the change of its force, if uplift is no longer possible."""
 
+CHATTER = 1e-2
+"""Fraction of the rest energy below which a column with lossy passages stands, even if uplift follows at once."""
+
 DEPARTURE = 1e-3
 """Duration of the series solution after uplift, in units of the fastest time scale."""
+SHORTEST_DEPARTURE = 0.01
+"""Minimum of this duration, as a fraction of it, if a break of the base motion follows."""
+FINEST_SHARE = 1e-6
+"""Minimum absolute tolerance of a motion that is still small, as a fraction of the absolute tolerance."""
 
 SAMPLES_PER_PERIOD = 64
 """Samples per shortest period of the base motion, for the search for uplift and for loads of a standing column."""

@@ -53,6 +53,12 @@ class Trajectory:
         return int(np.isin(self._kinds, (TraceKind.STEP, TraceKind.PLANE_STEP)).sum())
 
     @property
+    def half_turns(self) -> int:
+        """Number of half turns of the contact point round the rim; each passage near the vertical is about one."""
+        turned = self.stretches[:, Trace.END_AZIMUTH] - self.stretches[:, Trace.AZIMUTH]
+        return round(2.0 * float(np.abs(turned[self._kinds == TraceKind.STEP]).sum()))
+
+    @property
     def starts(self) -> Floats:
         """Start of each stretch."""
         return self.stretches[:, Trace.START]

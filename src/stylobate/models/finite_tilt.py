@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from stylobate.column import Column
-from stylobate.models.model import Balance
+from stylobate.models.model import Balance, Push
 
 Floats = npt.NDArray[np.float64]
 
@@ -134,6 +134,16 @@ def no_return_tilt(peak_horizontal: float, minimum_vertical: float, c: float) ->
 def energy_at_rest(tilt: float, speed: float, vertical: float, c: float, kappa: float) -> float:
     """Return ½K|α̇|² + c(1 + a_z)|α|, the energy above rest near the vertical."""
     return 0.5 * (1.0 + kappa * c * c) * speed * speed + c * (1.0 + vertical) * tilt
+
+
+def uplift_terms(push: Push, c: float, eta: float, kappa: float, resistance: float) -> tuple[float, float, float]:
+    """Return damping, moment of inertia K and gain of K θ̈ = F − damping θ̇ + gain θ, linear about uplift.
+
+    The gain is 1 + a_z + c|a_h|; rolling resistance acts below its fading rate, with the normal force 1 + a_z + κcθ̈.
+    """
+    inertia, weight = 1.0 + kappa * c * c, (push.acceleration - push.excess) / c
+    normal = weight + kappa * c * push.excess / inertia
+    return eta + c * resistance / FADING * normal, inertia, weight + c * push.acceleration
 
 
 def potential(tilt: Floats, c: float) -> Floats:

@@ -8,15 +8,16 @@ from stylobate.models.passing import pass_vertical
 
 
 def departing(
-    push: Push, elapsed: float, inertia: float, c: float, eta: float, kappa: float, axial: float
+    push: Push, elapsed: float, terms: tuple[float, float, float], c: float, kappa: float, axial: float
 ) -> tuple[float, float, float, float, float]:
     """Return the state a short time δ after uplift, with the spin −½|a_h| β (1 − κ)δ²/(cκΛ).
 
-    β is the rate at which the push turns ahead of the lean, `inertia` the moment of inertia about a tangent of the rim
-    over J0.
+    β is the rate at which the push turns ahead of the lean; `terms` are damping, moment of inertia about a tangent of
+    the rim over J0 and gain, as for `departing_lean`.
     """
+    damping, inertia, gain = terms
     freedom = 1.0 + axial - kappa
-    x, y, vx, vy, ahead = departing_lean(push, elapsed, eta, inertia, axial / freedom)
+    x, y, vx, vy, ahead = departing_lean(push, elapsed, damping, inertia, gain, axial / freedom)
     spin = -0.5 * push.acceleration * ahead * elapsed**2 * (1.0 - kappa) / (freedom * c * kappa)
     return x, y, vx, vy, spin
 

@@ -32,9 +32,9 @@ class Push(NamedTuple):
     acceleration
         |a_h| [g].
     excess, excess_rate
-        |a_h| − c(1 + a_z) [g], and its rate of change.
+        |a_h| − c(1 + a_z) [g], and its mean rate of change over the first two thirds of the departure.
     turning_rate
-        Rate at which the direction turns, anticlockwise.
+        Mean rate over this time at which the direction turns, anticlockwise.
     """
 
     direction: tuple[float, float]

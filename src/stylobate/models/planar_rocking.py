@@ -13,7 +13,7 @@ from stylobate.errors import require_positive
 from stylobate.models import finite_tilt, without_spin
 from stylobate.models.contact import contact_outputs, path_outputs
 from stylobate.models.finite_tilt import TINY, planar_acceleration
-from stylobate.models.model import Balance, Floats, Output
+from stylobate.models.model import Balance, Floats, Output, Push
 from stylobate.models.numbers import Damping, Restitution, RollingResistance
 from stylobate.models.tilt_vector import TiltVectorModel
 
@@ -77,6 +77,13 @@ def planar_rates(
     """Return the right-hand side K θ̈ = (1 + a_z)(sin θ − c cos θ) − a_h (cos θ + c sin θ) − ηθ̇ on one side."""
     acceleration, _, _ = planar_acceleration(tilt, rate, side, horizontal, vertical, c, eta, kappa, resistance)
     return rate, acceleration
+
+
+def departure(
+    push: Push, elapsed: float, c: float, eta: float, kappa: float, resistance: float, _restitution: float
+) -> tuple[float, float, float, float]:
+    """Return the state a short time after uplift."""
+    return without_spin.departure(push, elapsed, c, eta, kappa, resistance)
 
 
 def impact_map(
@@ -182,7 +189,7 @@ class PlanarRocking(TiltVectorModel):
     planar_rates = staticmethod(planar_rates)
     rest_energy = staticmethod(without_spin.rest_energy)
     no_return_tilt = staticmethod(without_spin.no_return_tilt)
-    departure = staticmethod(without_spin.departure)
+    departure = staticmethod(departure)
     impact_map = staticmethod(impact_map)
 
     @property

@@ -163,10 +163,20 @@ def rest_energy(
 
 
 def departure(
-    push: Push, elapsed: float, c: float, eta: float, _zeta: float, kappa: float, axial: float, *_: float
+    push: Push,
+    elapsed: float,
+    c: float,
+    eta: float,
+    _zeta: float,
+    kappa: float,
+    axial: float,
+    resistance: float,
+    _restitution: float,
 ) -> tuple[float, float, float, float, float]:
     """Return the state a short time after uplift."""
-    return free_twist.departing(push, elapsed, 1.0 + kappa * c * c, c, eta, kappa, axial)
+    return free_twist.departing(
+        push, elapsed, finite_tilt.uplift_terms(push, c, eta, kappa, resistance), c, kappa, axial
+    )
 
 
 def passage(

@@ -62,9 +62,9 @@ def contact(
     return 1.0 + az, math.sqrt(tx * tx + ty * ty), abs(across)
 
 
-def departure(push: Push, elapsed: float, _c: float, eta: float, *_: float) -> tuple[float, float, float, float]:
+def departure(push: Push, elapsed: float, c: float, eta: float, *_: float) -> tuple[float, float, float, float]:
     """Return the state a short time after uplift."""
-    return departing_lean(push, elapsed, eta, 1.0, 1.0)[:4]
+    return departing_lean(push, elapsed, eta, 1.0, (push.acceleration - push.excess) / c, 1.0)[:4]
 
 
 def passage(

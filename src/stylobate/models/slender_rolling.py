@@ -117,7 +117,7 @@ def departure(
     push: Push, elapsed: float, c: float, eta: float, _zeta: float, kappa: float, axial: float, *_: float
 ) -> tuple[float, float, float, float, float]:
     """Return the state a short time after uplift."""
-    return free_twist.departing(push, elapsed, 1.0, c, eta, kappa, axial)
+    return free_twist.departing(push, elapsed, (eta, 1.0, (push.acceleration - push.excess) / c), c, kappa, axial)
 
 
 def passage(

@@ -16,7 +16,8 @@ def no_return_tilt(peak_horizontal: float, minimum_vertical: float, c: float, *_
 
 
 def departure(
-    push: Push, elapsed: float, c: float, eta: float, kappa: float, *_: float
+    push: Push, elapsed: float, c: float, eta: float, kappa: float, resistance: float
 ) -> tuple[float, float, float, float]:
     """Return the state a short time after uplift."""
-    return departing_lean(push, elapsed, eta, 1.0 + kappa * c * c, 1.0)[:4]
+    damping, inertia, gain = finite_tilt.uplift_terms(push, c, eta, kappa, resistance)
+    return departing_lean(push, elapsed, damping, inertia, gain, 1.0)[:4]

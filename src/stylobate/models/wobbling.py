@@ -13,7 +13,7 @@ from stylobate.models import finite_tilt, without_spin
 from stylobate.models.closed_form import ClosedForm, RollingLaw, zero
 from stylobate.models.contact import contact_outputs, path_outputs
 from stylobate.models.finite_tilt import TINY, cosine, planar_acceleration, sine_over_angle, tilt_acceleration
-from stylobate.models.model import Balance, Floats, Output
+from stylobate.models.model import Balance, Floats, Output, Push
 from stylobate.models.numbers import Damping, PassageTilt, Restitution, RollingResistance
 from stylobate.models.passing import pass_vertical
 from stylobate.models.tilt_vector import TiltVectorModel
@@ -162,6 +162,21 @@ def planar_rates(
     return rate, acceleration
 
 
+def departure(
+    push: Push,
+    elapsed: float,
+    c: float,
+    eta: float,
+    kappa: float,
+    _axial: float,
+    resistance: float,
+    _rubber: float,
+    _restitution: float,
+) -> tuple[float, float, float, float]:
+    """Return the state a short time after uplift."""
+    return without_spin.departure(push, elapsed, c, eta, kappa, resistance)
+
+
 def passage(
     x: float,
     y: float,
@@ -256,7 +271,7 @@ class Wobbling(TiltVectorModel):
     planar_rates = staticmethod(planar_rates)
     rest_energy = staticmethod(without_spin.rest_energy)
     no_return_tilt = staticmethod(without_spin.no_return_tilt)
-    departure = staticmethod(without_spin.departure)
+    departure = staticmethod(departure)
     passage = staticmethod(passage)
     impact_map = staticmethod(impact_map)
 

@@ -2,6 +2,7 @@
 
 import math
 
+from stylobate.models.finite_tilt import uplift_terms
 from stylobate.models.free_twist import departing
 from stylobate.models.model import Push
 from stylobate.models.sliding.equations import JAM, STILL
@@ -109,7 +110,8 @@ def uplifted(state: State, now: Triple, later: Triple, ahead: float, n: Numbers)
         (there - n.c * heavier - excess) / ahead,
         math.atan2(ax * by - ay * bx, ax * bx + ay * by) / ahead,
     )
-    x, y, vx, vy, spin = departing(push, ahead, 1.0 + n.kappa * n.c**2, n.c, n.eta, n.kappa, n.axial)
+    terms = uplift_terms(push, n.c, n.eta, n.kappa, n.resistance)
+    x, y, vx, vy, spin = departing(push, ahead, terms, n.c, n.kappa, n.axial)
     if x == 0.0 and y == 0.0:
         return ahead, state
     return ahead, settle_rim(placed(state, (x, y, vx, vy), spin, ROLLING), later, n)

@@ -8,6 +8,7 @@ from stylobate.engine.kernel.driver.equations import loads_of, model_lean, model
 from stylobate.engine.kernel.driver.push import accelerations
 from stylobate.engine.kernel.layout import Table
 from stylobate.engine.kernel.roots import nearest_turn, turns_of
+from stylobate.engine.tolerances import FINEST_SHARE
 
 
 def azimuth_now(buf: Table, i: int) -> float:
@@ -82,7 +83,7 @@ def start_moving(buf: Table, i: int, t: float, wanted: float) -> None:
             buf[R.FIRST_AZIMUTH, i] = azimuth
         buf[R.TRACE_AZIMUTH, i] = azimuth
     atol = buf[R.ATOL, i]
-    buf[R.ATOL_NOW, i] = min(atol, buf[R.RTOL, i] * tilt) if tilt > 0.0 else atol
+    buf[R.ATOL_NOW, i] = min(atol, max(buf[R.RTOL, i] * tilt, FINEST_SHARE * atol)) if tilt > 0.0 else atol
     if tilt > buf[R.PEAK_TILT, i]:
         buf[R.PEAK_TILT, i] = tilt
         buf[R.PEAK_AT, i] = t

@@ -3,7 +3,7 @@
 import math
 
 from stylobate.engine.elementary import length
-from stylobate.engine.kernel.bound import CAN_DEPART, CAN_GO_TO_PLANE, PLANAR, R
+from stylobate.engine.kernel.bound import CAN_DEPART, CAN_GO_TO_PLANE, CAN_LOSE, PLANAR, SPIN, R
 from stylobate.engine.kernel.columns import Status, TraceKind
 from stylobate.engine.kernel.driver.base_motion import forcing_rate, held_for_good
 from stylobate.engine.kernel.driver.equations import lean_of_new, model_at_rest, model_departure, model_rest_energy
@@ -16,7 +16,7 @@ from stylobate.engine.kernel.driver.stops import leg_end, meet_stop, next_stop, 
 from stylobate.engine.kernel.driver.tracing import trace_event, trace_stand
 from stylobate.engine.kernel.driver.within import set_dense_output, set_within, set_within_closely
 from stylobate.engine.kernel.layout import Table
-from stylobate.engine.tolerances import DEPARTURE, STILL, SWINGS_APART
+from stylobate.engine.tolerances import CHATTER, DEPARTURE, SHORTEST_DEPARTURE, STILL, SWINGS_APART
 from stylobate.models.model import Push
 
 
@@ -35,12 +35,23 @@ def rest_margin(buf: Table, i: int, push: Accelerations, tilt: float, speed: flo
     held = buf[R.LEAST_FORCE, i] >= 0.0
     share = buf[R.REST_ENERGY_FOR_GOOD, i] if held else buf[R.REST_ENERGY, i]
     small = share * square - energy
+    if force < 0.0 and chatters(buf, i):
+        return CHATTER * buf[R.REST_ENERGY, i] * square - energy
     if force < 0.0 or small <= 0.0:
         return min(force, small)
     # During a swing the force changes by 2 √(2 energy) times its rate; SWINGS_APART times this is less than force².
     apart = SWINGS_APART * forcing_rate(buf, i)
     dies = min(small, force**4 - 8.0 * max(energy, 0.0) * apart * apart)
     return max(min(share, STILL) * square - energy, dies) if held else dies
+
+
+def chatters(buf: Table, i: int) -> bool:
+    """Return whether passages can lose energy without end in a finite time: with losses, in three dimensions.
+
+    A column with spin returns to the side from which it came. Its passages follow each other ever faster, although the
+    base pushes harder than the column can resist; once the energy is negligible, it stands, and uplift follows at once.
+    """
+    return CAN_LOSE and not PLANAR and buf[R.PASSAGE_TILT, i] > 0.0
 
 
 def rest_within_step(buf: Table, i: int) -> float:
@@ -82,21 +93,27 @@ def margin_within_step(buf: Table, i: int, start: float, h: float, u: float, clo
     """Return `rest_margin` at a fraction of the step, from cubics or, if `closely`, from the dense output."""
     push = accelerations(buf, i, start + u * h)
     force = holding_force(buf, i, push)
-    if force <= 0.0:  # then the margin is not positive either
+    if force <= 0.0 and not chatters(buf, i):  # then the margin is not positive either
         return force
     if closely:
         set_within_closely(buf, i, u * h)
     else:
         set_within(buf, i, u * h)
     x, y, vx, vy = lean_of_new(buf, i)
-    return rest_margin(buf, i, push, length(x, y), length(vx, vy))
+    margin = rest_margin(buf, i, push, length(x, y), length(vx, vy))
+    return margin if force > 0.0 else min(margin, -(x * vx + y * vy))
 
 
 def settle(buf: Table, i: int, table: Table, pieces: Table, t: float) -> int:
-    """Come to rest at `t`; return as `stand` does."""
+    """Come to rest at `t`; return as `stand` does. A column that stands for an instant only keeps its spin."""
+    spin = 0.0
     if not PLANAR:
         buf[R.LAST_AZIMUTH, i] = azimuth_now(buf, i)
+        if SPIN >= 0 and holding_force(buf, i, accelerations(buf, i, t)) < 0.0:
+            spin = buf[R.STATE + SPIN, i]
     set_state(buf, i, model_at_rest(buf, i))
+    if not PLANAR and SPIN >= 0:
+        buf[R.STATE + SPIN, i] = spin
     trace_event(buf, i, table, TraceKind.REST, t)
     buf[R.STANDS, i] = 1.0
     buf[R.RESTS, i] += 1.0
@@ -152,20 +169,28 @@ def release_within_leg(buf: Table, i: int, t: float) -> float:
 
 
 def depart(buf: Table, i: int, release: float) -> float:
-    """Set the state a short time after uplift, and return that time."""
-    elapsed = DEPARTURE / (1.0 + buf[R.FREQUENCY, i])
+    """Set the state a short time after uplift, and return that time.
+
+    The series needs the mean rate of the push over its first two thirds; a break of the base motion ends it early.
+    """
+    usual = DEPARTURE / (1.0 + buf[R.FREQUENCY, i])
+    elapsed = min(usual, max(leg_end(buf, i) - release, SHORTEST_DEPARTURE * usual))
+    apart = elapsed * (2.0 / 3.0)
     ax, ay, az = accelerations(buf, i, release)
-    bx, by, bz = accelerations(buf, i, release + elapsed)
+    bx, by, bz = accelerations(buf, i, release + apart)
     ux, uy = buf[R.LINE_X, i], buf[R.LINE_Y, i]
     if PLANAR:
         ax, ay, bx, by = ax * ux, ax * uy, bx * ux, bx * uy
     here, there = math.hypot(ax, ay), math.hypot(bx, by)
     c = buf[R.SLENDERNESS, i]
     over = max(here - c * (1.0 + az), 0.0)
-    rate = (there - c * (1.0 + bz) - over) / elapsed
-    turning = math.atan2(ax * by - ay * bx, ax * bx + ay * by) / elapsed
+    rate = (there - c * (1.0 + bz) - over) / apart
+    turning = math.atan2(ax * by - ay * bx, ax * bx + ay * by) / apart
     push = Push((-ax / here, -ay / here), here, over, rate, turning)
+    spin = buf[R.STATE + SPIN, i] if not PLANAR and SPIN >= 0 else 0.0
     set_state(buf, i, model_departure(buf, i, push, elapsed, ux, uy))
+    if not PLANAR and SPIN >= 0 and not is_at_rest(buf, i):
+        buf[R.STATE + SPIN, i] += spin
     return release + elapsed
 
 
