@@ -1,6 +1,6 @@
 """Equations of motion, one file for each model of the hierarchy."""
 
-from stylobate.models.consistency import check
+from stylobate.models.consistency import CheckReport, check
 from stylobate.models.model import Balance, Model, Output, Push
 from stylobate.models.planar_rocking import PlanarRocking
 from stylobate.models.rolling import Rolling
@@ -11,6 +11,7 @@ from stylobate.models.wobbling import Wobbling
 
 __all__ = [
     "Balance",
+    "CheckReport",
     "Contact",
     "Model",
     "Output",

@@ -78,6 +78,11 @@ def problems_of_loss(subject: Subject) -> Iterator[str]:
             return
 
 
+def loss_of_speed(subject: Subject) -> str:
+    """Return the claim of `impact_map`; "" for a model without loss."""
+    return "moves nothing and adds no speed" if subject.model.loss_tilt > 0.0 else ""
+
+
 def problems_of_passage(subject: Subject) -> Iterator[str]:
     """Yield a line if the end of `passage` differs from that of `rates`, on a close passage of the vertical."""
     from scipy.integrate import solve_ivp  # noqa: PLC0415  a thorough check only

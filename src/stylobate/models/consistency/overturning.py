@@ -59,42 +59,53 @@ def problems_of_balance(subject: Subject) -> Iterator[str]:
     if model.balance is None or not belongs_to_equations(type(model), "balance", "energy"):
         return
     balance, scale = model.balance, model.column.base_inertia / model.time_scale**2 * subject.slenderness**2
-    for state in _below(subject, balance):
-        before, after, lapse = subject.beside(state, subject.rates(state))
-        gained = float(np.diff(_energies(subject, before, after))[0]) / lapse
+    beside = [subject.beside(state, subject.rates(state)) for state in _below(subject, balance)]
+    if beside:
+        before, after, lapses = zip(*beside, strict=True)
+        gained = float(((_energies(subject, *after) - _energies(subject, *before)) / lapses).max())
         if gained > _NO_GAIN * scale:
             yield (
                 f"energy: grows in free motion (by {gained / scale:.3g} m g h c² per unit of time). Define energy for "
                 "these rates, or set balance = None."
             )
             return
-    random, count = subject.generator(), 40 if subject.thorough else 6
-    for _ in range(count if balance.tilt < np.inf else 0):
-        azimuth, c = random.uniform(0.0, 2.0 * np.pi), subject.slenderness
-        tilt = (balance.tilt * np.cos(azimuth), balance.tilt * np.sin(azimuth))
-        rate = c * random.uniform(-1.0, 1.0, 2)
-        state = subject.state(tilt, (float(rate[0]), float(rate[1])), random.uniform(-1.0, 1.0))
-        energy = float(_energies(subject, state)[0])
-        if energy < balance.energy * (1.0 - _ROUNDING):
-            yield (
-                f"balance: a column at the tilt {balance.tilt:.4g} rad can have less than the energy of the balance "
-                f"({energy:.4g} J, not {balance.energy:.4g} J). Define balance for these rates, or set balance = None."
-            )
-            return
+    energy = float(_energies(subject, *_at_its_tilt(subject, balance)).min()) if balance.tilt < np.inf else np.inf
+    if energy < balance.energy * (1.0 - _ROUNDING):
+        yield (
+            f"balance: a column at the tilt {balance.tilt:.4g} rad can have less than the energy of the balance "
+            f"({energy:.4g} J, not {balance.energy:.4g} J). Define balance for these rates, or set balance = None."
+        )
 
 
-def _below(subject: Subject, balance: Balance) -> Iterator[tuple[float, ...]]:
-    """Yield random states with less tilt and energy than the balance."""
+def balance_of(subject: Subject) -> str:
+    """Return whether the balance prevents overturning."""
+    if belongs_to_equations(type(subject.model), "balance", "energy"):
+        return "free motion with less energy and tilt cannot overturn"
+    return f"not used{subject.origin('balance')} because the equations are replaced"
+
+
+def _at_its_tilt(subject: Subject, balance: Balance) -> Iterator[tuple[float, ...]]:
+    """Yield random states at the tilt of the balance."""
     random, c = subject.generator(), subject.slenderness
+    for _ in range(40 if subject.thorough else 6):
+        azimuth = random.uniform(0.0, 2.0 * np.pi)
+        rate = c * random.uniform(-1.0, 1.0, 2)
+        tilt = (balance.tilt * np.cos(azimuth), balance.tilt * np.sin(azimuth))
+        yield subject.state(tilt, (float(rate[0]), float(rate[1])), random.uniform(-1.0, 1.0))
+
+
+def _below(subject: Subject, balance: Balance) -> list[tuple[float, ...]]:
+    """Return random states with less tilt and energy than the balance."""
+    random, c, states = subject.generator(), subject.slenderness, []
     for _ in range(100 if subject.thorough else 12):
         lean, heading, size, speed = random.uniform([0.0, 0.0, 0.05, 0.0], [2.0 * np.pi, 2.0 * np.pi, 0.95, 1.0])
         along = lean if subject.model.planar_only else heading
         size *= min(balance.tilt, _HIGHEST)
         tilt = (size * np.cos(lean), size * np.sin(lean))
         rate = (speed * c * np.cos(along), speed * c * np.sin(along))
-        state = subject.state(tilt, rate, random.uniform(-0.5, 0.5))
-        if _energies(subject, state)[0] < balance.energy:
-            yield state
+        states.append(subject.state(tilt, rate, random.uniform(-0.5, 0.5)))
+    lower = _energies(subject, *states) < balance.energy
+    return [state for state, kept in zip(states, lower, strict=True) if kept]
 
 
 def _energies(subject: Subject, *states: tuple[float, ...]) -> np.ndarray:

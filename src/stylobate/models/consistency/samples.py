@@ -3,9 +3,12 @@
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 
 from stylobate.models.inheritance import owner_of
 from stylobate.models.model import Model
+
+Floats = npt.NDArray[np.float64]
 
 # Half the step of central differences, in the time of the model; the error is of second order.
 _STEP = 1e-4
@@ -69,14 +72,24 @@ class Subject:
         here = np.array(state)
         return tuple((here - _STEP * rates).tolist()), tuple((here + _STEP * rates).tolist()), 2.0 * _STEP
 
-    def tilt_acceleration(self, state: tuple[float, ...], push: tuple[float, float, float]) -> np.ndarray:
-        """Return the second derivative of the tilt vector."""
+    def tilt_change(self, state: tuple[float, ...], push: tuple[float, float, float]) -> Floats:
+        """Return the derivatives of the four results of `tilt_of` along `rates`."""
         before, after, lapse = self.beside(state, self.rates(state, push))
-        found: np.ndarray = (self._lean(after)[2:] - self._lean(before)[2:]) / lapse
+        found: Floats = (self.lean(after) - self.lean(before)) / lapse
         return found
 
-    def _lean(self, state: tuple[float, ...]) -> np.ndarray:
+    def tilt_acceleration(self, state: tuple[float, ...], push: tuple[float, float, float]) -> Floats:
+        """Return the second derivative of the tilt vector."""
+        return self.tilt_change(state, push)[2:]
+
+    def lean(self, state: tuple[float, ...]) -> Floats:
+        """Return the tilt vector and its rate, as `tilt_of` gives them."""
         return np.array(self.model.tilt_of(*state, *self.numbers), dtype=float)
+
+    def described(self, state: tuple[float, ...], push: tuple[float, float, float] | None = None) -> str:
+        """Return a state, and the acceleration of the base, for a message."""
+        named = ", ".join(f"{name} = {value:.4g}" for name, value in zip(self.model.state_names, state, strict=True))
+        return named if push is None else f"{named}, base acceleration {', '.join(f'{a:.4g}' for a in push)} g"
 
     def origin(self, name: str) -> str:
         """Return ", inherited from Slender," for a member that the class of the model does not state itself."""

@@ -2,6 +2,7 @@
 
 import inspect
 from collections.abc import Callable, Iterator, Sequence
+from functools import cache
 from typing import Any
 
 from stylobate.models.consistency.samples import Subject
@@ -49,6 +50,7 @@ def _given(subject: Subject, name: str) -> int:
     return len(subject.model.state_names) + _BEHIND_STATE[name] + len(subject.numbers)
 
 
+@cache
 def _positions(function: Callable[..., Any]) -> tuple[float, float] | None:
     """Return the minimum and maximum number of positional arguments of a function; None if unknown."""
     try:
