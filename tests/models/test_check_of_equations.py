@@ -112,7 +112,8 @@ def test_a_column_that_loses_energy_has_to_come_to_rest():
     (line,) = problems_of(Undeclared(COLUMN, drag=5.0))
     assert line.startswith(
         "Undeclared.comes_to_rest: is False although rates lose energy in free motion, inherited from Slender, (they "
-        f"slow the column by {5.0 * 0.1**2:.4g} per unit of time, not 0, at a tilt of 0.07 rad with the rate 0.1)."
+        f"slow the column by {5.0 * 0.1**2:.4g} per unit of time, not 0, at a tilt of {0.7 * math.atan(0.1):.4g} rad "
+        "with the rate 0.1)."
     )
     for model in (Undeclared(COLUMN), Undeclared(COLUMN, damping=0.1, drag=5.0)):
         sb.models.check(model)
@@ -221,9 +222,10 @@ def test_the_column_has_to_lean_against_the_acceleration_of_the_base(signs, alon
 
 def test_the_weight_has_to_grow_if_the_base_accelerates_upwards():
     (line,) = problems_of(pushed(1.0, 0.0, 0.0, 1.0, lift=-1.0))
-    # Half of the weight c of the slender column acts at the tilt ½c: 0.05 of 0.1 g.
+    # At the tilt A the weight accelerates the slender column by A − c.
+    tilt = 0.5 * math.atan(0.1)
     assert line.startswith("Pushed.rates: an upward acceleration of the base reduces the weight")
-    assert "by +0.005, at a tilt of 0.05 rad" in line
+    assert f"by {0.1 * (0.1 - tilt):+.4g}, at a tilt of {tilt:.4g} rad" in line
 
 
 def test_the_report_states_the_side_to_which_the_column_leans():

@@ -7,7 +7,7 @@ import numpy as np
 from stylobate.models.consistency.samples import Subject
 
 _ROUNDING = 1e-9  # change of the tilt acceleration that counts as none [c]
-_STATES = ((0.1, 0.1), (0.3, 0.5), (0.7, 1.0))  # tilt and rate [c]
+_STATES = ((0.2, 0.1), (0.6, 0.5), (1.4, 1.0))  # tilt, in half tipping angles, and rate [c]
 
 
 def problems_of_coming_to_rest(subject: Subject) -> Iterator[str]:
@@ -20,7 +20,7 @@ def problems_of_coming_to_rest(subject: Subject) -> Iterator[str]:
     states = _STATES if subject.thorough else _STATES[::2]
     losses = {motion: _loss(subject, *motion) for motion in states}
     motion, loss = max(losses.items(), key=lambda one: one[1])
-    tilt, rate = (part * subject.slenderness for part in motion)
+    tilt, rate = motion[0] * subject.halfway, motion[1] * subject.slenderness
     where = f"at a tilt of {tilt:.4g} rad with the rate {rate:.4g}"
     if not model.comes_to_rest and model.rest_energy is not None and min(losses.values()) > 0.0:
         yield (
@@ -46,7 +46,7 @@ def _loss(subject: Subject, size: float, speed: float) -> float:
     """Return the deceleration of the tilt by dissipation, 0 if negligible; negative if energy is gained."""
     c, azimuth = subject.slenderness, 0.6
     u = np.array([np.cos(azimuth), np.sin(azimuth)])
-    tilt, rate = c * size * u, c * speed * u
+    tilt, rate = size * subject.halfway * u, speed * c * u
     ahead, back = (
         float(np.dot(u, subject.tilt_acceleration(subject.state(tuple(tilt), tuple(v)), (0.0, 0.0, 0.0))))
         for v in (rate, -rate)

@@ -47,27 +47,27 @@ def problems_of_push(subject: Subject) -> Iterator[str]:
             yield (
                 "rates: the column leans with the acceleration of the base instead of against it (a base "
                 f"acceleration of {0.1 * c:.4g} g along {along} changes the tilt acceleration by "
-                f"{0.1 * c * response:+.4g} along it, at a tilt of {0.5 * c:.4g} rad along it). Reverse the sign of "
-                "this term, such as −ax for +ax."
+                f"{0.1 * c * response:+.4g}, at a tilt of {subject.halfway:.4g} rad). Reverse the sign of this term, "
+                "such as −ax for +ax."
             )
             return
         if not response:
             yield (
                 f"rates: the base does not act along {along} although it acts along other directions (a base "
                 f"acceleration of {0.1 * c:.4g} g along {along} changes the tilt acceleration by 0 along it, at a tilt "
-                f"of {0.5 * c:.4g} rad along it). Add the term of ax to the rate of vx, and of ay to that of vy."
+                f"of {subject.halfway:.4g} rad). Add the term of ax to the rate of vx, and of ay to that of vy."
             )
             return
 
 
 def problems_of_lift(subject: Subject) -> Iterator[str]:
-    """Yield a line if an upward acceleration of the base accelerates a tilt below c away from the vertical."""
-    lifted, c = _response_to_lift(subject), subject.slenderness
+    """Yield a line if an upward acceleration of the base accelerates a small tilt away from the vertical."""
+    lifted = _response_to_lift(subject)
     if lifted > 0.0:
         yield (
             "rates: an upward acceleration of the base reduces the weight of the column (a base acceleration of 0.1 g "
-            f"changes the tilt acceleration by {0.1 * lifted:+.4g}, at a tilt of {0.5 * c:.4g} rad). Multiply the "
-            "terms of the weight by 1 + az."
+            f"changes the tilt acceleration by {0.1 * lifted:+.4g}, at a tilt of {subject.halfway:.4g} rad). Multiply "
+            "the terms of the weight by 1 + az."
         )
 
 
@@ -86,9 +86,9 @@ def weight_under_lift(subject: Subject) -> str:
 
 def _responses(subject: Subject) -> dict[str, tuple[float, float]]:
     """Return the tilt acceleration along and across a direction, per base acceleration along it, by direction."""
-    c, found = subject.slenderness, {}
+    c, tilt, found = subject.slenderness, subject.halfway, {}
     for name, (ux, uy) in _DIRECTIONS.items():
-        state = subject.state((0.5 * c * ux, 0.5 * c * uy), (0.0, 0.0))
+        state = subject.state((tilt * ux, tilt * uy), (0.0, 0.0))
         back, ahead = (subject.tilt_acceleration(state, (a * ux, a * uy, 0.0)).tolist() for a in (-0.1 * c, 0.1 * c))
         x, y = ((after - before) / (0.2 * c) for before, after in zip(back, ahead, strict=True))
         found[name] = _noted(ux * x + uy * y), _noted(ux * y - uy * x)
@@ -105,8 +105,8 @@ def _acts(responses: dict[str, tuple[float, float]]) -> bool:
 
 
 def _response_to_lift(subject: Subject) -> float:
-    """Return the tilt acceleration per upward base acceleration, at the tilt ½c; 0 if negligible."""
+    """Return the tilt acceleration per upward base acceleration, at half of the tipping angle; 0 if negligible."""
     c = subject.slenderness
-    state = subject.state((0.5 * c, 0.0), (0.0, 0.0))
+    state = subject.state((subject.halfway, 0.0), (0.0, 0.0))
     down, up = (float(subject.tilt_acceleration(state, (0.0, 0.0, a))[0]) for a in (-0.1, 0.1))
     return c * _noted((up - down) / (0.2 * c))

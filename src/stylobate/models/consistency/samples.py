@@ -38,6 +38,11 @@ class Subject:
         """c = r/h of the column, the scale of tilts."""
         return self.model.column.slenderness
 
+    @property
+    def halfway(self) -> float:
+        """Half of the tipping angle [rad]: the weight returns the column from this tilt."""
+        return 0.5 * self.model.column.tipping_angle
+
     def generator(self) -> "np.random.Generator":
         """Return a random generator with a fixed seed."""
         return np.random.default_rng(20)

@@ -86,7 +86,7 @@ def _required(reference: Subject, tilt: float, frequency: float) -> Floats | Non
 
 
 def _residual(subject: Subject, tilt: float, frequency: float, required: Floats) -> Floats:
-    """Return what is left of the tilt acceleration, along and across the tilt, and of the rate of the spin."""
+    """Return the excess of the tilt acceleration, along and across the tilt, and of the rate of the spin."""
     u, n = np.array([0.8, 0.6]), np.array([-0.6, 0.8])
     along, across, spin = required.tolist()
     state = subject.state(tuple(tilt * u), tuple(frequency * tilt * n), spin)
