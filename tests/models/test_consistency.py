@@ -16,6 +16,8 @@ from stylobate.models.consistency import check_once
 COLUMN = sb.Column.dimensionless(0.1)
 BODIES = [COLUMN, sb.Column.solid(radius=0.5, height=4.0, density=2700.0)]
 STOUT = sb.Column.solid(radius=0.4, height=1.2, density=2700.0)
+HALF = sb.Column.dimensionless(0.5)
+FLAT = sb.Column.solid(radius=1.5, height=1.0, density=2700.0)
 
 slender_rates, slender_contact, slender_planar = sb.Slender.rates, sb.Slender.contact, sb.Slender.planar_rates
 
@@ -29,6 +31,7 @@ def levels(column):
         sb.SlenderRolling(column, damping=0.1, couples="isotropic"),
         sb.Wobbling(column),
         sb.Wobbling(column, **loss, constraint="rubber"),
+        sb.Wobbling(column, constraint="rubber"),
         sb.Rolling(column),
         sb.Rolling(column, **loss, spin_damping=0.2),
         sb.PlanarRocking(column, damping=0.1, rolling_resistance=0.01),
@@ -37,7 +40,7 @@ def levels(column):
     ]
 
 
-@pytest.mark.parametrize("column", [*BODIES, STOUT], ids=["c=0.1", "c=0.25", "c=0.67"])
+@pytest.mark.parametrize("column", [*BODIES, HALF, STOUT, FLAT], ids=["c=0.1", "c=0.25", "c=0.5", "c=0.67", "c=3"])
 def test_the_models_of_the_package_keep_their_promises(column):
     for model in levels(column):
         sb.models.check(model)

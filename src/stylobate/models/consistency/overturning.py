@@ -27,8 +27,8 @@ def problems_of_no_return(subject: Subject) -> Iterator[str]:
     random = subject.generator()
     for largest, least in ((0.0, 0.0), (0.6 * c, 0.0), (2.0 * c, -0.3)):
         limit = float(model.no_return_tilt(largest, least, *subject.numbers))
-        top = max(0.5 * np.pi, 1.2 * limit) if limit < 0.5 * np.pi - _BEYOND else limit
-        if not top > limit:
+        top = 0.5 * np.pi  # where the column lies
+        if not limit * (1.0 + _BEYOND) < top:
             continue
         inside = np.array([0.0, 0.03, 0.1, 0.3, 0.6, 0.9] if subject.thorough else [0.0, 0.1, 0.9])
         tilts = limit * (1.0 + _BEYOND) + (top - limit * (1.0 + _BEYOND)) * inside
