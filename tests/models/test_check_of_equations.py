@@ -302,7 +302,7 @@ def test_code_that_cannot_be_compiled_is_not_compared():
             return slender_rates(numbers["x"], numbers["y"], vx, vy, ax, ay, az, c, eta, kappa)
 
     report = sb.models.check(Uncompiled(COLUMN, damping=0.1))
-    assert "rates: not compared with compiled code, which rates does not have" in report.findings
+    assert "rates: not compared with compiled code, because rates is not compiled" in report.findings
 
 
 RUNS = [

@@ -2,6 +2,7 @@
 
 import warnings
 from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -152,7 +153,7 @@ def check(model: Model) -> CheckReport:
     return CheckReport(type(model).__name__, tuple(filter(None, (_finding(subject, law) for law in laws))))
 
 
-_CHECKED: dict[tuple[type[Model], Callable[..., Any], tuple[float, ...]], None] = {}
+_CHECKED: dict[tuple[type[Model], Callable[..., Any] | None, tuple[float, ...]], None] = {}
 _REMEMBERED = 4096
 
 
@@ -161,7 +162,7 @@ def check_once(model: Model) -> None:
     kind = type(model)
     if kind.__module__.startswith("stylobate.models."):
         return
-    key = (kind, model.rates, _numbers(model))
+    key = (kind, getattr(kind, "rates", None), _numbers(model))
     if key in _CHECKED:
         return
     _refuse(model, _problems(Subject(model, key[2], thorough=False)))
@@ -202,7 +203,8 @@ def _finding(subject: Subject, law: Law) -> str:
     """Return the line of a law that holds; "" if the model makes no such claim."""
     if getattr(subject.model, law.member) is None:
         return ""
-    finding = law.finding if isinstance(law.finding, str) else law.finding(subject)
+    with _without_warnings():
+        finding = law.finding if isinstance(law.finding, str) else law.finding(subject)
     return f"{law.member}: {finding}" if finding else ""
 
 
@@ -211,13 +213,19 @@ def _found(subject: Subject, laws: tuple[Law, ...]) -> list[str]:
     problems: list[str] = []
     for law in laws:
         try:
-            with np.errstate(all="ignore"), warnings.catch_warnings():
-                warnings.simplefilter("ignore")
+            with _without_warnings():
                 problems += law.problems(subject)
         except Exception as error:  # noqa: BLE001  a user's function may raise anything
             if subject.thorough:
                 problems.append(f"{_member(error)}: raises {type(error).__name__} at a random state ({error}).")
     return problems
+
+
+@contextmanager
+def _without_warnings() -> Iterator[None]:
+    with np.errstate(all="ignore"), warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        yield
 
 
 def _member(error: BaseException) -> str:

@@ -34,7 +34,7 @@ def compilation(subject: Subject) -> str:
     """Return whether compiled and plain equations agree."""
     for name in _equations(subject):
         if _both(subject, name) is None:
-            return f"not compared with compiled code, which {name} does not have"
+            return f"not compared with compiled code, because {name} is not compiled"
     return f"compiled code and Python agree ({' and '.join(_equations(subject))})"
 
 
