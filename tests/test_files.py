@@ -2,13 +2,16 @@
 
 import os
 import resource
+import shutil
 import subprocess
 import sys
+import traceback
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
 
+import h5py
 import numpy as np
 import pytest
 import xarray as xr
@@ -18,6 +21,7 @@ from stylobate import orbits
 from stylobate.cli.main import run as run_command
 from stylobate.cli.output import check_writable
 from stylobate.cli.saved import open_saved
+from stylobate.earthquakes import incremental_dynamic_analysis
 from stylobate.errors import FileError
 from stylobate.files import read_sealed, sealed, write_whole
 from stylobate.results import Assessment, write_netcdf
@@ -45,9 +49,23 @@ def save_assessment(path):
     return Assessment(data=tables, setting={"title": "columns"}).save(path)
 
 
+def save_basins(path):
+    starts = {name: np.linspace(-0.1, 0.1, 3) for name in ("tilt_x", "tilt_y")}
+    return write_netcdf(sb.studies.basins(MODEL, CIRCLE, over=starts, periods=8.0), path)
+
+
+def save_fragility(path):
+    pulses = {
+        name: sb.Pulse.one_sine(acceleration=0.2, angular_frequency=1.0 + number) for number, name in enumerate("ab")
+    }
+    return write_netcdf(incremental_dynamic_analysis(MODEL, pulses, scales=[0.5, 2.0]), path)
+
+
 KINDS = {
     "run": (save_run, sb.load),
-    "study": (save_study, open_saved),
+    "map": (save_study, sb.load),
+    "basins": (save_basins, open_saved),
+    "fragility": (save_fragility, sb.load),
     "orbit": (save_orbit, orbits.load_orbits),
     "assessment": (save_assessment, Assessment.load),
 }
@@ -79,6 +97,39 @@ def test_no_flipped_bit_is_accepted(kept, tmp_path):
         damaged = bytearray(content)
         damaged[bit // 8] ^= 1 << bit % 8
         require_refused(tmp_path / path.name, damaged, load)
+
+
+def test_a_file_of_another_length_is_refused(kept, tmp_path):
+    path, load = kept
+    content, rng = path.read_bytes(), np.random.default_rng(22)
+    for added in (b"\n", b"\0", rng.bytes(200), bytes(5000), content):
+        require_refused(tmp_path / path.name, content + added, load)
+    for lost in (1, 30, 65, 84, 85, 100):  # parts of the checksum, all of it, and more
+        require_refused(tmp_path / path.name, content[:-lost], load)
+
+
+def test_no_flipped_bit_is_accepted_where_a_byte_was_appended(kept, tmp_path):
+    path, load = kept
+    content, rng = path.read_bytes() + b"\n", np.random.default_rng(23)
+    for bit in rng.integers(8 * len(content), size=50).tolist():
+        damaged = bytearray(content)
+        damaged[bit // 8] ^= 1 << bit % 8
+        require_refused(tmp_path / path.name, damaged, load)
+
+
+@pytest.mark.parametrize(("number", "remedy"), [("0", "Compute it again"), ("12", "Update stylobate")])
+def test_a_file_of_another_version_is_refused_with_the_remedy(kept, number, remedy, tmp_path):
+    path, load = kept
+    with h5py.File(shutil.copy(path, tmp_path), "r+") as file:
+        kind = file.attrs["format"].rpartition(" ")[0]
+        file.attrs["format"] = f"{kind} {number}"
+    other = write_whole(tmp_path / "other.nc", sealed((tmp_path / path.name).read_bytes()))
+    with pytest.raises(FileError, match=rf"other\.nc: written by a .* version of stylobate .*\. {remedy}$"):
+        load(other)
+
+
+def test_a_result_does_not_hold_the_format_of_its_file(folder):
+    assert "format" not in sb.load(save_study(folder / "read.nc")).attrs
 
 
 def test_no_lost_stretch_is_accepted(kept, tmp_path):
@@ -144,6 +195,18 @@ def test_an_older_file_outlives_a_full_disk(save, tmp_path, monkeypatch):
         save(path)
     assert path.read_bytes() == b"older"
     assert list(tmp_path.iterdir()) == [path]
+
+
+def test_after_a_failed_save_the_error_holds_no_memory_of_the_file(tmp_path, monkeypatch):
+    monkeypatch.setattr(os, "fsync", fail)
+    with pytest.raises(FileError) as failure:
+        save_run(tmp_path / "run.nc")
+    errors = [failure.value, failure.value.__context__]
+    frames = [frame for error in errors for frame, _ in traceback.walk_tb(error.__traceback__)]
+    for view in (value for frame in frames for value in frame.f_locals.values() if isinstance(value, memoryview)):
+        with pytest.raises(ValueError, match="released"):
+            view.tobytes()
+    assert frames
 
 
 RUN = ["simulate", "--slenderness", "0.1", "--motion", "circular", "--acceleration", "0.065"]

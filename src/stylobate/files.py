@@ -24,6 +24,7 @@ _LABEL = b"\n#stylobate sha256 "
 _SEAL_LENGTH = len(_LABEL) + hashlib.sha256().digest_size * 2 + 1
 # A label with at least so many intact bytes marks a seal.
 _LABEL_BYTES_SEEN = len(_LABEL) // 2
+_RESTORE = "Restore it from a copy, or compute it again"
 
 
 def write_whole(path: str | Path, content: bytes | str) -> Path:
@@ -102,9 +103,9 @@ def _remove_left_behind(target: Path) -> None:
     stem, suffix = re.escape(target.stem[:_STEM]), re.escape(target.suffix)
     name = re.compile(rf"\.{stem}\.{_MACHINE}-(\d+)-[0-9a-f]+\.part{suffix}")
     with suppress(OSError):  # the folder cannot be listed, or a part belongs to another user
-        for other in target.parent.iterdir():
-            if (match := name.fullmatch(other.name)) and not _is_alive(int(match[1])):
-                _remove(other)
+        for other in os.listdir(target.parent):  # noqa: PTH208  a store may have many thousand files in a folder
+            if other[0] == "." and (match := name.fullmatch(other)) and not _is_alive(int(match[1])):
+                _remove(target.parent / other)
 
 
 def _is_alive(process: int) -> bool:
@@ -150,9 +151,12 @@ def read_sealed(path: str | Path) -> tuple[bytes, bool]:
         raise FileError(message) from error
     content, seal = whole[:-_SEAL_LENGTH], whole[-_SEAL_LENGTH:]
     if not _looks_like_a_seal(seal):
+        if _LABEL in whole:
+            message = f"{path} is damaged: bytes follow its checksum, or are missing. {_RESTORE}"
+            raise FileError(message)
         return whole, False
     if sealed(content)[-_SEAL_LENGTH:] != seal:
-        message = f"{path} is damaged: its checksum differs. Restore it from a copy, or compute it again"
+        message = f"{path} is damaged: its checksum differs. {_RESTORE}"
         raise FileError(message)
     return content, True
 

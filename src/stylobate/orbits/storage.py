@@ -23,7 +23,7 @@ from stylobate.orbits.orbit import PeriodicOrbit
 from stylobate.orbits.saving import BRANCH, CURVE, ORBIT, SUPERCRITICAL_OF, path_of
 from stylobate.orbits.shooting import shots
 from stylobate.orbits.tracing import End
-from stylobate.results.storage import read_dataset
+from stylobate.results.storage import read_dataset, require_this_version
 
 
 def load_orbits(path: str | Path) -> PeriodicOrbit | Branch | BifurcationCurve:
@@ -36,14 +36,17 @@ def load_orbits(path: str | Path) -> PeriodicOrbit | Branch | BifurcationCurve:
     """
     path = path_of(path)
     data = read_dataset(path)
-    read = _READERS.get(str(data.attrs.get("format")))
+    written = data.attrs.get("format")
+    for known in _READERS:
+        require_this_version(path, written, known)
+    read = _READERS.get(str(written))
     if read is None:
         message = f"{path} holds no orbit, branch or curve saved by stylobate, but {_content(data)}"
         raise FileError(message)
     try:
         return read(data)
     except (KeyError, TypeError, ValueError) as error:
-        message = f"{path} is damaged: {error}"
+        message = f"{path} is damaged: {error}. Compute it again"
         raise FileError(message) from error
 
 

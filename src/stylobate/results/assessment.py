@@ -9,7 +9,7 @@ from typing import Any
 import xarray as xr
 
 from stylobate.errors import FileError
-from stylobate.results.storage import read_tree, write_netcdf
+from stylobate.results.storage import read_tree, require_this_version, write_netcdf
 
 _FORMAT = "stylobate assessment 1"
 
@@ -53,8 +53,13 @@ class Assessment:
             If the file cannot be read or holds no assessment.
         """
         tree = read_tree(path)
+        require_this_version(path, tree.attrs.get("format"), _FORMAT)
         if tree.attrs.get("format") != _FORMAT:
             message = f"{path} holds no assessment saved by stylobate"
             raise FileError(message)
         data = {str(name): child.to_dataset() for name, child in tree.children.items()}
-        return cls(data=data, setting=json.loads(tree.attrs["setting"]))
+        try:
+            return cls(data=data, setting=json.loads(tree.attrs["setting"]))
+        except (KeyError, TypeError, ValueError) as error:
+            message = f"{path} is damaged: {error}. Compute it again"
+            raise FileError(message) from error

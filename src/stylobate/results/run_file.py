@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 from stylobate.errors import FileError, Outcome
-from stylobate.results.storage import OWN_FORMATS, read_dataset
+from stylobate.results.storage import OWN_FORMATS, read_dataset, require_this_version
 
 _FORMAT = f"{OWN_FORMATS}response 1"
 _OF_ORBITS = ("orbit", "branch", "bifurcation")
@@ -51,13 +51,14 @@ def fields_of(path: str | Path) -> dict[str, Any]:
     if kind in _OF_ORBITS:
         message = f"{path} holds an object of stylobate.orbits of kind {kind!r}, not a run; stylobate.load reads it"
         raise FileError(message)
+    require_this_version(path, attributes.get("format"), _FORMAT)
     if attributes.get("format") != _FORMAT:
         message = f"{path} is not a run saved by stylobate: its format is {attributes.get('format')!r}, not {_FORMAT!r}"
         raise FileError(message)
     try:
         return _fields(data, attributes)
     except (KeyError, TypeError, ValueError) as error:
-        message = f"{path} is damaged: {error}"
+        message = f"{path} is damaged: {error}. Compute it again"
         raise FileError(message) from error
 
 

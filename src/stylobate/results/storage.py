@@ -18,6 +18,9 @@ _Data = TypeVar("_Data", xr.Dataset, xr.DataTree)
 OWN_FORMATS = "stylobate "
 """First word of the formats of the package's own files."""
 
+_TABLE = f"{OWN_FORMATS}table 1"
+"""Format of files of other data, such as the result of a study; what is read does not contain it."""
+
 
 def read_dataset(path: str | Path) -> xr.Dataset:
     """Read the Dataset in the netCDF file `path` into memory; times stay numbers.
@@ -44,16 +47,35 @@ def read_tree(path: str | Path) -> xr.DataTree:
 def write_netcdf(data: xr.Dataset | xr.DataTree, path: str | Path) -> Path:
     """Write `data` to the netCDF file `path`, with a checksum at its end, and return the path.
 
-    The file is made in memory, so that a full disk raises an error; the HDF5 library would end the process.
+    The file is made in memory, so that a full disk raises an error; the HDF5 library would end the process. Its
+    attribute `format` states that it has a checksum.
 
     Raises
     ------
     FileError
         If the file cannot be written; an older file then stays.
     """
+    labelled = data.copy()
+    labelled.attrs = {"format": _TABLE, **data.attrs}
     with _without_a_cluster():
-        content = data.to_netcdf(None, engine="h5netcdf")
-    return write_whole(path, sealed(content))
+        content = labelled.to_netcdf(None, engine="h5netcdf")
+    whole = sealed(content)
+    content.release()  # a later error would keep the memory of the closed file, which Python 3.12 does not survive
+    return write_whole(path, whole)
+
+
+def require_this_version(path: str | Path, written: object, known: str) -> None:
+    """Raise FileError if the format `written` is the format `known`, such as "stylobate table 1", with another number.
+
+    A file of another kind passes.
+    """
+    kind, _, number = known.rpartition(" ")
+    written_kind, _, other = str(written).rpartition(" ")
+    if written_kind != kind or other == number or not other.isdecimal():
+        return
+    age, remedy = ("later", "Update stylobate") if int(other) > int(number) else ("earlier", "Compute it again")
+    message = f"{path}: written by a {age} version of stylobate (got the format {written!r}, not {known!r}). {remedy}"
+    raise FileError(message)
 
 
 def _without_a_cluster() -> AbstractContextManager[Any]:
@@ -70,11 +92,18 @@ def _read(open_file: Callable[..., _Data], path: str | Path) -> _Data:
         with open_file(BytesIO(content), engine="h5netcdf", decode_times=False) as stored:
             data = stored.load()
     except Exception as error:  # HDF5 and the layers above it raise many classes of errors for damaged files
-        message = f"cannot read {path}: it is not a netCDF file, or damaged ({' '.join(str(error).split())})"
+        message = (
+            f"cannot read {path}: it is not a netCDF file, or damaged ({' '.join(str(error).split())}). "
+            "Give another file, or compute it again"
+        )
         raise FileError(message) from error
-    if not is_sealed and str(data.attrs.get("format", "")).startswith(OWN_FORMATS):
+    written = str(data.attrs.get("format", ""))
+    if not is_sealed and written.startswith(OWN_FORMATS):
         message = f"{path} is damaged, or another program changed it: its checksum is missing. Compute it again"
         raise FileError(message)
+    require_this_version(path, written, _TABLE)
+    if written == _TABLE:
+        del data.attrs["format"]
     return data
 
 
