@@ -83,5 +83,5 @@ def test_a_run_s_loader_points_to_that_of_orbits(tmp_path):
         sb.Response.load(orbit.save(tmp_path / "orbit.nc"))
     with pytest.raises(FileError, match="there is no such file"):
         sb.load(tmp_path / "none.nc")
-    with pytest.raises(FileError, match="it is a folder"):
+    with pytest.raises(FileError, match="it is no store of a sweep"):
         sb.load(tmp_path)

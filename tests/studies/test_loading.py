@@ -49,7 +49,7 @@ def test_what_is_not_saved_by_stylobate_is_refused(tmp_path):
     xr.Dataset({"speed": ("time", [1.0, 2.0])}).to_netcdf(path, engine="h5netcdf")
     with pytest.raises(FileError, match=r"other\.nc: not saved by stylobate \(got the variables \['speed'\]\)"):
         sb.load(path)
-    with pytest.raises(FileError, match="it is a folder"):
+    with pytest.raises(FileError, match="it is no store of a sweep"):
         sb.load(tmp_path)
     with pytest.raises(FileError, match="there is no such file"):
         sb.load(tmp_path / "none.nc")

@@ -34,7 +34,7 @@ def load(path: str | Path) -> results.Response | results.Assessment | Orbits | x
     except TypeError:
         message = f"path: no name of a file (got {path!r}). Pass the path of a saved result."
         raise ParameterError(message) from None
-    if (path / "zarr.json").is_file():
+    if path.is_dir():
         return open_sweep(path)
     data = results.read_dataset(path)
     written = str(data.attrs.get("format", ""))

@@ -1,19 +1,23 @@
 """A damaged store is refused in one line, and computed again where it is damaged when it is continued."""
 
 import logging
+import re
 import shutil
 import subprocess
 import sys
 
 import numpy as np
 import pytest
+import zarr
 from tests.studies.sweeps.conftest import MODEL, MOTION
 
+import stylobate as sb
 from stylobate.errors import FileError
 from stylobate.studies.sweeps import Sweep, open_sweep, run_sweep, store
-from stylobate.studies.sweeps.chunks import METADATA
+from stylobate.studies.sweeps.blocks import Blocks
+from stylobate.studies.sweeps.chunks import CODECS, METADATA, Chunks, decoded, encoded
 
-FLIPS = 400
+FLIPS, EXCHANGES = 400, 25
 
 
 @pytest.fixture(scope="module")
@@ -61,7 +65,116 @@ def unchanged(name, before, after):
     return name == METADATA and b"".join(before.split()) == b"".join(bytes(after).split())
 
 
-@pytest.mark.parametrize("lost", ["end_tilt/c/1/0/0", "outcome/c/2/0", "done/c/1", "end_tilt/c/0"])
+@pytest.fixture(scope="module")
+def begun(sweep, undamaged, tmp_path_factory):
+    """Return a store without its last block, and with some runs of the block before."""
+    path = shutil.copytree(undamaged, tmp_path_factory.mktemp("begun") / "sweep.zarr")
+    chunks = Chunks(path, Blocks.of(sweep.shape, 5), sweep.layout.variables)
+    arrays = chunks.read(chunks.blocks[2])
+    for variable in chunks.variables:
+        arrays[variable.name][3:] = variable.fill
+    chunks.write(chunks.blocks[2], arrays, done=False)
+    chunks.forget(3)
+    return path
+
+
+@pytest.mark.parametrize(("written", "other"), [('"group"', '"groups"'), ('"zarr_format": 3', '"zarr_format": 2')])
+def test_a_store_that_zarr_would_not_find_is_refused_in_one_line(path, written, other):
+    text = (path / METADATA).read_text()
+    assert written in text
+    (path / METADATA).write_text(text.replace(written, other))
+    with pytest.raises(FileError, match=r"sweep\.zarr is damaged: .*\. Begin another store$"):
+        sb.load(path)
+
+
+def test_a_store_of_another_version_is_refused_with_the_remedy(path):
+    text = (path / METADATA).read_text()
+    for number, remedy in ((1, "Compute it again"), (99, "Update stylobate")):
+        (path / METADATA).write_text(re.sub("stylobate sweep [0-9]+", f"stylobate sweep {number}", text))
+        with pytest.raises(FileError, match=rf"sweep\.zarr: written by a .* version of stylobate .*\. {remedy}$"):
+            sb.load(path)
+
+
+@pytest.mark.parametrize("dtype", [np.int8, np.float64, np.int64, bool])
+def test_the_file_of_a_chunk_is_that_of_zarr(dtype, tmp_path):
+    values = (np.arange(24) % 5).astype(dtype).reshape(4, 6)
+    array = zarr.create_array(tmp_path / "array", shape=(4, 6), chunks=(4, 6), dtype=dtype, compressors=CODECS)
+    array[:] = values
+    assert (tmp_path / "array" / "c" / "0" / "0").read_bytes() == encoded(values)
+    np.testing.assert_array_equal(decoded(encoded(values), values.dtype).reshape(4, 6), values)
+
+
+def exchange_files(rng, path):
+    chunks = sorted(file for file in path.rglob("*") if file.is_file() and file.name != METADATA)
+    exchange(*rng.choice(chunks, 2, replace=False))
+
+
+def exchange_metadata(rng, path):
+    exchange(*rng.choice(sorted(path.rglob(METADATA)), 2, replace=False))
+
+
+def exchange_arrays(rng, path):
+    exchange(*rng.choice(sorted(folder for folder in path.iterdir() if folder.is_dir()), 2, replace=False))
+
+
+def exchange(one, other):
+    one.rename(one.with_name("between"))
+    other.rename(one)
+    one.with_name("between").rename(other)
+
+
+def any_file(rng, path):
+    return rng.choice(sorted(file for file in path.rglob("*") if file.is_file()))
+
+
+def append(rng, path):
+    file = any_file(rng, path)
+    file.write_bytes(file.read_bytes() + rng.bytes(1))
+
+
+def truncate(rng, path):
+    file = any_file(rng, path)
+    file.write_bytes(file.read_bytes()[: rng.integers(file.stat().st_size)])
+
+
+def remove(rng, path):
+    any_file(rng, path).unlink()
+
+
+def add_an_array(rng, path):
+    shutil.copytree(path / "outcome", path / "extra")
+    append(rng, path / "extra")
+
+
+DAMAGES = (exchange_files, exchange_metadata, exchange_arrays, append, truncate, remove, add_an_array)
+
+
+@pytest.mark.parametrize("store", ["undamaged", "begun"])
+@pytest.mark.parametrize("damage", DAMAGES)
+def test_a_changed_store_is_refused_or_holds_what_was_written(store, damage, request, tmp_path, assert_same_arrays):
+    written, path, rng = request.getfixturevalue(store), tmp_path / "sweep.zarr", np.random.default_rng(23)
+    data, refused = open_sweep(written, load=True), 0
+    for _ in range(EXCHANGES if damage is exchange_files else 8):
+        shutil.copytree(written, path)
+        damage(rng, path)
+        try:
+            assert_same_arrays(sb.load(path).load(), data)
+        except FileError as error:
+            refused += 1
+            assert [str(path) in line for line in str(error).splitlines()] == [True]  # noqa: PT017  or the same
+        shutil.rmtree(path)
+    assert refused or damage is add_an_array
+
+
+@pytest.mark.parametrize("pair", [("repetition", "decided_at"), ("end_tilt", "end_tilt_rate")])
+def test_exchanged_chunks_are_computed_again(sweep, undamaged, path, pair):
+    one, other = (max((path / name).rglob("c/1/**/0")) for name in pair)
+    exchange(one, other)
+    run_sweep(sweep, store=path, resume=True)
+    assert files_of(path) == files_of(undamaged)
+
+
+@pytest.mark.parametrize("lost", ["end_tilt/c/1/0/0", "outcome/c/2/0", "seal/c/1", "end_tilt/c/0"])
 def test_what_was_lost_is_computed_again_with_a_notice(sweep, undamaged, path, assert_same_arrays, caplog, lost):
     if (path / lost).is_dir():
         shutil.rmtree(path / lost)
@@ -71,7 +184,7 @@ def test_what_was_lost_is_computed_again_with_a_notice(sweep, undamaged, path, a
         again = run_sweep(sweep, store=path, resume=True)
     assert_same_arrays(again, open_sweep(undamaged))
     assert files_of(path) == files_of(undamaged)
-    if not lost.startswith("done"):  # without its mark a block is one that has not been finished
+    if not lost.startswith("seal"):  # without its seal a block is one that has not been finished
         assert "5 runs are computed again" in caplog.text
 
 

@@ -9,7 +9,8 @@ import sys
 import pytest
 
 from stylobate.studies.sweeps import Threads, run_sweep
-from stylobate.studies.sweeps.store import Store
+from stylobate.studies.sweeps.blocks import Blocks
+from stylobate.studies.sweeps.chunks import Chunks, State
 
 DRIVER = """
 import os, signal, sys, time
@@ -46,7 +47,8 @@ def test_a_driver_killed_and_started_again_changes_nothing(
     with drive(tmp_path, executor, kill_after=7) as driver:
         driver.communicate(timeout=120)
     assert driver.returncode == -signal.SIGKILL
-    done = Store(tmp_path / "sweep.zarr").done()
+    chunks = Chunks(tmp_path / "sweep.zarr", Blocks.of(grid.shape, 2), grid.layout.variables)
+    done = {index for index, state in chunks.states().items() if state is State.DONE}
     assert done
     again = counting(Threads(1))
     data = run_sweep(grid, store=tmp_path / "sweep.zarr", resume=True, executor=again)

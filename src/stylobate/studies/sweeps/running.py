@@ -106,12 +106,11 @@ def _sink(sweep: Sweep, path: Path | None, chunk_size: int | None, *, resume: bo
         return InMemory(sweep, layout, blocks)
     if not (resume and path.exists()):
         try:
-            return OnDisk(sweep, layout, blocks, create_store(path, sweep, layout, blocks), frozenset())
+            return OnDisk(sweep, create_store(path, sweep, layout, blocks), frozenset())
         except FileError:
             if not (resume and path.exists()):  # otherwise continue the store that another process has just created
                 raise
-    found, blocks, done = continue_store(path, sweep, layout, chunk_size)
-    return OnDisk(sweep, layout, blocks, found, done)
+    return OnDisk(sweep, *continue_store(path, sweep, layout, chunk_size))
 
 
 def _fill(sink: Sink, sweep: Sweep, executor: Executor, progress: Progress) -> None:

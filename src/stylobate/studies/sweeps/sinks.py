@@ -1,8 +1,7 @@
 """Sinks for the results of a sweep: arrays in memory, or a store on disk."""
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, field
-from pathlib import Path
+from dataclasses import dataclass, field, replace
 from typing import Protocol
 
 import numpy as np
@@ -11,11 +10,12 @@ import xarray as xr
 from stylobate.engine.memory import require_memory
 from stylobate.errors import FileError
 from stylobate.studies.sweeps.blocks import Block, Blocks
+from stylobate.studies.sweeps.chunks import OUTCOME, Chunks, State
 from stylobate.studies.sweeps.computing import Arrays, Computed, Progress, Task, compute
 from stylobate.studies.sweeps.executors import Work
 from stylobate.studies.sweeps.layout import Layout, dataset
 from stylobate.studies.sweeps.recipe import Recipe
-from stylobate.studies.sweeps.store import Store, attributes_of_result, open_sweep
+from stylobate.studies.sweeps.store import attributes_of_result, open_sweep
 from stylobate.studies.sweeps.sweep import Sweep
 
 
@@ -87,33 +87,30 @@ class OnDisk:
     """Results in a store, written by the workers that compute them."""
 
     sweep: Sweep
-    layout: Layout
-    blocks: Blocks
-    store: Store
+    chunks: Chunks
     done: frozenset[int]
 
     @property
     def todo(self) -> Iterator[Block]:
-        """The blocks without the mark "done"."""
-        return (block for block in self.blocks if block.index not in self.done)
+        """The blocks that are not done."""
+        return (block for block in self.chunks.blocks if block.index not in self.done)
 
     @property
     def runs_done(self) -> int:
-        """Number of runs in blocks with the mark."""
-        return sum(self.blocks[index].size for index in self.done)
+        """Number of runs in blocks that are done."""
+        return sum(self.chunks.blocks[index].size for index in self.done)
 
     @property
     def work(self) -> Work:
         """Function that computes and stores the missing runs of a block."""
-        names = tuple(variable.name for variable in self.layout.variables)
-        return _ComputeAndStore(self.sweep.recipe, Path(self.store.path).absolute(), names)
+        return _ComputeAndStore(self.sweep.recipe, replace(self.chunks, path=self.chunks.path.absolute()))
 
     def accept(self, task: Task, result: Computed) -> None:
         """Do nothing: the worker has stored the result."""
 
     def dataset(self) -> xr.Dataset:
         """Return the contents of the store."""
-        return open_sweep(self.store.path)
+        return open_sweep(self.chunks.path)
 
 
 @dataclass(frozen=True, slots=True)
@@ -127,29 +124,34 @@ class _Compute:
 @dataclass(frozen=True, slots=True)
 class _ComputeAndStore:
     recipe: Recipe
-    path: Path
-    names: tuple[str, ...]
+    chunks: Chunks
 
     def __call__(self, task: Task, *, threads: int | None, progress: Progress | None) -> Computed:
         try:
-            return self._stored(Store(self.path), task, threads, progress)
-        except OSError as error:
-            message = f"cannot write {self.path}: {error.strerror or error}. Continue it with resume=True"
+            return self._stored(task, threads, progress)
+        except (OSError, FileError) as error:
+            reason = getattr(error, "strerror", None) or error
+            message = f"cannot write {self.chunks.path}: {reason}. Continue it with resume=True"
             raise FileError(message) from error
 
-    def _stored(self, store: Store, task: Task, threads: int | None, progress: Progress | None) -> Computed:
-        missing = store.read(task.block, ("outcome",))["outcome"] < 0
+    def _stored(self, task: Task, threads: int | None, progress: Progress | None) -> Computed:
+        state = self.chunks.state(task.block.index)
+        if state is State.DONE:  # by another process
+            return Computed({})
+        # Without a seal the files are those of a writer that was killed.
+        arrays = self.chunks.read(task.block) if state is State.BEGUN else None
+        missing = np.ones(task.block.size, bool) if arrays is None else arrays[OUTCOME] < 0
         values = {name: array[missing] for name, array in task.values.items()}
         result = compute(self.recipe, values, threads, progress)
-        arrays = result.arrays
-        if not missing.all():  # an interrupted task had stored some of its runs
-            arrays = store.read(task.block, self.names)
+        if arrays is None:
+            arrays = result.arrays
+        else:
             for name, computed in result.arrays.items():
                 arrays[name][missing] = computed
         try:
-            store.write(task.block, arrays, done=not result.interrupted)
+            self.chunks.write(task.block, arrays, done=not result.interrupted)
         except KeyboardInterrupt:  # save the computed runs first
-            store.write(task.block, arrays, done=not result.interrupted)
+            self.chunks.write(task.block, arrays, done=not result.interrupted)
             raise
         return Computed({}, result.interrupted)
 

@@ -1,8 +1,8 @@
 """Store of a sweep: a Zarr group with one chunk of every variable for each task.
 
-The outcomes of a task are written after its other data, and the mark `done` last: a run with a stored outcome is
-complete, whatever interrupted the task. No two tasks share a chunk of any array, and writing a task again gives the
-same files.
+The outcomes of a task are written after its other data, and its seal last: a run with a stored outcome is complete,
+whatever interrupted the task. No two tasks share a chunk of any array, and writing a task again gives the same files.
+Metadata and axes are sealed by an attribute of the store.
 """
 
 import hashlib
@@ -11,7 +11,6 @@ import logging
 import shutil
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass
 from importlib.metadata import version
 from importlib.util import find_spec
 from pathlib import Path
@@ -24,11 +23,11 @@ import xarray as xr
 from stylobate.engine.parameter_quantities import attributes_of
 from stylobate.errors import FileError
 from stylobate.files import written_aside
-from stylobate.studies.sweeps.blocks import Block, Blocks
-from stylobate.studies.sweeps.chunks import MARK, METADATA, OUTCOME, Chunks, State, chunk_counts, files_along, is_whole
-from stylobate.studies.sweeps.computing import Arrays
+from stylobate.results.storage import require_this_version
+from stylobate.studies.sweeps.blocks import Blocks
+from stylobate.studies.sweeps.chunks import CODECS, METADATA, SEAL, Chunks, State, checksum, chunk_file
 from stylobate.studies.sweeps.designs import whole
-from stylobate.studies.sweeps.layout import Layout, bytes_of_block, bytes_on_disk
+from stylobate.studies.sweeps.layout import Layout, Variable, bytes_of_block, bytes_on_disk
 from stylobate.studies.sweeps.resuming import differences
 from stylobate.studies.sweeps.sweep import Sweep
 from stylobate.text import plural
@@ -38,56 +37,12 @@ zarr: Any = lazy_loader.load("zarr")
 
 _log = logging.getLogger("stylobate")
 
-_FORMAT = "stylobate sweep 2"
+_FORMAT = "stylobate sweep 3"
 _SOFTWARE = ("numpy", "scipy", "llvmlite", "zarr")
 _SEAL = "metadata_sha256"
-_CODECS: tuple[dict[str, Any], ...] = (
-    {"name": "zstd", "configuration": {"level": 0, "checksum": False}},
-    {"name": "crc32c"},  # compared by Zarr when a chunk is read, and by `chunks` when a store is opened
-)
 
 
-@dataclass(frozen=True, slots=True)
-class Store:
-    """An existing store at `path`."""
-
-    path: Path
-
-    def write(self, block: Block, arrays: Mapping[str, Any], *, done: bool) -> None:
-        """Write the results of a `block`, flat over its runs: data, then outcomes, then the mark if it is `done`."""
-        with _every_chunk_written():
-            group = zarr.open_group(self.path, mode="r+")
-            for name in sorted(arrays, key=lambda name: name == OUTCOME):
-                values = np.asarray(arrays[name])
-                _array(group, name)[block.slices] = values.reshape(*block.shape, *values.shape[1:])
-            if done:
-                _array(group, MARK)[block.index] = True
-
-    def read(self, block: Block, names: tuple[str, ...]) -> Arrays:
-        """Return the results of a `block`, flat over its runs."""
-        group = zarr.open_group(self.path, mode="r")
-        found = {name: np.asarray(_array(group, name)[block.slices]) for name in names}
-        return {name: values.reshape(block.size, *values.shape[len(block.shape) :]) for name, values in found.items()}
-
-    def done(self) -> set[int]:
-        """Return the indices of the blocks that are done.
-
-        Raises
-        ------
-        FileError
-            If the store cannot be read or is damaged.
-        """
-        return {index for index, state in self.chunks().states().items() if state is State.DONE}
-
-    def chunks(self, attributes: Mapping[str, Any] | None = None) -> Chunks:
-        """Return the chunk files; `attributes` are the attributes of the store, if already read."""
-        attributes = attributes or _read_attributes(self.path)
-        blocks = Blocks(tuple(attributes["shape"]), tuple(attributes["chunks"]))
-        beyond = {name: len(chunk_counts(self.path / name)) - len(blocks.shape) for name in attributes["variables"]}
-        return Chunks(self.path, blocks, beyond)
-
-
-def create_store(path: Path, sweep: Sweep, layout: Layout, blocks: Blocks) -> Store:
+def create_store(path: Path, sweep: Sweep, layout: Layout, blocks: Blocks) -> Chunks:
     """Create a store at `path` with coordinates and attributes, without computed runs.
 
     The store is written beside `path` and moved there when complete.
@@ -106,14 +61,13 @@ def create_store(path: Path, sweep: Sweep, layout: Layout, blocks: Blocks) -> St
     _require_room(path, bytes_on_disk(layout, sweep.design, blocks))
     try:
         with written_aside(path) as beside, _every_chunk_written():
-            attributes = _attributes(sweep, layout, blocks)
-            group = zarr.create_group(beside, attributes=attributes)
+            group = zarr.create_group(beside, attributes=_attributes(sweep, layout, blocks))
             _fill_new(group, sweep, layout, blocks)
-            group.attrs[_SEAL] = _metadata_digest(beside, attributes)
+            group.attrs[_SEAL] = _digest(beside, _metadata(beside))
     except FileError:
         _require_new(path)  # another process may have created it in the meantime
         raise
-    return Store(path)
+    return Chunks(path, blocks, layout.variables)
 
 
 def _require_new(path: Path) -> None:
@@ -122,10 +76,8 @@ def _require_new(path: Path) -> None:
         raise FileError(message)
 
 
-def continue_store(
-    path: Path, sweep: Sweep, layout: Layout, chunk_size: int | None
-) -> tuple[Store, Blocks, frozenset[int]]:
-    """Return the store at `path`, its blocks, and the indices of the completed blocks.
+def continue_store(path: Path, sweep: Sweep, layout: Layout, chunk_size: int | None) -> tuple[Chunks, frozenset[int]]:
+    """Return the chunks of the store at `path`, and the indices of the completed blocks.
 
     Damaged blocks are emptied, with a warning in the log.
 
@@ -136,7 +88,8 @@ def continue_store(
     """
     attributes = _read_attributes(path)
     found = differences(json.loads(attributes["provenance"]), json.loads(json.dumps(sweep.describe())))
-    if found:
+    if found or attributes["variables"] != _described(layout.variables):
+        found = found or ["its variables differ"]
         message = (
             f"{path} cannot be continued: {'; '.join(found)}. Give another store, or the sweep that began this one"
         )
@@ -145,12 +98,12 @@ def continue_store(
     if chunk_size is not None and Blocks.of(sweep.shape, chunk_size) != blocks:
         message = f"{path} has chunks of {list(blocks.edges)} runs, not of {chunk_size}. Leave chunk_size out"
         raise FileError(message)
-    chunks = Store(path).chunks(attributes)
+    chunks = Chunks(path, blocks, layout.variables)
     states = chunks.states()
     _compute_again(chunks, [index for index, state in states.items() if state is State.DAMAGED])
     if missing := [index for index, state in states.items() if state is not State.DONE]:
         _require_room(path, len(missing) * bytes_of_block(layout, blocks[0]))
-    return Store(path), blocks, frozenset(index for index, state in states.items() if state is State.DONE)
+    return chunks, frozenset(index for index, state in states.items() if state is State.DONE)
 
 
 def _compute_again(chunks: Chunks, damaged: list[int]) -> None:
@@ -158,9 +111,13 @@ def _compute_again(chunks: Chunks, damaged: list[int]) -> None:
         return
     runs = sum(chunks.blocks[index].size for index in damaged)
     _log.warning("%s is damaged: %s are computed again", chunks.path, plural(runs, "run"))
-    for index in damaged:
-        if chunks.state(index) is State.DAMAGED:  # another process may have computed it in the meantime
-            chunks.forget(index)
+    try:
+        for index in damaged:
+            if chunks.state(index) is State.DAMAGED:  # another process may have computed it in the meantime
+                chunks.forget(index)
+    except OSError as error:
+        message = f"cannot write {chunks.path}: {error.strerror or error}. Begin another store"
+        raise FileError(message) from error
 
 
 def open_sweep(path: str | Path, *, load: bool = False) -> xr.Dataset:
@@ -182,23 +139,29 @@ def open_sweep(path: str | Path, *, load: bool = False) -> xr.Dataset:
     Raises
     ------
     FileError
-        If there is no store of a sweep at `path`, or if it is damaged: every chunk is compared with its checksum.
+        If there is no store of a sweep at `path`, or if it is damaged: all files are compared with their seals.
     """
     path = Path(path)
     attributes = _read_attributes(path)
-    chunks = Store(path).chunks(attributes)
+    chunks = Chunks(path, Blocks(tuple(attributes["shape"]), tuple(attributes["chunks"])), _variables(attributes))
     states = chunks.states()
     if damaged := sum(chunks.blocks[index].size for index, state in states.items() if state is State.DAMAGED):
         message = f"{path} is damaged: {plural(damaged, 'run')} cannot be read. Continue it with resume=True"
         raise FileError(message)
     runs_done = sum(chunks.blocks[index].size for index, state in states.items() if state is State.DONE)
-    data: xr.Dataset = xr.open_zarr(path, chunks=None, consolidated=False, decode_cf=False, drop_variables=MARK)
+    try:
+        data: xr.Dataset = xr.open_zarr(
+            path, chunks=None, consolidated=False, zarr_format=3, decode_cf=False, drop_variables=SEAL.name
+        )
+    except Exception as error:  # of any class, for example for another array that was added to the store
+        message = f"cannot read {path}: {' '.join(str(error).split())}. Begin another store"
+        raise FileError(message) from error
     for variable in data.variables.values():
         variable.attrs.pop("_FillValue", None)
         if "flag_values" in variable.attrs:
             variable.attrs["flag_values"] = np.array(variable.attrs["flag_values"], dtype=variable.dtype)
     data = data.set_coords(attributes["coordinates"].split()).assign_coords(attributes["labels"])
-    data = data[attributes["variables"]]  # in the order of the sweep, with coordinates
+    data = data[list(attributes["variables"])]  # in the order of the sweep, with coordinates
     kept = {name: attributes[name] for name in ("kind", "provenance")}
     data.attrs = {**kept, "runs_done": runs_done}
     return data.load() if load else data
@@ -213,17 +176,17 @@ def _fill_new(group: Any, sweep: Sweep, layout: Layout, blocks: Blocks) -> None:
             dtype=variable.dtype,
             fill_value=variable.fill,
             dimension_names=(*sweep.dims, *variable.dims),
-            compressors=_CODECS,
+            compressors=CODECS,
             attributes=_plain(variable.attributes),
         )
     group.create_array(
-        MARK,
+        SEAL.name,
         shape=(len(blocks),),
         chunks=(1,),
-        dtype=bool,
-        fill_value=False,
+        dtype=SEAL.dtype,
+        fill_value=SEAL.fill,
         dimension_names=("chunk",),
-        compressors=_CODECS,
+        compressors=CODECS,
     )
     design = sweep.design
     for name, dim in design.coordinate_dims.items():
@@ -235,13 +198,13 @@ def _fill_new(group: Any, sweep: Sweep, layout: Layout, blocks: Blocks) -> None:
             dtype=float,
             fill_value=np.nan,
             dimension_names=(dim,),
-            compressors=_CODECS,
+            compressors=CODECS,
             attributes=dict(attributes_of(name)),
         )
     # Random and given points may be numerous: they are written piece by piece.
     for slices in (block.slices for block in blocks) if design.dims == ("run",) else (whole(design),):
         for name, values in design.coordinates(slices).items():
-            _array(group, name)[slices[design.dims.index(design.coordinate_dims[name])]] = values
+            group[name][slices[design.dims.index(design.coordinate_dims[name])]] = values
 
 
 def _attributes(sweep: Sweep, layout: Layout, blocks: Blocks) -> dict[str, Any]:
@@ -251,7 +214,7 @@ def _attributes(sweep: Sweep, layout: Layout, blocks: Blocks) -> dict[str, Any]:
         "shape": list(blocks.shape),
         "chunks": list(blocks.edges),
         "coordinates": " ".join(sweep.design.coordinate_dims),
-        "variables": [variable.name for variable in layout.variables],
+        "variables": _described(layout.variables),
         "labels": dict(layout.labels),
         "software": {name: version(name) for name in _SOFTWARE if find_spec(name)},
     }
@@ -262,37 +225,71 @@ def attributes_of_result(sweep: Sweep) -> dict[str, Any]:
     return {"kind": "sweep", "provenance": json.dumps(sweep.describe())}
 
 
+def _described(variables: tuple[Variable, ...]) -> dict[str, list[Any]]:
+    """Describe variables in plain values: type, and shape besides the runs, by name."""
+    return {variable.name: [variable.dtype.str, list(variable.shape)] for variable in variables}
+
+
+def _variables(attributes: Mapping[str, Any]) -> tuple[Variable, ...]:
+    """Return the variables that `_described` describes, without dimensions and attributes."""
+    described = attributes["variables"].items()
+    return tuple(Variable(name, np.dtype(dtype), (), tuple(shape), {}) for name, (dtype, shape) in described)
+
+
 def _read_attributes(path: Path) -> dict[str, Any]:
     """Return the attributes of the store at `path`, after a check of its metadata and axes."""
     try:
-        attributes: dict[str, Any] = dict(json.loads((path / METADATA).read_bytes())["attributes"])
-    except (OSError, ValueError, KeyError, TypeError) as error:
+        metadata = _metadata(path)
+        attributes = dict(metadata["attributes"])
+    except (OSError, ValueError, KeyError, TypeError, RecursionError) as error:
         reason = "it is no store of a sweep" if path.is_dir() else getattr(error, "strerror", None) or error
-        message = f"cannot read {path}: {reason}"
+        message = f"cannot read {path}: {reason}. Give another folder"
         raise FileError(message) from error
-    if attributes.get("format") != _FORMAT:
-        message = f"{path} is no store of a sweep: its format is {attributes.get('format')!r}, not {_FORMAT!r}"
+    written = attributes.get("format")
+    require_this_version(path, written, _FORMAT)
+    if written != _FORMAT:
+        message = f"{path} is no store of a sweep: its format is {written!r}, not {_FORMAT!r}. Give another folder"
         raise FileError(message)
     seal = attributes.pop(_SEAL, None)
-    if seal is None or seal != _metadata_digest(path, attributes):
-        message = f"{path} is damaged: its metadata are not as they were written. Begin another store"
+    if seal is None or seal != _digest(path, metadata):
+        message = f"{path} is damaged: its metadata or axes are not as they were written. Begin another store"
         raise FileError(message)
-    for name in attributes["coordinates"].split():
-        if not all(map(is_whole, files_along(path / name))):
-            message = f"{path} is damaged: the values of {name!r} are not as they were written. Begin another store"
-            raise FileError(message)
     return attributes
 
 
-def _metadata_digest(path: Path, attributes: Mapping[str, Any]) -> str | None:
-    """Return a digest of these attributes and of the metadata of the arrays at `path`; None if a file is missing."""
-    digest = hashlib.sha256(json.dumps(attributes, sort_keys=True).encode())
+def _metadata(path: Path) -> dict[str, Any]:
+    found: dict[str, Any] = json.loads((path / METADATA).read_bytes())
+    return found
+
+
+def _digest(path: Path, metadata: Mapping[str, Any]) -> str | None:
+    """Return a digest of the metadata of the store at `path`, without seal, of its arrays and of its axes.
+
+    None if a file is missing or damaged.
+    """
     try:
-        for name in (MARK, *attributes["variables"], *attributes["coordinates"].split()):
-            digest.update((path / name / METADATA).read_bytes())
-    except (OSError, KeyError, TypeError, AttributeError):
+        attributes = {name: value for name, value in metadata["attributes"].items() if name != _SEAL}
+        axes = attributes["coordinates"].split()
+        digest = hashlib.sha256(json.dumps({**metadata, "attributes": attributes}, sort_keys=True).encode())
+        for name in (SEAL.name, *attributes["variables"], *axes):
+            content = (path / name / METADATA).read_bytes()
+            digest.update(f" {name} {len(content)} ".encode() + content)
+        for name in axes:
+            for index in range(_count(path / name)):
+                found = checksum(chunk_file(path / name, (index,)))
+                if found is None:
+                    return None
+                digest.update(found)
+    except (OSError, ValueError, KeyError, TypeError, AttributeError):
         return None
     return digest.hexdigest()
+
+
+def _count(array: Path) -> int:
+    """Return the number of chunks of an `array` of one dimension, from its metadata."""
+    metadata = json.loads((array / METADATA).read_bytes())
+    (length,), (edge,) = metadata["shape"], metadata["chunk_grid"]["configuration"]["chunk_shape"]
+    return -(-int(length) // int(edge))
 
 
 @contextmanager
@@ -321,7 +318,3 @@ def _size(count: int) -> str:
 
 def _plain(attributes: Mapping[str, Any]) -> dict[str, Any]:
     return {name: value.tolist() if isinstance(value, np.ndarray) else value for name, value in attributes.items()}
-
-
-def _array(group: Any, name: str) -> Any:
-    return group[name]
