@@ -215,7 +215,7 @@ RECORD = Group.of(
 COMPUTING = Group.of(
     "Computing",
     Option("resume", "continue the store of --output", bool, default=False),
-    Option("executor", "threads (by default), dask:// (workers here) or dask://host:port", str),
+    Option("executor", "threads (by default), dask:// (workers here) or dask://host:port?wait=seconds", str),
     Option("threads", "number of threads; all cores by default", int),
 )
 FIGURE = Option("figure", "draw into this file (.png, .pdf, .svg)", Path)

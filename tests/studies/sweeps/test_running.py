@@ -169,6 +169,7 @@ def test_a_run_that_ctrl_c_left_complete_is_not_computed_again(grid, tmp_path, m
         ("threads", Threads()),
         ("dask://", Dask()),
         ("dask://10.0.0.1:8786", Dask(address="tcp://10.0.0.1:8786")),
+        ("dask://10.0.0.1:8786?wait=600", Dask(address="tcp://10.0.0.1:8786", wait=600.0)),
     ],
 )
 def test_an_executor_is_named_by_a_text(text, executor):
@@ -179,6 +180,12 @@ def test_an_executor_is_named_by_a_text(text, executor):
 def test_a_text_that_names_no_executor_is_refused(text):
     with pytest.raises(ParameterError, match=r'executor must be "threads", "dask://" or "dask://host:port", got'):
         executor_from(text)
+
+
+@pytest.mark.parametrize("wait", ["0", "-1", "nan", "soon", ""])
+def test_a_wait_for_workers_is_a_positive_number_of_seconds(wait):
+    with pytest.raises(ParameterError, match="wait"):
+        executor_from(f"dask://10.0.0.1:8786?wait={wait}")
 
 
 @pytest.mark.parametrize(

@@ -1,6 +1,7 @@
 """Executor with Dask workers: on this machine, on a cluster with a scheduler, or through a given client."""
 
 import logging
+import pickle
 import signal
 import uuid
 from collections.abc import Generator, Iterable, Iterator
@@ -8,10 +9,20 @@ from concurrent.futures import CancelledError
 from contextlib import ExitStack
 from dataclasses import dataclass, field
 from itertools import islice
+from queue import Empty, SimpleQueue
+from time import monotonic
 from typing import TYPE_CHECKING, Any
 
-from stylobate.errors import MOST_THREADS, ParameterError, StylobateError, UnsupportedError, require_whole
+from stylobate.errors import (
+    MOST_THREADS,
+    ParameterError,
+    StylobateError,
+    UnsupportedError,
+    require_positive,
+    require_whole,
+)
 from stylobate.studies.sweeps.computing import Computed, Progress, Task
+from stylobate.studies.sweeps.dask_tasks import SealedTask, package_identity
 
 if TYPE_CHECKING:
     from types import ModuleType
@@ -20,6 +31,8 @@ if TYPE_CHECKING:
 
 # Number of tasks that wait for each thread of the workers, so that no thread is idle.
 _AHEAD = 2
+# While no result arrives, workers are counted once in so many seconds.
+_COUNT_WORKERS = 0.5
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,7 +41,8 @@ class Dask:
 
     If a worker dies, its block is computed again by another one. With a store the workers write into it directly, so
     they must see the same disk; without a store the results are sent to this process. A script that starts workers on
-    this machine must do so under `if __name__ == "__main__":`, because each worker imports it.
+    this machine must do so under `if __name__ == "__main__":`, because each worker imports it. Each block carries the
+    version and a digest of the source of stylobate; a worker with another version or source refuses it.
 
     Parameters
     ----------
@@ -39,18 +53,26 @@ class Dask:
         Number of workers to start on this machine; None for one per core.
     client
         A `dask.distributed.Client` to use instead; it stays open.
+    wait
+        Maximum time to wait for the scheduler's answer, and maximum time without any worker [s], at the start and
+        later, before the sweep stops with an error; None waits for workers without limit. Workers that are jobs of a
+        batch system may need hours.
 
     Raises
     ------
     ParameterError
-        If `workers` is not a whole number of at least 1, or is given with an address or a client.
+        If `workers` is not a whole number of at least 1, or is given with an address or a client; if `wait` is not
+        positive.
     """
 
     address: str | None = None
     workers: int | None = None
     client: Any = field(default=None, repr=False)
+    wait: float | None = 10.0
 
     def __post_init__(self) -> None:
+        if self.wait is not None:
+            object.__setattr__(self, "wait", require_positive("wait", self.wait, "s"))
         if self.workers is not None:
             object.__setattr__(self, "workers", require_whole("workers", self.workers, least=1, most=MOST_THREADS))
         given = [name for name in ("address", "workers", "client") if getattr(self, name) is not None]
@@ -68,14 +90,15 @@ class Dask:
         UnsupportedError
             If Dask distributed is not installed.
         StylobateError
-            If no scheduler answers at the address, if it is lost, or if a block killed several workers in a row.
+            If no scheduler answers at the address, if it is lost, if it has no workers for longer than `wait`, if a
+            worker lacks stylobate or has another version or source, or if a block killed several workers in a row.
         """
         del progress  # a block is short, and its worker is another process
         distributed = _distributed()
         with ExitStack() as stack:
             client = self._client(distributed, stack)
             try:
-                yield from _flow(distributed, client, work, iter(tasks))
+                yield from _flow(distributed, client, work, iter(tasks), self.wait)
             except (distributed.comm.CommClosedError, CancelledError) as error:
                 message = f"the Dask scheduler was lost ({error}). Continue a sweep with a store by resume=True"
                 raise StylobateError(message) from error
@@ -86,7 +109,7 @@ class Dask:
         if self.address is None:
             return _local_client(distributed, self.workers, stack)
         try:
-            return stack.enter_context(distributed.Client(self.address))
+            return stack.enter_context(distributed.Client(self.address, timeout=self.wait))
         except (OSError, ValueError) as error:
             message = f"no Dask scheduler answers at {self.address}: {error}"
             raise StylobateError(message) from error
@@ -113,36 +136,63 @@ def _local_client(distributed: Any, workers: int | None, stack: ExitStack) -> An
 
 
 def _flow(
-    distributed: "ModuleType", client: Any, work: "Work", tasks: Iterator[Task]
+    distributed: "ModuleType", client: Any, work: "Work", tasks: Iterator[Task], wait: float | None
 ) -> Generator[tuple[Task, Computed], None, None]:
     """Yield results while a bounded number of tasks is submitted."""
     sweep = uuid.uuid4().hex
+    package, packed = package_identity(), distributed.protocol.pickle.dumps(work)
     waiting: dict[Any, Task] = {}
+    finished: SimpleQueue[Any] = SimpleQueue()
 
-    def submitted(count: int) -> list[Any]:
-        new = []
+    def submit(count: int) -> None:
         for task in islice(tasks, count):
             # A unique key: Dask must not return the result of an earlier sweep.
             key = f"stylobate-{sweep}-{task.block.index}"
-            future = client.submit(work, task, threads=1, progress=None, key=key, pure=False)
+            sealed = pickle.dumps(SealedTask(package, packed, task))
+            future = client.submit(pickle.loads, sealed, key=key, pure=False)
             waiting[future] = task
-            new.append(future)
-        return new
+            future.add_done_callback(finished.put)
 
     def room() -> int:
         # The number of workers may change.
         threads = int(sum(client.nthreads().values()))
         return _AHEAD * max(1, threads) - len(waiting)
 
-    completed = distributed.as_completed(submitted(room()), loop=client.loop, raise_errors=False)
+    submit(room())
     try:
-        for future in completed:
+        while waiting:
+            future = _finished(client, finished, wait)
             task = waiting.pop(future)
             yield task, _result(distributed, future, task)
-            for other in submitted(max(0, room())):
-                completed.add(other)
+            submit(max(0, room()))
     finally:
         client.cancel(list(waiting))
+
+
+def _finished(client: Any, finished: "SimpleQueue[Any]", wait: float | None) -> Any:
+    """Return the next finished future.
+
+    Raises
+    ------
+    StylobateError
+        If there is no worker for longer than `wait` seconds.
+    """
+    seen = monotonic()
+    while True:
+        try:
+            return finished.get(timeout=_COUNT_WORKERS if wait is None else min(wait, _COUNT_WORKERS))
+        except Empty:
+            pass
+        now = monotonic()
+        if client.nthreads():
+            seen = now
+        elif wait is not None and now - seen > wait:
+            address = client.scheduler.address
+            message = (
+                f"the Dask scheduler at {address} has had no workers for {wait:g} s. Start some by "
+                f'"dask worker {address}", or wait longer by Dask(…, wait=3600); with a store, continue by resume=True.'
+            )
+            raise StylobateError(message)
 
 
 def _result(distributed: "ModuleType", future: Any, task: Task) -> Computed:
@@ -152,6 +202,14 @@ def _result(distributed: "ModuleType", future: Any, task: Task) -> Computed:
         message = (
             f"{error.allowed_failures + 1} workers died on chunk {task.block.index} of {task.block.size} runs. "
             "Give them more memory, or reduce chunk_size"
+        )
+        raise StylobateError(message) from error
+    except (ImportError, AttributeError) as error:
+        if SealedTask.__module__ not in str(error) and getattr(error, "name", None) != "stylobate":
+            raise
+        message = (
+            f"a Dask worker lacks {package_identity()} ({error}). "
+            "Install this version for the workers, and start them again."
         )
         raise StylobateError(message) from error
     return result
