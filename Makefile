@@ -78,6 +78,7 @@ lint: $(VENV)/.core $(VENV)/.test $(VENV)/.lint  ## style, types, import contrac
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
+	$(BIN)/mypy --platform win32 --cache-dir .mypy_cache/win32
 	$(BIN)/lint-imports
 	$(BIN)/python tools/wording.py
 

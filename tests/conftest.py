@@ -2,6 +2,7 @@
 
 import os
 import signal
+import sys
 
 # Shells let their background jobs ignore Ctrl-C, which tests send.
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
@@ -16,6 +17,13 @@ from scipy.integrate import solve_ivp
 
 settings.register_profile("stylobate", deadline=None, derandomize=True)
 settings.load_profile("stylobate")
+
+
+def pytest_collection_modifyitems(items):
+    if sys.platform == "win32":
+        for item in items:
+            if item.get_closest_marker("posix"):
+                item.add_marker(pytest.mark.skip(reason="needs POSIX"))
 
 
 def _no_acceleration(tau):

@@ -1,7 +1,6 @@
 """Files are written whole or not at all, and a file that is not as it was written is refused in one line."""
 
 import os
-import resource
 import shutil
 import subprocess
 import sys
@@ -216,6 +215,8 @@ RUN += ["--angular-frequency", "2", "--tilt", "0.03", "0.01", "--duration", "60"
 @contextmanager
 def no_file_longer_than(size):
     """Files of this process end at a size, as on a full disk."""
+    import resource  # noqa: PLC0415  not on Windows
+
     before, most = resource.getrlimit(resource.RLIMIT_FSIZE)
     resource.setrlimit(resource.RLIMIT_FSIZE, (size, most))
     try:
@@ -224,6 +225,7 @@ def no_file_longer_than(size):
         resource.setrlimit(resource.RLIMIT_FSIZE, (before, most))
 
 
+@pytest.mark.posix
 @pytest.mark.parametrize(("option", "name"), [("--output", "run.nc"), ("--figure", "run.png")])
 def test_a_command_on_a_full_disk_ends_with_one_line(option, name, tmp_path, capsys):
     path = tmp_path / name
@@ -288,6 +290,7 @@ def test_a_complete_store_is_shown_on_a_read_only_disk(tmp_path):
     assert {file: file.stat().st_mtime_ns for file in tmp_path.rglob("*")} == before
 
 
+@pytest.mark.posix
 def test_a_link_and_the_permissions_of_a_file_stay(tmp_path):
     file, link = tmp_path / "file.nc", tmp_path / "link.nc"
     file.write_bytes(b"older")
@@ -299,6 +302,7 @@ def test_a_link_and_the_permissions_of_a_file_stay(tmp_path):
     assert file.stat().st_mode & 0o777 == 0o600
 
 
+@pytest.mark.posix
 def test_a_pipe_is_written_and_not_replaced(tmp_path):
     pipe = tmp_path / "pipe"
     os.mkfifo(pipe)

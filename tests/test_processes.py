@@ -63,6 +63,7 @@ def test_a_worker_that_dies_is_named_with_its_status(started):
     assert all(worker.process.poll() is not None for worker in started)
 
 
+@pytest.mark.posix
 def test_closing_ends_workers_in_the_middle_of_their_tasks(started):
     tasks = {"short": functools.partial(abs, -1), "long": functools.partial(time.sleep, FOREVER)}
     with closing(computed(tasks, workers=2)) as results:
@@ -70,6 +71,7 @@ def test_closing_ends_workers_in_the_middle_of_their_tasks(started):
     assert [worker.process.poll() for worker in started] == [-signal.SIGKILL] * 2
 
 
+@pytest.mark.posix
 def test_an_interrupted_ensemble_waits_for_no_worker(started):
     ends = []
 
@@ -115,14 +117,14 @@ def runs(pid):
 
 
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="reads the states of processes from /proc")
-@pytest.mark.parametrize("end", [signal.SIGKILL, signal.SIGTERM, signal.SIGINT])
+@pytest.mark.parametrize("end", ["SIGKILL", "SIGTERM", "SIGINT"])
 def test_a_worker_that_holds_pythons_lock_ends_with_its_parent(tmp_path, end):
     place = tmp_path / "pid"
     parent = subprocess.Popen([sys.executable, "-c", PARENT.format(place=str(place))], stderr=subprocess.DEVNULL)
     until(lambda: place.exists() and place.read_text())
     worker = int(place.read_text())
     assert runs(worker)
-    parent.send_signal(end)
+    parent.send_signal(signal.Signals[end])
     parent.wait(60.0)
     until(lambda: not runs(worker))
 

@@ -22,9 +22,6 @@ from typing import IO, Any, TypeVar, cast
 
 from stylobate.errors import WorkerLostError
 
-if sys.platform != "win32":
-    import fcntl
-
 _K = TypeVar("_K")
 _R = TypeVar("_R")
 
@@ -155,6 +152,8 @@ def end_when_closed(pipe: int, *, watched: bool = True) -> None:
     """
     if sys.platform == "win32":
         return
+    import fcntl  # noqa: PLC0415  not on Windows
+
     flags = fcntl.fcntl(pipe, fcntl.F_GETFL)
     fcntl.fcntl(pipe, fcntl.F_SETOWN, os.getpid())
     fcntl.fcntl(pipe, fcntl.F_SETFL, flags | os.O_ASYNC if watched else flags & ~os.O_ASYNC)

@@ -6,6 +6,8 @@ import sys
 import pytest
 from tests.cli.fuzzing import SILENT, Case, Report, case
 
+pytestmark = pytest.mark.posix  # a timer of processor time ends cases that say nothing
+
 QUICK = ("simulate", "response", "map", "basin", "records", "spectrum", "fragility")
 
 

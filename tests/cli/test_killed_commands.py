@@ -107,6 +107,7 @@ def children_of(folder):
     return found
 
 
+@pytest.mark.posix
 @pytest.mark.slow
 @pytest.mark.parametrize("command", COMMANDS)
 def test_a_command_killed_at_any_time_ends_with_the_same_bytes_when_it_is_started_again(command, tmp_path):

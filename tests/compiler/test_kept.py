@@ -127,6 +127,7 @@ def test_from_a_warm_cache_nothing_is_written(folder, compilations, monkeypatch)
     assert len(compilations) == 1
 
 
+@pytest.mark.posix
 def test_a_cache_that_others_can_write_to_runs_nothing(folder, compilations):
     sum_of(squares())
     folder.chmod(0o777)

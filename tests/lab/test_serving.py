@@ -22,6 +22,7 @@ def started(*options, before="import runpy; "):
     return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 
 
+@pytest.mark.posix
 def test_it_tells_its_address_answers_there_and_ends_on_ctrl_c():
     process = started("--port", "0")
     try:
@@ -61,6 +62,7 @@ def test_half_open_connections_exhaust_neither_descriptors_nor_a_core():
     assert "Traceback" not in told
 
 
+@pytest.mark.posix
 def test_at_an_address_for_other_machines_the_token_opens_it_under_the_names_of_this_machine():
     process = started("--port", "0", "--host", "0.0.0.0")  # noqa: S104
     try:

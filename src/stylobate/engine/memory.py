@@ -2,6 +2,7 @@
 
 import math
 import os
+import sys
 
 from stylobate.errors import ParameterError
 
@@ -11,9 +12,11 @@ def memory_of_the_machine() -> float:
 
     The limit of a container may be lower.
     """
+    if sys.platform == "win32":
+        return math.inf
     try:
         return float(os.sysconf("SC_PAGE_SIZE")) * float(os.sysconf("SC_PHYS_PAGES"))
-    except (AttributeError, OSError, ValueError):
+    except (OSError, ValueError):
         return math.inf
 
 

@@ -128,7 +128,8 @@ def _process() -> tuple[BaseProcess, Connection]:
         context.set_forkserver_preload(["stylobate.lab.worker_imports"])
     else:
         context = multiprocessing.get_context("spawn")
-    here, there = context.Pipe()
+    pipe: Any = context.Pipe()  # on Windows of another class
+    here, there = pipe
     process = context.Process(target=work, args=(there,), daemon=True, name=_NAME)
     process.start()
     there.close()

@@ -80,6 +80,7 @@ class Through:
         return self.inner.results(self.change(work), tasks, progress)
 
 
+@pytest.mark.posix
 @pytest.mark.parametrize("moment", ["before", pytest.param("after", marks=pytest.mark.slow)])
 @pytest.mark.parametrize("stored", [True, pytest.param(False, marks=pytest.mark.slow)])
 def test_a_worker_killed_in_the_middle_changes_nothing(
@@ -106,6 +107,7 @@ def test_a_worker_killed_in_the_middle_changes_nothing(
     assert_same_arrays(data, undisturbed(grid))
 
 
+@pytest.mark.posix
 @pytest.mark.slow
 def test_a_chunk_that_kills_every_worker_is_named(points, client):
     def change(work):

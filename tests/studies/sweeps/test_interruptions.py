@@ -40,6 +40,7 @@ def drive(tmp_path, executor, kill_after, pause=0.0, **options):
     return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, **options)
 
 
+@pytest.mark.posix
 @pytest.mark.parametrize("executor", ["threads", pytest.param("dask://", marks=pytest.mark.slow)])
 def test_a_driver_killed_and_started_again_changes_nothing(
     grid, tmp_path, assert_same_arrays, counting, undisturbed, executor
@@ -57,6 +58,7 @@ def test_a_driver_killed_and_started_again_changes_nothing(
     assert_same_arrays(data, undisturbed(grid))
 
 
+@pytest.mark.posix
 @pytest.mark.slow
 @pytest.mark.parametrize("executor", ["threads", "dask://"])
 def test_ctrl_c_in_a_terminal_stops_at_once_and_leaves_a_store_to_go_on_with(

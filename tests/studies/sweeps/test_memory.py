@@ -38,12 +38,14 @@ def peak_of_many_runs(rows, *arguments):
     return grown, results
 
 
+@pytest.mark.posix
 @pytest.mark.parametrize("rows", [300, pytest.param(1000, marks=pytest.mark.slow)])
 def test_a_large_map_needs_its_results_and_little_more(rows):
     grown, results = peak_of_many_runs(rows)
     assert grown < results + 0.1 * rows < 0.5 * rows  # MiB
 
 
+@pytest.mark.posix
 @pytest.mark.slow
 def test_a_stored_map_of_a_million_runs_needs_a_few_chunks(tmp_path):
     grown, _ = peak_of_many_runs(1000, str(tmp_path / "map.zarr"))
