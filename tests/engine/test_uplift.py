@@ -1,6 +1,7 @@
 """Uplift from rest: single runs against closed forms, earlier series and other tolerances."""
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 import pytest
@@ -59,36 +60,88 @@ MODELS = {
 }
 
 
+class TurningPush(NamedTuple):
+    """An elliptic base acceleration (A cos(ντ + φ), B cos(ντ + φ + δ)) [g] in units of 1/ω0."""
+
+    size: float
+    narrow: float
+    lag: float
+    nu: float
+    start: float
+
+    @property
+    def motion(self):
+        return sb.Harmonic.elliptic(
+            amplitude=(self.size * COLUMN.gravity, self.narrow * COLUMN.gravity), phase=self.lag,
+            angular_frequency=self.nu * COLUMN.frequency_scale, start_phase=self.start,
+        )  # fmt: skip
+
+    def at(self, tau):
+        angle = self.nu * tau + self.start
+        return np.array([self.size * math.cos(angle), self.narrow * math.cos(angle + self.lag)])
+
+    def excess(self, tau):
+        return np.hypot(*self.at(tau)) - C
+
+    @property
+    def uplift(self):
+        """The first time at which the push exceeds c: 0 if it does so at the start."""
+        times = np.linspace(0.0, 2.0 * math.pi / self.nu, 2001)
+        first = int(np.argmax([self.excess(tau) > 0.0 for tau in times]))
+        if first == 0:
+            return 0.0
+        return brentq(self.excess, times[first - 1], times[first], xtol=1e-16, rtol=1e-15)
+
+    def integrated(self, model, end):
+        """Return the state at `end` by the equations alone, and the minimum tilt after the first swing.
+
+        They begin at a time after uplift that is a tenth of the engine's, so that the error is a thousandth.
+        """
+        early = 0.1 * DEPARTURE / (1.0 + self.nu)
+        now, later = self.at(self.uplift), self.at(self.uplift + 2.0 / 3.0 * early)
+        here, there = np.hypot(*now), np.hypot(*later)
+        turned = math.atan2(now[0] * later[1] - now[1] * later[0], now @ later)
+        rates = (there - here) / (early / 1.5), turned / (early / 1.5)
+        push = Push(tuple(-now / here), here, here - C if self.uplift == 0.0 else 0.0, *rates)
+        found = solve_ivp(
+            lambda tau, y: model.rates(*y, *self.at(tau), 0.0, *model.parameters), (self.uplift + early, end),
+            model.departure(push, early, *model.parameters), "DOP853", rtol=1e-13, atol=1e-22,
+        ).y  # fmt: skip
+        tilt = np.hypot(*found[:2])
+        falls = int(np.argmax(np.diff(tilt) < 0.0))
+        return found[:, -1], float(tilt[falls:].min()) if falls else math.inf
+
+    def error(self, model, end, rtol):
+        """Return the error of the tilt vector at `end` [c], and the minimum tilt [c] after the first swing."""
+        exact, least = self.integrated(model, end)
+        run = sb.simulate(model, self.motion, duration=end / COLUMN.frequency_scale, rtol=rtol, samples=2)
+        return float(np.abs(run.data["tilt"][-1].to_numpy() - exact[:2]).max()) / C, least / C
+
+
 @pytest.mark.parametrize("model", MODELS.values(), ids=MODELS)
 def test_runs_from_rest_converge_to_rounding_under_a_turning_push(model):
-    # Against the equations from a state ten times earlier after uplift, whose error is at least a thousand times less.
-    nu, start, size, narrow, lag = 2.0, -1.3, 1.5 * C, 0.6 * C, 0.9
-    motion = sb.Harmonic.elliptic(
-        amplitude=(size * COLUMN.gravity, narrow * COLUMN.gravity), phase=lag,
-        angular_frequency=nu * COLUMN.frequency_scale, start_phase=start,
-    )  # fmt: skip
+    push = TurningPush(size=1.5 * C, narrow=0.6 * C, lag=0.9, nu=2.0, start=-1.3)
+    assert push.error(model, 2.5, 1e-8)[0] < 1e-6
+    assert push.error(model, 2.5, 1e-13)[0] < 2e-11
 
-    def pushed(tau):
-        angle = nu * tau + start
-        return np.array([size * math.cos(angle), narrow * math.cos(angle + lag)])
 
-    release = brentq(lambda tau: np.hypot(*pushed(tau)) - C, 0.0, 0.5, xtol=1e-16, rtol=1e-15)
-    early = 0.1 * DEPARTURE / (1.0 + nu)
-    now, later = pushed(release), pushed(release + 2.0 / 3.0 * early)
-    here, there = np.hypot(*now), np.hypot(*later)
-    turned = math.atan2(now[0] * later[1] - now[1] * later[0], now @ later)
-    push = Push(tuple(-now / here), here, 0.0, (there - here) / (early / 1.5), turned / (early / 1.5))
-    exact = solve_ivp(
-        lambda tau, y: model.rates(*y, *pushed(tau), 0.0, *model.parameters), (release + early, 2.5),
-        model.departure(push, early, *model.parameters), "DOP853", rtol=1e-13, atol=1e-22,
-    ).y[:, -1]  # fmt: skip
-    found = [
-        sb.simulate(model, motion, duration=2.5 / COLUMN.frequency_scale, rtol=rtol, samples=2).data["tilt"][-1]
-        for rtol in (1e-8, 1e-13)
-    ]
-    errors = [float(np.abs(end.to_numpy() - exact[:2]).max()) for end in found]
-    assert errors[0] < 1e-6 * C
-    assert errors[1] < 2e-11 * C
+def random_runs_from_rest(model, count, rtol):
+    """Return the errors of random runs [rtol c], of those that do not pass the vertical closer than c/100."""
+    rng = np.random.default_rng(300)
+    errors = []
+    while len(errors) < count:
+        size, nu = C * rng.uniform(1.02, 4.0), math.exp(rng.uniform(math.log(0.5), math.log(6.0)))
+        push = TurningPush(size, size * rng.uniform(), rng.uniform(-math.pi, math.pi), nu, rng.uniform(-math.pi, 0.0))
+        error, least = push.error(model, push.uplift + 2.0, rtol)
+        if least > 1e-2:
+            errors.append(error / rtol)
+    return np.array(errors)
+
+
+@pytest.mark.parametrize(("count", "rtol"), [(5, 1e-8), pytest.param(75, 1e-10, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("model", MODELS.values(), ids=MODELS)
+def test_random_runs_from_rest_have_errors_of_the_order_of_the_tolerance(model, count, rtol):
+    assert random_runs_from_rest(model, count, rtol).max() < 20.0
 
 
 @pytest.mark.parametrize("kind", [sb.Rolling, sb.SlenderRolling])
