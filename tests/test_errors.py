@@ -92,6 +92,8 @@ def test_outcomes_have_codes_that_files_hold():
         "SLID",
         "SURVIVED",
         "STOPPED",
+        "PERIODIC",
+        "APERIODIC",
     ]
     assert [Outcome[name].value for name in names] == list(range(len(names)))
     assert len(Outcome) == len(names)

@@ -150,6 +150,13 @@ class Outcome(IntEnum):
     """
     STOPPED = 11
     """A terminal event function ended the run: see `EventFunction`."""
+    PERIODIC = 12
+    """Periodic motion that is neither rolling nor rocking: it repeats after one to eight periods of the base motion."""
+    APERIODIC = 13
+    """Stationary motion that does not repeat and does not roll at the mean rate of the base motion.
+
+    It is chaotic, or quasi-periodic, such as rolling at another mean rate.
+    """
 
     @property
     def label(self) -> str:

@@ -29,8 +29,8 @@ LATE = 40.0
 FALLEN = (Outcome.OVERTURNED, Outcome.LIMIT_REACHED)
 """Outcomes that differ from all others: only a change from these to others, or back, makes a run uncertain."""
 
-UNSETTLED = (Outcome.AT_REST, Outcome.SURVIVED, Outcome.STILL_MOVING)
-"""Outcomes of motions whose peak tilt is that of a transient."""
+UNSETTLED = (Outcome.AT_REST, Outcome.SURVIVED, Outcome.STILL_MOVING, Outcome.APERIODIC)
+"""Outcomes of motions whose peak tilt is that of a transient or of an aperiodic motion."""
 
 MANY_PASSAGES = 40
 """A single run that passes the vertical more often is repeated: at each passage small changes can grow."""

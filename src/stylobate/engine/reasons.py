@@ -11,7 +11,7 @@ from stylobate.engine.ensembles.outcomes import grounds_of
 from stylobate.engine.followed import Followed
 from stylobate.engine.kernel.columns import Log, Status
 from stylobate.engine.pace import step_limit, unseen
-from stylobate.engine.verdict import Ground, reason_on
+from stylobate.engine.verdict import Ground, reason_on, steady_periods
 from stylobate.errors import Outcome
 from stylobate.models import Model
 from stylobate.text import plural
@@ -51,7 +51,7 @@ def _at_its_end(model: Model, motion: BaseMotion, followed: Followed, outcome: O
     if outcome in (Outcome.STILL_MOVING, Outcome.SURVIVED) and math.isfinite(motion.duration):
         return survival(model, motion, followed.trajectory)[1]
     ground = Ground(int(grounds_of(followed.batch, followed.late)[0]))
-    return reason_on(ground, followed.batch.plan.options.rules.periods, motion.period or 0.0)
+    return reason_on(ground, followed.late.evidence, followed.batch.plan.options.rules, motion.period or 0.0)
 
 
 def _failure(model: Model, followed: Followed) -> str:
@@ -95,18 +95,18 @@ def late_measures(followed: Followed) -> dict[str, float]:
     if np.isnan(late.span[0]):
         return {}
     scale = followed.trajectory.model.time_scale
-    periods = followed.batch.plan.options.rules.periods
     measures = {
         "mean_rolling_rate": 2.0 * math.pi * float(late.turned[0] / (late.span[0] * scale)),
         "repetition": float(late.repetition[0]),
+        "repeats_after": float(late.repeats_after[0]),
         "mean_tilt_late": float(late.mean_tilt[0]),
         "minimum_tilt_late": float(late.minimum_tilt[0]),
         "peak_tilt_late": _peak_tilt(followed),
     }
-    before = float(late.repetition_before[0])
-    if not math.isnan(before):
-        change = abs(measures["repetition"] / before - 1.0) if before > 0.0 else 0.0
-        measures |= {"modulation_change": change, "rolling_rate_error": float(late.drift[0]) / periods}
+    if late.evidence is not None and late.evidence.held[0] >= steady_periods(followed.batch.plan.options.rules):
+        change, lag = late.evidence.change, late.evidence.lag
+        measures["modulation_change"] = abs(math.expm1(float(change.slope[0] * change.window[0])))
+        measures["rolling_rate_error"] = abs(float(lag.slope[0]))
     return measures
 
 

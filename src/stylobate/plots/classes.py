@@ -34,7 +34,7 @@ _AT_REST, _ROCKING = Look(_CREAM, ink=_DARK_INK), Look(_SKY, ink=_DARK_INK)
 _SLIDING = Look(_SAND, "--", _DARK_INK)
 _ROLLING, _ROLLING_BACK = Look(_AMBER, ink=_DARK_INK), Look(_BLUE, "\\\\\\")
 _MODULATED, _MODULATED_BACK = Look(_SEA, "..."), Look(_MINT, "ooo", _DARK_INK)
-_APERIODIC = Look(_MAUVE, "---")
+_APERIODIC, _MIXED = Look(_MAUVE, "---"), Look(_MAUVE, "+++")
 _UNSETTLED, _OVERTURNED = Look(_LILAC, "xx", _LILAC_INK), Look(_NIGHT)
 UNFINISHED = Look("#ffffff", "//////", "#b0b0b0")
 """Runs that are not computed: white, finely hatched."""
@@ -44,7 +44,9 @@ OUTCOME_LOOKS = {
     Outcome.AT_REST: _AT_REST,
     Outcome.ROCKING: _ROCKING,
     Outcome.ROLLING: _ROLLING,
+    Outcome.PERIODIC: replace(_ROCKING, texture="///"),
     Outcome.MODULATED: _MODULATED,
+    Outcome.APERIODIC: _MIXED,
     Outcome.SURVIVED: Look(_CREAM, "...", _LILAC_INK),
     Outcome.STILL_MOVING: _UNSETTLED,
     Outcome.OVERTURNED: _OVERTURNED,
@@ -64,7 +66,7 @@ KIND_LOOKS = {
     "modulated clockwise": _MODULATED_BACK,
     "aperiodic anticlockwise": _APERIODIC,
     "aperiodic clockwise": Look(_ROSE, "|||", _DARK_INK),
-    "aperiodic": replace(_APERIODIC, texture="+++"),
+    "aperiodic": _MIXED,
     "overturned": _OVERTURNED,
     "tilt limit reached": OUTCOME_LOOKS[Outcome.LIMIT_REACHED],
     "lifted off": OUTCOME_LOOKS[Outcome.LIFTED_OFF],

@@ -34,7 +34,7 @@ def test_steady_rolling_stays_on_the_exact_solution_to_a_few_tolerances(runs_of,
     exact = np.concatenate([runs.tilt, runs.tilt_rate], axis=1)
     size = np.hypot(*runs.tilt.T)[:, np.newaxis] * np.array([1.0, 1.0, 0.0, 0.0])
     size = size + size[:, ::-1] * nu[:, np.newaxis]
-    assert np.abs((found - exact) / size).max() < 4.0 * rtol + 6e-12
+    assert np.abs((found - exact) / size).max() < 5.0 * rtol + 6e-12
 
 
 @pytest.mark.parametrize("rtol", [1e-8, 1e-11])

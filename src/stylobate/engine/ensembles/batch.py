@@ -10,11 +10,12 @@ import numpy.typing as npt
 from stylobate.compiler.kept import runs_plain
 from stylobate.engine.doubt import FINER_REST, other_tolerance
 from stylobate.engine.ensembles.broadcasting import Runs
+from stylobate.engine.ensembles.look_times import LookTimes
 from stylobate.engine.ensembles.model_columns import ModelColumns
 from stylobate.engine.ensembles.motion_columns import MotionColumns, MotionPlan
 from stylobate.engine.ensembles.options import Options
 from stylobate.engine.ensembles.orbit_columns import OrbitReached, fill_orbits, orbit_reached
-from stylobate.engine.kernel.columns import LOG, NOTE, STATE, Log, Setup, Status
+from stylobate.engine.kernel.columns import LOG, NOTE, PAIRS, STATE, Log, Setup, Status
 from stylobate.engine.kernel.expansion import series_integrals
 from stylobate.engine.kernel.kernels import kernel_of
 from stylobate.engine.kernel.shape import Shape
@@ -132,8 +133,10 @@ class Batch:
         motions = MotionColumns.of(plan.motion, runs.values, models)
         energy = plan.rest_share * _rest_energy(plan.options, models, motions)
         shape = plan.layout
-        table = _empty_table(plan, shape, len(runs), motions.breaks.shape[1])
+        times = LookTimes.of(runs.duration / models.time_scale, motions.period, plan.options.rules)
+        table = _empty_table(plan, shape, len(runs), motions.breaks.shape[1], times.notes)
         _fill_setup(table, plan, runs, models, motions, energy)
+        times.fill(table)
         planar = _fill_starts(table, plan.model, runs, models, motions)
         if runs.orbits is not None:
             fill_orbits(table, shape.orbits_at, runs.orbits, motions.period, models.time_scale, plan.options.rules)
@@ -157,9 +160,22 @@ class Batch:
     def notes(self, *, strobes: bool) -> Floats:
         """Return the (stroboscopic) samples, shape (n, number, 5): tilt vector, its rate, time; NaN if missing."""
         options = self.plan.options
-        first = self.plan.layout.breaks_at + self.motions.breaks.shape[1]
-        count = options.strobes if strobes else options.samples
-        first += NOTE * options.samples if strobes else 0
+        return self._notes(options.samples, options.strobes) if strobes else self._notes(0, options.samples)
+
+    @property
+    def looks(self) -> Floats:
+        """Looks, shape (n, number, 5): tilt vector, its rate, azimuth; zero if missing."""
+        options = self.plan.options
+        return self._notes(options.samples + options.strobes, int(self.table[0, Setup.LOOKS]))
+
+    @property
+    def pairs(self) -> Floats:
+        """Pairs, shape (n, `PAIRS`, 5): see `Pair`; zero if missing."""
+        options = self.plan.options
+        return self._notes(options.samples + options.strobes + int(self.table[0, Setup.LOOKS]), PAIRS)
+
+    def _notes(self, before: int, count: int) -> Floats:
+        first = self.plan.layout.breaks_at + self.motions.breaks.shape[1] + NOTE * before
         return self.table[:, first : first + NOTE * count].reshape(len(self.table), count, NOTE)
 
     def advance(self, halt: Halt, paused: Callable[[float, float], None] = _nothing) -> bool:
@@ -237,12 +253,12 @@ def _rest_energy_for_good(options: Options, models: ModelColumns, motions: Motio
     return np.where(models.comes_to_rest, energy, 0.0)
 
 
-def _empty_table(plan: Plan, shape: Shape, count: int, breaks: int) -> Floats:
-    options = plan.options
+def _empty_table(plan: Plan, shape: Shape, count: int, breaks: int, looks: int) -> Floats:
+    samples = plan.options.samples + plan.options.strobes
     notes = shape.breaks_at + breaks
-    traces = notes + NOTE * (options.samples + options.strobes)
-    table = np.zeros((count, traces + plan.traces * shape.trace_width))
-    table[:, notes:traces] = np.nan
+    table = np.zeros((count, notes + NOTE * (samples + looks) + plan.traces * shape.trace_width))
+    table[:, notes : notes + NOTE * samples] = np.nan
+    table[:, Setup.NOTES] = samples + looks
     for column in (Log.FIRST_AZIMUTH, Log.LAST_AZIMUTH):
         table[:, LOG + column] = np.nan
     for column in (Log.MINIMUM_TILT, Log.CLOSEST_PASSAGE, Log.NORMAL):

@@ -9,7 +9,8 @@ from stylobate.engine.end_of_motion import energy_over_balance, has_ended
 from stylobate.engine.endings import ENDINGS
 from stylobate.engine.ensembles.batch import Batch
 from stylobate.engine.ensembles.contacts import upright_outcomes
-from stylobate.engine.kernel.columns import BEFORE, LATE, LOOKS, SLACK, STATE, Log, Setup, Status, Window
+from stylobate.engine.ensembles.steady import evidence_of
+from stylobate.engine.kernel.columns import EARLIER, LAGS, SLACK, STATE, Log, Setup, Status
 from stylobate.engine.verdict import Evidence, Ground, grounds, outcome_on
 from stylobate.errors import Outcome
 
@@ -26,7 +27,10 @@ _OUTCOME_OF_GROUND = np.array([outcome_on(kind) for kind in Ground], dtype=np.in
 
 @dataclass(frozen=True, slots=True)
 class Late:
-    """Measures of the last periods of each run; NaN if these were not completed."""
+    """Measures of the last periods of each run; NaN if these were not completed.
+
+    `runs` are the indices of runs that completed them, and `evidence` is that of these runs.
+    """
 
     span: Floats
     turned: Floats
@@ -34,72 +38,60 @@ class Late:
     phase: Floats
     minimum_tilt: Floats
     repetition: Floats
-    repetition_before: Floats
-    drift: Floats
+    repeats_after: npt.NDArray[np.int8]
+    runs: npt.NDArray[np.intp]
+    evidence: Evidence | None
 
 
 def late_periods(batch: Batch) -> Late:
     """Return the measures of the last periods of each run."""
-    n = batch.plan.options.rules.periods
-    period, end = batch.motions.period, batch.table[:, Setup.END]
-    end = end * (1.0 + SLACK)
+    rules, period = batch.plan.options.rules, batch.motions.period
+    n, end = rules.periods, batch.table[:, Setup.END] * (1.0 + SLACK)
     seen = (batch.log(Log.STATUS) == Status.STOPPED) & (period > 0.0) & (end >= (n + 1) * period)
-    before = seen & (end >= (2 * n + 1) * period)
 
-    def known(values: Floats, where: npt.NDArray[np.bool_] = seen) -> Floats:
-        return np.where(where, values, np.nan)
+    def known(values: Floats) -> Floats:
+        return np.where(seen, values, np.nan)
 
-    span = known(n * period)
-    turned = _window(batch, LATE, Window.LAST_AZIMUTH) - _window(batch, LATE, Window.FIRST_AZIMUTH)
-    turned = np.where(batch.planar, 0.0, turned)
-    forward = turned >= 0.0
-    lags = [
-        np.where(forward, _window(batch, first, Window.LAG_FORWARD), _window(batch, first, Window.LAG_BACKWARD))
-        for first in (LATE, BEFORE)
-    ]
+    runs, span = np.flatnonzero(seen), known(n * period)
+    turned, repetition = known(np.zeros(len(seen))), known(np.zeros(len(seen)))
+    mean_tilt, minimum_tilt = known(batch.log(Log.MEAN_TILT)) / span, known(batch.log(Log.LATE_MINIMUM_TILT))
+    repeats_after, evidence = np.zeros(len(seen), dtype=np.int8), None
+    if runs.size:
+        azimuth = batch.looks[:, [EARLIER + LAGS, -1], -1]
+        turned = known(np.where(batch.planar, 0.0, azimuth[:, 1] - azimuth[:, 0]))
+        least = minimum_tilt / batch.models.slenderness
+        evidence = evidence_of(batch, runs, turned[runs], least[runs], mean_tilt[runs])
+        repetition[runs], repeats_after[runs] = evidence.returns[:, 0], evidence.repeats_after(rules)
+    return Late(
+        span=span,
+        turned=turned,
+        mean_tilt=mean_tilt,
+        phase=known(_phase(batch, turned)),
+        minimum_tilt=minimum_tilt,
+        repetition=repetition,
+        repeats_after=repeats_after,
+        runs=runs,
+        evidence=evidence,
+    )
+
+
+def _phase(batch: Batch, turned: Floats) -> Floats:
+    """Return the phase of the tilt vector relative to the base acceleration, in the sense in which it turned."""
     parts = {
         name: batch.log(Log[f"{name}_COS"]) + 1j * batch.log(Log[f"{name}_SIN"]) for name in ("FORWARD", "BACKWARD")
     }
     phase = np.where(
-        forward,
+        turned >= 0.0,
         np.angle(parts["FORWARD"]) - _reference(batch, batch.motions.forward),
         _reference(batch, batch.motions.backward) - np.angle(parts["BACKWARD"]),
     )
-    mean_tilt = known(batch.log(Log.MEAN_TILT)) / span
-    return Late(
-        span=span,
-        turned=known(turned),
-        mean_tilt=mean_tilt,
-        phase=known(np.angle(np.exp(1j * phase))),
-        minimum_tilt=known(batch.log(Log.LATE_MINIMUM_TILT)),
-        repetition=known(_repetition(batch, LATE, mean_tilt)),
-        repetition_before=known(_repetition(batch, BEFORE, mean_tilt), before),
-        drift=known(np.abs(lags[0] / (n * LOOKS) - lags[1] / (n * LOOKS)), before),
-    )
+    return np.asarray(np.angle(np.exp(1j * phase)))
 
 
 def _reference(batch: Batch, azimuth: Floats) -> Floats:
     """Return the azimuth of a circular component of the forcing, relative to the line for planar motion."""
     line = np.arctan2(batch.table[:, Setup.LINE_Y], batch.table[:, Setup.LINE_X])
     return np.where(batch.planar, azimuth - line, azimuth)
-
-
-def _window(batch: Batch, first: int, column: Window) -> Floats:
-    return batch.table[:, first + column]
-
-
-def _repetition(batch: Batch, first: int, mean_tilt: Floats) -> Floats:
-    """Return the maximum difference of states one period apart, over the peak tilt or rate.
-
-    All looks may fall on passages through the vertical; then the mean tilt of the last periods is the unit of tilts.
-    The result is infinite if the column stood at all looks, because the motion between the looks is unknown.
-    """
-    tilt_size, rate_size = _window(batch, first, Window.TILT_SIZE), _window(batch, first, Window.RATE_SIZE)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        tilt = _window(batch, first, Window.TILT_CHANGE) / np.fmax(tilt_size, mean_tilt)
-        rate = _window(batch, first, Window.RATE_CHANGE) / rate_size
-    found = np.fmax(np.nan_to_num(tilt), np.nan_to_num(rate))
-    return np.where((tilt_size > 0.0) | (rate_size > 0.0), found, np.inf)
 
 
 def _survive(batch: Batch, moving: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool_]:
@@ -128,15 +120,10 @@ def _states(batch: Batch) -> Floats:
 
 def grounds_of(batch: Batch, late: Late) -> npt.NDArray[np.int8]:
     """Return the `Ground` of the outcome of each run that moves at its end."""
-    evidence = Evidence(
-        turned=np.nan_to_num(late.turned),
-        minimum_tilt=np.nan_to_num(late.minimum_tilt) / batch.models.slenderness,
-        repetition=np.nan_to_num(late.repetition, nan=np.inf),
-        repetition_before=late.repetition_before,
-        drift=late.drift,
-    )
-    ground = np.where(np.isnan(late.span), Ground.SHORT, grounds(evidence, batch.plan.options.rules))
-    return np.where(batch.motions.period > 0.0, ground, Ground.NO_PERIOD)
+    ground = np.full(len(batch.table), Ground.SHORT, dtype=np.int8)
+    if late.evidence is not None:
+        ground[late.runs] = grounds(late.evidence, batch.plan.options.rules)
+    return np.where(batch.motions.period > 0.0, ground, Ground.NO_PERIOD).astype(np.int8)
 
 
 def outcomes(batch: Batch, late: Late) -> npt.NDArray[np.int8]:

@@ -67,6 +67,9 @@ QUANTITIES: Mapping[str, Quantity] = {
     "phase": _numbers("phase of the tilt vector relative to the base acceleration, over the last periods", "rad"),
     "mean_rolling_rate": _numbers("mean rolling rate over the last periods", "rad s-1"),
     "repetition": _numbers("change from period to period, over the last periods", "1"),
+    "repeats_after": Quantity(
+        np.int8, (), {"long_name": "periods of the base motion after which the motion repeats; 0 if it does not"}
+    ),
     "end_spin": _numbers("angular velocity about the axis at the end", "rad s-1"),
     "peak_friction_demand": _numbers("peak friction force over normal force", "1"),
     "peak_pivoting_demand": _numbers("peak moment about the vertical over normal force and radius", "1"),
@@ -175,6 +178,7 @@ def _all(batch: Batch) -> Arrays:
         "phase": late.phase,
         "mean_rolling_rate": 2.0 * math.pi * late.turned / (late.span * scale),
         "repetition": late.repetition,
+        "repeats_after": late.repeats_after,
         "uplifts": batch.log(Log.RELEASES),
         "steps": batch.log(Log.STEPS),
     }
@@ -204,9 +208,10 @@ def _orbit_results(batch: Batch, arrays: Arrays, reached: OrbitReached) -> Array
     """Return last-period measures and later stroboscopic samples of the known orbits that runs have converged to."""
     runs, scale = reached.runs, batch.models.time_scale
     period = batch.motions.period[runs] * scale[runs]
-    names = ("mean_tilt", "mean_rolling_rate", "strobe_tilt", "strobe_tilt_rate")
+    names = ("mean_tilt", "mean_rolling_rate", "repeats_after", "strobe_tilt", "strobe_tilt_rate")
     own = {name: arrays[name].copy() for name in names if name in arrays}
     own["mean_tilt"][runs] = reached.mean_tilt
+    own["repeats_after"][runs] = 1
     own["mean_rolling_rate"][runs] = 2.0 * math.pi * reached.turns / period
     if "strobe_tilt" in own:
         place = np.arange(own["strobe_tilt"].shape[1])

@@ -1,13 +1,19 @@
 """Columns of the table of a batch (input and record of each run), and rows of the buffer of a kernel (`Lane`).
 
-The table is one float64 array with a row for each run. A row holds, in this order: `Setup`, `Log`, two windows, the
-looks of a period, the state, `Change` if the contact of the model can change, an `Orbit` for each known orbit, the
-parameters of the model, the numbers of the base motion (a `Wave` for each term, or `Tabulated`), its breaks, samples,
-stroboscopic samples, and the trace of the run if there is one. A look is a check of the tilt vector at one of the
-equally spaced times of the last periods.
+The table is one float64 array with a row for each run. A row holds, in this order: `Setup`, `Log`, the state, `Change`
+if the contact of the model can change, an `Orbit` for each known orbit, the parameters of the model, the numbers of the
+base motion (a `Wave` for each term, or `Tabulated`), its breaks, samples, stroboscopic samples, looks, pairs, and the
+trace of the run if there is one.
+
+Looks and pairs are records of the tilt vector that decide the outcome of a motion under a periodic base motion. Looks
+follow each other after one period: those of the last periods, and an earlier group. A pair compares two states one
+period apart; the pairs are spread over the second half of the run.
 """
 
 from enum import IntEnum, auto
+from typing import Any
+
+import numpy as np
 
 
 class _FromZero(IntEnum):
@@ -54,6 +60,14 @@ class Setup(_FromZero):
     SAMPLES = auto()
     STROBES = auto()
     """Numbers of breaks (one column each), samples and stroboscopic samples (`NOTE` columns each) in the row."""
+    LOOKS = auto()
+    """Number of looks in the row, followed by `PAIRS` pairs (`NOTE` columns each); 0 if the row has neither."""
+    LOOKED_BACK = auto()
+    """Number of periods from the last look of the earlier group to the end of the run; 0 if there is no such group."""
+    PAIR_SPACING = auto()
+    """Mean number of periods from one pair to the next; 0 without pairs."""
+    NOTES = auto()
+    """Number of samples, stroboscopic samples, looks and pairs in the row."""
     TRACES = auto()
     """Number of trace entries for which the row has room, behind the samples; 0 if the run keeps no trace."""
     PASSAGE_TILT = auto()
@@ -153,7 +167,10 @@ class Log(_FromZero):
     BREAKS_AT = auto()
     NEXT_LOOK = auto()
     LOOKS_AT = auto()
-    """Index and time of the next look in the last periods, which decide the outcome."""
+    """Index and time of the next look."""
+    NEXT_PAIR = auto()
+    PAIRS_AT = auto()
+    """Twice the index of the next pair, plus one if its first state is recorded; time of its next state."""
     NEXT_SAMPLE = auto()
     SAMPLES_AT = auto()
     NEXT_STROBE = auto()
@@ -324,37 +341,37 @@ class Orbit(_FromZero):
     """Approach to the orbit, see `convergence.Approach`."""
 
 
-class Window(_FromZero):
-    """Record of a window of several periods, computed at its looks."""
+LAGS = 8
+"""Maximum number of periods of the base motion after which a motion is seen to repeat."""
 
-    TILT_CHANGE = auto()
-    RATE_CHANGE = auto()
-    """Maximum difference between states one period apart."""
-    TILT_SIZE = auto()
-    RATE_SIZE = auto()
-    LAG_FORWARD = auto()
-    LAG_BACKWARD = auto()
-    """Sums of the azimuth relative to a forcing that rotates anticlockwise or clockwise [turns]."""
-    FIRST_AZIMUTH = auto()
-    LAST_AZIMUTH = auto()
+EARLIER = LAGS + 2
+"""Number of looks of the earlier group: two of them have looks up to `LAGS` periods before."""
 
+PAIRS = 16
+"""Maximum number of pairs."""
 
-LOOKS = 2
-"""Looks per period in the windows."""
+GOLDEN = 0.6180339887498949
+"""The golden section, (√5 − 1)/2."""
 
 ORBIT = len(Orbit)
 """Columns of a known orbit."""
 
 LOG = len(Setup)
 """First column of the log."""
-BEFORE = LOG + len(Log)
-"""First column of the window before the last one."""
-LATE = BEFORE + len(Window)
-"""First column of the window of the last periods."""
-LAST_LOOKS = LATE + len(Window)
-"""First column of the tilt vectors and their rates at the looks of the last period."""
-STATE = LAST_LOOKS + 4 * LOOKS
+STATE = LOG + len(Log)
 """First column of the state."""
+
+
+def pair_begins(pair: Any, spacing: Any) -> Any:
+    """Return the number of periods from the start of a pair to the end of the run; for numbers and arrays.
+
+    Each pair is within a part of the run of length `spacing`, at a place that is in step with no period: the fraction
+    of the golden section times the triangular numbers (H. Weyl, "Über die Gleichverteilung von Zahlen mod. Eins",
+    Math. Ann. 77, 1916).
+    """
+    turns = GOLDEN * (0.5 * pair * (pair + 1.0))
+    return (PAIRS - 1.0 - pair) * spacing + (turns - np.floor(turns)) * (spacing - 1.0) + 1.0
+
 
 SLACK = 1e-12
 """Relative tolerance when a duration is compared with a number of periods."""
@@ -368,7 +385,20 @@ SWITCHING_TRACE_ROOM = 1500
 """The same for models whose contact can change: one call can write a series of implicit steps and contact changes."""
 
 NOTE = 5
-"""Columns of a sample or stroboscopic sample: tilt vector, its rate, time."""
+"""Columns of a sample or stroboscopic sample: tilt vector, its rate, time. A look has its azimuth instead of a time."""
+
+
+class Pair(_FromZero):
+    """Columns of a pair; before its second state they are those of a look."""
+
+    TILT_CHANGE = auto()
+    RATE_CHANGE = auto()
+    """Difference between the two states."""
+    TILT = auto()
+    RATE = auto()
+    """Size of the second state."""
+    AZIMUTH = auto()
+    """Azimuth of the first state [turns]."""
 
 
 class Trace(_FromZero):

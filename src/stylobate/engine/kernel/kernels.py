@@ -96,7 +96,6 @@ def _rows(shape: Shape) -> SimpleNamespace:
         "SQUARE": "square0",
         "BEFORE": "before_tilt_change",
         "LATE": "late_tilt_change",
-        "LOOK": "look0",
         "PARAMETER": "p0",
         "CONTACT": f"y{shape.order - 1}",
         "LOADS": "normal_now",

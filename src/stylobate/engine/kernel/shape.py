@@ -4,7 +4,6 @@ from dataclasses import dataclass
 from functools import cache
 
 from stylobate.engine.kernel.columns import (
-    LOOKS,
     ORBIT,
     STATE,
     SWITCHING_TRACE_ROOM,
@@ -15,7 +14,6 @@ from stylobate.engine.kernel.columns import (
     Log,
     Setup,
     Trace,
-    Window,
 )
 from stylobate.engine.kernel.forcing import KernelForcing
 from stylobate.engine.kernel.layout import Rows
@@ -137,9 +135,6 @@ class Shape:
 def _rows_of(shape: Shape) -> Rows:
     rows = Rows()
     rows.add(*(column.name.lower() for column in Setup), *(column.name.lower() for column in Log))
-    for window in ("before", "late"):
-        rows.add(*(f"{window}_{column.name.lower()}" for column in Window))
-    rows.add_many("look", 4 * LOOKS)
     rows.add_many("y", shape.order)
     rows.add(*shape.changes)
     rows.add(*(row.name.lower() for row in Lane))

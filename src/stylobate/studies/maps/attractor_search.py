@@ -19,7 +19,6 @@ from stylobate.studies.maps.stroboscopic import (
     OrbitScales,
     group_cycles,
     is_flat,
-    keeps_moving,
     repeating_periods,
 )
 
@@ -28,7 +27,7 @@ UNSETTLED = -2
 
 NOT_SETTLED = "not settled"
 """The name of such runs in the table of attractors."""
-REMEDY = "not settled: run them for more periods and with more strobes, at least 32"
+REMEDY = "not settled: run them for more periods"
 
 AT_REST, ROCKING, OVERTURNED = "at rest", "rocking", "overturned"
 ROLLING = {1: "rolling anticlockwise", -1: "rolling clockwise"}
@@ -47,7 +46,10 @@ KINDS = (AT_REST, *ROLLING.values(), ROCKING, *MODULATED.values(), *APERIODIC.va
 # Tolerance of the mean turns of the contact point per forcing period for zero or one turn: half a turn in ten.
 _TURNING = 0.05
 # Outcomes of runs that move until their end; a column at rest at the end may rest for only a part of each period.
-_MOVING = (Outcome.ROLLING, Outcome.ROCKING, Outcome.MODULATED, Outcome.STILL_MOVING, Outcome.AT_REST)
+_MOVING = (
+    *(Outcome.ROLLING, Outcome.ROCKING, Outcome.PERIODIC, Outcome.MODULATED, Outcome.APERIODIC),
+    *(Outcome.STILL_MOVING, Outcome.AT_REST),
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,10 +100,9 @@ def find_attractors(runs: xr.Dataset, scales: OrbitScales, rules: AttractorRules
     """Find the attractors of `runs` of one column under one base motion, and the attractor of each run.
 
     The outcome identifies rest, overturning and other ends of a run. A run that moves until its end is on a periodic
-    orbit if its stroboscopic samples repeat; the set of samples identifies the orbit. A motion that persists without
-    repeating (`keeps_moving`) is modulated rolling if it turns with the forcing, else aperiodic (quasi-periodic or
-    chaotic), and labelled by its sense. All other runs are unsettled, whatever their own outcome. A column that stands
-    at every sample counts as at rest.
+    orbit if its stroboscopic samples repeat; the set of samples identifies the orbit. Otherwise the outcome decides:
+    MODULATED is modulated rolling, APERIODIC is aperiodic (quasi-periodic or chaotic), both labelled by their sense.
+    All other runs are unsettled. A column that stands at every sample counts as at rest.
 
     Parameters
     ----------
@@ -199,7 +200,7 @@ def _groups(runs: _Flat, rules: AttractorRules) -> Iterator[tuple[Attractor, Int
     for period in np.unique(periods[periods > 0]):
         chosen = periods == period
         yield from _orbits(runs, candidates[chosen], int(period), left[chosen], rules.match_tolerance)
-    yield from _unrepeated(runs, candidates[periods == 0], rules)
+    yield from _unrepeated(runs, candidates[periods == 0])
 
 
 def _orbits(
@@ -218,11 +219,12 @@ def _orbits(
         yield Attractor(kind, period, turns, _median(runs.mean_tilt[members]), _ordered(cycles[leader])), members
 
 
-def _unrepeated(runs: _Flat, candidates: Integers, rules: AttractorRules) -> Iterator[tuple[Attractor, Integers]]:
-    settled = candidates[keeps_moving(runs.strobes[candidates], rules)]
+def _unrepeated(runs: _Flat, candidates: Integers) -> Iterator[tuple[Attractor, Integers]]:
+    outcome = runs.outcome[candidates]
+    settled = candidates[np.isin(outcome, (Outcome.MODULATED, Outcome.APERIODIC))]
     turns = runs.turns[settled]
     senses = np.where(np.abs(turns) > _TURNING, np.sign(turns), 0.0)
-    with_forcing = np.abs(np.abs(turns) - 1.0) < _TURNING
+    with_forcing = runs.outcome[settled] == Outcome.MODULATED
     for kinds, chosen in ((MODULATED, with_forcing), (APERIODIC, ~with_forcing)):
         for sense, kind in kinds.items():
             members = settled[chosen & (senses == sense)]

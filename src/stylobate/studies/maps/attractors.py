@@ -117,13 +117,10 @@ def label_attractors(
     """Identify the attractor that each of `runs` has reached, for one column under one base motion.
 
     A run that moves to its end is on a periodic orbit if its stroboscopic samples repeat, after at most half as many
-    periods as there are samples. Two orbits are the same if their samples agree, from whichever sample they begin. A
-    motion that persists without repeating is modulated rolling if it turns once round per period of the forcing, and
-    aperiodic (quasi-periodic or chaotic) otherwise. Modulated and aperiodic motions are distinguished only by their
-    sense. All other runs have "not settled": use more periods and more stroboscopic samples.
-
-    The stroboscopic samples decide, not the outcome of the run. The outcome is judged over the last periods, which can
-    be too short to identify a slow modulation: such a run is STILL_MOVING by itself.
+    periods as there are samples. Two orbits are the same if their samples agree, from whichever sample they begin. If
+    the samples do not repeat, the outcome decides: MODULATED is modulated rolling, APERIODIC is aperiodic
+    (quasi-periodic or chaotic). Modulated and aperiodic motions are distinguished only by their sense. All other runs
+    have "not settled": use more periods.
 
     Parameters
     ----------
@@ -232,8 +229,6 @@ def rule_attributes(rules: AttractorRules, confidence: float) -> dict[str, Any]:
     return {
         "repeat_tolerance": rules.repeat_tolerance,
         "match_tolerance": rules.match_tolerance,
-        "settled_tolerance": rules.settled_tolerance,
-        "sampling_errors": rules.sampling_errors,
         "branch_tolerance": rules.branch_tolerance,
         "confidence": confidence,
     }

@@ -15,18 +15,6 @@ Floats = npt.NDArray[np.float64]
 Integers = npt.NDArray[np.int64]
 
 
-# Replaces a difference of zero in logarithms; far below the resolution.
-_LEAST = 1e-12
-
-
-# Minimum number of differences in each half of the samples for a mean and its error: that of 32 samples.
-_ENOUGH_DIFFERENCES = 15
-# Minimum number of samples per period of an orbit that a run may approach, so that it returns often …
-_RETURNS = 4
-# … and maximum distance of a return, as a fraction of the distance between successive samples.
-_NEAR = 0.1
-
-
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AttractorRules:
     """Tolerances by which attractors are identified from stroboscopic samples.
@@ -42,13 +30,6 @@ class AttractorRules:
         Two runs are on the same orbit if their samples differ by less than this. Samples of one orbit must differ by
         more. It must be well above `repeat_tolerance`: a slowly converging run is farther from its orbit than it moves
         during the samples, and a run that spirals in must not count as an orbit of several periods.
-    settled_tolerance
-        A run that does not repeat is settled if its successive samples differ by as much in the second half of the
-        samples as in the first, in the geometric mean and to this relative tolerance. Differences after k samples, if
-        they are much smaller, must not shrink by more either: otherwise the run approaches an orbit of k periods.
-    sampling_errors
-        Number of standard errors of the two means by which they may differ as well: the differences of a chaotic run
-        scatter, while those of a converging run shrink steadily. Needs 32 samples or more.
     branch_tolerance
         Along a parameter, a periodic orbit continues one at an earlier value if their samples differ by less than
         this. Otherwise it begins a branch. Increase it if the values are far apart.
@@ -61,8 +42,6 @@ class AttractorRules:
 
     repeat_tolerance: float = 1e-3
     match_tolerance: float = 3e-2
-    settled_tolerance: float = 0.1
-    sampling_errors: float = 3.0
     branch_tolerance: float = 0.5
 
     def __post_init__(self) -> None:
@@ -134,61 +113,6 @@ def repeating_periods(strobes: Complexes, rules: AttractorRules) -> tuple[Intege
         found = np.flatnonzero(open_runs)[repeats]
         periods[found], left[found] = k, difference[repeats]
     return periods, left
-
-
-def keeps_moving(strobes: Complexes, rules: AttractorRules) -> npt.NDArray[np.bool_]:
-    """Return whether motions persist without repeating: they neither decay, grow nor approach an orbit.
-
-    The criterion uses the differences of successive samples (`strobes` of shape (n, m, 2)), which shrink from the first
-    half of the samples to the second if a run slowly approaches an orbit. In the logarithm a constant rate of decay ρ
-    is a straight line: over h differences in each half the means differ by ρh, √(6h) of their standard errors (10 for
-    h = 16) for any rate, while the means of a stationary run differ by about one. Fewer than 15 differences in each
-    half (32 samples) do not suffice, and the run does not count as persistent. Nor does a run whose successive samples
-    differ by no more than the tolerance for repeating.
-
-    Returns
-    -------
-    numpy.ndarray
-        Shape (n,).
-    """
-    if (strobes.shape[1] - 1) // 2 < _ENOUGH_DIFFERENCES:
-        return np.zeros(len(strobes), dtype=bool)
-    steps = _differences(strobes, 1)
-    half = steps.shape[1] // 2
-    growth, bound = _growth(steps, rules)
-    moves = np.sqrt(np.mean(steps[:, -half:] ** 2, axis=1)) > rules.repeat_tolerance
-    return np.asarray((np.abs(growth) < bound) & moves & ~_nears_an_orbit(strobes, rules))
-
-
-def _nears_an_orbit(strobes: Complexes, rules: AttractorRules) -> npt.NDArray[np.bool_]:
-    """Return whether runs approach an orbit of several periods, shape (n,).
-
-    Successive samples of such a run differ as those of the orbit do, equally from first to last. But after the k
-    periods of the orbit the run returns closely, each time more closely. The criterion uses the k of closest return.
-    """
-    periods = range(1, max(strobes.shape[1] // _RETURNS, 1) + 1)
-    returns = [_differences(strobes, k) for k in periods]
-    sizes = np.stack([np.log(each).mean(axis=1) for each in returns])
-    shrinks = np.stack([-growth > bound for growth, bound in (_growth(each, rules) for each in returns)])
-    closest = sizes.argmin(axis=0)
-    each_run = np.arange(len(strobes))
-    near = sizes[closest, each_run] < sizes[0] + np.log(_NEAR)
-    return np.asarray(near & shrinks[closest, each_run])
-
-
-def _differences(strobes: Complexes, periods: int) -> Floats:
-    """Return the distances between states that are this many periods apart, shape (n, m − periods)."""
-    apart = np.abs(strobes[:, periods:] - strobes[:, :-periods]).max(axis=2)
-    return np.asarray(np.maximum(apart, _LEAST))
-
-
-def _growth(differences: Floats, rules: AttractorRules) -> tuple[Floats, Floats]:
-    """Return the growth of the logarithm of differences from the first half to the second, and its tolerance."""
-    half = differences.shape[1] // 2
-    before, after = np.log(differences[:, :half]), np.log(differences[:, -half:])
-    error = np.sqrt((before.var(axis=1) + after.var(axis=1)) / (half - 1))
-    bound = np.maximum(np.log1p(rules.settled_tolerance), rules.sampling_errors * error)
-    return after.mean(axis=1) - before.mean(axis=1), bound
 
 
 def is_flat(cycle: Complexes, tolerance: float) -> bool:

@@ -23,6 +23,7 @@ from stylobate.engine.kernel.driver import (
     guards,
     implicit_step,
     lift_off,
+    looks,
     moving,
     observation,
     passages,
@@ -44,7 +45,8 @@ from stylobate.engine.kernel.driver import (
 
 _COMMON = (
     *(push, equations, stages, series, guards, step_control, demands, observation, step),
-    *(base_motion, moving, within, tracing, stops, release, release_search, standing_loads, peaks, convergence, batch),
+    *(base_motion, moving, within, tracing, looks, stops, release, release_search, standing_loads, peaks, convergence),
+    batch,
 )
 _SMOOTH = (resting, lift_off, passages, events, starting)
 _SWITCHING = (

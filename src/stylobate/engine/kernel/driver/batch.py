@@ -20,10 +20,11 @@ from stylobate.engine.kernel.bound import (
 from stylobate.engine.kernel.columns import STATE, Status
 from stylobate.engine.kernel.driver.base_motion import set_bounds, set_leg
 from stylobate.engine.kernel.driver.convergence import start_watching, watch
+from stylobate.engine.kernel.driver.looks import set_look, set_pair
 from stylobate.engine.kernel.driver.moving import azimuth_now, square_of_speed
 from stylobate.engine.kernel.driver.observation import observe
 from stylobate.engine.kernel.driver.step import step
-from stylobate.engine.kernel.driver.stops import passes_knot, set_break, set_look, set_sample, set_strobe
+from stylobate.engine.kernel.driver.stops import passes_knot, set_break, set_sample, set_strobe
 from stylobate.engine.kernel.driver.tracing import trace_steps
 from stylobate.engine.kernel.layout import Table
 
@@ -49,6 +50,7 @@ def enter(buf: Table, i: int, table: Table, pieces: Table, run: int) -> int:
     buf[R.REST_SQUARE, i] = square_of_speed(buf, i, buf[R.REST_ENERGY, i])
     buf[R.PER_TURN, i] = 1.0 / buf[R.PERIOD, i] if buf[R.PERIOD, i] > 0.0 else 0.0
     set_look(buf, i)
+    set_pair(buf, i)
     set_sample(buf, i)
     set_strobe(buf, i)
     set_break(buf, i, table)

@@ -1,32 +1,14 @@
-"""Stops of a lane: looks in the last periods, samples, stroboscopic samples, and legs of the base motion."""
+"""Stops of a lane: looks, pairs, samples, stroboscopic samples, and legs of the base motion."""
 
 import math
 
-from stylobate.engine.elementary import length
-from stylobate.engine.kernel.bound import BREAKS_AT, DEGREE, PLANAR, R
-from stylobate.engine.kernel.columns import LOOKS, NOTE, SLACK, Status, Window
+from stylobate.engine.kernel.bound import BREAKS_AT, DEGREE, R
+from stylobate.engine.kernel.columns import SLACK, Status
 from stylobate.engine.kernel.driver.base_motion import continues_in_next_piece, set_leg
-from stylobate.engine.kernel.driver.guards import record_window
-from stylobate.engine.kernel.driver.moving import azimuth_now, set_rates
+from stylobate.engine.kernel.driver.looks import record_lean, set_look, set_pair, take_look, take_pair
+from stylobate.engine.kernel.driver.moving import set_rates
 from stylobate.engine.kernel.driver.standing_loads import record_standing_loads
 from stylobate.engine.kernel.layout import Table
-
-
-def look_count(buf: Table, i: int) -> float:
-    """Return the index of the last look: of two windows and one period, else of one window and one period, or −1."""
-    end, period, periods = buf[R.END, i], buf[R.PERIOD, i], buf[R.PERIODS, i]
-    end *= 1.0 + SLACK
-    if period <= 0.0 or end < (periods + 1) * period:
-        return -1.0
-    return LOOKS * (2 * periods + 1 if end >= (2 * periods + 1) * period else periods + 1)
-
-
-def set_look(buf: Table, i: int) -> None:
-    """Set the time of the next look."""
-    last, index = look_count(buf, i), buf[R.NEXT_LOOK, i]
-    buf[R.LOOKS_AT, i] = math.inf
-    if index <= last:
-        buf[R.LOOKS_AT, i] = buf[R.END, i] - (last - index) * (buf[R.PERIOD, i] / LOOKS)
 
 
 def set_sample(buf: Table, i: int) -> None:
@@ -63,14 +45,18 @@ def leg_end(buf: Table, i: int) -> float:
     return min(buf[R.END, i], buf[R.LIFTS_AT, i], buf[R.LEG_ENDS, i], buf[R.BREAKS_AT, i])
 
 
+def stop_within(buf: Table, i: int) -> float:
+    """Return the next time at which the state is recorded."""
+    return min(buf[R.LOOKS_AT, i], buf[R.PAIRS_AT, i], buf[R.SAMPLES_AT, i], buf[R.STROBES_AT, i])
+
+
 def next_stop(buf: Table, i: int) -> float:
-    return min(leg_end(buf, i), buf[R.LOOKS_AT, i], buf[R.SAMPLES_AT, i], buf[R.STROBES_AT, i])
+    return min(leg_end(buf, i), stop_within(buf, i))
 
 
 def set_next_stop(buf: Table, i: int) -> None:
     """Set the next stop, and limit the next step to it."""
-    within = min(buf[R.LOOKS_AT, i], buf[R.SAMPLES_AT, i], buf[R.STROBES_AT, i])
-    buf[R.OTHER_STOP, i] = min(buf[R.END, i], buf[R.LIFTS_AT, i], buf[R.BREAKS_AT, i], within)
+    buf[R.OTHER_STOP, i] = min(buf[R.END, i], buf[R.LIFTS_AT, i], buf[R.BREAKS_AT, i], stop_within(buf, i))
     limit_step(buf, i)
 
 
@@ -96,15 +82,19 @@ def passes_knot(buf: Table, i: int, table: Table, pieces: Table) -> bool:
 def meet_stop(buf: Table, i: int, table: Table, pieces: Table, t: float) -> int:
     """Handle the stop at `t`; return the final status if the run ends there, else WAITING."""
     while buf[R.LOOKS_AT, i] <= t:
-        take_look(buf, i, t)
+        take_look(buf, i, table, t)
         buf[R.NEXT_LOOK, i] += 1.0
         set_look(buf, i)
+    while buf[R.PAIRS_AT, i] <= t:
+        take_pair(buf, i, table)
+        buf[R.NEXT_PAIR, i] += 1.0
+        set_pair(buf, i)
     while buf[R.SAMPLES_AT, i] <= t:
-        record_lean(buf, i, table, t, int(buf[R.NEXT_SAMPLE, i]))
+        record_lean(buf, i, table, int(buf[R.NEXT_SAMPLE, i]), t)
         buf[R.NEXT_SAMPLE, i] += 1.0
         set_sample(buf, i)
     while buf[R.STROBES_AT, i] <= t:
-        record_lean(buf, i, table, t, int(buf[R.SAMPLES, i] + buf[R.NEXT_STROBE, i]))
+        record_lean(buf, i, table, int(buf[R.SAMPLES, i] + buf[R.NEXT_STROBE, i]), t)
         buf[R.NEXT_STROBE, i] += 1.0
         set_strobe(buf, i)
     if t >= buf[R.LIFTS_AT, i]:
@@ -141,63 +131,3 @@ def stand_to_the_end(buf: Table, i: int, table: Table, pieces: Table, t: float) 
             record_standing_loads(buf, i, t, leg_end(buf, i))
     buf[R.TIME, i] = t
     return Status.RESTED
-
-
-def lean_now(buf: Table, i: int) -> tuple[float, float, float, float]:
-    if buf[R.STANDS, i] > 0.0:
-        return 0.0, 0.0, 0.0, 0.0
-    return buf[R.X, i], buf[R.Y, i], buf[R.VX, i], buf[R.VY, i]
-
-
-def record_lean(buf: Table, i: int, table: Table, t: float, index: int) -> None:
-    """Record the tilt vector as the sample of this index; stroboscopic samples follow the samples."""
-    x, y, vx, vy = lean_now(buf, i)
-    if PLANAR:
-        ux, uy = buf[R.LINE_X, i], buf[R.LINE_Y, i]
-        x, y, vx, vy = x * ux, x * uy, vx * ux, vx * uy
-    run = int(buf[R.RUN, i])
-    column = BREAKS_AT + int(buf[R.BREAKS, i]) + NOTE * index
-    table[run, column] = x
-    table[run, column + 1] = y
-    table[run, column + 2] = vx
-    table[run, column + 3] = vy
-    table[run, column + 4] = t
-
-
-def take_look(buf: Table, i: int, t: float) -> None:
-    """Record the tilt vector at one of the looks in the last periods, and its change within one period."""
-    index, last, span = int(buf[R.NEXT_LOOK, i]), int(look_count(buf, i)), int(buf[R.PERIODS, i]) * LOOKS
-    x, y, vx, vy = lean_now(buf, i)
-    azimuth = azimuth_now(buf, i)
-    place = R.LOOK + 4 * (index % LOOKS)
-    change = length(x - buf[place, i], y - buf[place + 1, i])
-    rate_change = length(vx - buf[place + 2, i], vy - buf[place + 3, i])
-    buf[place, i] = x
-    buf[place + 1, i] = y
-    buf[place + 2, i] = vx
-    buf[place + 3, i] = vy
-    middle = last - span
-    for late in range(2):
-        first = R.LATE if late == 1 else R.BEFORE
-        begin = middle if late == 1 else middle - span
-        end = begin + span
-        if begin < LOOKS or index < begin or index > end:
-            continue
-        if index == begin:
-            buf[first + Window.FIRST_AZIMUTH, i] = azimuth
-        buf[first + Window.LAST_AZIMUTH, i] = azimuth
-        for column, value in (
-            (Window.TILT_CHANGE, change),
-            (Window.RATE_CHANGE, rate_change),
-            (Window.TILT_SIZE, length(x, y)),
-            (Window.RATE_SIZE, length(vx, vy)),
-        ):
-            buf[first + column, i] = max(buf[first + column, i], value)
-        weight = 0.5 if index in (begin, end) else 1.0
-        forced = t / buf[R.PERIOD, i]
-        buf[first + Window.LAG_FORWARD, i] += weight * (azimuth - forced)
-        buf[first + Window.LAG_BACKWARD, i] += weight * (azimuth + forced)
-    if index == middle:
-        buf[R.WATCHED, i] = 1.0
-        buf[R.LATE_MINIMUM_TILT, i] = length(x, y)
-        record_window(buf, i, t)

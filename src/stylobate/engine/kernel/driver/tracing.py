@@ -93,7 +93,7 @@ def trace_event(buf: Table, i: int, table: Table, kind: int, t: float) -> None:
 
 def trace_entry(buf: Table, i: int, table: Table, kind: int, start: float, length: float) -> int:
     """Begin an entry; return the column of its state."""
-    notes = buf[R.BREAKS, i] + NOTE * (buf[R.SAMPLES, i] + buf[R.STROBES, i])
+    notes = buf[R.BREAKS, i] + NOTE * buf[R.NOTES, i]
     run, at = int(buf[R.RUN, i]), BREAKS_AT + int(notes) + TRACE_WIDTH * int(buf[R.NEXT_TRACE, i])
     buf[R.NEXT_TRACE, i] += 1.0
     table[run, at + Trace.KIND] = kind

@@ -33,6 +33,13 @@ const WORDS: readonly Entry[] = [
   ["ω₀", "√(m g h/J₀), the frequency scale of the column, with J₀ about a diameter of the base."],
   ["θ, β", "tilt angle from the vertical, and the azimuth of the lean. The tilt vector is θ (cos β, sin β)."],
   ["rolling", "the tilted column rolls round its rim, once per period of the base."],
+  [
+    "modulated",
+    "rolling at the mean rate of the base, while the tilt swings with a period of its own; it neither grows nor decays.",
+  ],
+  ["periodic", "the motion repeats after one to eight periods of the base, and is neither rolling nor rocking."],
+  ["aperiodic", "a lasting motion that does not repeat within eight periods of the base: chaotic, or of two periods at once."],
+  ["still moving", "a transient: the motion still changes. The reason states how long to simulate."],
   ["branch", "one family of steady rolling over the frequency. The stable branch is bold; drag the marker along it."],
   ["basin", "basin of attraction: the set of initial conditions that lead to the same long-term motion."],
   [

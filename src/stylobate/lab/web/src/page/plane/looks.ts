@@ -43,6 +43,7 @@ const LOOKS: Readonly<Record<string, Look>> = {
   "at rest": look(CREAM),
   rocking: look(SKY),
   rolling: look(AMBER),
+  periodic: look(SKY, rising, DARK),
   modulated: look(SEA, dotted),
   survived: look(CREAM, dotted, "#8E7DA3"),
   "still moving": UNSETTLED,

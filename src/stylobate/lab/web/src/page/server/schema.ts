@@ -49,7 +49,7 @@ export type About = {
   })[];
   /** the possible outcomes */
   readonly outcomes: readonly ({
-    readonly name: "AT_REST" | "ROCKING" | "ROLLING" | "MODULATED" | "OVERTURNED" | "STILL_MOVING" | "LIMIT_REACHED" | "LIFTED_OFF" | "FAILED" | "SLID" | "SURVIVED" | "STOPPED";
+    readonly name: "AT_REST" | "ROCKING" | "ROLLING" | "MODULATED" | "OVERTURNED" | "STILL_MOVING" | "LIMIT_REACHED" | "LIFTED_OFF" | "FAILED" | "SLID" | "SURVIVED" | "STOPPED" | "PERIODIC" | "APERIODIC";
     /** outcome in words */
     readonly value: string;
     /** code in maps */
@@ -188,7 +188,7 @@ export type DrawnMotion = {
   /** friction coefficient of the contact, if known */
   readonly friction_coefficient: number | null;
   /** the outcome */
-  readonly outcome: "AT_REST" | "ROCKING" | "ROLLING" | "MODULATED" | "OVERTURNED" | "STILL_MOVING" | "LIMIT_REACHED" | "LIFTED_OFF" | "FAILED" | "SLID" | "SURVIVED" | "STOPPED";
+  readonly outcome: "AT_REST" | "ROCKING" | "ROLLING" | "MODULATED" | "OVERTURNED" | "STILL_MOVING" | "LIMIT_REACHED" | "LIFTED_OFF" | "FAILED" | "SLID" | "SURVIVED" | "STOPPED" | "PERIODIC" | "APERIODIC";
   /** [s] */
   readonly decided_at: number;
   /** a line that states the outcome */
@@ -323,6 +323,10 @@ export type MapResult = {
     readonly survived: number | null;
     /** share that ended stopped */
     readonly stopped: number | null;
+    /** share that ended periodic */
+    readonly periodic: number | null;
+    /** share that ended aperiodic */
+    readonly aperiodic: number | null;
   };
 };
 
@@ -352,7 +356,9 @@ export type Measures = {
   readonly minimum_tilt_late?: number | null;
   /** peak tilt over the last periods [rad] */
   readonly peak_tilt_late?: number | null;
-  /** change of the modulation over the last periods */
+  /** periods of the base after which the motion repeats; 0 if it does not */
+  readonly repeats_after?: number | null;
+  /** change of the modulation over the second half of the run */
   readonly modulation_change?: number | null;
   /** error of the mean rolling rate, from the turns */
   readonly rolling_rate_error?: number | null;
@@ -469,9 +475,9 @@ export type ResponseCurves = {
 /** One run. */
 export type Run = {
   /** the outcome */
-  readonly outcome: "AT_REST" | "ROCKING" | "ROLLING" | "MODULATED" | "OVERTURNED" | "STILL_MOVING" | "LIMIT_REACHED" | "LIFTED_OFF" | "FAILED" | "SLID" | "SURVIVED" | "STOPPED";
+  readonly outcome: "AT_REST" | "ROCKING" | "ROLLING" | "MODULATED" | "OVERTURNED" | "STILL_MOVING" | "LIMIT_REACHED" | "LIFTED_OFF" | "FAILED" | "SLID" | "SURVIVED" | "STOPPED" | "PERIODIC" | "APERIODIC";
   /** the outcome in words */
-  readonly label: "at rest" | "rocking" | "rolling" | "modulated" | "overturned" | "still moving" | "limit reached" | "lifted off" | "failed" | "slid" | "survived" | "stopped";
+  readonly label: "at rest" | "rocking" | "rolling" | "modulated" | "overturned" | "still moving" | "limit reached" | "lifted off" | "failed" | "slid" | "survived" | "stopped" | "periodic" | "aperiodic";
   /** reason for the outcome */
   readonly reason: string;
   /** time at which the outcome was decided [s] */
