@@ -65,10 +65,12 @@ def test_a_single_run_whose_outcome_depends_on_the_rest_threshold_is_uncertain_a
         ({"overturned": True, "peak_tilt": 2.0}, False),
         ({"overturned": True, "peak_tilt": 2.0, "released_again": True}, True),
         ({"overturned": True, "peak_tilt": 2.0, "decided": 1.01 * LATE}, True),
+        ({"widest_loss": 0.004}, False),
+        ({"widest_loss": 0.006}, True),
     ],
 )
 def test_a_run_is_in_doubt_where_a_small_change_had_the_chance_to_grow(run, expected):
-    usual = {"overturned": False, "decided": 10.0, "peak_tilt": 0.1, "released_again": False}
+    usual = {"overturned": False, "decided": 10.0, "peak_tilt": 0.1, "released_again": False, "widest_loss": 0.0}
     given = usual | run
     given["peak_tilt"] *= math.atan(0.2)
-    assert bool(in_doubt(**given, slenderness=0.2)) is expected
+    assert bool(in_doubt(**given, passage_tilt=0.01, slenderness=0.2)) is expected

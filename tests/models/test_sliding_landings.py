@@ -130,7 +130,8 @@ def test_a_stroke_of_the_base_never_adds_energy(friction, restitution, moving):
     ],
 )
 def test_no_stroke_adds_energy_to_a_squat_column_that_spins_and_slips(column, numbers, start):
-    run = sb.simulate(sb.Sliding(column, damping=0.03, **numbers), **start, samples=4001)
+    model = sb.Sliding(column, damping=0.03, passage_tilt=0.01 * column.slenderness, **numbers)
+    run = sb.simulate(model, **start, samples=4001)
     assert sum(event.kind == "face_impact" for event in run.events) > 0
     energy = run.data["energy"].to_numpy()
     assert np.all(np.diff(energy) <= 1e-8 * energy[0])

@@ -27,7 +27,8 @@ class Guard:
     def guards(self, tau: float, state: Floats) -> tuple[float, ...]:
         """Return the guards of one state."""
         assert self.model.guards is not None
-        return self.model.guards(*state.tolist(), *self.forcing.at(tau), self.rest_energy, *self.model.parameters)
+        run = (self.rest_energy, self.model.loss_tilt)
+        return self.model.guards(*state.tolist(), *self.forcing.at(tau), *run, *self.model.parameters)
 
     def broken(self, guards: tuple[float, ...]) -> int | None:
         """Return the first margin that is below nought, but for the last, which must have come from above."""

@@ -84,6 +84,6 @@ def _least_denominator(trajectory: Trajectory, slipping: Floats) -> float:
         return 1.0
     assert model.guards is not None
     jam = model.guard_names.index("jam")
-    numbers = np.broadcast_to((0.0, *model.parameters), (len(slipping), 1 + len(model.parameters)))
+    numbers = np.broadcast_to((0.0, model.loss_tilt, *model.parameters), (len(slipping), 2 + len(model.parameters)))
     guards: Floats = over_rows(model.guards, np.hstack([slipping, numbers]), name=model.name)
     return min(1.0, float(guards[:, jam].min()) + JAM)

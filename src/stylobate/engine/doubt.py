@@ -1,7 +1,9 @@
 """Runs in doubt: criteria, and the tolerances with which such runs are repeated.
 
-The outcome of a run depends on two numbers of the method: the energy below which the column counts as standing, and
-the tolerance of the integrator. Both matter if a small change of the state can grow until it decides the outcome. In
+The outcome of a run depends on three numbers of the method: the energy below which the column counts as standing, the
+tilt below which a passage of the vertical loses energy, and the tolerance of the integrator. The tilt matters if a
+passage below it would be above half of it: this passage then loses no energy. The other numbers matter if a small
+change of the state can grow until it decides the outcome. In
 6000 runs of columns under an earthquake, and as many of planar blocks under two more, a finer rest threshold changed
 outcomes only of columns that had come to rest, were uplifted again, and overturned or tilted beyond half of their
 tipping angle. Another tolerance changed three outcomes, each of a column beyond its tipping angle. In 7200 runs under
@@ -16,6 +18,9 @@ from stylobate.errors import Outcome
 
 FINER_REST = 0.01
 """Factor of the rest energy when a run is repeated."""
+
+FINER_PASSAGE = 0.5
+"""Factor of the passage tilt when a run is repeated."""
 
 LARGE_TILT = 0.5
 """A column that is uplifted from rest again is in doubt if it tilts beyond this fraction of its tipping angle."""
@@ -47,9 +52,11 @@ def in_doubt(
     decided: npt.ArrayLike,
     peak_tilt: npt.ArrayLike,
     released_again: npt.ArrayLike,
+    widest_loss: npt.ArrayLike,
+    passage_tilt: npt.ArrayLike,
     slenderness: npt.ArrayLike,
 ) -> npt.NDArray[np.bool_]:
-    """Return whether a finer rest threshold or another tolerance could give another outcome; arguments of one shape.
+    """Return whether finer thresholds or another tolerance could give another outcome; arguments of one shape.
 
     Parameters
     ----------
@@ -61,6 +68,8 @@ def in_doubt(
         Peak tilt [rad].
     released_again
         Whether the column came to rest in the run and was uplifted again.
+    widest_loss, passage_tilt
+        Largest distance from the vertical of the passages that lost energy, and the limit of such distances [rad].
     slenderness
         c = tan α_c.
     """
@@ -68,7 +77,8 @@ def in_doubt(
     share = np.asarray(peak_tilt) / np.arctan(np.asarray(slenderness, dtype=float))
     resting = again & (fell | (share > LARGE_TILT))
     moving = np.where(fell, np.asarray(decided) > LATE, share > NEAR_BALANCE)
-    return np.asarray(resting | moving)
+    passing = np.asarray(widest_loss) > FINER_PASSAGE * np.asarray(passage_tilt)
+    return np.asarray(resting | moving | passing)
 
 
 def other_tolerance(rtol: float) -> float:

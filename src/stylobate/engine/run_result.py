@@ -139,7 +139,9 @@ def _repeated(plan: Plan, run: Runs, outcome: Outcome, peak: float) -> tuple[boo
     other, other_peak = Outcome(int(found["outcome"][0])), float(found["peak_tilt"][0])
     if other is Outcome.FAILED:
         return False, ()
-    settings = f"with rest_energy {float(batch.rest_energy[0]):.2g} and rtol {again.options.rtol:.2g} it is"
+    passage = float(batch.table[0, Setup.PASSAGE_TILT])
+    finer = f"passage_tilt {passage:.2g}, " if passage > 0.0 and not batch.planar[0] else ""
+    settings = f"with {finer}rest_energy {float(batch.rest_energy[0]):.2g} and rtol {again.options.rtol:.2g} it is"
     changed = (other in FALLEN) != (outcome in FALLEN)
     if changed:
         return True, (f"the outcome depends on the settings of the integration: {settings} {other.name}",)

@@ -21,6 +21,8 @@ PASSAGE_FROM = 1e-6
 """Tilt below which a passage through the vertical can be an analytical step [units of the smaller of c and speed]."""
 PASSAGE_OFFSET = 1e-9
 """Maximum distance from the vertical at which the path of an analytical step passes [units of c]."""
+PLANAR_OFFSET = 1e-11
+"""Distance from the vertical below which a column moves in a plane, up to rounding that has grown [units of c]."""
 SLIP_SHARE = 1e-3
 """Factor of the absolute tolerance for the slip velocity while a contact slips."""
 SLIP_TURNS = 10.0

@@ -132,10 +132,10 @@ class Model(Declared, ABC):
     """Names of the `guards` of a model that switches between kinds of contact; empty for other models."""
 
     guards: ClassVar[Callable[..., tuple[float, ...]] | None] = None
-    """(state…, ax, ay, az, ε, parameters…) → guards, which are positive as long as a kind of contact lasts.
+    """(state…, ax, ay, az, ε, passage, parameters…) → guards, which are positive as long as a kind of contact lasts.
 
     A guard below zero ends the contact; the last guard does so only if it was positive before. At "fallen" the column
-    counts as overturned; all others lead to `reset_map`. ε is the rest energy.
+    counts as overturned; all others lead to `reset_map`. ε is the rest energy, and `passage` the `loss_tilt`.
     """
 
     reset_map: ClassVar[Callable[..., tuple[float, tuple[float, ...]]] | None] = None
@@ -241,7 +241,7 @@ class Model(Declared, ABC):
 
     @property
     def loss_tilt(self) -> float:
-        """Minimum tilt below which a passage near the vertical loses energy by `impact_map` [rad]; 0 without loss."""
+        """Minimum tilt below which a passage near the vertical loses energy by an impact [rad]; 0 without loss."""
         return 0.0
 
     @property

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from stylobate.compiler.kept import runs_plain
-from stylobate.engine.doubt import FINER_REST, other_tolerance
+from stylobate.engine.doubt import FINER_PASSAGE, FINER_REST, other_tolerance
 from stylobate.engine.ensembles.broadcasting import Runs
 from stylobate.engine.ensembles.look_times import LookTimes
 from stylobate.engine.ensembles.model_columns import ModelColumns
@@ -45,7 +45,8 @@ SWITCHING_WIDTH = 8
 class Plan:
     """Settings that all runs of an ensemble share.
 
-    `rest_share` is a factor of the energy below which a column comes to rest if the base motion can uplift it.
+    `rest_share` is a factor of the energy below which a column comes to rest if the base motion can uplift it, and
+    `passage_share` a factor of the tilt below which a passage of the vertical loses energy.
     `traces` is the number of trace entries in the table, 0 for none. `plain` means that kernels run as plain Python,
     one run at a time, for a model that cannot be compiled. `orbits` is the number of known orbits of each run.
     """
@@ -54,17 +55,18 @@ class Plan:
     motion: MotionPlan
     options: Options
     rest_share: float = 1.0
+    passage_share: float = 1.0
     traces: int = 0
     plain: bool = False
     orbits: int = 0
 
     def repeated(self) -> "Plan":
-        """Return the plan to repeat runs in doubt: a finer rest threshold, another tolerance, no samples or traces."""
+        """Return the plan to repeat runs in doubt: finer thresholds, another tolerance, no samples or traces."""
         own = self.options
         rtol = other_tolerance(own.rtol)
         atol = None if own.atol is None else own.atol * (rtol / own.rtol)
         options = replace(own, rtol=rtol, atol=atol, samples=0, strobes=0, recheck=False)
-        return replace(self, options=options, rest_share=FINER_REST, traces=0)
+        return replace(self, options=options, rest_share=FINER_REST, passage_share=FINER_PASSAGE, traces=0)
 
     def shape(self, *, planar: bool) -> Shape:
         """Return the shape of the kernel for planar or three-dimensional motion."""
@@ -299,7 +301,7 @@ def _fill_setup(
         Setup.SAMPLES: options.samples,
         Setup.STROBES: options.strobes,
         Setup.TRACES: traces,
-        Setup.PASSAGE_TILT: models.loss_tilt,
+        Setup.PASSAGE_TILT: plan.passage_share * models.loss_tilt,
         **dict(zip((Setup.SLOPE_X, Setup.SLOPE_Y, Setup.SLOPE_Z), models.slope.T, strict=True)),
     }
     for column, values in columns.items():
@@ -319,6 +321,8 @@ def _fill_starts(
     planar = in_a_plane & (model.planar_rates is not None) & (runs.spin == 0.0)
     still = stands & ~np.any(motions.directions, axis=(1, 2))
     _check_starts(model, runs, stands, in_a_plane | still)
+    if model.switches:
+        base_line = np.where(_keeps_to_plane(runs, models, line)[:, np.newaxis], line, 0.0)
     table[:, [Setup.LINE_X, Setup.LINE_Y]] = np.where(planar[:, np.newaxis], line, base_line)
     table[:, LOG + Log.STANDS] = stands
     upright = ~_not_zero(runs.tilt) & ~stands & ~planar
@@ -339,6 +343,14 @@ def _fill_starts(
         table[planar, STATE + 1] = np.sum(rate * line, axis=1)[planar]
     table[:, LOG + Log.REACHED_VERTICAL] = stands
     return np.asarray(planar)
+
+
+def _keeps_to_plane(runs: Runs, models: ModelColumns, line: Floats) -> npt.NDArray[np.bool_]:
+    """Return which runs without spin, on planes that slope along their `line`, also start to slip along it."""
+    velocity = (0.0, 0.0) if runs.turning is None else runs.turning.velocity[:2]
+    slips = np.broadcast_to(velocity, (len(line), 1, 2))
+    vectors = np.concatenate([line[:, np.newaxis], models.slope[:, np.newaxis, :2], slips], axis=1)
+    return np.asarray(_not_zero(line) & _not_zero(common_lines(vectors)) & (runs.spin == 0.0))
 
 
 def _not_zero(vectors: Floats) -> npt.NDArray[np.bool_]:

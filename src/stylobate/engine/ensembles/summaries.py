@@ -52,9 +52,7 @@ QUANTITIES: Mapping[str, Quantity] = {
     "decided_at": _numbers("time at which the outcome was decided", "s"),
     "end_time": _numbers("end of the run", "s"),
     "uncertain": Quantity(np.bool_, (), {"long_name": "a small change could alter the outcome"}),
-    "in_doubt": Quantity(
-        np.bool_, (), {"long_name": "a finer rest threshold or another tolerance could change the outcome"}
-    ),
+    "in_doubt": Quantity(np.bool_, (), {"long_name": "finer thresholds or another tolerance could change the outcome"}),
     "planar": Quantity(np.bool_, (), {"long_name": "moved in one vertical plane"}),
     "end_tilt": _numbers("tilt vector at the end", "rad", "axis"),
     "end_tilt_rate": _numbers("rate of the tilt vector at the end", "rad s-1", "axis"),
@@ -232,6 +230,8 @@ def _in_doubt(batch: Batch, outcome: npt.NDArray[np.int8]) -> npt.NDArray[np.boo
         decided=batch.log(Log.DECIDED),
         peak_tilt=batch.log(Log.PEAK_TILT),
         released_again=batch.log(Log.RELEASED_FROM_REST) > 0.0,
+        widest_loss=batch.log(Log.WIDEST_LOSS),
+        passage_tilt=batch.table[:, Setup.PASSAGE_TILT],
         slenderness=batch.models.slenderness,
     )
     return np.asarray(doubtful & (outcome != Outcome.FAILED))

@@ -71,10 +71,13 @@ class Setup(_FromZero):
     TRACES = auto()
     """Number of trace entries for which the row has room, behind the samples; 0 if the run keeps no trace."""
     PASSAGE_TILT = auto()
-    """Minimum tilt below which a three-dimensional passage through the vertical loses energy; 0 if none does."""
+    """Distance from the vertical below which a three-dimensional passage loses energy; 0 if none does."""
     LINE_X = auto()
     LINE_Y = auto()
-    """Unit vector of the line along which the base moves (and the column, in planar motion); 0, 0 if there is none."""
+    """Unit vector of the line along which the base moves (and the column, in planar motion); 0, 0 if there is none.
+
+    For a model that changes between kinds of contact: the line along which both move.
+    """
     SLOPE_X = auto()
     SLOPE_Y = auto()
     SLOPE_Z = auto()
@@ -154,6 +157,8 @@ class Log(_FromZero):
     """Smallest of the tilts at which the tilt stopped falling."""
     CLOSEST_PASSAGE = auto()
     """The same for three-dimensional passages through the vertical."""
+    WIDEST_LOSS = auto()
+    """Largest distance from the vertical of three-dimensional passages that lost energy by an impact."""
     FIRST_AZIMUTH = auto()
     LAST_AZIMUTH = auto()
     """Continuous azimuth of the tilt vector [turns]; NaN before three-dimensional motion begins."""

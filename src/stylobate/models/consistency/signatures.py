@@ -23,7 +23,7 @@ _BEHIND_STATE = {
     "impact_map": 0,
     "project": 0,
     "at_rest": 0,
-    "guards": _PUSH + 1,
+    "guards": _PUSH + 2,
     "reset_map": 1 + 2 * _PUSH + 2,
 }
 
@@ -89,7 +89,7 @@ def problems_of_lengths(subject: Subject) -> Iterator[str]:
         ("departure", states, (push, 1e-3)),
         ("passage", states, (*state, *zero)),
         ("planar_rates", 2, (subject.slenderness, 0.0, 1.0, *zero[:2])),
-        ("guards", len(model.guard_names), (*state, *zero, 1e-4)),
+        ("guards", len(model.guard_names), (*state, *zero, 1e-4, 1e-9)),
         *((("from_plane", states, (subject.slenderness, 0.0, 1.0, 0.0)),) if model.planar_rates is not None else ()),
     )
     for name, length, arguments in calls:

@@ -11,8 +11,8 @@ GUARDS = ("lift", "friction", "support", "rest", "jam", "fallen", "face_impact")
 
 "lift": the contact presses. "friction": the contact holds, or still slips. "support": the base stands without tipping,
 or there is air under the rim. "rest": a rocking column has more than the rest energy. "jam": Painlevé's denominator is
-above its limit. "fallen": the tilt is below π/2. "face_impact": the base does not strike the plane; it strikes when a
-tilt below `passage_tilt` stops decreasing.
+above its limit. "fallen": the tilt is below π/2. "face_impact": the base does not strike the plane; it strikes when the
+tilt stops decreasing below the passage tilt.
 """
 
 STILL = 1e-10
@@ -24,9 +24,11 @@ CLEAR = 1e-13
 JAM = 1e-3
 """Painlevé's denominator at which slip ends by dynamic jamming."""
 
-# Relative to the smaller of c and the speed: distance from the vertical within which a path is computed in closed form,
-# and maximum offset of such a path from the vertical [c].
-_CLOSE, _STRAIGHT = 1e-6, 1e-9
+STRAIGHT = 1e-9
+"""A path that passes the vertical closer than this [c] is straight: the column moves in a vertical plane."""
+
+# Tilt within which a straight path is computed in closed form, relative to the smaller of c and the speed.
+_CLOSE = 1e-6
 
 
 def rates(
@@ -59,7 +61,6 @@ def rates(
     static: float,
     patch: float,
     _normal_restitution: float,
-    _passage: float,
     slope_x: float,
     slope_y: float,
     relief: float,
@@ -147,7 +148,6 @@ def contact_loads(
     static: float,
     patch: float,
     _normal_restitution: float,
-    _passage: float,
     slope_x: float,
     slope_y: float,
     relief: float,
@@ -205,6 +205,7 @@ def guards(
     ay: float,
     az: float,
     rest: float,
+    passage: float,
     c: float,
     eta: float,
     zeta: float,
@@ -215,7 +216,6 @@ def guards(
     static: float,
     patch: float,
     _normal_restitution: float,
-    passage: float,
     slope_x: float,
     slope_y: float,
     relief: float,
@@ -223,7 +223,8 @@ def guards(
     """Return the guards, which are positive as long as a kind of contact lasts, in the order of GUARDS.
 
     An event ends the contact when a guard falls below zero; the last guard must have been positive before. `rest` is ε:
-    a column on its rim comes to rest below the energy ε c² if the plane would hold it.
+    a column on its rim comes to rest below the energy ε c² if the plane would hold it. The base strikes if the column
+    passes the vertical closer than `passage` [rad].
     """
     _, _, _, ox, oy, normal, tx, ty, _, oz, kept, denominator, _, _, _, yawing = balance(
         x,
@@ -288,10 +289,12 @@ def guards(
     slides = slips or (static <= c and pushed > static * weight)
     burden = kinetic * weight if slides and not trips else pushed
     rests = energy + left if rim > 0.0 and c * weight > burden else 1.0
-    # Distance along the path to the vertical: to its closest point, or to the end of the integrated path
+    # Distance along the path to the vertical: to its closest point, or to the end of the integrated path if it is
+    # straight
+    straight = aside < min(passage, STRAIGHT * c)
     close = _CLOSE * min(c, speed)
-    far = tilt > passage and tilt > close
-    towards = tilt - close if aside < _STRAIGHT * c else -radial / (tilt * speed)
+    far = tilt > passage and not (straight and tilt <= close)
+    towards = tilt - close if straight else -radial / (tilt * speed)
     striking = 1.0 if rim == 0.0 or far else towards if radial < 0.0 else -1.0
     return (
         1.0 if flies else normal,

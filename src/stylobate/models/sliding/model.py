@@ -24,15 +24,12 @@ from stylobate.models.numbers import (
     SpinDamping,
     StaticFrictionCoefficient,
 )
-from stylobate.models.sliding.equations import GUARDS, contact_loads, guards, rates
+from stylobate.models.sliding.equations import GUARDS, STRAIGHT, contact_loads, guards, rates
 from stylobate.models.sliding.forces_along import forces_along
 from stylobate.models.sliding.lift_off import lifted
 from stylobate.models.sliding.phases import Contact, Numbers, State
 from stylobate.models.sliding.reactions import project, reset_map
 from stylobate.quantities import Quantity
-
-# Default tilt below which a minimum of the tilt is an impact of the base face [c].
-_PASSAGE = 0.01
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,7 +56,8 @@ class Sliding(Model):
     damping, spin_damping, rolling_resistance
         As for `Rolling`, while the rim touches.
     passage_tilt
-        Minimum tilt of a swing below which the base strikes the plane [rad]; by default 0.01 c.
+        The base strikes the plane where the column passes the vertical closer than this [rad]. By default, and at
+        least, this is 1e-9 c: only a column that moves in a vertical plane strikes, all others roll past.
     incline, incline_direction
         Angle of the plane to the horizontal [rad], and azimuth of its downward direction [rad]. Base motions refer to
         the plane and its normal.
@@ -74,11 +72,12 @@ class Sliding(Model):
     Limits: for large μ, as long as N > 0 and the base face does not strike, the model equals `Rolling`. With a large
     patch it rolls as on rubber. A column with c above μ slides as a block.
 
-    Thresholds: a rebound slower than 1e-5 √(κgh) is plastic. Slip slower than 1e-10 √(κgh) sticks. Where Painlevé's
-    denominator falls to 1e-3, slip ends by an impulse. A column on its rim with less than the rest energy of the run is
-    set down on its base if the plane holds it. Impacts follow A. Chatterjee and A. Ruina (1998), and never add energy.
-    An impact of the base face is an impact of the opposite rim point, in the plane of the motion; without slip and
-    rebound it is Housner's. The pressure under a standing base is even.
+    Thresholds: a rebound slower than 1e-5 √(κgh) is plastic. Slip slower than 1e-10 √(κgh) sticks. A path that passes
+    the vertical within 1e-9 c is straight. Where Painlevé's denominator falls to 1e-3, slip ends by an impulse. A
+    column on its rim with less than the rest energy of the run is set down on its base if the plane holds it. Impacts
+    follow A. Chatterjee and A. Ruina (1998), and never add energy. An impact of the base face is an impact of the
+    opposite rim point, in the plane of the motion; without slip and rebound it is Housner's. The pressure under a
+    standing base is even.
     """
 
     column: Column
@@ -144,7 +143,6 @@ class Sliding(Model):
             static=kinetic if self.static_friction_coefficient is None else self.static_friction_coefficient,
             patch=self.patch,
             normal_restitution=self.normal_restitution,
-            passage_tilt=_PASSAGE * column.slenderness if self.passage_tilt is None else self.passage_tilt,
             slope_x=-down * math.cos(self.incline_direction),
             slope_y=-down * math.sin(self.incline_direction),
             relief=2.0 * math.sin(0.5 * self.incline) ** 2,
@@ -171,6 +169,12 @@ class Sliding(Model):
     def comes_to_rest(self) -> bool:
         """True: impacts of the base face dissipate energy."""
         return True
+
+    @property
+    def loss_tilt(self) -> float:
+        """Distance from the vertical below which a passage is an impact of the base face [rad]."""
+        least = STRAIGHT * self.column.slenderness
+        return least if self.passage_tilt is None else max(self.passage_tilt, least)
 
     @property
     def closed_form(self) -> ClosedForm:

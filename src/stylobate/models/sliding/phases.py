@@ -79,8 +79,6 @@ class Numbers(NamedTuple):
         ε/r, radius of the contact of the rim.
     normal_restitution
         e_n of impacts.
-    passage_tilt
-        Minimum tilt below which a passage of the vertical is an impact of the base face [rad].
     slope_x, slope_y, relief
         Terms that an inclined plane adds to the base acceleration [g].
     """
@@ -95,7 +93,6 @@ class Numbers(NamedTuple):
     static: float
     patch: float
     normal_restitution: float
-    passage_tilt: float
     slope_x: float
     slope_y: float
     relief: float

@@ -33,18 +33,18 @@ def rates_of(state: State, now: Triple, n: Numbers) -> Forces:
         state.tilt_x, state.tilt_y, state.tilt_rate_x, state.tilt_rate_y, state.spin, state.twist, state.footprint_x,
         state.footprint_y, state.velocity_x, state.velocity_y, state.rise, state.rise_rate, state.heading_x,
         state.heading_y, state.heading_z, state.contact, now[0], now[1], now[2], n.c, n.eta, n.zeta, n.kappa, n.axial,
-        n.resistance, n.kinetic, n.static, n.patch, n.normal_restitution, n.passage_tilt, n.slope_x, n.slope_y,
+        n.resistance, n.kinetic, n.static, n.patch, n.normal_restitution, n.slope_x, n.slope_y,
         n.relief,
     )  # fmt: skip
 
 
 def guards_of(state: State, now: Triple, rest: float, n: Numbers) -> Guards:
-    """Return the guards of a state."""
+    """Return the guards of a state, without impacts of the base face."""
     return guards(
         state.tilt_x, state.tilt_y, state.tilt_rate_x, state.tilt_rate_y, state.spin, state.twist, state.footprint_x,
         state.footprint_y, state.velocity_x, state.velocity_y, state.rise, state.rise_rate, state.heading_x,
-        state.heading_y, state.heading_z, state.contact, now[0], now[1], now[2], rest, n.c, n.eta, n.zeta, n.kappa,
-        n.axial, n.resistance, n.kinetic, n.static, n.patch, n.normal_restitution, n.passage_tilt, n.slope_x, n.slope_y,
+        state.heading_y, state.heading_z, state.contact, now[0], now[1], now[2], rest, 0.0, n.c, n.eta, n.zeta, n.kappa,
+        n.axial, n.resistance, n.kinetic, n.static, n.patch, n.normal_restitution, n.slope_x, n.slope_y,
         n.relief,
     )  # fmt: skip
 

@@ -21,7 +21,7 @@ from stylobate.engine.kernel.columns import Status, TraceKind
 from stylobate.engine.kernel.driver.base_motion import held_for_good
 from stylobate.engine.kernel.driver.contact_ends import broken_now
 from stylobate.engine.kernel.driver.equations import lean_of_new, row_state
-from stylobate.engine.kernel.driver.guards import guards_at, model_reset
+from stylobate.engine.kernel.driver.guards import guards_at, model_reset, moves_in_plane
 from stylobate.engine.kernel.driver.moving import azimuth_now, first_step, set_lean, set_rates, set_state
 from stylobate.engine.kernel.driver.observation import observe
 from stylobate.engine.kernel.driver.push import accelerations
@@ -170,7 +170,8 @@ def set_moving(buf: Table, i: int, table: Table, pieces: Table) -> int:
     if tilt > buf[R.PEAK_TILT, i]:
         buf[R.PEAK_TILT, i] = tilt
         buf[R.PEAK_AT, i] = t
-    buf[R.THREE_DIMENSIONAL, i] = 1.0
+    if not moves_in_plane(buf, i):
+        buf[R.THREE_DIMENSIONAL, i] = 1.0
     buf[R.ATOL_NOW, i] = buf[R.ATOL, i]
     set_rates(buf, i, t)
     buf[R.AIMED, i] = 0.0

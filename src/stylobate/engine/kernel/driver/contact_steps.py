@@ -10,7 +10,7 @@ from stylobate.engine.kernel.driver.contact_ends import broken_now
 from stylobate.engine.kernel.driver.equations import row_state
 from stylobate.engine.kernel.driver.moving import set_lean, set_rates, set_state
 from stylobate.engine.kernel.driver.observation import observe
-from stylobate.engine.kernel.driver.peaks import measure_peak
+from stylobate.engine.kernel.driver.peaks import measure_peak, record_loss
 from stylobate.engine.kernel.driver.stages import dense_state
 from stylobate.engine.kernel.driver.stops import leg_end, meet_stop
 from stylobate.engine.kernel.driver.tracing import trace_part
@@ -72,6 +72,7 @@ def end_contact(buf: Table, i: int, table: Table, pieces: Table, elapsed: float,
         step_to(buf, i, table, elapsed)
     if number == LAST:
         buf[R.MINIMUM_TILT, i] = min(buf[R.MINIMUM_TILT, i], buf[R.TILT, i])
+        record_loss(buf, i)
     if number == LAST or buf[R.CONTACT, i] == FLYING:
         buf[R.WANTED, i] = 0.0
     if buf[R.STEPS, i] >= buf[R.MOST_STEPS, i]:

@@ -10,7 +10,9 @@ from stylobate.engine.kernel.bound import (
     ORDER,
     ROLLING,
     SLIDING,
+    SLIP_X,
     SLIPPING,
+    SPIN,
     SWITCHING,
     WIDTH,
     WINDOW_ENDS,
@@ -25,11 +27,13 @@ from stylobate.engine.kernel.layout import Table
 from stylobate.engine.kernel.shape import GUARD_PLACES
 
 PLACES = tuple(range(1, GUARD_PLACES + 1))
+# First states of the tilt vector and of its rate.
+TILT, TILT_RATE = 0, 2
 
 
 def guards_under(buf: Table, i: int, state: State, push: Accelerations) -> tuple[float, ...]:
     """Return the guards of a state under these accelerations."""
-    return guards(*state, *push, buf[R.REST_ENERGY, i], *numbers(buf, i))
+    return guards(*state, *push, buf[R.REST_ENERGY, i], buf[R.PASSAGE_TILT, i], *numbers(buf, i))
 
 
 def limit_guard(buf: Table, i: int, state: State) -> float:
@@ -49,7 +53,26 @@ def model_reset(
     """Return the duration and the final state of the reset map of a broken guard."""
     state = row_state(buf, i, R.STATE)
     elapsed, after = reset_map(*state, number, *now, *later, ahead, buf[R.REST_ENERGY, i], *numbers(buf, i))
-    return elapsed, tuple(after[j] for j in range(ORDER))
+    for j in range(ORDER):
+        buf[R.NEW + j, i] = after[j]
+    if moves_in_plane(buf, i):
+        keep_in_plane(buf, i)
+    return elapsed, row_state(buf, i, R.NEW)
+
+
+def moves_in_plane(buf: Table, i: int) -> bool:
+    """Return whether initial state and base motion lie in one vertical plane, which symmetry does not let go."""
+    return buf[R.LINE_X, i] != 0.0 or buf[R.LINE_Y, i] != 0.0
+
+
+def keep_in_plane(buf: Table, i: int) -> None:
+    """Remove the rounding errors out of the plane of the motion from the new state, because they grow."""
+    ux, uy = buf[R.LINE_X, i], buf[R.LINE_Y, i]
+    for j in (TILT, TILT_RATE, SLIP_X):
+        along = buf[R.NEW + j, i] * ux + buf[R.NEW + j + 1, i] * uy
+        buf[R.NEW + j, i] = along * ux
+        buf[R.NEW + j + 1, i] = along * uy
+    buf[R.NEW + SPIN, i] = 0.0
 
 
 def model_project(buf: Table, i: int) -> State:

@@ -7,6 +7,7 @@ from stylobate.engine.kernel.bound import CAN_LOSE, CAN_REST, R
 from stylobate.engine.kernel.columns import TraceKind
 from stylobate.engine.kernel.driver.equations import lean_of_new, model_impact, model_passage
 from stylobate.engine.kernel.driver.moving import azimuth_now, set_lean, set_state, start_moving
+from stylobate.engine.kernel.driver.peaks import record_loss
 from stylobate.engine.kernel.driver.push import accelerations
 from stylobate.engine.kernel.driver.resting import rest_margin, settle
 from stylobate.engine.kernel.driver.stops import next_stop, resume
@@ -47,6 +48,8 @@ def loses_energy(buf: Table, i: int) -> bool:
 
 def apply_impact(buf: Table, i: int, table: Table, pieces: Table) -> int:
     """Apply the impact map of a lossy passage at the minimum tilt; return as `resume` does."""
+    set_lean(buf, i)
+    record_loss(buf, i)
     trace_event(buf, i, table, TraceKind.IMPACT, buf[R.TIME, i])
     set_state(buf, i, model_impact(buf, i))
     start_moving(buf, i, buf[R.TIME, i], buf[R.WANTED, i])
@@ -74,6 +77,7 @@ def pass_analytically(buf: Table, i: int, table: Table) -> None:
     trace_analytical_step(buf, i, table, elapsed, state, azimuth)
     set_state(buf, i, state)
     if CAN_LOSE and buf[R.PASSAGE_TILT, i] > 0.0:
+        record_loss(buf, i)
         trace_event(buf, i, table, TraceKind.IMPACT, t + elapsed)
         set_state(buf, i, model_impact(buf, i))
     set_lean(buf, i)

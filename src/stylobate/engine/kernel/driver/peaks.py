@@ -1,4 +1,4 @@
-"""Peak tilt and minimum tilt within a step."""
+"""Peak tilt and minimum tilt within a step, and distance from the vertical of passages that lose energy."""
 
 from stylobate.engine.elementary import length, winding
 from stylobate.engine.kernel.bound import ORDER, PLANAR, SERIES, R
@@ -7,6 +7,7 @@ from stylobate.engine.kernel.driver.moving import set_lean
 from stylobate.engine.kernel.driver.within import set_within
 from stylobate.engine.kernel.layout import Table
 from stylobate.engine.kernel.roots import quintic
+from stylobate.engine.tolerances import PLANAR_OFFSET
 
 # Time difference for the second derivative of the tilt vector.
 DIFFERENCE = 1e-5
@@ -62,6 +63,16 @@ def closest_within(buf: Table, i: int) -> float:
         else:
             high = u
     return (1.0 - high) * buf[R.MADE, i]
+
+
+def record_loss(buf: Table, i: int) -> None:
+    """Record the distance from the vertical of the present passage, which loses energy."""
+    speed = length(buf[R.VX, i], buf[R.VY, i])
+    offset = abs(buf[R.MOMENTUM, i]) / speed
+    buf[R.WIDEST_LOSS, i] = max(buf[R.WIDEST_LOSS, i], offset)
+    # In planar motion the offset is a rounding error.
+    if speed * speed > buf[R.REST_SQUARE, i] and offset > PLANAR_OFFSET * buf[R.SLENDERNESS, i]:
+        buf[R.CLOSEST_PASSAGE, i] = min(buf[R.CLOSEST_PASSAGE, i], offset)
 
 
 def undo_step(buf: Table, i: int) -> None:

@@ -270,7 +270,7 @@ def approach(buf: Table, i: int) -> float:
     On a straight path they lie at the complex times at which the squared tilt is zero, as far away as the tilt over the
     speed. The step that the error allows is a part of this distance.
     """
-    if PLANAR or SWITCHING or SERIES:
+    if PLANAR or SERIES:
         return 1.0
     before = buf[R.VX, i] * buf[R.VX, i] + buf[R.VY, i] * buf[R.VY, i]
     after = buf[R.NEW_VX, i] * buf[R.NEW_VX, i] + buf[R.NEW_VY, i] * buf[R.NEW_VY, i]
