@@ -243,6 +243,25 @@ def test_a_gabor_wavelet_is_its_definition_and_moves_the_base_as_stated():
     assert along(pulse.displacement(pulse.duration)) == pytest.approx(moved, rel=1e-12)
 
 
+@pytest.mark.parametrize("frequency", [0.3, 2.0])
+@pytest.mark.parametrize("gamma", [1.05, 1.7, 6.0])
+@pytest.mark.parametrize(("make", "room"), [(P.gabor, 1.5), (P.mavroeidis_papageorgiou, 1.05)])
+def test_the_margin_of_two_turning_points_in_one_cell_is_that_of_the_third_derivative(make, room, gamma, frequency):
+    """Between turning points h apart a cubic rises by h³/12 of its third derivative; all others rise less."""
+    highest = 0.0
+    for phase in np.linspace(0.0, math.pi, 7):
+        wave = make(velocity=V, frequency=frequency, phase=phase, oscillations=gamma).waveform
+        step = wave.duration / 20_000
+        third = np.abs(np.diff(wave.derivative(step * np.arange(20_001), 2), 3)).max() / step**3
+        # 1024 cells per shortest period, the last one whole.
+        cell = wave.duration / math.ceil(1024 * wave.highest_frequency * wave.duration / (2.0 * math.pi))
+        # A third difference over h³ is a third derivative; rounding adds 1e-16 (cells/ωT)³.
+        assert third * cell**3 / 12.0 <= wave.margin * (1.0 + 1e-4)
+        highest = max(highest, third * cell**3 / 12.0)
+    # The bounds are sums of those of terms, which do not peak together.
+    assert wave.margin <= room * highest
+
+
 @pytest.mark.parametrize(("frequency", "gamma", "phase"), [(0.7, 1.7, 0.4), (0.25, 1.05, -1.5), (2.0, 3.0, 2.2)])
 def test_the_pulse_of_mavroeidis_and_papageorgiou_is_that_of_their_paper(frequency, gamma, phase):
     # Their velocity differentiated and integrated by sympy, and their (2003) closed displacement after the end.

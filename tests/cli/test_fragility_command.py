@@ -120,6 +120,12 @@ def test_a_described_study_is_that_of_its_parts(folder):
     np.testing.assert_array_equal(rates["annual_rate"], annual_rate(fits, curve)["annual_rate"])
     assert study.parts(runs).attrs["limit_state"] == "overturning"
     assert study.parts(runs.isel(property_sample=0)) is None
+    two = runs.isel(record=slice(2), property_sample=slice(2), scale=slice(2))
+    assert study.parts(two) is not None
+    for name in ("record", "property_sample", "scale"):
+        assert study.parts(two.isel({name: slice(1)})) is None
+    for name in ("rotation", "vertical"):
+        assert study.parts(two.expand_dims({name: [0.0]})) is None
 
 
 HAZARD = {"intensity": [0.5, 2.0, 8.0], "rate": [1e-2, 1e-3, 5e-5], "component": "RotD50"}

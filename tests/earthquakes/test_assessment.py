@@ -1,5 +1,6 @@
 """The assessment of columns: its answers are those of single runs, whatever the order, interrupted or not."""
 
+import dataclasses
 import logging
 from functools import partial
 
@@ -157,6 +158,17 @@ def test_what_is_perhaps_in_another_unit_or_one_event_is_remarked():
         "tower: unlikely height (got 61 m)",
         "records: 'Aigio' and 'aigio' differ by case only and count as different records",
     ]
+
+
+def test_a_height_that_is_not_given_is_judged_by_the_centre_of_mass():
+    def body(height):
+        """Return a column of inertias alone; the centre of mass of a solid one is half its height."""
+        solid = sb.Column.solid(radius=0.1 * height, height=height, density=2700.0)
+        return dataclasses.replace(solid, height=None)
+
+    remark_on({"low": body(59.0)}, [])  # warnings are errors
+    with pytest.warns(UnlikelyInputWarning, match=r"high: unlikely height of the centre of mass \(got 30\.5 m\)"):
+        remark_on({"high": body(61.0)}, [])
 
 
 def test_small_changes_flip_what_lies_at_the_margin_and_nothing_far_from_it(found):

@@ -98,6 +98,16 @@ def test_spectra_hold_the_stated_period_and_are_kept(tmp_path):
     assert known._known == ["records: response spectra"]
 
 
+def test_spectra_are_drawn_from_a_twentieth_of_a_second_to_five_seconds_without_gaps():
+    periods = spectra(0.77, given=RECORD)["period"].to_numpy()
+    assert (periods[0], periods[-1]) == (0.05, 5.0)
+    ratios = periods[1:] / periods[:-1]
+    assert np.all((ratios > 1.0) & (ratios <= 1.5))
+    # Steps grow with the period: those of a table, not of a slip.
+    known = np.setdiff1d(periods, 0.77)
+    assert np.all(np.diff(known)[1:] >= 0.5 * np.diff(known)[:-1])
+
+
 def test_a_pulse_is_sampled_up_to_its_end():
     pulse = sb.Pulse.one_sine(acceleration=2.0, angular_frequency=4.0)
     sampled = as_record(pulse)

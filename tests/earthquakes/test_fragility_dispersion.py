@@ -120,6 +120,10 @@ def test_series_safe_again_above_their_capacity_are_flagged_and_do_not_change_it
     ("change", "message"),
     [
         (lambda x, y: (x[::-1], y), "scale must be positive and increase"),
+        (lambda x, y: (np.r_[x[:4], x[3:-1]], y), "scale must be positive and increase"),
+        (lambda x, y: (np.r_[0.0, x[1:]], y), "scale must be positive and increase"),
+        (lambda x, y: (np.r_[x[:-1], np.inf], y), "scale must be positive and increase"),
+        (lambda x, y: (np.r_[np.nan, x[1:]], y), "scale must be positive and increase"),
         (lambda x, y: (x[1:], y), "scale must have as many numbers as reached along scale"),
         (lambda x, y: (x, y.isel(record=[0])), "reached must have two or more along record, got 1"),
         (lambda x, y: (x, y.isel(record=0)), "reached must be a DataArray over record, property_sample, scale"),

@@ -5,6 +5,7 @@ import pytest
 
 import stylobate as sb
 from stylobate.base_motions.records import Lengths, Steps, arias_intensity
+from stylobate.base_motions.records.trimming import lost_intensity
 from stylobate.errors import UnlikelyInputWarning
 
 STEP = 0.01
@@ -62,3 +63,17 @@ def test_components_of_different_steps_are_compared_after_they_are_resampled(tmp
     assert (record.step, len(record.samples)) == (0.005, 400)
     # the samples of the coarser component stand where they stood
     np.testing.assert_allclose(record.samples[20:-20:2, 1], -smooth[10:190], atol=0.01)
+
+
+@pytest.mark.parametrize("scale", [1e-3, 1.0, 1e3])
+@pytest.mark.parametrize("kept", [1, 60, 199, 200])
+def test_the_fraction_lost_counts_all_components_and_does_not_depend_on_their_size(scale, kept):
+    samples = np.random.default_rng(4).normal(size=(200, 2))
+    record = sb.Record(samples=scale * samples, step=STEP)
+    # ∫ a² dt of a function that is linear between samples.
+    pieces = (samples[:-1] ** 2 + samples[:-1] * samples[1:] + samples[1:] ** 2).sum(axis=1)
+    assert lost_intensity(record, kept) == pytest.approx(pieces[kept - 1 :].sum() / pieces.sum(), abs=1e-14)
+
+
+def test_a_component_at_rest_loses_nothing():
+    assert lost_intensity(sb.Record(samples=np.zeros((20, 2)), step=STEP), 5) == 0.0

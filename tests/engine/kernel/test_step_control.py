@@ -1,6 +1,8 @@
-"""The next step towards the vertical: it is shortened before it would fail."""
+"""Steps are rejected if they miss the tolerance; a step towards the vertical is shortened before it would fail."""
 
+import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 
 import stylobate as sb
 from stylobate.engine.kernel.kernels import kernel_of
@@ -46,3 +48,28 @@ def test_the_next_step_is_that_which_the_error_allows_times_this_factor(plan_of)
 
     assert wanted(1.0) == pytest.approx(0.1 * 0.9 * 0.5**-0.125, rel=1e-14)
     assert wanted(0.4) == pytest.approx(0.4 * wanted(1.0), rel=1e-14)
+
+
+# One attempt shortens a step to a thousandth at least: the last three are too long.
+@pytest.mark.parametrize(("h", "accepted"), [(0.3, 1.0), (0.4, 1.0), (600.0, 0.0), (800.0, 0.0), (1000.0, 0.0)])
+def test_a_step_by_series_knows_its_error_and_is_rejected_if_it_misses_the_tolerance(h, accepted, plan_of):
+    model, rtol, atol = sb.Slender(sb.Column.dimensionless(0.1), damping=0.1), 1e-8, 1e-12
+    shape = plan_of(model, CIRCLE, method="taylor").shape(planar=False)
+    kernel, rows = kernel_of(sb.Slender, shape), shape.rows()
+    buffer = np.zeros_like(kernel.buffer())  # the base is at rest
+    given = {"h": h, "rtol": rtol, "atol_now": atol, "tilt_limit": 9.0, "no_return": 9.0}
+    for name, value in (given | {f"p{j}": number for j, number in enumerate(model.parameters)}).items():
+        buffer[rows[name], 0] = value
+    start = np.array([0.03, 0.01, -0.02, 0.04])
+    buffer[rows["y0"] : rows["y0"] + 4, 0] = start
+    kernel.compiled.module.make_series_step(buffer, 1)
+    kernel.compiled.module.accept(buffer, 0)
+    found, made = buffer[rows["new0"] : rows["new0"] + 4, 0], buffer[rows["h"], 0]
+    exact = solve_ivp(
+        lambda _, y: model.rates(*y, 0.0, 0.0, 0.0, *model.parameters), (0.0, made), start, "DOP853",
+        rtol=1e-13, atol=1e-16,
+    ).y[:, -1]  # fmt: skip
+    error = np.sum(np.abs(found - exact) / (atol + rtol * np.maximum(np.abs(start), np.abs(found))))
+    # The estimate takes the defect as a power of the time, and leaves out the positions, whose error is h/18 of it.
+    assert buffer[rows["error"], 0] == pytest.approx(error, rel=0.2)
+    assert (buffer[rows["ok"], 0], buffer[rows["go"], 0]) == (accepted, accepted)

@@ -79,7 +79,7 @@ class Gabor(Waveform):
 
     @property
     def margin(self) -> float:
-        """Maximum excess from two turning points in one cell [m/s²], below 1e-8 A√(1 + γ²)/σ."""
+        """Maximum excess from two turning points in one cell [m/s²], below 2e-8 A√(1 + γ²)/σ."""
         # The fourth derivative is He4(z) exp(−u²/2) times a phase, |z|² = u² + γ² and |He4| ≤ |z|⁴ + 6|z|² + 3.
         square = self.oscillations**2
         bounds = [
