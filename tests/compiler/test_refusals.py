@@ -193,3 +193,24 @@ def test_a_file_that_changed_after_it_was_imported_is_refused(tmp_path, monkeypa
     path.write_text("def changed(x):\n    x[0] = 2.0\n\n")
     with pytest.raises(CompileError, match="if the file has changed since it was imported, start again"):
         text_of(changed, X)
+
+
+def test_a_function_in_a_document_that_is_no_program_is_refused_with_its_line(tmp_path):
+    path = tmp_path / "page.md"
+    lines = [
+        "# A page",
+        "",
+        "It has words first.",
+        "",
+        "def on_a_page(x):",
+        "    x[0] = 1.0",
+        "    x[1] = {}[x[0]]",
+        "",
+        "End.",
+    ]
+    path.write_text("\n".join(lines))
+    names = {}
+    # As tools do that run the blocks of a page: the block is compiled at its place in the file.
+    exec(compile("\n" * 4 + "\n".join(lines[4:7]), str(path), "exec"), names)  # noqa: S102
+    with pytest.raises(CompileError, match=rf"^{re.escape(str(path))}:7: in on_a_page: "):
+        text_of(names["on_a_page"], X)

@@ -94,6 +94,17 @@ def test_bias_scatter_and_error_are_those_of_the_logarithms():
     )
 
 
+@pytest.mark.parametrize("options", [{}, {"least_ratio": 0.3}])
+def test_tilts_are_compared_where_both_columns_rock_by_more_than_the_stated_fraction(options):
+    found = against_itself(0.05, pulse(0.05, direction=0.3), **options)
+    least = options.get("least_ratio", 1e-3)
+    both = np.stack([found["tilt_ratio"].to_numpy(), found["worst_planar_tilt_ratio"].to_numpy()])
+    rocking = np.all((both > least) & np.isfinite(both), axis=0)
+    assert 0 < np.count_nonzero(rocking) < np.count_nonzero(np.isfinite(both).all(axis=0))
+    np.testing.assert_array_equal(np.isfinite(found["log_ratio"]), rocking)
+    np.testing.assert_allclose(found["log_ratio"].to_numpy()[rocking], np.log(np.divide(*both[:, rocking])))
+
+
 def test_one_record_tells_no_bias():
     found = against_itself(0.05, pulse(0.05, direction=0.3))
     assert int(found["overall_compared"]) == 1
