@@ -15,6 +15,7 @@ from stylobate.earthquakes import assess, assessment_report, assessment_tables
 from stylobate.earthquakes.assessment.margins import demands_to_margin
 from stylobate.earthquakes.assessment.report.figures import history_figure, margins_figure, tilts_figure
 from stylobate.earthquakes.assessment.report.pictures import report_pictures
+from stylobate.earthquakes.assessment.report.record_figures import spectra_figure
 from stylobate.earthquakes.assessment.report.record_tables import drifting
 from stylobate.earthquakes.assessment.report.sections import document_table, not_covered
 from stylobate.earthquakes.assessment.report.summary import column_findings, summary_text, verdict_table
@@ -227,11 +228,47 @@ def test_intensities_at_the_margin_are_those_of_the_record_times_the_least_scale
 
 def test_mean_and_design_spectrum_are_compared_where_both_are_known(found):
     table = assessment_tables(found)["spectra"]
+    own = found.data["spectra"]["spectral_acceleration"]
+    design = {"0.1": 2.6, "0.2": 3.2, "0.3": 3.8, "0.5": 5.0, "0.8": 4.2, "1": 11.0 / 3.0, "2": 1.0, "3": np.nan}
     rows = {row[0]: dict(zip(table.header, row, strict=True)) for row in table.rows}
-    mean = float(found.data["spectra"]["spectral_acceleration"].sel(period=0.5).mean())
-    assert rows["0.5"]["spectrum of the site [g]"] == f"{5.0 / 9.80665:.3g}"
-    assert rows["0.5"]["mean / design"] == f"{mean / 5.0:.3g}"
-    assert rows["3"]["mean / design"] == "–"
+    assert rows.keys() == design.keys()
+    for period, row in rows.items():
+        values = own.sel(period=float(period))
+        for name in ("strong", "weak & quiet"):
+            assert row[f"{name} [g]"] == f"{float(values.sel(record=name)) / 9.80665:.3g}"
+        mean, aim = float(values.mean()), design[period]
+        assert row["mean [g]"] == f"{mean / 9.80665:.3g}"
+        assert row["spectrum of the site [g]"] == ("–" if np.isnan(aim) else f"{aim / 9.80665:.3g}")
+        assert row["mean / design"] == ("–" if np.isnan(aim) else f"{mean / aim:.3g}")
+
+
+def test_spectra_are_drawn_with_their_mean_and_the_design_spectrum(found):
+    (axes,) = spectra_figure(found).axes
+    own = found.data["spectra"]["spectral_acceleration"]
+    curves = {line.get_label(): line.get_xydata().T for line in axes.lines}
+    expected = {name: own.sel(record=name) for name in ("strong", "weak & quiet")}
+    expected["mean of the records"] = own.mean("record")
+    for name, values in expected.items():
+        np.testing.assert_array_equal(curves[name][0], own["period"])
+        np.testing.assert_allclose(curves[name][1], values / 9.80665, rtol=1e-12)
+    np.testing.assert_allclose(curves["spectrum of the site"], [[0.0, 0.5, 2.0], np.array([2.0, 5.0, 1.0]) / 9.80665])
+    assert axes.get_xlim() == (0.0, float(own["period"].max()))
+    assert axes.get_ylim()[0] == 0.0
+
+
+def test_slips_of_the_sliding_model_are_tabulated_in_millimetres_where_it_was_run(found):
+    verdicts = found.data["verdicts"]["tilt_ratio"].sel(dissipation="central", vertical="with", drop=True)
+    ran = verdicts["column"] == "stout"
+    values = {"overturned": 0.0, "peak_slip": 0.4567, "residual_slip": 0.0123, "time_sliding": 2.345}
+    data = xr.Dataset({name: xr.full_like(verdicts, value).where(ran) for name, value in values.items()})
+    table = assessment_tables(replace(found, data={**found.data, "sliding": data}))["sliding"]
+    rows = [dict(zip(table.header, row, strict=True)) for row in table.rows]
+    places = [(row["column"], row["record"], row["scale"]) for row in rows]
+    assert places == [("stout", name, scale) for name in ("strong", "weak & quiet") for scale in ("0.5", "1")]
+    for row in rows:
+        assert (row["peak slip [mm]"], row["residual slip [mm]"]) == ("457", "12.3")
+        assert (row["time sliding [s]"], row["verdict with the sliding model"]) == ("2.35", "did not overturn")
+    assert assessment_tables(found)["sliding"].rows == []
 
 
 def test_a_mean_of_five_percent_is_not_divided_by_a_design_spectrum_of_another_damping(found):

@@ -5,6 +5,7 @@ import pytest
 import xarray as xr
 
 import stylobate as sb
+from stylobate.base_motions.records import response_spectra
 
 NAN, INF = np.nan, np.inf
 
@@ -151,3 +152,24 @@ def test_flips_are_counted_by_change():
     assert table.get_title(loc="left") == "1 of 3 verdicts stay under every change (*)"
     colours = np.array([patch.get_facecolor() for patch in table.patches]).reshape(3, 3, 4)
     assert len(np.unique(colours.reshape(9, 4), axis=0)) == 5
+
+
+def test_records_are_drawn_over_time_and_period():
+    records = [sb.sample_record(), sb.Record(samples=np.sin(0.1 * np.arange(80)), step=0.02, name="one component")]
+    spectra = {one.name: response_spectra(one, [0.2, 0.5, 1.0]) for one in records}
+    figure = sb.earthquakes.plot_records(records, spectra)
+    for place, record in enumerate(records):
+        left, right = figure.axes[2 * place : 2 * place + 2]
+        drawn = lines_of(left)
+        assert len(drawn) == len(record.axes)
+        for axis, (time, acceleration) in zip(record.axes, drawn, strict=True):
+            np.testing.assert_array_equal(time, record.times)
+            np.testing.assert_array_equal(acceleration, record.samples[:, "xyz".index(axis)])
+        curves = {line.get_label(): line.get_ydata() for line in right.lines}
+        for axis in record.axes:
+            np.testing.assert_array_equal(curves[axis], spectra[record.name]["psa"].sel(axis=axis))
+        assert ("RotD50" in curves) == ("rotd50" in spectra[record.name])
+        if "RotD50" in curves:
+            np.testing.assert_array_equal(curves["RotD50"], spectra[record.name]["rotd50"])
+        assert left.get_title(loc="left") == record.name
+        assert right.get_title(loc="left") == "5 % damping"

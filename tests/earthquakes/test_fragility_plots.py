@@ -58,6 +58,16 @@ def test_what_is_not_fitted_or_not_monotone_is_said(reached):
     assert "runs taken as independent" in title
 
 
+@pytest.mark.parametrize(
+    ("first", "median"), [(0, "below 1 m/s²"), (4, "from 2.28 to 3 m/s²"), (9, "above 9 m/s²"), (None, "open m/s²")]
+)
+def test_the_median_of_what_is_not_fitted_is_bounded_by_the_runs(first, median):
+    """Every record reaches the limit state from the same scale on; None: none is decided."""
+    states = np.full((6, 9), -1) if first is None else np.tile(np.arange(9) >= first, (6, 1)).astype(int)
+    found = fit_fragility(SCALE, xr.DataArray(states, dims=("record", "scale")))
+    assert f"\nmedian {median}" in legend_of(sb.plot(found))[0]
+
+
 def test_a_title_stays_clear_of_the_legend(reached):
     figure = sb.plot(fit_fragility(SCALE, reached, resamples=20, rng=np.random.default_rng(0)))
     figure.canvas.draw()

@@ -33,3 +33,19 @@ def test_a_hazard_must_state_its_intensity_measure_in_a_file_or_in_a_table(tmp_p
 def test_a_hazard_of_five_percent_damping_is_not_taken_for_another_damping(tmp_path):
     with pytest.raises(ParameterError, match=r"at 1 s, 5 % damping', but the fragility uses .* 2 % damping"):
         curve(tmp_path, SpectralAcceleration(1.0, damping=0.02), in_file=False, measure="SA(1 s)")
+
+
+def test_a_hazard_must_state_its_unit(tmp_path):
+    message = "fragility.hazard does not state the unit of its intensity; "
+    with pytest.raises(ParameterError, match=message + 'give units, such as units = "g"'):
+        curve(tmp_path, Intensity.PEAK_ACCELERATION, in_file=False, measure="PGA", units=None)
+    path = tmp_path / "bare.csv"
+    path.write_text("PGA RotD50, annual rate [1/a]\n0.1,1e-2\n0.5,1e-3\n")
+    points = Hazard.parse({"file": str(path), "component": "RotD50", "measure": "PGA"}).points()
+    with pytest.raises(ParameterError, match=message + r"name it in the first line of .*bare\.csv, such as"):
+        site_hazard(points, IntensityMeasure(Intensity.PEAK_ACCELERATION))
+
+
+def test_a_hazard_in_another_unit_than_the_fragility_is_refused(tmp_path):
+    with pytest.raises(ParameterError, match=r"an intensity in .*, but the fragility uses .* in .*\. Provide both for"):
+        curve(tmp_path, Intensity.PEAK_VELOCITY, in_file=False, measure="PGV")

@@ -1,9 +1,10 @@
-"""Passages of the vertical in closed form turn with the frame and are mirrored with it."""
+"""Passages of the vertical in closed form turn with the frame, are mirrored with it, and feel the push of the base."""
 
 import math
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 
 import stylobate as sb
 
@@ -47,3 +48,23 @@ def test_the_mirror_image_of_a_passage_is_the_passage_of_the_mirror_image(model)
     found = passage(model, mirror @ LEAN, mirror @ RATE, -SPIN, mirror @ PUSH)
     for one, other in zip(found, expected, strict=True):
         np.testing.assert_allclose(one, other, rtol=1e-11, atol=1e-16)
+
+
+@every_model
+@pytest.mark.parametrize("push", [(0.02, 0.0), (0.0, 0.02)])
+def test_without_spin_the_push_of_the_base_adds_what_it_adds_to_the_motion_integrated(model, push):
+    lean, rate = (-1e-5, 2e-9), (0.05, 0.0)
+    elapsed, _, pushed, _ = passage(model, lean, rate, 0.0, push)
+    _, _, free, _ = passage(model, lean, rate, 0.0, (0.0, 0.0))
+    state = (*lean, *rate, *([0.0] if model.spin_state is not None else []))
+
+    def end(push):
+        run = solve_ivp(
+            lambda _, y: model.rates(*y, *push, LIFT, *model.parameters), (0.0, elapsed), state, "DOP853",
+            rtol=1e-13, atol=1e-20,
+        )  # fmt: skip
+        return run.y[2:4, -1]
+
+    # The weight slows and speeds the path by a part c/V of the time, which is left out.
+    expected = end(push) - end((0.0, 0.0))
+    np.testing.assert_allclose(pushed - free, expected, rtol=0.0, atol=2e-2 * 0.02 * elapsed)
