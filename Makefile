@@ -6,7 +6,7 @@ BIN    := $(VENV)/bin
 .DEFAULT_GOAL := help
 # Without files of bytecode, each process that a test starts compiles all modules again.
 unexport PYTHONDONTWRITEBYTECODE
-.PHONY: help demo lab page test test-all test-lowest test-newest coverage lint docs figures bench clean
+.PHONY: help demo lab page test test-all test-lowest test-newest coverage mutants lint docs figures bench clean
 
 help:  ## list the targets
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## /\t/' | expand -t 14
@@ -74,6 +74,13 @@ test-newest: $(UV)  ## the tests, with the newest version of each dependency tha
 coverage: $(VENV)/.core $(VENV)/.test  ## the tests that take seconds, and the lines of source they reach
 	$(BIN)/python -m pytest -n 2 --cov=stylobate --cov-report=term:skip-covered
 
+ROOM := earthquakes
+N    := 50
+SEED := 1
+
+mutants: $(VENV)/.core $(VENV)/.test  ## small faults in a room that the tests miss: make mutants ROOM=earthquakes N=50 SEED=1
+	$(BIN)/python tools/mutants.py $(ROOM) --count $(N) --seed $(SEED)
+
 lint: $(VENV)/.core $(VENV)/.test $(VENV)/.lint  ## style, types, import contracts, wording
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
@@ -103,4 +110,4 @@ bench: $(VENV)/.core $(VENV)/.test  ## the benchmarks, beside the engines that c
 	$(BIN)/python -m benchmarks.orbits
 
 clean:  ## remove what the targets made
-	rm -rf $(VENV) .venv-* docs/_build docs/gallery docs/tutorials stylobate-paper
+	rm -rf $(VENV) .venv-* .mutants docs/_build docs/gallery docs/tutorials stylobate-paper
