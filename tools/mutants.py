@@ -37,6 +37,10 @@ ROOT = Path(__file__).parents[1]
 SOURCE = Path("src/stylobate")
 # Tests of the rooms whose tests are not in the folder of the same name alone.
 TESTS = {
+    "earthquakes": (
+        "tests/earthquakes",
+        *(f"tests/cli/test_{one}_command.py" for one in ("assess", "fragility", "spectrum")),
+    ),
     "models": ("tests/models", "tests/engine"),
     "engine/kernel/driver": ("tests/engine", "tests/models"),
     "compiler": ("tests/compiler", "tests/engine/kernel"),

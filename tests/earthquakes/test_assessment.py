@@ -70,6 +70,12 @@ def test_verdicts_are_those_of_single_runs(found):
                 assert float(verdict["tilt_ratio"]) == pytest.approx(ratio, rel=1e-5, abs=1e-9)
 
 
+def test_the_setting_names_the_tail(found):
+    assert found.setting["tail"] == 2.0
+    free = assessed(columns=("slim",), records=RECORDS[2:], scales=[1.0], changes=(), tail=None)
+    assert (free.setting["tail"], free.setting["tail_over_p"]) == ("20/p", 20.0)
+
+
 def test_what_always_overturns_and_what_never_moves_are_told_so(found):
     alone = assessed(columns=("slim",), records=RECORDS[:1], scales=[1.0])
     summary = alone.data["summary"].sel(column="slim", scale=1.0)
@@ -141,13 +147,22 @@ def test_interrupted_work_goes_on_where_it_was(found, tmp_path, caplog):
 
 def test_records_are_computed_some_at_a_time_and_the_whole_is_that_of_all_at_once(monkeypatch):
     one_by_one = partial(assessed, columns=("slim",), records=RECORDS[:2], planar=True, changes=CHANGES[:1])
-    whole = one_by_one()
+    told = {"whole": [], "parts": []}
+    whole = one_by_one(progress=lambda *one: told["whole"].append(one))
     monkeypatch.setattr(robust, "_TOGETHER", 1)
-    parts = one_by_one()
+    parts = one_by_one(progress=lambda *one: told["parts"].append(one))
     for name in ("robustness", "planar", "summary"):
         xr.testing.assert_equal(parts.data[name], whole.data[name])
         for one, array in whole.data[name].items():
             assert parts.data[name][one].attrs.get("long_name") == array.attrs.get("long_name")
+    for which, records in (("whole", {"middle to strong"}), ("parts", {"strong", "middle"})):
+        names, done, totals = zip(*told[which], strict=True)
+        assert {name.rpartition(", ")[2] for name in names if name.startswith("slim: planar")} == records
+        # A column has one history or two; the other runs are known.
+        assert done[-1] - 1 <= totals[-1] <= done[-1]
+        # Two components and the three-dimensional column, two records, two scales.
+        planar = [count for name, count, _ in told[which] if name.startswith("slim: planar")]
+        assert max(planar) - min(planar) == 12
 
 
 def test_what_is_perhaps_in_another_unit_or_one_event_is_remarked():

@@ -33,6 +33,7 @@ def test_variances_of_a_balanced_layout_are_those_of_its_rows_and_columns():
     assert found["record_dispersion"].item() == pytest.approx(rows.std(ddof=1), abs=2.0 * step)
     assert found["property_dispersion"].item() == pytest.approx(columns.std(ddof=1), abs=2.0 * step)
     assert found["joint_dispersion"].item() < step
+    assert set(found.coords) == {"record", "property_sample"}
     np.testing.assert_allclose(found["log_capacity"], capacity, atol=0.5 * step * (1.0 + 1e-9))
     np.testing.assert_allclose(np.log(found["median_of_record"]), rows, atol=step)
 

@@ -68,6 +68,12 @@ def test_the_median_of_what_is_not_fitted_is_bounded_by_the_runs(first, median):
     assert f"\nmedian {median}" in legend_of(sb.plot(found))[0]
 
 
+def test_what_is_reached_less_often_at_higher_intensities_is_not_taken_for_a_gap():
+    falling = xr.DataArray(np.tile(np.arange(9) < 4, (6, 1)).astype(int), dims=("record", "scale"))
+    found = fit_fragility(SCALE, falling)
+    assert "no fit: not increasing\n" in legend_of(sb.plot(found))[0]
+
+
 def test_a_title_stays_clear_of_the_legend(reached):
     figure = sb.plot(fit_fragility(SCALE, reached, resamples=20, rng=np.random.default_rng(0)))
     figure.canvas.draw()

@@ -116,6 +116,7 @@ def test_a_table_of_openquake_with_one_site_needs_no_choice_and_its_velocities_a
     [
         (SITES, {"site": 0}, "imt is not named above the header"),
         (OLD + SITES, {}, "site: missing, and the table holds 2 sites. Give a number from 0 to 1 or .* 22.35, 37.95"),
+        (OLD + SITES.splitlines()[0] + "\n", {"site": 0}, "the table holds no site"),
         (OLD + SITES, {"site": 2}, r"site: no such number \(got 2\). Give one from 0 to 1"),
         (OLD + SITES, {"site": (10.0, 45.0)}, "site: none within 0.05° .* The nearest is at 22.35, 37.95"),
         (OLD + SITES + "1,2\n", {"site": 0}, "line 5: 6 values are needed"),

@@ -72,6 +72,18 @@ def test_a_dense_scan_agrees_with_the_bands(spectrum):
     assert np.count_nonzero(np.diff(fallen)) == 3
 
 
+def test_cases_with_fewer_intervals_than_others_have_empty_places():
+    over = {"angular_frequency": [5.0, 12.0]}
+    spectrum = overturning_bands(VISCOUS, SINE, scales=np.geomspace(1.0, 15.0, 9), over=over)
+    empty = spectrum["band_from"].isnull()
+    np.testing.assert_array_equal((~empty).sum("band"), spectrum["bands"])
+    assert int(empty.sum()) > 0
+    names = [name for name, one in spectrum.data_vars.items() if one.dims == spectrum["band_from"].dims]
+    for name in names:
+        places = spectrum[name].to_numpy()[empty.to_numpy()]
+        assert not places.any() if places.dtype == bool else np.isnan(places).all(), name
+
+
 def test_a_gap_narrower_than_the_scan_is_found_by_the_direction(spectrum):
     pulse = sb.Pulse.one_sine(acceleration=C, angular_frequency=5.0)
     found = overturning_bands(VISCOUS, pulse, scales=[1.0, 5.0, 12.0])

@@ -7,7 +7,7 @@ import pytest
 
 import stylobate as sb
 from stylobate.earthquakes import planar_bias
-from stylobate.earthquakes.in_one_direction import in_one_direction
+from stylobate.earthquakes.in_one_direction import InOneDirection, in_one_direction
 
 SCALES = np.array([0.5, 0.6, 0.65, 0.7, 0.9, 2.0])
 
@@ -125,6 +125,9 @@ def test_a_record_in_one_direction_is_a_record():
     np.testing.assert_allclose(moved.acceleration(times)[:, 0], x * math.cos(0.7) + y * math.sin(0.7), atol=1e-12)
     np.testing.assert_allclose(moved.acceleration(times)[:, 1:], np.stack([0.0 * z, z], axis=-1), atol=1e-12)
     assert len(moved.directions()) == 1
+    line = InOneDirection(motion=pulse(0.1, direction=0.2), direction=0.7)
+    size = np.hypot(*pulse(0.1).directions()[0]) * math.cos(0.5)
+    np.testing.assert_allclose(line.directions(), [(size * math.cos(0.7), size * math.sin(0.7))])
 
 
 def test_a_planar_model_is_not_compared_with_itself():

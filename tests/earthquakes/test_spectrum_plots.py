@@ -199,6 +199,9 @@ def test_a_rocking_spectrum_is_drawn_against_the_period(rocking):
         np.testing.assert_array_equal(curve.get_ydata(), rocking["peak_tilt_ratio"][:, place])
     assert len({(curve.get_color(), curve.get_linestyle(), curve.get_marker()) for curve in curves}) == 2
     assert legend_of(figure) == ["slenderness 0.1", "slenderness 0.2", "overturned"]
+    for axes, largest in ((above, 0.5), (below, 1.0)):
+        assert axes.get_ylim()[0] == 0.0
+        assert largest < axes.get_ylim()[1] < 1.5 * largest
 
 
 def test_a_mark_hangs_where_the_column_overturned(rocking):
