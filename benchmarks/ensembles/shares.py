@@ -158,8 +158,8 @@ def _with_counter(kernel: Kernel) -> Kernel:
 def _rewritten(kernel: Kernel, old: str, new: str) -> Kernel:
     text = text_of(batch)
     assert text.count(old) == 1, old
-    program = _OtherBatch(kernel.compiled.program, text.replace(old, new))
-    return replace(kernel, compiled=replace(kernel.compiled, program=program))
+    program = _OtherBatch(kernel.compiled.program(), text.replace(old, new))
+    return replace(kernel, compiled=replace(kernel.compiled, program=lambda: program))
 
 
 @dataclass(frozen=True, eq=False)

@@ -52,7 +52,9 @@ def compilations(monkeypatch):
 def squares(text=TEXT):
     """Return what is compiled as in a process of its own."""
     arguments = (ArrayArgument((None,)), ArrayArgument((1,)))
-    return Compiled("advance", Written(text), {"rates": square}, arguments, model="model", description="squares")
+    return Compiled(
+        "advance", lambda: Written(text), {"rates": square}, arguments, model="model", description="squares"
+    )
 
 
 def sum_of(compiled):
@@ -61,8 +63,8 @@ def sum_of(compiled):
     return out[0]
 
 
-def entry(folder):
-    (path,) = folder.glob("*.code")
+def entry(folder, kind="code"):
+    (path,) = folder.glob(f"*.{kind}")
     return path
 
 
@@ -137,16 +139,16 @@ def test_a_cache_that_others_can_write_to_runs_nothing(folder, compilations):
 
 def test_of_two_that_need_code_at_once_one_compiles(folder, compilations):
     sum_of(squares())
-    name, code = entry(folder).name, TrustedCache(folder).read(entry(folder).name)
-    entry(folder).unlink()
+    places = entry(folder, "places").read_bytes()
+    program = entry(folder, "places").stem
+    entry(folder, "places").unlink()
     begun = threading.Event()
 
     def compile_it():
-        cache = TrustedCache(folder)
-        with cache.held(name):
+        with TrustedCache(folder).held(program):
             begun.set()
             time.sleep(0.2)
-            cache.write(name, code)
+            (folder / f"{program}.places").write_bytes(places)
 
     thread = threading.Thread(target=compile_it)
     thread.start()

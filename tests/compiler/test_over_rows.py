@@ -26,4 +26,4 @@ def test_rows_have_what_the_function_gives_for_each(function, count):
 
 def test_many_rows_are_compiled():
     over_rows(swapped, ROWS, name="compiled")
-    assert module._compiled(swapped, 2, 3, "compiled")._code
+    assert module._compiled(swapped, 2, 3, "compiled")._code()

@@ -256,3 +256,63 @@ REFUSED = {
 def test_what_would_be_compiled_wrong_is_refused(function):
     with pytest.raises(CompileError, match=REFUSED[function]):
         text_of(function, X)
+
+
+class Doubled:
+    """A decorator whose objects are called instead of the function."""
+
+    def __init__(self, function):
+        functools.update_wrapper(self, function)
+        self.function = function
+
+    def __call__(self, a):
+        return self.function(a) * 2.0
+
+
+@Doubled
+def called_twice(a):
+    return a + 1.0
+
+
+@functools.partial
+def partial_function(a):
+    return a + 1.0
+
+
+@functools.cache
+def remembered(a):
+    return a + 1.0
+
+
+def of_an_object(x):
+    x[0] = called_twice(x[0])
+
+
+def of_a_partial_function(x):
+    x[0] = partial_function(x[0])
+
+
+def of_a_method(x):
+    x[0] = Doubled(remembered).__call__(x[0])
+
+
+def of_a_cache(x):
+    x[0] = remembered(x[0])
+
+
+@pytest.mark.parametrize(
+    ("function", "message"),
+    [
+        (of_an_object, "called_twice is an object of the class Doubled, made by a decorator; write a decorator that"),
+        (of_a_partial_function, "is not a function written in Python"),
+        (of_a_method, "is not a function written in Python"),
+    ],
+)
+def test_decorators_that_are_not_understood_are_refused(function, message):
+    with pytest.raises(CompileError, match=message):
+        text_of(function, X)
+
+
+def test_a_cache_of_results_computes_what_its_function_computes():
+    (compiled, _), (plain, _) = both_ways(of_a_cache, X)
+    np.testing.assert_array_equal(compiled[0], plain[0])

@@ -96,7 +96,7 @@ def test_loads_along_a_run_are_those_of_each_moment_and_are_compiled(name):
     np.testing.assert_array_equal(loads.friction, per_normal_force(friction, normal))
     np.testing.assert_array_equal(loads.pivoting, per_normal_force(moment, normal))
     arguments = len(states) + 3 + len(model.parameters)
-    assert over_rows._compiled(model.contact, arguments, 3, model.name)._code
+    assert over_rows._compiled(model.contact, arguments, 3, model.name)._code()
 
 
 def test_the_forces_of_a_column_that_slides_are_those_of_each_moment_and_are_compiled():
@@ -108,4 +108,4 @@ def test_the_forces_of_a_column_that_slides_are_those_of_each_moment_and_are_com
         for state, now in zip(states.T.tolist(), push.T.tolist(), strict=True)
     ]
     np.testing.assert_array_equal(forces_along(states, push, model.numbers), np.transpose(expected))
-    assert over_rows._compiled(balance, 26, 16, "sliding")._code
+    assert over_rows._compiled(balance, 26, 16, "sliding")._code()

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 import stylobate as sb
-from stylobate.engine.kernel.kernels import kernel_of
 from stylobate.models.sliding import equations, impacts, on_base, on_rim, onset, posture
 
 # The numbers below which something counts as nothing, and where they are looked up.
@@ -40,19 +39,7 @@ def test_bounces_come_to_rest_from_any_height_and_attitude(restitution):
     assert run.outcome is sb.Outcome.AT_REST
 
 
-@pytest.fixture
-def halved(monkeypatch):
-    """Halve the numbers, when called; kernels made before have them as they were."""
-
-    def halve():
-        kernel_of.cache_clear()
-        _halve(monkeypatch)
-
-    yield halve
-    kernel_of.cache_clear()
-
-
-def _halve(monkeypatch):
+def halve(monkeypatch):
     for home in HOMES:
         for name in SMALL:
             if hasattr(home, name):
@@ -78,9 +65,9 @@ def random_end(seed):
     return run.outcome, np.concatenate([*end, [float(data["spin"])]])
 
 
-def test_halving_what_counts_as_nothing_changes_nothing(halved):
+def test_halving_what_counts_as_nothing_changes_nothing(monkeypatch):
     ends = [random_end(seed) for seed in range(4)]
-    halved()
+    halve(monkeypatch)
     changes = 0.0
     for seed, (outcome, end) in enumerate(ends):
         again, other = random_end(seed)

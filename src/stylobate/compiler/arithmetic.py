@@ -6,7 +6,9 @@ Differences: division by zero gives infinity or NaN instead of an error, and who
 import ast
 import math
 import operator
+import types
 from collections.abc import Callable
+from enum import Enum
 from typing import Any
 
 from stylobate.compiler.refusal import Refusal
@@ -53,6 +55,9 @@ _COMPARED = {
     ast.Eq: ("oeq", "eq"),
     ast.NotEq: ("une", "ne"),
 }
+
+_COMPARABLE = (str, bytes, tuple, list, range, Enum, types.ModuleType)
+"""Known values, besides numbers, that can be compared and be conditions."""
 
 _BEYOND = 2**63
 MOST_FACTORS = 16
@@ -199,7 +204,7 @@ class Arithmetic:
         """Return the negation of a condition."""
         _refuse_lanes(value)
         if not isinstance(value, Number):
-            return not value
+            return not truth_of_known(value)
         number = self.truth(value)
         always = constant(1, Kind.BOOLEAN, number.lanes)
         return Number(Kind.BOOLEAN, self.text.value(f"xor {number.operand}, {always.text}"), number.lanes)
@@ -212,6 +217,7 @@ class Arithmetic:
         if isinstance(a, tuple) and isinstance(b, tuple):
             return self._compared_tuples(operation, a, b)
         if not isinstance(a, Number) and not isinstance(b, Number):
+            _refuse_own_laws(a, b)
             return _KNOWN[type(operation)](a, b)
         if type(operation) not in _COMPARED:
             message = f"{type(operation).__name__} of numbers; write == or !="
@@ -245,14 +251,14 @@ class Arithmetic:
         decided = instruction == "or"
         for one, other in ((a, b), (b, a)):
             if not isinstance(one, Number):
-                return decided if bool(one) is decided else other
+                return decided if truth_of_known(one) is decided else other
         x, y = self.alike(a, b, kind=Kind.BOOLEAN)
         return Number(Kind.BOOLEAN, self.text.value(f"{instruction} {x.operand}, {y.text}"), x.lanes)
 
     def chosen(self, condition: Value, a: Value, b: Value) -> Value:
         """Return `a` if the condition holds, else `b`; both are computed."""
         if not isinstance(condition, Number):
-            return a if condition else b
+            return a if truth_of_known(condition) else b
         if isinstance(a, tuple) or isinstance(b, tuple):
             if type(a) is not type(b) or len(a) != len(b):
                 message = "a choice between two tuples of different length or class; use tuples of one structure"
@@ -334,6 +340,20 @@ def _refuse_lanes(*values: Value) -> None:
     if any(isinstance(value, LaneIndex) for value in values):
         message = "a condition on the index of a loop over lanes; keep it in a row of the array"
         raise Refusal(message)
+
+
+def truth_of_known(value: Value) -> bool:
+    """Return the truth of a known value."""
+    _refuse_own_laws(value)
+    return bool(value)
+
+
+def _refuse_own_laws(*values: Value) -> None:
+    """Refuse objects whose class decides when they are true or equal."""
+    for value in values:
+        if not (is_known_number(value) or value is None or isinstance(value, _COMPARABLE) or callable(value)):
+            message = f"{value!r} is compared, or is a condition, by a law of its class; use its numbers"
+            raise Refusal(message)
 
 
 def _moved(operation: ast.operator, a: Value, b: Value) -> LaneIndex:

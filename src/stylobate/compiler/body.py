@@ -7,6 +7,7 @@ from typing import Any, Protocol
 from stylobate.compiler import arrays, marks, slots
 from stylobate.compiler.arithmetic import Arithmetic
 from stylobate.compiler.names import Names, assigned_in
+from stylobate.compiler.reads import Reads
 from stylobate.compiler.refusal import LanesRefusal, Refusal, at_its_place
 from stylobate.compiler.slots import has_array
 from stylobate.compiler.sources import Source
@@ -21,6 +22,7 @@ class Callees(Protocol):
     """Functions that are compiled together."""
 
     lanes: int
+    reads: Reads
 
     def call(
         self, caller: "Body", function: Callable[..., Any], values: list[Value], keywords: Mapping[str, Value]
@@ -44,7 +46,7 @@ class Body(Names):
     """
 
     def __init__(self, callees: Callees, source: Source, arithmetic: Arithmetic, kinds: Mapping[str, Kind]) -> None:
-        super().__init__(source, arithmetic, kinds)
+        super().__init__(source, arithmetic, callees.reads, kinds)
         self.callees = callees
         self.result: Value = None
         self.exit = self.text.new_block()
@@ -311,7 +313,7 @@ class Body(Names):
     def _is_tuple(self, name: str) -> bool:
         known = self._bound.get(name, self._slots.get(name))
         if known is None and name not in self._own:
-            known = self.source.names.get(name)
+            known = self.read(name)
         return isinstance(known, tuple)
 
     def _over_lanes(self, node: ast.For, count: Value) -> None:

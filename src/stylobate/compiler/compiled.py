@@ -4,13 +4,13 @@ import ctypes
 import types
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import cached_property
 from typing import Any
 
 import numpy as np
 
 from stylobate.compiler import kept, machine
 from stylobate.compiler.programs import Program
+from stylobate.compiler.reads import Reads, Watch
 from stylobate.compiler.refusal import CompileError
 from stylobate.compiler.unit import ArrayArgument, Unit
 from stylobate.compiler.values import Element, Kind
@@ -26,7 +26,7 @@ class Compiled:
     name
         Name of the function.
     program
-        Program of its module.
+        Function that returns the program of its module; it is called again if a value that was read has changed.
     functions
         Functions of the model, by their names in the module.
     arguments
@@ -40,7 +40,7 @@ class Compiled:
     """
 
     name: str
-    program: Program
+    program: Callable[[], Program]
     functions: Mapping[str, Callable[..., Any]]
     arguments: Sequence[ArrayArgument | Kind]
     model: str
@@ -61,33 +61,53 @@ class Compiled:
         passed: list[Any] = []
         for argument, value in zip(self.arguments, values, strict=True):
             passed += [value] if isinstance(argument, Kind) else _passed(argument, value)
-        return int(self._code(*passed))
+        return int(self._code()(*passed))
 
     def plain(self, *values: Any) -> int:
         """Call the function as plain Python, without compilation."""
         with np.errstate(all="ignore"):  # unused numbers may be NaN
             return int(getattr(self.module, self.name)(*values) or 0)
 
-    @cached_property
+    @property
     def module(self) -> types.ModuleType:
-        """Module of plain Python."""
-        return self.program.module(f"{self._words}_{id(self)}", self.functions)
+        """Module of plain Python; it is made again if its text has changed."""
+        return self._module_of(self.program())
 
-    def unit(self, *, exact: bool = False) -> Unit:
+    def _module_of(self, program: Program) -> types.ModuleType:
+        own, texts = vars(self), list(program.texts)
+        if own.get("_texts") != texts:
+            own["_module"] = program.module(f"{self._words}_{id(self)}", self.functions)
+            own["_texts"] = texts
+        return own["_module"]  # type: ignore[no-any-return]
+
+    def unit(self, *, exact: bool = False, reads: Reads | None = None) -> Unit:
         """Return a new unit for functions of the module."""
         fast = [function for name, function in self.functions.items() if name in self.fast]
-        return Unit(lanes=machine.lanes(), fast=fast, exact=exact)
+        return Unit(lanes=machine.lanes(), fast=fast, exact=exact, reads=reads)
 
     @property
     def _words(self) -> str:
         return "".join(character if character.isalnum() else "_" for character in self.description)
 
-    @cached_property
     def _code(self) -> Callable[..., int]:
+        """Return the machine code; it is loaded again if a value that was read while compiling has changed."""
+        function, watch = vars(self).get("_loaded", (None, None))
+        if watch is None or not watch.unchanged():
+            vars(self)["_loaded"] = function, _ = self._load()
+        return function  # type: ignore[no-any-return]
+
+    def _load(self) -> tuple[Callable[..., int], Watch]:
+        program = self.program()
+
+        def write(reads: Reads) -> str:
+            unit = self.unit(reads=reads)
+            unit.export(getattr(self._module_of(program), self.name), self.name, self.arguments)
+            return unit.module.text(machine.attributes())
+
         try:
-            parts = [repr((self.name, self.arguments, self.fast)), *self.program.texts]
+            parts = [repr((self.name, self.arguments, self.fast)), *program.texts]
             logged = None if self.brief else self.description
-            engine = kept.code_of(self._words, parts, self.functions, self._written, logged)
+            engine, watch = kept.code_of(self._words, parts, self.functions, write, logged)
         except CompileError as error:
             message = (
                 f"model {self.model} cannot be compiled; `simulate` computes single runs without compilation: {error}"
@@ -96,12 +116,7 @@ class Compiled:
         kinds = [kind for argument in self.arguments for kind in _types_of(argument)]
         function = ctypes.CFUNCTYPE(ctypes.c_int64, *kinds)(engine.get_function_address(self.name))
         vars(function)["engine"] = engine  # keeps the code alive
-        return function
-
-    def _written(self) -> str:
-        unit = self.unit()
-        unit.export(getattr(self.module, self.name), self.name, self.arguments)
-        return unit.module.text(machine.attributes())
+        return function, watch
 
 
 def _passed(argument: ArrayArgument, value: np.ndarray[Any, Any]) -> list[int]:

@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 
 from stylobate.compiler import arrays, marks, mathematics, slots
-from stylobate.compiler.arithmetic import Arithmetic
+from stylobate.compiler.arithmetic import Arithmetic, truth_of_known
+from stylobate.compiler.reads import Reads, is_plain
 from stylobate.compiler.refusal import Refusal
 from stylobate.compiler.values import Array, Kind, LaneIndex, Number, Value, kind_of
 
@@ -18,10 +19,20 @@ _OF_ARRAYS: dict[Any, Callable[..., Array]] = {marks.flat: arrays.flat, np.zeros
 
 
 class Expressions(ABC):
-    """Compiler of the expressions of one function."""
+    """Compiler of the expressions of one function.
 
-    def __init__(self, arithmetic: Arithmetic) -> None:
-        self.arithmetic = arithmetic
+    Parameters
+    ----------
+    arithmetic
+        Writer of its instructions.
+    reads
+        Log of the values that it reads.
+    followed
+        Whether the function belongs to a model, so that changes of these values must be noticed.
+    """
+
+    def __init__(self, arithmetic: Arithmetic, reads: Reads, *, followed: bool) -> None:
+        self.arithmetic, self.reads, self.followed = arithmetic, reads, followed
         self.text = arithmetic.text
 
     @property
@@ -99,7 +110,12 @@ class Expressions(ABC):
         if isinstance(owner, Array | Number | LaneIndex) or foreign or not hasattr(owner, node.attr):
             message = f"{ast.unparse(node)} is not known at compile time"
             raise Refusal(message)
-        return self._usable(getattr(owner, node.attr))
+        value = getattr(owner, node.attr)
+        if self.followed and not (isinstance(owner, tuple) or is_plain(owner) or self.reads.logs(owner)):
+            message = f"a change of {ast.unparse(node)} would not be noticed; keep it in a variable of the module"
+            raise Refusal(message)
+        self.reads.log(owner, "attribute", node.attr, value)
+        return self._usable(value)
 
     def _items(self, nodes: list[ast.expr]) -> list[Value]:
         out: list[Value] = []
@@ -121,7 +137,7 @@ class Expressions(ABC):
 
     @staticmethod
     def _tuple(value: Value) -> Value:
-        if isinstance(value, Array | Number):
+        if not isinstance(value, tuple | list | range):
             message = "only tuples are enumerated, zipped and reversed; write a loop over range(len(...))"
             raise Refusal(message)
         return value
@@ -146,7 +162,7 @@ class Expressions(ABC):
         if isinstance(value, Array | LaneIndex):
             message = f"{ast.unparse(node)} is not a condition"
             raise Refusal(message)
-        return self.arithmetic.truth(value) if isinstance(value, Number) else bool(value)
+        return self.arithmetic.truth(value) if isinstance(value, Number) else truth_of_known(value)
 
     def _all_or_any(self, node: ast.BoolOp, *, condition: bool) -> Value:
         """Evaluate `and` or `or`, outside lanes with the short circuit of Python."""
@@ -257,7 +273,7 @@ class Expressions(ABC):
         keywords = {keyword.arg or "": self.value(keyword.value) for keyword in node.keywords}
         if mathematics.is_mathematics(function) and not keywords:
             return mathematics.call(self.arithmetic, function, values)
-        if isinstance(function, type) and hasattr(function, "_fields"):
+        if _is_named_tuple(function):
             return function(*values, **keywords)
         if function in _OF_ARRAYS and not keywords:
             if function is np.zeros and self.in_loop:
@@ -269,6 +285,14 @@ class Expressions(ABC):
         if function in _OVER_TUPLES:
             return tuple(function(*map(self._tuple, values), **keywords))
         return self.call(function, values, keywords)
+
+
+def _is_named_tuple(function: Any) -> bool:
+    """Return whether this is the class of a named tuple, whose creation does nothing else."""
+    if not isinstance(function, type) or not issubclass(function, tuple) or function.__init__ is not tuple.__init__:
+        return False
+    names = getattr(function.__new__, "__globals__", {})  # of `collections.namedtuple`
+    return str(names.get("__name__", "")).startswith("namedtuple_")
 
 
 @cache

@@ -14,6 +14,9 @@ from stylobate.compiler.sources import plain_function
 
 Function = Callable[..., Any]
 
+_VERSIONED = ("stylobate", "builtins", "abc", "typing", "enum", "numpy")
+"""Packages whose classes a user does not change."""
+
 
 def fingerprint(function: Function) -> str:
     """Return a digest of `function`: its code, and the constants and functions that it uses."""
@@ -29,7 +32,7 @@ def _parts(function: types.FunctionType, seen: set[int]) -> Iterator[str]:
         return
     seen.add(id(function))
     code = function.__code__
-    yield from _code_parts(code)
+    yield from code_parts(code)
     yield f"fast {is_fast(function)}"
     yield from _value_parts(function.__defaults__ or (), seen)
     yield from _value_parts(tuple(sorted((function.__kwdefaults__ or {}).items())), seen)
@@ -55,7 +58,7 @@ def _value_parts(value: object, seen: set[int]) -> Iterator[str]:
     plain = getattr(value, "py_func", value)
     if isinstance(plain, types.FunctionType):
         yield from _parts(plain, seen)
-    elif isinstance(plain, tuple):
+    elif isinstance(plain, tuple | list):
         yield f"{type(plain).__name__} of {len(plain)}"
         for part in plain:
             yield from _value_parts(part, seen)
@@ -64,6 +67,19 @@ def _value_parts(value: object, seen: set[int]) -> Iterator[str]:
         yield from _value_parts(tuple(plain._field_defaults.items()), seen)  # type: ignore[attr-defined]
     else:
         yield _described(plain)
+        yield from _attribute_parts(plain, seen)
+
+
+def _attribute_parts(thing: object, seen: set[int]) -> Iterator[str]:
+    """Yield the values that belong to an object or class of the user; functions count where they are called."""
+    kind = thing if isinstance(thing, type) else type(thing)
+    if id(thing) in seen or isinstance(thing, types.ModuleType) or kind.__module__.split(".")[0] in _VERSIONED:
+        return
+    seen.add(id(thing))
+    for name, value in sorted(getattr(thing, "__dict__", {}).items()):
+        if not (name.startswith("__") or callable(value) or isinstance(value, staticmethod | classmethod | property)):
+            yield name
+            yield from _value_parts(value, seen)
 
 
 def _described(value: object) -> str:
@@ -77,19 +93,20 @@ def _described(value: object) -> str:
     return str(getattr(value, "__qualname__", type(value).__qualname__))
 
 
-def _code_parts(code: types.CodeType) -> Iterator[str]:
+def code_parts(code: types.CodeType) -> Iterator[str]:
+    """Yield texts that differ between different codes, without the names of file and function."""
     yield code.co_code.hex()
-    yield repr(code.co_names)
-    yield repr(code.co_varnames)
+    yield repr((code.co_names, code.co_varnames, code.co_freevars, code.co_cellvars))
+    yield repr((code.co_argcount, code.co_posonlyargcount, code.co_kwonlyargcount, code.co_flags))
     for constant in code.co_consts:
         if isinstance(constant, types.CodeType):
-            yield from _code_parts(constant)
+            yield from code_parts(constant)
         else:
             yield repr(constant)
 
 
 def global_names(code: types.CodeType) -> Iterator[str]:
-    """Yield the names that `code` looks up in its module, with their attributes, such as `math.pi`."""
+    """Yield the names that `code`, generators included, looks up in its module, with attributes, such as `math.pi`."""
     name = ""
     for instruction in dis.get_instructions(code):
         if instruction.opname == "LOAD_GLOBAL":
@@ -101,3 +118,6 @@ def global_names(code: types.CodeType) -> Iterator[str]:
         elif name:
             yield name
             name = ""
+    for constant in code.co_consts:
+        if isinstance(constant, types.CodeType):
+            yield from global_names(constant)

@@ -3,6 +3,7 @@
 import ast
 import math
 from collections.abc import Callable
+from enum import EnumType
 from typing import Any
 
 import numpy as np
@@ -72,7 +73,7 @@ def _name_of(function: Any) -> str | None:
 def _length(value: Value) -> Value:
     if isinstance(value, Array):
         return value.shape[0]
-    if hasattr(value, "__len__"):
+    if isinstance(value, tuple | list | range | str | EnumType):
         return len(value)
     message = "len(...) needs an array, or a value that is known at compile time"
     raise Refusal(message)

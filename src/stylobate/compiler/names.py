@@ -7,6 +7,7 @@ from functools import cache
 from stylobate.compiler import arrays, slots
 from stylobate.compiler.arithmetic import Arithmetic
 from stylobate.compiler.expressions import Expressions
+from stylobate.compiler.reads import Reads
 from stylobate.compiler.refusal import Refusal
 from stylobate.compiler.sources import Source
 from stylobate.compiler.values import Array, Kind, Number, Value
@@ -27,12 +28,14 @@ class Names(Expressions):
         The function.
     arithmetic
         Writer of its instructions.
+    reads
+        Log of the values that it reads.
     kinds
         Minimum kind of the slot of each name.
     """
 
-    def __init__(self, source: Source, arithmetic: Arithmetic, kinds: Mapping[str, Kind]) -> None:
-        super().__init__(arithmetic)
+    def __init__(self, source: Source, arithmetic: Arithmetic, reads: Reads, kinds: Mapping[str, Kind]) -> None:
+        super().__init__(arithmetic, reads, followed=reads.logs(source.function))
         self.source, self._kinds = source, kinds
         self._bound: dict[str, Value] = {}
         self._slots: dict[str, Value] = {}
@@ -52,10 +55,12 @@ class Names(Expressions):
             message = f"{name} has no value here, or one in lanes only"
             raise Refusal(message)
         try:
-            return self.source.find(name)
-        except KeyError:
+            found = self.source.find(name)
+        except (LookupError, ValueError):
             message = f"{name} is not defined"
             raise Refusal(message) from None
+        self.reads.log(self.source.function, "name", name, found)
+        return found
 
     def assign(self, name: str, value: Value) -> None:
         """Assign a value to a name."""

@@ -46,6 +46,19 @@ def over_rows(function: Callable[..., Any], rows: Floats, *, name: str) -> Float
 
 @cache
 def _compiled(function: Callable[..., Any], arguments: int, results: int, name: str) -> Compiled:
+    program = Written(_text(arguments, results))
+    return Compiled(
+        name="over_rows",
+        program=lambda: program,
+        functions={"function": function},
+        arguments=(ArrayArgument((None, arguments)), ArrayArgument((None, results))),
+        model=name,
+        description=f"{name}, {getattr(function, '__name__', 'function')} along runs",
+        brief=True,
+    )
+
+
+def _text(arguments: int, results: int) -> str:
     numbers = ", ".join(f"rows[k, {j}]" for j in range(arguments))
     lines = [
         "def over_rows(rows, out):",
@@ -53,12 +66,4 @@ def _compiled(function: Callable[..., Any], arguments: int, results: int, name: 
         f"        found = function({numbers})",
         *(f"        out[k, {j}] = found[{j}]" for j in range(results)),
     ]
-    return Compiled(
-        name="over_rows",
-        program=Written("\n".join(lines) + "\n"),
-        functions={"function": function},
-        arguments=(ArrayArgument((None, arguments)), ArrayArgument((None, results))),
-        model=name,
-        description=f"{name}, {getattr(function, '__name__', 'function')} along runs",
-        brief=True,
-    )
+    return "\n".join(lines) + "\n"

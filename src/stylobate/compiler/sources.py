@@ -15,6 +15,7 @@ from stylobate.compiler.marks import is_fast
 from stylobate.compiler.refusal import CompileError
 from stylobate.compiler.written import lines_of
 
+_Cached = type(cache(len))
 _Node = ast.FunctionDef | ast.Lambda
 _Functions = dict[tuple[str, int], tuple[list[_Node], types.CodeType | None]]
 
@@ -25,35 +26,49 @@ class Source:
 
     Parameters
     ----------
+    function
+        The function.
     name, file
         Name and file in messages.
     arguments, body
         Syntax tree; the body of a lambda is one return statement.
     signature
         Arguments with default values.
-    names
-        Names of its module and of enclosing functions.
     fast
         Whether the function is marked `fast`.
     """
 
+    function: types.FunctionType
     name: str
     file: str
     arguments: ast.arguments
     body: tuple[ast.stmt, ...]
     signature: inspect.Signature
-    names: dict[str, Any]
     fast: bool
 
     def find(self, name: str) -> Any:
-        """Return the value of a name of the module.
+        """Return the value of a name of an enclosing function, of the module or of Python.
 
         Raises
         ------
-        KeyError
-            If the name does not exist.
+        LookupError, ValueError
+            If the name has no value.
         """
-        return self.names[name] if name in self.names else vars(builtins)[name]
+        return value_of_name(self.function, name)
+
+
+def value_of_name(function: types.FunctionType, name: str) -> Any:
+    """Return the value of a name that a function does not assign to.
+
+    Raises
+    ------
+    LookupError, ValueError
+        If the name has no value.
+    """
+    if function.__closure__ and name in function.__code__.co_freevars:
+        return function.__closure__[function.__code__.co_freevars.index(name)].cell_contents
+    names = function.__globals__
+    return names[name] if name in names else vars(builtins)[name]
 
 
 def source_of(function: Callable[..., Any]) -> Source:
@@ -66,27 +81,39 @@ def source_of(function: Callable[..., Any]) -> Source:
     """
     plain = plain_function(function)
     node = _node_of(plain.__code__)
-    names = plain.__globals__
-    if plain.__closure__:
-        names = {**names, **dict(zip(plain.__code__.co_freevars, map(_content, plain.__closure__), strict=True))}
     body = (ast.Return(node.body, lineno=node.lineno),) if isinstance(node, ast.Lambda) else tuple(node.body)
     signature = inspect.signature(plain, follow_wrapped=False)
-    return Source(plain.__name__, plain.__code__.co_filename, node.args, body, signature, names, is_fast(plain))
+    name, file = plain.__name__, plain.__code__.co_filename
+    return Source(plain, name, file, node.args, body, signature, is_fast(plain))
 
 
 def plain_function(function: Callable[..., Any]) -> types.FunctionType:
-    """Return the Python function of a static method, or of a function that another library compiled."""
+    """Return the Python function of a static method, of a cache, or of a function that another library compiled.
+
+    Raises
+    ------
+    CompileError
+        If there is no such function. What other decorators make of a function is unknown.
+    """
     plain: Any = function
-    while not isinstance(plain, types.FunctionType) and (hasattr(plain, "py_func") or hasattr(plain, "__wrapped__")):
-        plain = getattr(plain, "py_func", None) or plain.__wrapped__
-    if not isinstance(plain, types.FunctionType):
-        message = f"{getattr(function, '__name__', repr(function))} is not a function written in Python"
-        raise CompileError(message)
+    while not isinstance(plain, types.FunctionType):
+        if isinstance(plain, staticmethod | _Cached):
+            plain = plain.__wrapped__
+        elif hasattr(plain, "py_func"):
+            plain = plain.py_func
+        else:
+            raise CompileError(_reason_against(function))
     return plain
 
 
-def _content(cell: types.CellType) -> Any:
-    return cell.cell_contents
+def _reason_against(function: Any) -> str:
+    name = getattr(function, "__name__", repr(function))
+    if hasattr(function, "__wrapped__") and not isinstance(function, types.MethodType):
+        kind = type(function).__qualname__
+        return (
+            f"{name} is an object of the class {kind}, made by a decorator; write a decorator that returns a function"
+        )
+    return f"{name} is not a function written in Python"
 
 
 def _node_of(code: types.CodeType) -> _Node:

@@ -1,6 +1,7 @@
 """Unit of compiled code: functions, each compiled once for each structure of its arguments."""
 
 import ast
+import inspect
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
@@ -9,6 +10,7 @@ from typing import Any
 
 from stylobate.compiler.arithmetic import Arithmetic
 from stylobate.compiler.body import Body
+from stylobate.compiler.reads import Reads
 from stylobate.compiler.refusal import CompileError, LanesRefusal, Refusal
 from stylobate.compiler.slots import WiderKindError
 from stylobate.compiler.sources import Source, plain_function, source_of
@@ -49,10 +51,19 @@ class Unit:
         Functions that are compiled as if they were marked `fast`.
     exact
         Whether no arithmetic is fast, so that results equal those of plain Python.
+    reads
+        Log of the values that are read.
     """
 
-    def __init__(self, *, lanes: int, fast: Collection[Callable[..., Any]] = (), exact: bool = False) -> None:
-        self.module = ModuleText()
+    def __init__(
+        self,
+        *,
+        lanes: int,
+        fast: Collection[Callable[..., Any]] = (),
+        exact: bool = False,
+        reads: Reads | None = None,
+    ) -> None:
+        self.module, self.reads = ModuleText(), Reads({}) if reads is None else reads
         self.lanes, self.exact = lanes, exact
         self._fast = {plain_function(function) for function in fast}
         self._sources: dict[FunctionType, Source] = {}
@@ -81,12 +92,12 @@ class Unit:
     ) -> Value:
         """Return the result of a function that `caller` calls; in lanes the function is inlined."""
         try:
-            plain = plain_function(function)
+            plain = self.reads.plain(function)
         except CompileError as error:
             raise Refusal(error) from error
         source, arithmetic = self._source(plain), caller.arithmetic
         fast = bool(arithmetic.flags)
-        bound = _bound(source, values, keywords)
+        bound = _bound(self.reads, source, values, keywords)
         if not arithmetic.lanes:
             ordered = list(bound.values())
             return _called(arithmetic, self._specialised(plain, ordered, fast=fast), ordered)
@@ -220,14 +231,18 @@ def _structure(value: Value) -> Any:
             return (type(value), id(value))
 
 
-def _bound(source: Source, values: list[Value], keywords: Mapping[str, Value]) -> dict[str, Value]:
+def _bound(reads: Reads, source: Source, values: list[Value], keywords: Mapping[str, Value]) -> dict[str, Value]:
     """Return the arguments of a call by name, including defaults."""
     try:
         bound = source.signature.bind(*values, **keywords)
     except TypeError as error:
         message = f"{source.name}: {error}"
         raise Refusal(message) from error
+    given = set(bound.arguments)
     bound.apply_defaults()
+    for name, value in bound.arguments.items():
+        if name not in given and source.signature.parameters[name].default is not inspect.Parameter.empty:
+            reads.log(source.function, "default", name, value)
     return dict(bound.arguments)
 
 

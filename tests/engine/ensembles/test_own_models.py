@@ -9,6 +9,7 @@ import pytest
 
 import stylobate as sb
 from stylobate.compiler.fingerprint import fingerprint
+from stylobate.engine.flow.periodic import PeriodicSystem
 from stylobate.errors import UnsupportedError
 
 COLUMN = sb.Column.dimensionless(0.1)
@@ -174,6 +175,37 @@ def test_a_model_whose_functions_call_helpers_and_read_constants_of_their_module
     assert np.abs(changed["end_tilt"] - data["end_tilt"]).max() > 1e-5
 
 
+CHANGING = """
+K = 2.0
+WEIGHTS = (0.75, 1.75)
+CFG = sb.Column.dimensionless(0.1)  # an object with a number
+
+
+def law(vx, vy, k):
+    return sum(K * w for w in WEIGHTS) * math.sqrt(vx * vx + vy * vy) + 0.0 * CFG.radius
+"""
+
+
+@pytest.mark.parametrize("kind", ["ensemble", "single run", "taylor", "flow"])
+def test_a_constant_that_changes_after_a_run_is_seen_by_the_next(written, kind):
+    def result(module):
+        model = module.Dragged(COLUMN)
+        if kind == "flow":
+            return PeriodicSystem(model, CIRCLE).carry(np.array([0.04, 0.0, 0.0, 0.07]), 0.0, 1.0).by_start
+        if kind == "single run":
+            return sb.simulate(model, CIRCLE, **TURNING).data["tilt"].values
+        method = {"method": "taylor"} if kind == "taylor" else {}
+        return sb.simulate_ensemble(model, CIRCLE, **TURNING, **method)["end_tilt"].values
+
+    text = dragged("law(vx, vy, k)", CHANGING).replace("c / math.hypot(x, y)", "c / math.sqrt(x * x + y * y)")
+    module, other = written(text), written(text.replace("K = 2.0", "K = 40.0"))
+    before = result(module)
+    expected = result(other)  # its code is not that of the first module
+    module.K = 40.0
+    np.testing.assert_array_equal(result(module), expected)
+    assert np.abs(expected - before).max() > 1e-5
+
+
 def test_a_model_whose_functions_branch(written):
     before = (
         "def resistance(vx, vy, k):\n    speed = math.hypot(vx, vy)\n    if speed > 0.05:\n        return k * speed\n"
@@ -336,8 +368,12 @@ def test_functions_that_the_user_compiled_already_are_taken_and_told_apart(writt
 MORE = """
 from collections import namedtuple
 from enum import IntEnum
+from types import SimpleNamespace
 
 from stylobate.compiler.marks import fast
+
+SCALE, NESTED = 1.25, [SimpleNamespace(k=6.0)]
+CFG = SimpleNamespace(k=7.0)
 
 
 class Law:
@@ -359,7 +395,19 @@ def made(factor):
     return lambda v: v * factor
 
 
-low, high = made(1.0), made(3.0)
+def made_of(numbers):
+    return lambda v: v * numbers.k
+
+
+def of(law, v):
+    return law.FACTOR * v
+
+
+class Passed:
+    FACTOR = 9.0
+
+
+low, high, of_object = made(1.0), made(3.0), made_of(SimpleNamespace(k=8.0))
 
 
 def plain(v):
@@ -368,6 +416,9 @@ def plain(v):
 
 def shown(v, *, shift=0.25):
     pair = Pair(v)
+    v = sum(SCALE * w for w in (v, shift)) + NESTED[0].k + of_object(v) + of(Passed, v)
+    config = CFG
+    v += config.k
     return Law.G * Law.Deep.K + Color.RED * pair.one + shift + low(v) * high(v) + plain(v) + len(COUNTED)
 """
 
@@ -375,6 +426,11 @@ def shown(v, *, shift=0.25):
 @pytest.mark.parametrize(
     ("old", "new"),
     [
+        ("1.25", "1.5"),
+        ("k=6.0", "k=6.5"),
+        ("k=7.0", "k=7.5"),
+        ("k=8.0", "k=8.5"),
+        ("FACTOR = 9.0", "FACTOR = 9.5"),
         ("G = 1.0", "G = 1.5"),
         ("K = 2.0", "K = 2.5"),
         ("RED = 3", "RED = 4"),

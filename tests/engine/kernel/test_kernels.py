@@ -47,9 +47,9 @@ def run(script, folder):
 @pytest.fixture
 def nothing_loaded():
     """No kernel is in memory, as in a new process."""
-    kernels.kernel_of.cache_clear()
+    kernels._kernel.cache_clear()
     yield
-    kernels.kernel_of.cache_clear()
+    kernels._kernel.cache_clear()
 
 
 @pytest.mark.usefixtures("nothing_loaded")
@@ -186,5 +186,5 @@ def test_every_name_that_the_driver_leaves_open_is_bound_by_some_kernel(plan_of)
         (sb.Sliding(column), {}, False),
     ):
         compiled = kernels.kernel_of(type(model), plan_of(model, CIRCLE, **options).shape(planar=planar)).compiled
-        given |= {*compiled.program.names, *compiled.functions}
+        given |= {*compiled.program().names, *compiled.functions}
     assert set(bound.__annotations__) == given

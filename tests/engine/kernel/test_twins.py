@@ -72,8 +72,8 @@ def test_a_run_with_implicit_steps_has_the_bits_of_plain_python(plan_of):
     kernel = kernel_of(sb.Sliding, plan.shape(planar=False))
     # Looks come early, so that few steps are explicit.
     early = {"LOOK_EVERY": 5.0, "LOOK_AGAIN": 5.0, "STIFF_STEPS": 2.0}
-    program = kernel.compiled.program
-    compiled = replace(kernel.compiled, program=replace(program, names={**program.names, **early}))
+    program = kernel.compiled.program()
+    compiled = replace(kernel.compiled, program=lambda: replace(program, names={**program.names, **early}))
     unit = compiled.unit(exact=True)
     unit.export(compiled.module.advance, "advance", compiled.arguments)
     engine = machine.linked(machine.object_code(unit.module.text(machine.attributes())))

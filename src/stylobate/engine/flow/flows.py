@@ -20,14 +20,10 @@ _VECTOR = 8
 """Maximum number of floats in a vector of a processor."""
 
 
-@cache
 def flow_of(model: type[Model], states: int, numbers: int, *, planar: bool) -> Compiled:
     """Return the flow of a class of models with these numbers of states and parameters, three-dimensional or planar.
 
-    Raises
-    ------
-    UnsupportedError
-        If the equations cannot be differentiated.
+    Its first call raises `UnsupportedError` if the equations cannot be differentiated.
     """
     rates = model.planar_rates if planar else model.rates
     if rates is None:
@@ -36,16 +32,33 @@ def flow_of(model: type[Model], states: int, numbers: int, *, planar: bool) -> C
     loses = planar and model.impact_map is not None
     needed = ["impact_map", "from_plane", "tilt_of"] if loses else [] if planar else ["tilt_of"]
     functions: dict[str, Callable[..., Any]] = {"rates": rates, **{name: getattr(model, name) for name in needed}}
-    order, accelerations = (2, 2) if planar else (states, 3)
-    written = None
-    if planar or model.jacobian is None:
-        written = Written(_jacobian_source(rates, order, accelerations, numbers, planar=planar))
-    else:
+    if not planar and model.jacobian is not None:
         functions["jacobian"] = model.jacobian
+    return _flow(model, tuple(functions.items()), states, numbers, planar=planar, loses=loses)
+
+
+@cache
+def _flow(
+    model: type[Model],
+    functions: tuple[tuple[str, Callable[..., Any]], ...],
+    states: int,
+    numbers: int,
+    *,
+    planar: bool,
+    loses: bool,
+) -> Compiled:
+    order, accelerations = (2, 2) if planar else (states, 3)
+    of_model = dict(functions)
+
+    def jacobian() -> Written | None:
+        if "jacobian" in of_model:
+            return None
+        return Written(_jacobian_source(of_model["rates"], order, accelerations, numbers, planar=planar))
+
     vector, terms = ArrayArgument((numbers,)), ArrayArgument((None, 1 + 2 * accelerations))
     return Compiled(
         name="flow",
-        program=Bound(
+        program=lambda: Bound(
             modules=[integration],
             names={
                 "ORDER": order,
@@ -55,10 +68,10 @@ def flow_of(model: type[Model], states: int, numbers: int, *, planar: bool) -> C
                 "PLANAR": planar,
                 "LOSES": loses,
             },
-            written=written,
+            written=jacobian(),
             imported=[dop853, elementary, status, sums],
         ),
-        functions=functions,
+        functions=of_model,
         arguments=(
             ArrayArgument((order, columns_of(order))),
             *[Kind.FLOAT] * 3,

@@ -102,9 +102,20 @@ def expand_source(model: type[Model], shape: Shape) -> str:
 
     Its arguments are the states at the start of the step, the coefficients of each acceleration component and the
     parameters. Its results are the coefficients of the states, of the rates and of the square of the tilt.
+
+    Raises
+    ------
+    UnsupportedError
+        If a change of values has given the equations another structure than `shape` has.
     """
     vertical = "az" in shape.forcing.components
     expansion = Expansion(model, shape.states, shape.parameters, vertical=vertical)
+    if expansion.integrals != shape.series:
+        message = (
+            f"the equations of model {model.name} have another structure since values that they read have changed; "
+            "start again, or use method='dop853'"
+        )
+        raise UnsupportedError(message)
     states, orders = range(shape.states), range(SERIES_ORDER + 1)
     lines = [f"s{j}_0 = start[{j}]" for j in states]
     lines += [f"s{integral}_1 = s{j}_0" for j, integral in enumerate(shape.series) if integral != j]

@@ -57,19 +57,23 @@ class Kernel:
         return bool(advance(table, pieces, halt, buffer))
 
 
-@cache
 def kernel_of(model: type[Model], shape: Shape) -> Kernel:
-    """Return the kernel of a class of models for this shape."""
+    """Return the kernel of a class of models, with its present functions, for this shape."""
+    return _kernel(model, shape, tuple(_functions(model, shape).items()))
+
+
+@cache
+def _kernel(model: type[Model], shape: Shape, functions: tuple[tuple[str, Callable[..., Any]], ...]) -> Kernel:
     table = ArrayArgument((None, None))
     compiled = Compiled(
         name="advance",
-        program=Bound(
+        program=lambda: Bound(
             modules=driver.modules(switching=shape.guards > 0),
             names={"R": _rows(shape), **_constants(model, shape)},
             written=Written(expand_source(model, shape)) if shape.series else None,
             imported=_USED_AS_THEY_ARE,
         ),
-        functions=_functions(model, shape),
+        functions=dict(functions),
         arguments=(table, table, ArrayArgument((1,), Element.SIGNAL), ArrayArgument((len(shape.rows()), shape.width))),
         model=model.name,
         description=_in_words(model, shape),

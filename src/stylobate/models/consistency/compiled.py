@@ -137,7 +137,7 @@ def _program(function: Callable[..., Any], arguments: int, results: int, name: s
     ]
     return Compiled(
         name="evaluate",
-        program=Written("\n".join(lines) + "\n"),
+        program=lambda: Written("\n".join(lines) + "\n"),
         functions={"function": function},
         arguments=(ArrayArgument((arguments, _COUNT)), ArrayArgument((results, _COUNT))),
         model=name,
