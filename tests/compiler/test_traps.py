@@ -316,3 +316,100 @@ def test_decorators_that_are_not_understood_are_refused(function, message):
 def test_a_cache_of_results_computes_what_its_function_computes():
     (compiled, _), (plain, _) = both_ways(of_a_cache, X)
     np.testing.assert_array_equal(compiled[0], plain[0])
+
+
+def assigned_if_positive(x):
+    if x[0] > 0.0:
+        k = 0.3
+    x[1] = k
+
+
+def assigned_before_a_return(x):
+    if x[0] > 0.0:
+        k = 0.3
+    elif x[1] > 0.0:
+        return
+    x[1] = k
+
+
+def assigned_in_a_loop_of_unknown_length(x, out):
+    for i in range(int(x[0])):
+        k = x[i]
+    out[0] = k
+
+
+def index_of_a_loop_of_unknown_length(x, out):
+    for i in range(int(x[0])):
+        out[i] = 1.0
+    out[0] = i
+
+
+def assigned_after_a_break(x):
+    while True:
+        if x[0] > 0.0:
+            break
+        k = 2.0
+    x[1] = k
+
+
+def assigned_after_a_continue(x):
+    for i in range(3):
+        if x[i] > 0.0:
+            continue
+        k = 2.0
+    x[1] = k
+
+
+def changed_before_it_is_assigned(x):
+    if x[0] > 0.0:
+        k = 1.0
+    k += 1.0
+    x[0] = k
+
+
+UNASSIGNED = [
+    *(assigned_if_positive, assigned_before_a_return, assigned_in_a_loop_of_unknown_length),
+    *(index_of_a_loop_of_unknown_length, assigned_after_a_break, assigned_after_a_continue),
+    changed_before_it_is_assigned,
+]
+
+
+@pytest.mark.parametrize("function", UNASSIGNED, ids=lambda function: function.__name__)
+def test_a_name_without_a_value_on_some_path_is_refused(function):
+    name = "i" if function is index_of_a_loop_of_unknown_length else "k"
+    with pytest.raises(CompileError, match=f"{name} is not assigned on every path to its use; assign it before the"):
+        text_of(function, *[X] * function.__code__.co_argcount)
+
+
+def assigned_on_each_path(x, out):
+    if x[0] > 0.0:  # noqa: SIM108
+        k = 1.0
+    else:
+        k = 2.0
+    for i in range(3):
+        if x[i] > 5.0:
+            m = 1.0
+            break
+        m = 2.0
+    while True:
+        n = 3.0
+        if x[0] > 0.0 or n > 5.0:
+            break
+    if x[1] > 0.0:
+        j = 1.0
+    else:
+        out[0] = 1.0
+        return
+    if len(out) > 2:  # noqa: SIM108
+        p = 5.0
+    else:
+        p = 6.0
+    out[1] = k + m + n + j + i + p
+
+
+@pytest.mark.parametrize("second", [1.0, -1.0])
+def test_a_name_with_a_value_on_each_path_has_it(second):
+    x = X.copy()
+    x[1] = second
+    (compiled, _), (plain, _) = both_ways(assigned_on_each_path, x, np.zeros(12))
+    np.testing.assert_array_equal(compiled[1], plain[1])

@@ -14,6 +14,7 @@ The accepted language
 * Arrays of floats: elements, slices and rows as views, copies of whole rows, `np.zeros` of a small known shape. Unknown
   indices must lie between 0 and the length; they are not checked.
 * `if`, `while`, `for` over `range` and over tuples, `break`, `continue`, `return`; assignments, also to several names.
+  A name must be assigned on every path to its use.
 * Calls of functions written in Python: functions of modules, static methods of classes, closures and lambdas; default
   values, keywords and `*arguments`.
 * `for i in lanes(n)`: straight-line code with conditional expressions, for as many `i` at once as a vector holds. An
@@ -30,6 +31,4 @@ Results equal those of Python to the bit, with these differences:
 * `int` of a number beyond 64 bits gives the nearest number within 64 bits.
 * Small whole powers are products; other powers and the functions of NumPy are those of the C library.
 * Functions marked `fast` may fuse products with sums and divide by reciprocals.
-
-A name must be assigned on every path to its use; this is not checked.
 """

@@ -252,6 +252,9 @@ class Body(Names):
         self.text.begin(head)
         index = Number(Kind.INTEGER, self.text.value(f"load i64, ptr {counter}"))
         self.text.branch(self.arithmetic.compared(ast.Lt(), index, end).text, body, done)
+        certain = known and start < stop
+        if certain:  # the loop ends after a pass, not before the first one
+            done.reached = False
         self.text.begin(body)
         self._depth += 1
         self.assign_to(node.target, index)
@@ -259,6 +262,8 @@ class Body(Names):
         self._pass(node.body, onward, done)
         self.text.jump(onward)
         self.text.begin(onward)
+        if certain:
+            self.text.reach(done)
         next_one = self.arithmetic.binary(ast.Add(), index, 1)
         self.text.line(f"store {next_one.operand}, ptr {counter}")
         self.text.jump(head)

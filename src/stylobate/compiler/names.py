@@ -50,6 +50,9 @@ class Names(Expressions):
         if value is not _NOTHING:
             return value
         if name in self._slots and name not in self._bound:
+            if name not in self.text.block.assigned:
+                message = f"{name} is not assigned on every path to its use; assign it before the condition or loop"
+                raise Refusal(message)
             return slots.load(self.arithmetic, self._slots[name])
         if name in self._own:
             message = f"{name} has no value here, or one in lanes only"
@@ -98,6 +101,7 @@ class Names(Expressions):
             self._slots[name] = slots.slot_for(self.arithmetic, value, self._kinds.get(name, Kind.BOOLEAN))
         try:
             slots.store(self.arithmetic, self._slots[name], value)
+            self.text.block.assigned.add(name)
         except slots.WiderKindError as error:
             error.name = name
             raise

@@ -5,12 +5,16 @@ from dataclasses import dataclass, field
 
 @dataclass(slots=True, eq=False)
 class Block:
-    """Basic block: instructions in sequence; the last one jumps or returns."""
+    """Basic block: instructions in sequence; the last one jumps or returns.
+
+    `assigned` are the names that have a value on every path to the present instruction of the block.
+    """
 
     label: str
     lines: list[str] = field(default_factory=list)
     ended: bool = False
     reached: bool = False
+    assigned: set[str] = field(default_factory=set)
 
 
 class FunctionText:
@@ -56,15 +60,20 @@ class FunctionText:
 
     def jump(self, block: Block) -> None:
         """Jump to a block, unless the current block has ended."""
-        if not self.block.ended:
-            block.reached = True
+        self.reach(block)
         self.end(f"br label %{block.label}")
 
     def branch(self, condition: str, yes: Block, no: Block) -> None:
         """Branch to one of two blocks."""
-        if not self.block.ended:
-            yes.reached = no.reached = True
+        self.reach(yes)
+        self.reach(no)
         self.end(f"br i1 {condition}, label %{yes.label}, label %{no.label}")
+
+    def reach(self, block: Block) -> None:
+        """Note that the current block, unless it has ended, leads to another one."""
+        if not self.block.ended:
+            block.assigned = block.assigned & self.block.assigned if block.reached else set(self.block.assigned)
+            block.reached = True
 
     def end(self, line: str) -> None:
         """End the block with this instruction, unless it has ended."""

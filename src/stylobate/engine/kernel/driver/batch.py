@@ -174,7 +174,7 @@ def advance(table: Table, pieces: Table, halt: npt.NDArray[np.uint8], buf: Table
         width = gather(buf)
         if width == 0:
             return True
-        met = False
+        met = full = False
         while not met:
             step(buf, width)
             full = traced and trace_steps(buf, table)
