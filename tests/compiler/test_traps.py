@@ -1,6 +1,7 @@
 """Python that is easily compiled wrong: its result is that of Python, or it is refused."""
 
 import functools
+import math
 from collections import namedtuple
 
 import numpy as np
@@ -13,6 +14,7 @@ from stylobate.compiler.refusal import CompileError
 from .calling import both_ways, text_of
 
 X = np.array([0.7, -1.3, 2.0, 0.0, -0.0, 1e-300, 3.5, -2.5, 0.25, 9.0])
+LIMIT = 2.5
 TABLE = np.arange(6.0).reshape(2, 3)
 A, B = namedtuple("A", "one other"), namedtuple("B", "other one")  # noqa: PYI024
 
@@ -100,7 +102,21 @@ def conditions_of_numbers(x, out):
     out[1] = known
 
 
+def conditions_as_numbers(x, out):
+    for i in range(10):
+        a, b = float(x[i]) > 0.5, float(x[i]) < 2.0  # of NumPy, True + True is True
+        out[i] = (a > b) + 2 * (a >= b) + 4 * (a < b) + 8 * (a == b) + 16 * max(a, b) + 32 * ((a and not b) or b)
+        out[i] += (LIMIT and x[i]) + (0.0 or x[i] * 2.0) + (None or LIMIT) + 100 * (a and True) - (a + b) ** 2
+
+
+def signs(x, out):
+    for i in range(10):
+        out[i] = 1.0 / (np.sign(x[i]) + 0.25) + math.copysign(1.0, np.sign(x[i]))
+
+
 RIGHT = [
+    conditions_as_numbers,
+    signs,
     *(loop_left_early, target_assigned_in_the_body, slices_are_cut, enumerated_from_one, tuples_compared),
     *(division_beside_zero, decorated, of_none, conditions_of_numbers),
 ]
@@ -141,6 +157,31 @@ def test_results_of_calls_that_are_not_inlined_are_those_of_python(threshold, mo
 
 def value_of_or(x):
     x[0] = x[1] or 5.0
+
+
+def value_of_and_with_a_known_number(x):
+    x[0] = ((x[1] > 0.0) and 3.0) or 1.0
+
+
+def value_of_and_with_a_global(x):
+    x[0] = x[0] * ((x[0] > 0.0) and LIMIT)
+
+
+def value_of_or_with_a_known_number(x):
+    x[0] = (x[0] > 0.0) or 5
+
+
+def value_of_and_with_none(x):
+    x[0] = 1.0 if ((x[0] > 0.0) and None) is None else 2.0
+
+
+def value_of_or_in_lanes(x):
+    for i in lanes(8):
+        x[i] = (x[i] > 0.0) or 5.0
+
+
+def extreme_of_one_number(x):
+    x[0] = max(x[1])
 
 
 def none_before_a_loop(x):
@@ -234,7 +275,13 @@ def number_too_large(x):
 
 
 REFUSED = {
-    value_of_or: "the value of and, or is used",
+    value_of_or: r"the value of and, or is used: x\[1\] is no condition; write a if condition else b",
+    value_of_and_with_a_known_number: "the value of and, or is used: 3.0 is no condition",
+    value_of_and_with_a_global: "the value of and, or is used: LIMIT is no condition",
+    value_of_or_with_a_known_number: "the value of and, or is used: 5 is no condition",
+    value_of_and_with_none: "the value of and, or is used: None is no condition",
+    value_of_or_in_lanes: "the value of and, or is used: 5.0 is no condition",
+    extreme_of_one_number: "min and max need two numbers, or a tuple of numbers",
     none_before_a_loop: "found means None, and control flow assigns to it",
     chosen_function: "law means .*, and control flow assigns to it",
     index_of_lanes_in_a_condition: "a condition on the index of a loop over lanes",

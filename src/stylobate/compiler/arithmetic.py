@@ -222,7 +222,8 @@ class Arithmetic:
         if type(operation) not in _COMPARED:
             message = f"{type(operation).__name__} of numbers; write == or !="
             raise Refusal(message)
-        x, y = self.alike(a, b)
+        least = Kind.BOOLEAN if isinstance(operation, ast.Eq | ast.NotEq) else Kind.INTEGER  # of one bit, 1 is below 0
+        x, y = self.alike(a, b, kind=max(least, kind_of(a), kind_of(b)))
         of_floats, of_integers = _COMPARED[type(operation)]
         if x.kind is Kind.FLOAT:
             text = self.text.value(f"fcmp {self.flags}{of_floats} {x.operand}, {y.text}")

@@ -166,34 +166,38 @@ class Expressions(ABC):
 
     def _all_or_any(self, node: ast.BoolOp, *, condition: bool) -> Value:
         """Evaluate `and` or `or`, outside lanes with the short circuit of Python."""
-        joined = self.arithmetic.both if isinstance(node.op, ast.And) else self.arithmetic.either
         decisive = isinstance(node.op, ast.Or)
-        part = self.condition if condition else self._boolean
-        if self.arithmetic.lanes:
-            result = part(node.values[0])
-            for other in node.values[1:]:
-                result = joined(result, part(other))
-            return result
+        part = self.condition if condition else self.value
         value: Value = not decisive
         for position, one in enumerate(node.values):
-            value = part(one)
-            if isinstance(value, Number):
-                return self._in_turn(value, node.values[position + 1 :], part, decisive=decisive)
-            if bool(value) is decisive:
+            value, others = part(one), node.values[position + 1 :]
+            if isinstance(value, Number | Array | LaneIndex):
+                return self._in_turn(one, value, others, condition=condition, decisive=decisive) if others else value
+            if truth_of_known(value) is decisive:
                 return value
         return value
 
-    def _boolean(self, node: ast.expr) -> Value:
-        """Return an operand of `and` or `or` whose value is used; refuse a number, which would be the result."""
-        value = self.value(node)
-        if isinstance(value, Number) and value.kind is not Kind.BOOLEAN:
-            message = f"the value of and, or is used: {ast.unparse(node)} is a number; write a if condition else b"
+    def _boolean(self, node: ast.expr, value: Value) -> Value:
+        """Return an operand of `and` or `or` whose value is used; refuse numbers: Python returns them as they are."""
+        if not (isinstance(value, bool) or (isinstance(value, Number) and value.kind is Kind.BOOLEAN)):
+            message = f"the value of and, or is used: {ast.unparse(node)} is no condition; write a if condition else b"
             raise Refusal(message)
         return value
 
     def _in_turn(
-        self, first: Number, others: list[ast.expr], part: Callable[[ast.expr], Value], *, decisive: bool
+        self, one: ast.expr, first: Value, others: list[ast.expr], *, condition: bool, decisive: bool
     ) -> Value:
+        """Evaluate operands whose truth is known at run time only; without lanes the first decisive one is the last."""
+
+        def part(node: ast.expr) -> Value:
+            return self.condition(node) if condition else self._boolean(node, self.value(node))
+
+        first = first if condition else self._boolean(one, first)
+        if self.arithmetic.lanes:
+            joined = self.arithmetic.either if decisive else self.arithmetic.both
+            for other in others:
+                first = joined(first, part(other))
+            return first
         result, done = self.text.allocated("i1"), self.text.new_block()
         value = self.arithmetic.truth(first)
         for other in others:

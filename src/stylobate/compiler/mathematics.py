@@ -89,8 +89,11 @@ def _absolute(arithmetic: Arithmetic, value: Value) -> Value:
 
 def _extreme(comparison: ast.cmpop) -> Callable[..., Value]:
     def found(arithmetic: Arithmetic, *values: Value) -> Value:
-        if len(values) == 1 and isinstance(values[0], tuple):
+        if len(values) == 1:
             (values,) = values
+        if not isinstance(values, tuple) or not values:
+            message = "min and max need two numbers, or a tuple of numbers"
+            raise Refusal(message)
         result, *others = values
         for value in others:
             result = arithmetic.chosen(arithmetic.compared(comparison, value, result), value, result)
@@ -143,10 +146,9 @@ def _square(arithmetic: Arithmetic, value: Value) -> Value:
 
 def _sign(arithmetic: Arithmetic, value: Value) -> Value:
     negative, positive = (arithmetic.compared(operation, value, 0.0) for operation in (ast.Lt(), ast.Gt()))
-    # The sign of NaN is NaN.
-    return arithmetic.chosen(
-        positive, 1.0, arithmetic.chosen(negative, -1.0, arithmetic.binary(ast.Mult(), value, 0.0))
-    )
+    # The sign of NaN is NaN, that of both zeros is 0.0.
+    neither = arithmetic.binary(ast.Mult(), _absolute(arithmetic, value), 0.0)
+    return arithmetic.chosen(positive, 1.0, arithmetic.chosen(negative, -1.0, neither))
 
 
 def _clipped(arithmetic: Arithmetic, value: Value, low: Value, high: Value) -> Value:
