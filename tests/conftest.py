@@ -3,6 +3,7 @@
 import os
 import signal
 import sys
+import time
 
 # Shells let their background jobs ignore Ctrl-C, which tests send.
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
@@ -51,3 +52,16 @@ def _integrate_equations_1(
 @pytest.fixture(scope="session")
 def integrate_equations_1():
     return _integrate_equations_1
+
+
+def _slowness():
+    """Return the elapsed time of a computation, in units of its processor time: others compute at the same time."""
+    since, used = time.perf_counter(), time.process_time()
+    while time.process_time() - used < 0.1:
+        pass
+    return (time.perf_counter() - since) / (time.process_time() - used)
+
+
+@pytest.fixture(scope="session")
+def slowness():
+    return _slowness

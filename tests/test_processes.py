@@ -129,6 +129,36 @@ def test_a_worker_that_holds_pythons_lock_ends_with_its_parent(tmp_path, end):
     until(lambda: not runs(worker))
 
 
+IMPORTED = """
+import os, pathlib, time
+pathlib.Path({place!r}).write_text(str(os.getpid()))
+time.sleep(600)
+"""
+IMPORTING = """
+import sys
+from stylobate.processes import Worker
+class Task:
+    def __reduce__(self):
+        return __import__, ("imported",)
+sys.path.insert(0, {folder!r})
+Worker.started().call(Task())
+"""
+
+
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="reads the states of processes from /proc")
+def test_a_worker_that_imports_its_task_ends_with_its_parent(tmp_path):
+    place = tmp_path / "pid"
+    (tmp_path / "imported.py").write_text(IMPORTED.format(place=str(place)), encoding="utf-8")
+    program = IMPORTING.format(folder=str(tmp_path))
+    parent = subprocess.Popen([sys.executable, "-c", program], stderr=subprocess.DEVNULL)
+    until(lambda: place.exists() and place.read_text())
+    worker = int(place.read_text())
+    assert runs(worker)
+    parent.kill()
+    parent.wait(60.0)
+    until(lambda: not runs(worker))
+
+
 CHILD = """
 import os, pathlib, time
 from stylobate.processes import ending_with_parent

@@ -27,6 +27,8 @@ _R = TypeVar("_R")
 
 # Interval at which a wait checks for Ctrl-C or for the end of the parent [s].
 _LOOK = 0.1
+# Size of the number that precedes a request, its length [bytes].
+_LENGTH = 8
 
 _running: set["Worker"] = set()
 
@@ -71,7 +73,7 @@ class Worker:
         pipes = cast("tuple[IO[bytes], IO[bytes]]", (self.process.stdin, self.process.stdout))
         request = pickle.dumps((task, arguments))
         try:
-            pipes[0].write(request)
+            pipes[0].write(len(request).to_bytes(_LENGTH) + request)
             pipes[0].flush()
             answer, error = pickle.load(pipes[1])  # noqa: S301  our own process
         except (OSError, EOFError, pickle.UnpicklingError):
@@ -187,12 +189,9 @@ def _serve() -> None:
     """Compute the tasks of the parent process until it closes the pipe or ends."""
     requests, answers = sys.stdin.buffer, os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)  # keeps the output of a task out of the answers
-    while True:
-        try:
-            task, arguments = pickle.load(requests)  # noqa: S301  our own parent
-        except EOFError:
-            return
+    while request := requests.read(int.from_bytes(requests.read(_LENGTH))):
         end_when_closed(0)
+        task, arguments = pickle.loads(request)  # noqa: S301  our own parent; imports what the task needs
         answer = pickle.dumps(_answer(task, arguments))
         end_when_closed(0, watched=False)
         try:

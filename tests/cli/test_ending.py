@@ -1,5 +1,6 @@
 """A request to end reaches a command as Ctrl-C does, so that what is done is kept."""
 
+import gc
 import importlib
 import signal
 
@@ -15,5 +16,8 @@ def test_a_request_to_end_interrupts_the_command(monkeypatch):
         with pytest.raises(SystemExit) as ended:
             cli.main()
         assert ended.value.code == cli.INTERRUPTED
+        # Python searches no objects again, which takes several tenths of a second.
+        assert gc.get_freeze_count() > 0
     finally:
+        gc.unfreeze()
         signal.signal(signal.SIGTERM, before)

@@ -1,4 +1,7 @@
-"""Commands killed at random instants, then started again: the files at the end are those of an undisturbed run."""
+"""Commands that are ended from outside.
+
+Killed at random instants and started again, they leave the files of an undisturbed run. Asked to end, they end at once.
+"""
 
 import os
 import shutil
@@ -10,6 +13,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+
+from stylobate.cli.interrupts import INTERRUPTED
 
 CIRCLE = "--slenderness 0.1 --damping 0.1 --motion circular"
 STUDY = """
@@ -56,7 +61,7 @@ COMMANDS = {
     "assess": "assess study.toml",
     "paper": "paper",
 }
-KILLS = {"map": 18, "basin": 14, "fragility": 12, "assess": 10, "paper": 6}
+KILLS = {"map": 18, "basin": 14, "fragility": 12, "assess": 10, "paper": 10}
 
 
 def write_inputs(folder):
@@ -134,3 +139,27 @@ def test_a_command_killed_at_any_time_ends_with_the_same_bytes_when_it_is_starte
             assert ends(command, folder) == undisturbed
             write_inputs(folder)
     assert ends(command, folder) == undisturbed
+
+
+@pytest.mark.posix
+@pytest.mark.slow
+@pytest.mark.parametrize("command", COMMANDS)
+def test_a_command_asked_to_end_ends_with_its_workers_within_two_seconds(command, tmp_path, slowness):
+    since = time.monotonic()
+    ends(command, write_inputs(tmp_path))
+    duration = time.monotonic() - since
+    for share in (0.1, 0.25, 0.4):  # the first run had to compile
+        write_inputs(tmp_path)
+        process = start(command, tmp_path)
+        time.sleep(share * duration)
+        workers = children_of(tmp_path)
+        limit = 2.0 * slowness()
+        since = time.monotonic()
+        process.terminate()
+        while children_of(tmp_path):
+            process.poll()
+            assert time.monotonic() - since < limit, workers
+            time.sleep(0.01)
+        assert process.wait() == INTERRUPTED
+        assert process.stderr.read().endswith("stylobate: interrupted\n")
+        process.stderr.close()

@@ -7,11 +7,13 @@ import socket
 import subprocess
 import sys
 import time
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack
 from pathlib import Path
 
 import httpx
 import pytest
+from tests.lab.conformity import conforms
 
 from stylobate.lab.serving import listening, own_names
 
@@ -35,10 +37,73 @@ def test_it_tells_its_address_answers_there_and_ends_on_ctrl_c():
     assert "Traceback" not in told
 
 
+def stat(pid):
+    """Return the fields that the system gives of a process, from its state on; of none if the process has ended."""
+    try:
+        return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
+    except OSError:
+        return ["Z", "0"]
+
+
 def processor_time(process):
     """Return the processor time of a process without its children [s]."""
-    fields = Path(f"/proc/{process.pid}/stat").read_text().rpartition(")")[2].split()
+    fields = stat(process.pid)
     return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+
+def descendants(process):
+    """Return the children of a process, their children, and so on."""
+    parents = {int(entry.name): int(stat(entry.name)[1]) for entry in Path("/proc").glob("[0-9]*")}
+    found = {process.pid}
+    while new := {one for one, parent in parents.items() if parent in found} - found:
+        found |= new
+    return found - {process.pid}
+
+
+COLUMN = {
+    "column": {"shape": "dimensionless", "slenderness": 0.1},
+    "motion": {"kind": "circular", "acceleration": 0.065, "angular_frequency": 1.8},
+    "tilt": [0.03, 0.0],
+    "duration": 3000.0,
+}
+PLANE = {
+    "x": {"name": "angular_frequency", "from": 0.5, "to": 4.0, "number": 150},
+    "y": {"name": "acceleration", "from": 0.05, "to": 0.4, "number": 150},
+}
+# Forces that oscillate fast keep a run busy for half a minute.
+LONG = {**COLUMN, "motion": {**COLUMN["motion"], "angular_frequency": 150.0}, "max_steps": 200_000}
+LONG["model"] = {"kind": "sliding", "friction_coefficient": 0.02, "damping": 0.1}
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="reads the states of processes from /proc")
+def test_a_request_to_end_ends_connections_runs_maps_and_their_processes_at_once(slowness):
+    process = started("--port", "0")
+    with ExitStack() as held, ThreadPoolExecutor() as threads:
+        address = re.search(r"http://127\.0\.0\.1:(\d+)/", process.stdout.readline())
+        client = held.enter_context(httpx.Client(base_url=address[0], timeout=120.0))
+        job = {"kind": "map", "description": {**COLUMN, "map": PLANE}}
+        jobs = [client.post("api/jobs", json=job).json()["id"] for _ in range(3)]
+        for head in (b"GET / HTTP/1.1\r\n", b"POST /api/simulate HTTP/1.1\r\nContent-Length: 900\r\n\r\n{"):
+            place = held.enter_context(socket.create_connection(("127.0.0.1", int(address[1])), timeout=60.0))
+            place.sendall(head)
+        runs = [threads.submit(client.post, "api/simulate", json=LONG) for _ in range(4)]  # one waits
+        while client.get(f"api/jobs/{jobs[0]}").json()["done"] == 0:
+            assert not any(run.done() for run in runs)
+            time.sleep(0.05)
+        processes = descendants(process)
+        assert len(processes) >= 3
+        limit = 2.0 * slowness()
+        since = time.monotonic()
+        process.send_signal(signal.SIGTERM)
+        answers = [run.result() for run in runs]
+        _, told = process.communicate(timeout=60)
+        while any(stat(one)[0] != "Z" for one in processes):
+            time.sleep(0.01)
+        assert time.monotonic() - since < limit
+    for answer in answers:
+        conforms(answer)
+        assert (answer.status_code, answer.json()) == (503, {"problems": ["the laboratory is ending. Start it again."]})
+    assert "Traceback" not in told
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="reads /proc and sets the limit of descriptors of another process")

@@ -17,14 +17,14 @@ from stylobate.lab.worker_pool import LostError, Worker, WorkerPool
 VALUES = {"column": {"shape": "dimensionless", "slenderness": 0.1}, "tilt": [0.02, 0.0], "duration": 1.0}
 
 
-def performed(limit=1):
+def performed(limit=1, *, background=False):
     """Return how a run ended in a new pool, and what `/proc` says of each process that was started for it."""
     answers, stats = [], []
 
     async def perform():
         before = multiprocessing.active_children()
         async with anyio.create_task_group() as group:
-            pool = WorkerPool(limit, group)
+            pool = WorkerPool(limit, group, background)
             answers.append(await pool.perform("run", Described(VALUES, VALUES), lambda _: None))
             started = [process for process in multiprocessing.active_children() if process not in before]
             stats.extend(stat(process.pid) for process in started)
@@ -36,22 +36,53 @@ def performed(limit=1):
 
 
 def stat(pid):
-    """Return the parent of a process and the processor time that the process has used [s]."""
+    """Return the parent of a process, the processor time that it has used [s], and its niceness."""
     fields = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
-    return int(fields[1]), (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+    return int(fields[1]), (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK"), int(fields[16])
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="reads /proc; only Linux has the fork server")
 def test_a_process_is_forked_after_the_imports_and_one_run_starts_one_process():
-    answer, ((server, used),) = performed(limit=3)
+    answer, ((server, used, _),) = performed(limit=3)
     assert isinstance(answer, Finished)
     assert server != os.getpid()
     assert used < 0.5 * stat(server)[1]  # the fork server has imported; the process has only run
 
 
+@pytest.mark.skipif(sys.platform != "linux", reason="reads /proc")
+def test_processes_in_the_background_leave_the_processors_to_the_others():
+    own = os.getpriority(os.PRIO_PROCESS, 0)
+    (_, ((*_, usual),)), (_, ((*_, background),)) = performed(), performed(background=True)
+    assert usual == own
+    assert background == min(own + 10, 19)
+
+
+def test_a_task_that_waits_for_a_process_is_lost_when_the_pool_ends():
+    answers = []
+
+    async def wait_for_the_end():
+        with anyio.fail_after(60.0):
+            await end_while_a_task_waits()
+
+    async def end_while_a_task_waits():
+        async with anyio.create_task_group() as group:
+            pool = WorkerPool(0, group)
+
+            async def perform():
+                answers.append(await pool.perform("run", None, lambda _: None))
+
+            group.start_soon(perform)
+            await anyio.wait_all_tasks_blocked()
+            assert answers == []
+            pool.end()
+
+    anyio.run(wait_for_the_end)
+    assert answers == [Lost(None)]
+
+
 @pytest.mark.parametrize("error", [BlockingIOError, RuntimeError])
 def test_a_process_that_cannot_be_started_is_reported(monkeypatch, caplog, error):
-    def refuse():
+    def refuse(*, background):
         raise error
 
     monkeypatch.setattr(worker_pool, "_process", refuse)
@@ -68,7 +99,7 @@ def test_a_laboratory_that_a_process_starts_as_it_imports_the_users_program_is_r
 def test_a_start_that_hangs_does_not_delay_the_end(monkeypatch):
     end, waited = threading.Event(), []
 
-    def hang():
+    def hang(*, background):
         waited.append(end.wait(60.0))
         raise BlockingIOError
 

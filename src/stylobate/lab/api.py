@@ -167,6 +167,8 @@ class Api:
                 return result
             case Refused(problems):
                 raise RefusedError(422, problems)
+            case Lost() if self.runs.ended:
+                raise RefusedError(503, ["the laboratory is ending. Start it again."])
             case Lost():
                 raise RefusedError(502, [answer.problem])
             case Broken(trace):

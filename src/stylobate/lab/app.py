@@ -24,6 +24,12 @@ from stylobate.lab.uploads import Uploads
 from stylobate.lab.worker_pool import WorkerPool
 
 
+def end_processes(app: Starlette) -> None:
+    """End the worker processes of a running application; open requests are then answered with an error."""
+    for pool in getattr(app.state, "pools", ()):
+        pool.end()
+
+
 def create_app(
     *,
     hosts: Collection[str],
@@ -49,14 +55,14 @@ def create_app(
 
     @asynccontextmanager
     async def lifespan(app: Starlette) -> AsyncIterator[None]:
-        del app
         async with AsyncExitStack() as stack:
             folder = Path(stack.enter_context(tempfile.TemporaryDirectory(prefix="stylobate-lab-")))
             group = await stack.enter_async_context(anyio.create_task_group())
             stack.callback(group.cancel_scope.cancel)
-            runs, work = WorkerPool(bounds.runs, group), WorkerPool(bounds.jobs, group)
-            stack.callback(runs.end)
-            stack.callback(work.end)
+            runs, work = WorkerPool(bounds.runs, group), WorkerPool(bounds.jobs, group, background=True)
+            for pool in (runs, work):
+                stack.callback(pool.end)
+            app.state.pools = (runs, work)
             jobs = Jobs(work, bounds, group)
             group.start_soon(jobs.watch)
             runs.warm_up()

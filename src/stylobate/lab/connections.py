@@ -3,6 +3,7 @@
 import asyncio
 import json
 import sys
+from collections.abc import Iterable
 
 import h11
 from uvicorn.protocols.http.h11_impl import H11Protocol
@@ -76,6 +77,13 @@ class BoundedConnection(H11Protocol):
         if not answering:
             self.transport.write(_too_late(self.receiving))
         self.transport.close()
+
+
+def close_incomplete(connections: Iterable[object]) -> None:
+    """Close the connections whose requests have not arrived."""
+    for one in list(connections):
+        if isinstance(one, BoundedConnection) and one.owes:
+            one.transport.abort()
 
 
 def bounded(limits: Limits) -> type[BoundedConnection]:

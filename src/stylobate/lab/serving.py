@@ -15,7 +15,7 @@ from stylobate.lab.limits import Limits
 
 if TYPE_CHECKING:
     import uvicorn
-    from starlette.types import ASGIApp
+    from starlette.applications import Starlette
 
 PORT = 8642
 LOOPBACK = ("127.0.0.1", "localhost", "::1")
@@ -73,11 +73,18 @@ def serve(
         server_of(app, limits).run(sockets=[place])
 
 
-def server_of(app: "ASGIApp", limits: Limits | None = None) -> "uvicorn.Server":
-    """Return a server for the application, with bounds on its connections."""
+def server_of(app: "Starlette", limits: Limits | None = None) -> "uvicorn.Server":
+    """Return a server for the application, with bounds on its connections, that ends without waiting for requests."""
     import uvicorn  # noqa: PLC0415
 
-    from stylobate.lab.connections import BACKLOG, bounded  # noqa: PLC0415
+    from stylobate.lab.app import end_processes  # noqa: PLC0415
+    from stylobate.lab.connections import BACKLOG, bounded, close_incomplete  # noqa: PLC0415
+
+    class Server(uvicorn.Server):
+        async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
+            end_processes(app)
+            close_incomplete(self.server_state.connections)
+            await super().shutdown(sockets)
 
     settings = uvicorn.Config(
         app,
@@ -85,9 +92,9 @@ def server_of(app: "ASGIApp", limits: Limits | None = None) -> "uvicorn.Server":
         ws="none",
         backlog=BACKLOG,
         log_level="warning",
-        timeout_graceful_shutdown=2,
+        timeout_graceful_shutdown=1,
     )
-    return uvicorn.Server(settings)
+    return Server(settings)
 
 
 def listening(host: str, port: int) -> socket.socket:

@@ -12,9 +12,17 @@ from typing import Any
 from stylobate.lab.messages import Broken, Emit, Finished, Note, Ready, Refused
 from stylobate.processes import end_when_closed
 
+_NICENESS = 10
+"""Niceness of a process in the background: beside one of the usual priority it gets a tenth of a processor."""
 
-def work(connection: Connection) -> None:
-    """Perform the tasks that arrive through `connection` until it is closed."""
+
+def work(connection: Connection, *, background: bool = False) -> None:
+    """Perform the tasks that arrive through `connection` until it is closed.
+
+    In the `background` the process has a low priority; on Windows all have the same.
+    """
+    if background and hasattr(os, "nice"):
+        os.nice(_NICENESS)
     # Ctrl-C in the terminal concerns the server, which then ends its workers.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     server = multiprocessing.parent_process()

@@ -1,5 +1,7 @@
 """Imports of every process that computes for the laboratory: a fork server imports this module before it forks them."""
 
+import gc
+
 from stylobate.processes import ending_with_parent
 
 with ending_with_parent():  # a fork server does not notice the end of its parent while it imports
@@ -10,5 +12,8 @@ with ending_with_parent():  # a fork server does not notice the end of its paren
 
     # The first dataset imports the array libraries that xarray finds.
     xarray.Dataset({"time": ("time", [0.0])})
+
+# No process searches these objects again; a search at the end of one takes longer than all else.
+gc.freeze()
 
 __all__ = ["single", "tasks", "worker"]

@@ -67,9 +67,9 @@ class Worker:
     hears: MemoryObjectSendStream[Any]
 
     @classmethod
-    async def started(cls) -> "Worker":
+    async def started(cls, *, background: bool) -> "Worker":
         """Start a process, which sends a message when it is ready."""
-        process, connection = await _started()
+        process, connection = await _started(background=background)
         hears, heard = anyio.create_memory_object_stream[Any](math.inf)
         return cls(process, connection, heard, hears)
 
@@ -98,7 +98,7 @@ class Worker:
         self.heard.close()
 
 
-async def _started() -> tuple[BaseProcess, Connection]:
+async def _started(*, background: bool) -> tuple[BaseProcess, Connection]:
     """Start a process in a thread, because the start may wait for imports and must not delay the end of the program.
 
     A process without a caller ends when its pipe is closed.
@@ -108,7 +108,7 @@ async def _started() -> tuple[BaseProcess, Connection]:
 
     def start() -> None:
         try:
-            started.set_result(_process())
+            started.set_result(_process(background=background))
         except Exception as error:  # noqa: BLE001  raised for the caller
             started.set_exception(error)
 
@@ -116,7 +116,7 @@ async def _started() -> tuple[BaseProcess, Connection]:
     return await asyncio.wrap_future(started)
 
 
-def _process() -> tuple[BaseProcess, Connection]:
+def _process(*, background: bool) -> tuple[BaseProcess, Connection]:
     """Start a worker process.
 
     On Linux a fork server imports what every process needs, once, and forks each process from itself in milliseconds.
@@ -130,7 +130,7 @@ def _process() -> tuple[BaseProcess, Connection]:
         context = multiprocessing.get_context("spawn")
     pipe: Any = context.Pipe()  # on Windows of another class
     here, there = pipe
-    process = context.Process(target=work, args=(there,), daemon=True, name=_NAME)
+    process = context.Process(target=work, args=(there,), kwargs={"background": background}, daemon=True, name=_NAME)
     process.start()
     there.close()
     return process, here
@@ -138,10 +138,14 @@ def _process() -> tuple[BaseProcess, Connection]:
 
 @dataclass(slots=True)
 class WorkerPool:
-    """At most `limit` processes, which live in tasks of `group`; idle processes wait for the next task."""
+    """At most `limit` processes, which live in tasks of `group`; idle processes wait for the next task.
+
+    Processes in the `background` leave the processors to others: a run does not wait for maps.
+    """
 
     limit: int
     group: TaskGroup
+    background: bool = False
     _all: set[Worker] = field(default_factory=set)
     _starting: int = 0
     _idle: list[Worker] = field(default_factory=list)
@@ -213,16 +217,22 @@ class WorkerPool:
         self._release(worker)
         return answer
 
+    @property
+    def ended(self) -> bool:
+        """Whether the pool performs no more tasks."""
+        return not self._open
+
     def end(self) -> None:
-        """End all processes permanently."""
+        """End all processes permanently; tasks that run or wait are lost."""
         self._open = False
         for worker in list(self._all):
             self._discard(worker)
+        self._notify()
 
     async def _ready(self) -> Worker:
         """Return an idle process; start one more if the limit allows."""
         self._failed = None  # an earlier failure to start, without a waiting task, does not concern the next process
-        while True:
+        while self._open:
             while self._idle:
                 worker = self._idle.pop()
                 if worker.process.is_alive():
@@ -234,6 +244,7 @@ class WorkerPool:
             if self._room():
                 self._begin()
             await self._changed.wait()
+        raise LostError
 
     def _room(self) -> bool:
         return len(self._all) + self._starting < self.limit
@@ -246,7 +257,7 @@ class WorkerPool:
 
     async def _start(self) -> None:
         try:
-            worker = await Worker.started()
+            worker = await Worker.started(background=self.background)
         except Exception:  # noqa: BLE001  any caller that waits gets an answer
             _log.exception("a worker process could not be started")
             self._failed = LostError()
