@@ -39,7 +39,7 @@ def test_runs_that_have_not_settled_are_a_row_of_the_table_with_their_remedy(cap
     printed = capsys.readouterr().out
     (row,) = [line for line in printed.splitlines() if line.startswith("│ not settled")]
     assert " % " in row
-    assert printed.rstrip().endswith("with more strobes, at least 32")
+    assert printed.rstrip().endswith("run them for more periods")
 
 
 def test_a_random_sample_is_that_of_basins(tmp_path, capsys, saved):

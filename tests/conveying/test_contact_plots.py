@@ -9,7 +9,7 @@ from stylobate.models import Contact
 from stylobate.plots.contact_strip import COLOURS
 
 COLUMN = sb.Column.dimensionless(slenderness=0.1)
-MODEL = sb.Sliding(COLUMN, friction_coefficient=0.06, damping=0.05)
+MODEL = sb.Sliding(COLUMN, friction_coefficient=0.06, damping=0.05, passage_tilt=1e-3)
 
 
 @pytest.fixture(scope="module")

@@ -223,8 +223,8 @@ SLIDING = {
         "slip stick",
     ),
     "strikes its base": (
-        *(sb.Sliding(COLUMN, friction_coefficient=0.4), CIRCLE, LEANS, STILL, Turning(twist=0.3), 1.2),
-        "face_impact stick",
+        sb.Sliding(COLUMN, friction_coefficient=0.4, passage_tilt=0.01 * C),
+        *(CIRCLE, LEANS, STILL, Turning(twist=0.3), 1.2, "face_impact stick"),
     ),
     "is thrown": (
         sb.Sliding(COLUMN, friction_coefficient=0.5, normal_restitution=0.2),

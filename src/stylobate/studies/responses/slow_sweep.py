@@ -24,8 +24,8 @@ from stylobate.studies.sweeps.quantities import Floats, checked_values
 _SAMPLES = 64
 # Relative tolerance of the end of a run.
 _SLACK = 1e-9
-# Periods with several beats of a modulation, to distinguish it from an unsettled motion.
-_PERIODS_LOOKED_AT = 25
+# Each step begins near the motion that it ends in: a run with several beats of a modulation is long enough to see it.
+_RULES = OutcomeRules(periods=25, steady_periods=51)
 
 _ENDINGS = (Outcome.OVERTURNED, Outcome.LIMIT_REACHED, Outcome.LIFTED_OFF, Outcome.FAILED)
 _NUMBERS = {
@@ -83,7 +83,8 @@ def slow_sweep(
     rtol, rest_energy, threads
         As in `simulate_ensemble`.
     rules
-        Rules of the outcome at each value. With n = `rules.periods`, 25 by default, the last 2n + 1 periods decide.
+        Rules of the outcome at each value; by default with 25 `periods` and 51 `steady_periods`. With n =
+        `rules.periods` the last 2n + 1 periods decide.
     progress
         Called as `progress(steps done, steps in all)`.
 
@@ -117,7 +118,7 @@ def slow_sweep(
     ['ROLLING', 'ROLLING', 'MODULATED', 'OVERTURNED']
     """
     require_subject(model, motion)
-    held = rules or OutcomeRules(periods=_PERIODS_LOOKED_AT)
+    held = rules or _RULES
     watched = 2 * held.periods + 1
     steps, starts = _together(parameter, values, tilt, tilt_rate)
     if back:
