@@ -130,7 +130,7 @@ class Reads:
 
 
 class Watch:
-    """Values at the places of a log, which tell whether machine code is still valid.
+    """Values at the places of a log, which show whether machine code is still valid.
 
     Raises
     ------
