@@ -28,6 +28,7 @@ import xml.etree.ElementTree as ET
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import replace
+from itertools import accumulate
 from pathlib import Path
 
 import coverage
@@ -129,20 +130,19 @@ class Tree:
                     os.killpg(process.pid, signal.SIGKILL)
 
     def chosen(self, mutant: Mutant, budget: float) -> list[str]:
-        """Return the tests of a mutant, at most `budget` seconds of them."""
-        lines = self.reached.get(mutant.file, {})
-        direct = set(lines.get(str(mutant.line), ()))
+        """Return the tests of a mutant: at most `budget` seconds of those that reach its line, and of the others."""
+        direct = set(self.reached.get(mutant.file, {}).get(str(mutant.line), ()))
         files = {one.partition("::")[0] for one in direct}
         beside = {one for one in self.seconds if one.partition("::")[0] in files} - direct
         named = self._by_name(mutant) if not direct or _is_compiled((self.folder / mutant.file).read_text()) else []
-        by_time = [*sorted(direct, key=self.seconds.__getitem__), *named, *sorted(beside, key=self.seconds.__getitem__)]
-        tests, total = [], 0.0
-        for one in dict.fromkeys(by_time):
-            total += self.seconds[one]
-            if total > budget and tests:
-                break
-            tests.append(one)
-        return tests
+        others = [*named, *sorted(beside, key=self.seconds.__getitem__)]
+        ordered = sorted(direct, key=self.seconds.__getitem__)
+        return list(dict.fromkeys([*self._within(budget, ordered), *self._within(budget, others)]))
+
+    def _within(self, budget: float, tests: Sequence[str]) -> list[str]:
+        """Return the first tests that take `budget` seconds together, at least one."""
+        spent = list(accumulate((self.seconds[one] for one in tests), initial=0.0))[1:]
+        return [one for one, until in zip(tests, spent, strict=True) if until <= budget] or list(tests[:1])
 
     def _by_name(self, mutant: Mutant) -> list[str]:
         words = re.findall(r"[a-z]{4,}", f"{Path(mutant.file).stem} {mutant.function}")
