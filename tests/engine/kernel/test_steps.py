@@ -278,6 +278,8 @@ def test_a_step_ends_on_its_stop_to_the_last_bit(lane):
     for stop in (3.2, math.nextafter(3.2, 0.0), 3.0 + 0.2 * (1.0 - 1e-16)):
         one = stepped(lane, stop=stop, h=0.2)
         assert (one["reached"], one["time"]) == (1.0, stop)
+    shorter = stepped(lane, stop=3.2, h=math.nextafter(0.2, 0.0))  # 3 + h is rounded to 3.2
+    assert (shorter["reached"], shorter["time"]) == (1.0, 3.2)
     near = stepped(lane, stop=3.25)
     assert (near["reached"], near["time"], near["h"]) == (0.0, 3.2, pytest.approx(0.05))
     assert near["wanted"] == pytest.approx(0.2)
