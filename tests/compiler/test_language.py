@@ -247,7 +247,7 @@ def mathematics(x, out):
         out[i] += min(a, 0.5, 1) + max(0.25, a) + float(i) + bool(a) + min((a, 2.0)) + sum((a, 1.0, 2))
         out[i] += np.square(a) + np.sign(a) + np.where(a > 1.0, 2.0, a) + np.clip(a, -1.0, 0.5) + np.rint(a * 1.3)
         out[i] += np.maximum(a, 0.25) - np.minimum(a, 1.0) + math.log2(abs(a) + 1.0) + math.trunc(a)
-        out[i] += math.fmod(a, 0.75)
+        out[i] += math.fmod(a, 0.75) + math.degrees(a) - math.radians(a) + math.hypot(a) + math.log(abs(a) + 1.0, 3.0)
 
 
 def of_what_is_no_number(x, out):

@@ -259,16 +259,16 @@ def test_spectra_are_drawn_with_their_mean_and_the_design_spectrum(found):
 def test_slips_of_the_sliding_model_are_tabulated_in_millimetres_where_it_was_run(found):
     verdicts = found.data["verdicts"]["tilt_ratio"].sel(dissipation="central", vertical="with", drop=True)
     ran = verdicts["column"] == "stout"
-    values = {"overturned": 0.0, "peak_slip": 0.4567, "residual_slip": 0.0123, "time_sliding": 2.345}
+    values = {"overturned": 0.0, "peak_slip": 0.12345, "residual_slip": 0.012345, "time_sliding": 2.345}
     data = xr.Dataset({name: xr.full_like(verdicts, value).where(ran) for name, value in values.items()})
     table = assessment_tables(replace(found, data={**found.data, "sliding": data}))["sliding"]
     rows = [dict(zip(table.header, row, strict=True)) for row in table.rows]
     places = [(row["column"], row["record"], row["scale"]) for row in rows]
     assert places == [("stout", name, scale) for name in ("strong", "weak & quiet") for scale in ("0.5", "1")]
     for row in rows:
-        assert (row["peak slip [mm]"], row["residual slip [mm]"]) == ("457", "12.3")
+        assert (row["peak slip [mm]"], row["residual slip [mm]"]) == ("123", "12.3")
         assert (row["time sliding [s]"], row["verdict with the sliding model"]) == ("2.35", "did not overturn")
-    assert assessment_tables(found)["sliding"].rows == []
+    assert "sliding" not in assessment_tables(found)
 
 
 def test_a_mean_of_five_percent_is_not_divided_by_a_design_spectrum_of_another_damping(found):
