@@ -127,6 +127,13 @@ def test_a_file_of_another_version_is_refused_with_the_remedy(kept, number, reme
         load(other)
 
 
+def test_a_file_of_a_later_kind_is_refused(kept, tmp_path):
+    path, load = kept
+    with h5py.File(shutil.copy(path, tmp_path), "r+") as file:
+        file.attrs["format"] = "stylobate novelty 1"
+    require_refused(tmp_path / "other.nc", sealed((tmp_path / path.name).read_bytes()), load)
+
+
 def test_a_result_does_not_hold_the_format_of_its_file(folder):
     assert "format" not in sb.load(save_study(folder / "read.nc")).attrs
 

@@ -2,6 +2,7 @@
 
 import errno
 import linecache
+import os
 import threading
 import time
 
@@ -72,6 +73,15 @@ def test_code_is_compiled_once_and_then_read(folder, compilations, caplog):
     assert sum_of(squares()) == sum_of(squares()) == np.sum(X**2)
     assert len(compilations) == 1
     assert caplog.messages == [f"compiling squares; kept in {folder}"]
+
+
+@pytest.mark.parametrize("date", [0, 4e9])
+def test_the_dates_of_files_do_not_matter(folder, compilations, date):
+    sum_of(squares())
+    for file in folder.iterdir():  # the clock went back, or forward
+        os.utime(file, (date, date))
+    assert sum_of(squares()) == np.sum(X**2)
+    assert len(compilations) == 1
 
 
 @pytest.mark.parametrize("length", [0, 40, 500])

@@ -13,6 +13,7 @@ from matplotlib.colors import to_rgb
 import stylobate as sb
 from stylobate.earthquakes import assess, assessment_report, assessment_tables
 from stylobate.earthquakes.assessment.margins import demands_to_margin
+from stylobate.earthquakes.assessment.report import document
 from stylobate.earthquakes.assessment.report.figures import history_figure, margins_figure, tilts_figure
 from stylobate.earthquakes.assessment.report.pictures import report_pictures
 from stylobate.earthquakes.assessment.report.record_figures import spectra_figure
@@ -467,6 +468,36 @@ def test_a_least_scale_that_stands_alone_is_marked(found):
     wider = float(alone["least_lasting"].sel(column="slim <1>", record="strong", case="central"))
     words = dict(column_findings(changed, "slim <1>").rows)["margin"]
     assert f"in an interval so narrow that another scan might miss it; a wider interval begins at {wider:.4g}" in words
+
+
+MARKUP = ("<script>alert(1)</script>", "<b>\"bold\" & 'italic'</b>", r"$\frac{1$")
+
+
+def test_names_with_markup_are_text(found, tmp_path, monkeypatch):
+    margins = found.data["margins"]
+    names = dict(zip(margins["column"].values, MARKUP, strict=False))
+    names |= dict(zip(margins["record"].values, MARKUP[1:], strict=False))
+
+    def renamed(value):
+        if isinstance(value, xr.Dataset):
+            texts = {name: one for name, one in value.variables.items() if one.dtype.kind in "OU"}
+            return value.assign({name: one.copy(data=renamed(one.values)) for name, one in texts.items()})
+        if isinstance(value, np.ndarray):
+            return np.array([names.get(one, one) for one in value.flat], dtype=object).reshape(value.shape)
+        if isinstance(value, dict):
+            return {names.get(key, key): renamed(one) for key, one in value.items()}
+        return names.get(value, value) if isinstance(value, str) else value
+
+    hostile = MARKUP[0] + MARKUP[1]
+    details = {**found.setting["details"], "author": hostile, "project": hostile}
+    setting = {**renamed(found.setting), "title": hostile, "notes": [hostile], "details": details}
+    monkeypatch.setattr(document, "report_pictures", lambda _: {})
+    path = assessment_report(replace(found, data=renamed(found.data), setting=setting), tmp_path / "report")
+    text = path.read_text(encoding="utf-8")
+    assert not {"script", "b"} & set(re.findall(r"<([a-z0-9]+)", text))
+    shown = "".join(Page(text).text)
+    for name in (*MARKUP[:2], hostile):
+        assert name in shown
 
 
 def test_figures_of_an_earlier_report_do_not_stay(found, tmp_path):

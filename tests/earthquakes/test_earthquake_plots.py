@@ -1,8 +1,11 @@
 """Figures of shaken columns show tilts as tilts and overturning as overturning."""
 
+from io import BytesIO
+
 import numpy as np
 import pytest
 import xarray as xr
+from matplotlib import rc_context
 
 import stylobate as sb
 from stylobate.base_motions.records import response_spectra
@@ -45,6 +48,15 @@ def test_tilts_are_drawn_and_overturned_runs_stand_apart():
     median = lines_of(tilts)[4][1]
     np.testing.assert_array_equal(median, [0.1, 0.3, 0.5, NAN])
     assert tilts.get_xlabel() == "intensity [m/s²]"
+
+
+@pytest.mark.parametrize("name", [r"$\frac{1$", "$x$ and $y", "a$b"])
+def test_the_name_of_a_record_is_printed_as_it_is(name):
+    found = analysis(TILTS, [1.0, 2.0, 3.0, 4.0]).assign_coords(record=[name, "b", "c"])
+    text = BytesIO()
+    with rc_context({"svg.fonttype": "none"}):
+        sb.plot(found).savefig(text, format="svg")
+    assert f">{name}</text>" in text.getvalue().decode()
 
 
 def test_there_are_no_quantiles_where_intensities_differ():

@@ -32,7 +32,7 @@ def open_saved(source: Path | None) -> "xr.Dataset | None":
     from stylobate.results import read_dataset  # noqa: PLC0415
 
     data = read_dataset(source)
-    if "outcome" not in data.data_vars or "provenance" not in data.attrs:
+    if "outcome" not in data.data_vars or "provenance" not in data.attrs or "format" in data.attrs:
         message = f"{source} holds no map or basins saved by stylobate"
         raise FileError(message)
     return _relocated(data, source)

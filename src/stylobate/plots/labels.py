@@ -35,6 +35,7 @@ _OWN_LABELS = {
 _LABEL, _UNIT = "axis_label", "axis_unit"
 # A symbol with an index in a name, such as α_c.
 _INDEXED = re.compile(r"\b([^\W\d_])_([^\W_])\b")
+_DOLLAR = re.compile(r"(?<!\\)\$")
 # Relative tolerance for rounding.
 _ROUNDING = 1e-9
 
@@ -86,6 +87,20 @@ def in_own_units(result: _Result) -> _Result:
     elif isinstance(found, Sequence) and any(isinstance(one, Response | xr.Dataset) for one in found):
         found = [in_own_units(one) for one in found]
     return found  # type: ignore[no-any-return]
+
+
+def literal(name: str) -> str:
+    """Return a name that Matplotlib prints as it is; it typesets the text between two dollar signs as TeX."""
+    return _DOLLAR.sub(r"\\$", name)
+
+
+def with_literal_names(data: xr.Dataset) -> xr.Dataset:
+    """Return the Dataset of a study with literal names of records, columns and the like."""
+    named = {name: one for name, one in data.coords.items() if one.ndim == 1 and one.dtype.kind in "OU"}
+    names = {name: [str(each) for each in one.to_numpy()] for name, one in named.items()}
+    return data.assign_coords(
+        {name: named[name].copy(data=list(map(literal, some))) for name, some in names.items() if "$" in "".join(some)}
+    )
 
 
 def _is_dimensionless(provenance: Mapping[str, Any]) -> bool:

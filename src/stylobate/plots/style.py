@@ -4,10 +4,11 @@ from collections.abc import Callable
 from functools import wraps
 from typing import Any, ParamSpec
 
+import xarray as xr
 from matplotlib import rc_context
 from matplotlib.figure import Figure
 
-from stylobate.plots.labels import in_own_units
+from stylobate.plots.labels import in_own_units, with_literal_names
 
 # Okabe and Ito's palette ("Color Universal Design", 2008) without its yellow; the lightness alternates.
 PALETTE = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#000000")
@@ -40,13 +41,17 @@ P = ParamSpec("P")
 
 
 def styled(draw: Callable[P, Figure]) -> Callable[P, Figure]:
-    """Apply the common settings, and label dimensionless columns in their units; the user's settings stay."""
+    """Apply the common settings; the user's settings stay.
+
+    Dimensionless columns are labelled in their units, and names that a study states are printed as they are.
+    """
 
     @wraps(draw)
     def drawn(*args: P.args, **kwargs: P.kwargs) -> Figure:
         with rc_context(_SETTINGS):
             results: Any = [in_own_units(one) for one in args]
-            return draw(*results, **kwargs)
+            shown: Any = [with_literal_names(one) if isinstance(one, xr.Dataset) else one for one in results]
+            return draw(*shown, **kwargs)
 
     return drawn
 

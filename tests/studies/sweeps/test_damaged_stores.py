@@ -1,6 +1,7 @@
 """A damaged store is refused in one line, and computed again where it is damaged when it is continued."""
 
 import logging
+import os
 import re
 import shutil
 import subprocess
@@ -186,6 +187,16 @@ def test_what_was_lost_is_computed_again_with_a_notice(sweep, undamaged, path, a
     assert files_of(path) == files_of(undamaged)
     if not lost.startswith("seal"):  # without its seal a block is one that has not been finished
         assert "5 runs are computed again" in caplog.text
+
+
+@pytest.mark.parametrize("date", [0, 4e9])
+def test_the_dates_of_files_do_not_matter(sweep, undamaged, path, caplog, date):
+    (path / "peak_tilt" / "c" / "3" / "0").unlink()
+    for file in path.rglob("*"):  # the clock went back, or forward
+        os.utime(file, (date, date))
+    with caplog.at_level(logging.WARNING):
+        run_sweep(sweep, store=path, resume=True)
+    assert files_of(path) == files_of(undamaged)
 
 
 def test_a_damaged_chunk_is_computed_again(sweep, undamaged, path, caplog):

@@ -9,6 +9,7 @@ from matplotlib.ticker import NullFormatter
 
 from stylobate.base_motions import Record
 from stylobate.base_motions.records.record import AXES
+from stylobate.plots.labels import literal
 from stylobate.plots.style import BLACK, BLUE, GREY, VERMILION, WIDTH, new_figure, styled
 
 _COLOURS = dict(zip(AXES, (BLUE, VERMILION, GREY), strict=True))
@@ -42,7 +43,7 @@ def _history(axes: Axes, record: Record) -> None:
         axes.plot(
             record.times, record.samples[:, place], color=_COLOURS[axis], linewidth=0.6, zorder=3.0 - place, label=axis
         )
-    axes.set_title(record.name)
+    axes.set_title(literal(record.name))
     axes.set_ylabel("acceleration [m/s²]")
     axes.legend(loc="upper right", ncols=3)
 

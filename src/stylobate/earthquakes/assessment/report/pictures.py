@@ -1,5 +1,7 @@
 """The figures of the report with their captions; figures of a column that hardly moved are left out."""
 
+from dataclasses import replace
+
 import numpy as np
 from matplotlib.figure import Figure
 
@@ -13,6 +15,7 @@ from stylobate.earthquakes.assessment.report.figures import (
 )
 from stylobate.earthquakes.assessment.report.record_figures import RECORDS_A_FIGURE, records_figure, spectra_figure
 from stylobate.earthquakes.figures.fragility import plot_fragility
+from stylobate.plots.labels import with_literal_names
 from stylobate.plots.page import Picture
 from stylobate.results.assessment import Assessment
 
@@ -21,9 +24,11 @@ Pictures = dict[str, Picture]
 
 def report_pictures(assessment: Assessment) -> Pictures:
     """Return the pictures by file name; each name begins with the name of the section."""
-    found = _of_records(assessment)
-    for place, name in enumerate(assessment.data["columns"]["column"].to_numpy()):
-        found |= _of_column(assessment, str(name), place + 1)
+    drawn = replace(assessment, data={name: with_literal_names(data) for name, data in assessment.data.items()})
+    found = _of_records(drawn)
+    names = (assessment.data["columns"]["column"], drawn.data["columns"]["column"])
+    for place, (name, column) in enumerate(zip(*(one.to_numpy() for one in names), strict=True)):
+        found |= _of_column(drawn, str(column), str(name), place + 1)
     return found
 
 
@@ -47,40 +52,41 @@ def _of_records(assessment: Assessment) -> Pictures:
     return found
 
 
-def _of_column(assessment: Assessment, column: str, place: int) -> Pictures:
+def _of_column(assessment: Assessment, column: str, called: str, place: int) -> Pictures:
+    """Return the pictures of a `column`, which is `called` otherwise outside figures."""
     found = {}
     if bool((assessment.data["margins"]["bands"].sel(column=column) > 0).any()):
         found[f"margins-{place}"] = Picture(
             margins_figure(assessment, column),
-            f"{column}: scale factors of each record at which it overturned (hatched) or did not, at each dissipation. "
+            f"{called}: scale factors of each record at which it overturned (hatched) or did not, at each dissipation. "
             "An interval narrower than the step of the scan may have been missed.",
         )
     if bool((assessment.data["histories"]["peak_tilt_ratio"].sel(column=column) > SMALLEST_TILT).any()):
         found[f"history-{place}"] = Picture(
             history_figure(assessment, column),
-            f"{column} under its governing record. Left: tilt and base acceleration against time. Right: path of the "
+            f"{called} under its governing record. Left: tilt and base acceleration against time. Right: path of the "
             "tilt. Dashed: the tipping angle α_c, at which the centre of mass stands above the rim.",
         )
     if bool((assessment.data["verdicts"]["friction_demand"].sel(column=column) > 0.0).any()):
         found[f"contact-{place}"] = Picture(
             contact_figure(assessment, column),
-            f"{column}: friction needed in each run. Dashed: the stated coefficient.",
+            f"{called}: friction needed in each run. Dashed: the stated coefficient.",
         )
     for scale in assessment.setting["scales"]:
         if not _rocked(assessment, column, scale):
             continue
         found[f"tilts-{place}-scale-{scale:g}"] = Picture(
             tilts_figure(assessment, column, scale),
-            f"{column} at scale {scale:g}: peak tilts at each dissipation (vertical component included), and those of "
+            f"{called} at scale {scale:g}: peak tilts at each dissipation (vertical component included), and those of "
             "the planar column if it was computed.",
         )
         if "robustness" in assessment.data:
             found[f"robustness-{place}-scale-{scale:g}"] = Picture(
                 robustness_figure(assessment, column, scale),
-                f"{column} at scale {scale:g}: does a small change flip the verdict?",
+                f"{called} at scale {scale:g}: does a small change flip the verdict?",
             )
     if "fragility" in assessment.data:
-        found[f"fragility-{place}"] = Picture(_fragility(assessment, column), f"{column}: fragility.")
+        found[f"fragility-{place}"] = Picture(_fragility(assessment, column), f"{called}: fragility.")
     return found
 
 

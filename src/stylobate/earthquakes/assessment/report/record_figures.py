@@ -6,6 +6,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from stylobate.column import STANDARD_GRAVITY
+from stylobate.plots.labels import literal
 from stylobate.plots.style import BLACK, GREY, PALETTE, VERMILION, new_figure, styled
 from stylobate.results.assessment import Assessment
 
@@ -57,7 +58,7 @@ def spectra_figure(assessment: Assessment) -> Figure:
             color=VERMILION,
             linestyle="--",
             linewidth=2.2,
-            label=str(design["name"]),
+            label=literal(str(design["name"])),
         )
     axes.set(xlim=(0.0, float(period[-1])), ylim=(0.0, None), xlabel="natural period [s]", ylabel="Sa [g]")
     axes.legend(loc="upper right", fontsize=8)
