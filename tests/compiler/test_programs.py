@@ -88,4 +88,4 @@ def test_code_depends_on_the_texts_and_on_what_is_bound(modules):
 def test_a_name_that_nothing_binds_is_refused_by_the_compiler(modules):
     functions = Bound(modules, {}).module("made", {"growth": squared})
     with pytest.raises(CompileError, match="later"):
-        Unit(lanes=4).export(functions.into, "into", [ArrayArgument((None,)), ArrayArgument((None,))])
+        Unit(lanes=4, trusted=True).export(functions.into, "into", [ArrayArgument((None,)), ArrayArgument((None,))])

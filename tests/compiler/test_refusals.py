@@ -155,7 +155,7 @@ REFUSED = {
     first_axis: "belongs in the last axis",
     lanes_into_one_place: "lanes are stored in one element",
     uneven: "a multiple of 8 passes",
-    after_the_lanes: "a has no value here, or one in lanes only",
+    after_the_lanes: "a has no value here; a loop over",
     fraction_as_index: "an index is a whole number, not 1.5",
     too_many_indices: "an array of 1 axes is indexed with 2 indices",
     whole_of_a_fraction: r"expected a whole number, got one with a fraction; write int\(...\)",

@@ -286,7 +286,7 @@ REFUSED = {
     chosen_function: "law means .*, and control flow assigns to it",
     index_of_lanes_in_a_condition: "a condition on the index of a loop over lanes",
     before_the_row: "the first lanes would lie before the array",
-    sum_over_lanes: "total has no value here, or one in lanes only",
+    sum_over_lanes: "total has no value here; a loop over a tuple or over lanes does not keep",
     return_in_lanes: "return within lanes",
     array_in_a_loop: "an array made in each pass of a loop",
     sometimes_nothing: "some paths return a value, others do not",

@@ -11,8 +11,7 @@ The accepted language
   expressions; functions of `math`, the same of NumPy, and abs, min, max, sum, int, float, bool, len.
 * Tuples and NamedTuples: creation, unpacking, unrolling by `for`, `zip` and `enumerate`, selection by an index; a
   generator over a tuple, or over a known range, is a tuple.
-* Arrays of floats: elements, slices and rows as views, copies of whole rows, `np.zeros` of a small known shape. Unknown
-  indices must lie between 0 and the length; they are not checked.
+* Arrays of floats: elements, slices and rows as views, copies of whole rows, `np.zeros` of a small known shape.
 * `if`, `while`, `for` over `range` and over tuples, `break`, `continue`, `return`; assignments, also to several names.
   A name must be assigned on every path to its use.
 * Calls of functions written in Python: functions of modules, static methods of classes, closures and lambdas; default
@@ -24,6 +23,10 @@ loops is called separately for each lane, which is slow.
   an `if` with a known condition only one branch is compiled.
 
 All other code is refused with file, line and a remedy (`CompileError`).
+
+Whole numbers have 64 bits, and nothing is checked while compiled code runs. In functions of models each whole number
+has bounds that are known when it is compiled, and code that may leave 2^53, an array or a tuple is refused
+(`whole_numbers`). Functions of the package itself are trusted: indices that are not known count from 0.
 
 Results equal those of Python to the bit, with these differences:
 

@@ -7,14 +7,19 @@ import ast
 import math
 import operator
 import types
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import replace
 from enum import Enum
 from typing import Any
 
-from stylobate.compiler.refusal import Refusal
+from stylobate.compiler import whole_numbers
+from stylobate.compiler.refusal import LanesRefusal, Refusal
 from stylobate.compiler.text import FunctionText, ModuleText
 from stylobate.compiler.values import (
+    BEYOND_FLOATS,
     Array,
+    Bounds,
     Kind,
     LaneIndex,
     Number,
@@ -79,6 +84,17 @@ class Arithmetic:
         self.module, self.text = module, text
         self.flags = FAST if fast else ""
         self.lanes = 0
+        self.checked = False
+        """Whether whole numbers must have bounds, see `whole_numbers`."""
+
+    @contextmanager
+    def checking(self, checked: bool) -> Iterator[None]:
+        """Make whole numbers have bounds, or not, within the context."""
+        before, self.checked = self.checked, checked
+        try:
+            yield
+        finally:
+            self.checked = before
 
     # Numbers and their kinds
 
@@ -112,7 +128,7 @@ class Arithmetic:
             raise Refusal(message)
         instruction = "sitofp" if number.kind is Kind.INTEGER else "uitofp" if kind is Kind.FLOAT else "zext"
         text = self.text.value(f"{instruction} {number.operand} to {type_of(kind, number.lanes)}")
-        return Number(kind, text, number.lanes)
+        return Number(kind, text, number.lanes, (0, 1) if kind is Kind.INTEGER else None)
 
     def truth(self, value: Value) -> Number:
         """Return whether a number is not zero."""
@@ -125,7 +141,7 @@ class Arithmetic:
         kind = type_of(number.kind, self.lanes)
         one = self.text.value(f"insertelement {kind} poison, {number.operand}, i32 0")
         text = self.text.value(f"shufflevector {kind} {one}, {kind} poison, <{self.lanes} x i32> zeroinitializer")
-        return Number(number.kind, text, self.lanes)
+        return replace(number, text=text, lanes=self.lanes)
 
     def alike(self, *values: Value, kind: Kind | None = None) -> list[Number]:
         """Convert values to one kind, by default the smallest common kind, in lanes if any value is in lanes."""
@@ -153,15 +169,21 @@ class Arithmetic:
             return self._power(a, b)
         least = Kind.FLOAT if isinstance(operation, ast.Div) else Kind.INTEGER
         x, y = self.alike(a, b, kind=max(least, *map(self._kind, (a, b))))
+        bounds = self._bounds(operation, x, y) if x.kind is Kind.INTEGER and self.checked else None
         if x.kind is Kind.INTEGER and isinstance(operation, ast.FloorDiv | ast.Mod):
-            return self._divided(operation, x, y)
+            with self.checking(False):
+                return replace(self._divided(operation, x, y), bounds=bounds)
         names = _FLOAT if x.kind is Kind.FLOAT else _INTEGER
         if type(operation) not in names:
             message = f"{type(operation).__name__} of numbers with a fraction; write a - b * math.floor(a / b)"
             raise Refusal(message)
         flags = self.flags if x.kind is Kind.FLOAT else ""
         text = self.text.value(f"{names[type(operation)]} {flags}{x.operand}, {y.text}")
-        return Number(x.kind, text, x.lanes)
+        return Number(x.kind, text, x.lanes, bounds)
+
+    @staticmethod
+    def _bounds(operation: ast.operator, x: Number, y: Number) -> Bounds:
+        return whole_numbers.after(operation, whole_numbers.bounds_of(x), whole_numbers.bounds_of(y))
 
     def _kind(self, value: Value) -> Kind:
         return self.number(value).kind
@@ -181,7 +203,11 @@ class Arithmetic:
     def _power(self, base: Value, exponent: Value) -> Value:
         whole = is_known_number(exponent) and exponent == int(exponent) and 0 < exponent <= MOST_FACTORS
         if not whole:
+            if isinstance(exponent, Number) and max(kind_of(base), kind_of(exponent)) < Kind.FLOAT and self.checked:
+                message = "a power of whole numbers is a whole number or not, as the exponent is; write float(a) ** b"
+                raise Refusal(message)
             return self.called("llvm.pow", base, exponent)
+        base = self.number(base, max(kind_of(base), kind_of(exponent), Kind.INTEGER))
         left, square, result = int(exponent), base, None
         while left:
             if left % 2:
@@ -267,11 +293,14 @@ class Arithmetic:
             made = [self.chosen(condition, *pair) for pair in zip(a, b, strict=True)]
             return type(a)(*made) if hasattr(a, "_fields") else tuple(made)
         x, y = self.alike(a, b)
+        bounds = None
+        if x.kind is Kind.INTEGER and self.checked:
+            bounds = whole_numbers.joined(whole_numbers.bounds_of(x), whole_numbers.bounds_of(y))
         condition = self.truth(condition)
         if condition.lanes:
             x, y = self.wide(x), self.wide(y)
         text = self.text.value(f"select {condition.operand}, {x.operand}, {y.operand}")
-        return Number(x.kind, text, x.lanes)
+        return Number(x.kind, text, x.lanes, bounds)
 
     # Functions
 
@@ -307,7 +336,7 @@ class Arithmetic:
                 return self.binary(ast.Add(), part.first, part.offset + lane)
             if not isinstance(part, Number) or not part.lanes:
                 return part
-            return Number(part.kind, self.text.value(f"extractelement {part.operand}, i32 {lane}"))
+            return Number(part.kind, self.text.value(f"extractelement {part.operand}, i32 {lane}"), bounds=part.bounds)
 
         return rebuilt(value, single)
 
@@ -322,19 +351,30 @@ class Arithmetic:
         kind, result = type_of(first.kind, len(values)), "poison"
         for lane, value in enumerate(values):
             result = self.text.value(f"insertelement {kind} {result}, {value.operand}, i32 {lane}")
-        return Number(first.kind, result, len(values))
+        bounds = None
+        if first.kind is Kind.INTEGER and self.checked:
+            bounds = whole_numbers.joined(*map(whole_numbers.bounds_of, values))
+        return Number(first.kind, result, len(values), bounds)
 
     def whole(self, value: Value) -> Value:
-        """Return a number without its fraction, as `int` does; saturated at 64 bits, 0 for NaN."""
+        """Return a number without its fraction, as `int` does; saturated at 64 bits, or at its bounds, 0 for NaN."""
         if not isinstance(value, Number):
             return int(value)
         if value.kind is not Kind.FLOAT:
             return self.number(value, Kind.INTEGER)
-        if value.lanes:
+        if not self.checked and value.lanes:
             message = "int(...) in a loop over lanes; write math.floor"
-            raise Refusal(message)
-        function = self.module.declared("llvm.fptosi.sat.i64.f64", "i64", ["double"])
-        return Number(Kind.INTEGER, self.text.value(f"call i64 {function}({value.operand})"))
+            raise LanesRefusal(message)
+        kind, suffix = type_of(Kind.INTEGER, value.lanes), f"v{value.lanes}" if value.lanes else ""
+        function = self.module.declared(f"llvm.fptosi.sat.{suffix}i64.{suffix}f64", kind, [value.type])
+        text = self.text.value(f"call {kind} {function}({value.operand})")
+        if not self.checked:
+            return Number(Kind.INTEGER, text)
+        for name, end in (("llvm.smax", -BEYOND_FLOATS), ("llvm.smin", BEYOND_FLOATS)):
+            function = self.module.declared(f"{name}.{suffix}i64", kind, [kind, kind])
+            limit = constant(end, Kind.INTEGER, value.lanes)
+            text = self.text.value(f"call {kind} {function}({kind} {text}, {limit.operand})")
+        return Number(Kind.INTEGER, text, value.lanes, whole_numbers.ANY)
 
 
 def _refuse_lanes(*values: Value) -> None:

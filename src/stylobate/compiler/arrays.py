@@ -8,8 +8,9 @@ from dataclasses import replace
 import numpy as np
 
 from stylobate.compiler.arithmetic import Arithmetic
-from stylobate.compiler.refusal import Refusal
-from stylobate.compiler.values import Array, Element, Kind, LaneIndex, Number, Value, constant, type_of
+from stylobate.compiler.refusal import LanesRefusal, Refusal
+from stylobate.compiler.values import Array, Element, Kind, LaneIndex, Number, Value, constant, is_known_number, type_of
+from stylobate.compiler.whole_numbers import bounds_of, ends_of_index
 
 MOST_IN_FUNCTION = 4096
 """Maximum number of elements of an array that a function creates."""
@@ -20,16 +21,22 @@ def view(arithmetic: Arithmetic, array: Array, indices: Sequence[Value]) -> Arra
     if len(indices) > len(array.shape):
         message = f"an array of {len(array.shape)} axes is indexed with {len(indices)} indices"
         raise Refusal(message)
+    if any(isinstance(index, Number) and index.lanes for index in indices):
+        message = "an index that differs between lanes; write a function of single numbers"
+        raise LanesRefusal(message)
+    if any(_is_truth(index) for index in indices):
+        message = "an index of an array is a truth value, which selects in NumPy; write int(...)"
+        raise Refusal(message)
     known, pointer = 0, array.pointer
     shape, strides = [], []
     for axis, index in enumerate(indices):
         length, stride = array.shape[axis], array.strides[axis]
-        start = index
         if isinstance(index, slice):
-            start, end = _ends(arithmetic, index, length)
-            shape.append(arithmetic.binary(ast.Sub(), end, start))
+            step, end = _ends(arithmetic, index, length)
+            shape.append(arithmetic.binary(ast.Sub(), end, step))
             strides.append(stride)
-        step = _from_the_start(arithmetic, start, length)
+        else:
+            step = counted(arithmetic, index, length)
         step = step if stride == 1 else arithmetic.binary(ast.Mult(), step, stride)
         if isinstance(step, int):
             known += step
@@ -103,6 +110,9 @@ def place(arithmetic: Arithmetic, array: Array, indices: Sequence[Value]) -> tup
     if last.offset < 0:
         message = "the first lanes would lie before the array"
         raise Refusal(message)
+    if arithmetic.checked:
+        low, high = bounds_of(last.first)
+        ends_of_index((low + last.offset, high + last.offset), array.shape[len(outer)])
     row = view(arithmetic, array, outer)
     shifted = arithmetic.binary(ast.Add(), last.first, last.offset) if last.offset else last.first
     return replace(row, pointer=_moved(arithmetic, row.pointer, shifted, array.element), shape=()), arithmetic.lanes
@@ -112,7 +122,7 @@ def load(arithmetic: Arithmetic, element: Array, lanes: int) -> Number:
     """Load the number at a `place`."""
     if element.element is Element.SIGNAL:
         byte = arithmetic.text.value(f"load volatile i8, ptr {element.pointer}")
-        return Number(Kind.INTEGER, arithmetic.text.value(f"zext i8 {byte} to i64"))
+        return Number(Kind.INTEGER, arithmetic.text.value(f"zext i8 {byte} to i64"), bounds=(0, 255))
     kind = type_of(Kind.FLOAT, lanes)
     return Number(Kind.FLOAT, arithmetic.text.value(f"load {kind}, ptr {element.pointer}, align 8"), lanes)
 
@@ -157,9 +167,33 @@ def _ends(arithmetic: Arithmetic, index: slice, length: Value) -> tuple[Value, V
     if isinstance(length, int) and not any(isinstance(end, Number) for end in (index.start, index.stop)):
         start, end, _ = index.indices(length)
         return start, max(start, end)
-    start = 0 if index.start is None else index.start
+    if arithmetic.checked:
+        message = "the ends of a slice, and the length of what is cut, must be known; write a loop"
+        raise Refusal(message)
+    start = 0 if index.start is None else _from_the_start(arithmetic, index.start, length)
     end = length if index.stop is None else _from_the_start(arithmetic, index.stop, length)
-    return _from_the_start(arithmetic, start, length), end
+    return start, end
+
+
+def counted(arithmetic: Arithmetic, index: Value, length: Value) -> Value:
+    """Return an index of an array or tuple, counted from its start."""
+    if isinstance(length, int) and is_known_number(index) and not -length <= index < length:
+        message = f"index {index} lies beyond the length {length}; count from 0 to {length - 1}"
+        raise Refusal(message)
+    index = _from_the_start(arithmetic, index, length)
+    if not isinstance(index, Number) or not arithmetic.checked:
+        return index
+    from_start, from_end = ends_of_index(bounds_of(index), length)
+    if not from_end:
+        return index
+    backwards = arithmetic.binary(ast.Add(), index, length)
+    if not from_start:
+        return backwards
+    return arithmetic.chosen(arithmetic.compared(ast.Lt(), index, 0), backwards, index)
+
+
+def _is_truth(index: Value) -> bool:
+    return isinstance(index, bool) or (isinstance(index, Number) and index.kind is Kind.BOOLEAN)
 
 
 def _from_the_start(arithmetic: Arithmetic, index: Value, length: Value) -> Value:
@@ -170,9 +204,6 @@ def _from_the_start(arithmetic: Arithmetic, index: Value, length: Value) -> Valu
         raise Refusal(message)
     if not isinstance(index, int | np.integer):
         message = f"an index is a whole number, not {index!r}"
-        raise Refusal(message)
-    if isinstance(length, int) and not -length <= index <= length:
-        message = f"index {index} lies beyond an array of length {length}"
         raise Refusal(message)
     return int(index) if index >= 0 else arithmetic.binary(ast.Add(), length, int(index))
 

@@ -9,10 +9,11 @@ from stylobate.compiler.arithmetic import Arithmetic
 from stylobate.compiler.names import Names, assigned_in
 from stylobate.compiler.reads import Reads
 from stylobate.compiler.refusal import LanesRefusal, Refusal, at_its_place
-from stylobate.compiler.slots import has_array
+from stylobate.compiler.slots import Need, has_array
 from stylobate.compiler.sources import Source
 from stylobate.compiler.text import Block
-from stylobate.compiler.values import Kind, LaneIndex, Number, Value, constant
+from stylobate.compiler.values import Bounds, Kind, LaneIndex, Number, Value, constant
+from stylobate.compiler.whole_numbers import bounds_of
 
 RESULT = "return"
 """Name of the slot of the result of a function."""
@@ -41,12 +42,12 @@ class Body(Names):
         The function.
     arithmetic
         Writer of its instructions.
-    kinds
-        Minimum kind of the slot of each name.
+    needs
+        What the slot of each name needs to hold, besides the first value.
     """
 
-    def __init__(self, callees: Callees, source: Source, arithmetic: Arithmetic, kinds: Mapping[str, Kind]) -> None:
-        super().__init__(source, arithmetic, callees.reads, kinds)
+    def __init__(self, callees: Callees, source: Source, arithmetic: Arithmetic, needs: Mapping[str, Need]) -> None:
+        super().__init__(source, arithmetic, callees.reads, needs)
         self.callees = callees
         self.result: Value = None
         self.exit = self.text.new_block()
@@ -68,8 +69,8 @@ class Body(Names):
             If the function contains unsupported code.
         LanesRefusal
             If the function is called in a loop over lanes and contains code that is unsupported there.
-        slots.WiderKindError
-            If the slot of a name needs another kind; the attribute `name` has the name.
+        slots.WiderSlotError
+            If slots of names need another kind or bounds.
         """
         try:
             for name, value in arguments.items():
@@ -87,6 +88,8 @@ class Body(Names):
         if RESULT in self._slots and not self.text.block.ended:
             message = "some paths return a value, others do not"
             raise at_its_place(message, self._at, self.source.file, self.source.name)
+        if self._wider:
+            raise slots.WiderSlotError(self._wider)
         self.text.jump(self.exit)
         self.text.begin(self.exit)
 
@@ -250,16 +253,18 @@ class Body(Names):
         head, body, onward, done = (self.text.new_block() for _ in range(4))
         self.text.jump(head)
         self.text.begin(head)
-        index = Number(Kind.INTEGER, self.text.value(f"load i64, ptr {counter}"))
+        index = Number(Kind.INTEGER, self.text.value(f"load i64, ptr {counter}"), bounds=self._passes(start, stop))
         self.text.branch(self.arithmetic.compared(ast.Lt(), index, end).text, body, done)
         certain = known and start < stop
         if certain:  # the loop ends after a pass, not before the first one
             done.reached = False
         self.text.begin(body)
         self._depth += 1
-        self.assign_to(node.target, index)
+        self._take_item(node, index)
         self._depth -= 1
         self._pass(node.body, onward, done)
+        if isinstance(node.target, ast.Name):
+            self._bound.pop(node.target.id, None)  # its slot holds the value at the end of the loop
         self.text.jump(onward)
         self.text.begin(onward)
         if certain:
@@ -268,6 +273,13 @@ class Body(Names):
         self.text.line(f"store {next_one.operand}, ptr {counter}")
         self.text.jump(head)
         self.text.begin(done)
+
+    def _passes(self, start: Value, stop: Value) -> Bounds | None:
+        """Return the bounds of the index of a loop."""
+        if not self.arithmetic.checked:
+            return None
+        low = bounds_of(start)[0]
+        return low, max(low, bounds_of(stop)[1] - 1)
 
     def _unrolled(self, node: ast.For, items: Iterable[Value]) -> None:
         done = self.text.new_block()
@@ -292,7 +304,7 @@ class Body(Names):
             self.text.begin(done)
 
     def _take_item(self, node: ast.For, item: Value) -> None:
-        """Assign a value to the target of an unrolled loop; it is known in the body unless the body assigns to it."""
+        """Assign a value to the target of a loop; it is known in the body unless the body assigns to it."""
         name = node.target.id if isinstance(node.target, ast.Name) else ""
         if not name or name in assigned_in(node.body) or self.arithmetic.lanes:
             self.assign_to(node.target, item)
@@ -337,7 +349,7 @@ class Body(Names):
         position = len(head.lines)
         self.arithmetic.lanes, self._over = width, True
         self.forget(node)
-        self._bound[node.target.id] = LaneIndex(Number(Kind.INTEGER, first))
+        self._bound[node.target.id] = LaneIndex(Number(Kind.INTEGER, first, bounds=self._passes(0, count)))
         self._block(node.body)
         self.forget(node)
         self.arithmetic.lanes, self._over = 0, False

@@ -83,7 +83,7 @@ class Compiled:
     def unit(self, *, exact: bool = False, reads: Reads | None = None) -> Unit:
         """Return a new unit for functions of the module."""
         fast = [function for name, function in self.functions.items() if name in self.fast]
-        return Unit(lanes=machine.lanes(), fast=fast, exact=exact, reads=reads)
+        return Unit(lanes=machine.lanes(), fast=fast, exact=exact, reads=reads, trusted=True)
 
     @property
     def _words(self) -> str:

@@ -3,6 +3,7 @@
 import ast
 from abc import ABC, abstractmethod
 from collections.abc import Callable
+from dataclasses import replace
 from functools import cache
 from typing import Any
 
@@ -13,6 +14,7 @@ from stylobate.compiler.arithmetic import Arithmetic, truth_of_known
 from stylobate.compiler.reads import Reads, is_plain
 from stylobate.compiler.refusal import Refusal
 from stylobate.compiler.values import Array, Kind, LaneIndex, Number, Value, kind_of
+from stylobate.compiler.whole_numbers import bounds_of, joined
 
 _OVER_TUPLES = (zip, enumerate, reversed, tuple)
 _OF_ARRAYS: dict[Any, Callable[..., Array]] = {marks.flat: arrays.flat, np.zeros: arrays.room}
@@ -96,10 +98,13 @@ class Expressions(ABC):
 
     def _usable(self, value: Value) -> Value:
         if isinstance(value, np.ndarray):
-            if value.dtype.kind not in "fiub":
-                message = f"arrays hold numbers, not {value.dtype}"
+            if value.dtype != np.float64:
+                message = f"arrays hold floats, not {value.dtype}; write np.array(..., dtype=float)"
                 raise Refusal(message)
             return arrays.table(self.arithmetic, value)
+        if isinstance(value, np.generic) and not isinstance(value, np.float64 | np.int64):
+            message = f"numbers of the type {value.dtype} follow rules of their own; write float(...) or int(...)"
+            raise Refusal(message)
         return value.item() if isinstance(value, np.generic) else value
 
     def _attribute(self, node: ast.Attribute) -> Value:
@@ -266,6 +271,7 @@ class Expressions(ABC):
             raise Refusal(message)
         if not isinstance(index, Number):
             return items[index]
+        index = arrays.counted(self.arithmetic, index, len(items))
         result = items[-1]
         for position, item in reversed(list(enumerate(items[:-1]))):
             result = self.arithmetic.chosen(self.arithmetic.compared(ast.Eq(), index, position), item, result)
@@ -312,4 +318,7 @@ def _wider(a: Value, b: Value) -> Value:
         return type(a)(*made) if hasattr(a, "_fields") else tuple(made)
     if isinstance(a, Array | tuple) or isinstance(b, Array | tuple):
         return a
-    return max(a, b, key=kind_of)
+    wider = max(a, b, key=kind_of)
+    if isinstance(wider, Number) and wider.kind is Kind.INTEGER:
+        return replace(wider, bounds=joined(bounds_of(a), bounds_of(b)))
+    return wider

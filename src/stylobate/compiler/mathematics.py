@@ -3,6 +3,7 @@
 import ast
 import math
 from collections.abc import Callable
+from dataclasses import replace
 from enum import EnumType
 from typing import Any
 
@@ -11,6 +12,7 @@ import numpy as np
 from stylobate.compiler.arithmetic import Arithmetic
 from stylobate.compiler.refusal import Refusal
 from stylobate.compiler.values import Array, Kind, Number, Value, is_known_number
+from stylobate.compiler.whole_numbers import bounds_of
 
 _OF_LLVM = (
     *("sqrt", "fabs", "sin", "cos", "exp", "exp2", "log", "log2", "log10", "pow", "copysign", "floor", "ceil", "trunc"),
@@ -52,7 +54,7 @@ def call(arithmetic: Arithmetic, function: Callable[..., Any], values: list[Valu
     if name in _OF_C_LIBRARY:
         return arithmetic.called_in_library(name, *values)
     result = arithmetic.called(f"llvm.{name}", *values)
-    if name in _WHOLE_IN_PYTHON and not isinstance(function, np.ufunc) and not result.lanes:
+    if name in _WHOLE_IN_PYTHON and not isinstance(function, np.ufunc) and (arithmetic.checked or not result.lanes):
         return arithmetic.whole(result)
     return result
 
@@ -84,10 +86,12 @@ def _absolute(arithmetic: Arithmetic, value: Value) -> Value:
     if number.kind is Kind.FLOAT:
         return arithmetic.called("llvm.fabs", number)
     negative = arithmetic.compared(ast.Lt(), number, 0)
-    return arithmetic.chosen(negative, arithmetic.negative(number), arithmetic.number(number, Kind.INTEGER))
+    result = arithmetic.chosen(negative, arithmetic.negative(number), arithmetic.number(number, Kind.INTEGER))
+    low, high = bounds_of(number)
+    return replace(result, bounds=(max(low, -high, 0), max(-low, high))) if arithmetic.checked else result
 
 
-def _extreme(comparison: ast.cmpop) -> Callable[..., Value]:
+def _extreme(comparison: ast.cmpop, extreme: Callable[..., int]) -> Callable[..., Value]:
     def found(arithmetic: Arithmetic, *values: Value) -> Value:
         if len(values) == 1:
             (values,) = values
@@ -96,7 +100,11 @@ def _extreme(comparison: ast.cmpop) -> Callable[..., Value]:
             raise Refusal(message)
         result, *others = values
         for value in others:
-            result = arithmetic.chosen(arithmetic.compared(comparison, value, result), value, result)
+            before = result
+            result = arithmetic.chosen(arithmetic.compared(comparison, value, before), value, before)
+            if arithmetic.checked and isinstance(result, Number) and result.kind is Kind.INTEGER:
+                low, high = map(extreme, bounds_of(value), bounds_of(before))
+                result = replace(result, bounds=(low, high))
         return result
 
     return found
@@ -165,8 +173,8 @@ _OWN: dict[str, Callable[..., Value]] = {
     "clip": _clipped,
     "where": Arithmetic.chosen,
     "abs": _absolute,
-    "min": _extreme(ast.Lt()),
-    "max": _extreme(ast.Gt()),
+    "min": _extreme(ast.Lt(), min),
+    "max": _extreme(ast.Gt(), max),
     "int": Arithmetic.whole,
     "float": _float,
     "bool": Arithmetic.truth,

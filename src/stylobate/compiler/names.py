@@ -9,8 +9,9 @@ from stylobate.compiler.arithmetic import Arithmetic
 from stylobate.compiler.expressions import Expressions
 from stylobate.compiler.reads import Reads
 from stylobate.compiler.refusal import Refusal
+from stylobate.compiler.slots import Need
 from stylobate.compiler.sources import Source
-from stylobate.compiler.values import Array, Kind, Number, Value
+from stylobate.compiler.values import Array, Number, Value
 
 _NOTHING = object()
 """Marks a name that no longer has a value."""
@@ -30,15 +31,17 @@ class Names(Expressions):
         Writer of its instructions.
     reads
         Log of the values that it reads.
-    kinds
-        Minimum kind of the slot of each name.
+    needs
+        What the slot of each name needs to hold, besides the first value.
     """
 
-    def __init__(self, source: Source, arithmetic: Arithmetic, reads: Reads, kinds: Mapping[str, Kind]) -> None:
+    def __init__(self, source: Source, arithmetic: Arithmetic, reads: Reads, needs: Mapping[str, Need]) -> None:
         super().__init__(arithmetic, reads, followed=reads.logs(source.function))
-        self.source, self._kinds = source, kinds
+        self.source, self._needs = source, needs
         self._bound: dict[str, Value] = {}
         self._slots: dict[str, Value] = {}
+        self._wider: dict[str, Need] = {}
+        """Bounds that the slots of names turned out to need."""
         self._chosen = _assigned_by_control_flow(source.body)
         self._own = assigned_in(source.body) | set(source.signature.parameters)
         self._depth = 0
@@ -55,7 +58,7 @@ class Names(Expressions):
                 raise Refusal(message)
             return slots.load(self.arithmetic, self._slots[name])
         if name in self._own:
-            message = f"{name} has no value here, or one in lanes only"
+            message = f"{name} has no value here; a loop over a tuple or over lanes does not keep its names"
             raise Refusal(message)
         try:
             found = self.source.find(name)
@@ -98,13 +101,15 @@ class Names(Expressions):
     def put(self, name: str, value: Value) -> None:
         """Store a value in the slot of a name."""
         if name not in self._slots:
-            self._slots[name] = slots.slot_for(self.arithmetic, value, self._kinds.get(name, Kind.BOOLEAN))
+            self._slots[name] = slots.slot_for(self.arithmetic, value, self._needs.get(name, Need()))
         try:
             slots.store(self.arithmetic, self._slots[name], value)
             self.text.block.assigned.add(name)
         except slots.WiderKindError as error:
-            error.name = name
-            raise
+            raise slots.WiderSlotError({name: Need(error.kind)}) from error
+        bounds = slots.bounds_beyond(self._slots[name], value) if self.arithmetic.checked else None
+        if bounds is not None:
+            self._wider[name] = Need(bounds=bounds).together(self._wider.get(name, Need()))
 
     def generated(self, node: ast.GeneratorExp) -> tuple[Value, ...]:
         """Return the values of a generator as a tuple; its names do not exist outside."""

@@ -1,11 +1,13 @@
 """Memory slots for names that control flow assigns to; LLVM keeps most of them in registers."""
 
-from dataclasses import replace
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 
 from stylobate.compiler.arithmetic import Arithmetic
 from stylobate.compiler.refusal import Refusal
 from stylobate.compiler.values import (
     Array,
+    Bounds,
     Kind,
     LaneIndex,
     Number,
@@ -15,15 +17,44 @@ from stylobate.compiler.values import (
     kind_of,
     rebuilt,
 )
+from stylobate.compiler.whole_numbers import ANY, TOO_LARGE, bounds_of, contains, joined, widened
+
+_MOST_UNIONS = 2
+"""Times for which the bounds of a name are those of all its values; then a loop changes it, and it has no bounds."""
+
+
+@dataclass(frozen=True, slots=True)
+class Need:
+    """Kind of the numbers, and bounds of the whole numbers, that the slots of a name must hold."""
+
+    kind: Kind = Kind.BOOLEAN
+    bounds: Bounds | None = None
+    times: int = 0
+
+    def together(self, other: "Need") -> "Need":
+        """Return the need of both; a name whose bounds grow each time, such as a counter, has none."""
+        kind = max(self.kind, other.kind)
+        if other.bounds is None:
+            return replace(self, kind=kind)
+        before = self.bounds or other.bounds
+        unite = joined if self.times < _MOST_UNIONS else widened
+        return Need(kind, unite(before, other.bounds), self.times + 1)
+
+
+class WiderSlotError(Exception):
+    """Slots of names are too narrow: the function is compiled again with wider slots."""
+
+    def __init__(self, needs: Mapping[str, Need]) -> None:
+        super().__init__(needs)
+        self.needs = needs
 
 
 class WiderKindError(Exception):
-    """A slot is too narrow for the kind of a number: the function is compiled again with a wider slot."""
+    """A slot is too narrow for the kind of a number."""
 
     def __init__(self, kind: Kind) -> None:
         super().__init__(kind)
         self.kind = kind
-        self.name = ""
 
 
 def can_be_stored(value: Value) -> bool:
@@ -38,8 +69,8 @@ def has_array(value: Value) -> bool:
     return any(map(has_array, value)) if isinstance(value, tuple) else isinstance(value, Array)
 
 
-def slot_for(arithmetic: Arithmetic, value: Value, least: Kind = Kind.BOOLEAN) -> Value:
-    """Return slots for a value of this structure, with numbers of at least the kind `least`."""
+def slot_for(arithmetic: Arithmetic, value: Value, need: Need = Need()) -> Value:
+    """Return slots for a value of this structure, and for what else they need to hold."""
 
     def room(part: Value) -> Value:
         if isinstance(part, Array):
@@ -47,8 +78,10 @@ def slot_for(arithmetic: Arithmetic, value: Value, least: Kind = Kind.BOOLEAN) -
             sizes = tuple(numbers)
             axes = len(part.shape)
             return replace(part, pointer=arithmetic.text.allocated("ptr"), shape=sizes[:axes], strides=sizes[axes:])
-        kind = max(kind_of(part), least)
-        return Slot(kind, arithmetic.text.allocated(kind.type))
+        kind, bounds = max(kind_of(part), need.kind), None
+        if arithmetic.checked and kind_of(part) < Kind.FLOAT:
+            bounds = joined(bounds_of(part), *([] if need.bounds is None else [need.bounds]))
+        return Slot(kind, arithmetic.text.allocated(kind.type), bounds)
 
     if not can_be_stored(value) or _in_lanes(value):
         message = "what control flow assigns to a name is a number, a view into an array, or a tuple of them"
@@ -89,12 +122,26 @@ def store(arithmetic: Arithmetic, slot: Value, value: Value) -> None:
             _refuse_other_structure()
 
 
+def bounds_beyond(slot: Value, value: Value) -> Bounds | None:
+    """Return the bounds of the whole numbers of a value that exceed those of their slots, None if none does."""
+    if isinstance(value, tuple):
+        beyond = [found for pair in zip(slot, value, strict=True) if (found := bounds_beyond(*pair)) is not None]
+        return joined(*beyond) if beyond else None
+    if not isinstance(slot, Slot) or slot.bounds is None or slot.kind is not Kind.INTEGER:
+        return None
+    bounds = bounds_of(value)
+    if not contains(ANY, bounds):
+        raise Refusal(TOO_LARGE)
+    return None if contains(slot.bounds, bounds) else joined(slot.bounds, bounds)
+
+
 def load(arithmetic: Arithmetic, slot: Value) -> Value:
     """Load the value of a slot."""
 
     def found(part: Value) -> Value:
         if isinstance(part, Slot):
-            return Number(part.kind, arithmetic.text.value(f"load {part.kind.type}, ptr {part.pointer}"))
+            text = arithmetic.text.value(f"load {part.kind.type}, ptr {part.pointer}")
+            return Number(part.kind, text, bounds=part.bounds if part.kind is Kind.INTEGER else None)
         if isinstance(part, Array):
             pointer = arithmetic.text.value(f"load ptr, ptr {part.pointer}")
             return replace(

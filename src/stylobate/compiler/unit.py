@@ -12,7 +12,7 @@ from stylobate.compiler.arithmetic import Arithmetic
 from stylobate.compiler.body import Body
 from stylobate.compiler.reads import Reads
 from stylobate.compiler.refusal import CompileError, LanesRefusal, Refusal
-from stylobate.compiler.slots import WiderKindError
+from stylobate.compiler.slots import Need, WiderSlotError
 from stylobate.compiler.sources import Source, plain_function, source_of
 from stylobate.compiler.text import FunctionText, ModuleText
 from stylobate.compiler.values import Array, Element, Kind, Number, Value, parts, rebuilt
@@ -53,6 +53,9 @@ class Unit:
         Whether no arithmetic is fast, so that results equal those of plain Python.
     reads
         Log of the values that are read.
+    trusted
+        Whether whole numbers need no bounds in functions that do not belong to a model: those of the package take care
+        of their indices themselves.
     """
 
     def __init__(
@@ -62,9 +65,10 @@ class Unit:
         fast: Collection[Callable[..., Any]] = (),
         exact: bool = False,
         reads: Reads | None = None,
+        trusted: bool = False,
     ) -> None:
         self.module, self.reads = ModuleText(), Reads({}) if reads is None else reads
-        self.lanes, self.exact = lanes, exact
+        self.lanes, self.exact, self._trusted = lanes, exact, trusted
         self._fast = {plain_function(function) for function in fast}
         self._sources: dict[FunctionType, Source] = {}
         self._made: dict[tuple[Any, ...], _Made] = {}
@@ -103,7 +107,7 @@ class Unit:
             return _called(arithmetic, self._specialised(plain, ordered, fast=fast), ordered)
         begun = len(arithmetic.text.block.lines)
         try:
-            with self._entered(plain):
+            with self._entered(plain), arithmetic.checking(self._is_checked(plain)):
                 body = Body(self, source, arithmetic, {})
                 body.run(bound)
             return body.finished()
@@ -136,15 +140,17 @@ class Unit:
         return self._made[key]
 
     def _compiled(self, source: Source, values: Sequence[Value], *, fast: bool) -> _Made:
-        kinds: dict[str, Kind] = {}
+        needs: dict[str, Need] = {}
         while True:
             text, head = FunctionText(), list[str]()
             arguments = [_parameter(value, head) for value in values]
-            body = Body(self, source, Arithmetic(self.module, text, fast=fast and not self.exact), kinds)
+            arithmetic = Arithmetic(self.module, text, fast=fast and not self.exact)
+            arithmetic.checked = self._is_checked(source.function)
+            body = Body(self, source, arithmetic, needs)
             try:
                 body.run(dict(zip(source.signature.parameters, arguments, strict=True)))
-            except WiderKindError as error:
-                kinds[error.name] = error.kind
+            except WiderSlotError as error:
+                needs |= {name: needs.get(name, Need()).together(need) for name, need in error.needs.items()}
                 continue
             result = body.finished()
             name = f"{source.name}.{len(self._made)}"
@@ -152,6 +158,9 @@ class Unit:
                 head.insert(0, f"ptr noalias {_RESULT}")
             self.module.define(f'internal {_returned(result)} @"{name}"({", ".join(head)})', _with_return(text, result))
             return _Made(name, result)
+
+    def _is_checked(self, function: FunctionType) -> bool:
+        return not self._trusted or self.reads.logs(function)
 
     @contextmanager
     def _entered(self, function: FunctionType) -> Iterator[None]:
@@ -189,7 +198,7 @@ def _parameter(value: Value, head: list[str]) -> Value:
 
     def passed(part: Value) -> Value:
         if isinstance(part, Number):
-            number = Number(part.kind, f"%x{len(head)}")
+            number = replace(part, text=f"%x{len(head)}")
             head.append(number.operand)
             return number
         if isinstance(part, Array):
@@ -220,7 +229,7 @@ def _structure(value: Value) -> Any:
     """Return the structure of an argument; a function is compiled once for each structure."""
     match value:
         case Number():
-            return value.kind
+            return value.kind, value.bounds
         case Array():
             return (*map(_structure, (*value.shape, *value.strides)), value.element, value.writable)
         case tuple():
@@ -265,8 +274,8 @@ def _called(arithmetic: Arithmetic, made: _Made, values: Sequence[Value]) -> Val
     def taken(part: Number) -> Number:
         place = next(places)
         if not room:
-            return Number(part.kind, text.value(f"extractvalue {kind} {result}, {place}"))
-        return Number(part.kind, text.value(f"load {part.type}, ptr {_place(text, kind, room, place)}"))
+            return replace(part, text=text.value(f"extractvalue {kind} {result}, {place}"))
+        return replace(part, text=text.value(f"load {part.type}, ptr {_place(text, kind, room, place)}"))
 
     return rebuilt(made.result, taken)
 

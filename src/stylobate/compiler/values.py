@@ -16,6 +16,13 @@ Value = Any
 """A `Number`, `Array` or `LaneIndex`, a tuple of values, or any object that is known at compile time."""
 
 
+Bounds = tuple[int, int]
+"""Minimum and maximum of a whole number."""
+
+BEYOND_FLOATS = 2**53
+"""Floats represent all whole numbers up to this one."""
+
+
 class Kind(IntEnum):
     """Kind of a number; each kind can represent the numbers of the kinds before it."""
 
@@ -41,11 +48,14 @@ class Number:
         Name of the number in instructions.
     lanes
         Number of lanes; 0 for a single number.
+    bounds
+        Bounds of a whole number, if they are known.
     """
 
     kind: Kind
     text: str
     lanes: int = 0
+    bounds: Bounds | None = None
 
     @property
     def type(self) -> str:
@@ -90,10 +100,11 @@ class LaneIndex:
 
 @dataclass(frozen=True, slots=True)
 class Slot:
-    """Memory of a number whose name control flow assigns to."""
+    """Memory of a number whose name control flow assigns to; `bounds` are those of all whole numbers stored in it."""
 
     kind: Kind
     pointer: str
+    bounds: Bounds | None = None
 
 
 def type_of(kind: Kind, lanes: int = 0) -> str:
@@ -123,7 +134,7 @@ def constant(value: float, kind: Kind, lanes: int = 0) -> Number:
         text = str(int(value)) if kind is Kind.INTEGER else str(bool(value)).lower()
     if lanes:
         text = f"<{', '.join([f'{kind.type} {text}'] * lanes)}>"
-    return Number(kind, text, lanes)
+    return Number(kind, text, lanes, (int(value), int(value)) if kind is Kind.INTEGER else None)
 
 
 def parts(value: Value) -> Iterator[Number]:
