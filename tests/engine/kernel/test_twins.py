@@ -17,6 +17,7 @@ from stylobate.engine.kernel.kernels import kernel_of
 
 COLUMN = sb.Column.solid(radius=0.5, height=3.0, density=2700.0)
 CIRCLE = sb.Harmonic.circular(acceleration=0.6, angular_frequency=2.2)
+STRAIGHT = sb.Harmonic.straight(acceleration=0.6, angular_frequency=2.2)
 VERTICAL = sb.Harmonic(amplitude=(0.6, 0.6, 0.2), phase=(0.0, 1.0, 2.0), angular_frequency=3.0)
 
 CASES = {
@@ -29,6 +30,7 @@ CASES = {
     "wobbling": (sb.Wobbling(COLUMN, damping=0.1), CIRCLE, {"demands": True}),
     "rolling": (sb.Rolling(COLUMN, damping=0.1), VERTICAL, {"demands": True}),
     "sliding": (sb.Sliding(COLUMN, 0.4), VERTICAL, {}),
+    "planar rocking, in a plane": (sb.PlanarRocking(COLUMN), STRAIGHT, {}),
 }
 
 
@@ -36,31 +38,45 @@ CASES = {
 LIKE_OTHERS = {"slender", "slender rolling", "wobbling"}
 
 
+def without_fast_arithmetic(compiled, name, arguments, kinds):
+    """Return a compiled function that takes values of these kinds."""
+    unit = compiled.unit(exact=True)
+    unit.export(getattr(compiled.module, name), name, arguments)
+    engine = machine.linked(machine.object_code(unit.module.text(machine.attributes())))
+    function = ctypes.CFUNCTYPE(ctypes.c_int64, *kinds)(engine.get_function_address(name))
+    vars(function)["engine"] = engine  # keeps the code alive
+    return function
+
+
 @pytest.mark.parametrize(
-    "case", [pytest.param(case, marks=pytest.mark.slow) if case in LIKE_OTHERS else case for case in CASES]
+    ("case", "draws"),
+    [
+        *(pytest.param(case, 5, marks=pytest.mark.slow) if case in LIKE_OTHERS else (case, 5) for case in CASES),
+        *(pytest.param(case, 300, marks=pytest.mark.slow) for case in CASES),
+    ],
 )
-def test_steps_have_the_bits_of_plain_python(case, plan_of):
+def test_steps_have_the_bits_of_plain_python(case, draws, plan_of):
     model, motion, options = CASES[case]
     plan = plan_of(model, motion, **options)
     kernel = kernel_of(type(model), plan.shape(planar=case.endswith("plane")))
     rows, width = kernel.shape.rows(), kernel.shape.width
-    unit = kernel.compiled.unit(exact=True)
-    unit.export(kernel.compiled.module.step, "step", [ArrayArgument((len(rows), width)), Kind.INTEGER])
-    engine = machine.linked(machine.object_code(unit.module.text(machine.attributes())))
-    compiled = ctypes.CFUNCTYPE(ctypes.c_int64, ctypes.c_void_p, ctypes.c_int64)(engine.get_function_address("step"))
-
-    buf = np.random.default_rng(8).normal(scale=0.05, size=(len(rows), width))
-    for name in ("h", "rtol", "atol", "atol_now", "longest_step", "stop"):
-        buf[rows[name]] = np.abs(buf[rows[name]])
-    for j, number in enumerate(model.parameters):
-        buf[rows[f"p{j}"]] = number
-    one, other = buf.copy(), buf.copy()
-    compiled(one.ctypes.data, width)
-    with np.errstate(all="ignore"):
-        kernel.compiled.module.step(other, width)
-    assert np.isfinite(other).mean() > 0.9
-    assert (other != buf).any(axis=1).sum() > 40
-    np.testing.assert_array_equal(one, other)
+    arguments, kinds = [ArrayArgument((len(rows), width)), Kind.INTEGER], [ctypes.c_void_p, ctypes.c_int64]
+    compiled = without_fast_arithmetic(kernel.compiled, "step", arguments, kinds)
+    rng = np.random.default_rng(8)
+    for draw in range(draws):
+        scale = 0.05 if draw == 0 else 10.0 ** rng.uniform(-6.0, 0.0)
+        buf = rng.normal(scale=scale, size=(len(rows), width))
+        for name in ("h", "rtol", "atol", "atol_now", "longest_step", "stop"):
+            buf[rows[name]] = np.abs(buf[rows[name]])
+        for j, number in enumerate(model.parameters):
+            buf[rows[f"p{j}"]] = number
+        one, other = buf.copy(), buf.copy()
+        compiled(one.ctypes.data, width)
+        with np.errstate(all="ignore"):
+            kernel.compiled.module.step(other, width)
+        assert draw or np.isfinite(other).mean() > 0.9
+        assert (other != buf).any(axis=1).sum() > 40
+        np.testing.assert_array_equal(one, other)
 
 
 def test_a_run_with_implicit_steps_has_the_bits_of_plain_python(plan_of):
@@ -74,9 +90,6 @@ def test_a_run_with_implicit_steps_has_the_bits_of_plain_python(plan_of):
     early = {"LOOK_EVERY": 5.0, "LOOK_AGAIN": 5.0, "STIFF_STEPS": 2.0}
     program = kernel.compiled.program()
     compiled = replace(kernel.compiled, program=lambda: replace(program, names={**program.names, **early}))
-    unit = compiled.unit(exact=True)
-    unit.export(compiled.module.advance, "advance", compiled.arguments)
-    engine = machine.linked(machine.object_code(unit.module.text(machine.attributes())))
     tables, halt = (batch.table.copy(), batch.table.copy()), np.zeros(1, dtype=np.uint8)
     room, pieces = kernel.buffer(), plan.motion.pieces
     passed = [
@@ -84,8 +97,7 @@ def test_a_run_with_implicit_steps_has_the_bits_of_plain_python(plan_of):
         *(pieces.ctypes.data, *pieces.shape),
         *(array.ctypes.data for array in (halt, room)),
     ]
-    advance = ctypes.CFUNCTYPE(ctypes.c_int64, *(ctypes.c_int64 for _ in passed))
-    advance(engine.get_function_address("advance"))(*passed)
+    without_fast_arithmetic(compiled, "advance", compiled.arguments, [ctypes.c_int64] * len(passed))(*passed)
     room = kernel.buffer()
     with np.errstate(all="ignore"):
         compiled.module.advance(tables[1], pieces, halt, room)
