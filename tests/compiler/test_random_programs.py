@@ -58,11 +58,17 @@ def require_same(text):
     if isinstance(result, INFINITE):
         return "infinite"
     assert not isinstance(result, Exception), f"{result!r}\n{text}"
-    assert (bits(found[0]), found[1]) == (bits(expected), result), text
-    return "same"
+    same = (bits(found[0]), found[1]) == (bits(expected), result)
+    assert same or found == (expected, result), text  # 0.0 equals -0.0
+    return "same" if same else "sign of zero"
 
 
-def run_programs(count):
+def require_all_explained(count):
+    """Compare as many programs with their twins.
+
+    A name that is a whole number on one path and a fraction on another is a fraction when compiled: zero times a
+    negative number is then -0.0. It takes such a name, such a product and no sum afterwards.
+    """
     kinds = Counter()
 
     @settings(max_examples=count, suppress_health_check=list(HealthCheck))
@@ -71,15 +77,10 @@ def run_programs(count):
         kinds[require_same(text).partition(":")[0]] += 1
 
     compare()
-    return kinds
+    assert kinds["same"] > 0.5 * count
+    assert kinds["sign of zero"] <= 0.001 * count
 
 
-def test_random_programs_give_the_bits_of_python():
-    kinds = run_programs(200)
-    assert kinds["same"] > 0.5 * kinds.total()
-
-
-@pytest.mark.slow
-def test_many_random_programs_give_the_bits_of_python():
-    kinds = run_programs(20_000)
-    assert kinds["same"] > 0.5 * kinds.total()
+@pytest.mark.parametrize("count", [200, pytest.param(20_000, marks=pytest.mark.slow)])
+def test_random_programs_give_the_bits_of_python(count):
+    require_all_explained(count)

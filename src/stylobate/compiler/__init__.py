@@ -31,6 +31,7 @@ has bounds that are known when it is compiled, and code that may leave 2^53, an 
 Results equal those of Python to the bit, with these differences:
 
 * Division by zero, a root of a negative number and the like give infinity or NaN, and zero for whole numbers.
+* A name that is a whole number on one path and a fraction on another is a fraction; its product with zero may be -0.0.
 * `int` of a number beyond 64 bits gives the nearest number within 64 bits.
 * Small whole powers are products; other powers and the functions of NumPy are those of the C library.
 * Functions marked `fast` may fuse products with sums and divide by reciprocals.
