@@ -6,46 +6,16 @@ import numpy as np
 import pytest
 
 import stylobate as sb
-from stylobate.engine.kernel.kernels import kernel_of
 
 COLUMN = sb.Column.dimensionless(0.1)
 CIRCLE = sb.Harmonic.circular(acceleration=0.065, angular_frequency=3.0)
 FAR = 99.0
 
 
-class Lane:
-    """The first lane of a kernel's buffer, its rows by their names, and the functions of the driver."""
-
-    def __init__(self, plan, model, *, planar=False, **given):
-        shape = plan.shape(planar=planar)
-        kernel = kernel_of(type(model), shape)
-        self._module, self._rows = kernel.compiled.module, shape.rows()
-        self._buffer = np.zeros_like(kernel.buffer())
-        # Nothing is near: no event, no stop, no limit.
-        far = {"no_return": FAR, "tilt_limit": FAR, "stop": FAR, "longest_step": FAR, "most_steps": 1e9}
-        for name, value in (far | {"h": 0.1, "side": 1.0} | given).items():
-            self[name] = value
-
-    def __getitem__(self, name):
-        return float(self._buffer[self._rows[name], 0])
-
-    def __setitem__(self, name, value):
-        self._buffer[self._rows[name], 0] = value
-
-    def do(self, name, *arguments):
-        """Call a function of the driver."""
-        return getattr(self._module, name)(self._buffer, 0, *arguments)
-
-
 @pytest.fixture
-def lane(plan_of):
-    """Make a lane of the slender column."""
-
-    def made(*, planar=False, **given):
-        model = sb.Slender(COLUMN)
-        return Lane(plan_of(model, CIRCLE), model, planar=planar, **given)
-
-    return made
+def lane(lane_of):
+    """Make a lane of the slender column; a step of 0.1 has been made in it."""
+    return lambda **given: lane_of(sb.Slender(COLUMN), CIRCLE, **({"h": 0.1, "side": 1.0} | given))
 
 
 def hermite(start, end, slope, end_slope, u):
