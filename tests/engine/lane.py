@@ -1,11 +1,16 @@
 """A lane of a kernel in plain Python, for tests of the functions of the driver one by one."""
 
+import math
+
 import numpy as np
 
 from stylobate.engine.kernel.kernels import kernel_of
 
 FAR = 99.0
-"""Where nothing is near: events, stops and limits."""
+"""Where nothing is near: events and limits."""
+
+_FAR = dict.fromkeys(("no_return", "tilt_limit", "stop", "longest_step", "end"), FAR)
+_NEVER = {f"{stop}_at": math.inf for stop in ("breaks", "lifts", "looks", "pairs", "samples", "strobes")}
 
 
 class Lane:
@@ -16,9 +21,10 @@ class Lane:
         kernel = kernel_of(type(model), self.shape)
         self.driver, self._rows = kernel.compiled.module, self.shape.rows()
         self.buffer = np.zeros_like(kernel.buffer())
-        far = {"no_return": FAR, "tilt_limit": FAR, "stop": FAR, "longest_step": FAR, "most_steps": 1e9}
+        self.table, self.pieces = np.zeros((1, 400)), np.zeros((1, 40))
+        usual = _FAR | _NEVER | {"leg_ends": math.inf, "most_steps": 1e9}
         parameters = {f"p{j}": number for j, number in enumerate(model.parameters)}
-        for name, value in (far | parameters | given).items():
+        for name, value in (usual | parameters | given).items():
             self[name] = value
 
     def __getitem__(self, name):
@@ -34,3 +40,7 @@ class Lane:
     def do(self, name, *arguments):
         """Call a function of the driver for this lane."""
         return getattr(self.driver, name)(self.buffer, 0, *arguments)
+
+    def scope(self, name):
+        """Return the names that a function of the driver uses; a test can replace functions among them."""
+        return getattr(self.driver, name).__globals__
