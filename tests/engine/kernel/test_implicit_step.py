@@ -112,3 +112,24 @@ def test_the_fastest_rate_is_the_largest_eigenvalue(monkeypatch):
     problem.step(1e-3, np.ones(16))
     np.testing.assert_allclose(problem.room.jacobian, problem.matrix, rtol=1e-6, atol=1e-4)
     assert problem.module.fastest_rate(problem.room.jacobian) == pytest.approx(5e4, rel=1e-6)
+
+
+@pytest.mark.parametrize("slip", [(2e-6, 0.0), (0.0, 2e-6), (-1e-6, 3e-6)])
+def test_the_jacobian_follows_the_direction_of_slip_however_slow(monkeypatch, slip):
+    problem = Linear(monkeypatch, np.zeros((15, 15)))
+    first = problem.rows["y8"] - problem.rows["y0"]
+
+    def friction(_buf, _i, _t, state):
+        force, speed = np.zeros(16), np.hypot(*state[first : first + 2])
+        force[first : first + 2] = -np.array(state[first : first + 2]) / speed
+        return tuple(force)
+
+    monkeypatch.setitem(problem.module.set_jacobian.__globals__, "rates_at", friction)
+    problem.state("y")[first : first + 2] = slip
+    problem.state("k0_")[:] = friction(None, 0, 0.0, problem.state("y"))
+    problem.module.set_jacobian(problem.buf, 0, problem.room.jacobian)
+    speed = np.hypot(*slip)
+    expected = (np.outer(slip, slip) / speed**2 - np.eye(2)) / speed
+    # Differences of a thousandth of the slip velocity.
+    found = problem.room.jacobian[first : first + 2, first : first + 2]
+    np.testing.assert_allclose(found, expected, rtol=3e-3, atol=3e-3 / speed)

@@ -1,0 +1,141 @@
+"""Changes between kinds of contact in a lane, in plain Python: guards within a step, records and counts."""
+
+import math
+
+import numpy as np
+import pytest
+
+import stylobate as sb
+from stylobate.engine.kernel.columns import Status
+from stylobate.models.sliding.phases import Contact
+
+MODEL = sb.Sliding(sb.Column.solid(radius=0.5, height=3.0, density=2700.0))
+CIRCLE = sb.Harmonic.circular(acceleration=0.6, angular_frequency=2.2)
+GUARD = {name: number for number, name in enumerate(MODEL.guard_names)}
+ORDER = len(MODEL.state_names)
+
+
+@pytest.fixture
+def lane(lane_of):
+    """Make a lane whose column rolls on its rim, leaning along the azimuth of 3/8 of a turn."""
+    leaning = {"x": -0.03, "y": 0.03, "tilt": 0.03 * math.sqrt(2.0), "y0": -0.03, "y1": 0.03, "y15": 2.0}
+    usual = {"atol": 1e-9, "rtol": 1e-8, "wanted": 0.01, "first_azimuth": math.nan, "last_azimuth": math.nan}
+    return lambda **given: lane_of(MODEL, CIRCLE, **(leaning | usual | given))
+
+
+# Guards within a step.
+
+
+@pytest.mark.parametrize("share", [0.25, 0.5, 0.75, 1.0])
+def test_guards_are_those_of_cubics_through_the_ends_of_the_step(lane, monkeypatch, share):
+    one, h = lane(h=0.3), 0.3
+    cubics = np.random.default_rng(6).normal(size=(ORDER, 4))
+    for j, powers in enumerate(cubics):
+        one[f"y{j}"], one[f"new{j}"] = np.polyval(powers, [0.0, h])
+        one[f"k0_{j}"], one[f"k12_{j}"] = np.polyval(np.polyder(powers), [0.0, h])
+        one[f"step{j}"] = h
+    seen = []
+    monkeypatch.setitem(one.scope("evaluate_guards_within"), "mark_broken_guards", lambda _buf, at: seen.append(at))
+    one.driver.evaluate_guards_within(one.buffer, share)
+    assert seen == [share]
+    expected = [np.polyval(powers, share * h) for powers in cubics]
+    np.testing.assert_allclose([one[f"stage{j}"] for j in range(ORDER)], expected, rtol=1e-12, atol=1e-14)
+
+
+# Motion after a change.
+
+
+@pytest.mark.parametrize("last", [math.nan, 2.3, -1.6])
+def test_the_azimuth_goes_on_from_the_last_one_without_a_jump(lane, last):
+    one = lane(last_azimuth=last)
+    assert one.do("set_moving", one.table, one.pieces) == Status.WAITING
+    expected = 0.375 if math.isnan(last) else 0.375 + round(last - 0.375)
+    assert (one.do("azimuth_now"), one["first_azimuth"]) == pytest.approx((expected, expected))
+
+
+@pytest.mark.parametrize(("before", "peak", "at"), [(0.04, 0.03 * math.sqrt(2.0), 5.0), (0.05, 0.05, 1.0)])
+def test_a_change_of_contact_can_be_the_peak_of_the_tilt(lane, before, peak, at):
+    one = lane(time=5.0, peak_tilt=before, peak_at=1.0)
+    one.do("set_moving", one.table, one.pieces)
+    assert (one["peak_tilt"], one["peak_at"]) == (peak, at)
+
+
+@pytest.mark.parametrize("watched", [0.0, 1.0])
+def test_a_reset_that_takes_time_is_observed_with_its_tilt(lane, watched):
+    one = lane(time=5.0, watched=watched, late_minimum_tilt=1.0, low=2e-3)
+    one.do("pass_lapse", 1e-4)
+    assert one["time"] == pytest.approx(5.0001)
+    assert one["late_minimum_tilt"] == (pytest.approx(0.03 * math.sqrt(2.0)) if watched else 1.0)
+
+
+@pytest.mark.parametrize("number", [-1, GUARD["friction"]])
+def test_explicit_steps_begin_with_the_reset_of_a_guard_that_is_broken(lane, monkeypatch, number):
+    one, resets = lane(time=1.0, samples_at=3.0, rejected=1.0, aimed=1.0), []
+    scope = one.scope("go_on_explicitly")
+    monkeypatch.setitem(scope, "broken_now", lambda *_: number)
+    monkeypatch.setitem(scope, "apply_resets", lambda *given: resets.append(given[-1]) or Status.LIMIT)
+    status = one.driver.go_on_explicitly(one.buffer, 0, one.table, one.pieces, 1.0, pays=True)
+    assert (status, resets) == ((Status.LIMIT, [number]) if number >= 0 else (Status.WAITING, []))
+    assert one["stop"] == (99.0 if number >= 0 else 3.0)
+    assert (one["rejected"], one["aimed"]) == (0.0, 0.0)
+
+
+def test_a_guard_broken_within_an_implicit_step_ends_the_kind_of_contact(lane, monkeypatch):
+    for number in (-1, GUARD["lift"]):
+        one, ended = lane(time=1.0), []
+        scope = one.scope("follow_implicitly")
+        for name, value in (("set_jacobian", None), ("fastest_rate", 1e5), ("attempt", 0.1)):
+            monkeypatch.setitem(scope, name, lambda *_, value=value: value)
+        monkeypatch.setitem(scope, "first_broken_guard", lambda *_, number=number: (0.05, number))
+        monkeypatch.setitem(scope, "end_contact", lambda *given, ended=ended: ended.append(given[-2:]) or Status.JAMMED)
+        monkeypatch.setitem(scope, "take_step", lambda *_: (Status.STEP_LIMIT, -1))
+        status = one.do("follow_implicitly", one.table, one.pieces)
+        assert (status, ended) == ((Status.JAMMED, [(0.05, number)]) if number >= 0 else (Status.STEP_LIMIT, []))
+
+
+def test_a_step_to_an_event_keeps_its_start_and_its_slopes(lane):
+    one = lane(time=1.0, tried=0.2, steps=3.0, radial=1e-3, turns=2.0)
+    start, slopes, change = np.random.default_rng(7).normal(size=(3, ORDER))
+    start[0], start[1], start[15] = -0.03, 0.03, Contact.ROLLING
+    change[0] = change[1] = change[15] = 0.0
+    for j in range(ORDER):
+        one[f"y{j}"], one[f"k0_{j}"], one[f"dense0_{j}"] = start[j], slopes[j], change[j]
+    one.do("step_to", one.table, 0.1)
+    assert [one[f"last{j}"] for j in range(ORDER)] == list(start)
+    assert [one[f"last_slope{j}"] for j in range(ORDER)] == list(slopes)
+    # Half of the step, on a dense output that is linear.
+    np.testing.assert_allclose([one[f"y{j}"] for j in range(ORDER)], start + 0.5 * change, rtol=1e-14)
+    assert (one["time"], one["made"], one["steps"], one["turns"]) == (1.1, 0.1, 4.0, 2.0)
+
+
+# Counts.
+
+R, S, ROLLS, SLIPS, FLIES = Contact.RESTING, Contact.SLIDING, Contact.ROLLING, Contact.SLIPPING, Contact.FLYING
+
+
+@pytest.mark.parametrize(
+    ("guard", "before", "after", "elapsed", "counted"),
+    [
+        ("friction", ROLLS, SLIPS, 0.0, {"slips"}),
+        ("friction", R, S, 0.0, {"slips", "releases"}),
+        ("friction", SLIPS, ROLLS, 0.0, set()),
+        ("friction", SLIPS, SLIPS, 0.0, set()),  # continues in another direction
+        ("friction", SLIPS, SLIPS, 0.1, {"slips"}),  # stuck for a time
+        ("support", S, S, 0.0, {"slips"}),
+        ("jam", ROLLS, SLIPS, 0.0, set()),
+        ("face_impact", ROLLS, SLIPS, 0.0, {"impacts"}),
+        ("lift", FLIES, ROLLS, 0.0, {"impacts"}),
+        ("lift", FLIES, R, 0.0, {"impacts", "rests"}),
+        ("rest", ROLLS, R, 0.0, {"rests"}),
+        ("rest", R, R, 0.0, set()),
+        ("support", R, ROLLS, 0.0, {"releases"}),
+    ],
+)
+def test_a_change_of_contact_counts_as_impact_slip_rest_or_uplift(lane, guard, before, after, elapsed, counted):
+    one = lane()
+    one.do("count", GUARD[guard], int(before), int(after), elapsed)
+    assert {name for name in ("impacts", "slips", "rests", "releases") if one[name] == 1.0} == counted
+    assert one["released_from_rest"] == 0.0
+    again = lane(rests=1.0)
+    again.do("count", GUARD[guard], int(before), int(after), elapsed)
+    assert again["released_from_rest"] == float("releases" in counted)
