@@ -103,3 +103,16 @@ def test_a_rim_that_does_not_approach_the_plane_is_not_struck():
             assert (elapsed, found.contact) == (0.0, Contact.SLIPPING)
             assert found[:5] == state[:5]
             assert (found.velocity_x, found.velocity_y) == pytest.approx((0.3, -0.2), rel=1e-12)
+
+
+@pytest.mark.parametrize("approach", [0.05, 0.4, 3.0])
+@pytest.mark.parametrize("restitution", [0.0, 0.5])
+def test_a_base_that_lands_sliding_trips_if_its_impulse_leans_beyond_its_edge(approach, restitution):
+    model = sb.Sliding(COLUMN, friction_coefficient=0.5, normal_restitution=restitution)
+    struck = (1.0 + restitution) * approach
+    # Friction stops the slip with an impulse of its speed, or slips on with half of the normal impulse.
+    for slip, trips in ((0.29 * struck, False), (0.31 * struck, True), (0.6 * struck, True)):
+        flying = State(*(0.0,) * 8, slip, 0.0, 0.0, -approach, 0.0, 0.0, 0.0, float(Contact.FLYING))
+        _, found = after(model, flying, SUPPORT)
+        assert (found.tilt_x > 0.0, found.tilt_y) == (trips, 0.0)
+        assert (found.contact == Contact.FLYING) == (restitution > 0.0)
