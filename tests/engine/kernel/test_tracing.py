@@ -11,6 +11,7 @@ from stylobate.models.sliding.phases import Contact
 
 SLENDER = sb.Slender(sb.Column.dimensionless(0.1))
 SLIDING = sb.Sliding(sb.Column.solid(radius=0.5, height=3.0, density=2700.0))
+AZIMUTH = math.atan2(0.01, 0.02) / (2.0 * math.pi)
 CIRCLE = sb.Harmonic.circular(acceleration=0.065, angular_frequency=3.0)
 
 
@@ -70,11 +71,13 @@ def test_a_run_without_a_trace_has_no_entry(traced):
     assert (traced.table == 7.0).all()
 
 
-@pytest.mark.parametrize(("tilt", "last", "begins", "ends"), [(0.0, 1.8, 2.125, 2.125), (0.04, 1.8, 1.8, 2.125)])
+@pytest.mark.parametrize(
+    ("tilt", "last", "begins", "ends"), [(0.0, 1.8, 2.0 + AZIMUTH, 2.0 + AZIMUTH), (0.04, 1.8, 1.8, 2.0 + AZIMUTH)]
+)
 def test_a_reset_that_takes_time_turns_from_the_last_azimuth_to_the_nearest_one(lane_of, tilt, last, begins, ends):
     one = lane_of(SLIDING, CIRCLE, traces=3.0, tilt=tilt, last_azimuth=last)
     after = [0.0] * one.shape.order
-    after[0] = after[1] = 0.02
+    after[0], after[1] = 0.02, 0.01
     after[-1] = float(Contact.ROLLING)
     one.do("trace_lapse", one.table, 0.1, tuple(after))
     columns, _ = entry(one)
