@@ -202,6 +202,15 @@ def closures(x, out):
     out[0], out[1] = doubled(x[0]), tripled(x[0])
 
 
+CLOSURES = (doubled, tripled)
+
+
+def functions_of_a_tuple(x, out):
+    backwards = (tripled, doubled)
+    for k in range(2):
+        out[k] = CLOSURES[k](x[k]) - backwards[k](x[2])
+
+
 def enumerations(x, out):
     status = Color.BLUE if x[0] > 0.0 else Color.RED
     out[0] = status
@@ -287,8 +296,8 @@ CONSTRUCTS = [
         conditional_expressions,
     ),
     *(of_what_is_not_looked_at, loops, a_number_that_becomes_a_fraction, calls_early_end, tuples, chosen_from_a_tuple),
-    *(tuple_in_a_loop, arguments, closures, enumerations, views, arrays_of_its_own, mathematics),
-    *(of_what_is_no_number, what_is_known, documented),
+    *(tuple_in_a_loop, arguments, closures, functions_of_a_tuple, enumerations, views, arrays_of_its_own),
+    *(mathematics, of_what_is_no_number, what_is_known, documented),
 ]
 
 
