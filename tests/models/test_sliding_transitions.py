@@ -4,15 +4,17 @@ import math
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 
 import stylobate as sb
 from stylobate.models.sliding import Contact, State
 from stylobate.models.sliding.lift_off import lifted, opens
 from stylobate.models.sliding.on_rim import held
+from stylobate.models.sliding.onset import STARTS, load_direction, slip_rate
 from stylobate.models.sliding.posture import forces, height_of, rates_of
 
 COLUMN = sb.Column.dimensionless(slenderness=0.3)
-FRICTION, SUPPORT = (sb.Sliding.guard_names.index(name) for name in ("friction", "support"))
+FRICTION, SUPPORT, REST = (sb.Sliding.guard_names.index(name) for name in ("friction", "support", "rest"))
 AHEAD = 1e-3
 
 
@@ -116,3 +118,41 @@ def test_a_base_that_lands_sliding_trips_if_its_impulse_leans_beyond_its_edge(ap
         _, found = after(model, flying, SUPPORT)
         assert (found.tilt_x > 0.0, found.tilt_y) == (trips, 0.0)
         assert (found.contact == Contact.FLYING) == (restitution > 0.0)
+
+
+def test_a_patch_begins_to_slip_in_the_direction_in_which_it_accelerates():
+    rng, seen = np.random.default_rng(5), 0
+    for patch in rng.uniform(0.02, 0.5, 100):
+        numbers = sb.Sliding(COLUMN, friction_coefficient=0.1, patch=patch).numbers
+        state = held(on_rim(rng, theta=(0.02, 0.3), contact=Contact.ROLLING), numbers)
+        push = tuple(rng.uniform((-0.4, -0.4, -0.3), (0.4, 0.4, 0.3)))
+
+        def reserve(friction, state=state, push=push, numbers=numbers):
+            return forces(state, push, numbers._replace(kinetic=friction, static=friction))[10]
+
+        if forces(state, push, numbers)[5] < 0.0 or reserve(2.0) < 0.0:
+            continue
+        seen += 1
+        weak = 0.95 * brentq(reserve, 1e-3, 2.0, rtol=1e-10)
+        numbers = numbers._replace(kinetic=weak, static=weak)
+        heading = np.array(load_direction(state, push, STARTS, numbers))
+        rate = np.array(slip_rate(state, tuple(heading), push, STARTS, numbers))
+        assert heading @ rate > 0.0
+        # Newton's method ends at a change of 1e-9 of a slip that is less than a twentieth of the force.
+        assert np.linalg.norm(np.cross(heading, rate)) < 1e-5 * np.linalg.norm(rate)
+    assert seen > 50
+
+
+def test_a_column_set_down_on_its_base_slides_on_with_the_velocity_of_its_centre():
+    rng = np.random.default_rng(6)
+    model = sb.Sliding(COLUMN, friction_coefficient=0.2)
+    for _ in range(20):
+        state = on_rim(rng, theta=(1e-7, 1e-6))
+        slip, spin = rng.normal(scale=0.1, size=2), rng.normal()
+        state = state._replace(velocity_x=slip[0], velocity_y=slip[1], spin=spin)
+        elapsed, found = after(model, state, REST)
+        assert (elapsed, found.contact, found[:4], found.spin) == (0.0, Contact.SLIDING, (0.0,) * 4, spin)
+        # From the rim point along the lean to the centre, which the spin carries round.
+        lean = np.array(state[:2]) / math.hypot(*state[:2])
+        expected = slip + spin * 0.3 * np.array([lean[1], -lean[0]])
+        assert (found.velocity_x, found.velocity_y) == pytest.approx(tuple(expected), rel=1e-12)
