@@ -10,6 +10,7 @@ from scipy.special import log_ndtr, ndtr
 from scipy.stats import binom, chi2
 
 from stylobate.earthquakes import Counting, FitStatus, fit_fragility, lognormal_fragility
+from stylobate.earthquakes.fragility.probit import _climb, log_likelihood
 from stylobate.errors import ParameterError
 
 MEDIAN, DISPERSION = 3.0, 0.4
@@ -43,6 +44,20 @@ def test_the_fit_is_the_probit_of_statsmodels(count):
     np.testing.assert_allclose(found["dispersion"].item(), 1.0 / b, rtol=1e-8)
     np.testing.assert_allclose(found["log_likelihood"].item(), probit.llf, rtol=1e-12)
     np.testing.assert_allclose(found["covariance"][0], jacobian @ probit.cov_params() @ jacobian.T, rtol=1e-6)
+
+
+def test_a_step_is_halved_until_it_does_not_lower_the_likelihood():
+    u = np.linspace(-1.0, 1.0, 9)
+    hits = np.array([[0, 0, 1, 0, 1, 1, 1, 1, 1], [0, 1, 0, 0, 1, 0, 1, 1, 1]], float)
+    start, step = np.zeros((2, 2)), np.array([[0.5, 30.0], [0.0, 1.0]])
+    value = log_likelihood(start[:, 0], start[:, 1], u, hits, 1.0 - hits)
+    found, reached = _climb(start, step, value, u, hits, 1.0 - hits)
+    for one, (halved, by) in enumerate(zip((True, False), step, strict=True)):
+        likelihood = [log_likelihood(*(by[:, None] / 2.0**k), u, hits[one], 1.0 - hits[one])[0] for k in range(5)]
+        halvings = np.flatnonzero(likelihood >= value[one])[0]
+        assert (halvings > 0) == halved
+        np.testing.assert_array_equal(found[one], by / 2.0**halvings)
+        assert reached[one] == pytest.approx(likelihood[halvings], rel=1e-14)
 
 
 def test_ends_of_profile_intervals_are_just_rejected_by_the_likelihood_ratio_test():
