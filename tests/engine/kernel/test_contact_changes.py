@@ -1,4 +1,4 @@
-"""Changes between kinds of contact in a lane, in plain Python: guards within a step, records and counts."""
+"""Changes between kinds of contact in a lane, in plain Python: guards, resets, counts and their record."""
 
 import math
 
@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import stylobate as sb
-from stylobate.engine.kernel.columns import Status
+from stylobate.engine.kernel.columns import Status, Trace, TraceKind
 from stylobate.models.sliding.phases import Contact
 
 MODEL = sb.Sliding(sb.Column.solid(radius=0.5, height=3.0, density=2700.0))
@@ -139,3 +139,108 @@ def test_a_change_of_contact_counts_as_impact_slip_rest_or_uplift(lane, guard, b
     again = lane(rests=1.0)
     again.do("count", GUARD[guard], int(before), int(after), elapsed)
     assert again["released_from_rest"] == float("releases" in counted)
+
+
+# Reset maps and their record.
+
+
+@pytest.mark.parametrize("elapsed", [0.0, 0.01])
+@pytest.mark.parametrize("traces", [0.0, 9.0])
+def test_a_reset_changes_the_state_and_is_recorded(lane, monkeypatch, elapsed, traces):
+    one = lane(time=5.0, since=2.0, time_rolling=1.0, traces=traces, turns=2.0, trace_azimuth=2.375)
+    after = (*np.linspace(0.01, 0.02, ORDER - 1).tolist(), float(Contact.SLIPPING))
+    before = [one[f"y{j}"] for j in range(ORDER)]
+    monkeypatch.setitem(one.scope("apply_reset"), "model_reset", lambda *_: (elapsed, after))
+    one.do("apply_reset", one.table, GUARD["friction"])
+    assert [one[f"y{j}"] for j in range(ORDER)] == list(after)
+    assert [one[f"last{j}"] for j in range(ORDER)] == before
+    assert (one["time"], one["since"], one["time_rolling"]) == (5.0 + elapsed, 5.0, 4.0)
+    assert (one["slips"], one["stands"], one["last_azimuth"]) == (1.0, 0.0, 2.375)
+    assert (one["x"], one["y"]) == (after[0], after[1])
+    width = one.shape.trace_width
+    first = one.scope("trace_entry")["BREAKS_AT"]
+    entries = [one.table[0, first + width * number :] for number in range(2)]
+    if not traces:
+        assert not entries[0].any()
+        return
+    kind, lapse = entries
+    assert (kind[Trace.KIND], kind[Trace.START]) == (TraceKind.CONTACT, 5.0)
+    assert list(kind[len(Trace) : len(Trace) + 3]) == [GUARD["friction"], Contact.ROLLING, Contact.SLIPPING]
+    assert one["next_trace"] == (2.0 if elapsed else 1.0)
+    if elapsed:
+        assert (lapse[Trace.KIND], lapse[Trace.START]) == (TraceKind.ANALYTICAL_STEP, 5.0)
+        assert lapse[Trace.LENGTH] == elapsed
+
+
+def test_a_slip_that_goes_on_and_the_start_of_a_run_are_no_events(lane):
+    one = lane(traces=9.0)
+    going = tuple([0.0] * (ORDER - 1) + [float(Contact.SLIPPING)])
+    one["y15"] = float(Contact.SLIPPING)
+    one.do("trace_change", one.table, GUARD["friction"], 0.0, going)
+    one.do("trace_change", one.table, -1, 0.0, going)
+    assert one["next_trace"] == 0.0
+    one.do("trace_change", one.table, GUARD["friction"], 0.1, going)
+    assert one["next_trace"] == 1.0
+
+
+def test_more_than_a_hundred_changes_at_one_time_end_the_run(lane):
+    one = lane(time=5.0, changed_at=-math.inf)
+    assert [one.do("endless") for _ in range(102)] == [False] * 101 + [True]
+    one["time"] = 5.0 + 1e-11
+    assert not one.do("endless")
+    assert (one["at_once"], one["changed_at"]) == (0.0, one["time"])
+
+
+def test_resets_follow_each_other_until_no_guard_is_broken(lane, monkeypatch):
+    one, applied = lane(time=5.0, changed_at=-math.inf), []
+    scope = one.scope("apply_resets")
+    rest = iter([GUARD["lift"], GUARD["friction"], -1])
+    monkeypatch.setitem(scope, "apply_reset", lambda _buf, _i, _table, number: applied.append(number))
+    monkeypatch.setitem(scope, "broken_now", lambda *_: next(rest))
+    monkeypatch.setitem(scope, "set_moving", lambda *_: Status.WAITING)
+    assert one.do("apply_resets", one.table, one.pieces, GUARD["rest"]) == Status.WAITING
+    assert applied == [GUARD["rest"], GUARD["lift"], GUARD["friction"]]
+    assert one.do("apply_resets", one.table, one.pieces, GUARD["fallen"]) == Status.OVERTURNED
+    assert one.do("apply_resets", one.table, one.pieces, len(GUARD)) == Status.LIMIT
+    one["y15"] = float(Contact.JAMMED)
+    assert one.do("apply_resets", one.table, one.pieces, GUARD["jam"]) == Status.JAMMED
+    assert len(applied) == 4
+
+
+# Stiffness.
+
+
+def test_twenty_steps_near_the_boundary_of_stability_show_stiffness(lane, monkeypatch):
+    one = lane(steps=500.0, stiff_look_at=500.0, stiff_wait=500.0, y15=float(Contact.SLIPPING))
+    monkeypatch.setitem(one.scope("detect_stiffness"), "stability", lambda *_: 3.1)
+    found = []
+    for _ in range(20):
+        found.append(one.do("detect_stiffness"))
+        one["steps"] += 1.0
+    assert found == [False] * 19 + [True]
+    one["y15"] = float(Contact.ROLLING)
+    assert not one.do("detect_stiffness")
+    assert (one["stiff_looks"], one["stiff_look_at"]) == (0.0, 1020.0)
+    one["y15"] = float(Contact.SLIPPING)
+    assert not one.do("detect_stiffness")
+    assert one["stiff_looks"] == 0.0  # no check is due
+    monkeypatch.setitem(one.scope("detect_stiffness"), "stability", lambda *_: 2.9)
+    one["steps"] = 1020.0
+    assert not one.do("detect_stiffness")
+    assert one["stiff_looks"] == 0.0
+
+
+@pytest.mark.parametrize(
+    ("number", "turns", "outcome"), [(-1, False, "again"), (1, True, "shorter"), (1, False, "ends"), (0, True, "ends")]
+)
+def test_a_step_held_back_is_repeated_shortened_or_ends_the_contact(lane, monkeypatch, number, turns, outcome):
+    one, ended = lane(tried=0.2), []
+    scope = one.scope("handle_held_step")
+    for name, found in (("set_dense", None), ("first_broken_guard", (0.05, number)), ("slip_turns", turns)):
+        monkeypatch.setitem(scope, name, lambda *_, found=found: found)
+    monkeypatch.setitem(scope, "end_contact", lambda *given: ended.append(given[-2:]) or Status.JAMMED)
+    status = one.do("handle_held_step", one.table, one.pieces)
+    assert (status, ended) == ((Status.JAMMED, [(0.05, number)]) if outcome == "ends" else (Status.WAITING, []))
+    assert (one["aimed"], one["rejected"]) == (float(outcome == "again"), float(outcome == "shorter"))
+    if outcome != "ends":
+        assert one["h"] == (0.2 if outcome == "again" else pytest.approx(scope["SLIP_SHORTER"] * 0.05))
