@@ -11,7 +11,7 @@ from stylobate.models.sliding import Contact, State
 from stylobate.models.sliding.lift_off import lifted, opens
 from stylobate.models.sliding.on_rim import held
 from stylobate.models.sliding.onset import STARTS, load_direction, slip_rate
-from stylobate.models.sliding.posture import forces, height_of, rates_of
+from stylobate.models.sliding.posture import energy_of, forces, height_of, rates_of
 
 COLUMN = sb.Column.dimensionless(slenderness=0.3)
 FRICTION, SUPPORT, REST = (sb.Sliding.guard_names.index(name) for name in ("friction", "support", "rest"))
@@ -152,7 +152,21 @@ def test_a_column_set_down_on_its_base_slides_on_with_the_velocity_of_its_centre
         state = state._replace(velocity_x=slip[0], velocity_y=slip[1], spin=spin)
         elapsed, found = after(model, state, REST)
         assert (elapsed, found.contact, found[:4], found.spin) == (0.0, Contact.SLIDING, (0.0,) * 4, spin)
+        assert (found.rise, found.rise_rate) == (0.0, 0.0)
         # From the rim point along the lean to the centre, which the spin carries round.
         lean = np.array(state[:2]) / math.hypot(*state[:2])
         expected = slip + spin * 0.3 * np.array([lean[1], -lean[0]])
         assert (found.velocity_x, found.velocity_y) == pytest.approx(tuple(expected), rel=1e-12)
+
+
+@pytest.mark.parametrize("flies", [False, True])
+def test_the_energy_that_impacts_limit_is_that_of_the_outputs(flies):
+    model = sb.Sliding(COLUMN, incline=0.2)
+    rng = np.random.default_rng(7)
+    weight = COLUMN.mass * COLUMN.gravity * COLUMN.mass_height
+    for _ in range(30):
+        state = on_rim(rng)._replace(velocity_x=rng.normal(), velocity_y=rng.normal())
+        state = lifted(state, model.numbers) if flies else state
+        given = np.array(state)[:, np.newaxis], np.zeros((3, 1)), np.zeros(1, bool)
+        shown = float(model.outputs(*given)["energy"].values[0])
+        assert weight * sum(energy_of(state, model.numbers)) == pytest.approx(shown, rel=1e-12)
