@@ -117,6 +117,7 @@ READ = {  # the result, and a statement that changes it
     "constant of NumPy": ("np.pi * K * x", "np = SimpleNamespace(pi=3.0)"),
     "function": ("helper(x)", "helper = other"),
     "code of a function": ("helper(x)", "helper.__code__ = other.__code__"),
+    "code of the only function": ("2.0 * x", "rates.__code__ = other.__code__"),
     "function within a compiler's": ("jitted(x)", "jitted.py_func = other"),
     "member of an enumeration": ("Rule.SOFT.value * x", "Rule = SimpleNamespace(SOFT=SimpleNamespace(value=40.0))"),
     "default of a tuple": ("Pair(x).second", "Pair = namedtuple('Pair', 'first second', defaults=(40.0,))"),

@@ -42,6 +42,14 @@ def divisions_by_zero(x, out):
         out[i] = 1.0 / x[i]
 
 
+NOTHING, NOT_A_NUMBER = np.float64(0.0), np.float64(math.nan)
+
+
+def known_divisions_by_zero(x, out):
+    out[0], out[1], out[2] = NOTHING / NOTHING, NOT_A_NUMBER / NOTHING, np.pi / NOTHING
+    out[3], out[4] = -np.pi / NOTHING, np.pi / -NOTHING
+
+
 def powers(x, out):
     for i in range(len(x)):
         out[i] = abs(x[i]) ** 2.5 + abs(x[i]) ** 0.125
@@ -288,6 +296,7 @@ CONSTRUCTS = [
     *(
         arithmetic,
         divisions_by_zero,
+        known_divisions_by_zero,
         powers,
         whole_numbers,
         generators,
