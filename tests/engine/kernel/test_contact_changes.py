@@ -62,9 +62,11 @@ def test_a_change_of_contact_can_be_the_peak_of_the_tilt(lane, before, peak, at)
 
 @pytest.mark.parametrize("watched", [0.0, 1.0])
 def test_a_reset_that_takes_time_is_observed_with_its_tilt(lane, watched):
-    one = lane(time=5.0, watched=watched, late_minimum_tilt=1.0, low=2e-3)
+    one = lane(time=5.0, watched=watched, late_minimum_tilt=1.0, low=2e-3, last0=-0.03, last1=0.03)
     one.do("pass_lapse", 1e-4)
     assert one["time"] == pytest.approx(5.0001)
+    # Both ends lean alike: the integral is the tilt times the duration.
+    assert one["mean_tilt"] == pytest.approx(1e-4 * 0.03 * math.sqrt(2.0) * watched)
     assert one["late_minimum_tilt"] == (pytest.approx(0.03 * math.sqrt(2.0)) if watched else 1.0)
 
 

@@ -24,7 +24,7 @@ def lift_under(lane_of, monkeypatch, weight, frequency, end):
     return one.do("lift_in_leg", 0.0, end)
 
 
-@pytest.mark.parametrize("place", [0.5, 1.3, 1.5, 1.7, 6.5, 17.9])
+@pytest.mark.parametrize("place", [0.5, 1.3, 1.5, 1.7, 6.5, 17.9, 29.2])
 @pytest.mark.parametrize("depth", [1e-6, 1e-3, 0.3])
 def test_the_base_lifts_where_the_weight_first_is_negative_between_any_two_samples(lane_of, monkeypatch, place, depth):
     spacing = 0.1

@@ -128,3 +128,19 @@ def test_a_step_by_series_is_observed_in_frames_that_rotate_with_and_against_the
     names = ("mean_tilt", "forward_cos", "forward_sin", "backward_cos", "backward_sin")
     assert [one[name] for name in names] == pytest.approx(expected, rel=1e-9)
     assert one["late_minimum_tilt"] == 0.3
+
+
+@pytest.mark.parametrize("early", [0.0, 1.0])
+@pytest.mark.parametrize("sign", [-1.0, 1.0])
+def test_an_extreme_by_series_is_that_of_the_cubic_over_its_half_of_the_step(lane_of, early, sign):
+    one = lane_of(SLENDER, CIRCLE, method="taylor")
+    # Over either half a cubic from 1 with an extreme inside, given by the rates at its ends.
+    start, end, slope, end_slope = 1.0, 1.0 + 0.1 * sign, 0.9 * sign, -0.7 * sign
+    here, other = (start, end), (slope, end_slope)
+    values = (*here, 5.0) if early else (5.0, *here)
+    slopes = (*other, 3.0) if early else (3.0, *other)
+    u = np.linspace(0.0, 1.0, 20_001)
+    path = start + u * (slope + u * (3.0 * (end - start) - 2.0 * slope - end_slope))
+    path += u**3 * (slope + end_slope - 2.0 * (end - start))
+    expected = 0.5 * (u[np.argmax(sign * path)] + (0.0 if early else 1.0))
+    assert one.driver.place_of_extreme(values, slopes, early, sign) == pytest.approx(expected, abs=5e-5)
