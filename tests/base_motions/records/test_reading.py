@@ -298,7 +298,8 @@ def test_without_obspy_its_formats_name_the_extra(tmp_path, monkeypatch):
 
 @pytest.mark.filterwarnings("ignore")  # ObsPy's own
 def test_miniseed_and_sac_are_read_through_obspy(tmp_path):
-    obspy = pytest.importorskip("obspy")
+    import obspy  # noqa: PLC0415  it warns when it is imported
+
     for kind, name in (("MSEED", "a.mseed"), ("SAC", "a.sac")):
         trace = obspy.Trace(VALUES.astype("float32"), {"delta": 0.01, "channel": "HNE", "station": "AB"})
         trace.write(str(tmp_path / name), format=kind)
@@ -335,7 +336,6 @@ Memo.
 
 @pytest.mark.filterwarnings("ignore")  # ObsPy's own
 def test_knet_files_tell_their_unit_and_direction(tmp_path):
-    pytest.importorskip("obspy")
     record = sb.read_record(written(tmp_path, "AKT0239608110312.UD", KNET))
     # the scale is 20 m/s² over 2^23 counts
     expected = np.array([10.0, -10.0, 5.0, 0.0, 2.5, -5.0, 0.0, 0.0])
