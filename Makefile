@@ -6,7 +6,7 @@ BIN    := $(VENV)/bin
 .DEFAULT_GOAL := help
 # Without files of bytecode, each process that a test starts compiles all modules again.
 unexport PYTHONDONTWRITEBYTECODE
-.PHONY: help demo lab page test test-all test-lowest test-newest coverage mutants lint docs figures bench clean
+.PHONY: help demo lab page test test-all test-python test-lowest uv coverage mutants lint docs figures bench clean
 
 help:  ## list the targets
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## /\t/' | expand -t 14
@@ -52,24 +52,24 @@ test: $(VENV)/.core $(VENV)/.test  ## the tests; those of the page need `make pa
 test-all: $(VENV)/.core $(VENV)/.test  ## the tests, the slow ones included
 	$(BIN)/python -m pytest -n auto -m ""
 
-# An environment for the lowest versions that pyproject.toml allows, and one for the newest: .venv-lowest, .venv-newest.
-UV := .venv-uv/bin/uv
+# uv makes an environment of its own for another interpreter, which it fetches if need be, and for the lowest versions.
+UV := $(if $(shell command -v uv 2>/dev/null),uv,.venv-uv/bin/uv)
 
-$(UV): | $(BIN)/python
-	$(BIN)/python -m venv .venv-uv
+.venv-uv/bin/uv:
+	python3 -m venv .venv-uv
 	.venv-uv/bin/python -m pip install --quiet uv
 
 define test-with
-	$(UV) venv --quiet --clear --python $(BIN)/python .venv-$(1)
+	$(UV) venv --quiet --clear --python $(PYTHON) .venv-$(1)
 	VIRTUAL_ENV=.venv-$(1) $(UV) pip install --quiet --resolution $(2) --editable '.[cluster,records,video]' --group test
-	.venv-$(1)/bin/python -m pytest -n auto
+	VIRTUAL_ENV=.venv-$(1) $(UV) run --quiet --no-project --active python -m pytest -n auto
 endef
 
-test-lowest: $(UV)  ## the tests, with the lowest version of each dependency that pyproject.toml allows
-	$(call test-with,lowest,lowest-direct)
+test-python: $(UV)  ## the tests with another interpreter and the newest versions allowed: make test-python PYTHON=3.13
+	$(call test-with,$(notdir $(PYTHON)),highest)
 
-test-newest: $(UV)  ## the tests, with the newest version of each dependency that pyproject.toml allows
-	$(call test-with,newest,highest)
+test-lowest: $(UV)  ## the tests with the lowest version of each dependency that pyproject.toml allows
+	$(call test-with,lowest,lowest-direct)
 
 coverage: $(VENV)/.core $(VENV)/.test  ## the tests that take seconds, and the lines of source they reach
 	$(BIN)/python -m pytest -n 2 --cov=stylobate --cov-report=term:skip-covered
