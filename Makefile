@@ -36,7 +36,7 @@ demo: $(VENV)/.core  ## reproduce, check and draw the source paper into stylobat
 WEB     := src/stylobate/lab/web
 PAGE    := src/stylobate/lab/page/index.html
 
-$(PAGE): $(WEB)/package-lock.json $(WEB)/build.mjs $(WEB)/index.html $(shell find $(WEB)/src -type f)
+$(PAGE): $(WEB)/package-lock.json $(wildcard $(WEB)/*.mjs) $(WEB)/index.html $(shell find $(WEB)/src -type f)
 	@command -v npm >/dev/null || { echo "npm not found: the laboratory's page is bundled with Node 20 or newer (on Debian or Ubuntu: apt install nodejs npm)"; exit 1; }
 	cd $(WEB) && npm ci --no-audit --no-fund && npm run build
 	@touch $@

@@ -6,6 +6,7 @@ import { copyFile, mkdir, readFile } from "node:fs/promises";
 import { dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
 import { build, context } from "esbuild";
+import { sourcesDigest } from "./digest.mjs";
 
 const here = dirname(fileURLToPath(import.meta.url));
 const page = join(here, "..", "page");
@@ -20,6 +21,9 @@ if (unknown.length > 0) {
   process.exit(2);
 }
 const wanted = (name) => named.length === 0 || named.includes(name);
+
+// A bundle that is to be packed states the digest of its sources in its first line.
+const stamp = watch || words.includes("--readable") ? "" : `/*! sources ${await sourcesDigest(here)} */\n`;
 
 // What is bundled is passed on: its licences ask to stand in every copy.
 async function licences(packages) {
@@ -46,7 +50,7 @@ async function viewerBundle() {
     outfile: viewer,
     format: "iife",
     globalName: "stylobateViewer",
-    banner: { js: await licences(["three"]) },
+    banner: { js: stamp + (await licences(["three"])) },
   };
 }
 
@@ -57,7 +61,7 @@ async function pageBundle() {
     outdir: page,
     format: "esm",
     sourcemap: words.includes("--readable") && "inline",
-    banner: { js: await licences(["three", "uplot"]) },
+    banner: { js: stamp + (await licences(["three", "uplot"])) },
     plugins: [
       {
         name: "index.html",
