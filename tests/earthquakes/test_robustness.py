@@ -56,6 +56,9 @@ def test_at_the_boundary_changes_flip_the_verdict_and_far_from_it_none_does(boun
     for change in (ScaledRecord(0.98), SizeScaled(1.02), SlendernessScaled(1.01), Polarity(), TurnedRecord(0.05236)):
         assert not bool(flips.sel(change=change.name))
     assert 0.0 < float(near["share_flipped"].sel(limit_state="overturning").item()) < 1.0
+    peaks = np.append(near["tilt_ratio"], near["tilt_ratio_as_given"])
+    scatter = np.std(np.log(peaks[np.isfinite(peaks) & (peaks > 0.0)]), ddof=1)
+    assert float(near["tilt_dispersion"].item()) == pytest.approx(scatter, rel=1e-12)
     for scale in (0.7 * boundary, 3.0 * boundary):
         far = robustness(MODEL, PULSE, scale=scale)
         assert bool(far["repeatable"])

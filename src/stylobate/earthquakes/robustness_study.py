@@ -266,6 +266,9 @@ def _as_dataset(
     peaks = runs["tilt_ratio"]
     rocking = peaks.where(np.isfinite(peaks) & (peaks > 0.0))
     logs = peaks.copy(data=np.log(rocking.to_numpy()))
+    # The method std warns of columns that rocked in no more than one change with some versions of NumPy.
+    squares = ((logs - logs.mean("change")) ** 2).sum("change", min_count=2)
+    dispersion = (squares / (logs.count("change") - 1)) ** 0.5
     one = {"units": "1"}
     return changed.assign(
         applies=(changed["outcome"] != NOT_COMPUTED).assign_attrs(long_name="the change applies"),
@@ -280,6 +283,6 @@ def _as_dataset(
         repeatable=(~overturning.any("change")).assign_attrs(long_name="no change flips overturning"),
         tilt_ratio_low=peaks.min("change").assign_attrs(**one, long_name="minimum peak tilt / α_c"),
         tilt_ratio_high=peaks.max("change").assign_attrs(**one, long_name="maximum peak tilt / α_c"),
-        tilt_dispersion=logs.std(dim="change", ddof=1).assign_attrs(**one, long_name="scatter of ln(peak tilt)"),
+        tilt_dispersion=dispersion.assign_attrs(**one, long_name="scatter of ln(peak tilt)"),
         change_of=("change", [change.of.value for change in changes]),
     ).assign_attrs(kind="robustness", scale=scale)
