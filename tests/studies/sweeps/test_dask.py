@@ -125,6 +125,7 @@ def test_a_chunk_that_kills_every_worker_is_named(points, client):
 @pytest.mark.slow
 def test_a_lost_scheduler_is_told_and_the_store_goes_on(grid, tmp_path, assert_same_arrays, undisturbed):
     address, path = "127.0.0.1:38786", tmp_path / "sweep.zarr"
+    executor = Dask(address="tcp://" + address, wait=60.0)  # both processes import Dask first
     quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
     dask = [sys.executable, "-m", "dask"]
     scheduler = subprocess.Popen([*dask, "scheduler", "--host", "tcp://" + address, "--no-dashboard"], **quiet)
@@ -137,7 +138,7 @@ def test_a_lost_scheduler_is_told_and_the_store_goes_on(grid, tmp_path, assert_s
     with scheduler, worker:
         try:
             with pytest.raises(StylobateError, match="the Dask scheduler was lost"):
-                run_sweep(grid, store=path, executor=Dask(address="tcp://" + address), chunk_size=1, progress=lose)
+                run_sweep(grid, store=path, executor=executor, chunk_size=1, progress=lose)
         finally:
             scheduler.kill()
             worker.kill()
