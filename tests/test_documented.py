@@ -12,7 +12,7 @@ import pytest
 
 import stylobate
 from stylobate.cli.commands import COMMANDS
-from stylobate.earthquakes.config import fragility
+from stylobate.earthquakes.config import spreads
 from stylobate.studies.hierarchy.models import HierarchyArguments
 from stylobate.studies.sweeps.recipe import RunOptions
 
@@ -121,7 +121,7 @@ def test_every_kind_and_number_is_on_the_page_of_the_files(part, extensions):
 
 
 def test_every_spread_has_its_table():
-    assert {f"earthquakes.config.fragility:{one.__name__}" for one in fragility._SPREADS.values()} <= set(TABLES)
+    assert {f"earthquakes.config.spreads:{one.__name__}" for one in spreads._KINDS.values()} <= set(TABLES)
 
 
 def test_examples_of_the_extensions_hold(extensions):

@@ -15,6 +15,7 @@ from . import (
 from .base_motions import BaseMotion, Harmonic, OneOf, Pulse, Record, SineSweep, records
 from .base_motions.records import read_record, read_records, sample_record
 from .column import Column
+from .earthquakes import verdict
 from .engine import EventFunction, KnownOrbit, simulate, simulate_ensemble, with_parameters
 from .errors import Interrupted, Outcome
 from .models import Contact, Model, PlanarRocking, Rolling, Slender, SlenderRolling, Sliding, Wobbling
@@ -71,5 +72,6 @@ __all__ = [
     "simulate_ensemble",
     "studies",
     "theory",
+    "verdict",
     "with_parameters",
 ]

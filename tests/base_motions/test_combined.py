@@ -59,15 +59,24 @@ def test_displacement_and_velocity_are_continuous_at_the_onset_of_a_delayed_moti
     np.testing.assert_allclose(np.diff(late.displacement(step), axis=0) / 0.5, late.velocity(step[:2]), atol=1e-15)
 
 
+def test_an_offset_is_a_constant_acceleration_from_rest():
+    leaning = ONE.offset(0.3, -0.2)
+    for name, share in (("acceleration", np.ones_like(TIME)), ("velocity", TIME), ("displacement", TIME**2 / 2.0)):
+        added = np.outer(share, [0.3, -0.2, 0.0])
+        np.testing.assert_allclose(getattr(leaning, name)(TIME), getattr(ONE, name)(TIME) + added, rtol=1e-14)
+
+
 @given(
     factor=st.floats(-3.0, 3.0),
     vertical=st.floats(-3.0, 3.0),
     angle=st.floats(-7.0, 7.0),
     delay=st.floats(-4.0, 4.0),
+    offset=st.floats(-1.0, 1.0),
     since=st.floats(0.0, 6.0),
 )
-def test_the_bounds_hold_for_combinations_from_any_time_on(factor, vertical, angle, delay, since):
+def test_the_bounds_hold_for_combinations_from_any_time_on(factor, vertical, angle, delay, offset, since):
     motion = (ONE + TWO.delayed(delay)).scaled(factor, vertical=vertical).rotated(angle).delayed(-delay)
+    motion = motion.offset(offset, 0.5)
     acceleration = motion.acceleration(since + np.linspace(0.0, 20.0, 2001))
     low, high = motion.vertical_range(since)
     assert np.hypot(*acceleration.T[:2]).max() <= motion.peak_horizontal(since) * (1.0 + 1e-12)
@@ -114,7 +123,7 @@ def test_adding_a_base_at_rest_keeps_the_period():
     assert (TWO + BASE_AT_REST).period == TWO.period
 
 
-@pytest.mark.parametrize("copy", [ONE.scaled(2.0), ONE.rotated(1.0), ONE.delayed(1.0)])
+@pytest.mark.parametrize("copy", [ONE.scaled(2.0), ONE.rotated(1.0), ONE.delayed(1.0), ONE.offset(1.0)])
 def test_a_copy_keeps_period_and_frequency(copy):
     assert copy.period == ONE.period
     assert copy.highest_frequency == ONE.highest_frequency

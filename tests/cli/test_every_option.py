@@ -8,6 +8,7 @@ from stylobate.cli.command import Command
 from stylobate.cli.commands import COMMANDS
 from stylobate.cli.main import run
 from stylobate.cli.parts import kinds_in_files
+from stylobate.cli.verdict import VerdictOfCase
 from stylobate.config.motions import MotionConfig
 
 
@@ -144,7 +145,15 @@ def nothing_is_computed(monkeypatch, tmp_path):
         del progress
         if started is not None:
             started("an address")
-        raise ComputedError(repr((arguments, sorted(options.items()), opened)))
+        raise ComputedError(repr((arguments, sorted(options.items()), opened, [repr(case) for case in cases])))
+
+    cases, of = [], VerdictOfCase.of
+
+    def asked(*arguments):
+        cases.append(of(*arguments))  # a verdict follows the run
+        return cases[-1]
+
+    monkeypatch.setattr(VerdictOfCase, "of", asked)
 
     for name in COMPUTING:
         monkeypatch.setattr(f"stylobate.{name}", stop)
@@ -207,7 +216,7 @@ def test_no_option_of_a_run_is_refused_with_every_column_model_and_motion(capsys
     files = {
         "record",
         "record_direction",
-        "single",
+        "one_component",
         "sample_record",
         "units",
         "step",
@@ -215,6 +224,8 @@ def test_no_option_of_a_run_is_refused_with_every_column_model_and_motion(capsys
         "output",
         "animation",
         "speed",
+        "verdict_figure",
+        "verdict_output",
     }
     assert set(never) == {*words, *files, "sense"}
 

@@ -6,7 +6,7 @@ import pytest
 
 import stylobate as sb
 from stylobate.cli.main import run
-from stylobate.results import Finding, PaperCheck, Section, Verdict
+from stylobate.results import ClaimStatus, Finding, PaperCheck, Section
 
 
 @pytest.mark.slow
@@ -21,11 +21,11 @@ def test_paper_makes_its_report(tmp_path, capsys):
     html = (folder / "report.html").read_text()
     assert html.count("data:image/png;base64,") == len(pictures) > 10
     assert "http" not in html
-    assert all(sb.results.Verdict(finding["verdict"]) for finding in findings)
+    assert all(sb.results.ClaimStatus(finding["verdict"]) for finding in findings)
 
 
 def test_an_unconfirmed_claim_ends_with_status_1(monkeypatch, tmp_path, capsys):
-    doubt = Finding("(1)", "a claim", "a number", Verdict.NOT_CONFIRMED)
+    doubt = Finding("(1)", "a claim", "a number", ClaimStatus.NOT_CONFIRMED)
     monkeypatch.setattr("stylobate.paper.check_paper", lambda **_: PaperCheck({"s": Section((doubt,))}))
     monkeypatch.setattr("stylobate.paper.paper_report", lambda *_: tmp_path / "report.html")
     assert run(["paper", "--folder", str(tmp_path)]) == 1

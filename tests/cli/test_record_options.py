@@ -51,7 +51,7 @@ def test_a_record_without_its_unit_is_one_line(files, capsys):
 
 
 def test_a_map_takes_a_record_and_lasts_as_long(files, tmp_path, capsys):
-    record = ["--record", str(files[0]), "--units", "g", "--step", "0.01", "--single"]
+    record = ["--record", str(files[0]), "--units", "g", "--step", "0.01", "--one-component"]
     axes = ["--x", "scale", "0.0", "3", "2", "--y", "rotation", "0", "0.1", "2"]
     saved = tmp_path / "map.nc"
     assert run(["map", *COLUMN, *record, *axes, "--output", str(saved), "--json"]) == 0
@@ -65,7 +65,7 @@ STUDY = """
 duration = 2.0
 column = {shape = "solid", radius = 0.3, height = 3.0, density = 2700.0}
 model = {kind = "slender", damping = 0.05}
-motion = {kind = "record", path = "quakes/quake_NS.txt", units = "g", step = 0.01, single = true}
+motion = {kind = "record", path = "quakes/quake_NS.txt", units = "g", step = 0.01, one_component = true}
 
 [map]
 x = {name = "scale", from = 0.0, to = 3.0, number = 2}
@@ -97,7 +97,7 @@ def test_a_study_that_was_moved_with_its_records_goes_on_where_it_is_now(study, 
 
 
 def test_a_saved_run_finds_its_record_beside_it_and_takes_no_other_file_of_that_name(study, tmp_path, capsys):
-    options = ["--record", str(study / "quakes" / "quake_NS.txt"), "--units", "g", "--step", "0.01", "--single"]
+    options = ["--record", str(study / "quakes" / "quake_NS.txt"), "--units", "g", "--step", "0.01", "--one-component"]
     assert run(["simulate", *COLUMN, *options, "--output", str(study / "run.nc"), "--json"]) == 0
     told = json.loads(capsys.readouterr().out)
     moved = study.rename(tmp_path / "moved")
@@ -115,7 +115,7 @@ def test_a_saved_run_finds_its_record_beside_it_and_takes_no_other_file_of_that_
 def test_a_record_beyond_what_the_ground_does_is_one_line_of_warning(tmp_path, capsys):
     path = tmp_path / "gal.txt"
     path.write_text("0.0\n-250.0\n120.0\n")
-    record = ["--record", str(path), "--units", "g", "--step", "0.01", "--single"]
+    record = ["--record", str(path), "--units", "g", "--step", "0.01", "--one-component"]
     run(["simulate", *COLUMN, *record, "--duration", "0.05"])
     (line,) = capsys.readouterr().err.splitlines()
     assert line.startswith(f"stylobate: warning: {path}: its peak is 250 g")
@@ -157,7 +157,7 @@ def test_listed_components_are_one_event_whatever_their_names(files, tmp_path, c
 
 
 @pytest.mark.parametrize(
-    ("more", "warned"), [([], True), (["--single"], False), (["--model", "planar-rocking"], False)]
+    ("more", "warned"), [([], True), (["--one-component"], False), (["--model", "planar-rocking"], False)]
 )
 def test_a_component_alone_is_one_line_of_warning_unless_it_is_meant(files, capsys, more, warned):
     column = COLUMN[:6]

@@ -32,7 +32,7 @@ def test_it_lists_each_component_with_its_file_and_its_measures(quakes, tmp_path
     (line,) = told.err.splitlines()
     assert line.startswith("stylobate: warning: alone: one horizontal component (alone_NS.txt)")
     listed = json.loads(told.out)
-    expected = sb.read_records([f"{quakes}/TAB*", f"{quakes}/alone*"], "g", step=0.01, single=True)
+    expected = sb.read_records([f"{quakes}/TAB*", f"{quakes}/alone*"], "g", step=0.01, one_component=True)
     assert [one["name"] for one in listed["records"]] == ["TAB", "alone"] == [record.name for record in expected]
     for one, record in zip(listed["records"], expected, strict=True):
         measures = intensity_measures(record)

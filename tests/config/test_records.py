@@ -78,7 +78,7 @@ def test_a_single_file_is_read_as_read_record_reads_it(quakes):
 @pytest.mark.parametrize("method", PROCESSING)
 def test_every_method_can_be_described_and_what_was_done_in_python_is_remembered(method, quakes):
     options, apply = PROCESSING[method]
-    raw = RecordMotion(path=str(quakes / "second_NS.txt"), units="g", step=0.01, single=True)
+    raw = RecordMotion(path=str(quakes / "second_NS.txt"), units="g", step=0.01, one_component=True)
     step = {"method": method, **options}
     in_file = RecordMotion.parse({**raw.values(), "processing": [step]}).build()
     in_python = apply(raw.build())
@@ -90,7 +90,7 @@ def test_every_method_can_be_described_and_what_was_done_in_python_is_remembered
 
 def test_a_saved_run_rebuilds_its_record_and_refuses_a_changed_file(quakes):
     path = quakes / "second_NS.txt"
-    record = RecordMotion(path=str(path), units="g", step=0.01, scale=0.5, single=True).build().inverted()
+    record = RecordMotion(path=str(path), units="g", step=0.01, scale=0.5, one_component=True).build().inverted()
     run = sb.simulate(MODEL, record, duration=1.0)
     stored = json.loads(json.dumps(dict(run.provenance)))
     assert config_of(stored).build().motion == record
@@ -139,7 +139,13 @@ def test_a_change_of_the_samples_themselves_forgets_the_files(quakes):
 
 
 def test_without_a_duration_a_run_outlasts_its_record_by_twenty_time_scales(quakes):
-    motion = {"kind": "record", "path": str(quakes / "second_NS.txt"), "units": "g", "step": 0.01, "single": True}
+    motion = {
+        "kind": "record",
+        "path": str(quakes / "second_NS.txt"),
+        "units": "g",
+        "step": 0.01,
+        "one_component": True,
+    }
     column = {"shape": "solid", "radius": 0.3, "height": 3.0, "density": 2700.0}
     expected = 2.49 + 20.0 / MODEL.column.frequency_parameter
     run = SimulationConfig.parse({"column": column, "motion": motion}).build()
@@ -262,8 +268,8 @@ def test_a_component_alone_is_remarked_on_wherever_it_is_described(quakes):
     ):
         with pytest.warns(UnlikelyInputWarning, match="one horizontal component"):
             build()
-    assert RecordMotion(path=path, single=True, **reading).build().axes == ("x",)
-    assert list(RecordsConfig(source=path, single=True, **reading).build()) == ["second"]
+    assert RecordMotion(path=path, one_component=True, **reading).build().axes == ("x",)
+    assert list(RecordsConfig(source=path, one_component=True, **reading).build()) == ["second"]
 
 
 @pytest.mark.parametrize("chosen", sb.records.RecordFormat)

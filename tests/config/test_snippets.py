@@ -57,6 +57,15 @@ CASES = {
         },
         "duration": 6.0,
     },
+    "out of level": {
+        "column": COLUMN,
+        "motion": {
+            "kind": "offset",
+            "offset_x": 0.01,
+            "motion": {"kind": "offset", "offset_x": 0.002, "offset_y": 0.002, "motion": STRAIGHT},
+        },
+        "duration": 6.0,
+    },
     "sweep": {
         "column": COLUMN,
         "motion": {"kind": "linear_sweep", "acceleration": 0.15, "frequencies": [0.1, 0.5], "length": 20.0},

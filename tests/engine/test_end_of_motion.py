@@ -68,6 +68,21 @@ def test_the_energy_told_is_that_over_the_energy_of_the_balance():
     assert f"it has {100.0 * share:.2g} % of the energy required" in run.reason
 
 
+@pytest.mark.parametrize("model", MODELS[:2])
+def test_a_base_out_of_level_lowers_the_energy_that_overturns(model):
+    told = set()
+    for push in (0.0, 0.02 * COLUMN.gravity):
+        for share in (0.3, 0.5, 0.7, 0.9, 0.95):
+            start = {"tilt": (-share * COLUMN.tipping_angle, 0.0), "tilt_rate": (0.0, 0.0)}
+            pulse = sb.Pulse.one_sine(acceleration=1e-6, angular_frequency=50.0).offset(-push)
+            lossless = type(model)(COLUMN)
+            early, later = (sb.simulate(lossless, pulse, **start, duration=d) for d in (0.2, 40.0))
+            safe, fell = early.outcome is Outcome.SURVIVED, later.outcome is Outcome.OVERTURNED
+            told.add((push > 0.0, safe, fell))
+    assert not {(False, True, True), (True, True, True)} & told
+    assert {(False, True, False), (True, True, False), (True, False, True)} <= told
+
+
 def test_a_column_beyond_its_balance_is_not_told_to_be_safe():
     falling = sb.simulate(MODELS[1], tilt=(1.0001 * COLUMN.tipping_angle, 0.0), tilt_rate=(-1e-3, 0.0), duration=0.01)
     assert falling.outcome is Outcome.STILL_MOVING

@@ -119,8 +119,8 @@ def test_a_start_on_a_branch_that_is_not_there_is_refused_in_one_line(client):
 def test_a_record_of_one_component_says_so_once(client):
     told = client.post("/api/records", json={"files": [at2("a_000.AT2", "Quake, 1/2/1990, Here, 0")]}).json()
     assert told["warnings"] == [
-        "a_000: one horizontal component (a_000.AT2). List the files of the event together, or set single if one "
-        "component is meant"
+        "a_000: one horizontal component (a_000.AT2). List the files of the event together, or set one_component if "
+        "one is meant"
     ]
     assert shaken(client, told)["warnings"] == []
 

@@ -5,7 +5,7 @@ import pytest
 
 from stylobate import theory
 from stylobate.paper.analyses import circular, free, modulated, planar, standing, straight, twist
-from stylobate.results import Verdict
+from stylobate.results import ClaimStatus
 
 
 @pytest.mark.parametrize(
@@ -14,18 +14,18 @@ from stylobate.results import Verdict
 def test_every_finding_is_confirmed(check):
     section = check()
     assert section.findings
-    assert [f for f in section.findings if f.verdict is Verdict.NOT_CONFIRMED] == []
+    assert [f for f in section.findings if f.verdict is ClaimStatus.NOT_CONFIRMED] == []
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("check", [straight.check_straight, modulated.check_modulated])
 def test_every_slow_finding_is_confirmed(check):
-    assert [f for f in check().findings if f.verdict is Verdict.NOT_CONFIRMED] == []
+    assert [f for f in check().findings if f.verdict is ClaimStatus.NOT_CONFIRMED] == []
 
 
 def test_a_wrong_theory_is_not_confirmed(monkeypatch):
     monkeypatch.setattr(theory, "undamped_critical_frequency", lambda a0, *, c: np.asarray(a0) + c)
-    assert circular._undamped_limit().verdict is Verdict.NOT_CONFIRMED
+    assert circular._undamped_limit().verdict is ClaimStatus.NOT_CONFIRMED
 
 
 @pytest.mark.parametrize("finding", [twist._stability, twist._weak_damping, twist._upper_frequency])
@@ -33,7 +33,7 @@ def test_boundaries_of_another_column_with_a_free_twist_are_not_confirmed(monkey
     for name in ("free_twist_critical_frequency", "free_twist_upper_frequency"):
         right = getattr(theory, name)
         monkeypatch.setattr(theory, name, lambda a0, right=right, **column: 0.9 * right(a0, **column))
-    assert finding().verdict is Verdict.NOT_CONFIRMED
+    assert finding().verdict is ClaimStatus.NOT_CONFIRMED
 
 
 @pytest.fixture(scope="module")

@@ -1,6 +1,6 @@
 """Base motions: acceleration of the base as a function of time."""
 
-from stylobate.base_motions.combined import BASE_AT_REST, BaseMotion, Delayed, Rotated, Scaled, Sum
+from stylobate.base_motions.combined import BASE_AT_REST, BaseMotion, Delayed, Offset, Rotated, Scaled, Sum
 from stylobate.base_motions.harmonic import Harmonic, as_harmonic
 from stylobate.base_motions.one_of import OneOf
 from stylobate.base_motions.pulses.pulse import Pulse
@@ -12,6 +12,7 @@ __all__ = [
     "BaseMotion",
     "Delayed",
     "Harmonic",
+    "Offset",
     "OneOf",
     "Pulse",
     "Record",

@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from stylobate.base_motions.base import ACCELERATION, VELOCITY, Components, MotionContract
-from stylobate.base_motions.numbers import Angle, Delay, Factor, VerticalFactor
+from stylobate.base_motions.numbers import Angle, Delay, Factor, OffsetAcceleration, VerticalFactor
 from stylobate.errors import ParameterError
 from stylobate.quantities import parameters_of
 
@@ -24,7 +24,7 @@ class BaseMotion(MotionContract):
     """Motion of the base from t = 0 on, in SI units, along x, y (horizontal) and z (up).
 
     Motions combine: `first + second`, `2.0 * motion`, `motion.rotated(angle)`, `motion.scaled(factor, vertical=0.0)`,
-    `motion.delayed(delay)`. Motions are immutable; each combination is a new motion.
+    `motion.delayed(delay)`, `motion.offset(offset_x)`. Motions are immutable; each combination is a new motion.
 
     Notes
     -----
@@ -52,6 +52,10 @@ class BaseMotion(MotionContract):
     def delayed(self, delay: Delay) -> "Delayed":
         """Delay this motion by `delay` [s]; the base does not accelerate before."""
         return Delayed(motion=self, delay=delay)
+
+    def offset(self, offset_x: OffsetAcceleration = 0.0, offset_y: OffsetAcceleration = 0.0) -> "Offset":
+        """Add a constant horizontal acceleration [m/s²], such as g sin δ of a base that is out of level by δ."""
+        return Offset(motion=self, offset_x=offset_x, offset_y=offset_y)
 
     def __add__(self, other: object) -> "Sum":
         if not isinstance(other, BaseMotion):
@@ -321,6 +325,38 @@ class Delayed(Transformed):
         """The onset and the delayed breaks of the motion [s]."""
         onset = (self.delay,) if self.delay > 0.0 else ()
         return onset + tuple(time + self.delay for time in self.motion.breaks if time + self.delay > 0.0)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Offset(Transformed):
+    """The base motion `motion` and a constant horizontal acceleration [m/s²] from t = 0 on, without end.
+
+    In the frame of a base that is out of level by a small angle δ, gravity has the horizontal component g sin δ: the
+    column moves as on a level base with this acceleration. A record whose instrument has a zero offset has it too.
+    `duration` remains that of the motion.
+    """
+
+    offset_x: OffsetAcceleration
+    offset_y: OffsetAcceleration
+
+    def made_by(self) -> tuple[Callable[..., BaseMotion], Mapping[str, Any]]:
+        """Return the constructor: `BaseMotion.offset`, with its arguments."""
+        return BaseMotion.offset, {"motion": self.motion, "offset_x": self.offset_x, "offset_y": self.offset_y}
+
+    def derivative(self, time: npt.ArrayLike, order: int) -> Components:
+        """Return displacement (`order` 0), velocity (1) or acceleration (2); the base starts at rest at the origin."""
+        t = np.asarray(time, dtype=float)
+        x, y, z = self.motion.derivative(t, order)
+        share = (0.5 * t * t, t, np.ones_like(t))[order]
+        return x + self.offset_x * share, y + self.offset_y * share, z
+
+    def peak_horizontal(self, since: float = 0.0) -> float:
+        """Return the bound of the motion plus the constant acceleration [m/s²]."""
+        return self.motion.peak_horizontal(since) + math.hypot(self.offset_x, self.offset_y)
+
+    def directions(self) -> tuple[tuple[float, float], ...]:
+        """Return the directions of the motion and of the constant acceleration [m/s²]."""
+        return (*self.motion.directions(), (self.offset_x, self.offset_y))
 
 
 BASE_AT_REST = Sum()

@@ -46,6 +46,7 @@ MOTIONS = Kinds(
         "scaled": "stylobate.base_motions.combined:BaseMotion.scaled",
         "rotated": "stylobate.base_motions.combined:BaseMotion.rotated",
         "delayed": "stylobate.base_motions.combined:BaseMotion.delayed",
+        "offset": "stylobate.base_motions.combined:BaseMotion.offset",
     },
 )
 

@@ -38,4 +38,5 @@ VerticalFactor = Annotated[float, Quantity(text="factor of the vertical componen
 Angle = Annotated[float, Quantity(unit="rad", text="turned by", slider=(-3.142, 3.142))]
 Chosen = Annotated[int, Quantity(text="number of the motion, from 0 on")]
 Delay = Annotated[float, Quantity(unit="s", text="delay")]
+OffsetAcceleration = Annotated[float, Quantity(unit="m/s²", text="constant acceleration of the base")]
 Phases = Annotated[Sequence[float], Quantity(unit="rad", text="phases of the components", components=3)]

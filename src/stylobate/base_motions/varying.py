@@ -5,7 +5,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import Any
 
-from stylobate.base_motions.combined import BaseMotion, Delayed, Following, Rotated, Scaled, Transformed
+from stylobate.base_motions.combined import BaseMotion, Delayed, Following, Offset, Rotated, Scaled, Transformed
 from stylobate.base_motions.numbers import AngularFrequency
 from stylobate.base_motions.one_of import OneOf
 from stylobate.base_motions.pulses.along_line import AlongLine
@@ -18,8 +18,8 @@ _FREQUENCY = Parameter("angular_frequency", AngularFrequency.__metadata__[0], fl
 def numbers_of(motion: BaseMotion) -> Mapping[str, Parameter]:
     """Return the declared numbers of `motion`, of its original if it is a copy, and of its waveform, by name.
 
-    A motion with a `frequency` [Hz] also has an `angular_frequency` [rad/s]. `Scaled`, `Rotated` and `Delayed` have no
-    numbers of their own, since they apply to every motion.
+    A motion with a `frequency` [Hz] also has an `angular_frequency` [rad/s]. `Scaled`, `Rotated`, `Delayed` and
+    `Offset` have no numbers of their own, since they apply to every motion.
     """
     found = {name: one for part in _parts(motion) for name, one in _declared(part).items() if _is_number(one)}
     return {"angular_frequency": _FREQUENCY, **found} if "frequency" in found else found
@@ -84,7 +84,7 @@ def _declared(part: object) -> Mapping[str, Parameter]:
 
 
 def _is_own(part: object) -> bool:
-    return type(part) not in (Scaled, Rotated, Delayed, OneOf)
+    return type(part) not in (Scaled, Rotated, Delayed, Offset, OneOf)
 
 
 def _is_number(parameter: Parameter) -> bool:

@@ -23,7 +23,7 @@ class Entry(NamedTuple):
 COMMANDS = {
     "paper": Entry("paper", "paper", "Reproduce the source paper: figures, measured claims, corrected misprints."),
     "simulate": Entry(
-        "simulate", "simulate", "Integrate one column from its initial state until its outcome is decided."
+        "simulate", "simulate", "Integrate one column; under a record or a pulse also decide how surely it overturns."
     ),
     "hierarchy": Entry("hierarchy", "hierarchy", "Compare all models of the hierarchy in one case."),
     "response": Entry("response", "response", "Compute amplitude and phase of steady rolling against frequency."),

@@ -185,7 +185,7 @@ EARLY_END = Group.of(
     "Run",
     Option("end_converged", "end a run early once it has converged to steady rolling; circular motion only", bool),
 )
-SINGLE = Option("single", "accept records of one component without a warning", bool)
+ONE_COMPONENT = Option("one_component", "accept records of one component without a warning", bool)
 SAMPLE = 'record that comes with the package: "el centro 1940", or "el centro 1940 corrected"'
 
 _RECORD_OPTIONS: Mapping[str, Option] = {
@@ -200,7 +200,7 @@ _RECORD_OPTIONS: Mapping[str, Option] = {
         "direction of a component, once for each --record, in their order: an azimuth, up, N10E, L",
         list[str],
     ),
-    "single": SINGLE,
+    "one_component": ONE_COMPONENT,
     "sample": Option("sample_record", SAMPLE, str),
     "units": UNITS,
     "step": STEP,

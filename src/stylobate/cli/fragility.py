@@ -9,9 +9,9 @@ from stylobate import config, earthquakes, plots
 from stylobate.cli.command import command
 from stylobate.cli.declarations import (
     COMPUTING,
+    ONE_COMPONENT,
     OUTPUT_OR_STORE,
     SAMPLE,
-    SINGLE,
     STEP,
     UNITS,
     Group,
@@ -41,7 +41,7 @@ _FRAGILITY = Group.of(
     Option("sample_records", SAMPLE, list[str]),
     UNITS,
     STEP,
-    SINGLE,
+    ONE_COMPONENT,
     SCALES,
     SCALES_SPACING,
     Option(
@@ -190,7 +190,7 @@ def _records(described: Any, options: Options) -> Any:
         table["samples"] = tuple(options["sample_records"])
     source = table.get("source")
     if source is not None:  # sample records state their units
-        table |= options.pick("units", "step", "single")
+        table |= options.pick("units", "step", "one_component")
     if isinstance(source, str):
         table["source"] = str(Path(source).absolute())
     elif isinstance(source, (list, tuple)):

@@ -188,7 +188,7 @@ def _record(table: Mapping[str, Any], options: Options) -> dict[str, Any]:
     if options["record_direction"]:
         stated["directions"] = [_azimuth_or_name(text) for text in options["record_direction"]]
     if files or ("sample" not in stated and "path" in table):
-        stated |= options.pick("single")
+        stated |= options.pick("one_component")
     return stated
 
 

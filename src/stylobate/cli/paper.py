@@ -27,7 +27,7 @@ def paper(options: Options) -> None:
     The folder stores each finished section: after Ctrl-C the same command computes only the other sections.
     """
     from stylobate.paper import check_paper, paper_report  # noqa: PLC0415  heavy imports wait until they are used
-    from stylobate.results import Verdict  # noqa: PLC0415
+    from stylobate.results import ClaimStatus  # noqa: PLC0415
 
     folder, workers = options["folder"], options["workers"]
     check_place(folder / "report.html" if folder.exists() else folder)
@@ -41,5 +41,5 @@ def paper(options: Options) -> None:
         print_table("Every claim of the paper, measured", rows, ("where", "statement", "measured", "verdict"))
         print(check.summary)
         print(f"report: {report}")
-    if any(finding.verdict is Verdict.NOT_CONFIRMED for finding in check.findings):
+    if any(finding.verdict is ClaimStatus.NOT_CONFIRMED for finding in check.findings):
         raise typer.Exit(1)

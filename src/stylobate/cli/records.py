@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from stylobate import config, earthquakes
 from stylobate.cli.command import Argument, command
-from stylobate.cli.declarations import FIGURE, JSON, SAMPLE, SINGLE, STEP, UNITS, Group, Option
+from stylobate.cli.declarations import FIGURE, JSON, ONE_COMPONENT, SAMPLE, STEP, UNITS, Group, Option
 from stylobate.cli.options import Options
 from stylobate.cli.output import check_place, check_writable, print_json, print_table, save_figure
 from stylobate.cli.source import read_source
@@ -49,7 +49,7 @@ _SHOWN = tuple(name for name in _COLUMNS if name not in ("origin", "pga"))
             Option("sample_records", SAMPLE, list[str]),
             UNITS,
             STEP,
-            SINGLE,
+            ONE_COMPONENT,
             Option("spectral_damping", "damping ratio of the spectra in the figure; 0.05 by default", default=0.05),
         ),
         Group.of("Output", FIGURE, Option("output", "save the table into this file (.csv)", Path), JSON),
@@ -99,7 +99,8 @@ def _values(sources: Sequence[str], options: Options) -> dict[str, Any]:
     values = _described(sources)
     if options["sample_records"]:
         values["samples"] = tuple(options["sample_records"])
-    of_files = ("units", "step", "single") if values.get("source") or values.get("event") else ()  # samples state them
+    # Samples state these numbers.
+    of_files = ("units", "step", "one_component") if values.get("source") or values.get("event") else ()
     return values | options.pick(*of_files)
 
 

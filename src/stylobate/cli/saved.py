@@ -28,14 +28,14 @@ def open_saved(source: Path | None) -> "xr.Dataset | None":
         message = f"cannot read {source}: No such file or directory"
         raise FileError(message)
     if source.suffix == STORE:
-        return _relocated(studies.open_sweep(source, load=True), source)
+        return relocated(studies.open_sweep(source, load=True), source)
     from stylobate.results import read_dataset  # noqa: PLC0415
 
     data = read_dataset(source)
     if "outcome" not in data.data_vars or "provenance" not in data.attrs or "format" in data.attrs:
         message = f"{source} holds no map or basins saved by stylobate"
         raise FileError(message)
-    return _relocated(data, source)
+    return relocated(data, source)
 
 
 def open_study(source: Path | None, kinds: Collection[str], *, lacks: str, store: str) -> "xr.Dataset | None":
@@ -67,7 +67,7 @@ def open_study(source: Path | None, kinds: Collection[str], *, lacks: str, store
     return saved
 
 
-def _relocated(data: "xr.Dataset", source: Path) -> "xr.Dataset":
+def relocated(data: "xr.Dataset", source: Path) -> "xr.Dataset":
     """Return `data` with new paths of records that were moved together with the file."""
     return data.assign_attrs(provenance=json.dumps(config.relocated(provenance_of(data), source.parent)))
 

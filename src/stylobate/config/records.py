@@ -46,7 +46,7 @@ class Reading(Config):
         Handling of components of unequal time step.
     format
         Format of the files; detected by default.
-    single
+    one_component
         Whether to accept records of one component without a warning.
     processing
         Steps of processing in their order: tables with the `method` of `Record` and its arguments.
@@ -58,7 +58,7 @@ class Reading(Config):
     lengths: Literal["trim", "pad"] = "trim"
     steps: Literal["refuse", "resample"] = "refuse"
     format: Literal["at2", "asc", "table", "csv", "waveform"] | None = None
-    single: bool = False
+    one_component: bool = False
     processing: tuple[RecordStep, ...] = ()
 
     def find(self, source: RecordSource, directions: Mapping[str, float | str]) -> tuple[Event, ...]:
@@ -139,9 +139,10 @@ class RecordMotion(Reading):
         Warns
         -----
         UnlikelyInputWarning
-            If the record lacks a component, unless `single` is true or an axis or columns of one file are chosen.
+            If the record lacks a component, unless `one_component` is true, or an axis or columns of one file are
+            chosen.
         """
-        if not (self.single or self.axis or (self.columns and isinstance(self.path, str))):
+        if not (self.one_component or self.axis or (self.columns and isinstance(self.path, str))):
             remark_on_missing_components(record)
         steps = (*self.processing, *self._last())
         reading = self.model_dump(exclude_defaults=True, exclude={"path", "file_sha256", "processing", *_LAST})

@@ -100,7 +100,7 @@ def built_parts(
     """
     found: list[str] = []
     if isinstance(motion, RecordMotion) and model.kind == "planar_rocking":
-        motion = motion.model_copy(update={"single": True})  # a planar column uses one component
+        motion = motion.model_copy(update={"one_component": True})  # a planar column uses one component
     made = built("column", column.build, found)
     moved = built("motion", motion.build, found)
     modelled = built("model", lambda: model.build(made or ANY_COLUMN), found)
@@ -127,7 +127,7 @@ def duration_with_tail(model: Model, motion: BaseMotion) -> float:
 
 
 OF_OTHER_COMMANDS = (
-    *("map", "basin", "spectrum", "fragility", "records", "hierarchy", "periods"),
+    *("map", "basin", "spectrum", "fragility", "records", "hierarchy", "verdict", "periods"),
     *("method", "strobes", "confidence", "angular_frequency_range", "points", "end_converged"),
 )
 """Keys of a description that are not arguments of a single run."""

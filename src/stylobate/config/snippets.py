@@ -76,6 +76,8 @@ def _motion(motion: Any) -> str:
     numbers = motion.model_dump(exclude={"kind", "motion", "motions"}, exclude_defaults=True, exclude_none=True)
     if kind == "record":
         return _record(motion, numbers)
+    if kind == "offset":
+        return f"{_motion(motion.motion)}.offset({_keywords(numbers)})"
     if kind in _CHANGES:
         return _motion(motion.motion) + _changed(kind, numbers)
     own = []
@@ -95,7 +97,7 @@ def _maker(kinds: Kinds, kind: str) -> str:
 
 
 def _record(motion: Any, numbers: Mapping[str, Any]) -> str:
-    plain = {"sample", "path", "units", "step", "scale", "rotation", "tail", "directions", "single"}
+    plain = {"sample", "path", "units", "step", "scale", "rotation", "tail", "directions", "one_component"}
     several = not isinstance(numbers.get("path", ""), str)
     by_name = several and isinstance(numbers.get("directions"), Mapping)
     if set(numbers) - plain or ("directions" in numbers and not by_name):
@@ -105,7 +107,7 @@ def _record(motion: Any, numbers: Mapping[str, Any]) -> str:
     if "sample" in numbers:
         made = f"sb.sample_record({numbers['sample']!r})"
     else:
-        names = ("units", "step", *(("directions", "single") if several else ()))
+        names = ("units", "step", *(("directions", "one_component") if several else ()))
         reading = {name: value for name, value in numbers.items() if name in names}
         paths = [list(numbers["path"])] if several else numbers["path"]
         read = "sb.read_records" if several else "sb.read_record"

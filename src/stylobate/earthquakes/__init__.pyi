@@ -17,19 +17,33 @@ from .incremental import incremental_dynamic_analysis
 from .intensities import Intensity, SpectralAcceleration
 from .perturbations import SMALL_PERTURBATIONS, Perturbation
 from .planar_comparison import planar_bias
-from .property_spreads import LognormalSpread, NormalSpread, Spread, UniformSpread, property_samples
+from .property_spreads import (
+    Choice,
+    LognormalSpread,
+    LogUniformSpread,
+    NormalSpread,
+    Spread,
+    UniformSpread,
+    property_samples,
+)
 from .robustness_study import robustness
 from .run_fragility import fragility_of_runs
 from .spectra.bands import overturning_bands
 from .spectra.rocking import rocking_spectrum
+from .variations import LABELS, VARIATIONS
+from .verdict_study import repeat_verdict, verdict
 
 __all__ = [
+    "LABELS",
     "SMALL_PERTURBATIONS",
+    "VARIATIONS",
+    "Choice",
     "Counting",
     "FitStatus",
     "FragilityStudy",
     "HazardCurve",
     "Intensity",
+    "LogUniformSpread",
     "LognormalSpread",
     "NormalSpread",
     "Perturbation",
@@ -55,6 +69,8 @@ __all__ = [
     "plot_records",
     "property_samples",
     "reached_bands",
+    "repeat_verdict",
     "robustness",
     "rocking_spectrum",
+    "verdict",
 ]

@@ -10,17 +10,11 @@ import xarray as xr
 
 from stylobate.base_motions import BaseMotion
 from stylobate.base_motions.records import HorizontalComponent
-from stylobate.earthquakes.config.fragility import AnySpread, FragilitySetup, Lognormal, Normal
+from stylobate.earthquakes.config.fragility import FragilitySetup
 from stylobate.earthquakes.fragility import Counting, HazardCurve, annual_rate, dispersion_parts
 from stylobate.earthquakes.incremental import incremental_dynamic_analysis
 from stylobate.earthquakes.intensities import Intensity, IntensityMeasure, SpectralAcceleration
-from stylobate.earthquakes.property_spreads import (
-    LognormalSpread,
-    NormalSpread,
-    Spread,
-    UniformSpread,
-    property_samples,
-)
+from stylobate.earthquakes.property_spreads import Spread, property_samples
 from stylobate.earthquakes.remarks import remark_on
 from stylobate.earthquakes.run_fragility import fragility_of_runs
 from stylobate.earthquakes.site_hazard import site_hazard
@@ -99,7 +93,7 @@ class FragilityStudy:
             tail=table.tail,
             intensity=intensity.quantity,
             component=intensity.component,
-            spreads={name: _spread(spread) for name, spread in table.spreads.items()},
+            spreads={name: spread.build() for name, spread in table.spreads.items()},
             samples=table.samples,
             seed=table.seed,
             counting=Counting(table.counting),
@@ -173,12 +167,3 @@ class FragilityStudy:
 
     def _stream(self, place: int) -> np.random.Generator:
         return np.random.default_rng(np.random.SeedSequence(self.seed, spawn_key=(place,)))
-
-
-def _spread(described: AnySpread) -> Spread:
-    if isinstance(described, Lognormal):
-        return LognormalSpread(described.dispersion, described.median)
-    if isinstance(described, Normal):
-        most = np.inf if described.most is None else described.most
-        return NormalSpread(described.deviation, described.mean, described.least, most)
-    return UniformSpread(described.least, described.most)

@@ -99,6 +99,43 @@ class UniformSpread:
         return np.asarray((1.0 - shares) * self.least + shares * self.most)
 
 
+@dataclass(frozen=True, slots=True)
+class LogUniformSpread:
+    """A uniform distribution of the logarithm between two positive values."""
+
+    least: float
+    most: float
+
+    def __post_init__(self) -> None:
+        if not 0.0 < require_positive("least", self.least) <= require_positive("most", self.most):
+            message = f"least: must not lie above most (got {self.least!r} and {self.most!r}). Exchange them."
+            raise ParameterError(message)
+
+    def draw(self, nominal: float, shares: Floats) -> Floats:
+        """Return the quantiles of these `shares`."""
+        del nominal
+        return np.asarray(np.exp((1.0 - shares) * np.log(self.least) + shares * np.log(self.most)))
+
+
+@dataclass(frozen=True, slots=True)
+class Choice:
+    """Equally probable values, such as the corners of a low-pass filter; infinity for no filter."""
+
+    among: tuple[float, ...]
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "among", tuple(float(value) for value in self.among))
+        if not self.among or any(np.isnan(value) for value in self.among):
+            message = f"among: must be one number or more (got {self.among!r}). Name each value once."
+            raise ParameterError(message)
+
+    def draw(self, nominal: float, shares: Floats) -> Floats:
+        """Return the quantiles of these `shares`, in the order of `among`."""
+        del nominal
+        places = np.minimum((shares * len(self.among)).astype(int), len(self.among) - 1)
+        return np.asarray(np.array(self.among)[places], dtype=np.float64)
+
+
 def property_samples(model: Model, spreads: Mapping[str, Spread], *, count: int, rng: Rng) -> dict[str, Floats]:
     """Draw independent samples of uncertain properties, for the argument `parameters`.
 

@@ -44,7 +44,8 @@ def survival(model: Model, motion: BaseMotion, trajectory: Trajectory) -> tuple[
         return Outcome.STILL_MOVING, f"still moving, {left:.4g} s before the base motion ends; {_OPEN}"
     after = max(0.0, end - motion.duration)
     moving = f"still moving {after:.4g} s after the base motion ended" if motion.duration > 0.0 else "still moving"
-    share = float(energy_over_balance(model, trajectory.states(np.array([trajectory.end])))[0])
+    push = remaining_acceleration(motion) / model.column.gravity
+    share = float(energy_over_balance(model, trajectory.states(np.array([trajectory.end])), push)[0])
     if share >= 1.0:
         return Outcome.STILL_MOVING, f"{moving}; {_OPEN}"
     outcome = Outcome.SURVIVED if motion.duration > 0.0 else Outcome.STILL_MOVING
@@ -59,13 +60,25 @@ def has_ended(time: npt.ArrayLike, duration: npt.ArrayLike) -> npt.NDArray[np.bo
     return np.asarray(np.asarray(time) * (1.0 + SLACK) >= np.asarray(duration))
 
 
-def energy_over_balance(model: Model, states: Floats) -> Floats:
-    """Return the energy over the energy of the balance, shape (n,), for `states` of shape (number of states, n).
+def remaining_acceleration(motion: BaseMotion) -> float:
+    """Return sup |a_h| after the end of a base motion [m/s²]: 0 on a level base."""
+    return motion.peak_horizontal(math.nextafter(motion.duration, math.inf)) if motion.duration < math.inf else 0.0
 
-    A column with a smaller tilt and less energy than at its balance cannot overturn on a base at rest. The result is
-    infinite beyond the balance, and for a model without its own `balance`.
+
+def energy_over_balance(model: Model, states: Floats, push: npt.ArrayLike = 0.0) -> Floats:
+    """Return the energy over that required to overturn, shape (n,), for `states` of shape (number of states, n).
+
+    A column with a smaller tilt and less energy than at its balance, at the tilt α, cannot overturn on a base at rest.
+    A constant horizontal acceleration, `push` in g, lowers the energy at the balance by at most push²/2 m g R, and does
+    at most the work 2 push sin α m g R between the balances of both sides; the energy of the balance is 1 − cos α. The
+    result is infinite beyond the balance, and for a model without its own `balance`.
     """
     balance, energy = model.balance, model.energy(states)
     if balance is None or energy is None or not belongs_to_equations(type(model), "balance", "energy"):
         return np.full(states.shape[1], math.inf)
-    return np.where(np.hypot(*model.tilt(states)) < balance.tilt, energy / balance.energy, math.inf)
+    required = np.full(states.shape[1], balance.energy)
+    if balance.tilt < math.inf:
+        a, rise = np.asarray(push), 1.0 - math.cos(balance.tilt)
+        required = required * (1.0 - (2.0 * a * math.sin(balance.tilt) + 0.5 * a * a) / rise)
+    share = np.divide(energy, required, out=np.full(states.shape[1], math.inf), where=required > 0.0)
+    return np.where(np.hypot(*model.tilt(states)) < balance.tilt, share, math.inf)

@@ -60,6 +60,7 @@ _QUANTITIES = {
     "start_phase": VariedQuantity("phase of the base motion at the start", "rad"),
     "rotation": VariedQuantity("rotation of the base motion", "rad"),
     "delay": VariedQuantity("delay of the base motion", "s"),
+    **{f"offset_{axis}": VariedQuantity(f"constant acceleration of the base along {axis}", "m s-2") for axis in "xy"},
     **{f"amplitude_{axis}": VariedQuantity(f"acceleration of the base along {axis}", "m s-2") for axis in "xyz"},
     "phase_difference": VariedQuantity("phase of the base along y minus phase along x", "rad"),
 }

@@ -27,13 +27,16 @@ COLUMN_NAMES = (
 )
 """Parameters of the column; `slenderness` changes the radius, `size` all lengths at the same density."""
 
-MOTION_NAMES = ("motion", "angular_frequency", "start_phase", "acceleration", "scale", "rotation", "delay")
+OFFSETS = ("offset_x", "offset_y")
+"""Constant horizontal accelerations added to the motion, the last of its changes."""
+
+MOTION_NAMES = ("motion", "angular_frequency", "start_phase", "acceleration", "scale", "rotation", "delay", *OFFSETS)
 """Changes of the motion in the order of application; `angular_frequency` and `start_phase` are declared parameters."""
 
 ELLIPSE_NAMES = ("amplitude_x", "amplitude_y", "amplitude_z", "phase_difference")
 """Parameters of one harmonic motion, applied before all others; ensembles do not vary them."""
 
-_CHANGES = {"rotation": 0.0, "delay": 0.0, "scale": 1.0, "size": 1.0}
+_CHANGES = {"rotation": 0.0, "delay": 0.0, "offset_x": 0.0, "offset_y": 0.0, "scale": 1.0, "size": 1.0}
 """Changes that apply to any motion or column, with the value that changes nothing."""
 
 _OWN = "motion."
@@ -138,8 +141,8 @@ def with_parameters(model: Model, motion: BaseMotion, /, **values: float) -> tup
         and phase_difference (phase of y minus phase of x) [rad]; the parameters that its class declares, such as
         angular_frequency [rad/s], start_phase [rad], or the cycles of a pulse; acceleration [m/s²] (peak horizontal
         acceleration; for a sum, the sum of the peaks of its parts), scale (a factor), rotation [rad] about the
-        vertical, delay [s]. A name that the column or the model also has means theirs; the prefix "motion." selects the
-        motion.
+        vertical, delay [s], offset_x and offset_y (constant accelerations, see `BaseMotion.offset`) [m/s²]. A name that
+        the column or the model also has means theirs; the prefix "motion." selects the motion.
 
     Raises
     ------
@@ -198,7 +201,10 @@ def changed_motion(motion: BaseMotion, values: Mapping[str, float]) -> BaseMotio
         motion = motion.scaled(values["scale"])
     if "rotation" in values:
         motion = motion.rotated(values["rotation"])
-    return motion.delayed(values["delay"]) if "delay" in values else motion
+    if "delay" in values:
+        motion = motion.delayed(values["delay"])
+    offset = {name: values[name] for name in OFFSETS if name in values}
+    return motion.offset(**offset) if offset else motion
 
 
 def _one_of(motion: BaseMotion, number: float) -> BaseMotion:

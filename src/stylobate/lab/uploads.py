@@ -44,7 +44,7 @@ class Upload:
 
     def motion(self) -> dict[str, Any]:
         """Return the plain values of the record, with the paths of its files."""
-        return {**self.as_read(), "single": True}  # the warning about one component belongs to the upload
+        return {**self.as_read(), "one_component": True}  # the warning about one component belongs to the upload
 
     def as_read(self) -> dict[str, Any]:
         """Return the plain values for the first reading of the files, which issues all warnings."""
@@ -52,7 +52,7 @@ class Upload:
 
     def as_json(self) -> dict[str, Any]:
         """Return the plain values of the record, with the names of its files."""
-        return {**self._motion(list(self.names)), "single": True}
+        return {**self._motion(list(self.names)), "one_component": True}
 
     def _motion(self, paths: list[str]) -> dict[str, Any]:
         return {"kind": "record", "path": paths[0] if len(paths) == 1 else paths, **self.reading}

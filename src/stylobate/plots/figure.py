@@ -11,7 +11,7 @@ from stylobate.plots.bifurcation_curves import plot_bifurcation_curves
 from stylobate.plots.branches import plot_branches
 from stylobate.plots.kinds import figure_for
 from stylobate.plots.runs import plot_runs
-from stylobate.results import Assessment, Response
+from stylobate.results import Assessment, Response, Verdict
 
 # Functions that draw several results of a kind in one figure.
 _COMPARED = {"branch": plot_branches, "bifurcation curve": plot_bifurcation_curves}
@@ -27,7 +27,7 @@ class HasPoints(Protocol):
 
 
 def plot(
-    result: Response | xr.Dataset | HasPoints | Sequence[Response] | Sequence[HasPoints],
+    result: Response | Verdict | xr.Dataset | HasPoints | Sequence[Response] | Sequence[HasPoints],
     *,
     labels: Sequence[str] | None = None,
 ) -> Figure:
@@ -36,8 +36,8 @@ def plot(
     Parameters
     ----------
     result
-        A run, several runs to compare, the Dataset of a study, or one or several branches of orbits or curves of
-        bifurcations. A sweep over two dimensions is drawn as a map, finished or not.
+        A run, several runs to compare, a verdict, the Dataset of a study, or one or several branches of orbits or
+        curves of bifurcations. A sweep over two dimensions is drawn as a map, finished or not.
     labels
         A name for each of several runs, branches or curves; by default the outcomes of runs and the kinds of curves.
 
@@ -51,6 +51,8 @@ def plot(
     ParameterError
         If no figure is registered for results of this kind; see `stylobate.plots.figure_of`.
     """
+    if isinstance(result, Verdict):
+        result = result.data
     results: Sequence[object] = result if isinstance(result, Sequence) else [result]
     runs = [one for one in results if isinstance(one, Response)]
     if results and len(runs) == len(results):

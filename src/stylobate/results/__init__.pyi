@@ -1,12 +1,14 @@
 from .assessment import Assessment
-from .findings import Finding, PaperCheck, Section, Verdict
+from .findings import ClaimStatus, Finding, PaperCheck, Section
 from .report_details import DesignSpectrum, ReportDetails
 from .response import Event, Response
 from .rules import OutcomeRules
 from .storage import read_dataset, write_netcdf
+from .verdict import Verdict, VerdictWord, percent
 
 __all__ = [
     "Assessment",
+    "ClaimStatus",
     "DesignSpectrum",
     "Event",
     "Finding",
@@ -16,6 +18,8 @@ __all__ = [
     "Response",
     "Section",
     "Verdict",
+    "VerdictWord",
+    "percent",
     "read_dataset",
     "write_netcdf",
 ]

@@ -8,7 +8,7 @@ from enum import Enum
 import xarray as xr
 
 
-class Verdict(Enum):
+class ClaimStatus(Enum):
     """The verdict on a statement of a publication."""
 
     HOLDS = "holds"
@@ -26,7 +26,7 @@ class Finding:
     source: str
     statement: str
     measured: str
-    verdict: Verdict
+    verdict: ClaimStatus
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,5 +57,5 @@ class PaperCheck:
     def summary(self) -> str:
         """One line that counts the verdicts."""
         counts = Counter(finding.verdict for finding in self.findings)
-        counted = "; ".join(f"{verdict.value}: {counts[verdict]}" for verdict in Verdict if counts[verdict])
+        counted = "; ".join(f"{verdict.value}: {counts[verdict]}" for verdict in ClaimStatus if counts[verdict])
         return f"{counts.total()} checks of the paper's statements. {counted}."

@@ -7,6 +7,9 @@ if TYPE_CHECKING:
     from stylobate.column import Column
     from stylobate.results.response import Response
 
+NUMERICALLY_UNCERTAIN = "numerically uncertain: rounding or the rest threshold could alter it"
+"""What `uncertain` means, in the same words everywhere."""
+
 Rows = list[tuple[str, str]]
 """Labels and their values."""
 
@@ -19,13 +22,14 @@ def column_rows(column: "Column") -> Rows:
     ]
 
 
-def verdict_rows(run: "Response") -> Rows:
-    """Return the rows of the outcome, its reason and the time of its decision."""
-    return [
-        ("outcome", run.outcome.label + (" (uncertain)" if run.uncertain else "")),
-        ("because", run.reason),
-        ("decided at", f"{run.decided_at:.4f} s"),
-    ]
+def outcome_of(run: "Response") -> str:
+    """Return the outcome in words, with a remark if it is numerically uncertain."""
+    return run.outcome.label + (f" ({NUMERICALLY_UNCERTAIN})" if run.uncertain else "")
+
+
+def reason_rows(run: "Response") -> Rows:
+    """Return the rows of the reason of the outcome and the time of its decision."""
+    return [("because", run.reason), ("decided at", f"{run.decided_at:.4f} s")]
 
 
 def measure_rows(run: "Response") -> Rows:

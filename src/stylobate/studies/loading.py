@@ -6,12 +6,16 @@ import xarray as xr
 
 from stylobate import orbits, results
 from stylobate.errors import FileError, ParameterError
+from stylobate.results.verdict import KIND
 from stylobate.studies.sweeps import open_sweep
 
 Orbits = orbits.PeriodicOrbit | orbits.Branch | orbits.BifurcationCurve
 
 
-def load(path: str | Path) -> results.Response | results.Assessment | Orbits | xr.Dataset:
+Result = results.Response | results.Verdict | results.Assessment | Orbits | xr.Dataset
+
+
+def load(path: str | Path) -> Result:
     """Read a saved result of any kind.
 
     Parameters
@@ -21,7 +25,7 @@ def load(path: str | Path) -> results.Response | results.Assessment | Orbits | x
 
     Returns
     -------
-    Response, PeriodicOrbit, Branch, BifurcationCurve, Assessment or xarray.Dataset
+    Response, Verdict, PeriodicOrbit, Branch, BifurcationCurve, Assessment or xarray.Dataset
         The saved result; the result of a study or a sweep is a Dataset. Variables of a store are read on first use.
 
     Raises
@@ -44,6 +48,8 @@ def load(path: str | Path) -> results.Response | results.Assessment | Orbits | x
         return results.Response.load(path)
     if written.startswith("stylobate "):
         return orbits.load_orbits(path)
+    if data.attrs.get("kind") == KIND:
+        return results.Verdict(data)
     if "kind" not in data.attrs:
         message = f"{path}: not saved by stylobate (got the variables {list(data.variables)}). Read it with xarray."
         raise FileError(message)

@@ -170,9 +170,9 @@ def test_names_of_different_events_are_not_joined(tmp_path, names):
     written(tmp_path, names)
     with pytest.warns(UnlikelyInputWarning):
         assert len(read(tmp_path)) == 2
-    found = read(tmp_path, single=True)
+    found = read(tmp_path, one_component=True)
     assert len({record.name for record in found}) == 2
-    described = RecordsConfig(source=str(tmp_path), units="m/s2", step=0.01, single=True).build().values()
+    described = RecordsConfig(source=str(tmp_path), units="m/s2", step=0.01, one_component=True).build().values()
     for records in (found, described):
         assert [(one.name, one.provenance) for one in (describe_motion(record).build() for record in records)] == [
             (record.name, record.provenance) for record in found
@@ -187,12 +187,12 @@ def test_digits_of_names_alone_join_perpendicular_pairs_only_and_not_in_silence(
     with pytest.warns(
         UnlikelyInputWarning, match=r"numbers in their names look like .*State their directions, or list the"
     ):
-        (record,) = read(tmp_path, single=True)
+        (record,) = read(tmp_path, one_component=True)
     assert record.axes == ("x", "y")
     # directions and lists say so, and are not remarked on; so does a third file that more than digits name
     assert read([paths]) == (record,)
     assert read(tmp_path, directions={names[0]: int(names[0][-7:-4]) if "_" not in names[0] else 55.0}) == (record,)
-    assert [one.axes for one in read([[path] for path in paths], single=True)] == [("x",)] * 2
+    assert [one.axes for one in read([[path] for path in paths], one_component=True)] == [("x",)] * 2
     written(tmp_path, [names[0].replace("001", "UP").replace("055", "UP")], WAVES[2:])
     assert [one.axes for one in read(tmp_path)] == [("x", "y", "z")]
     written(tmp_path, [names[0].replace("001", "002").replace("055", "054")])
@@ -203,7 +203,7 @@ def test_digits_of_names_alone_join_perpendicular_pairs_only_and_not_in_silence(
 def test_shocks_of_one_day_at_one_station_are_apart_by_what_their_names_say_before_the_direction(tmp_path):
     for name, way, values in zip(("A-CVK090", "B-CVK180"), ("90", "180"), WAVES, strict=False):
         at2(tmp_path / f"{name}.AT2", values, f"Chalfant, 7/21/1986, Convict Creek, {way}")
-    assert [(one.name, one.axes) for one in sb.read_records(tmp_path, single=True)] == [
+    assert [(one.name, one.axes) for one in sb.read_records(tmp_path, one_component=True)] == [
         ("A-CVK", ("x",)),
         ("B-CVK", ("x",)),
     ]
@@ -215,7 +215,7 @@ def test_one_number_in_two_folders_joins_only_what_one_title_joins(tmp_path):
         for path in paths:
             path.parent.mkdir(exist_ok=True)
             at2(path, WAVES[0], title.format(path.stem[-3:]))
-        assert {one.axes for one in sb.read_records(paths, single=True)} == {axes}
+        assert {one.axes for one in sb.read_records(paths, one_component=True)} == {axes}
 
 
 @pytest.mark.parametrize(("names", "azimuths"), [
@@ -250,7 +250,7 @@ def test_a_header_joins_files_of_one_name_and_its_date_and_station_keep_others_a
         ("q090", WAVES[1], "Site C", "90"),
     ):
         at2(tmp_path / f"{name}.AT2", values, title.format(station, way))
-    pair, first, second = sorted(sb.read_records(tmp_path, single=True), key=lambda record: -len(record.axes))
+    pair, first, second = sorted(sb.read_records(tmp_path, one_component=True), key=lambda record: -len(record.axes))
     assert (pair.axes, first.axes, second.axes) == (("x", "y", "z"), ("x",), ("x",))
     np.testing.assert_allclose(pair.samples, WAVES[:3].T * [1, -1, -1] * 9.80665, rtol=1e-12)
 
@@ -258,13 +258,13 @@ def test_a_header_joins_files_of_one_name_and_its_date_and_station_keep_others_a
 def test_a_header_without_a_date_joins_nothing(tmp_path):
     for name, values, way in (("one", WAVES[0], "0"), ("two", WAVES[1], "90")):
         at2(tmp_path / f"{name}.AT2", values, f"Synthetic record, {way}")
-    assert len(sb.read_records(tmp_path, single=True)) == 2
+    assert len(sb.read_records(tmp_path, one_component=True)) == 2
 
 
 def test_a_header_shows_that_digits_of_a_name_are_no_azimuth(tmp_path):
     for name, way in (("quake117", "N"), ("quake207", "N")):
         at2(tmp_path / f"{name}.AT2", WAVES[0], f"Synthetic record, {way}")
-    assert [record.name for record in sb.read_records(tmp_path, single=True)] == ["quake117", "quake207"]
+    assert [record.name for record in sb.read_records(tmp_path, one_component=True)] == ["quake117", "quake207"]
 
 
 def test_copies_of_one_event_are_several_records(tmp_path):
@@ -300,18 +300,18 @@ def test_one_number_of_several_stations_is_an_error(tmp_path):
 
 def test_what_the_user_lists_as_one_event_is_one(tmp_path):
     first, second, other = written(tmp_path, ("first_000.txt", "second_090.txt", "other_NS.txt"))
-    (expected, alone) = read([[first, second], other], single=True)
+    (expected, alone) = read([[first, second], other], one_component=True)
     assert (expected.axes, alone.name) == (("x", "y"), "other")
     assert read({"mine": [first, second]}) == (expected,)
     assert read({"mine": [first, second]})[0].name == "mine"
-    assert read([tmp_path, [first, second]], single=True) == (expected, alone)
+    assert read([tmp_path, [first, second]], one_component=True) == (expected, alone)
     renamed = written(tmp_path, ("left.txt", "right.txt"))
     directions = {"left.txt": 0, "right.txt": "E"}
     assert read(renamed, directions=directions) == (expected,)
     assert read([renamed], directions=directions) == (expected,)
     # four files are of two events: their names tell which
     pairs = [*renamed, *written(tmp_path, ("q_NS.txt", "q_EW.txt"))]
-    assert len(read(pairs, directions={**directions, "q_NS.txt": 0, "q_EW.txt": 90}, single=True)) == 3
+    assert len(read(pairs, directions={**directions, "q_NS.txt": 0, "q_EW.txt": 90}, one_component=True)) == 3
 
 
 def test_patterns_and_folders_are_read_alone_and_in_lists(tmp_path):
@@ -351,7 +351,7 @@ def test_a_component_alone_is_remarked_on_unless_it_is_asked_for(tmp_path, name,
     (path,) = written(tmp_path, (name,), [values])
     with pytest.warns(UnlikelyInputWarning, match=told):
         read(path)
-    (record,) = read(path, single=True)
+    (record,) = read(path, one_component=True)
     assert ("z" in record.axes) == ("UP" in name)
 
 

@@ -44,7 +44,7 @@ def test_peer_names_make_one_event(tmp_path, waves):
 def test_a_component_that_points_down_is_turned(tmp_path, waves):
     table(tmp_path, "a_NS.txt", waves[0])
     table(tmp_path, "a_DWN.txt", waves[2])
-    (record,) = sb.read_records(tmp_path, "m/s2", single=True)
+    (record,) = sb.read_records(tmp_path, "m/s2", one_component=True)
     np.testing.assert_array_equal(record.samples[:, 2], -waves[2])
 
 

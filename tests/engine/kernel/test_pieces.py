@@ -14,6 +14,8 @@ TIMES = np.array([0.0, 0.3, 0.4, 1.1, 1.5, 2.5, 2.6])
 """Ends of the pieces [s]."""
 SCALE, DELAY, FACTOR, UP, ANGLE = 0.5, 0.8, 2.0, -1.5, 0.7
 """Unit of time [s], delay [s], factors of the horizontal and vertical acceleration, and rotation."""
+OFFSET = (0.03, -0.05)
+"""Constant horizontal acceleration [g]."""
 
 
 def lane_with_pieces(lane_of, *, planar=False, first=2, **given):
@@ -39,6 +41,8 @@ def lane_with_pieces(lane_of, *, planar=False, first=2, **given):
         Tabulated.SIN: math.sin(ANGLE),
         Tabulated.VERTICAL: UP,
         Tabulated.DELAY: DELAY,
+        Tabulated.OFFSET_X: OFFSET[0],
+        Tabulated.OFFSET_Y: OFFSET[1],
         Tabulated.FIRST: first,
         Tabulated.COUNT: count,
     }.items():
@@ -52,6 +56,7 @@ def expected_at(coefficients, seconds, planar):
     middle, half = 0.5 * (TIMES[number] + TIMES[number + 1]), 0.5 * (TIMES[number + 1] - TIMES[number])
     x, y, z = coefficients[number] @ [1.0, (seconds - middle) / half]
     x, y = FACTOR * np.array([math.cos(ANGLE) * x - math.sin(ANGLE) * y, math.sin(ANGLE) * x + math.cos(ANGLE) * y])
+    x, y = x + OFFSET[0], y + OFFSET[1]
     return (0.6 * x + 0.8 * y, 0.0, UP * z) if planar else (x, y, UP * z)
 
 
@@ -70,10 +75,10 @@ def test_a_leg_is_the_piece_of_its_time_scaled_rotated_and_delayed(lane_of, plan
         assert (one["leg_ends"], one["continued"]) == (pytest.approx(ends), float(number % 2 == 0))
 
 
-def test_the_base_is_at_rest_before_the_delay(lane_of):
+def test_the_base_is_at_rest_before_the_delay_except_for_the_constant_acceleration(lane_of):
     one, _ = lane_with_pieces(lane_of)
     one.do("set_leg", one.table, one.pieces, 1.2)
-    assert one.do("accelerations", 1.2) == (0.0, 0.0, 0.0)
+    assert one.do("accelerations", 1.2) == (*OFFSET, 0.0)
     assert (one["leg_ends"], one["continued"]) == (pytest.approx(DELAY / SCALE), 0.0)
 
 
@@ -84,7 +89,8 @@ def test_bounds_are_those_of_the_rest_of_the_motion_and_are_set_if_they_change(l
     motion = one.table[0, one.shape.motion_at :]
     for number in range(6):
         one.do("load_piece", motion, one.pieces, 2 + number)
-        horizontal, low, high = 2.0 * (3.0 - 0.1 * number), -0.4 + 0.01 * number, 0.6 - 0.01 * number
+        horizontal = 2.0 * (3.0 - 0.1 * number) + math.hypot(*OFFSET)
+        low, high = -0.4 + 0.01 * number, 0.6 - 0.01 * number
         found = one["largest_horizontal"], one["minimum_vertical"], one["maximum_vertical"]
         # The vertical acceleration is upside down.
         assert found == pytest.approx((horizontal, -1.5 * high, -1.5 * low))

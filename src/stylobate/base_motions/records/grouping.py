@@ -53,7 +53,7 @@ def read_records(
     lengths: Lengths = Lengths.TRIM,
     steps: Steps = Steps.REFUSE,
     format: RecordFormat | None = None,  # noqa: A002  the word of the field
-    single: bool = False,
+    one_component: bool = False,
 ) -> tuple[Record, ...]:
     """Read records and join the components of each event.
 
@@ -80,7 +80,7 @@ def read_records(
         Treatment of components of different lengths.
     steps
         Whether components of different steps are resampled.
-    single
+    one_component
         Whether single components are intended; otherwise a warning is issued.
 
     Returns
@@ -98,10 +98,10 @@ def read_records(
     Warns
     -----
     UnlikelyInputWarning
-        If a record has one horizontal component, only a vertical component, or no acceleration, unless `single`; if
-        files are listed as one event but their headers name several; if two files are joined only because the numbers
-        at the end of their names look like perpendicular azimuths; if trimming to the shortest component removes more
-        than 1 % of the Arias intensity of a component.
+        If a record has one horizontal component, only a vertical component, or no acceleration, unless
+        `one_component`; if files are listed as one event but their headers name several; if two files are joined only
+        because the numbers at the end of their names look like perpendicular azimuths; if trimming to the shortest
+        component removes more than 1 % of the Arias intensity of a component.
 
     Notes
     -----
@@ -115,7 +115,7 @@ def read_records(
     component acts along x.
     """
     reading = {
-        "single": True,
+        "one_component": True,
         "lengths": lengths.name.lower(),
         "steps": steps.name.lower(),
         **plain_reading(units, step, columns, format),
@@ -127,7 +127,7 @@ def read_records(
         name = event.name if isinstance(source, Mapping) else None
         origin = RecordOrigin.of_files(event.paths, name=name, directions=stated or None, **reading)
         records.append(replace(record, origin=origin))
-    for record in () if single else records:
+    for record in () if one_component else records:
         remark_on_missing_components(record)
     return tuple(records)
 
@@ -190,7 +190,7 @@ def remark_on_missing_components(record: Record) -> None:
     else:
         what = "one horizontal component" if flat else "a vertical component and no horizontal one"
         message = (
-            f"{record.name}: {what} ({files}). List the files of the event together, or set single if one component is "
+            f"{record.name}: {what} ({files}). List the files of the event together, or set one_component if one is "
             "meant"
         )
     warnings.warn(message, UnlikelyInputWarning, stacklevel=3)

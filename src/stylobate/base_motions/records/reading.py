@@ -88,7 +88,7 @@ def read_record(
     path = require_path("path", path)
     step = None if step is None else require_positive("step", step, "s")
     record = as_record(read_component(path, step, columns, format), path, units, axis)
-    origin = RecordOrigin.of_files(path, axis=axis, single=True, **plain_reading(units, step, columns, format))
+    origin = RecordOrigin.of_files(path, axis=axis, one_component=True, **plain_reading(units, step, columns, format))
     return replace(record, origin=origin)
 
 

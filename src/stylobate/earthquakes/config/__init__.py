@@ -3,5 +3,6 @@
 from stylobate.earthquakes.config.assess import AssessConfig, AssessmentSetup
 from stylobate.earthquakes.config.fragility import FragilityConfig, FragilitySetup
 from stylobate.earthquakes.config.spectrum import SpectrumConfig
+from stylobate.earthquakes.config.verdict import VerdictConfig
 
-__all__ = ["AssessConfig", "AssessmentSetup", "FragilityConfig", "FragilitySetup", "SpectrumConfig"]
+__all__ = ["AssessConfig", "AssessmentSetup", "FragilityConfig", "FragilitySetup", "SpectrumConfig", "VerdictConfig"]

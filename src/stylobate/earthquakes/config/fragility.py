@@ -13,6 +13,7 @@ from stylobate.config.many_runs import ManyRuns
 from stylobate.config.record_collection import RecordsConfig
 from stylobate.earthquakes.config.hazard import Hazard, HazardPoints
 from stylobate.earthquakes.config.spectrum import Scales
+from stylobate.earthquakes.config.spreads import AnySpread
 from stylobate.errors import (
     LARGEST_SEED,
     ConfigError,
@@ -24,78 +25,6 @@ from stylobate.errors import (
     require_whole,
 )
 from stylobate.models import Model
-
-
-class Lognormal(Config):
-    """Lognormal distribution of a property.
-
-    Parameters
-    ----------
-    dispersion
-        Standard deviation of the logarithm.
-    median
-        Median; the value of the model by default.
-    """
-
-    kind: Literal["lognormal"]
-    dispersion: float
-    median: float | None = None
-
-
-class Normal(Config):
-    """Truncated normal distribution of a property.
-
-    Parameters
-    ----------
-    deviation
-        Standard deviation.
-    mean
-        Mean; the value of the model by default.
-    least
-        Lower bound.
-    most
-        Upper bound; none by default.
-    """
-
-    kind: Literal["normal"]
-    deviation: float
-    mean: float | None = None
-    least: float = 0.0
-    most: float | None = None
-
-
-class Uniform(Config):
-    """Uniform distribution of a property.
-
-    Parameters
-    ----------
-    least
-        Lower bound.
-    most
-        Upper bound.
-    """
-
-    kind: Literal["uniform"]
-    least: float
-    most: float
-
-
-_SPREADS: dict[str, type[Lognormal | Normal | Uniform]] = {"lognormal": Lognormal, "normal": Normal, "uniform": Uniform}
-
-
-def _as_spread(values: Any) -> Any:
-    """Validate the spread of this kind; error messages name the keys of the file, without class names."""
-    if isinstance(values, Config):
-        return values
-    kind = values.get("kind") if isinstance(values, Mapping) else None
-    if kind not in _SPREADS:
-        message = f"a spread must have a kind, {', '.join(map(repr, _SPREADS))}, such as {_EXAMPLE}"
-        raise PydanticCustomError("spread", message)  # noqa: EM101  the first argument is the type
-    return _SPREADS[str(kind)].model_validate(values)
-
-
-_EXAMPLE = '{kind = "lognormal", dispersion = 0.4}'
-AnySpread = Annotated[Lognormal | Normal | Uniform, BeforeValidator(_as_spread)]
 
 
 class Spectral(Config):

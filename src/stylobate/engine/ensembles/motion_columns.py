@@ -11,13 +11,14 @@ import numpy.typing as npt
 from stylobate.base_motions import BaseMotion
 from stylobate.base_motions.one_of import members_of
 from stylobate.base_motions.varying import is_pulse, numbers_of
+from stylobate.engine.end_of_motion import remaining_acceleration
 from stylobate.engine.ensembles.harmonics import Term, Terms, factors, terms_of
 from stylobate.engine.ensembles.model_columns import ModelColumns
 from stylobate.engine.ensembles.polynomials import Table, one_after_another, tabulated
 from stylobate.engine.ensembles.stretched import tabulated_alike
 from stylobate.engine.kernel.columns import Tabulated
 from stylobate.engine.kernel.forcing import Harmonics, KernelForcing, Polynomials
-from stylobate.engine.parameters import changed_motion, declared_names, peak_acceleration
+from stylobate.engine.parameters import OFFSETS, changed_motion, declared_names, peak_acceleration
 from stylobate.engine.thresholds import least_rest_energy
 
 Floats = npt.NDArray[np.float64]
@@ -66,7 +67,8 @@ class MotionPlan:
                     numbers_of(motion)[own].quantity.checked(name, float(value))
         for number in np.unique(values["motion"]) if "motion" in values else ():
             changed_motion(motion, {"motion": float(number)})
-        terms = terms_of(motion) if all(name == own for name, own in declared.items()) else None
+        is_plain = all(name == own for name, own in declared.items()) and not any(name in values for name in OFFSETS)
+        terms = terms_of(motion) if is_plain else None
         names = () if terms is not None or not len(duration) else tuple(declared)
         if names and "motion" in values:
             names = ("motion", *names)
@@ -120,7 +122,8 @@ class MotionPlan:
 class MotionColumns:
     """Arrays over the runs in model units, of shape (n,) except `directions` (n, vectors, 2), `breaks`, `columns`.
 
-    `duration` is the time after which the base stands still [s]. `phase` is the phase of the forcing at t = 0 [turns].
+    `duration` is the time after which the base motion has ended [s], and `remaining` the bound of the horizontal
+    acceleration afterwards [g], that of a base out of level. `phase` is the phase of the forcing at t = 0 [turns].
     `forward` and `backward` are the azimuths [rad] at t = 0 of its anticlockwise and clockwise components, NaN for more
     than one frequency.
     """
@@ -134,6 +137,7 @@ class MotionColumns:
     period: Floats
     phase: Floats
     largest: Floats
+    remaining: Floats
     minimum_vertical: Floats
     maximum_vertical: Floats
     directions: Floats
@@ -154,6 +158,8 @@ class MotionColumns:
         per_gravity = factor / models.gravity
         bounds = per_gravity * each(lambda motion: motion.vertical_range(0.0)).T
         rotation = values.get("rotation", np.zeros(count))
+        offset = np.stack([values.get(name, np.zeros(count)) for name in OFFSETS], axis=-1)
+        pushed = np.hypot(*offset.T) / models.gravity
         if plan.terms is not None:
             terms = Terms.of(plan.terms, values, count, plan.base_acceleration[which])
             columns = terms.columns(models.time_scale, models.gravity, windowed=plan.windowed)
@@ -161,7 +167,7 @@ class MotionColumns:
             frequency, phase, forward, backward = _single_frequency(terms, plan.motion)
             mean_frequency = frequency
         else:
-            columns = _table_columns(plan, values, factor, rotation, models)
+            columns = _table_columns(plan, values, factor, rotation, offset, models)
             breaks = np.empty((count, 0))
             frequency = each(lambda motion: motion.highest_frequency)
             mean_frequency = each(lambda motion: motion.mean_frequency)
@@ -180,10 +186,11 @@ class MotionColumns:
             duration=np.where(lasts > 0.0, np.maximum(0.0, lasts + values.get("delay", 0.0)), 0.0),
             period=period / models.time_scale,
             phase=phase,
-            largest=np.abs(per_gravity) * each(lambda motion: motion.peak_horizontal(0.0)),
+            largest=np.abs(per_gravity) * each(lambda motion: motion.peak_horizontal(0.0)) + pushed,
+            remaining=np.abs(per_gravity) * each(remaining_acceleration) + pushed,
             minimum_vertical=bounds.min(axis=0),
             maximum_vertical=bounds.max(axis=0),
-            directions=_directions(plan.members, which, factor, rotation),
+            directions=_directions(plan.members, which, factor, rotation, offset),
             forward=forward,
             backward=backward,
         )
@@ -216,7 +223,9 @@ def _single_frequency(terms: Terms, motion: BaseMotion) -> tuple[Floats, Floats,
     return frequency, phase / (2.0 * math.pi), forward, backward
 
 
-def _directions(members: Sequence[BaseMotion], which: npt.NDArray[np.intp], factor: Floats, rotation: Floats) -> Floats:
+def _directions(
+    members: Sequence[BaseMotion], which: npt.NDArray[np.intp], factor: Floats, rotation: Floats, offset: Floats
+) -> Floats:
     spanning = [member.directions() for member in members]
     vectors = np.zeros((len(members), max(map(len, spanning)), 2))  # zero vectors are parallel to any line
     for number, given in enumerate(spanning):
@@ -224,11 +233,16 @@ def _directions(members: Sequence[BaseMotion], which: npt.NDArray[np.intp], fact
     cos, sin = np.cos(rotation)[:, np.newaxis], np.sin(rotation)[:, np.newaxis]
     x, y = np.moveaxis(vectors[which], -1, 0)
     turned = np.stack([cos * x - sin * y, sin * x + cos * y], axis=-1)
-    return np.asarray(factor[:, np.newaxis, np.newaxis] * turned)
+    return np.concatenate([factor[:, np.newaxis, np.newaxis] * turned, offset[:, np.newaxis]], axis=1)
 
 
 def _table_columns(
-    plan: MotionPlan, values: Mapping[str, Floats], factor: Floats, rotation: Floats, models: ModelColumns
+    plan: MotionPlan,
+    values: Mapping[str, Floats],
+    factor: Floats,
+    rotation: Floats,
+    offset: Floats,
+    models: ModelColumns,
 ) -> Floats:
     count = len(factor)
     scaled, which = factor / models.gravity, plan.member(values, count)
@@ -240,6 +254,8 @@ def _table_columns(
         Tabulated.SIN: np.sin(rotation),
         Tabulated.VERTICAL: scaled,
         Tabulated.DELAY: delay,
+        Tabulated.OFFSET_X: offset[:, 0] / models.gravity,
+        Tabulated.OFFSET_Y: offset[:, 1] / models.gravity,
         Tabulated.FIRST: first,
         Tabulated.COUNT: number,
     }

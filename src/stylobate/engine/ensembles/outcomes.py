@@ -102,7 +102,7 @@ def _survive(batch: Batch, moving: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool
     states = _states(batch) if survive.any() else np.empty((0, 0))
     for changed, runs in batch.models.kinds:
         if survive[runs].any():
-            survive[runs] &= energy_over_balance(changed, states[:, runs]) < 1.0
+            survive[runs] &= energy_over_balance(changed, states[:, runs], batch.motions.remaining[runs]) < 1.0
     return np.asarray(survive)
 
 

@@ -113,6 +113,9 @@ class Tabulated(_FromZero):
     """Factor of the vertical acceleration."""
     DELAY = auto()
     """Delay [s]."""
+    OFFSET_X = auto()
+    OFFSET_Y = auto()
+    """Constant horizontal acceleration [g], from t = 0 on."""
     FIRST = auto()
     COUNT = auto()
     """Row of the first polynomial, and number of polynomials."""

@@ -9,7 +9,7 @@ from stylobate import theory
 from stylobate.base_motions import Harmonic
 from stylobate.engine import simulate
 from stylobate.paper.analyses.setting import CIRCULAR_AMPLITUDES, DAMPING, SLENDERNESS, judged, paper_model
-from stylobate.results import Finding, Section, Verdict
+from stylobate.results import ClaimStatus, Finding, Section
 from stylobate.studies.responses.initial_conditions import steady_start
 from stylobate.theory.rotating_frame import rotating_frame_rates
 
@@ -92,7 +92,7 @@ def _phase() -> Finding:
         "The phase follows from tan ψ alone.",
         f"The tangent leaves the quadrant open. With a0 cos ψ and a0 sin ψ taken together, ν = 2, a0 = 0.02: "
         f"ψ = {up:.4f} on the upper branch, {low:.4f} (near π) on the lower.",
-        judged(abs(up) < math.pi / 2 < abs(low), Verdict.SHARPENED),
+        judged(abs(up) < math.pi / 2 < abs(low), ClaimStatus.SHARPENED),
     )
 
 
@@ -125,7 +125,7 @@ def _lower_branch() -> Finding:
         f"On all {growth.size} points with a lower branch an eigenvalue is positive (least {growth.min():.2g}). Proof: "
         "the constant coefficient of the characteristic polynomial is (1+ν²)² + η²ν² − (1+ν²)c/θ, negative below the "
         "fold: the lower branch is a saddle.",
-        judged(bool(growth.min() > 0.0), Verdict.SHARPENED),
+        judged(bool(growth.min() > 0.0), ClaimStatus.SHARPENED),
     )
 
 
@@ -140,7 +140,7 @@ def _criteria_agree() -> Finding:
         f"Routh-Hurwitz and computed eigenvalues agree on {same} of {growth.size} points. The criterion reduces to a "
         "bound on the tilt, θ < c[1 + √(1 + 4/w)]/4 with w = 4ν² + η², which gives the boundary in closed form for "
         "any damping.",
-        judged(same == growth.size, Verdict.SHARPENED),
+        judged(same == growth.size, ClaimStatus.SHARPENED),
     )
 
 
@@ -165,5 +165,5 @@ def _undamped_limit() -> Finding:
         "The critical frequency depends on the parameters of the problem.",
         "Without damping it is (1+√s)/√(4 − (1+√s)²) with s = a0/(a0+c): "
         f"{closed[0]:.5f} and {closed[1]:.5f}; at η = 1e-4 the boundary differs from it by {gap:.0e}.",
-        judged(gap < 1e-6, Verdict.SHARPENED),  # noqa: PLR2004  the correction is of the order η²
+        judged(gap < 1e-6, ClaimStatus.SHARPENED),  # noqa: PLR2004  the correction is of the order η²
     )

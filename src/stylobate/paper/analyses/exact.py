@@ -10,7 +10,7 @@ from stylobate.base_motions import Harmonic
 from stylobate.orbits import Bifurcation, Branch, Kind, continue_branch, periodic_orbit, switch_branch
 from stylobate.paper.analyses.setting import DAMPING, SLENDERNESS, judged, paper_model
 from stylobate.paper.analyses.straight import AMPLITUDES
-from stylobate.results import Finding, Section, Verdict
+from stylobate.results import ClaimStatus, Finding, Section
 from stylobate.studies.responses.exact_response import exact_response
 from stylobate.studies.responses.stability_boundary import stability_boundary
 from stylobate.theory.averaging import circular_components
@@ -77,7 +77,7 @@ def _circular() -> Finding:
         "a stable modulated motion bifurcates.",
         judged(
             max(errors) < 1e-8 and gap < 1e-7 and lost.kind is Kind.NEIMARK_SACKER and bool(lost.supercritical),  # noqa: PLR2004
-            Verdict.SHARPENED,
+            ClaimStatus.SHARPENED,
         ),
     )
 
@@ -99,7 +99,7 @@ def _boundaries(straight: dict[float, Branch]) -> Finding:
         f"The exact orbit is stable above another ν*: {'; '.join(lines)}. "
         "Stability is lost in a pitchfork, not by an oscillation: a real multiplier leaves the unit circle through +1, "
         "and the orbit loses its symmetry (the opposite lean half a period later).",
-        judged(pitchforks and all(higher), Verdict.LIMITED),
+        judged(pitchforks and all(higher), ClaimStatus.LIMITED),
     )
 
 
@@ -117,7 +117,7 @@ def _bifurcating(straight: dict[float, Branch]) -> Finding:
         "Under straight-line motion the bifurcation is supercritical: two mirror-image rolling motions without the "
         f"symmetry are stable below ν*. {'; '.join(lines)}. They end in doublings or modulated motion, and soon after "
         "in overturning.",
-        judged(all(soft), Verdict.DOES_NOT_HOLD),
+        judged(all(soft), ClaimStatus.DOES_NOT_HOLD),
     )
 
 
@@ -136,5 +136,5 @@ def _error(straight: dict[float, Branch]) -> Finding:
         f"The mean tilt of the exact orbit is larger than the averaged one by {100 * small[0]:.2f} % at a1 = 0.04 and "
         f"{100 * large[0]:.2f} % at a1 = 0.13, at ν = 3, and by {100 * small[1]:.2f} % and {100 * large[1]:.2f} % at "
         f"ν = 6: the error does not fall with ν; between these amplitudes it grows as the power {order:.2f} of a1/c.",
-        judged(abs(small[1] / small[0] - 1.0) < 0.1 and abs(order - 2.0) < 0.2, Verdict.LIMITED),  # noqa: PLR2004
+        judged(abs(small[1] / small[0] - 1.0) < 0.1 and abs(order - 2.0) < 0.2, ClaimStatus.LIMITED),  # noqa: PLR2004
     )

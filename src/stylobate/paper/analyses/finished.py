@@ -12,7 +12,7 @@ from pathlib import Path
 import xarray as xr
 
 from stylobate.errors import FileError
-from stylobate.results import Finding, Section, Verdict, write_netcdf
+from stylobate.results import ClaimStatus, Finding, Section, write_netcdf
 from stylobate.results.storage import read_tree
 
 _FINDINGS = "findings"
@@ -33,7 +33,9 @@ class FinishedAnalyses:
         if _FINDINGS not in tree.attrs:
             return None
         findings = json.loads(tree.attrs[_FINDINGS])
-        found = tuple(Finding(where, what, measured, Verdict[verdict]) for where, what, measured, verdict in findings)
+        found = tuple(
+            Finding(where, what, measured, ClaimStatus[verdict]) for where, what, measured, verdict in findings
+        )
         return Section(found, {str(name): child.to_dataset() for name, child in tree.children.items()})
 
     def write(self, heading: str, section: Section) -> Section:

@@ -12,7 +12,7 @@ from stylobate.base_motions import Harmonic
 from stylobate.engine import simulate
 from stylobate.errors import Outcome
 from stylobate.paper.analyses.setting import CIRCULAR_AMPLITUDES, DAMPING, SLENDERNESS, judged, paper_model
-from stylobate.results import Finding, Section, Verdict
+from stylobate.results import ClaimStatus, Finding, Section
 from stylobate.studies.responses.initial_conditions import steady_start
 
 _C = SLENDERNESS
@@ -52,7 +52,7 @@ def _supercritical() -> Finding:
         f"{crossing[0]:.4f} (a0 = 0.02) or {crossing[1]:.4f} (a0 = 0.065). The first Lyapunov coefficient is "
         f"{values[0]:.2f} and {values[1]:.2f} (state θ̇/c, β̇, θ/c, ψ): supercritical, so a stable modulated rolling "
         "exists below ν*.",
-        judged(bool(np.all(values < 0.0)), Verdict.SHARPENED),
+        judged(bool(np.all(values < 0.0)), ClaimStatus.SHARPENED),
     )
 
 
@@ -72,7 +72,7 @@ def _third_kind() -> Finding:
         f"a0 = 0.065, ν = 1.36 < ν*: started 2 % off (8), after 150 periods the outcome is {run.outcome.name}, θ/θ+ "
         f"between {low:.2f} and {high:.2f}; as a limit cycle of (7) {ranges[0][0]:.2f} to {ranges[0][1]:.2f}. "
         "This is a third kind of motion, so the conclusion does not hold.",
-        judged(run.outcome is Outcome.MODULATED, Verdict.DOES_NOT_HOLD),
+        judged(run.outcome is Outcome.MODULATED, ClaimStatus.DOES_NOT_HOLD),
     )
 
 
@@ -86,7 +86,7 @@ def _followed_down() -> Finding:
         f"Followed down from ν* = {critical:.4f} at a0 = 0.065: at ν = {doubling:.4f} a multiplier of the cycle passes "
         "−1 and its period doubles; the doubled and then irregular modulation, followed by integration in steps of "
         f"0.002, persists at ν = {lowest:.3f} and is lost at {lost:.3f}, where the column overturns.",
-        judged(lost < doubling, Verdict.DOES_NOT_HOLD),
+        judged(lost < doubling, ClaimStatus.DOES_NOT_HOLD),
     )
 
 

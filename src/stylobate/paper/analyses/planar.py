@@ -9,7 +9,7 @@ from stylobate import theory
 from stylobate.base_motions import Harmonic
 from stylobate.engine import simulate
 from stylobate.paper.analyses.setting import DAMPING, SLENDERNESS, judged, paper_model
-from stylobate.results import Finding, Section, Verdict
+from stylobate.results import ClaimStatus, Finding, Section
 from stylobate.theory.planar_forced import planar_kick_slope
 
 _C = SLENDERNESS
@@ -107,7 +107,7 @@ def _planar_response() -> Finding:
         "Forced rocking in the plane of excitation is a solution, known from the parallelepiped.",
         "Symmetric rocking at the forcing period has a closed form, stable in its plane on one branch: at ν = 2, "
         f"a1 = 0.02 the integration returns to it after 10 periods within {gap:.0e}.",
-        judged(gap < 1e-8 and run.planar, Verdict.SHARPENED),  # noqa: PLR2004
+        judged(gap < 1e-8 and run.planar, ClaimStatus.SHARPENED),  # noqa: PLR2004
     )
 
 
@@ -125,7 +125,7 @@ def _planar_loss(kicks: xr.Dataset) -> Finding:
         f"attracts the column back into its plane, from an offset of {offset:.0e} rad to {left:.1e} in 100 periods.",
         judged(
             abs(slope / exact - 1.0) < 0.01 and left < 0.1 * offset,  # noqa: PLR2004
-            Verdict.LIMITED,
+            ClaimStatus.LIMITED,
         ),
     )
 

@@ -2,7 +2,7 @@
 
 from stylobate.column import Column
 from stylobate.models import Slender
-from stylobate.results import Verdict
+from stylobate.results import ClaimStatus
 
 SLENDERNESS, DAMPING = 0.1, 0.1
 """c and η of the paper's figures."""
@@ -16,6 +16,6 @@ def paper_model(damping: float = DAMPING) -> Slender:
     return Slender(Column.dimensionless(SLENDERNESS), damping=damping)
 
 
-def judged(condition: bool, verdict: Verdict = Verdict.HOLDS) -> Verdict:
+def judged(condition: bool, verdict: ClaimStatus = ClaimStatus.HOLDS) -> ClaimStatus:
     """Return `verdict` if the measurement confirms it, NOT_CONFIRMED otherwise."""
-    return verdict if condition else Verdict.NOT_CONFIRMED
+    return verdict if condition else ClaimStatus.NOT_CONFIRMED

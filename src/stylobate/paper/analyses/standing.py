@@ -9,7 +9,7 @@ from stylobate.base_motions import Harmonic
 from stylobate.engine import simulate
 from stylobate.errors import Outcome
 from stylobate.paper.analyses.setting import SLENDERNESS, judged, paper_model
-from stylobate.results import Finding, Section, Verdict
+from stylobate.results import ClaimStatus, Finding, Section
 
 _C = SLENDERNESS
 
@@ -45,7 +45,7 @@ def _sign_of_forces() -> Finding:
         "In the frame of the base the force is −m times its acceleration, as in the paper's own (1), with arm h in the "
         f"small-angle model. With the sign of (1) a base that accelerates along +x at 1.2c makes the column lean to "
         f"{lean:+.4f} rad, against the acceleration, as it must. The results of the paper rest on (1), which is right.",
-        judged(lean < 0.0, Verdict.ERRATUM),
+        judged(lean < 0.0, ClaimStatus.ERRATUM),
     )
 
 

@@ -14,7 +14,7 @@ from stylobate.models import Model, SlenderRolling
 from stylobate.paper.analyses.run_with_twist import A0, GONE, NU, PERIODS, end_of_rolling, run_from_paper
 from stylobate.paper.analyses.setting import DAMPING, SLENDERNESS, judged
 from stylobate.paper.analyses.twist_at_finite_tilt import findings_at_finite_tilt
-from stylobate.results import Finding, Section, Verdict
+from stylobate.results import ClaimStatus, Finding, Section
 
 _C = SLENDERNESS
 _SPIN_DAMPINGS = (math.inf, 1.0, 0.3, 0.1, 0.03)
@@ -107,7 +107,7 @@ def _needed() -> Finding:
         "The column cannot rotate about the vertical.",
         "On (8) the contact must bear the moment m r a_n about the vertical, a_n = g η ν θ: at a0 = 0.065, ν = 3 it is "
         f"{100.0 * moment:.2f} % of weight times radius. A small contact patch can give that, a point cannot.",
-        judged(math.isclose(moment, expected, rel_tol=1e-12), Verdict.LIMITED),
+        judged(math.isclose(moment, expected, rel_tol=1e-12), ClaimStatus.LIMITED),
     )
 
 
@@ -124,7 +124,7 @@ def _with_spin_damping() -> Finding:
         "Λ = 1 + i_a − κ: the column spins at σ = −ηνθ/(cζκΛ) and leans less. Solid cylinder, ζ = 0.1, ν = 3: "
         f"θ = {float(known.amplitude):.5f} instead of {float(paper.amplitude):.5f}, σ = {float(known.spin):.4f}; "
         f"integration started on (8) gives θ = {tilt:.5f} after {PERIODS} periods.",
-        judged(off < _SETTLED and run.outcome is not Outcome.OVERTURNED, Verdict.LIMITED),
+        judged(off < _SETTLED and run.outcome is not Outcome.OVERTURNED, ClaimStatus.LIMITED),
     )
 
 
@@ -135,7 +135,7 @@ def _without() -> Finding:
         "The same without any damping about the vertical.",
         "No steady rolling exists: the base acceleration across the lean spins the column up, and the tilt decays. "
         f"From (8) at a0 = 0.065, ν = 3 it falls below {GONE:g}c at τ = {when:.1f}, with σ = {spin:.2f}.",
-        judged(math.isfinite(when), Verdict.DOES_NOT_HOLD),
+        judged(math.isfinite(when), ClaimStatus.DOES_NOT_HOLD),
     )
 
 
@@ -151,7 +151,7 @@ def _stability() -> Finding:
         f"{little:.4f} (ζ = 0.1), for the column leans less. Integrated over a period, deviations neither grow nor "
         f"decay within {max(off):.0e} "
         "of these.",
-        judged(little < much < paper and max(off) < _BOUNDARY, Verdict.SHARPENED),
+        judged(little < much < paper and max(off) < _BOUNDARY, ClaimStatus.SHARPENED),
     )
 
 
@@ -174,7 +174,7 @@ def _weak_damping() -> Finding:
         "a period.",
         judged(
             paper < nu < known and growth > 1.0 and abs(gaps[1] / gaps[0] - 2.0) < _LINEAR,
-            Verdict.LIMITED,
+            ClaimStatus.LIMITED,
         ),
     )
 
@@ -192,7 +192,7 @@ def _upper_frequency() -> Finding:
         f"damping stability is lost again. At i_a = 0.1, ζ = 0.003 rolling is stable for {low:.4f} < ν < {high:.4f}; "
         f"in a period integration makes deviations {below:.4f} and {above:.4f} times as large 3 % below and above that "
         "end. A solid cylinder is on the border i_a = 2κ − 1 and stays stable.",
-        judged(below < 1.0 < above and math.isinf(solid), Verdict.LIMITED),
+        judged(below < 1.0 < above and math.isinf(solid), ClaimStatus.LIMITED),
     )
 
 

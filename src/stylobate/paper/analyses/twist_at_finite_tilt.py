@@ -8,7 +8,7 @@ from stylobate import theory
 from stylobate.models import Rolling
 from stylobate.paper.analyses.run_with_twist import A0, GONE, NU, end_of_rolling, run_from_paper
 from stylobate.paper.analyses.setting import DAMPING, SLENDERNESS, judged
-from stylobate.results import Finding, Verdict
+from stylobate.results import ClaimStatus, Finding
 
 _ZETA = 0.1
 _SETTLED = 1e-5
@@ -53,7 +53,7 @@ def _without_spin_damping() -> Finding:
         "The body at finite tilt rolls steadily without damping about the vertical.",
         f"As at small tilts no steady rolling exists: the tilt falls below {GONE:g}c at τ = {when:.1f}, with "
         f"σ = {spin:.2f}.",
-        judged(math.isfinite(when), Verdict.DOES_NOT_HOLD),
+        judged(math.isfinite(when), ClaimStatus.DOES_NOT_HOLD),
     )
 
 

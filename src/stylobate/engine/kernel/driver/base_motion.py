@@ -78,6 +78,7 @@ def set_piece(buf: Table, i: int, motion: Table, pieces: Table, t: float) -> Non
     if time < delay:
         for row in range(FIRST_FORCING, FIRST_FORCING + 2 + (2 - PLANAR + VERTICAL) * FORCING_ROWS):
             buf[row, i] = 0.0
+        add_offset(buf, i, motion)
         buf[R.CONTINUED, i] = 0.0
         buf[R.LEG_ENDS, i] = delay * buf[R.PER_SECOND, i]
         return
@@ -108,7 +109,7 @@ def load_piece(buf: Table, i: int, motion: Table, pieces: Table, index: int) -> 
             buf[row, i] = y
         if VERTICAL:
             buf[row + FORCING_ROWS, i] = vertical * piece[COEFFICIENTS_AT + 2 * FORCING_ROWS + k]
-    largest = abs(factor) * piece[Piece.LARGEST_HORIZONTAL]
+    largest = abs(factor) * piece[Piece.LARGEST_HORIZONTAL] + add_offset(buf, i, motion)
     up, down = vertical * piece[Piece.MINIMUM_VERTICAL], vertical * piece[Piece.MAXIMUM_VERTICAL]
     least = min(up, down)
     changed = largest != buf[R.LARGEST_HORIZONTAL, i] or least != buf[R.MINIMUM_VERTICAL, i]
@@ -118,6 +119,18 @@ def load_piece(buf: Table, i: int, motion: Table, pieces: Table, index: int) -> 
     if changed:
         set_bounds(buf, i)
     buf[R.LEG_ENDS, i] = (end + delay) * per_second if number < count - 1 else math.inf
+
+
+def add_offset(buf: Table, i: int, motion: Table) -> float:
+    """Add the constant acceleration to the polynomial, and return its size."""
+    x, y = motion[Tabulated.OFFSET_X], motion[Tabulated.OFFSET_Y]
+    row = FIRST_FORCING + 2
+    if PLANAR:
+        buf[row, i] = buf[row, i] + x * buf[R.LINE_X, i] + y * buf[R.LINE_Y, i]
+    else:
+        buf[row, i] = buf[row, i] + x
+        buf[row + FORCING_ROWS, i] = buf[row + FORCING_ROWS, i] + y
+    return length(x, y)
 
 
 def continues_in_next_piece(buf: Table, i: int, table: Table, pieces: Table) -> bool:

@@ -1,0 +1,460 @@
+"""The verdict on a case: runs under joint small variations, and the share of them that overturns the column."""
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass, fields
+from typing import Any, Unpack, cast
+
+import numpy as np
+import numpy.typing as npt
+import xarray as xr
+from scipy.special import fdtrc
+
+from stylobate.base_motions import BaseMotion, OneOf, Record
+from stylobate.config import config_of, provenance_of_run
+from stylobate.earthquakes.config.spreads import described_spread
+from stylobate.earthquakes.config.verdict import VerdictConfig
+from stylobate.earthquakes.following import tail_of
+from stylobate.earthquakes.incremental import tilt_ratios
+from stylobate.earthquakes.named_records import named_records
+from stylobate.earthquakes.property_spreads import Spread
+from stylobate.earthquakes.variations import (
+    CONTACT_LAW,
+    VARIATIONS,
+    check_variations,
+    chosen_variations,
+    drawn,
+    scaled_dissipation,
+    shares_of,
+)
+from stylobate.engine.parameters import COLUMN_NAMES, model_names
+from stylobate.errors import LARGEST_SEED, MOST_RUNS, ParameterError, UnsupportedError, require_whole
+from stylobate.models import Model, Rolling, Slender, SlenderRolling, Wobbling
+from stylobate.results import OutcomeRules
+from stylobate.results.verdict import KIND, Verdict
+from stylobate.studies.checks import require_no_tilt_limit
+from stylobate.studies.maps.uncertainty_exponent import overturned_or_not
+from stylobate.studies.proportions import fraction_interval, require_confidence
+from stylobate.studies.sweeps import Executor, Sweep, run_sweep
+from stylobate.studies.sweeps.computing import Progress, silent
+from stylobate.studies.sweeps.quantities import Floats
+from stylobate.studies.sweeps.recipe import DEFAULTS, RunOptions
+
+# A rim that carries no twisting moment, and one that keeps a column from turning about its axis.
+_OTHER_CONTACT_LAW: Mapping[type[Model], type[Model]] = {
+    Wobbling: Rolling,
+    Rolling: Wobbling,
+    Slender: SlenderRolling,
+    SlenderRolling: Slender,
+}
+# Variations of the runs themselves, not of column or base motion.
+_OF_THE_INTEGRATION = ("tolerance",)
+_PARTS = 6
+"""Number of parts of equal probability into which the values of each variation are divided."""
+# A variation that explains nothing exceeds its critical influence with this probability, over all variations.
+_BY_CHANCE = 0.01
+_KEPT = ("outcome", "peak_tilt", "uncertain")
+
+
+def verdict(
+    models: Model | Sequence[Model],
+    motion: BaseMotion,
+    *,
+    variations: Mapping[str, Spread | None] | None = None,
+    runs: int = 300,
+    seed: int = 0,
+    confidence: float = 0.9,
+    tail: float | None = None,
+    executor: Executor | None = None,
+    progress: Progress | None = None,
+    **options: Unpack[RunOptions],
+) -> Verdict:
+    """Decide whether a column overturns, from many runs that differ in what is never known exactly.
+
+    A single rocking run answers a question that nobody asked: a change far below the accuracy of any record or
+    measurement can turn its outcome over. The share of such changes that overturn the column does not have this defect.
+
+    Parameters
+    ----------
+    models
+        One three-dimensional model, or several, each as probable. With one model the contact law is varied: `Wobbling`
+        and `Rolling` (or `Slender` and `SlenderRolling`) take turns, with the same parameters. A list of one model, or
+        a model of another class, is used alone.
+    motion
+        A base motion that ends, such as a record or a pulse.
+    variations
+        Changes to `VARIATIONS`: a distribution for a name there or for any parameter of column or model, such as
+        `{"damping": LogUniformSpread(0.03, 0.1)}`; None leaves a variation out. "dissipation" does not change
+        parameters that are stated here.
+    runs
+        Number of variations.
+    seed
+        Seed of the random numbers. Each variation has its own, so leaving one out does not change the others; more
+        runs begin with the same.
+    confidence
+        Confidence level of the intervals.
+    tail
+        Free-vibration time after the motion [s]; by default 20/p.
+    executor, progress
+        As in `run_sweep`.
+    **options
+        Options of all runs, as in `simulate_ensemble`, such as `rtol`.
+
+    Returns
+    -------
+    Verdict
+        Its `word` is "stands" if the confidence interval of the share lies below 5 %, "overturns" if it lies above
+        95 %, else "undecided". Its `data`:
+
+        * over `run`: `law` (index of the model), `overturned` (1, 0, −1 if undecided), `outcome`, `tilt_ratio` (peak
+          tilt over α_c, infinite if overturned), `uncertain` (numerically), and over `variation` too `value`;
+        * `share`, `share_low`, `share_high`: share of overturning with its interval (Wilson's; undecided runs count on
+          both sides); over `model`: `model_share`, `model_share_low`, `model_share_high`, `model_runs`;
+        * over `variation`: `influence`, the fraction of the variance of the outcome that this variation explains alone
+          (correlation ratio, corrected for chance, Kelley 1935), and over `part`, from its lowest to its highest values
+          in equal numbers, `part_share`;
+        * attributes: `deciding`, the variation with the largest influence, empty if chance explains it (F test, 1 %
+          over all variations); `provenance`, all inputs.
+
+    Raises
+    ------
+    ParameterError
+        If an argument is out of range.
+    Interrupted
+        On Ctrl-C.
+
+    Notes
+    -----
+    A clock that runs fast by a factor f is computed by similarity: a column with lengths divided by f² under the record
+    itself.
+
+    Examples
+    --------
+    >>> import stylobate as sb
+    >>> model = sb.Wobbling(sb.Column.solid(radius=0.2, height=2.0, density=2700.0), damping=0.1)
+    >>> pulse = sb.Pulse.one_sine(acceleration=6.0, angular_frequency=4.0)
+    >>> print(sb.verdict(model, pulse, runs=100))
+    overturns: 100 of 100 small variations overturn the column (100 %; 90 % interval 97 % to 100 %)
+    """
+    require_no_tilt_limit(options)
+    named_records(motion)
+    case = _Case(
+        models=contact_laws(models),
+        motion=motion,
+        variations=chosen_variations(variations),
+        runs=require_whole("runs", runs, least=2, most=MOST_RUNS),
+        seed=require_whole("seed", seed, least=0, most=LARGEST_SEED),
+        confidence=require_confidence(confidence),
+        tail=tail,
+        options=options,
+    )
+    check_variations(case.models, case.variations)
+    return Verdict(case.labelled(case.computed(executor, progress or silent)))
+
+
+def repeat_verdict(saved: Verdict) -> Verdict:
+    """Compute a verdict again from its provenance.
+
+    Parameters
+    ----------
+    saved
+        A verdict, such as one that `stylobate.load` read.
+
+    Returns
+    -------
+    Verdict
+        The same verdict, bit for bit on the same machine and version.
+
+    Raises
+    ------
+    UnsupportedError
+        If descriptions do not support a model, the base motion or a distribution.
+    """
+    given = saved.provenance["verdict"]
+    for name, spread in given["variations"].items():
+        if spread and spread.get("kind") == "other":
+            message = f"variations[{name!r}]: only the text of this distribution is kept (got {spread['repr']})"
+            raise UnsupportedError(message)
+    numbers = {name: value for name, value in given.items() if name in VerdictConfig.model_fields and value is not None}
+    models = [config_of({**_case_of(saved), **case}).build().model for case in given["models"]]
+    motion = config_of(_case_of(saved)).build().motion
+    options: Any = dict(given["options"])
+    if "rules" in options:
+        options["rules"] = OutcomeRules(**options["rules"])
+    return verdict(models, motion, **VerdictConfig.of(numbers), **options)
+
+
+def _case_of(saved: Verdict) -> dict[str, Any]:
+    return {name: value for name, value in saved.provenance.items() if name != "verdict"}
+
+
+def contact_laws(models: Model | Sequence[Model]) -> tuple[Model, ...]:
+    """Return the models of a verdict: the given ones, or one model and that of the other contact law.
+
+    Raises
+    ------
+    ParameterError
+        If there is no model, or one is not three-dimensional.
+    """
+    given = (models,) if isinstance(models, Model) else tuple(models)
+    for model in given:
+        if not isinstance(model, Model) or model.planar_only:
+            message = f"models: must be three-dimensional models (got {model!r}). Use one such as Wobbling(column)."
+            raise ParameterError(message)
+    if not given:
+        message = f"models: must be at least one model (got {models!r}). Pass one such as Wobbling(column)."
+        raise ParameterError(message)
+    if not isinstance(models, Model) or type(models) not in _OTHER_CONTACT_LAW:
+        return given
+    return models, with_other_contact_law(models)
+
+
+def with_other_contact_law(model: Model) -> Model:
+    """Return the column with the other contact law; the shared parameters are those of `model`."""
+    other: Any = _OTHER_CONTACT_LAW[type(model)]
+    shared = set(model_names(model)) & {field.name for field in fields(other)}
+    made: Model = other(model.column, **{name: getattr(model, name) for name in shared})
+    return made
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Case:
+    """The checked arguments of a verdict."""
+
+    models: tuple[Model, ...]
+    motion: BaseMotion
+    variations: Mapping[str, Spread]
+    runs: int
+    seed: int
+    confidence: float
+    tail: float | None
+    options: RunOptions
+
+    @property
+    def law(self) -> npt.NDArray[np.intp]:
+        """Index of the model of each run."""
+        shares = shares_of(CONTACT_LAW, runs=self.runs, seed=self.seed)
+        return np.minimum((shares * len(self.models)).astype(np.intp), len(self.models) - 1)
+
+    @property
+    def values(self) -> dict[str, Floats]:
+        """Values of each variation, shape (runs,); of a parameter of column or model, those of the model of the run."""
+        by_model = [
+            {
+                name: drawn(name, spread, model, runs=self.runs, seed=self.seed)
+                for name, spread in self.variations.items()
+            }
+            for model in self.models
+        ]
+        return {name: np.choose(self.law, [values[name] for values in by_model]) for name in self.variations}
+
+    def computed(self, executor: Executor | None, progress: Progress) -> xr.Dataset:
+        """Compute the runs, in one sweep for each model and tolerance."""
+        values, law = self.values, self.law
+        members, member = self._members(values)
+        kinds = np.stack([law, *(values[name] for name in _OF_THE_INTEGRATION if name in values)], axis=1)
+        groups = np.unique(kinds, axis=0)
+        found = {name: np.full(self.runs, np.nan) for name in _KEPT}
+        slenderness, done = np.empty(self.runs), 0
+        for group in groups:
+            chosen = np.flatnonzero((kinds == group).all(axis=1))
+            model = self.models[int(group[0])]
+            own = {name: array[chosen] for name, array in values.items()}
+            at = {"motion": member[chosen].astype(float), **self._quantities(model, own)}
+            slenderness[chosen] = at.get("slenderness", np.full(chosen.size, model.column.slenderness))
+            tolerance = float(group[1]) if group.size > 1 else 1.0
+            sweep = Sweep.points(model, OneOf(motions=members), at=at, **self._integrated(tolerance))
+            runs = run_sweep(sweep, executor=executor)
+            for name in _KEPT:
+                found[name][chosen] = runs[name].to_numpy()
+            done += chosen.size
+            progress(done, self.runs)
+        codes = runs["outcome"]
+        data = xr.Dataset(
+            {
+                "outcome": ("run", found["outcome"].astype(np.int8), codes.attrs),
+                "peak_tilt": ("run", found["peak_tilt"], runs["peak_tilt"].attrs),
+                "uncertain": (
+                    "run",
+                    found["uncertain"].astype(np.int8),
+                    {"long_name": "rounding could alter the outcome"},
+                ),
+            }
+        )
+        return data.assign(tilt_ratio=tilt_ratios(data, xr.DataArray(slenderness, dims="run")))
+
+    def _members(self, values: Mapping[str, Floats]) -> tuple[tuple[BaseMotion, ...], npt.NDArray[np.intp]]:
+        """Return the filtered copies of the motion, and the index of that of each run."""
+        if "lowpass" not in values:
+            return (self.motion,), np.zeros(self.runs, dtype=np.intp)
+        corners, member = np.unique(values["lowpass"], return_inverse=True)
+        return tuple(_filtered(self.motion, float(corner)) for corner in corners), member.astype(np.intp)
+
+    def _quantities(self, model: Model, values: Mapping[str, Floats]) -> dict[str, Floats]:
+        """Return the quantities of a sweep for these values of the variations."""
+        count = next(iter(values.values())).size if values else self.runs
+        own = {name: array for name, array in values.items() if name in model_names(model) or name in COLUMN_NAMES}
+        if "dissipation" in values:
+            own |= scaled_dissipation(model, values["dissipation"], own)
+        clock = values.get("clock", np.ones(count))
+        size = own.pop("size", np.ones(count)) / clock**2
+        tail = tail_of(model.column) * np.sqrt(size) if self.tail is None else self.tail / clock
+        tilt = self.options.get("tilt", DEFAULTS["tilt"])
+        alpha, gravity = np.arctan(own.get("slenderness", model.column.slenderness)), model.column.gravity
+        return {
+            **own,
+            "size": size,
+            "duration": self.motion.duration + tail,
+            **{name: values[name] for name in ("scale", "rotation") if name in values},
+            **{f"tilt_{k}": tilt["xy".index(k)] + values[f"start_{k}"] * alpha for k in "xy" if f"start_{k}" in values},
+            **{f"offset_{k}": gravity * np.sin(values[f"slope_{k}"]) for k in "xy" if f"slope_{k}" in values},
+        }
+
+    def _integrated(self, tolerance: float) -> RunOptions:
+        chosen = cast(
+            "dict[str, Any]", {**self.options, "rtol": tolerance * self.options.get("rtol", DEFAULTS["rtol"])}
+        )
+        if chosen.get("atol") is not None:
+            chosen["atol"] = tolerance * chosen["atol"]
+        return cast("RunOptions", chosen)
+
+    def labelled(self, data: xr.Dataset) -> xr.Dataset:
+        """Add shares, intervals and influences to the runs."""
+        state = np.maximum(overturned_or_not(data), -1).astype(np.int8)
+        law = self.law
+        one = {"units": "1"}
+        share, low, high = _share(state, self.confidence)
+        by_model = [(_share(state[law == place], self.confidence), (law == place).sum()) for place in self._places]
+        values = {**({CONTACT_LAW: law.astype(float)} if len(self.models) > 1 else {}), **self.values}
+        parts = {name: _parts_of(array) for name, array in values.items()}
+        influence = np.array([_influence(state, part) for part in parts.values()])
+        part_share = np.array([_part_shares(state, part) for part in parts.values()]).reshape(-1, _PARTS)
+        about = f"{100.0 * self.confidence:g} % interval"
+        return (
+            data.assign(
+                law=("run", law.astype(np.int8), {"long_name": "index of the model"}),
+                overturned=("run", state, {"long_name": "1 overturned, 0 did not overturn, −1 undecided"}),
+                value=(
+                    ("variation", "run"),
+                    np.array(list(values.values())).reshape(-1, self.runs),
+                    {"long_name": "value"},
+                ),
+                share=((), share, {**one, "long_name": "share of variations that overturn the column"}),
+                share_low=((), low, {**one, "long_name": f"lower end of the {about}"}),
+                share_high=((), high, {**one, "long_name": f"upper end of the {about}"}),
+                model_share=(
+                    "model",
+                    [one[0][0] for one in by_model],
+                    {"units": "1", "long_name": "share of overturning"},
+                ),
+                model_share_low=("model", [one[0][1] for one in by_model], {"units": "1"}),
+                model_share_high=("model", [one[0][2] for one in by_model], {"units": "1"}),
+                model_runs=("model", [int(one[1]) for one in by_model], {"units": "1", "long_name": "runs"}),
+                influence=("variation", influence, {"units": "1", "long_name": "fraction of the variance explained"}),
+                part_share=(("variation", "part"), part_share, {"units": "1", "long_name": "share of overturning"}),
+            )
+            .assign_coords(
+                model=[model.name for model in self.models],
+                variation=list(values),
+            )
+            .assign_attrs(
+                kind=KIND,
+                confidence=self.confidence,
+                deciding=_deciding(state, parts, influence),
+                provenance=json.dumps(self.provenance),
+            )
+        )
+
+    @property
+    def _places(self) -> range:
+        return range(len(self.models))
+
+    @property
+    def provenance(self) -> dict[str, Any]:
+        """Return all inputs as plain values: those of a run with the first model, and of the verdict."""
+        described = [provenance_of_run(model, self.motion) for model in self.models]
+        return {
+            **described[0],
+            "verdict": {
+                "models": [{name: one[name] for name in ("column", "model")} for one in described],
+                "variations": {
+                    **dict.fromkeys(VARIATIONS, False),
+                    **{name: described_spread(spread) for name, spread in self.variations.items()},
+                },
+                "runs": self.runs,
+                "seed": self.seed,
+                "confidence": self.confidence,
+                "tail": self.tail,
+                "options": {
+                    name: asdict(value) if isinstance(value, OutcomeRules) else value
+                    for name, value in self.options.items()
+                    if value is not None
+                },
+            },
+        }
+
+
+def _filtered(motion: BaseMotion, corner: float) -> BaseMotion:
+    """Return a record after a low-pass filter of this corner [Hz]; other motions, and finer records, unchanged."""
+    if not isinstance(motion, Record) or corner >= 0.5 / motion.step:
+        return motion
+    return motion.filtered(lowpass=corner)
+
+
+def _share(state: npt.NDArray[np.int8], confidence: float) -> tuple[float, float, float]:
+    """Return the share of overturning and its interval; NaN, 0 and 1 without runs."""
+    if state.size == 0:
+        return np.nan, 0.0, 1.0
+    overturned, open_runs = int((state == 1).sum()), int((state < 0).sum())
+    low, high = fraction_interval(overturned, open_runs, state.size, confidence=confidence)
+    return overturned / state.size, float(low), float(high)
+
+
+def _parts_of(values: Floats) -> npt.NDArray[np.intp]:
+    """Return the part of each value: of few different values their index, else one of six parts of equal numbers."""
+    levels, index = np.unique(values, return_inverse=True)
+    if levels.size <= _PARTS:
+        return index.astype(np.intp)
+    return np.asarray(np.argsort(np.argsort(values)) * _PARTS // values.size, dtype=np.intp)
+
+
+def _part_shares(state: npt.NDArray[np.int8], part: npt.NDArray[np.intp]) -> Floats:
+    """Return the share of overturning in each part, shape (6,); NaN for a part without decided runs."""
+    decided = state >= 0
+    counts = np.bincount(part[decided], minlength=_PARTS)
+    overturned = np.bincount(part[decided], weights=state[decided] == 1, minlength=_PARTS)
+    return np.asarray(np.divide(overturned, counts, out=np.full(_PARTS, np.nan), where=counts > 0))
+
+
+def _influence(state: npt.NDArray[np.int8], part: npt.NDArray[np.intp]) -> float:
+    """Return the correlation ratio of the outcome and the part, corrected for chance (ε² of Kelley 1935)."""
+    between, within, parts, count = _scatter(state, part)
+    if between + within == 0.0 or count <= parts:
+        return 0.0
+    return max(0.0, 1.0 - within / (between + within) * (count - 1) / (count - parts))
+
+
+def _scatter(state: npt.NDArray[np.int8], part: npt.NDArray[np.intp]) -> tuple[float, float, int, int]:
+    """Return the sums of squares between and within parts, the number of parts, and that of decided runs."""
+    decided = state >= 0
+    fallen, part = (state[decided] == 1).astype(float), part[decided]
+    if fallen.size == 0:
+        return 0.0, 0.0, 0, 0
+    counts = np.bincount(part)
+    sums = np.bincount(part, weights=fallen)
+    filled = counts > 0
+    between = float((sums[filled] ** 2 / counts[filled]).sum() - fallen.sum() ** 2 / fallen.size)
+    total = float(fallen.sum() - fallen.sum() ** 2 / fallen.size)
+    return between, total - between, int(filled.sum()), fallen.size
+
+
+def _deciding(state: npt.NDArray[np.int8], parts: Mapping[str, npt.NDArray[np.intp]], influence: Floats) -> str:
+    """Return the variation with the largest influence; empty if that may be chance."""
+    if influence.size == 0:
+        return ""
+    name = list(parts)[int(np.argmax(influence))]
+    between, within, number, count = _scatter(state, parts[name])
+    if number < 2 or count <= number or between <= 0.0:  # noqa: PLR2004  parts to compare
+        return ""
+    ratio = between / (number - 1) / (within / (count - number)) if within > 0.0 else np.inf
+    return name if fdtrc(number - 1, count - number, ratio) < _BY_CHANCE / influence.size else ""

@@ -1,0 +1,141 @@
+"""Result of a verdict: the share of small variations of a case that overturn the column."""
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from enum import Enum
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Self
+
+from stylobate.errors import FileError
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+KIND = "verdict"
+"""Value of the attribute `kind` of the data of a verdict."""
+
+
+class VerdictWord(Enum):
+    """The word of a verdict."""
+
+    OVERTURNS = "overturns"
+    STANDS = "stands"
+    UNDECIDED = "undecided"
+
+
+CLEAR = 0.05
+"""Largest share of variations that may contradict the word of a verdict."""
+
+
+def word_of(low: float, high: float) -> VerdictWord:
+    """Return the word for a share of overturning whose confidence interval is `low` to `high`.
+
+    The column stands if the whole interval lies below `CLEAR`, and overturns if it lies above 1 − `CLEAR`. Otherwise
+    the case is undecided: small changes that nobody can exclude alter the outcome.
+    """
+    if high <= CLEAR:
+        return VerdictWord.STANDS
+    return VerdictWord.OVERTURNS if low >= 1.0 - CLEAR else VerdictWord.UNDECIDED
+
+
+@dataclass(frozen=True, slots=True, repr=False)
+class Verdict:
+    """The verdict on a case: a column under a base motion, with everything that is not known exactly.
+
+    Attributes
+    ----------
+    data
+        Dataset of kind "verdict", as `stylobate.verdict` describes it.
+    """
+
+    data: "xr.Dataset"
+
+    @property
+    def runs(self) -> int:
+        """Number of variations."""
+        return int(self.data.sizes["run"])
+
+    @property
+    def share(self) -> float:
+        """Share of the variations that overturn the column."""
+        return float(self.data["share"])
+
+    @property
+    def interval(self) -> tuple[float, float]:
+        """Confidence interval of the share; runs without a decision count on both sides."""
+        return float(self.data["share_low"]), float(self.data["share_high"])
+
+    @property
+    def confidence(self) -> float:
+        """Confidence level of the interval."""
+        return float(self.data.attrs["confidence"])
+
+    @property
+    def word(self) -> VerdictWord:
+        """The word that follows from the interval; see `word_of`."""
+        return word_of(*self.interval)
+
+    @property
+    def share_by_model(self) -> Mapping[str, float]:
+        """Share of overturning of each contact law, by the kind of its model; NaN if no variation has it."""
+        names, shares = self.data["model"].to_numpy(), self.data["model_share"].to_numpy()
+        return {str(name): float(share) for name, share in zip(names, shares, strict=True)}
+
+    @property
+    def deciding(self) -> str:
+        """The variation that decides most; empty if none can be distinguished from chance."""
+        return str(self.data.attrs["deciding"])
+
+    @property
+    def provenance(self) -> Mapping[str, Any]:
+        """All inputs that repeat the verdict."""
+        found: dict[str, Any] = json.loads(self.data.attrs["provenance"])
+        return found
+
+    def __str__(self) -> str:
+        """Return the verdict in one line."""
+        low, high = self.interval
+        count = int((self.data["overturned"] == 1).sum())
+        return (
+            f"{self.word.value}: {count} of {self.runs} small variations overturn the column "
+            f"({percent(self.share)}; {percent(self.confidence)} interval {percent(low)} to {percent(high)})"
+        )
+
+    def __repr__(self) -> str:
+        return f"Verdict({self})"
+
+    def save(self, path: str | Path) -> Path:
+        """Write the verdict to a netCDF file at `path`, with its provenance; `stylobate.load` reads it again."""
+        from stylobate.results.storage import write_netcdf  # noqa: PLC0415  heavy imports wait until they are needed
+
+        return write_netcdf(self.data, path)
+
+    @classmethod
+    def load(cls, path: str | Path) -> Self:
+        """Read the verdict saved in the netCDF file `path`.
+
+        Raises
+        ------
+        FileError
+            If the file cannot be read or holds no verdict.
+        """
+        from stylobate.results.storage import read_dataset  # noqa: PLC0415
+
+        data = read_dataset(path)
+        if data.attrs.get("kind") != KIND:
+            message = (
+                f"{path} holds no verdict (got the kind {data.attrs.get('kind')!r}). stylobate.load reads any result"
+            )
+            raise FileError(message)
+        return cls(data)
+
+
+# Shares nearer to 0 or 1 than this have a decimal.
+_FEW = 0.01
+
+
+def percent(share: float) -> str:
+    """Format a share in percent, in whole numbers; near 0 and 1 with a decimal, because a few runs differ from none."""
+    few = 0.0 < min(share, 1.0 - share) < _FEW
+    return f"{100.0 * share:.1f} %" if few else f"{100.0 * share:.0f} %"
