@@ -29,10 +29,15 @@ def outcomes_of(changes, unknown=()):
     return tell
 
 
+def between(scan):
+    """Return the edges of the scan of one case."""
+    return Edges.between(np.zeros(scan.scale.size, dtype=int), scan.reshaped(-1))
+
+
 def searched(tell, scales, width):
     """Return scan and edges of one case after all halvings, and how many these were."""
     scan = tell(np.array([scales]))
-    edges, runs = Edges.between(scan), 0
+    edges, runs = between(scan), 0
     while (wide := edges.wide(width)).any():
         runs += int(wide.sum())
         edges = edges.halved(wide, tell(edges.middle[wide]))
@@ -77,7 +82,7 @@ def test_a_direction_that_turns_without_a_gap_leaves_one_band():
 def test_halving_halves_edges_and_keeps_what_they_enclose():
     tell = outcomes_of([1.7, 2.9, 4.0])
     scan = tell(np.array([SCALES]))
-    edges = Edges.between(scan)
+    edges = between(scan)
     for _ in range(5):
         cut = edges.halved(edges.wide(0.0), tell(edges.middle))
         np.testing.assert_allclose(
@@ -91,7 +96,7 @@ def test_halving_halves_edges_and_keeps_what_they_enclose():
 def test_the_halvings_announced_are_those_made():
     tell = outcomes_of([1.7, 2.9, 4.0])
     _, _, runs = searched(tell, SCALES, 1e-3)
-    assert runs == Edges.between(tell(np.array([SCALES]))).halvings(1e-3)
+    assert runs == between(tell(np.array([SCALES]))).halvings(1e-3)
 
 
 def test_undecided_runs_part_bands_and_are_halved_like_every_other_edge():
@@ -134,7 +139,7 @@ def test_a_scan_that_is_decided_throughout_has_no_undecided_stretch():
 @pytest.mark.parametrize("states", [[1, 1, 1], [UNKNOWN] * 3, [0, 0, 0]])
 def test_what_never_changes_has_one_band_or_none(states):
     scan = Ends(np.array([[1.0, 2.0, 3.0]]), np.array([states]), np.zeros((1, 3)), np.zeros((1, 3), dtype=bool))
-    found = bands(scan, Edges.between(scan))
+    found = bands(scan, between(scan))
     assert int(found["bands"]) == (1 if states[0] == 1 else 0)
     if states[0] == 1:
         assert bool(found["open_below"].all() & found["open_above"].all())

@@ -29,6 +29,8 @@ class Spectrum(Config):
         Whether to compute a rocking spectrum: peak tilts and tilt rates at the scale of the motion.
     width
         Relative width to which the ends of overturning intervals are located; 0.001 by default.
+    refine
+        Factor by which the steps of the scan are divided below the smallest overturning scale; 1 by default.
     tail
         Free-vibration time after the base motion [s]; 40/`column.frequency_parameter` by default.
     """
@@ -38,6 +40,7 @@ class Spectrum(Config):
     scales: Scales | None = None
     rocking: bool = False
     width: float | None = None
+    refine: int | None = None
     tail: float | None = None
 
 
@@ -83,7 +86,7 @@ class SpectrumConfig(ManyRuns):
         over = {name: list(values) for name, values in axes.items() if rocking or name != "scale"}
         listed = ({"name": name, "values": values} for name, values in over.items())
         table: dict[str, Any] = {**dict(zip("xy", listed, strict=False)), "rocking": rocking}
-        table |= {name: provenance[name] for name in ("width", "tail") if provenance.get(name) is not None}
+        table |= {name: provenance[name] for name in ("width", "refine", "tail") if provenance.get(name) is not None}
         if not rocking:
             table["scales"] = {"values": list(axes["scale"])}
         return cls.parse({**common_values(provenance), "spectrum": table})
@@ -102,7 +105,9 @@ class SpectrumConfig(ManyRuns):
         chosen: dict[str, Any] = {"over": over}
         if table.scales is not None:
             chosen["scales"] = built("spectrum.scales", table.scales.build, problems)
-        chosen |= {name: getattr(table, name) for name in ("width", "tail") if getattr(table, name) is not None}
+        chosen |= {
+            name: getattr(table, name) for name in ("width", "refine", "tail") if getattr(table, name) is not None
+        }
         model, motion, options = self.common(problems, ("duration",))
         del options["periods"]
         return Setup(model, motion, {**options, **chosen})
@@ -118,7 +123,7 @@ class SpectrumConfig(ManyRuns):
         if table.rocking:
             problems += [
                 f"spectrum.{name} is not supported by a rocking spectrum. Remove it."
-                for name in ("scales", "width")
+                for name in ("scales", "width", "refine")
                 if getattr(table, name) is not None
             ]
             if table.x is None:

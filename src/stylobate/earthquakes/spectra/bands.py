@@ -12,10 +12,10 @@ import xarray as xr
 from stylobate.base_motions import BaseMotion
 from stylobate.earthquakes.spectra.band_table import band_table
 from stylobate.earthquakes.spectra.cases import Cases
-from stylobate.earthquakes.spectra.edges import Edges, Ends, Integers
+from stylobate.earthquakes.spectra.edges import Edges, Ends, Integers, joined
 from stylobate.earthquakes.spectra.provenance import provenance_of_spectrum
 from stylobate.engine.parameter_quantities import attributes_of
-from stylobate.errors import Interrupted, ParameterError, require_positive
+from stylobate.errors import Interrupted, Most, ParameterError, require_positive, require_whole
 from stylobate.models import Model
 from stylobate.results.outcomes import NOT_COMPUTED
 from stylobate.studies.checks import require_no_tilt_limit
@@ -26,6 +26,7 @@ from stylobate.studies.sweeps.recipe import RunOptions
 
 # Smallest relative width of an edge; below it the ends differ by rounding only.
 _NARROWEST = 1e-9
+_FINEST = Most(1000, "since finer scales are better given as scales")
 
 
 def overturning_bands(
@@ -35,6 +36,7 @@ def overturning_bands(
     scales: npt.ArrayLike,
     over: Mapping[str, npt.ArrayLike] | None = None,
     width: float = 1e-3,
+    refine: int = 1,
     tail: float | None = None,
     duration: float | None = None,
     store: str | Path | None = None,
@@ -62,6 +64,9 @@ def overturning_bands(
         the places of the motions in a `OneOf`. By default one case.
     width
         Relative width, high/low − 1, to which edges are bisected.
+    refine
+        Factor by which the steps of the scan are divided below the smallest overturning scale that it finds, where the
+        column rocks. Isolated intervals far narrower than a step are common there; each was missed by chance.
     tail
         Free-vibration time after the end of the base motion [s]; by default 40/p of each case. A column that has not
         overturned by then counts as surviving. Within about 10⁻⁶ of an edge that may be wrong after 20/p, within 10⁻¹²
@@ -140,8 +145,11 @@ def overturning_bands(
         durations=cases.durations(duration, tail),
         scales=_checked_scales(scales),
         width=_checked_width(width),
+        refine=require_whole("refine", refine, least=1, most=_FINEST),
         options=options,
-        provenance=provenance_of_spectrum(model, motion, options, tail=tail, duration=duration, width=float(width)),
+        provenance=provenance_of_spectrum(
+            model, motion, options, tail=tail, duration=duration, width=float(width), refine=int(refine)
+        ),
         store=None if store is None else Path(store),
         how={"executor": executor, "resume": resume},
         progress=progress or silent,
@@ -157,6 +165,7 @@ class _Search:
     durations: Floats
     scales: Floats
     width: float
+    refine: int
     options: RunOptions
     provenance: str
     store: Path | None
@@ -165,25 +174,49 @@ class _Search:
     done: list[int] = field(default_factory=list)
 
     def result(self) -> xr.Dataset:
-        case, scale = np.meshgrid(np.arange(self.cases.count), self.scales, indexing="ij")
+        case = np.repeat(np.arange(self.cases.count), self.scales.size)
+        scale = np.tile(self.scales, self.cases.count)
         try:
-            runs = self._runs(case.ravel(), scale.ravel(), self.store, case.size)
+            runs = self._runs(case, scale, self.store, case.size)
         except Interrupted as stop:
             scan = Ends.of(stop.partial, scale)
-            raise Interrupted(str(stop), self._as_dataset(stop.partial, scan, Edges.between(scan))) from None
+            edges = Edges.between(case, scan)
+            raise Interrupted(str(stop), self._as_dataset(stop.partial, scan, edges)) from None
         scan = Ends.of(runs, scale)
-        edges = Edges.between(scan)
-        total, number = case.size + edges.halvings(self.width), 0
+        edges, number = Edges.between(case, scan), 0
         try:
+            case, found = self._refined(case, scan, runs)
+            edges = Edges.between(case, found)
+            total = case.size + edges.halvings(self.width)
             while (wide := edges.wide(self.width)).any():
                 number += 1
-                store = None if self.store is None else self.store / f"edges {self.width:g} {number}"
                 middle = edges.middle[wide]
-                cut = self._runs(edges.case[wide], middle, store, total)
+                cut = self._runs(edges.case[wide], middle, self._folder(f"edges {self.width:g} {number}"), total)
                 edges = edges.halved(wide, Ends.of(cut, middle))
         except Interrupted as stop:
             raise Interrupted(str(stop), self._as_dataset(runs, scan, edges)) from None
         return self._as_dataset(runs, scan, edges)
+
+    def _refined(self, case: Integers, scan: Ends, runs: xr.Dataset) -> tuple[Integers, Ends]:
+        """Add runs between the scales below the smallest overturning one of each case, if the column rocks there."""
+        shape = (self.cases.count, self.scales.size)
+        overturned = (scan.state == 1).reshape(shape)
+        below = ~np.logical_or.accumulate(overturned, axis=1)[:, :-1]
+        rocks = runs["peak_tilt"].to_numpy().reshape(shape)[:, 1:] > 0.0
+        chosen, place = np.nonzero(below & rocks)
+        if self.refine == 1 or chosen.size == 0:
+            return case, scan
+        shares = np.arange(1, self.refine) / self.refine
+        steps = self.scales[1:] / self.scales[:-1]
+        more = (self.scales[place, np.newaxis] * steps[place, np.newaxis] ** shares).ravel()
+        own = np.repeat(chosen, self.refine - 1)
+        added = Ends.of(self._runs(own, more, self._folder(f"refined {self.refine}"), case.size + own.size), more)
+        found, cases = joined(scan, added), np.concatenate([case, own])
+        order = np.lexsort((found.scale, cases))
+        return cases[order], found[order]
+
+    def _folder(self, name: str) -> Path | None:
+        return None if self.store is None else self.store / name
 
     def _runs(self, case: Integers, scale: Floats, store: Path | None, total: int) -> xr.Dataset:
         before = sum(self.done)
@@ -205,7 +238,7 @@ class _Search:
         computed = int((runs["outcome"] != NOT_COMPUTED).sum())
         step = float((self.scales[1:] / self.scales[:-1]).max())
         return (
-            band_table(self.cases, scan, edges)
+            band_table(self.cases, scan.reshaped((self.cases.count, self.scales.size)), edges)
             .assign({**kept, "computed": ((), computed, {"units": "1", "long_name": "runs of the scan computed"})})
             .assign_coords(
                 {
@@ -219,10 +252,16 @@ class _Search:
                 provenance=self.provenance,
                 width=self.width,
                 scale_step=step - 1.0,
-                resolution=f"intervals and gaps narrower than the step of the scan, a factor {step:.4g}, may be missed",
+                resolution=_resolution(step, self.refine),
                 runs=sum(self.done) or computed,
             )
         )
+
+
+def _resolution(step: float, refine: int) -> str:
+    """State which intervals a scan with steps of this factor may have missed."""
+    finer = f", or {step ** (1.0 / refine):.4g} below the smallest overturning scale," if refine > 1 else ","
+    return f"intervals and gaps narrower than the step of the scan, a factor {step:.4g}{finer} may be missed"
 
 
 def _checked_scales(scales: npt.ArrayLike) -> Floats:

@@ -36,6 +36,11 @@ class Ends:
     def __getitem__(self, chosen: Any) -> "Ends":
         return Ends(*(array[chosen] for array in (self.scale, self.state, self.direction, self.uncertain)))
 
+    def reshaped(self, shape: tuple[int, ...]) -> "Ends":
+        """Return the same outcomes as arrays of another shape."""
+        scale, state, direction, uncertain = self.scale, self.state, self.direction, self.uncertain
+        return Ends(scale.reshape(shape), state.reshape(shape), direction.reshape(shape), uncertain.reshape(shape))
+
     @property
     def decided(self) -> Flags:
         """Whether each run is decided."""
@@ -67,10 +72,10 @@ class Edges:
     high: Ends
 
     @classmethod
-    def between(cls, scan: Ends) -> Self:
-        """Find the edges of a scan; its arrays have the shape (cases, scales), with increasing scales."""
-        case, place = np.nonzero(scan[:, :-1].differ(scan[:, 1:]))
-        return cls(case, scan[case, place], scan[case, place + 1])
+    def between(cls, case: Integers, runs: Ends) -> Self:
+        """Find the edges between successive runs of each case; flat arrays, in order of case and scale."""
+        place = np.flatnonzero((case[:-1] == case[1:]) & runs[:-1].differ(runs[1:]))
+        return cls(case[place], runs[place], runs[place + 1])
 
     @property
     def middle(self) -> Floats:
