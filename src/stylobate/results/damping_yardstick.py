@@ -18,15 +18,14 @@ def damping_yardstick(column: "Column") -> dict[float, float]:
     return {amplitude: column.housner_damping(amplitude) for amplitude in AMPLITUDES}
 
 
-def yardstick_text(column: "Column") -> str:
-    """Write Housner's damping of a column in a line.
+def yardstick_text(values: Iterable[float]) -> str:
+    """Write the values of Housner's damping at the `AMPLITUDES` in a line.
 
-    >>> from stylobate.column import Column
-    >>> yardstick_text(Column.solid(radius=0.3, height=3.0, density=2700.0))
+    >>> yardstick_text([0.1173, 0.0802, 0.0641])
     'η = 0.12, 0.08, 0.064 at a peak tilt of ¼, ½, ¾ α_c'
     """
-    values = ", ".join(f"{value:.2g}" for value in damping_yardstick(column).values())
-    return f"η = {values} at a peak tilt of {', '.join(AMPLITUDES.values())} α_c"
+    written = ", ".join(f"{value:.2g}" for value in values)
+    return f"η = {written} at a peak tilt of {', '.join(AMPLITUDES.values())} α_c"
 
 
 def side_of_yardstick(

@@ -3,7 +3,7 @@
 import math
 from typing import TYPE_CHECKING
 
-from stylobate.results.damping_yardstick import yardstick_text
+from stylobate.results.damping_yardstick import damping_yardstick, yardstick_text
 
 if TYPE_CHECKING:
     from stylobate.column import Column
@@ -24,7 +24,7 @@ def column_rows(column: "Column") -> Rows:
 def damping_rows(column: "Column", damping: float | None) -> Rows:
     """Return the rows of the damping of a run, if its model has any, and of Housner's damping of its column."""
     own = [] if damping is None else [("damping", f"η = {damping:.4g}")]
-    return [*own, ("Housner's impacts lose as", yardstick_text(column))]
+    return [*own, ("Housner's impacts lose as", yardstick_text(damping_yardstick(column).values()))]
 
 
 def verdict_rows(run: "Response") -> Rows:
