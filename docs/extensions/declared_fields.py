@@ -147,6 +147,7 @@ def range_of(parameter: Parameter) -> str:
     words = parameter.quantity.demand.removeprefix("be ").removeprefix("lie ")
     words = "any" if words == "finite" else words
     words = f"whole, {words}" if parameter.whole else words
+    words = ", or ".join([words, *map(_shown, parameter.quantity.by_word)])
     count = parameter.quantity.components
     return f"{count} numbers, {words}" if count > 1 else words
 

@@ -5,11 +5,16 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import Annotated, Self
 
-from stylobate.errors import ParameterError, require_positive
+import numpy as np
+
+from stylobate.errors import ParameterError, as_float, require_positive
 from stylobate.quantities import Quantity, check_declared
 
 STANDARD_GRAVITY = 9.80665
 """Standard gravity [m/s²]."""
+
+# Points of the quadrature over a quarter cycle; its relative error is below 1e-10 up to 0.95 of the tipping angle.
+_POINTS = 24
 
 # Relative slack for bounds that an exact body meets with equality (a hoop, a rod) and rounding may miss.
 _ROUNDING = 1e-12
@@ -274,6 +279,59 @@ class Column:
     def frequency_parameter(self) -> float:
         """p = √(m g R/K) of the rocking-block literature [rad/s]."""
         return math.sqrt(self.mass * self.gravity * self.rim_distance / self.rim_inertia)
+
+    @property
+    def housner_restitution(self) -> float:
+        """Housner's e = 1 − 2 m r²/K, the ratio of rocking rates after and before a planar impact; 0 if negative."""
+        return max(0.0, 1.0 - 2.0 * self.mass * self.radius**2 / self.rim_inertia)
+
+    def housner_damping(self, amplitude: float = 0.5) -> float:
+        """Compute the viscous damping that loses as much energy per cycle of planar rocking as Housner's impacts.
+
+        Parameters
+        ----------
+        amplitude
+            Peak tilt over the tipping angle, between 0 and 1.
+
+        Returns
+        -------
+        float
+            Damping η of the models at finite tilt. It decreases with the amplitude.
+
+        Raises
+        ------
+        ParameterError
+            If `amplitude` is not between 0 and 1.
+
+        See Also
+        --------
+        stylobate.theory.equivalent_viscous_damping : the limit of a slender column, for any restitution.
+
+        Notes
+        -----
+        A yardstick for levels of damping, and no measured value: a column in three dimensions seldom has an impact. In
+        units of J0 and ω0, free rocking from the tilt A has the energy U(A) = c sin A − (1 − cos A) and the rate θ̇² =
+        2[U(A) − U(θ)]/K. An impact loses (1 − e²) U(A); damping loses 2ηS in the same half cycle, S = ∫₀^A θ̇ dθ:
+
+            η = (1 − e²) U(A)/(2S).
+
+        Examples
+        --------
+        >>> column = Column.solid(radius=0.3, height=3.0, density=2700.0)
+        >>> [round(column.housner_damping(amplitude), 3) for amplitude in (0.25, 0.5, 0.75)]
+        [0.117, 0.08, 0.064]
+        """
+        if not 0.0 < as_float("amplitude", amplitude) < 1.0:
+            message = f"amplitude: must lie between 0 and 1 (got {amplitude!r}). Give it in tipping angles."
+            raise ParameterError(message)
+        points, weights = np.polynomial.legendre.leggauss(_POINTS)
+        root = np.append(0.5 + 0.5 * points, 0.0)
+        peak = amplitude * self.tipping_angle
+        tilt = peak * (1.0 - root**2)  # the integrand is smooth in the root
+        *energy, highest = self.slenderness * np.sin(tilt) - 2.0 * np.sin(0.5 * tilt) ** 2  # U
+        rate = np.sqrt(2.0 * (highest - energy) * self.base_inertia / self.rim_inertia)
+        action = peak * float(np.sum(weights * rate * root[:-1]))  # S
+        return float((1.0 - self.housner_restitution**2) * highest / (2.0 * action))
 
     def _check_inertias(self) -> None:
         # I_t = I_a/2 + ∫ z² dm for every body of revolution, z from the centre of mass.

@@ -7,7 +7,7 @@ Checks, bounds in studies, units and names in Datasets, and the controls of the 
 import inspect
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, is_dataclass
+from dataclasses import dataclass, field, is_dataclass
 from enum import StrEnum
 from functools import cache, wraps
 from types import NoneType
@@ -51,6 +51,8 @@ class Quantity:
         Whether the number dissipates energy of the column.
     lossless
         Value of a dissipation parameter without energy loss.
+    by_word
+        Words that descriptions accept in place of the number, and the function that computes it for the column.
     """
 
     symbol: str = ""
@@ -66,6 +68,7 @@ class Quantity:
     choices: tuple[int, ...] = ()
     dissipates: bool = False
     lossless: float = 0.0
+    by_word: Mapping[str, Callable[[Any], float]] = field(default_factory=dict, hash=False)
 
     def __repr__(self) -> str:
         """Write the declaration as in signatures: symbol, unit and bounds."""
@@ -96,6 +99,11 @@ class Quantity:
         above, _, below = self.unit.translate(_CF_POWERS).partition("/")
         inverse = (f"{part}-1" if part.isalpha() else f"{part[:-1]}-{part[-1]}" for part in below.split())
         return " ".join((*(one for one in above.split() if one != "1"), *inverse)) or "1"
+
+    def for_column(self, stated: Any, column: Any) -> Any:
+        """Return the number that a description states: that of a word for this column, or the number itself."""
+        found = self.by_word.get(stated) if isinstance(stated, str) else None
+        return stated if found is None else found(column)
 
     def accepts(self, values: npt.ArrayLike) -> npt.NDArray[np.bool_]:
         """Check which values are inside the bounds; NaN and infinities are not."""

@@ -35,6 +35,13 @@ def test_simulate_prints_what_simulate_finds(capsys):
     assert told["measures"]["peak_tilt"] == found.measures["peak_tilt"]
 
 
+def test_damping_by_a_word_is_stored_and_printed_as_a_number(capsys):
+    column = ["--radius", "0.3", "--height", "3", "--density", "2700"]
+    assert run(["simulate", *column, "--damping", "housner", *START, "--json"]) == 0
+    stored = json.loads(capsys.readouterr().out)["provenance"]["model"]["damping"]
+    assert stored == sb.Column.solid(radius=0.3, height=3.0, density=2700.0).housner_damping()
+
+
 def test_options_win_over_a_file_of_the_same_names(tmp_path, capsys):
     description = tmp_path / "run.toml"
     description.write_text(
@@ -109,6 +116,7 @@ def test_simulate_animates_the_run_it_prints(tmp_path, capsys):
             ["map", *COLUMN, "--x", "damping", "0.1", "0.2", "2.5"],
             ["--x must be followed by NAME FROM TO NUMBER; NUMBER must be a whole number"],
         ),
+        (["simulate", *COLUMN, "--damping", "housnr"], ["'--damping': must be a number or housner (got 'housnr')"]),
         (["simulate", *COLUMN, "--duration", "-2"], ["duration must be positive, got -2.0 s"]),
         (
             ["simulate", "--slenderness", "-1", *MOTION[:2], "--acceleration", "nan", *MOTION[4:], "--duration", "1"],

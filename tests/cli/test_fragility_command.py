@@ -94,6 +94,9 @@ def test_options_run_what_python_runs(folder, capsys, saved):
         assert row["median"] == (pytest.approx(expected) if np.isfinite(expected) else None)
         assert row["runs_reached"] == int(fits["runs_reached"][place])
     assert told["records"] == sorted(records)
+    yardstick = {one["amplitude"]: one["damping"] for one in told["housner_damping"]}
+    assert yardstick == {amplitude: MODEL.column.housner_damping(amplitude) for amplitude in (0.25, 0.5, 0.75)}
+    assert saved(folder / "runs.nc").attrs["housner_damping"].tolist() == list(yardstick.values())
     assert all(path.read_bytes().startswith(b"\x89PNG") for path in drawn)
 
 
@@ -135,6 +138,7 @@ def test_saved_runs_are_fitted_anew_and_repeated(folder, capsys, saved, monkeypa
     monkeypatch.chdir(folder)
     assert run(["fragility", "study.toml", "--output", "runs.nc"]) == 0
     table = capsys.readouterr().out
+    assert "damping: Housner's impacts lose as η = 0.12, 0.08, 0.064 at a peak tilt of ¼, ½, ¾ α_c" in table
     for words in ("overturning", "in 50 years", "4 records × 3 property samples × 4 scales", "runs counted first"):
         assert words in table
     assert run(["fragility", "runs.nc", "--counting", "as computed", "--resamples", "0", "--json"]) == 0

@@ -10,8 +10,9 @@ import pytest
 import stylobate as sb
 from stylobate.base_motions import BASE_AT_REST, Sum
 from stylobate.base_motions.pulses import Waveform
-from stylobate.config import SimulationConfig, config_of, provenance_of_run, read_config
+from stylobate.config import HierarchyConfig, SimulationConfig, config_of, provenance_of_run, read_config
 from stylobate.errors import ConfigError, FileError, UnsupportedError
+from stylobate.models.declared import MODELS as KINDS
 
 H, P, SineSweep = sb.Harmonic, sb.Pulse, sb.SineSweep
 STONE = '[column]\nshape = "solid"\nradius = 0.5\nheight = 10.0\ndensity = 2700.0\n'
@@ -135,6 +136,29 @@ def test_a_motion_described_and_built_again_is_the_same(motion):
     np.testing.assert_array_equal(setup.motion.displacement(TIME), motion.displacement(TIME))
     assert setup.model == model
     assert (setup.options["duration"], setup.options["tilt"]) == (5.0, (0.1, 0.2))
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_damping_in_a_word_is_the_number_of_the_column_where_the_model_is_made(kind):
+    values = {"column": {"radius": 0.3, "height": 3.0, "density": 2700.0}, "tilt": (0.05, 0.0), "duration": 1.0}
+    setup = SimulationConfig.parse({**values, "model": {"kind": kind, "damping": "housner"}}).build()
+    assert setup.model.damping == setup.model.column.housner_damping(0.5)
+    stored = json.loads(json.dumps(provenance_of_run(setup.model, setup.motion, duration=1.0)))
+    assert stored["model"]["damping"] == setup.model.damping
+    assert config_of(stored).build().model == setup.model
+
+
+def test_the_models_of_the_hierarchy_share_the_number_of_a_word():
+    values = {"column": {"radius": 0.3, "height": 3.0, "density": 2700.0}, "tilt": (0.05, 0.0), "duration": 1.0}
+    setup = HierarchyConfig.parse({**values, "model": {"damping": "housner"}}).build()
+    assert setup.options["damping"] == setup.model.damping == setup.model.column.housner_damping()
+
+
+@pytest.mark.parametrize("stated", ["housnr", "", [0.1], None])
+def test_neither_a_number_nor_a_word_is_one_line(stated):
+    with pytest.raises(ConfigError) as caught:
+        SimulationConfig.parse(BASE | {"model": {"kind": "rolling", "damping": stated}})
+    assert caught.value.problems == (f"model.damping: must be a number or 'housner', got {stated!r}",)
 
 
 def test_all_arguments_of_a_run_can_be_written(tmp_path):

@@ -35,6 +35,12 @@ CASES = {
         "motion": {"kind": "orbit", "diameter": 0.4, "rpm": 40.0},
         "duration": 4.0,
     },
+    "damping by a word": {
+        "column": {"radius": 0.3, "height": 3.0, "density": 2700.0},
+        "model": {"kind": "wobbling", "damping": "housner", "rolling_resistance": 0.01},
+        "tilt": [0.05, 0.01],
+        "duration": 3.0,
+    },
     "rules": {"column": COLUMN, "motion": STRAIGHT, "duration": 30.0, "rules": {"periods": 4.0}},
     "waves in three directions": {
         "column": COLUMN,

@@ -42,6 +42,13 @@ def test_a_study_describes_the_arguments_of_assess():
     assert AssessConfig.parse({**STUDY, "robustness": []}).build().options["changes"] == ()
 
 
+def test_the_levels_of_a_column_are_its_own_or_those_of_all():
+    own = {level: {"damping": eta} for level, eta in (("low", 0.1), ("central", "housner"), ("high", 0.9))}
+    columns = {"tank": COLUMN, "tub": {**COLUMN, "radius": 0.4}}
+    setup = AssessConfig.parse({**STUDY, "columns": columns, "dissipation": {**DISSIPATION, "tub": own}}).build()
+    assert setup.options["dissipation"] == {**DISSIPATION, "tub": own}
+
+
 @pytest.mark.parametrize(
     ("change", "messages"),
     [
@@ -51,7 +58,14 @@ def test_a_study_describes_the_arguments_of_assess():
             {"dissipation": None, "columns": {"tank": {**COLUMN, "hight": 1}}},
             ["columns.tank.hight is not known here", "dissipation is missing"],
         ),
-        ({"dissipation": {"low": {"damping": 0.1}}}, ["dissipation: central and high must be stated too"]),
+        (
+            {"dissipation": {**DISSIPATION, "low": {"damping": "x"}}},
+            ["dissipation.low.damping: must be a number or 'housner', got 'x'"],
+        ),
+        (
+            {"dissipation": {"tank": {**DISSIPATION, "low": {"damping": []}}}},
+            ["dissipation.tank.low.damping: must be a number or 'housner', got []"],
+        ),
         ({"columns": {"tank": {**COLUMN, "radius": "x"}}}, ["columns.tank.radius:"]),
         ({"columns": {"tank": {"radius": 1.0}}}, ["columns.tank.height is missing", "columns.tank.density is missing"]),
         ({"records": {"source": "x", "unit": "g"}}, ["records.unit is not known here"]),
@@ -90,7 +104,25 @@ def test_what_is_missing_or_unknown_is_one_line_each(change, messages):
         ({"model": {"kind": "sliding", "friction_coefficient": 0.5}}, "model.kind: must assume permanent contact"),
         (
             {"dissipation": {**DISSIPATION, "low": {"damping": 0.5}}},
-            "dissipation: damping must not fall from low to central to high, got low 0.5, central 0.05, high 0.1",
+            "dissipation: damping of 'tank' must not fall from low to central to high, got low 0.5, central 0.05, high",
+        ),
+        (
+            {"dissipation": {**DISSIPATION, "high": {"damping": "housner"}, "central": {"damping": 0.2}}},
+            "dissipation: damping of 'tank' must not fall from low to central to high, got low 0.01, central 0.2, high",
+        ),
+        ({"dissipation": {"low": {"damping": 0.1}}}, "dissipation: central and high must be stated too. State it for"),
+        (
+            {"dissipation": {"tank": {"low": {"damping": 0.1}}}},
+            "dissipation: central and high must be stated too for 'tank'",
+        ),
+        ({"dissipation": {"tanc": DISSIPATION}}, "dissipation: 'tanc' is no column; did you mean tank?"),
+        (
+            {"dissipation": {"tank": {**DISSIPATION, "low": {"dampign": 0.1}}}},
+            "dissipation.tank.low.dampign is not known here; did you mean damping?",
+        ),
+        (
+            {"dissipation": {level: {"restitution": "housner" if level == "low" else 0.9} for level in DISSIPATION}},
+            "dissipation.low.restitution must be a real number",
         ),
         (
             {"dissipation": {level: {"restitution": 0.5} for level in DISSIPATION}, "model": {"kind": "slender"}},

@@ -57,6 +57,23 @@ def found():
     return assessed()
 
 
+def test_columns_have_their_own_levels_of_dissipation_and_words_are_numbers_of_the_column():
+    own = {"high": {"damping": 0.9}, "low": {"damping": 0.2}, "central": {"damping": "housner"}}
+    columns = {name: model(radius) for name, radius in (("slim", 0.2), ("stout", 0.45))}
+    options = {"friction_coefficient": 0.6, "margin_scales": [0.5, 1.0], "changes": (), "planar": False, "tail": 1.0}
+    found = assess(columns, RECORDS[:1], dissipation={**DISSIPATION, "stout": own}, **options)
+    housner = columns["stout"].column.housner_damping()
+    expected = {"low": {"damping": 0.2}, "central": {"damping": housner}, "high": {"damping": 0.9}}
+    assert found.setting["dissipation"] == {"slim": DISSIPATION, "stout": expected}
+    for name, levels in found.setting["dissipation"].items():
+        alone = assess({name: columns[name]}, RECORDS[:1], dissipation=levels, **options)
+        tilts = found.data["verdicts"]["tilt_ratio"].sel(column=[name])
+        np.testing.assert_array_equal(tilts, alone.data["verdicts"]["tilt_ratio"])
+        assert list(tilts["dissipation"].values) == list(DISSIPATION)
+    rows = sb.earthquakes.assessment_tables(found)["dissipation"].rows
+    assert ("stout", "central", "damping", f"{housner:.4g}") in rows
+
+
 def test_verdicts_are_those_of_single_runs(found):
     verdicts = found.data["verdicts"]
     for name, one in (("strong", RECORDS[0]), ("weak", RECORDS[2])):
@@ -439,6 +456,18 @@ def test_many_records_give_a_fragility_and_few_give_none(found):
         ({"dissipation": None}, "dissipation is missing"),
         ({"friction_coefficient": None}, "friction_coefficient is missing"),
         ({"dissipation": {"low": {"damping": 0.1}}}, "central and high must be stated too"),
+        ({"dissipation": {"slin": DISSIPATION}}, "dissipation: 'slin' is no column; did you mean slim"),
+        (
+            {
+                "dissipation": {"slim": DISSIPATION, "low": {"damping": 0.1}},
+                "columns": {"slim": model(0.2), "a": model(0.3)},
+            },
+            "central and high must be stated too for 'a'",
+        ),
+        (
+            {"dissipation": {**DISSIPATION, "low": {"damping": "hausner"}}},
+            "dissipation.low.damping must be a real number",
+        ),
         ({"dissipation": {**DISSIPATION, "high": {"restitution": 0.5}}}, "the same parameters at each level"),
         (
             {"dissipation": {level: {"restitution": 0.5} for level in DISSIPATION}},

@@ -3,6 +3,7 @@
 import inspect
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import KW_ONLY, dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import Annotated, Any, get_args, get_origin
 
@@ -34,6 +35,8 @@ class Option:
         The table of a configuration, such as "motion", and the name in this table; empty for other options.
     kinds
         The kinds of this part that have the number, as in files.
+    words
+        Words that the option accepts in place of a number.
     """
 
     name: str
@@ -50,6 +53,7 @@ class Option:
     part: str = ""
     number: str = ""
     kinds: tuple[str, ...] = ()
+    words: tuple[str, ...] = ()
 
     def as_parameter(self) -> inspect.Parameter:
         """Make the parameter of a function from which typer reads this option."""
@@ -60,6 +64,7 @@ class Option:
             rich_help_panel=self.panel,
             show_default=False,
             metavar=self.metavar or _several(self.type),
+            parser=partial(_number_or_word, words=self.words) if self.words else None,
             min=self.minimum,
             callback=self.callback,
             hidden=self.hidden,
@@ -68,6 +73,15 @@ class Option:
         return inspect.Parameter(
             self.name, inspect.Parameter.KEYWORD_ONLY, default=self.default, annotation=Annotated[annotation, declared]
         )
+
+
+def _number_or_word(text: str, words: tuple[str, ...]) -> Any:
+    """Read a number or one of the words."""
+    try:
+        return text if text in words else float(text)
+    except ValueError:
+        message = f"must be a number or {listed(words)} (got {text!r})."
+        raise typer.BadParameter(message) from None
 
 
 def _several(kind: Any) -> str | None:
@@ -131,6 +145,8 @@ def text_of(parameter: Parameter, kinds: Sequence[str] = ()) -> str:
     words = [written(choice) for choice in parameter.choices if isinstance(choice, str)]
     if words:
         text += f": {listed(words)}"
+    if quantity.by_word:
+        text += f", or {listed(tuple(quantity.by_word))}"
     if kinds:
         text += f"; only for {listed(kinds, 'and')}"
     if not (parameter.required or default is None or default in (0.0, (0.0,) * quantity.components)):

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from stylobate.cli.output import print_table
 from stylobate.cli.saved import model_named, number_of_runs, provenance_of
+from stylobate.results.damping_yardstick import yardstick_text
 from stylobate.results.few_records import few_records
 from stylobate.text import plural
 
@@ -27,6 +28,10 @@ def summary(
         "records": [str(name) for name in runs["record"].to_numpy().ravel()],
         "scales": runs["scale"].to_numpy().tolist(),
         "limit_states": [_row(fits, rates, place) for place in range(fits.sizes["limit_state"])],
+        "housner_damping": [
+            {"amplitude": amplitude, "damping": damping}
+            for amplitude, damping in zip(fits.attrs["housner_amplitudes"], fits.attrs["housner_damping"], strict=True)
+        ],
         "dispersion_parts": None if parts is None else {name: float(parts[name]) for name in _PARTS},
         "intervals": fits.attrs["intervals"],
         "confidence": fits.attrs["confidence"],
@@ -75,6 +80,7 @@ def print_fits(runs: "xr.Dataset", fits: "xr.Dataset", parts: "xr.Dataset | None
     print_table(title, [_cells(row) for row in rows], header)
     percent = f"{100.0 * float(fits.attrs['confidence']):g} %"
     print(f"{percent} intervals: {fits.attrs['intervals']}; runs counted {fits.attrs['counting']}")
+    print(f"damping: Housner's impacts lose as {yardstick_text(fits.attrs['housner_damping'])}")
     worst, records = int(fits["non_monotone_records"].max()), runs["record"].size
     if few := few_records(records):
         print(few)

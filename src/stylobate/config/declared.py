@@ -3,11 +3,12 @@
 from collections.abc import Callable, Iterable, Mapping
 from typing import Annotated, Any, Literal, TypeVar, Union
 
-from pydantic import Field, SerializeAsAny, ValidationError, WrapValidator, create_model
+from pydantic import Field, SerializeAsAny, TypeAdapter, ValidationError, WrapValidator, create_model
+from pydantic_core import PydanticCustomError
 
 from stylobate.config.description import Config
 from stylobate.kinds import Place
-from stylobate.quantities import Parameter, parameters_of
+from stylobate.quantities import Parameter, Quantity, parameters_of
 
 _D = TypeVar("_D", bound=Config)
 
@@ -71,4 +72,25 @@ def _under(kind: str, error: ValidationError) -> ValidationError:
 
 def _type_of(parameter: Parameter) -> Any:
     count = parameter.quantity.components
-    return parameter.annotation if count == 1 else tuple[(float,) * count]  # type: ignore[misc]
+    if count > 1:
+        return tuple[(float,) * count]  # type: ignore[misc]
+    return number_or_word(parameter.quantity) if parameter.quantity.by_word else parameter.annotation
+
+
+def number_or_word(quantity: Quantity) -> Any:
+    """Return the annotation of a number in place of which a description can state one of the quantity's words."""
+    words = tuple(quantity.by_word)
+
+    def read(value: Any, _: object) -> Any:
+        if isinstance(value, str) and value in words:
+            return value
+        try:
+            return _NUMBER.validate_python(value)
+        except ValidationError:
+            message = f"must be a number or {' or '.join(map(repr, words))}"
+            raise PydanticCustomError("number_or_word", message) from None  # noqa: EM101  the first argument is the type
+
+    return Annotated[float | Literal[words], WrapValidator(read)]
+
+
+_NUMBER: TypeAdapter[float] = TypeAdapter(float)

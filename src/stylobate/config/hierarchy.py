@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, Self
 from pydantic import Field, create_model
 
 from stylobate.config.columns import ColumnConfig
+from stylobate.config.declared import number_or_word
 from stylobate.config.description import Config, built
 from stylobate.config.models import default_values, described_model
 from stylobate.config.motions import AT_REST, MotionConfig
@@ -39,7 +40,10 @@ else:
         __base__=_OfAllModels,
         __doc__=_OfAllModels.__doc__,
         __module__=__name__,
-        **dict.fromkeys(dissipation_of(MODELS[_MOST_GENERAL]), (float | None, None)),
+        **{
+            name: ((number_or_word(quantity) if quantity.by_word else float) | None, None)
+            for name, quantity in dissipation_of(MODELS[_MOST_GENERAL]).items()
+        },
     )
 
 
@@ -106,6 +110,7 @@ class HierarchyConfig(OneRun, _HierarchyCase):
         dissipation = self.model.model_dump(exclude_none=True)
         described = described_model(_MOST_GENERAL, **dissipation)
         model, motion = built_parts(self.column, described, self.motion, problems)
+        dissipation = {name: getattr(model, name) for name in dissipation}
         options = self.model_dump(exclude={"column", "model", "motion", "hierarchy"})
         if self.duration is None:
             options["duration"] = duration_with_tail(model, motion)

@@ -20,8 +20,12 @@ class DescribedModel(Config):
     kind: str
 
     def build(self, column: Column) -> Model:
-        """Build the model of `column`."""
-        model: Model = self.make(column, **self.model_dump(exclude={"kind"}))
+        """Build the model of `column`, for which words in place of numbers are computed."""
+        declared = parameters_of(self.make)
+        stated = self.model_dump(exclude={"kind"})
+        model: Model = self.make(
+            column, **{name: declared[name].quantity.for_column(one, column) for name, one in stated.items()}
+        )
         return model
 
 

@@ -1,6 +1,6 @@
 """Write a description as TOML, and as the equivalent Python program."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
 import tomlkit
@@ -10,6 +10,7 @@ from stylobate.base_motions.declared import MOTIONS
 from stylobate.config.simulation import SimulationConfig
 from stylobate.kinds import Kinds
 from stylobate.models.declared import MODELS
+from stylobate.quantities import parameters_of
 
 
 def as_toml(values: Mapping[str, Any]) -> str:
@@ -51,12 +52,20 @@ def as_python(description: SimulationConfig) -> str:
     maker = "sb.Column" if shape == "given" else f"sb.Column.{shape}"
     numbers = model.model_dump(exclude={"kind"}, exclude_defaults=True)
     lines = ["import stylobate as sb", "", f"column = {maker}({_keywords(column)})"]
-    lines.append(f"model = {_maker(MODELS, model.kind)}({_joined(['column', _keywords(numbers)])})")
+    lines.append(f"model = {_maker(MODELS, model.kind)}({_joined(['column', *_of_model(model.make, numbers)])})")
     moved = description.motion.kind != "rest"
     if moved:
         lines.append(f"motion = {_motion(description.motion)}")
     lines += _run(description, moved=moved)
     return "\n".join([*lines, *_SHOWN, ""])
+
+
+def _of_model(make: Callable[..., Any], numbers: Mapping[str, Any]) -> Iterable[str]:
+    """Return the keyword of each number; a word in place of a number is the method of the column that computes it."""
+    declared = parameters_of(make)
+    for name, value in numbers.items():
+        method = declared[name].quantity.by_word.get(value) if isinstance(value, str) else None
+        yield _keywords({name: value}) if method is None else f"{name}=column.{method.__name__}()"
 
 
 def _run(description: SimulationConfig, *, moved: bool) -> Iterable[str]:

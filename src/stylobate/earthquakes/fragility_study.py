@@ -19,6 +19,7 @@ from stylobate.earthquakes.remarks import remark_on
 from stylobate.earthquakes.run_fragility import fragility_of_runs
 from stylobate.earthquakes.site_hazard import site_hazard
 from stylobate.models import Model
+from stylobate.results.damping_yardstick import damping_yardstick
 from stylobate.studies.sweeps import Executor
 from stylobate.studies.sweeps.computing import Progress
 from stylobate.studies.sweeps.recipe import RunOptions
@@ -118,7 +119,7 @@ class FragilityStudy:
         if self.spreads:
             rng = self._stream(_OF_SAMPLES)
             samples = property_samples(self.model, self.spreads, count=self.samples, rng=rng)
-        return incremental_dynamic_analysis(
+        found = incremental_dynamic_analysis(
             self.model,
             self.records,
             scales=self.scales,
@@ -134,17 +135,19 @@ class FragilityStudy:
             progress=progress,
             **self.options,
         )
+        return found.assign_attrs(self._yardstick())
 
     def fits(self, runs: xr.Dataset) -> xr.Dataset:
         """Fit the fragility of each limit state; with two records or more, intervals are a bootstrap over records."""
         several = runs.sizes.get("record", 1) >= _LEAST
-        return fragility_of_runs(
+        found = fragility_of_runs(
             runs,
             counting=self.counting,
             confidence=self.confidence,
             resamples=self.resamples if several else 0,
             rng=self._stream(_OF_RESAMPLES),
         )
+        return found.assign_attrs(self._yardstick())
 
     def parts(self, runs: xr.Dataset, limit_state: str = _OVERTURNING) -> xr.Dataset | None:
         """Split the dispersion into records and properties; None if the data do not suffice.
@@ -164,6 +167,11 @@ class FragilityStudy:
     def rates(self, fits: xr.Dataset) -> xr.Dataset | None:
         """Compute annual rates of the limit states; None without a hazard."""
         return None if self.hazard is None else annual_rate(fits, self.hazard, years=self.years)
+
+    def _yardstick(self) -> dict[str, list[float]]:
+        """Return Housner's damping of the column at each peak tilt, in tipping angles."""
+        found = damping_yardstick(self.model.column)
+        return {"housner_damping": list(found.values()), "housner_amplitudes": list(found)}
 
     def _stream(self, place: int) -> np.random.Generator:
         return np.random.default_rng(np.random.SeedSequence(self.seed, spawn_key=(place,)))

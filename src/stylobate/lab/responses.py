@@ -12,7 +12,7 @@ from stylobate.lab.request_parsing import Described
 from stylobate.models import Model
 from stylobate.plots.animation import drawn_motion
 from stylobate.results import Response
-from stylobate.results.summary import column_rows, measure_rows
+from stylobate.results.summary import column_rows, damping_rows, measure_rows
 
 
 def plain_run(run: Response, model: Model) -> dict[str, Any]:
@@ -27,7 +27,11 @@ def plain_run(run: Response, model: Model) -> dict[str, Any]:
         "warnings": list(run.warnings),
         "events": [{"kind": event.kind, "time": event.time} for event in run.events],
         "measures": table(run.measures),
-        "summary": [*column_rows(model.column), *measure_rows(run)],
+        "summary": [
+            *column_rows(model.column),
+            *damping_rows(model.column, getattr(model, "damping", None)),
+            *measure_rows(run),
+        ],
         "thresholds": table(run.thresholds),
         "column": plain_column(model),
         "drawn": drawn_motion(run),

@@ -2,12 +2,23 @@
 
 from typing import Annotated
 
+from stylobate.column import Column
 from stylobate.quantities import Quantity
 
 # Coulomb friction above this is not resolved; use a model without slip.
 _MOST_FRICTION = 1e8
 
-Damping = Annotated[float, Quantity(symbol="η", text="damping of tilting", ge=0.0, slider=(0.0, 0.5), dissipates=True)]
+Damping = Annotated[
+    float,
+    Quantity(
+        symbol="η",
+        text="damping of tilting",
+        ge=0.0,
+        slider=(0.0, 0.5),
+        dissipates=True,
+        by_word={"housner": Column.housner_damping},
+    ),
+]
 SpinDamping = Annotated[float, Quantity(symbol="ζ", text="damping of spin", ge=0.0, slider=(0.0, 2.0), dissipates=True)]
 RollingResistance = Annotated[
     float, Quantity(symbol="μ_r", text="rolling resistance", ge=0.0, slider=(0.0, 0.05), dissipates=True)

@@ -195,10 +195,7 @@ class PlanarRocking(TiltVectorModel):
     @property
     def impact_restitution(self) -> float:
         """e; Housner's value if `restitution` is None."""
-        if self.restitution is not None:
-            return self.restitution
-        column = self.column
-        return max(0.0, 1.0 - 2.0 * column.mass * column.radius**2 / column.rim_inertia)
+        return self.column.housner_restitution if self.restitution is None else self.restitution
 
     @property
     def parameters(self) -> tuple[float, ...]:

@@ -3,6 +3,8 @@
 import math
 from typing import TYPE_CHECKING
 
+from stylobate.results.damping_yardstick import damping_yardstick, yardstick_text
+
 if TYPE_CHECKING:
     from stylobate.column import Column
     from stylobate.results.response import Response
@@ -20,6 +22,12 @@ def column_rows(column: "Column") -> Rows:
         ("column", f"c = {column.slenderness:.5g}, ω0 = {column.frequency_scale:.5g} rad/s, mass {column.mass:.6g} kg"),
         ("uplifts above", f"{column.slenderness * column.gravity:.5g} m/s² of horizontal acceleration"),
     ]
+
+
+def damping_rows(column: "Column", damping: float | None) -> Rows:
+    """Return the rows of the damping of a run, if its model has any, and of Housner's damping of its column."""
+    own = [] if damping is None else [("damping", f"η = {damping:.4g}")]
+    return [*own, ("Housner's impacts lose as", yardstick_text(damping_yardstick(column).values()))]
 
 
 def outcome_of(run: "Response") -> str:

@@ -13,6 +13,7 @@ import xarray as xr
 
 from stylobate.base_motions import Record
 from stylobate.config import provenance_of_run
+from stylobate.config.levels import Dissipation
 from stylobate.config.simulation import FREE_TAIL
 from stylobate.earthquakes import Perturbation
 from stylobate.earthquakes.assessment.fragilities import fragility_of
@@ -46,7 +47,7 @@ def assess(
     columns: Mapping[str, Model],
     records: Records,
     *,
-    dissipation: Mapping[str, Mapping[str, float]] | None = None,
+    dissipation: Dissipation | None = None,
     friction_coefficient: float | Mapping[str, float] | None = None,
     scales: npt.ArrayLike = (1.0,),
     margin_scales: npt.ArrayLike | None = None,
@@ -76,7 +77,8 @@ def assess(
         Base motions that end: a sequence, or a mapping from names. Results list them in the order of their names.
     dissipation
         Dissipation parameters of the model, such as damping, by level: "low", "central", "high" and any others. Each
-        level states the same ones. Required: there is no default.
+        level states the same ones. A column whose name is a key has its own levels, those under the name. The damping
+        "housner" is `Column.housner_damping` of each column. Required: there is no default.
     friction_coefficient
         Friction coefficient of the contact between column and base, one for all or one by column. The friction demand
         of each run is compared with it. Required.
@@ -271,7 +273,10 @@ def _setting(inputs: Inputs) -> dict[str, Any]:
             }
             for name, motion in inputs.records.items()
         },
-        "dissipation": {level: dict(numbers) for level, numbers in inputs.dissipation.items()},
+        "dissipation": {
+            name: {level: dict(numbers) for level, numbers in levels.items()}
+            for name, levels in inputs.dissipation.items()
+        },
         "friction_coefficient": dict(inputs.friction),
         "scales": inputs.scales.tolist(),
         "margin_scales": [float(inputs.margin_scales[0]), float(inputs.margin_scales[-1]), inputs.margin_scales.size],

@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from stylobate.base_motions import BASE_AT_REST, BaseMotion
 from stylobate.config import provenance_of_run
-from stylobate.config.levels import LEVELS, OF_DISSIPATION
+from stylobate.config.levels import OF_DISSIPATION, Dissipation, at_levels, levels_by_column
 from stylobate.earthquakes.assessment.parts import identities
 from stylobate.earthquakes.named_records import Records, named_records
 from stylobate.earthquakes.perturbations import SMALL_PERTURBATIONS, Perturbation, ScaledRecord
@@ -42,7 +42,7 @@ class Inputs:
     records
         Base motions by name, sorted.
     dissipation
-        Dissipation parameters of each level.
+        Dissipation parameters of each column at each level.
     friction
         Stated friction coefficient of each column.
     scales
@@ -65,7 +65,7 @@ class Inputs:
 
     columns: Mapping[str, Mapping[str, Model]]
     records: Mapping[str, BaseMotion]
-    dissipation: Mapping[str, Mapping[str, float]]
+    dissipation: Mapping[str, Mapping[str, Mapping[str, float]]]
     friction: Mapping[str, float]
     scales: Floats
     margin_scales: Floats
@@ -81,7 +81,7 @@ class Inputs:
         cls,
         columns: Mapping[str, Model],
         records: Records,
-        dissipation: Mapping[str, Mapping[str, float]] | None,
+        dissipation: Dissipation | None,
         friction_coefficient: float | Mapping[str, float] | None,
         scales: npt.ArrayLike,
         margin_scales: npt.ArrayLike,
@@ -93,19 +93,24 @@ class Inputs:
         if not isinstance(columns, Mapping) or not columns:
             message = f"columns must map names to models, at least one, got {columns!r}"
             raise ParameterError(message)
-        levels = checked_dissipation(dissipation)
+        levels = checked_dissipation(dissipation, columns)
         stated, tried = _rising("scales", scales, least=1), tuple(SMALL_PERTURBATIONS if changes is None else changes)
         return cls(
-            columns={name: _at_levels(name, model, levels) for name, model in columns.items()},
+            columns={name: _at_levels(model, levels[name]) for name, model in columns.items()},
             records=dict(sorted(named_records(records).items())),
             dissipation=levels,
             friction=_frictions(friction_coefficient, list(columns)),
             scales=stated,
             margin_scales=_joined(_rising("margin_scales", margin_scales, least=2), stated, tried),
             changes=tried,
-            changes_at=_levels_named(changes_at, levels),
+            changes_at=_levels_named(changes_at, next(iter(levels.values()))),
             **more,
         )
+
+    @property
+    def levels(self) -> tuple[str, ...]:
+        """The names of the levels of dissipation."""
+        return tuple(next(iter(self.dissipation.values())))
 
     @property
     def as_recorded(self) -> int:
@@ -142,27 +147,30 @@ class Inputs:
         }
 
 
-def checked_dissipation(dissipation: Mapping[str, Mapping[str, float]] | None) -> dict[str, dict[str, float]]:
-    """Check the dissipation parameters of each level.
+def checked_dissipation(
+    dissipation: Dissipation | None, columns: Mapping[str, Model]
+) -> dict[str, dict[str, dict[str, float]]]:
+    """Check the dissipation parameters of each column at each level; words become the numbers of the column.
 
     Raises
     ------
     ParameterError
-        If low, central or high is missing, or the levels state different parameters or none.
+        If low, central or high is missing, or the levels of a column state different parameters or none.
     """
-    remedy = "State it for low, central and high, such as low = {damping = 0.005}"
+    remedy = "State it for low, central and high, such as low = {damping = 0.04}"
     if not isinstance(dissipation, Mapping) or not dissipation:
         message = f"dissipation is missing: it decides the outcome of a three-dimensional column. {remedy}"
         raise ParameterError(message)
-    missing = [level for level in LEVELS if level not in dissipation]
-    if missing:
-        message = f"dissipation: {' and '.join(missing)} must be stated too. {remedy}"
-        raise ParameterError(message)
-    names = set(dissipation[CENTRAL])
-    if not names or any(set(level) != names for level in dissipation.values()):
-        given = ", ".join(
-            f"{level} {' and '.join(sorted(numbers)) or 'nothing'}" for level, numbers in dissipation.items()
-        )
+    return {
+        name: _checked_levels(at_levels(levels, _three_dimensional(name, columns[name]).column), remedy)
+        for name, levels in levels_by_column(dissipation, columns).items()
+    }
+
+
+def _checked_levels(levels: Mapping[str, Mapping[str, Any]], remedy: str) -> dict[str, dict[str, float]]:
+    names = set(levels[CENTRAL])
+    if not names or any(set(level) != names for level in levels.values()):
+        given = ", ".join(f"{level} {' and '.join(sorted(numbers)) or 'nothing'}" for level, numbers in levels.items())
         message = f"dissipation must state the same parameters at each level, got {given}. {remedy}"
         raise ParameterError(message)
     unknown = sorted(names.difference(OF_DISSIPATION))
@@ -171,7 +179,7 @@ def checked_dissipation(dissipation: Mapping[str, Mapping[str, float]] | None) -
         raise ParameterError(message)
     return {
         level: {name: require_not_negative(f"dissipation.{level}.{name}", value) for name, value in numbers.items()}
-        for level, numbers in dissipation.items()
+        for level, numbers in levels.items()
     }
 
 
@@ -190,10 +198,14 @@ def _levels_named(given: Sequence[str] | None, levels: Mapping[str, Any]) -> tup
     return tuple(level for level in levels if level in chosen)
 
 
-def _at_levels(name: str, model: Model, levels: Mapping[str, Mapping[str, float]]) -> dict[str, Model]:
+def _three_dimensional(name: str, model: Model) -> Model:
     if not isinstance(model, Model) or model.planar_only:
         message = f"columns: {name!r} must be a three-dimensional model (got {model!r}). Use one such as Wobbling."
         raise ParameterError(message)
+    return model
+
+
+def _at_levels(model: Model, levels: Mapping[str, Mapping[str, float]]) -> dict[str, Model]:
     lacking = [number for number in levels[CENTRAL] if number not in model_names(model)]
     if lacking:
         message = f"dissipation: the model {model.name} has no {lacking[0]}; leave it out or choose another model"

@@ -83,7 +83,7 @@ def demands_to_margin(margins: xr.Dataset, stated: float) -> dict[str, xr.DataAr
 
 def cases_of(inputs: Inputs) -> list[str]:
     """Return the names of the cases."""
-    return [*inputs.dissipation, *([NO_VERTICAL] if inputs.has_vertical else [])]
+    return [*inputs.levels, *([NO_VERTICAL] if inputs.has_vertical else [])]
 
 
 def margin_runs(inputs: Inputs) -> int:

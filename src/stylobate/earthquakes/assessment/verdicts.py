@@ -30,7 +30,7 @@ def verdicts_on(inputs: Inputs, column: str, parts: Parts, *, contact: bool, exe
         `minimum_normal_force`.
     """
     vertical = (True, False) if inputs.has_vertical else (True,)
-    levels = inputs.dissipation
+    levels = inputs.dissipation[column]
     names = list(levels[CENTRAL])
     parameters = {name: np.array([numbers[name] for numbers in levels.values()]) for name in names}
 
@@ -60,7 +60,7 @@ def verdicts_on(inputs: Inputs, column: str, parts: Parts, *, contact: bool, exe
 
 def verdict_runs(inputs: Inputs) -> int:
     """Return the number of runs for the verdicts on one column."""
-    return len(inputs.records) * len(inputs.dissipation) * (2 if inputs.has_vertical else 1) * inputs.scales.size
+    return len(inputs.records) * len(inputs.levels) * (2 if inputs.has_vertical else 1) * inputs.scales.size
 
 
 def _as_dataset(runs: xr.Dataset) -> xr.Dataset:

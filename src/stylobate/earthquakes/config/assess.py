@@ -9,13 +9,14 @@ from typing import Annotated, Any, Self
 
 import numpy as np
 import numpy.typing as npt
-from pydantic import BeforeValidator, Field, TypeAdapter, ValidationInfo, field_validator
+from pydantic import BeforeValidator, Field, TypeAdapter
 
 from stylobate.base_motions import Record
 from stylobate.config.axis import Axis
 from stylobate.config.columns import ColumnConfig
+from stylobate.config.declared import number_or_word
 from stylobate.config.description import Config, built
-from stylobate.config.levels import LEVELS, problems_of_the_levels
+from stylobate.config.levels import LEVELS, is_by_level, problems_of_the_levels
 from stylobate.config.models import ModelConfig, described_model
 from stylobate.config.record_collection import RecordsConfig
 from stylobate.config.suggestions import did_you_mean
@@ -31,6 +32,7 @@ from stylobate.errors import (
     require_whole,
 )
 from stylobate.models import Model
+from stylobate.models.declared import model_quantities
 from stylobate.results.few_records import FEW_RECORDS
 from stylobate.results.report_details import ReportDetails
 
@@ -52,6 +54,14 @@ def _as_friction(values: Any) -> Any:
     return (_BY_COLUMN if isinstance(values, Mapping) else _ONE).validate_python(values)
 
 
+def _as_level(values: Any) -> Any:
+    """Validate the numbers of a level, or the levels of a column by name."""
+    return (_LEVELS if is_by_level(values) else _LEVEL).validate_python(values)
+
+
+_DAMPING = number_or_word(model_quantities()["damping"])
+_LEVEL: TypeAdapter[dict[str, float | str]] = TypeAdapter(dict[str, _DAMPING])  # type: ignore[valid-type]
+_LEVELS: TypeAdapter[dict[str, dict[str, float | str]]] = TypeAdapter(dict[str, dict[str, _DAMPING]])  # type: ignore[valid-type]
 _ONE: TypeAdapter[float] = TypeAdapter(float)
 _BY_COLUMN: TypeAdapter[dict[str, float]] = TypeAdapter(dict[str, float])
 
@@ -77,7 +87,8 @@ class AssessConfig(Config):
     model
         Model of all columns.
     dissipation
-        Dissipation parameters at the levels "low", "central" and "high": a table for each level.
+        Dissipation parameters at the levels "low", "central" and "high": a table for each level. A table with the
+        name of a column holds the levels of this column.
     friction_coefficient
         Friction coefficient of column and base: one number, or one for each column by its name.
     records
@@ -125,7 +136,7 @@ class AssessConfig(Config):
     title: str = "Columns under records"
     columns: dict[str, ColumnConfig]
     model: ModelConfig = described_model("wobbling")
-    dissipation: dict[str, dict[str, float]]
+    dissipation: dict[str, Annotated[dict[str, Any], BeforeValidator(_as_level)]]
     friction_coefficient: Annotated[float | dict[str, float], BeforeValidator(_as_friction)]
     records: Annotated[RecordsConfig, BeforeValidator(_as_source)]
     scales: tuple[float, ...] = (1.0,)
@@ -176,16 +187,6 @@ class AssessConfig(Config):
             raise ConfigError(problems)
         return found
 
-    @field_validator("dissipation")
-    @classmethod
-    def _at_three_levels(cls, given: dict[str, dict[str, float]], info: ValidationInfo) -> dict[str, dict[str, float]]:
-        del info
-        missing = [level for level in LEVELS if level not in given]
-        if missing:
-            message = f"dissipation: {' and '.join(missing)} must be stated too: {_NEEDED['dissipation']}"
-            raise ValueError(message)
-        return given
-
     def build(self) -> AssessmentSetup:
         """Build models, records and the other arguments of `stylobate.earthquakes.assess`.
 
@@ -201,7 +202,8 @@ class AssessConfig(Config):
             problems.append("columns must hold at least one column, such as [columns.tank]")
         scales = built("margin", self.margin.build, problems)
         problems += [] if scales is None else _problems_of_the_margin(scales)
-        problems += problems_of_the_levels(self.dissipation, type(self.model))
+        bodies = {name: None if model is None else model.column for name, model in models.items()}
+        problems += problems_of_the_levels(self.dissipation, type(self.model), bodies)
         problems += self._problems_of_the_numbers()
         records: dict[str, Record] = {}
         with warnings.catch_warnings(record=True) as remarks:
@@ -263,7 +265,8 @@ class AssessConfig(Config):
     def _problems_of_the_model(self) -> list[str]:
         if self.model.kind == "sliding":
             return ["model.kind: must assume permanent contact (got 'sliding'). Use one such as wobbling."]
-        repeated = [name for name in self.dissipation["central"] if name in self.model.model_fields_set]
+        stated = dict.fromkeys(name for levels in self._levels() for numbers in levels.values() for name in numbers)
+        repeated = [name for name in stated if name in self.model.model_fields_set]
         return [f"model.{name}: `dissipation` sets it. Remove it from the model." for name in repeated]
 
     def _problems_of_the_numbers(self) -> list[str]:
@@ -291,13 +294,19 @@ class AssessConfig(Config):
                 problems.append(str(error))
         return [*problems, *self._problems_of_the_frictions(by_column), *self._problems_of_the_levels_repeated()]
 
+    def _levels(self) -> list[Mapping[str, Mapping[str, Any]]]:
+        """Return the levels of all columns, and those of each column with its own."""
+        own = [one for one in self.dissipation.values() if is_by_level(one)]
+        return [*own, {name: one for name, one in self.dissipation.items() if not is_by_level(one)}]
+
     def _problems_of_the_levels_repeated(self) -> list[str]:
         named = () if isinstance(self.robustness, bool) else self.robustness
+        known = dict.fromkeys(name for levels in self._levels() for name in levels)
         return [
             f"robustness: must name levels of dissipation (got {name!r}). "
-            f"Use true, false, or some of {', '.join(self.dissipation)}."
+            f"Use true, false, or some of {', '.join(known)}."
             for name in named
-            if name not in self.dissipation
+            if name not in known
         ]
 
     def _problems_of_the_frictions(self, by_column: Mapping[str, float]) -> list[str]:
@@ -323,7 +332,7 @@ def _problems_of_the_margin(scales: npt.NDArray[np.float64]) -> list[str]:
 _NEEDED = {
     "dissipation": (
         "it decides the outcome of a three-dimensional column and is seldom known. State it for three levels, such "
-        "as [dissipation] low = {damping = 0.005}, central = {damping = 0.02}, high = {damping = 0.05}"
+        'as [dissipation] low = {damping = 0.04}, central = {damping = "housner"}, high = {damping = 0.16}'
     ),
     "friction_coefficient": "the friction between column and base, to compare with the friction that the runs need",
 }

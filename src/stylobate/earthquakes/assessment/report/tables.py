@@ -80,11 +80,12 @@ def _limit_state(name: str) -> str:
 
 def _dissipation(assessment: Assessment) -> Table:
     rows = [
-        (level, name, number(value, 4))
-        for level, numbers in assessment.setting["dissipation"].items()
+        (column, level, name, number(value, 4))
+        for column, levels in assessment.setting["dissipation"].items()
+        for level, numbers in levels.items()
         for name, value in numbers.items()
     ]
-    return Table(("level", "parameter of the model", "value"), rows)
+    return Table(("column", "level", "parameter of the model", "value"), rows)
 
 
 _TABLES: dict[str, Callable[[Assessment], Table]] = {
