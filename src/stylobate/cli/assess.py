@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from stylobate.earthquakes.config import AssessmentSetup
     from stylobate.results.assessment import Assessment
 
-_SHOWN = ("column", "scale", "did not overturn it", "overturned it", "not decided", "flip under small changes")
+_SHOWN = ("column", "scale", "did not overturn it", "overturned it", "not decided", "undecided under small variations")
 
 
 @command(

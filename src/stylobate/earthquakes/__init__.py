@@ -1,4 +1,4 @@
-"""Columns in earthquakes: incremental analyses, fragility, spectra, robustness and the assessment.
+"""Columns in earthquakes: incremental analyses, fragility, spectra, verdicts and the assessment.
 
 `__init__.pyi` lists the public names; each is imported at its first use.
 """

@@ -1,4 +1,4 @@
-from . import config, perturbations
+from . import config
 from .assessment.assess import assess
 from .assessment.report import assessment_report, assessment_tables
 from .figures.planar_bias import plot_directions
@@ -15,7 +15,6 @@ from .fragility.probit import FitStatus
 from .fragility_study import FragilityStudy
 from .incremental import incremental_dynamic_analysis
 from .intensities import Intensity, SpectralAcceleration
-from .perturbations import SMALL_PERTURBATIONS, Perturbation
 from .planar_comparison import planar_bias
 from .property_spreads import (
     Choice,
@@ -26,7 +25,6 @@ from .property_spreads import (
     UniformSpread,
     property_samples,
 )
-from .robustness_study import robustness
 from .run_fragility import fragility_of_runs
 from .spectra.bands import overturning_bands
 from .spectra.rocking import rocking_spectrum
@@ -35,7 +33,6 @@ from .verdict_study import repeat_verdict, verdict
 
 __all__ = [
     "LABELS",
-    "SMALL_PERTURBATIONS",
     "VARIATIONS",
     "Choice",
     "Counting",
@@ -46,7 +43,6 @@ __all__ = [
     "LogUniformSpread",
     "LognormalSpread",
     "NormalSpread",
-    "Perturbation",
     "Samples",
     "SpectralAcceleration",
     "Spread",
@@ -63,14 +59,12 @@ __all__ = [
     "limit_states",
     "lognormal_fragility",
     "overturning_bands",
-    "perturbations",
     "planar_bias",
     "plot_directions",
     "plot_records",
     "property_samples",
     "reached_bands",
     "repeat_verdict",
-    "robustness",
     "rocking_spectrum",
     "verdict",
 ]

@@ -313,7 +313,7 @@ def positive_values(name: str, values: npt.ArrayLike) -> Floats:
     bad = array[~(array > 0.0)]
     if bad.size or not array.size:
         got = repr(float(bad[0])) if bad.size else "none"
-        message = f"{name} must hold at least one number, all positive, got {got}; use Polarity to reverse a record"
+        message = f"{name} must hold at least one number, all positive, got {got}; use record.inverted() to reverse one"
         raise ParameterError(message)
     return array
 

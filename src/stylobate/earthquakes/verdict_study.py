@@ -204,9 +204,14 @@ def contact_laws(models: Model | Sequence[Model]) -> tuple[Model, ...]:
     if not given:
         message = f"models: must be at least one model (got {models!r}). Pass one such as Wobbling(column)."
         raise ParameterError(message)
-    if not isinstance(models, Model) or type(models) not in _OTHER_CONTACT_LAW:
+    if not isinstance(models, Model) or not has_other_contact_law(models):
         return given
     return models, with_other_contact_law(models)
+
+
+def has_other_contact_law(model: Model) -> bool:
+    """Return whether the package has the model of the other contact law for a model."""
+    return type(model) in _OTHER_CONTACT_LAW
 
 
 def with_other_contact_law(model: Model) -> Model:

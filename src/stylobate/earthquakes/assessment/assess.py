@@ -1,4 +1,4 @@
-"""Assessment of columns under records: outcomes, margins and robustness."""
+"""Assessment of columns under records: outcomes, margins, and shares of small variations that overturn them."""
 
 import datetime as dt
 import platform
@@ -15,21 +15,21 @@ from stylobate.base_motions import Record
 from stylobate.config import provenance_of_run
 from stylobate.config.levels import Dissipation
 from stylobate.config.simulation import FREE_TAIL
-from stylobate.earthquakes import Perturbation
 from stylobate.earthquakes.assessment.fragilities import fragility_of
 from stylobate.earthquakes.assessment.governing import governing_record, histories_of
 from stylobate.earthquakes.assessment.ground_motions import ground_motions, spectra_of
 from stylobate.earthquakes.assessment.inputs import CENTRAL, Inputs
 from stylobate.earthquakes.assessment.margins import margin_runs, margins_of, of_one_width
 from stylobate.earthquakes.assessment.parts import Announce, Parts
+from stylobate.earthquakes.assessment.planar import planar_of, planar_runs
 from stylobate.earthquakes.assessment.properties import column_properties, record_properties
-from stylobate.earthquakes.assessment.robust import planar_of, planar_runs, robustness_of, robustness_runs
+from stylobate.earthquakes.assessment.shares import share_runs, shares_of
 from stylobate.earthquakes.assessment.sliding import sliding_of, sliding_runs
 from stylobate.earthquakes.assessment.summary import summary_of
 from stylobate.earthquakes.assessment.verdicts import verdict_runs, verdicts_on
 from stylobate.earthquakes.named_records import Records
 from stylobate.earthquakes.remarks import remark_on
-from stylobate.errors import require_positive, require_whole
+from stylobate.errors import LARGEST_SEED, require_positive, require_whole
 from stylobate.models import Model
 from stylobate.results.assessment import Assessment
 from stylobate.results.few_records import FEW_RECORDS
@@ -53,8 +53,9 @@ def assess(
     margin_scales: npt.ArrayLike | None = None,
     width: float = 5e-3,
     tail: float | None = None,
-    changes: Sequence[Perturbation] | None = None,
-    changes_at: Sequence[str] | None = None,
+    contact_laws: bool = True,
+    variations: int = 200,
+    seed: int = 0,
     sliding: bool = False,
     planar: bool = True,
     contact: bool = True,
@@ -85,17 +86,20 @@ def assess(
     scales
         Factors of the records at which verdicts are given; vertical components are scaled with them.
     margin_scales
-        Factors of the search for overturning intervals, by default 60 from 0.2 to 5, evenly in their logarithm; the
-        `scales` and their small changes are added.
+        Factors of the search for overturning intervals, by default 300 from 0.2 to 5, evenly in their logarithm; 41
+        within 10 % of each of the `scales` are added. Below the smallest overturning one the scan is seven times finer.
     width
         Relative width to which the ends of overturning intervals are located.
     tail
         Free-vibration time after a record [s]; by default 20/p.
-    changes
-        Small changes under which each verdict is repeated; by default `SMALL_PERTURBATIONS`; an empty
-        sequence for none.
-    changes_at
-        Levels of dissipation with small changes, such as ["central"]; by default every stated one.
+    contact_laws
+        Whether margins and variations include the other contact law: `Rolling` beside `Wobbling`, `SlenderRolling`
+        beside `Slender`.
+    variations
+        Number of small variations of each verdict, see `stylobate.verdict`; 0 for none. The dissipation varies from its
+        smallest to its largest level.
+    seed
+        Seed of the variations.
     sliding
         Whether columns that slide before they rock (friction coefficient below r/h) are also run with the model
         `Sliding`, under each record at each of the `scales`: some seconds per run.
@@ -124,7 +128,7 @@ def assess(
     Assessment
         Its data: "columns" and "records", their properties; "verdicts" over column, record, dissipation, vertical and
         scale: `overturned` (1, 0, −1 not decided), `outcome`, `tilt_ratio`, contact demand; "margins" over
-        column, case, record and band; "robustness" over column, dissipation, scale, record and change; "sliding" over
+        column, case, record and band; "variations" over column, record and scale; "sliding" over
         column, record and scale; "planar"; "fragility" over column if there are enough records; "histories" over
         column and run, under the governing record of each column; "summary", counts;
         "spectra" over record and period, "ground_motions" over record and instant, for the figures of the report.
@@ -157,7 +161,7 @@ def assess(
     ...     dissipation={"low": {"damping": 0.01}, "central": {"damping": 0.05}, "high": {"damping": 0.1}},
     ...     friction_coefficient=0.6,
     ...     margin_scales=np.linspace(0.5, 3.0, 11),
-    ...     changes=(),
+    ...     variations=0,
     ...     planar=False,
     ...     contact=False,
     ... )
@@ -172,9 +176,10 @@ def assess(
         dissipation,
         friction_coefficient,
         scales,
-        np.geomspace(0.2, 5.0, 60) if margin_scales is None else margin_scales,
-        changes,
-        changes_at,
+        np.geomspace(0.2, 5.0, 300) if margin_scales is None else margin_scales,
+        contact_laws=contact_laws,
+        variations=require_whole("variations", variations, least=0),
+        seed=require_whole("seed", seed, least=0, most=LARGEST_SEED),
         width=require_positive("width", width),
         tail=tail,
         least_records=require_whole("least_records", least_records, least=2),
@@ -195,10 +200,8 @@ def assess(
         "verdicts": _over_columns(verdicts, names),
         "margins": _over_columns(of_one_width(margins), names),
     }
-    if inputs.changes:
-        data["robustness"] = _over_columns(
-            [robustness_of(inputs, name, parts, executor=executor) for name in names], names
-        )
+    if inputs.variations:
+        data["variations"] = _over_columns([shares_of(inputs, name, parts, executor=executor) for name in names], names)
     if sliding and inputs.sliding_first:
         data["sliding"] = _over_columns([sliding_of(inputs, name, parts) for name in names], names)
     if planar:
@@ -236,7 +239,7 @@ def _software() -> dict[str, str]:
 
 def _runs(inputs: Inputs, *, planar: bool, sliding: bool) -> int:
     each = verdict_runs(inputs) + margin_runs(inputs) + 3
-    each += robustness_runs(inputs) if inputs.changes else 0
+    each += share_runs(inputs)
     each += planar_runs(inputs) if planar else 0
     return each * len(inputs.columns) + (sliding_runs(inputs) if sliding else 0)
 
@@ -283,8 +286,9 @@ def _setting(inputs: Inputs) -> dict[str, Any]:
         "width": inputs.width,
         "tail": "20/p" if inputs.tail is None else inputs.tail,
         "tail_over_p": FREE_TAIL,
-        "changes": [change.name for change in inputs.changes],
-        "changes_at": list(inputs.changes_at) if inputs.changes else [],
+        "contact_laws": inputs.contact_laws,
+        "variations": inputs.variations,
+        "seed": inputs.seed,
         "least_records": inputs.least_records,
         "options": {name: repr(value) for name, value in inputs.options.items() if value is not None},
     }

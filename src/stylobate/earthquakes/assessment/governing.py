@@ -133,7 +133,7 @@ def histories_of(
 
 
 def _history(inputs: Inputs, column: str, record: str, shown: _Shown, *, contact: bool) -> xr.Dataset:
-    model = inputs.columns[column][CENTRAL if shown.case == NO_VERTICAL else shown.case]
+    model = inputs.model_of(column, shown.case)
     recorded = inputs.records[record]
     motion = (without_vertical(recorded) if shown.case == NO_VERTICAL else recorded).scaled(shown.scale)
     options: dict[str, Any] = {name: value for name, value in inputs.options.items() if name not in _OF_RUNS}

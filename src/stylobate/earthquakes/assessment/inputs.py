@@ -13,7 +13,7 @@ from stylobate.config import provenance_of_run
 from stylobate.config.levels import OF_DISSIPATION, Dissipation, at_levels, levels_by_column
 from stylobate.earthquakes.assessment.parts import identities
 from stylobate.earthquakes.named_records import Records, named_records
-from stylobate.earthquakes.perturbations import SMALL_PERTURBATIONS, Perturbation, ScaledRecord
+from stylobate.earthquakes.verdict_study import has_other_contact_law, with_other_contact_law
 from stylobate.engine.parameters import changed_model, model_names
 from stylobate.errors import ParameterError, require_not_negative, require_positive
 from stylobate.models import Model
@@ -24,11 +24,15 @@ from stylobate.studies.sweeps.recipe import RunOptions
 CENTRAL = "central"
 NO_VERTICAL = "central, no vertical"
 """The case of margins in which the vertical component does not act."""
+OTHER_LAW = ", other contact law"
+"""End of the names of the cases with the other contact law."""
 
 # Version of the layout of stored parts; a store of another layout is not read.
-_LAYOUT = 3
+_LAYOUT = 4
 # Scales that differ by less than this fraction count as equal.
 _SAME_SCALE = 1e-9
+# Factors of a stated scale near which the share of overturning scales is counted: 41 within 10 %.
+_NEAR = np.linspace(0.9, 1.1, 41)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -48,15 +52,17 @@ class Inputs:
     scales
         Scale factors at which verdicts are given.
     margin_scales
-        Scale factors of the scan for margins, increasing; they include those of the verdicts and their small changes.
+        Scale factors of the scan for margins, increasing; they include 41 within 10 % of each of the verdicts' scales.
     width
         Relative width to which ends of overturning intervals are located.
     tail
         Free-vibration time after a record [s], by default 20/p.
-    changes
-        Small changes under which verdicts are repeated.
-    changes_at
-        Levels of dissipation with small changes.
+    contact_laws
+        Whether the other contact law is assessed too; False if a model has none.
+    variations
+        Number of small variations of each verdict; 0 for none.
+    seed
+        Seed of the small variations.
     least_records
         Minimum number of records for a fragility.
     options
@@ -71,8 +77,9 @@ class Inputs:
     margin_scales: Floats
     width: float
     tail: float | None
-    changes: tuple[Perturbation, ...]
-    changes_at: tuple[str, ...]
+    contact_laws: bool
+    variations: int
+    seed: int
     least_records: int
     options: RunOptions
 
@@ -85,8 +92,8 @@ class Inputs:
         friction_coefficient: float | Mapping[str, float] | None,
         scales: npt.ArrayLike,
         margin_scales: npt.ArrayLike,
-        changes: Sequence[Perturbation] | None,
-        changes_at: Sequence[str] | None,
+        *,
+        contact_laws: bool,
         **more: Any,
     ) -> Self:
         """Check the arguments of an assessment; raise ParameterError for an invalid one."""
@@ -94,16 +101,15 @@ class Inputs:
             message = f"columns must map names to models, at least one, got {columns!r}"
             raise ParameterError(message)
         levels = checked_dissipation(dissipation, columns)
-        stated, tried = _rising("scales", scales, least=1), tuple(SMALL_PERTURBATIONS if changes is None else changes)
+        stated = _rising("scales", scales, least=1)
         return cls(
             columns={name: _at_levels(model, levels[name]) for name, model in columns.items()},
             records=dict(sorted(named_records(records).items())),
             dissipation=levels,
             friction=_frictions(friction_coefficient, list(columns)),
             scales=stated,
-            margin_scales=_joined(_rising("margin_scales", margin_scales, least=2), stated, tried),
-            changes=tried,
-            changes_at=_levels_named(changes_at, next(iter(levels.values()))),
+            margin_scales=_joined(_rising("margin_scales", margin_scales, least=2), stated),
+            contact_laws=contact_laws and all(map(has_other_contact_law, columns.values())),
             **more,
         )
 
@@ -129,14 +135,33 @@ class Inputs:
         """Whether some record has a vertical component."""
         return any(any(motion.vertical_range(0.0)) for motion in self.records.values())
 
+    @property
+    def cases(self) -> tuple[str, ...]:
+        """Names of the cases of margins: levels, the central one without vertical component, the other contact law."""
+        others = [f"{level}{OTHER_LAW}" for level in self.levels] if self.contact_laws else []
+        return (*self.levels, *([NO_VERTICAL] if self.has_vertical else []), *others)
+
+    def model_of(self, column: str, case: str) -> Model:
+        """Return the model of a column in a case."""
+        if case == NO_VERTICAL:
+            return self.columns[column][CENTRAL]
+        model = self.columns[column][case.removesuffix(OTHER_LAW)]
+        return with_other_contact_law(model) if case.endswith(OTHER_LAW) else model
+
+    def around(self, scale: float) -> npt.NDArray[np.intp]:
+        """Return the places in `margin_scales` of the scales near a stated one that are counted for the band share."""
+        near = scale * _NEAR
+        places = np.clip(np.searchsorted(self.margin_scales, near), 1, self.margin_scales.size - 1)
+        before = near - self.margin_scales[places - 1] < self.margin_scales[places] - near
+        return np.asarray(places - before, dtype=np.intp)
+
     def with_records(self, names: Sequence[str]) -> Self:
         """Return these inputs with the named records only."""
         return replace(self, records={name: self.records[name] for name in names})
 
-    def identity(self, column: str, level: str | None = None) -> dict[str, Any]:
-        """Return the identity of the runs of a column, at one level or at all levels."""
-        models = self.columns[column]
-        chosen = models if level is None else {level: models[level]}
+    def identity(self, column: str, model: Model | None = None) -> dict[str, Any]:
+        """Return the identity of the runs of a column: with one model, or at all levels."""
+        chosen = self.columns[column] if model is None else {model.name: model}
         return {
             "version": version("stylobate"),
             "layout": _LAYOUT,
@@ -183,21 +208,6 @@ def _checked_levels(levels: Mapping[str, Mapping[str, Any]], remedy: str) -> dic
     }
 
 
-def _levels_named(given: Sequence[str] | None, levels: Mapping[str, Any]) -> tuple[str, ...]:
-    """Check names of levels and sort them; None means all levels."""
-    if given is None:
-        return tuple(levels)
-    chosen = (given,) if isinstance(given, str) else tuple(given)
-    unknown = [name for name in chosen if name not in levels]
-    if unknown or not chosen:
-        message = (
-            f"changes_at: must name levels of dissipation (got {unknown[0] if unknown else given!r}). Use some of "
-            f"{', '.join(levels)}."
-        )
-        raise ParameterError(message)
-    return tuple(level for level in levels if level in chosen)
-
-
 def _three_dimensional(name: str, model: Model) -> Model:
     if not isinstance(model, Model) or model.planar_only:
         message = f"columns: {name!r} must be a three-dimensional model (got {model!r}). Use one such as Wobbling."
@@ -241,10 +251,9 @@ def _rising(name: str, values: npt.ArrayLike, *, least: int) -> Floats:
     return np.unique(array)
 
 
-def _joined(scanned: Floats, stated: Floats, changes: Sequence[Perturbation]) -> Floats:
-    """Join the scales `scanned` with those stated and their small changes, so that margins and verdicts agree."""
-    factors = [1.0, *(change.factor for change in changes if isinstance(change, ScaledRecord))]
-    rising = np.unique(np.concatenate([scanned, np.outer(stated, factors).ravel()]))
+def _joined(scanned: Floats, stated: Floats) -> Floats:
+    """Join the scales `scanned` with those near each stated one, so that margins, shares and verdicts agree."""
+    rising = np.unique(np.concatenate([scanned, np.outer(stated, _NEAR).ravel()]))
     apart = np.diff(rising, prepend=0.0) > _SAME_SCALE * rising
     return np.asarray(rising[apart])
 

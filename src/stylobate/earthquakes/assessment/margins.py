@@ -16,6 +16,9 @@ from stylobate.studies.maps.uncertainty_exponent import overturned_or_not
 from stylobate.studies.sweeps import Executor
 from stylobate.studies.sweeps.computing import Progress
 
+REFINED = 7
+"""Factor by which the scan is refined below the smallest overturning scale: 300 scales become 2100."""
+
 _BAND = ("band_from", "band_to", "safe_below", "safe_above")
 _FLAGS = ("open_below", "open_above", "undecided_below", "undecided_above")
 _STRETCH = ("undecided_from", "undecided_to")
@@ -29,7 +32,8 @@ def margins_of(inputs: Inputs, column: str, parts: Parts, *, contact: bool, exec
     Returns
     -------
     xarray.Dataset
-        Over `case` (the levels of dissipation; and the central level without the vertical component) and `record`:
+        Over `case` (the levels of dissipation; the central level without the vertical component; the levels with the
+        other contact law) and `record`:
         `least_overturning`, the smallest overturning scale, NaN if none; `largest_below`, the largest surviving scale
         below it, NaN if none; `least_lasting`, the smallest scale at which an interval begins that is wider than the
         uncertainty of its ends; `bands`, the number of intervals; `unknown`, the number of undecided runs of the scan;
@@ -39,9 +43,10 @@ def margins_of(inputs: Inputs, column: str, parts: Parts, *, contact: bool, exec
         `outcome`, `tilt_ratio`; for the central case over `limit_state`: `reached`. The contact demand, NaN without
         `contact`: over `margin_scale` too `friction_demand`, standing and moving; `friction_to_margin`, the largest
         demand below the smallest overturning scale, or at any scale if there is none; `least_slipping`, the smallest
-        scale that needs more than the stated friction, NaN if none does.
+        scale that needs more than the stated friction, NaN if none does. Over `scale` too: `band_share`, the share of
+        overturning scales within 10 % of a stated one.
     """
-    cases = cases_of(inputs)
+    cases = list(inputs.cases)
     found = of_one_width([_bands(inputs, column, case, parts, contact, executor) for case in cases])
     joined: xr.Dataset = xr.concat(found, dim=xr.Variable("case", cases), data_vars="all", join="override")
     body = inputs.columns[column][CENTRAL].column
@@ -52,7 +57,18 @@ def margins_of(inputs: Inputs, column: str, parts: Parts, *, contact: bool, exec
         reached=reached.drop_vars("case"),
         standing_slip=standing_slip(inputs, column, cases),
     )
+    labelled = labelled.assign(band_share=_band_shares(inputs, labelled))
     return labelled.assign(demands_to_margin(labelled, inputs.friction[column]))
+
+
+def _band_shares(inputs: Inputs, margins: xr.Dataset) -> xr.DataArray:
+    """Return the fraction of the decided scales within 10 % of each stated scale that overturn the column."""
+    state = margins["outcome"].copy(data=overturned_or_not(margins))
+    near = [state.isel(margin_scale=inputs.around(scale)) for scale in inputs.scales.tolist()]
+    shares = [((one == 1).sum("margin_scale") / (one >= 0).sum("margin_scale")) for one in near]
+    about = {"units": "1", "long_name": "share of overturning scales within 10 % of the stated scale"}
+    joined: xr.DataArray = xr.concat(shares, dim=xr.Variable("scale", inputs.scales))
+    return joined.assign_attrs(about)
 
 
 def of_one_width(margins: list[xr.Dataset]) -> list[xr.Dataset]:
@@ -81,14 +97,9 @@ def demands_to_margin(margins: xr.Dataset, stated: float) -> dict[str, xr.DataAr
     }
 
 
-def cases_of(inputs: Inputs) -> list[str]:
-    """Return the names of the cases."""
-    return [*inputs.levels, *([NO_VERTICAL] if inputs.has_vertical else [])]
-
-
 def margin_runs(inputs: Inputs) -> int:
     """Return the minimum number of runs for the margins of one column."""
-    return len(cases_of(inputs)) * _scan_runs(inputs)
+    return len(inputs.cases) * _scan_runs(inputs)
 
 
 def _scan_runs(inputs: Inputs) -> int:
@@ -98,8 +109,7 @@ def _scan_runs(inputs: Inputs) -> int:
 def _bands(
     inputs: Inputs, column: str, case: str, parts: Parts, contact: bool, executor: Executor | None
 ) -> xr.Dataset:
-    level = CENTRAL if case == NO_VERTICAL else case
-    model = inputs.columns[column][level]
+    model = inputs.model_of(column, case)
     motions = [without_vertical(one) if case == NO_VERTICAL else one for one in inputs.records.values()]
 
     def compute(progress: Progress) -> xr.Dataset:
@@ -107,10 +117,11 @@ def _bands(
         return _as_dataset(found, list(inputs.records), inputs.width)
 
     identity = {
-        **inputs.identity(column, level),
+        **inputs.identity(column, model),
         "vertical": case != NO_VERTICAL,
         "scales": inputs.margin_scales.tolist(),
         "width": inputs.width,
+        "refine": REFINED,
         "contact": contact,
     }
     return parts.get(f"{column}: margins, {case}", _scan_runs(inputs), identity, compute)
@@ -132,6 +143,7 @@ def _found(
         over={"motion": np.arange(len(motions))},
         scales=inputs.margin_scales,
         width=inputs.width,
+        refine=REFINED,
         tail=tail_of(model.column, inputs.tail),
         executor=executor,
         progress=progress,

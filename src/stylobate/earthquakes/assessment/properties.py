@@ -9,6 +9,7 @@ from stylobate.base_motions.records.listing import drifts
 from stylobate.earthquakes.assessment.ground_motions import as_record, horizontal_peaks
 from stylobate.earthquakes.assessment.inputs import CENTRAL, Inputs
 from stylobate.earthquakes.intensities import peak_horizontal_velocity
+from stylobate.results.damping_yardstick import AMPLITUDES, damping_yardstick, side_of_yardstick
 
 # Number of samples for the peaks of a motion that is no record.
 _TIMES = 20_001
@@ -33,12 +34,22 @@ def column_properties(inputs: Inputs) -> xr.Dataset:
         ),
         "friction_coefficient": (list(inputs.friction.values()), "1", "stated friction coefficient"),
     }
+    yardsticks = np.array([list(damping_yardstick(body).values()) for body in bodies])
+    sides = [
+        side_of_yardstick(body, levels.values())
+        for body, levels in zip(bodies, inputs.dissipation.values(), strict=True)
+    ]
+    about = {"units": "1", "long_name": "damping that loses as much as Housner's impacts"}
     return xr.Dataset(
         {
-            name: ("column", np.array(values, dtype=float), {"units": units, "long_name": long_name})
-            for name, (values, units, long_name) in numbers.items()
+            **{
+                name: ("column", np.array(values, dtype=float), {"units": units, "long_name": long_name})
+                for name, (values, units, long_name) in numbers.items()
+            },
+            "housner_damping": (("column", "amplitude"), yardsticks, about),
+            "damping_side": ("column", [str(side) for side in sides]),
         },
-        coords={"column": list(inputs.columns)},
+        coords={"column": list(inputs.columns), "amplitude": list(AMPLITUDES)},
     )
 
 

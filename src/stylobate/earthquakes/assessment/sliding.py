@@ -103,7 +103,7 @@ def _run(inputs: Inputs, column: str, record: str, scale: float, parts: Parts) -
         )
 
     identity = {
-        **inputs.with_records([record]).identity(column, CENTRAL),
+        **inputs.with_records([record]).identity(column, inputs.columns[column][CENTRAL]),
         "scale": scale,
         "sliding": inputs.friction[column],
     }

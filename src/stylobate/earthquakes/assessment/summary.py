@@ -5,7 +5,8 @@ from collections.abc import Mapping
 import numpy as np
 import xarray as xr
 
-from stylobate.earthquakes.assessment.inputs import CENTRAL
+from stylobate.earthquakes.assessment.inputs import CENTRAL, OTHER_LAW
+from stylobate.studies.maps.uncertainty_exponent import overturned_or_not
 
 _ACTS = "with"
 
@@ -26,8 +27,9 @@ def summary_of(data: Mapping[str, xr.Dataset], governing: list[str]) -> xr.Datas
         Over `column` and `scale`, numbers of records: `overturned`, `undecided` and `stood` in the central case
         (central dissipation with the vertical component); `overturned_in_some`, `undecided_in_some` and
         `uncertain_in_some` in at least one case; `on_dissipation` and `on_vertical`, with a verdict that depends on
-        dissipation or vertical component; `not_robust`, with a verdict that a small change flips at any dissipation;
-        `changes_undecided`, with a small change that applies and is not decided; `planar_differs`, with another outcome
+        dissipation or vertical component; `overturned_other_law`, overturned with the other contact law at some level;
+        `in_band`, with an overturning scale within 10 %; `variations_disagree`, overturned by some small variations
+        but not by all; `undecided_word`, undecided under small variations; `planar_differs`, with another outcome
         of the planar column. Also `peak_tilt_ratio`; `friction_demand`, the largest of all runs, and over `record` too
         `friction_by_record`.
 
@@ -53,9 +55,17 @@ def summary_of(data: Mapping[str, xr.Dataset], governing: list[str]) -> xr.Datas
         "on_dissipation": _differs(fallen.sel(vertical=_ACTS, drop=True), "dissipation"),
         "on_vertical": _differs(fallen.sel(dissipation=CENTRAL, drop=True), "vertical"),
     }
-    if "robustness" in data:
-        for name, changes in (("not_robust", "flipped"), ("changes_undecided", "undecided")):
-            counts[name] = (data["robustness"][changes] > 0).any("dissipation").sum("record")
+    others = margins["case"].str.endswith(OTHER_LAW)
+    if bool(others.any()):
+        law = _at_scales(margins, verdicts["scale"]).where(others, drop=True)
+        counts["overturned_other_law"] = (law == 1).any("case").sum("record")
+    counts["in_band"] = (margins["band_share"] > 0.0).any("case").sum("record")
+    if "variations" in data:
+        shares = data["variations"]
+        counts["variations_disagree"] = ((shares["overturned"] > 0) & (shares["overturned"] < shares["runs"])).sum(
+            "record"
+        )
+        counts["undecided_word"] = (shares["word"] == "undecided").sum("record")
     if "planar" in data:
         tilts = data["planar"]["planar_tilt_ratio"]
         decided = (central >= 0) & tilts.notnull()
@@ -83,6 +93,14 @@ def summary_of(data: Mapping[str, xr.Dataset], governing: list[str]) -> xr.Datas
             "decided_to": central_margins["decided_to"].min("record", skipna=False),
         }
     ).transpose("column", ...)
+
+
+def _at_scales(margins: xr.Dataset, scales: xr.DataArray) -> xr.DataArray:
+    """Return the states of the scan at the stated scales: 1 overturned, 0 not, negative undecided."""
+    state = margins["outcome"].copy(data=overturned_or_not(margins))
+    stated = [state.sel(margin_scale=scale, method="nearest").drop_vars("margin_scale") for scale in scales.to_numpy()]
+    joined: xr.DataArray = xr.concat(stated, dim=scales)
+    return joined
 
 
 def _least_records(margins: xr.Dataset) -> list[str]:

@@ -22,6 +22,7 @@ from stylobate.config.record_collection import RecordsConfig
 from stylobate.config.suggestions import did_you_mean
 from stylobate.earthquakes.config.design_spectrum import DesignSpectrumConfig
 from stylobate.errors import (
+    LARGEST_SEED,
     MOST_STEPS,
     ConfigError,
     FileError,
@@ -36,7 +37,7 @@ from stylobate.models.declared import model_quantities
 from stylobate.results.few_records import FEW_RECORDS
 from stylobate.results.report_details import ReportDetails
 
-_MARGIN = {"from": 0.2, "to": 5.0, "number": 60, "spacing": "log"}
+_MARGIN = {"from": 0.2, "to": 5.0, "number": 300, "spacing": "log"}
 
 
 def _with_name(values: Any) -> Any:
@@ -101,8 +102,12 @@ class AssessConfig(Config):
         Relative width to which the ends of overturning intervals are located.
     tail
         Free-vibration time after a record [s]; 20/`column.frequency_parameter` by default.
-    robustness
-        Whether to repeat each verdict under small perturbations; or the levels of dissipation at which to do so.
+    contact_laws
+        Whether to assess the other contact law too, such as `rolling` beside `wobbling`.
+    variations
+        Number of small variations of each verdict; 0 for none.
+    seed
+        Seed of the small variations.
     sliding
         Whether to run the model `sliding` too, for columns that slide before they rock.
     planar
@@ -145,7 +150,9 @@ class AssessConfig(Config):
     )
     width: float = 5e-3
     tail: float | None = None
-    robustness: bool | tuple[str, ...] = True
+    contact_laws: bool = True
+    variations: int = 200
+    seed: int = 0
     sliding: bool = False
     planar: bool = True
     contact: bool = True
@@ -223,15 +230,8 @@ class AssessConfig(Config):
             *self.notes,
             *(f"Warning: {one.message}" for one in remarks if one.category is UnlikelyInputWarning),
         )
-        repeated = self._repeated()
         built_models = {name: model for name, model in models.items() if model is not None}
-        return AssessmentSetup(built_models, records, {**options, **repeated, "margin_scales": scales})
-
-    def _repeated(self) -> dict[str, Any]:
-        """Return the arguments of `earthquakes.assess` for small changes."""
-        if isinstance(self.robustness, bool):
-            return {} if self.robustness else {"changes": ()}
-        return {"changes_at": self.robustness} if self.robustness else {"changes": ()}
+        return AssessmentSetup(built_models, records, {**options, "margin_scales": scales})
 
     def _details(self, problems: list[str]) -> ReportDetails | None:
         """Build the details of the report; None, and a line in `problems`, if one is invalid."""
@@ -278,6 +278,8 @@ class AssessConfig(Config):
             lambda: require_positive("rtol", self.rtol),
             lambda: require_whole("max_steps", self.max_steps, least=1, most=MOST_STEPS),
             lambda: require_whole("least_records", self.least_records, least=2),
+            lambda: require_whole("variations", self.variations, least=0),
+            lambda: require_whole("seed", self.seed, least=0, most=LARGEST_SEED),
             lambda: require_not_negative("tail", self.tail or 0.0, "s"),
             *(partial(require_positive, "scales", scale) for scale in self.scales),
             *(partial(require_positive, f"friction_coefficient.{name}", one) for name, one in by_column.items()),
@@ -292,22 +294,12 @@ class AssessConfig(Config):
                 check()
             except ParameterError as error:
                 problems.append(str(error))
-        return [*problems, *self._problems_of_the_frictions(by_column), *self._problems_of_the_levels_repeated()]
+        return [*problems, *self._problems_of_the_frictions(by_column)]
 
     def _levels(self) -> list[Mapping[str, Mapping[str, Any]]]:
         """Return the levels of all columns, and those of each column with its own."""
         own = [one for one in self.dissipation.values() if is_by_level(one)]
         return [*own, {name: one for name, one in self.dissipation.items() if not is_by_level(one)}]
-
-    def _problems_of_the_levels_repeated(self) -> list[str]:
-        named = () if isinstance(self.robustness, bool) else self.robustness
-        known = dict.fromkeys(name for levels in self._levels() for name in levels)
-        return [
-            f"robustness: must name levels of dissipation (got {name!r}). "
-            f"Use true, false, or some of {', '.join(known)}."
-            for name in named
-            if name not in known
-        ]
 
     def _problems_of_the_frictions(self, by_column: Mapping[str, float]) -> list[str]:
         if not by_column:
@@ -343,5 +335,5 @@ _PLACEHOLDERS: dict[str, Any] = {
 
 _PASSED = (
     *("title", "dissipation", "friction_coefficient", "scales", "width", "tail", "planar", "contact"),
-    *("sliding", "least_records", "notes", "rtol", "rest_energy", "max_steps"),
+    *("sliding", "contact_laws", "variations", "seed", "least_records", "notes", "rtol", "rest_energy", "max_steps"),
 )

@@ -1,1 +1,1 @@
-"""Figures of columns in earthquakes: incremental analyses, fragility, spectra, robustness."""
+"""Figures of columns in earthquakes: incremental analyses, fragility, spectra, verdicts."""

@@ -5,12 +5,14 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
+from stylobate.earthquakes.assessment.inputs import OTHER_LAW
 from stylobate.earthquakes.assessment.report.wording import CENTRAL
+from stylobate.errors import Outcome
 from stylobate.results.assessment import Assessment
 
 _ACTS = "with"
 _NO_VERTICAL = ", no vertical"
-_EXTRA = ("dissipation", "change", "vertical")
+_EXTRA = ("dissipation", "vertical")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -32,10 +34,14 @@ class Cases:
         Records that overturned the column only without their vertical component, with the levels of dissipation.
     undecided_elsewhere
         Records with an undecided run in another case.
-    flipped
-        Records whose verdict a small change flips.
-    changes_undecided
-        Records with a small change that applies and is not decided.
+    with_other_law
+        Records that overturned the column with the other contact law only, with the levels of dissipation.
+    in_band
+        Records with an overturning scale within 10 %, with the largest share of such scales of all cases.
+    varied
+        Records under which some small variation overturned the column, with the share of variations.
+    variations_open
+        Records with a small variation that was not decided.
     borderline
         Records with a run whose outcome rounding could change.
     slipping
@@ -49,8 +55,10 @@ class Cases:
     at_other_dissipation: dict[str, tuple[str, ...]]
     without_vertical: dict[str, tuple[str, ...]]
     undecided_elsewhere: tuple[str, ...]
-    flipped: tuple[str, ...]
-    changes_undecided: tuple[str, ...]
+    with_other_law: dict[str, tuple[str, ...]]
+    in_band: dict[str, float]
+    varied: dict[str, float]
+    variations_open: tuple[str, ...]
     borderline: tuple[str, ...]
     slipping: dict[str, float]
 
@@ -76,8 +84,10 @@ def cases_of(assessment: Assessment, column: str, scale: float) -> Cases:
         at_other_dissipation=at_other,
         without_vertical=_levels(fallen.any("vertical"), (*overturned, *at_other)),
         undecided_elsewhere=tuple(name for name in _where(_any(others < 0)) if name not in undecided),
-        flipped=_with_changes(assessment, "flipped", column, scale),
-        changes_undecided=_with_changes(assessment, "undecided", column, scale),
+        with_other_law=_with_other_law(assessment, column, scale, (*overturned, *at_other)),
+        in_band=_in_band(assessment, column, scale),
+        varied=_varied(assessment, column, scale),
+        variations_open=_variations_open(assessment, column, scale),
         borderline=_where(_any(runs["uncertain"] > 0)),
         slipping=_slipping(runs, float(assessment.setting["friction_coefficient"][column])),
     )
@@ -117,11 +127,37 @@ def _levels(fallen: xr.DataArray, known: tuple[str, ...]) -> dict[str, tuple[str
     return {name: at for name, at in found.items() if at and name not in known}
 
 
-def _with_changes(assessment: Assessment, counted: str, column: str, scale: float) -> tuple[str, ...]:
-    """Return the records with a small change that is `counted`, at any dissipation."""
-    if "robustness" not in assessment.data:
+def _with_other_law(
+    assessment: Assessment, column: str, scale: float, known: tuple[str, ...]
+) -> dict[str, tuple[str, ...]]:
+    """Map each record that is not `known` to the levels at which it overturned the column with the other law."""
+    margins = assessment.data["margins"].sel(column=column)
+    cases = [str(name) for name in margins["case"].to_numpy() if str(name).endswith(OTHER_LAW)]
+    found: dict[str, tuple[str, ...]] = {}
+    for name in _names(margins):
+        states = margins["outcome"].sel(record=name, case=cases).sel(margin_scale=scale, method="nearest")
+        at = [case.removesuffix(OTHER_LAW) for case in cases if int(states.sel(case=case)) == Outcome.OVERTURNED]
+        if at and name not in known:
+            found[name] = tuple(at)
+    return found
+
+
+def _in_band(assessment: Assessment, column: str, scale: float) -> dict[str, float]:
+    shares = assessment.data["margins"]["band_share"].sel(column=column, scale=scale).max("case")
+    return {name: float(one) for name, one in zip(_names(shares), shares.to_numpy(), strict=True) if one > 0.0}
+
+
+def _varied(assessment: Assessment, column: str, scale: float) -> dict[str, float]:
+    if "variations" not in assessment.data:
+        return {}
+    shares = assessment.data["variations"]["share"].sel(column=column, scale=scale)
+    return {name: float(one) for name, one in zip(_names(shares), shares.to_numpy(), strict=True) if one > 0.0}
+
+
+def _variations_open(assessment: Assessment, column: str, scale: float) -> tuple[str, ...]:
+    if "variations" not in assessment.data:
         return ()
-    return _where(_any(assessment.data["robustness"][counted].sel(column=column, scale=scale) > 0))
+    return _where(assessment.data["variations"]["open"].sel(column=column, scale=scale) > 0)
 
 
 def _slipping(runs: xr.Dataset, stated: float) -> dict[str, float]:

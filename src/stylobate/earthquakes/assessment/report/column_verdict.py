@@ -1,6 +1,7 @@
 """The verdict on one column in one line: overturned, survived with reservations, survived, or not described."""
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import Enum
 
@@ -17,6 +18,7 @@ from stylobate.earthquakes.assessment.report.wording import (
     records,
 )
 from stylobate.results.assessment import Assessment
+from stylobate.results.verdict import percent
 
 _SLID = {1: OVERTURNED, -1: f"was {UNDECIDED}", 0: STOOD}
 
@@ -64,7 +66,7 @@ def column_verdict(assessment: Assessment, column: str, scale: float) -> ColumnV
     total = len(cases.records)
     if slides := _slides_first(assessment, column, scale):
         return ColumnVerdict(VerdictClass.NOT_DESCRIBED, slides)
-    if cases.overturned or cases.at_other_dissipation:
+    if cases.overturned or cases.at_other_dissipation or cases.with_other_law:
         return ColumnVerdict(VerdictClass.OVERTURNED, _overturned(cases, where))
     if cases.none_decided:
         return ColumnVerdict(VerdictClass.NOT_DESCRIBED, f"no run {where} was decided.")
@@ -73,7 +75,12 @@ def column_verdict(assessment: Assessment, column: str, scale: float) -> ColumnV
     if doubts:
         sentence = f"{survived} at {CENTRAL} dissipation. Reservations: {'; '.join(doubts)}."
         return ColumnVerdict(VerdictClass.OPEN, sentence)
-    sentence = f"{survived}, at every stated dissipation and under every small change tried{_tried_at(assessment)}."
+    tried = int(assessment.setting["variations"])
+    laws = ", with both contact laws" if assessment.setting["contact_laws"] else ""
+    sentence = (
+        f"{survived}, at every stated dissipation{laws}, at every scale tried within 10 % and under each of {tried} "
+        "small variations."
+    )
     return ColumnVerdict(VerdictClass.SURVIVED, sentence)
 
 
@@ -87,8 +94,19 @@ def _overturned(cases: Cases, where: str) -> str:
         count = len(names)
         more = f"{count} more" if cases.overturned else records(count, total)
         phrases.append(f"under {more}, but not at central dissipation ({listed(names)})")
+    if cases.with_other_law:
+        names = [f"{name} at {listed(levels, 'and')}" for name, levels in cases.with_other_law.items()]
+        phrases.append(f"under {records(len(names), total)} with the other contact law only ({listed(names)})")
     undecided = f" Not decided: {listed(cases.undecided)}." if cases.undecided else ""
-    return f"overturned {where} {listed(phrases, 'and')}.{undecided}"
+    return f"overturned {where} {listed(phrases, 'and')}.{_shares(cases)}{undecided}"
+
+
+def _shares(cases: Cases) -> str:
+    """State the largest share of small variations that overturn the column; empty if there are none."""
+    if not cases.varied:
+        return ""
+    record = max(cases.varied, key=lambda name: cases.varied[name])
+    return f" Up to {percent(cases.varied[record])} of the small variations overturn it ({record})."
 
 
 def least_overturning_scale(assessment: Assessment, column: str) -> str:
@@ -102,7 +120,7 @@ def least_overturning_scale(assessment: Assessment, column: str) -> str:
     open_scales = "" if known else f"; not every scale above {number(decided)} was decided"
     if math.isnan(least):
         return f"No scale up to {number(decided)} overturned it in any case{open_scales}."
-    return f"Smallest overturning scale of all cases: {words}{open_scales}."
+    return f"Smallest overturning scale of all cases: at most {words}{open_scales}."
 
 
 def _least(assessment: Assessment, column: str) -> tuple[float, str]:
@@ -115,13 +133,6 @@ def _least(assessment: Assessment, column: str) -> tuple[float, str]:
     where = f"{level} dissipation{',' if rest else ''}{rest}"
     scale = float(least.min())
     return scale, f"{number(scale)} ({least['record'].to_numpy()[record]}, {where})"
-
-
-def _tried_at(assessment: Assessment) -> str:
-    """Name the levels of dissipation with small changes; empty if all have them."""
-    changes, levels = assessment.data["robustness"], assessment.data["verdicts"]["dissipation"].to_numpy()
-    tried = [str(level) for level in changes["dissipation"].to_numpy()]
-    return "" if len(tried) == levels.size else f" at {listed(tried, 'and')} dissipation"
 
 
 def largest_decided(assessment: Assessment, column: str, record: str | None = None, case: str | None = None) -> float:
@@ -174,8 +185,9 @@ def _reservations(assessment: Assessment, column: str, scale: float, cases: Case
     under = {
         "not decided under {}": cases.undecided,
         "overturned under {} without the vertical component": tuple(cases.without_vertical),
-        "a small change flips the verdict under {}": cases.flipped,
-        "a small change was not decided under {}": [one for one in cases.changes_undecided if one not in undecided],
+        "a scale within 10 % overturned it under {}": _with_shares(cases.in_band),
+        "small variations overturned it under {}": _with_shares(cases.varied),
+        "a small variation was not decided under {}": [one for one in cases.variations_open if one not in undecided],
         "some run was not decided under {}": cases.undecided_elsewhere,
         "rounding could change the outcome under {}": cases.borderline,
         f"the base would slip under {{}} (friction {need} needed)": tuple(cases.slipping),
@@ -183,11 +195,15 @@ def _reservations(assessment: Assessment, column: str, scale: float, cases: Case
     holds = {
         f"a smaller scale overturned it: {words}": least < scale,
         f"not every scale up to this one was decided{_beyond(decided)}": not decided >= scale,
-        "small changes were not tried": "robustness" not in assessment.data,
+        "small variations were not tried": "variations" not in assessment.data,
         "the friction needed was not computed": not assessment.setting["contact"],
     }
     named = [phrase.format(listed(names)) for phrase, names in under.items() if names]
     return [*named, *(phrase for phrase, is_so in holds.items() if is_so)]
+
+
+def _with_shares(shares: Mapping[str, float]) -> list[str]:
+    return [f"{name} ({percent(share)} of them)" for name, share in shares.items()]
 
 
 def _beyond(decided: float) -> str:

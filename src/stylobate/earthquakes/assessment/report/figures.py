@@ -1,4 +1,4 @@
-"""Figures of an assessment: margins, tilts, contact, robustness, and the time history under the governing record."""
+"""Figures of an assessment: margins, tilts, contact, small variations, and histories under the governing record."""
 
 import math
 from typing import Any
@@ -16,6 +16,7 @@ from stylobate.earthquakes.figures.band_regions import UNDECIDED, undecided_labe
 from stylobate.plots.cells import fill_options
 from stylobate.plots.style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION, new_figure, styled
 from stylobate.results.assessment import Assessment
+from stylobate.results.verdict import CLEAR
 
 # Heights of a line in a figure of records, of the frame, and of the tallest figure [inches].
 _ROW, _FRAME, _TALLEST = 0.17, 1.5, 9.0
@@ -161,33 +162,29 @@ def contact_figure(assessment: Assessment, column: str) -> Figure:
 
 
 @styled
-def robustness_figure(assessment: Assessment, column: str, scale: float) -> Figure:
-    """Draw the small changes that flip the verdict under each record, at each dissipation."""
-    own = assessment.data["robustness"].sel(column=column, scale=scale)
-    records, changes, levels = (
-        [str(name) for name in own[dim].to_numpy()] for dim in ("record", "change", "dissipation")
-    )
-    flips, applies = (
-        own[name].transpose("record", "dissipation", "change").to_numpy().reshape(-1, len(changes))
-        for name in ("flips", "applies")
-    )
-    figure = new_figure(min(1.9 + _ROW * 1.3 * len(flips), _TALLEST))
-    axes = figure.subplots()
-    for state, mark, colour, size in ((0, "o", SKY, 4.5), (1, "X", VERMILION, 8.0), (-1, "x", GREY, 5.5)):
-        rows, places = np.nonzero((flips == state) & (applies == 1))
-        axes.plot(places, rows, linestyle="none", marker=mark, color=colour, markersize=size)
-    names = [f"{record} · {level}" if place == 0 else level for record in records for place, level in enumerate(levels)]
-    axes.set_xticks(range(len(changes)), changes, rotation=60, ha="right", rotation_mode="anchor", fontsize=7.5)
-    axes.set_yticks(range(len(names)), names, fontsize=8 if len(levels) == 1 else 7)
-    for place in range(len(levels), len(names), len(levels)):
-        axes.axhline(place - 0.5, color=GREY, linewidth=0.4)
-    axes.set(ylim=(len(names) - 0.5, -0.5), xlim=(-0.5, len(changes) - 0.5))
-    axes.set_title(f"{column}, scale {scale:g}: does the verdict flip?")
-    handles = [
-        Line2D([], [], linestyle="none", marker="o", color=SKY, label="same verdict"),
-        Line2D([], [], linestyle="none", marker="X", color=VERMILION, label="flipped"),
-        Line2D([], [], linestyle="none", marker="x", color=GREY, label="not decided"),
+def shares_figure(assessment: Assessment, column: str, scale: float) -> Figure:
+    """Draw the share of small variations that overturn a column under each record, and that of the near scales."""
+    own = assessment.data["variations"].sel(column=column, scale=scale)
+    band = assessment.data["margins"]["band_share"].sel(column=column, scale=scale).transpose("record", "case")
+    records = [str(name) for name in own["record"].to_numpy()]
+    figure, axes = _rows_figure(records)
+    heights = np.arange(len(records), dtype=float)
+    low, share, high = (100.0 * own[name].to_numpy() for name in ("share_low", "share", "share_high"))
+    axes.barh(heights, high - low, 0.5, left=low, color=SKY, linewidth=0.0)
+    axes.plot(share, heights, linestyle="none", marker="|", color=BLUE, markersize=9.0, markeredgewidth=2.0)
+    handles: list[Patch | Line2D] = [
+        Patch(facecolor=SKY, label="variations, 90 % interval"),
+        Line2D([], [], linestyle="none", marker="|", color=BLUE, markersize=9.0, label="variations, share"),
     ]
+    for place, case in enumerate(band["case"].to_numpy()):
+        look: dict[str, Any] = {"marker": _MARKS[place % len(_MARKS)], "mfc": "none"}
+        look["mec"] = _COLOURS[place % len(_COLOURS)]
+        axes.plot(100.0 * band.to_numpy()[:, place], heights, linestyle="none", markersize=5.5, **look)
+        handles.append(Line2D([], [], linestyle="none", label=f"±10 %: {case}", **look))
+    for limit in (100.0 * CLEAR, 100.0 * (1.0 - CLEAR)):
+        axes.axvline(limit, color=GREY, linewidth=1.0, linestyle="--")
+    axes.set(xlim=(-2.0, 102.0), xlabel="share that overturns it [%]")
+    axes.set_title(f"{column}, scale {scale:g}: small variations and near scales")
     figure.legend(handles=handles, loc="outside lower center", ncols=3)
     return figure
 

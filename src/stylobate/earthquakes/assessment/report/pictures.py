@@ -10,7 +10,7 @@ from stylobate.earthquakes.assessment.report.figures import (
     contact_figure,
     history_figure,
     margins_figure,
-    robustness_figure,
+    shares_figure,
     tilts_figure,
 )
 from stylobate.earthquakes.assessment.report.record_figures import RECORDS_A_FIGURE, records_figure, spectra_figure
@@ -80,10 +80,12 @@ def _of_column(assessment: Assessment, column: str, called: str, place: int) -> 
             f"{called} at scale {scale:g}: peak tilts at each dissipation (vertical component included), and those of "
             "the planar column if it was computed.",
         )
-        if "robustness" in assessment.data:
-            found[f"robustness-{place}-scale-{scale:g}"] = Picture(
-                robustness_figure(assessment, column, scale),
-                f"{called} at scale {scale:g}: does a small change flip the verdict?",
+        if "variations" in assessment.data:
+            found[f"variations-{place}-scale-{scale:g}"] = Picture(
+                shares_figure(assessment, column, scale),
+                f"{called} at scale {scale:g}: share of small variations that overturn it, with its 90 % interval "
+                "(bar), and share of the scales within 10 % that do so (marks, one for each case). Between the dashed "
+                "limits the case is undecided.",
             )
     if "fragility" in assessment.data:
         found[f"fragility-{place}"] = Picture(_fragility(assessment, column), f"{called}: fragility.")

@@ -3,15 +3,15 @@
 import math
 from collections.abc import Iterator
 
-import numpy as np
-
 from stylobate.earthquakes.assessment.report.cases import acts_in, case_name, cases_of
 from stylobate.earthquakes.assessment.report.cells import cells
 from stylobate.earthquakes.assessment.report.column_verdict import column_verdict
 from stylobate.earthquakes.assessment.report.displacements import TILT_HEADER, shown_point, tilt_cells
 from stylobate.earthquakes.assessment.report.wording import CENTRAL, listed, number, tilt, verdict
+from stylobate.earthquakes.variations import LABELS
 from stylobate.plots.page import Table
 from stylobate.results.assessment import Assessment
+from stylobate.results.verdict import percent
 
 _ACTS = "with"
 _PLACES = ("column", "record", "scale")
@@ -21,19 +21,23 @@ def verdicts(assessment: Assessment) -> Table:
     """Tabulate the class of each verdict, and the records that decide it."""
     header = (
         *("column", "scale", "verdict", "overturned it (central dissipation)", "only at another dissipation"),
-        *("only without the vertical component", "flipped by a small change", "small change not decided"),
-        *("not decided", "more friction needed than stated"),
+        *("only with the other contact law", "only without the vertical component"),
+        *("overturned it within 10 % of the scale", "overturned it in some small variations"),
+        *("small variation not decided", "not decided", "more friction needed than stated"),
     )
     rows = []
     for column, scale in _columns_and_scales(assessment):
         cases = cases_of(assessment, column, scale)
-        at_other, without = (
+        at_other, with_other_law, without = (
             [f"{name} ({listed(levels, 'and')})" for name, levels in one.items()]
-            for one in (cases.at_other_dissipation, cases.without_vertical)
+            for one in (cases.at_other_dissipation, cases.with_other_law, cases.without_vertical)
+        )
+        in_band, varied = (
+            [f"{name} ({percent(share)})" for name, share in one.items()] for one in (cases.in_band, cases.varied)
         )
         undecided = (*cases.undecided, *cases.undecided_elsewhere)
-        changed = (cases.flipped, cases.changes_undecided)
-        names = (cases.overturned, at_other, without, *changed, undecided, tuple(cases.slipping))
+        nearby = (in_band, varied, cases.variations_open)
+        names = (cases.overturned, at_other, with_other_law, without, *nearby, undecided, tuple(cases.slipping))
         label = column_verdict(assessment, column, scale).verdict.value
         rows.append((column, f"{scale:g}", label, *(", ".join(one) or "none" for one in names)))
     return Table(header, rows)
@@ -119,24 +123,40 @@ def sliding(assessment: Assessment) -> Table:
     return Table(header, rows)
 
 
-def small_changes(assessment: Assessment) -> Table:
-    """Tabulate number and names of the small changes that flip each verdict."""
+def small_variations(assessment: Assessment) -> Table:
+    """Tabulate the share of small variations that overturn each column, and the word that follows from it."""
     header = (
-        *("column", "record", "scale", "dissipation", "verdict", "number that flip it", "number decided"),
-        *("smallest tilt / α_c", "largest tilt / α_c", "changes that flip it", "changes not decided"),
+        *("column", "record", "scale", "under small variations", "share that overturns it", "90 % interval"),
+        *("by contact law", "decided most by", "not decided", "median tilt / α_c", "95 % of tilts / α_c below"),
     )
-    if "robustness" not in assessment.data:
+    if "variations" not in assessment.data:
         return Table(header, [])
-    own, rows = assessment.data["robustness"], []
-    own = own.assign(state=assessment.data["verdicts"]["overturned"].sel(vertical=_ACTS, drop=True))
-    changes = np.array([str(name) for name in own["change"].to_numpy()])
-    for where, one in cells(own, *_PLACES, "dissipation"):
-        flips, applies = one["flips"].to_numpy(), one["applies"].to_numpy() == 1
-        which = (", ".join(changes[some]) or "none" for some in (flips == 1, applies & (flips < 0)))
-        counts = (f"{int(one['flipped'])}", f"{int(one['compared'])}")
-        ends = (tilt(float(one[f"tilt_ratio_{end}"])) for end in ("low", "high"))
-        rows.append((*where, verdict(float(one["state"])), *counts, *ends, *which))
+    rows = []
+    for where, one in cells(assessment.data["variations"], *_PLACES):
+        low, high = (percent(float(one[f"share_{end}"])) for end in ("low", "high"))
+        laws = zip(one["contact_law"].to_numpy(), one["law_share"].to_numpy(), strict=True)
+        deciding = str(one["deciding"].item())
+        rows.append(
+            (
+                *(*where, str(one["word"].item()), percent(float(one["share"])), f"{low} to {high}"),
+                ", ".join(f"{law} {percent(float(share))}" for law, share in laws),
+                LABELS.get(deciding, deciding) or "none alone",
+                f"{int(one['open'])} of {int(one['runs'])}",
+                *(tilt(float(one[f"tilt_ratio_{end}"])) for end in ("median", "high")),
+            )
+        )
     return Table(header, rows)
+
+
+def near_scales(assessment: Assessment) -> Table:
+    """Tabulate the share of overturning scales within 10 % of each stated scale, by case."""
+    own = assessment.data["margins"][["band_share"]]
+    cases = [str(case) for case in own["case"].to_numpy()]
+    rows = [
+        (*where, *(percent(float(one["band_share"].sel(case=case))) for case in cases))
+        for where, one in cells(own, *_PLACES)
+    ]
+    return Table((*_PLACES, *cases), rows)
 
 
 def planar(assessment: Assessment) -> Table:

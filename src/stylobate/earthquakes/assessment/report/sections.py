@@ -70,8 +70,8 @@ def report_sections(
             [_contact_text(assessment), *drawn("contact"), *shown("contact-by-record", "contact-to-margin", "sliding")],
         ),
         Section(
-            "Robustness under small changes",
-            [_robust_text(assessment), *drawn("robustness"), *shown("robustness")],
+            "Small variations and near scales",
+            [_variations_text(assessment), *drawn("variations"), *shown("variations", "near-scales")],
         ),
         Section("Comparison with the planar calculation", [*_planar_text(assessment), *shown("planar", "planar-bias")]),
         Section("Fragility", [_fragility_text(assessment), *drawn("fragility"), *shown("fragility")]),
@@ -116,10 +116,12 @@ def _margin_text(assessment: Assessment) -> str:
     return (
         f"Every record was run at {count} scale factors from {number(low)} to {number(high)}, and every change of the "
         f"outcome was located by bisection to {100.0 * assessment.setting['width']:g} %. The margin is the smallest "
-        "scale factor that overturned the column. A case is a level of dissipation, or the central level without the "
-        "vertical component. Overturning is not monotonic: a column may survive above the margin, so the last table "
-        "lists every overturning interval found. Near the limit the outcome is erratic: a scan at other factors finds "
-        f"other narrow intervals. {resolution[0].upper()}{resolution[1:]}. “Governs” marks the record whose runs are "
+        "scale factor found that overturned the column; below it the scan is seven times finer. Narrower intervals may "
+        "lie below, so read each margin as “at most”. A case is a level of dissipation, the central level without the "
+        "vertical component, or a level with the other contact law. Overturning is not monotonic: a column may survive "
+        "above the margin, so the last table lists every overturning interval found. Near the limit the outcome is "
+        "erratic: a scan at other factors finds other narrow intervals. "
+        f"{resolution[0].upper()}{resolution[1:]}. “Governs” marks the record whose runs are "
         "drawn. “>” marks a record that overturned the column at no scale; its values are those at the largest decided "
         "scale."
     )
@@ -161,17 +163,24 @@ def _contact_text(assessment: Assessment) -> str:
     )
 
 
-def _robust_text(assessment: Assessment) -> str:
-    changes = assessment.setting["changes"]
-    if not changes:
+def _variations_text(assessment: Assessment) -> str:
+    runs = assessment.setting["variations"]
+    near = (
+        "The share of overturning scales is counted at 41 scales within 10 % of each stated one, in every case; it "
+        "shows intervals that a single run misses."
+    )
+    if not runs:
         return (
-            "No verdict was repeated under small changes (robustness = false), so it is not known which verdicts are "
-            "repeatable."
+            "No verdict was repeated under small variations (variations = 0), so it is not known which verdicts are "
+            f"repeatable. {near}"
         )
+    laws = ", and the contact law" if assessment.setting["contact_laws"] else ""
     return (
-        "Each verdict was repeated under small changes of record, dissipation, size and integration, one at a time: "
-        f"{', '.join(changes)}. In the figures, a thin grey cross marks a change whose run was not decided, so it is "
-        "not known whether the verdict stays the same. No mark means that the change does not apply to the record."
+        f"Each verdict was repeated {runs} times with everything varied at once: scale, clock, low-pass and direction "
+        "of the record; size and slenderness of the column; dissipation from the lowest to the highest stated level; a "
+        f"base out of level by a tenth of a degree; a small disturbance at the start; the tolerance{laws}. A column "
+        "stands if the interval of the share of overturning lies below 5 %, overturns if it lies above 95 %, and is "
+        f"undecided otherwise. {near}"
     )
 
 

@@ -18,6 +18,7 @@ from stylobate.earthquakes.assessment.report.record_tables import margin_intensi
 from stylobate.earthquakes.assessment.report.wording import CENTRAL, number, records
 from stylobate.plots.page import Table
 from stylobate.results.assessment import Assessment
+from stylobate.results.damping_yardstick import yardstick_text
 
 
 def verdict_table(assessment: Assessment) -> Table:
@@ -42,6 +43,7 @@ def column_findings(assessment: Assessment, name: str) -> Table:
         subjects[level_words(scale)] = words.strip()
     subjects["margin"] = _margin(assessment, name, own) if described else ""
     subjects["contact"] = _contact(assessment, name, own)
+    subjects["damping"] = _damping(assessment, name)
     return Table((name, ""), [(subject, words) for subject, words in subjects.items() if words])
 
 
@@ -85,7 +87,7 @@ def _margin(assessment: Assessment, name: str, own: xr.Dataset) -> str:
         sentence = f"No scale factor from {number(low)} to {number(high)} overturned it at central dissipation."
     else:
         sentence = (
-            f"At central dissipation the smallest overturning scale is {number(least, 4)} ({record})"
+            f"At central dissipation the smallest overturning scale is at most {number(least, 4)} ({record})"
             f"{_lasting(assessment, name, record)}. {_intensity(assessment, name, record)}"
         )
     if not math.isnan(least_of_all) and least_of_all != least:
@@ -158,6 +160,16 @@ def _contact_to_margin(own: xr.Dataset) -> str:
     return f"{sentence}, above the smallest overturning scale: the column overturns before its base would slip."
 
 
+def _damping(assessment: Assessment, name: str) -> str:
+    """State the damping that loses as much as Housner's impacts, and on which side of it the levels lie."""
+    own = assessment.data["columns"].sel(column=name)
+    sentence = f"Housner's impacts lose as much as {yardstick_text(own['housner_damping'].to_numpy())}."
+    side = str(own["damping_side"].item())
+    if side not in ("below", "above"):
+        return sentence
+    return f"{sentence} All stated levels lie {side} this yardstick: state why, or add a level near it."
+
+
 def _stated_scales(assessment: Assessment) -> str:
     scales = assessment.setting["scales"]
     return f"scale {scales[0]:g}" if len(scales) == 1 else "the stated scales"
@@ -166,9 +178,9 @@ def _stated_scales(assessment: Assessment) -> str:
 def how_to_read(assessment: Assessment) -> str:
     """Explain the meaning and the limits of a verdict."""
     repeated = (
-        "Verdicts were therefore repeated under small changes; treat a verdict that flips as open."
-        if assessment.setting["changes"]
-        else "No verdict was repeated under small changes here, so it is not known whether any verdict is repeatable."
+        "Verdicts were therefore repeated under small variations: read their shares, not single runs."
+        if assessment.setting["variations"]
+        else "No verdict was repeated under small variations here, so it is not known whether any is repeatable."
     )
     return (
         "How to read this: a verdict reports runs of a rigid column under these records only. “Did not overturn” does "

@@ -38,8 +38,10 @@ def _summary(assessment: Assessment) -> Table:
     own = assessment.data["summary"]
     names = ("stood", "overturned", "undecided", "overturned_in_some", "on_dissipation", "on_vertical")
     optional = {
-        "not_robust": "verdict flips under small changes",
-        "changes_undecided": "small changes not decided",
+        "overturned_other_law": "overturned it with the other contact law",
+        "in_band": "overturned it within 10 % of the scale",
+        "variations_disagree": "small variations disagree",
+        "undecided_word": "undecided under small variations",
         "planar_differs": "planar verdict differs",
     }
     optional = {name: words for name, words in optional.items() if name in own}
@@ -85,6 +87,14 @@ def _dissipation(assessment: Assessment) -> Table:
         for level, numbers in levels.items()
         for name, value in numbers.items()
     ]
+    own = assessment.data["columns"]
+    rows += [
+        (str(column), f"Housner's impacts at {amplitude:g} α_c", "damping", number(float(value), 3))
+        for column in own["column"].to_numpy()
+        for amplitude, value in zip(
+            own["amplitude"].to_numpy(), own["housner_damping"].sel(column=column).to_numpy(), strict=True
+        )
+    ]
     return Table(("column", "level", "parameter of the model", "value"), rows)
 
 
@@ -102,7 +112,8 @@ _TABLES: dict[str, Callable[[Assessment], Table]] = {
     "contact-by-record": run_tables.friction_by_record,
     "contact-to-margin": margin_tables.friction_to_margin,
     "sliding": run_tables.sliding,
-    "robustness": run_tables.small_changes,
+    "variations": run_tables.small_variations,
+    "near-scales": run_tables.near_scales,
     "planar": run_tables.planar,
     "planar-bias": run_tables.planar_bias,
     "fragility": _fragility,

@@ -38,16 +38,19 @@ SLIP_AND_FLIGHT: dict[bool, tuple[str, str]] = {
 """Remark on slip and flight, by the option `sliding`."""
 
 VERDICT_CLASSES: tuple[tuple[str, str], ...] = (
-    ("NOT shown safe", "at least one record overturned the column at some stated dissipation"),
+    (
+        "NOT shown safe",
+        "at least one record overturned the column at some stated dissipation, with the given or the other contact law",
+    ),
     (
         "Survival NOT robust",
-        "no record overturned it at any stated dissipation, but the vertical component, a smaller scale, a small "
-        "change, an undecided run or too little friction leaves the verdict open",
+        "no record overturned it at any stated dissipation and contact law, but the vertical component, another scale "
+        "within 10 % or below, a small variation, an undecided run or too little friction leaves the verdict open",
     ),
     (
         "Survived every run",
-        "no record overturned it at any stated dissipation, every small change that was tried was decided "
-        "and flipped no verdict, and the stated friction suffices",
+        "no record overturned it at any stated dissipation and contact law, at any scale tried within 10 %, or in any "
+        "small variation; all runs were decided, and the stated friction suffices",
     ),
     (
         "Not described by these runs",

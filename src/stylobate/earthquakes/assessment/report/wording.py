@@ -40,10 +40,10 @@ def least_scale(margins: xr.Dataset) -> str:
         return f"none up to {number(float(margins['margin_scale'][-1]))}"
     found, below = float(margins["least_overturning"]), float(margins["largest_below"])
     if not math.isnan(below):
-        return f"{number(found, 4)} (not at {number(below, 4)})"
+        return f"at most {number(found, 4)} (not at {number(below, 4)})"
     if bool(margins["undecided_below"][0]):
-        return f"{number(found, 4)} (not decided just below)"
-    return f"{number(found)} or below"
+        return f"at most {number(found, 4)} (not decided just below)"
+    return f"at most {number(found)}"
 
 
 def bands(margins: xr.Dataset) -> str:
