@@ -87,7 +87,7 @@ def assess(
         Factors of the records at which verdicts are given; vertical components are scaled with them.
     margin_scales
         Factors of the search for overturning intervals, by default 300 from 0.2 to 5, evenly in their logarithm; 41
-        within 10 % of each of the `scales` are added. Below the smallest overturning one the scan is seven times finer.
+        within 10 % of each of the `scales` are added. Below the smallest overturning one, 2000 over the range are run.
     width
         Relative width to which the ends of overturning intervals are located.
     tail

@@ -16,8 +16,8 @@ from stylobate.studies.maps.uncertainty_exponent import overturned_or_not
 from stylobate.studies.sweeps import Executor
 from stylobate.studies.sweeps.computing import Progress
 
-REFINED = 7
-"""Factor by which the scan is refined below the smallest overturning scale: 300 scales become 2100."""
+FINE_SCALES = 2000
+"""Scales over the range of the scan that are run below the smallest overturning scale."""
 
 _BAND = ("band_from", "band_to", "safe_below", "safe_above")
 _FLAGS = ("open_below", "open_above", "undecided_below", "undecided_above")
@@ -121,7 +121,7 @@ def _bands(
         "vertical": case != NO_VERTICAL,
         "scales": inputs.margin_scales.tolist(),
         "width": inputs.width,
-        "refine": REFINED,
+        "fine scales": FINE_SCALES,
         "contact": contact,
     }
     return parts.get(f"{column}: margins, {case}", _scan_runs(inputs), identity, compute)
@@ -143,7 +143,7 @@ def _found(
         over={"motion": np.arange(len(motions))},
         scales=inputs.margin_scales,
         width=inputs.width,
-        refine=REFINED,
+        fine_scales=FINE_SCALES,
         tail=tail_of(model.column, inputs.tail),
         executor=executor,
         progress=progress,

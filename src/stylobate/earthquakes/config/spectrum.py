@@ -29,8 +29,9 @@ class Spectrum(Config):
         Whether to compute a rocking spectrum: peak tilts and tilt rates at the scale of the motion.
     width
         Relative width to which the ends of overturning intervals are located; 0.001 by default.
-    refine
-        Factor by which the steps of the scan are divided below the smallest overturning scale; 1 by default.
+    fine_scales
+        Number of scales over the same range of which those below the smallest overturning one are run too; none by
+        default.
     tail
         Free-vibration time after the base motion [s]; 40/`column.frequency_parameter` by default.
     """
@@ -40,7 +41,7 @@ class Spectrum(Config):
     scales: Scales | None = None
     rocking: bool = False
     width: float | None = None
-    refine: int | None = None
+    fine_scales: int | None = None
     tail: float | None = None
 
 
@@ -86,7 +87,9 @@ class SpectrumConfig(ManyRuns):
         over = {name: list(values) for name, values in axes.items() if rocking or name != "scale"}
         listed = ({"name": name, "values": values} for name, values in over.items())
         table: dict[str, Any] = {**dict(zip("xy", listed, strict=False)), "rocking": rocking}
-        table |= {name: provenance[name] for name in ("width", "refine", "tail") if provenance.get(name) is not None}
+        table |= {
+            name: provenance[name] for name in ("width", "fine_scales", "tail") if provenance.get(name) is not None
+        }
         if not rocking:
             table["scales"] = {"values": list(axes["scale"])}
         return cls.parse({**common_values(provenance), "spectrum": table})
@@ -106,7 +109,7 @@ class SpectrumConfig(ManyRuns):
         if table.scales is not None:
             chosen["scales"] = built("spectrum.scales", table.scales.build, problems)
         chosen |= {
-            name: getattr(table, name) for name in ("width", "refine", "tail") if getattr(table, name) is not None
+            name: getattr(table, name) for name in ("width", "fine_scales", "tail") if getattr(table, name) is not None
         }
         model, motion, options = self.common(problems, ("duration",))
         del options["periods"]
@@ -123,7 +126,7 @@ class SpectrumConfig(ManyRuns):
         if table.rocking:
             problems += [
                 f"spectrum.{name} is not supported by a rocking spectrum. Remove it."
-                for name in ("scales", "width", "refine")
+                for name in ("scales", "width", "fine_scales")
                 if getattr(table, name) is not None
             ]
             if table.x is None:

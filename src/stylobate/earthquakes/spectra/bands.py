@@ -24,9 +24,11 @@ from stylobate.studies.sweeps.computing import Progress, silent
 from stylobate.studies.sweeps.quantities import Floats, checked_values
 from stylobate.studies.sweeps.recipe import RunOptions
 
+# Scales that differ by less than this fraction count as equal.
+_SAME_SCALE = 1e-9
 # Smallest relative width of an edge; below it the ends differ by rounding only.
 _NARROWEST = 1e-9
-_FINEST = Most(1000, "since finer scales are better given as scales")
+_FINEST = Most(1_000_000, "since each scale is a run")
 
 
 def overturning_bands(
@@ -36,7 +38,7 @@ def overturning_bands(
     scales: npt.ArrayLike,
     over: Mapping[str, npt.ArrayLike] | None = None,
     width: float = 1e-3,
-    refine: int = 1,
+    fine_scales: int = 0,
     tail: float | None = None,
     duration: float | None = None,
     store: str | Path | None = None,
@@ -64,9 +66,10 @@ def overturning_bands(
         the places of the motions in a `OneOf`. By default one case.
     width
         Relative width, high/low − 1, to which edges are bisected.
-    refine
-        Factor by which the steps of the scan are divided below the smallest overturning scale that it finds, where the
-        column rocks. Isolated intervals far narrower than a step are common there; each was missed by chance.
+    fine_scales
+        Number of scales, evenly spaced in their logarithm over the range of `scales`, of a finer scan; only those below
+        the smallest overturning scale of a case are run, where the column rocks. Isolated intervals far narrower than a
+        step are common there, and a scan misses them by chance.
     tail
         Free-vibration time after the end of the base motion [s]; by default 40/p of each case. A column that has not
         overturned by then counts as surviving. Within about 10⁻⁶ of an edge that may be wrong after 20/p, within 10⁻¹²
@@ -145,10 +148,10 @@ def overturning_bands(
         durations=cases.durations(duration, tail),
         scales=_checked_scales(scales),
         width=_checked_width(width),
-        refine=require_whole("refine", refine, least=1, most=_FINEST),
+        fine_scales=require_whole("fine_scales", fine_scales, least=0, most=_FINEST),
         options=options,
         provenance=provenance_of_spectrum(
-            model, motion, options, tail=tail, duration=duration, width=float(width), refine=int(refine)
+            model, motion, options, tail=tail, duration=duration, width=float(width), fine_scales=int(fine_scales)
         ),
         store=None if store is None else Path(store),
         how={"executor": executor, "resume": resume},
@@ -165,7 +168,7 @@ class _Search:
     durations: Floats
     scales: Floats
     width: float
-    refine: int
+    fine_scales: int
     options: RunOptions
     provenance: str
     store: Path | None
@@ -198,20 +201,23 @@ class _Search:
         return self._as_dataset(runs, scan, edges)
 
     def _refined(self, case: Integers, scan: Ends, runs: xr.Dataset) -> tuple[Integers, Ends]:
-        """Add runs between the scales below the smallest overturning one of each case, if the column rocks there."""
+        """Add the runs of the finer scan below the smallest overturning scale of each case, if the column rocks there.
+
+        A column rocks at a scale between two of the scan if it rocks at the upper one.
+        """
+        fine = np.geomspace(self.scales[0], self.scales[-1], self.fine_scales) if self.fine_scales else np.empty(0)
+        above = np.searchsorted(self.scales, fine * (1.0 - _SAME_SCALE))  # a fine scale may be one of the scan
+        own = np.abs(self.scales[np.minimum(above, self.scales.size - 1)] / fine - 1.0) > _SAME_SCALE
+        fine, above = fine[own], above[own]
         shape = (self.cases.count, self.scales.size)
-        overturned = (scan.state == 1).reshape(shape)
-        below = ~np.logical_or.accumulate(overturned, axis=1)[:, :-1]
-        rocks = runs["peak_tilt"].to_numpy().reshape(shape)[:, 1:] > 0.0
-        chosen, place = np.nonzero(below & rocks)
-        if self.refine == 1 or chosen.size == 0:
+        first = np.where(scan.state == 1, scan.scale, np.inf).reshape(shape).min(axis=1)
+        rocks = runs["peak_tilt"].to_numpy().reshape(shape)[:, above] > 0.0
+        chosen, place = np.nonzero(rocks & (fine < first[:, np.newaxis]))
+        if chosen.size == 0:
             return case, scan
-        shares = np.arange(1, self.refine) / self.refine
-        steps = self.scales[1:] / self.scales[:-1]
-        more = (self.scales[place, np.newaxis] * steps[place, np.newaxis] ** shares).ravel()
-        own = np.repeat(chosen, self.refine - 1)
-        added = Ends.of(self._runs(own, more, self._folder(f"refined {self.refine}"), case.size + own.size), more)
-        found, cases = joined(scan, added), np.concatenate([case, own])
+        more, total = fine[place], case.size + chosen.size
+        added = Ends.of(self._runs(chosen, more, self._folder(f"fine {self.fine_scales}"), total), more)
+        found, cases = joined(scan, added), np.concatenate([case, chosen])
         order = np.lexsort((found.scale, cases))
         return cases[order], found[order]
 
@@ -252,15 +258,16 @@ class _Search:
                 provenance=self.provenance,
                 width=self.width,
                 scale_step=step - 1.0,
-                resolution=_resolution(step, self.refine),
+                resolution=_resolution(step, self.scales[-1] / self.scales[0], self.fine_scales),
                 runs=sum(self.done) or computed,
             )
         )
 
 
-def _resolution(step: float, refine: int) -> str:
+def _resolution(step: float, span: float, fine_scales: int) -> str:
     """State which intervals a scan with steps of this factor may have missed."""
-    finer = f", or {step ** (1.0 / refine):.4g} below the smallest overturning scale," if refine > 1 else ","
+    fine = span ** (1.0 / (fine_scales - 1)) if fine_scales > 1 else step
+    finer = f", or {fine:.4g} below the smallest overturning scale," if fine < step else ","
     return f"intervals and gaps narrower than the step of the scan, a factor {step:.4g}{finer} may be missed"
 
 
