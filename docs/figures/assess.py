@@ -16,7 +16,7 @@ from saving import save
 import stylobate as sb
 from stylobate.earthquakes.assessment.report.figures import (
     margins_figure,
-    robustness_figure,
+    shares_figure,
 )
 from stylobate.earthquakes.assessment.report.record_figures import spectra_figure
 from stylobate.earthquakes.assessment.report.summary import summary_text, verdict_table
@@ -62,7 +62,7 @@ def main(store: Path) -> None:
     margins = margins_figure(found, "slim column")
     save(head(found, spectra_figure(found)), FOLDER / "report.png")
     save(margins, FOLDER / "margins.png")
-    save(robustness_figure(found, "slim column", 1.0), FOLDER / "robustness.png")
+    save(shares_figure(found, "slim column", 1.0), FOLDER / "variations.png")
 
 
 if __name__ == "__main__":

@@ -49,10 +49,41 @@ def analysis() -> Figure:
 
 
 def robust() -> Figure:
-    """The same records near the median of their capacities, with small changes."""
-    found = sb.earthquakes.robustness(MODEL, quakes(12), scale=3.8)
-    print(found["share_flipped"].sel(limit_state="overturning").to_numpy())
-    return sb.plot(found)
+    """The same records near the median of their capacities, each under 300 small variations."""
+    verdicts = {
+        name: sb.verdict(MODEL, quake.scaled(3.8)) for name, quake in quakes(12).items()
+    }
+    print([(found.word.value, round(found.share, 2)) for found in verdicts.values()])
+    figure = Figure(figsize=(7.2, 3.6), layout="constrained")
+    axes = figure.subplots()
+    for place, found in enumerate(verdicts.values()):
+        low, high = found.interval
+        axes.barh(place, 100.0 * (high - low), 0.6, left=100.0 * low, color="#56B4E9")
+        axes.plot(100.0 * found.share, place, "|", color="#0072B2", markersize=10.0)
+        for mark, share in zip("ox", found.share_by_model.values(), strict=True):
+            axes.plot(
+                100.0 * share, place, mark, color="black", markersize=4.5, mfc="none"
+            )
+    for mark, name in zip(
+        "ox", next(iter(verdicts.values())).share_by_model, strict=True
+    ):
+        axes.plot([], [], mark, color="black", mfc="none", label=f"{name} alone")
+    for limit in (5.0, 95.0):
+        axes.axvline(limit, color="#767676", linewidth=0.8, linestyle="--")
+    axes.set_yticks(range(len(verdicts)), list(verdicts))
+    axes.set(
+        xlabel="share of variations that overturn the column [%]", ylim=(11.6, -0.6)
+    )
+    axes.spines[["top", "right"]].set_visible(False)
+    axes.legend(frameon=False, loc="upper left", bbox_to_anchor=(1.0, 1.0))
+    return figure
+
+
+def verdict() -> Figure:
+    """The verdict on the column of the front page under El Centro 1940."""
+    stone = sb.Column.solid(radius=0.3, height=3.0, density=2700.0)
+    model = sb.Wobbling(stone, damping=stone.housner_damping())
+    return sb.plot(sb.verdict(model, sb.sample_record("el centro 1940")))
 
 
 def directions() -> Figure:
@@ -112,7 +143,7 @@ def fragility() -> Figure:
     return sb.plot(fits.isel(limit_state=[1, 2, 4]))
 
 
-DRAWINGS = (analysis, robust, directions, bias, bias_usual, fragility)
+DRAWINGS = (analysis, robust, verdict, directions, bias, bias_usual, fragility)
 
 if __name__ == "__main__":
     for drawing in DRAWINGS:

@@ -117,7 +117,7 @@ def _margin_text(assessment: Assessment) -> str:
         f"Every record was run at {count} scale factors from {number(low)} to {number(high)}, and every change of the "
         f"outcome was located by bisection to {100.0 * assessment.setting['width']:g} %. The margin is the smallest "
         "scale factor found that overturned the column; below it 2000 scale factors over the range are run. Narrower "
-        "intervals may lie below, so read each margin as “at most”. A case is a level of dissipation, the central level "
+        "intervals may lie below, so read each margin as “at most”. A case is a level of dissipation, the central one "
         "without the vertical component, or a level with the other contact law. Overturning is not monotonic: a column "
         "may survive above the margin, so the last table lists every overturning interval found. Near the limit the "
         "outcome is erratic: a scan at other factors finds other narrow intervals. "
