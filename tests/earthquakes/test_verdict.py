@@ -130,7 +130,7 @@ def test_the_word_follows_from_the_interval(scale, word):
     assert low <= found.share <= high
     assert found.word is word
     assert str(found).startswith(word.value)
-    assert f"{(found.data['overturned'] == 1).sum():d} of 120" in str(found)
+    assert f"{percent(float((found.data['overturned'] == 1).mean()))} of 120 variations overturn" in str(found)
     counts, shares = found.data["model_runs"].to_numpy(), list(found.share_by_model.values())
     assert counts.sum() == 120
     assert np.dot(counts, shares) == pytest.approx(120.0 * found.share)

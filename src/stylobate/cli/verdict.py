@@ -117,7 +117,7 @@ class VerdictOfCase:
 
 
 def _why_not(model: "Model", *, single: bool, asked: bool) -> str:
-    """Return why a case has no verdict, in words; empty if it has one."""
+    """Name the reason for which a case has no verdict; empty if it has one."""
     if single:
         return "small variations were not tried (--single)"
     if model.planar_only:

@@ -48,8 +48,8 @@ rotation
 slope_x, slope_y
     Slope of the base [rad]: 0.07° each, together a tenth of a degree.
 start_x, start_y
-    Initial tilt over α_c: 10⁻⁴ each, ambient vibration. A column that already rocks by 10⁻³ is another case: it needs no
-    acceleration above its threshold to leave rest, and overturns far more often.
+    Initial tilt over α_c: 10⁻⁴ each, ambient vibration. A column that already rocks by 10⁻³ is another case: it needs
+    no acceleration above its threshold to leave rest, and overturns far more often.
 size
     Factor of all lengths: 1 %.
 slenderness

@@ -96,10 +96,9 @@ class Verdict:
     def __str__(self) -> str:
         """Return the verdict in one line."""
         low, high = self.interval
-        count = int((self.data["overturned"] == 1).sum())
         return (
-            f"{self.word.value}: {count} of {self.runs} small variations overturn the column "
-            f"({percent(self.share)}; {percent(self.confidence)} interval {percent(low)} to {percent(high)})"
+            f"{self.word.value}: {percent(self.share)} of {self.runs} variations overturn the column "
+            f"({percent(self.confidence)} interval {percent(low).removesuffix(' %')} to {percent(high)})"
         )
 
     def __repr__(self) -> str:
