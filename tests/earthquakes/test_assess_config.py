@@ -199,7 +199,7 @@ def test_the_example_runs_in_a_small_version():
         "records": {**values["records"], "processing": trimmed},
         "margin": {"from": 0.5, "to": 2.0, "number": 3},
         "variations": 0,
-        **dict.fromkeys(("planar", "contact"), False),
+        **dict.fromkeys(("contact_laws", "planar", "contact"), False),
         "tail": 1.0,
     }
     assert AssessConfig.parse(values).build().records.keys() == {"el centro 1940"}
