@@ -24,22 +24,20 @@ EXAMPLE = Path(__file__).parents[2] / "examples" / "assess" / "study.toml"
 
 def test_a_study_describes_the_arguments_of_assess():
     margin = {"from": 0.5, "to": 2.0, "number": 3}
-    setup = AssessConfig.parse({**STUDY, "margin": margin, "scales": [1.0, 2.0], "robustness": False}).build()
+    setup = AssessConfig.parse({**STUDY, "margin": margin, "scales": [1.0, 2.0], "contact_laws": False}).build()
     assert isinstance(setup.columns["tank"], sb.Wobbling)
     assert setup.columns["tank"].column == sb.Column.solid(radius=0.2, height=2.0, density=2700.0)
     assert setup.records == {"el centro 1940": sb.sample_record("el centro 1940")}
     np.testing.assert_allclose(setup.options["margin_scales"], [0.5, 1.0, 2.0])
     assert setup.options["dissipation"] == DISSIPATION
-    assert setup.options["changes"] == ()
+    assert setup.options["contact_laws"] is False
     usual = AssessConfig.parse(STUDY).build().options
-    assert (usual["margin_scales"][0], usual["margin_scales"].size) == (0.2, 60)
-    assert "changes" not in usual
-    assert "changes_at" not in usual
+    assert (usual["margin_scales"][0], usual["margin_scales"][-1], usual["margin_scales"].size) == (0.2, 5.0, 300)
+    assert (usual["contact_laws"], usual["variations"], usual["seed"]) == (True, 200, 0)
     assert (usual["rest_energy"], usual["sliding"]) == (None, False)
-    more = AssessConfig.parse({**STUDY, "robustness": ["low", "high"], "rest_energy": 1e-6, "sliding": True})
-    asked = more.build().options
-    assert (asked["changes_at"], asked["rest_energy"], asked["sliding"]) == (("low", "high"), 1e-6, True)
-    assert AssessConfig.parse({**STUDY, "robustness": []}).build().options["changes"] == ()
+    more = {"variations": 0, "seed": 3, "rest_energy": 1e-6, "sliding": True}
+    asked = AssessConfig.parse({**STUDY, **more}).build().options
+    assert {name: asked[name] for name in more} == more
 
 
 def test_the_levels_of_a_column_are_its_own_or_those_of_all():
@@ -97,7 +95,9 @@ def test_what_is_missing_or_unknown_is_one_line_each(change, messages):
         ({"model": {"damping": 0.1}}, "model.damping: `dissipation` sets it"),
         ({"width": 0.0}, "width must be positive"),
         ({"rest_energy": -1.0}, "rest_energy must be zero or positive, got -1.0"),
-        ({"robustness": ["middle"]}, "robustness: must name levels of dissipation (got 'middle'). Use true, false, or"),
+        ({"variations": -1}, "variations must be a whole number of at least 0, got -1"),
+        ({"variations": 1}, "variations: must be 0 or at least 2 (got 1). Pass a few hundred, or 0 for none."),
+        ({"seed": -1}, "seed must be a whole number of at least 0, got -1"),
         ({"margin": {"from": -1.0}}, "margin: from must be positive"),
         ({"margin": {"from": 5.0, "to": 3.0}}, "margin.from must be less than margin.to, got 5 and 3"),
         ({"margin": {"number": 1}}, "margin.number must be 2 or more, got 1"),
@@ -168,7 +168,7 @@ def test_all_that_cannot_be_built_is_told_at_once():
 def test_files_of_records_are_told_from_the_folder_of_the_study(tmp_path, monkeypatch):
     (tmp_path / "quakes").mkdir()
     np.savetxt(tmp_path / "quakes" / "a_NS.txt", [0.0, 0.1, 0.0])
-    text = '[records]\nsource = "quakes/*.txt"\nunits = "g"\nstep = 0.02\nsingle = true\n'
+    text = '[records]\nsource = "quakes/*.txt"\nunits = "g"\nstep = 0.02\none_component = true\n'
     (tmp_path / "study.toml").write_text(text, encoding="utf-8")
     (tmp_path / "short.toml").write_text('records = ["quakes/a_NS.txt"]\n', encoding="utf-8")
     monkeypatch.chdir("/")
@@ -198,7 +198,8 @@ def test_the_example_runs_in_a_small_version():
         "model": {"kind": "slender"},
         "records": {**values["records"], "processing": trimmed},
         "margin": {"from": 0.5, "to": 2.0, "number": 3},
-        **dict.fromkeys(("robustness", "planar", "contact"), False),
+        "variations": 0,
+        **dict.fromkeys(("contact_laws", "planar", "contact"), False),
         "tail": 1.0,
     }
     assert AssessConfig.parse(values).build().records.keys() == {"el centro 1940"}

@@ -1,7 +1,9 @@
 """The assessment of columns: its answers are those of single runs, whatever the order, interrupted or not."""
 
 import dataclasses
+import itertools
 import logging
+import math
 from functools import partial
 
 import numpy as np
@@ -10,20 +12,19 @@ import xarray as xr
 
 import stylobate as sb
 from stylobate.base_motions.records.listing import drifts
-from stylobate.earthquakes import assess, robustness
-from stylobate.earthquakes.assessment import robust
+from stylobate.earthquakes import LogUniformSpread, UniformSpread, assess, incremental_dynamic_analysis
+from stylobate.earthquakes.assessment import planar
 from stylobate.earthquakes.assessment.governing import governing_record
 from stylobate.earthquakes.assessment.inputs import Inputs
+from stylobate.earthquakes.assessment.margins import _in_band
 from stylobate.earthquakes.assessment.properties import record_properties
 from stylobate.earthquakes.assessment.report.column_verdict import VerdictClass, column_verdict
 from stylobate.earthquakes.assessment.sliding import sliding_model
-from stylobate.earthquakes.perturbations import Resampled, ScaledRecord, SlendernessScaled
 from stylobate.earthquakes.remarks import remark_on
 from stylobate.errors import FileError, ParameterError, UnlikelyInputWarning
 from stylobate.results import Assessment
 
 DISSIPATION = {"low": {"damping": 0.01}, "central": {"damping": 0.05}, "high": {"damping": 0.1}}
-CHANGES = (ScaledRecord(0.95), ScaledRecord(1.05), SlendernessScaled(0.99))
 
 
 def model(radius):
@@ -42,25 +43,29 @@ RECORDS = [record("strong", 8.0, 1.0), record("middle", 3.0, 1.5), record("weak"
 
 def assessed(columns=("slim", "stout"), records=RECORDS, **more):
     radii = {"slim": 0.2, "stout": 0.45}
-    options = {"changes": CHANGES, "changes_at": ["central"], "planar": False, "contact": False} | more
+    options = {"variations": 0, "contact_laws": False, "planar": False, "contact": False} | more
+    usual = {"dissipation": DISSIPATION, "friction_coefficient": 0.6, "scales": [0.5, 1.0], "tail": 2.0}
     return assess(
         {name: model(radii[name]) for name in columns},
         records,
-        dissipation=DISSIPATION,
         margin_scales=np.geomspace(0.5, 3.0, 9),
-        **{"friction_coefficient": 0.6, "scales": [0.5, 1.0], "tail": 2.0, **options},
+        **{**usual, **options},
     )
+
+
+FULL = {"variations": 20, "contact_laws": True}
 
 
 @pytest.fixture(scope="module")
 def found():
-    return assessed()
+    return assessed(**FULL)
 
 
 def test_columns_have_their_own_levels_of_dissipation_and_words_are_numbers_of_the_column():
     own = {"high": {"damping": 0.9}, "low": {"damping": 0.2}, "central": {"damping": "housner"}}
     columns = {name: model(radius) for name, radius in (("slim", 0.2), ("stout", 0.45))}
-    options = {"friction_coefficient": 0.6, "margin_scales": [0.5, 1.0], "changes": (), "planar": False, "tail": 1.0}
+    options = {"friction_coefficient": 0.6, "margin_scales": [0.5, 1.0], "planar": False, "tail": 1.0}
+    options |= {"variations": 0, "contact_laws": False, "contact": False}
     found = assess(columns, RECORDS[:1], dissipation={**DISSIPATION, "stout": own}, **options)
     housner = columns["stout"].column.housner_damping()
     expected = {"low": {"damping": 0.2}, "central": {"damping": housner}, "high": {"damping": 0.9}}
@@ -89,7 +94,7 @@ def test_verdicts_are_those_of_single_runs(found):
 
 def test_the_setting_names_the_tail(found):
     assert found.setting["tail"] == 2.0
-    free = assessed(columns=("slim",), records=RECORDS[2:], scales=[1.0], changes=(), tail=None)
+    free = assessed(columns=("slim",), records=RECORDS[2:], scales=[1.0], tail=None)
     assert (free.setting["tail"], free.setting["tail_over_p"]) == ("20/p", 20.0)
 
 
@@ -119,7 +124,7 @@ def test_the_margin_parts_scales_that_overturn_from_those_that_do_not(found):
 
 
 def test_the_order_of_records_and_columns_changes_no_number(found):
-    other = assessed(columns=("stout", "slim"), records=RECORDS[::-1])
+    other = assessed(columns=("stout", "slim"), records=RECORDS[::-1], **FULL)
     for name, data in found.data.items():
         xr.testing.assert_identical(
             other.data[name].sel(column=["slim", "stout"]) if "column" in data.dims else data, data
@@ -136,50 +141,78 @@ def test_an_assessment_is_saved_and_shown_again(found, tmp_path):
         Assessment.load(tmp_path / "run.nc")
 
 
-def test_interrupted_work_goes_on_where_it_was(found, tmp_path, caplog):
-    seen = []
+def test_interrupted_work_goes_on_where_it_was_and_computes_no_part_twice(found, tmp_path, caplog, monkeypatch):
+    monkeypatch.setattr(planar, "_TOGETHER", 1)
+    store = tmp_path / "store"
+    work = partial(assessed, columns=("slim",), records=RECORDS[:2], store=store, **FULL)
+    begun, again = [], []
 
     def stop(what, done, total):
         del done, total
-        seen.append(what)
-        if "small changes" in what:
+        begun.append(what)
+        # The second part of the small variations ends the first attempt.
+        if len({name for name in begun if "small variations" in name}) == 2:
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        assessed(columns=("slim",), store=tmp_path / "store", progress=stop)
-    kept = {path.name: path.stat().st_mtime_ns for path in (tmp_path / "store").glob("*.nc")}
-    assert len(kept) == 5  # spectra, verdicts, and margins at three levels
-    whole = assessed(columns=("slim",), store=tmp_path / "store")
-    assert {name: (tmp_path / "store" / name).stat().st_mtime_ns for name in kept} == kept
-    for name in ("verdicts", "margins", "robustness", "summary"):
-        xr.testing.assert_equal(whole.data[name], found.data[name].sel(column=["slim"]))
+        work(progress=stop)
+    kept = {path.name: path.stat().st_mtime_ns for path in store.glob("*.nc")}
+    # Spectra, verdicts, margins at three levels with two contact laws, and the first part of the small variations.
+    assert len(kept) == 9 == len(set(begun)) - 1
+    whole = work(progress=lambda what, *_: again.append(what))
+    assert {name: (store / name).stat().st_mtime_ns for name in kept} == kept
+    assert set(begun) & set(again) == {begun[-1]}
+    for name in ("verdicts", "margins", "variations"):
+        expected = found.data[name].sel(column=["slim"], record=["middle", "strong"])
+        xr.testing.assert_equal(whole.data[name], expected)
     assert not caplog.messages
     with caplog.at_level(logging.INFO, logger="stylobate"):
-        assessed(columns=("slim",), store=tmp_path / "store")
-    assert caplog.messages == [f"8 of 8 parts were read from {tmp_path / 'store'} and not computed again"]
-    # Another record is another part.
-    assessed(columns=("slim",), records=[*RECORDS[:2], RECORDS[2].scaled(1.1)], store=tmp_path / "store", changes=())
-    assert len(list((tmp_path / "store").glob("*.nc"))) > len(kept) + 4
+        work(progress=lambda *_: pytest.fail("computed again"))
+    # Eight parts, two records at two scales, and the histories.
+    assert caplog.messages == [f"13 of 13 parts were read from {store} and not computed again"]
+
+
+@pytest.mark.parametrize(
+    ("change", "parts"),
+    [
+        ({"variations": 5}, {"small variations"}),
+        ({"seed": 1}, {"small variations"}),
+        (
+            {"records": [RECORDS[1].scaled(1.1)]},
+            {"small", "margins", "spectra", "verdicts", "histories"},
+        ),
+        ({"dissipation": {**DISSIPATION, "high": {"damping": 0.2}}}, {"small", "margins", "verdicts", "histories"}),
+    ],
+)
+def test_a_part_of_another_input_is_another_part(change, parts, tmp_path):
+    usual = {"columns": ("slim",), "records": RECORDS[1:2], "scales": [1.0], "variations": 4, "store": tmp_path}
+    assessed(**usual)
+    seen = []
+    assessed(**{**usual, **change}, progress=lambda what, *_: seen.append(what))
+    assert all(any(part in name for part in parts) for name in seen), seen
+    assert all(any(part in name for name in seen) for part in parts), seen
 
 
 def test_records_are_computed_some_at_a_time_and_the_whole_is_that_of_all_at_once(monkeypatch):
-    one_by_one = partial(assessed, columns=("slim",), records=RECORDS[:2], planar=True, changes=CHANGES[:1])
-    told = {"whole": [], "parts": []}
-    whole = one_by_one(progress=lambda *one: told["whole"].append(one))
-    monkeypatch.setattr(robust, "_TOGETHER", 1)
-    parts = one_by_one(progress=lambda *one: told["parts"].append(one))
-    for name in ("robustness", "planar", "summary"):
+    few = partial(assessed, columns=("slim",), records=RECORDS[:2], planar=True, variations=4)
+    announced = {"whole": [], "parts": []}
+    whole = few(progress=lambda *one: announced["whole"].append(one))
+    monkeypatch.setattr(planar, "_TOGETHER", 1)
+    parts = few(progress=lambda *one: announced["parts"].append(one))
+    for name in ("variations", "planar", "summary"):
         xr.testing.assert_equal(parts.data[name], whole.data[name])
         for one, array in whole.data[name].items():
             assert parts.data[name][one].attrs.get("long_name") == array.attrs.get("long_name")
     for which, records in (("whole", {"middle to strong"}), ("parts", {"strong", "middle"})):
-        names, done, totals = zip(*told[which], strict=True)
-        assert {name.rpartition(", ")[2] for name in names if name.startswith("slim: planar")} == records
+        names, done, totals = zip(*announced[which], strict=True)
+        for subject in ("planar", "small variations"):
+            own = [name for name in names if name.startswith(f"slim: {subject}")]
+            assert {name.rpartition(", ")[2] for name in own} == records
         # A column has one history or two; the other runs are known.
         assert done[-1] - 1 <= totals[-1] <= done[-1]
         # Two components and the three-dimensional column, two records, two scales.
-        planar = [count for name, count, _ in told[which] if name.startswith("slim: planar")]
-        assert max(planar) - min(planar) == 12
+        counts = [count for name, count, _ in announced[which] if name.startswith("slim: planar")]
+        assert max(counts) - min(counts) == 12
 
 
 def test_what_is_perhaps_in_another_unit_or_one_event_is_remarked():
@@ -203,33 +236,184 @@ def test_a_height_that_is_not_given_is_judged_by_the_centre_of_mass():
         remark_on({"high": body(61.0)}, [])
 
 
-def test_small_changes_flip_what_lies_at_the_margin_and_nothing_far_from_it(found):
-    least = float(found.data["margins"].sel(column="slim", case="central", record="middle")["least_overturning"])
-    close = assessed(columns=("slim",), records=RECORDS[1:2], scales=[0.5, 1.01 * least])
-    flips = close.data["robustness"]["flips"].sel(column="slim", record="middle", dissipation="central")
-    assert flips.sel(scale=1.01 * least, change="scale -5 %").item() == 1
-    assert (flips.sel(scale=0.5) == 0).all()
-    assert int(close.data["summary"]["not_robust"].sel(column="slim", scale=1.01 * least)) == 1
+BARE = {
+    "contact_laws": True,
+    "variations": 0,
+    "seed": 0,
+    "width": 1e-2,
+    "tail": 2.0,
+    "least_records": 20,
+    "options": {},
+}
 
 
-def test_verdicts_are_repeated_at_every_stated_dissipation_or_at_those_named(found):
-    every = assessed(columns=("slim",), records=RECORDS[1:2], changes_at=None)
-    robust = every.data["robustness"]
-    assert list(robust["dissipation"].values) == list(DISSIPATION)
-    for level, numbers in DISSIPATION.items():
-        column = sb.Slender(model(0.2).column, **numbers)
-        own = robustness(column, {"middle": RECORDS[1]}, scale=1.0, changes=CHANGES, tail=2.0)
-        flips = own["flips"].sel(limit_state="overturning", record="middle")
-        own_flips = robust["flips"].sel(column="slim", record="middle", scale=1.0, dissipation=level)
-        assert own_flips.values.tolist() == flips.values.astype(int).tolist()
-    counted = (robust["flipped"] > 0).any("dissipation").sum("record")
-    assert every.data["summary"]["not_robust"].transpose(*counted.dims).values.tolist() == counted.values.tolist()
-    assert found.data["robustness"].sizes["dissipation"] == 1
-    xr.testing.assert_equal(
-        found.data["robustness"]["flips"].sel(column=["slim"], record=["middle"]),
-        robust["flips"].sel(dissipation=["central"]),
+def inputs_of(columns, records, **more):
+    return Inputs.of(columns, records, DISSIPATION, 0.6, [1.0], [0.5, 1.0, 3.0], **{**BARE, **more})
+
+
+RISING = sb.Record(
+    samples=np.concatenate([RECORDS[1].samples[:, :2], 2.0 * np.hanning(101)[:, np.newaxis]], axis=-1),
+    step=0.02,
+    name="rising",
+)
+
+
+def overturned(column, motion, scales, vertical=True):
+    runs = incremental_dynamic_analysis(column, motion, scales=scales, tail=2.0, vertical=vertical)
+    return runs["reached"].sel(limit_state="overturning").values
+
+
+def test_the_band_share_is_the_share_of_overturning_runs_at_41_scales_within_ten_percent():
+    assessment = assessed(columns=("slim",), records=[RISING, RECORDS[1]], scales=[0.5, 1.3], contact_laws=True)
+    shares = assessment.data["margins"]["band_share"].sel(column="slim")
+    laws = {"": sb.Slender, ", other contact law": sb.SlenderRolling}
+    cases = {
+        f"{level}{law}": laws[law](model(0.2).column, **DISSIPATION[level]) for law in laws for level in DISSIPATION
+    }
+    cases["central, no vertical"] = cases["central"]
+    assert sorted(shares["case"].values) == sorted(cases)
+    for (case, column), record, scale in itertools.product(cases.items(), (RISING, RECORDS[1]), (0.5, 1.3)):
+        near = overturned(column, record, scale * np.linspace(0.9, 1.1, 41), vertical=not case.endswith("vertical"))
+        assert float(shares.sel(case=case, record=record.name, scale=scale)) == np.mean(near == 1)
+    assert ((shares.sel(scale=1.3) > 0.0) & (shares.sel(scale=1.3) < 1.0)).any()
+    assert (shares.sel(scale=0.5) == 0.0).all()
+    other = shares.sel(case="central, no vertical", record="rising"), shares.sel(case="central", record="rising")
+    assert not np.array_equal(*other)
+
+
+def test_a_scale_that_overturns_between_the_41_is_within_ten_percent_too():
+    inputs = inputs_of({"slim": model(0.2)}, [RECORDS[0]])
+    near = inputs.margin_scales[inputs.around(1.0)]
+    np.testing.assert_allclose(near, np.linspace(0.9, 1.1, 41), rtol=1e-9)
+    bands = {(near[3] * 1.001, near[3] * 1.002): 1, (near[-1] * 1.001, 3.0): 0, (0.5, near[0] * 0.999): 0}
+    bands |= {(near[-1], 3.0): 1, (0.5, near[0]): 1, (0.5, 3.0): 1, (np.nan, np.nan): 0}
+    for (low, high), inside in bands.items():
+        margins = xr.Dataset({"band_from": ("band", [low]), "band_to": ("band", [high])})
+        assert _in_band(inputs, margins).values.tolist() == [inside]
+
+
+MARGINS = ("least_overturning", "least_lasting", "largest_below", "decided_to", "bands", "unknown", "stands_again")
+MARGINS = (
+    *MARGINS,
+    "outcome",
+    "tilt_ratio",
+    "band_share",
+    "in_band",
+    "band_from",
+    "band_to",
+    "safe_below",
+    "safe_above",
+)
+
+
+def own_margins(assessment, column, record, **case):
+    margins = assessment.data["margins"][list(MARGINS)].sel(column=column, record=record, **case, drop=True)
+    return margins.dropna("band", how="all")
+
+
+# The kernel with contact demands rounds otherwise: tilts agree to the tolerance of the integration.
+@pytest.mark.parametrize(("more", "rtol"), [({"planar": True}, 0.0), ({"contact": True}, 1e-8)])
+def test_the_margin_of_a_record_depends_on_nothing_but_record_and_column(found, more, rtol):
+    alone = assessed(columns=("slim",), records=RECORDS[1:2], **more)
+    for level in DISSIPATION:
+        own, expected = (own_margins(one, "slim", "middle", case=level) for one in (alone, found))
+        xr.testing.assert_allclose(own, expected, rtol=rtol, atol=0.0)
+
+
+def test_margins_with_the_other_contact_law_are_those_of_the_other_model(found):
+    other = assess(
+        {"slim": sb.SlenderRolling(model(0.2).column)},
+        RECORDS[:2],
+        dissipation=DISSIPATION,
+        margin_scales=np.geomspace(0.5, 3.0, 9),
+        friction_coefficient=0.6,
+        scales=[0.5, 1.0],
+        tail=2.0,
+        contact=False,
+        planar=False,
+        variations=0,
     )
-    assert found.setting["changes_at"] == ["central"]
+    for level, record in itertools.product(DISSIPATION, ("strong", "middle")):
+        pair = level, f"{level}, other contact law"
+        for mine, its in (pair, pair[::-1]):
+            expected = own_margins(other, "slim", record, case=its)
+            xr.testing.assert_equal(own_margins(found, "slim", record, case=mine), expected)
+    tilts = found.data["margins"]["tilt_ratio"].sel(column="slim", record="middle")
+    rolling = tilts.sel(case="central, other contact law")
+    moving = np.isfinite(rolling) & (rolling > 0.1)
+    assert (abs(rolling / tilts.sel(case="central") - 1.0) > 1e-3).where(moving, False).any()
+
+
+def test_without_a_second_model_or_if_not_wanted_there_is_one_contact_law():
+    class Own(sb.Slender):
+        """A model of the user."""
+
+    levels = tuple(DISSIPATION)
+    both = tuple(f"{level}, other contact law" for level in levels)
+    slim, own = model(0.2), Own(model(0.2).column)
+    assert inputs_of({"slim": slim}, RECORDS).cases == (*levels, *both)
+    assert inputs_of({"slim": slim}, RECORDS, contact_laws=False).cases == levels
+    assert inputs_of({"slim": slim, "own": own}, RECORDS).cases == levels
+    assert inputs_of({"slim": slim}, [RISING]).cases == (*levels, "central, no vertical", *both)
+
+
+def check_shares(found, verdict):
+    assert (float(found["share"]), str(found["word"].item())) == (verdict.share, verdict.word.value)
+    assert (float(found["share_low"]), float(found["share_high"])) == verdict.interval
+    assert found["deciding"].item() == verdict.deciding
+    laws = dict(zip(found["contact_law"].values, found["law_share"].values, strict=True))
+    assert laws == pytest.approx(dict(verdict.share_by_model), nan_ok=True)
+    state = verdict.data["overturned"].values
+    counts = [int(found[name]) for name in ("overturned", "open", "runs")]
+    assert counts == [np.sum(state == 1), np.sum(state == -1), state.size]
+    tilts = np.sort(verdict.data["tilt_ratio"].dropna("run").values)
+    for name, at in (("low", 0.05), ("median", 0.5), ("high", 0.95)):
+        assert float(found[f"tilt_ratio_{name}"]) == tilts[math.ceil(at * (tilts.size - 1))]
+
+
+def test_shares_are_those_of_verdicts_with_the_damping_from_the_lowest_to_the_highest_level():
+    # A further level, and the levels in no order: the damping varies over all of them.
+    levels = {
+        "low": {"damping": 0.02},
+        "central": {"damping": 0.05},
+        "high": {"damping": 0.1},
+        "none": {"damping": 0.008},
+    }
+    more = {"records": RECORDS[:2], "columns": ("slim",), "dissipation": levels, "seed": 3}
+    variations = {"dissipation": None, "damping": LogUniformSpread(0.008, 0.1)}
+    assessment = assessed(scales=[0.5, 1.3], variations=30, contact_laws=True, **more)
+    shares = assessment.data["variations"].sel(column="slim")
+    column = sb.Slender(model(0.2).column, damping=0.05)
+    for record, scale in itertools.product(RECORDS[:2], (0.5, 1.3)):
+        verdict = sb.verdict(column, record.scaled(scale), variations=variations, runs=30, seed=3, tail=2.0)
+        check_shares(shares.sel(record=record.name, scale=scale), verdict)
+    assert 0.0 < float(shares["share"].sel(record="middle", scale=1.3)) < 1.0
+    alone = assessed(scales=[1.3], variations=30, **more).data["variations"].sel(column="slim", scale=1.3)
+    verdict = sb.verdict([column], RECORDS[1].scaled(1.3), variations=variations, runs=30, seed=3, tail=2.0)
+    check_shares(alone.sel(record="middle"), verdict)
+    assert list(alone["contact_law"].values) == ["slender"]
+
+
+def test_a_level_without_damping_begins_the_range_and_a_column_varies_over_its_own_levels():
+    free = {"low": {"damping": 0.0}, "central": {"damping": 0.05}, "high": {"damping": 0.1}}
+    levels = {**DISSIPATION, "stout": free}
+    assessment = assessed(records=RECORDS[:1], scales=[1.0], variations=20, dissipation=levels, tail=1.0)
+    spreads = {"slim": LogUniformSpread(0.01, 0.1), "stout": UniformSpread(0.0, 0.1)}
+    for (name, spread), radius in zip(spreads.items(), (0.2, 0.45), strict=True):
+        column = sb.Slender(model(radius).column, damping=0.05)
+        variations = {"dissipation": None, "damping": spread}
+        verdict = sb.verdict([column], RECORDS[0], variations=variations, runs=20, tail=1.0)
+        check_shares(assessment.data["variations"].sel(column=name, record="strong", scale=1.0), verdict)
+
+
+def test_variations_disagree_near_the_margin_and_agree_far_from_it(found):
+    least = float(found.data["margins"].sel(column="slim", case="central", record="middle")["least_overturning"])
+    close = assessed(columns=("slim",), records=RECORDS[1:2], scales=[0.5, 1.005 * least, 2.5 * least], variations=60)
+    shares = close.data["variations"].sel(column="slim", record="middle")
+    assert list(shares["word"].values) == ["stands", "undecided", "overturns"]
+    assert list(shares["share"].values[[0, 2]]) == [0.0, 1.0]
+    assert list(close.data["summary"]["variations_disagree"].sel(column="slim").values) == [0, 1, 0]
+    assert list(close.data["summary"]["undecided_word"].sel(column="slim").values) == [0, 1, 0]
 
 
 def test_the_rest_threshold_is_an_option_of_all_runs():
@@ -247,7 +431,8 @@ def test_the_rest_threshold_is_an_option_of_all_runs():
             dissipation={level: {"damping": eta} for level, eta in (("low", 0.5), ("central", 0.6), ("high", 0.7))},
             friction_coefficient=0.6,
             margin_scales=[0.8, 1.0],
-            changes=(),
+            variations=0,
+            contact_laws=False,
             planar=False,
             contact=False,
             tail=2.0,
@@ -273,7 +458,7 @@ LIFTING = sb.Record(
 
 
 def test_runs_that_lift_off_are_undecided_and_end_what_is_known():
-    assessment = assessed(columns=("slim", "stout"), records=[LIFTING], changes=(), scales=[0.5, 2.9])
+    assessment = assessed(columns=("slim", "stout"), records=[LIFTING], scales=[0.5, 2.9])
     # The base falls faster than g from the scale g / sup(−a_z) on.
     limit = 9.80665 / 4.0
     margins = assessment.data["margins"].sel(case="central", record="lifting")
@@ -297,23 +482,23 @@ def test_runs_that_lift_off_are_undecided_and_end_what_is_known():
     assert float(summary["decided_to"]) == float(margins["decided_to"].sel(column="stout"))
 
 
-def test_a_change_that_is_not_decided_is_told_apart_from_one_that_does_not_apply():
-    # 2.4 stays below the limit 2.45 from which on the base falls faster than g, 5 % more does not.
-    changes = (ScaledRecord(1.05), Resampled(0.5))
-    pulse = sb.Pulse.one_sine(acceleration=0.5, angular_frequency=6.0)
+def test_variations_and_near_scales_that_lift_off_are_counted_as_open():
+    # 2.4 stays below the limit 2.45 from which on the base falls faster than g; 5 % more does not.
     calm = sb.Record(samples=LIFTING.samples * (0.05, 0.05, 1.0), step=LIFTING.step)
-    assessment = assessed(columns=("stout",), records={"lifting": calm, "pulse": pulse}, changes=changes, scales=[2.4])
-    robust = assessment.data["robustness"].isel(column=0, scale=0).sel(dissipation="central")
-    lifting, pulse = (robust.sel(record=name) for name in ("lifting", "pulse"))
-    assert lifting["applies"].values.tolist() == [1, 1]
-    assert pulse["applies"].values.tolist() == [1, 0]
-    assert (int(lifting["undecided"]), int(pulse["undecided"])) == (1, 0)
-    assert lifting["flips"].values.tolist() == [-1, 0]
-    assert pulse["flips"].values.tolist() == [0, -1]
-    assert int(assessment.data["summary"]["changes_undecided"].item()) == 1
+    assessment = assessed(columns=("stout",), records={"calm": calm}, variations=40, scales=[2.4])
+    shares = assessment.data["variations"].isel(column=0, scale=0, record=0)
+    assert (int(shares["overturned"]), float(shares["share"])) == (0, 0.0)
+    assert 0 < int(shares["open"]) < 40
+    # Each undecided run might have overturned.
+    assert float(shares["share_high"]) > int(shares["open"]) / 40
+    assert np.isfinite(float(shares["tilt_ratio_high"]))
+    assert shares["word"].item() == "undecided"
+    band = assessment.data["margins"]["band_share"].isel(column=0, scale=0, record=0)
+    assert (band == 0.0).all()  # of the decided ones
     found = column_verdict(assessment, "stout", 2.4)
     assert found.verdict is VerdictClass.OPEN
-    assert "a small change was not decided under lifting" in found.sentence
+    assert "a small variation was not decided under calm" in found.sentence
+    assert "not every scale within 10 % was decided (only up to 2.45)" in found.sentence
 
 
 def test_the_margin_is_drawn_by_its_two_runs_and_the_stated_one(found):
@@ -377,7 +562,7 @@ def test_a_record_that_overturned_as_recorded_governs_before_one_that_did_not(st
 
 def test_a_column_whose_friction_is_below_its_slenderness_slides_before_it_rocks():
     # c is 0.2 and 0.45, the friction 0.3: the stout one slides.
-    assessment = assessed(changes=(), friction_coefficient=0.3, records=RECORDS[:2], scales=[1.0])
+    assessment = assessed(friction_coefficient=0.3, records=RECORDS[:2], scales=[1.0])
     assert assessment.data["summary"]["slides_first"].sel(column=["slim", "stout"]).values.tolist() == [0, 1]
     margins = assessment.data["margins"]
     assert margins["standing_slip"].sel(column="slim").isnull().all()
@@ -391,9 +576,7 @@ def test_a_column_whose_friction_is_below_its_slenderness_slides_before_it_rocks
 
 def test_what_slides_first_is_followed_by_the_model_that_slides():
     # 0.3 g needs 2.94 m/s²: the weak record never gets there.
-    assessment = assessed(
-        changes=(), friction_coefficient=0.3, records=[RECORDS[0], RECORDS[2]], scales=[1.0], sliding=True
-    )
+    assessment = assessed(friction_coefficient=0.3, records=[RECORDS[0], RECORDS[2]], scales=[1.0], sliding=True)
     sliding = assessment.data["sliding"].isel(scale=0)
     assert (sliding["overturned"].sel(column="slim") == -1).all()
     strong, weak = (sliding.sel(column="stout", record=name) for name in ("strong", "weak"))
@@ -424,12 +607,7 @@ def test_a_record_drifts_where_one_of_its_components_does():
         0.6,
         [1.0],
         [0.5, 1.0],
-        (),
-        None,
-        width=1e-2,
-        tail=2.0,
-        least_records=20,
-        options={},
+        **BARE,
     )
     found = record_properties(inputs)
     assert found["drifts"].sel(record=["leaning", "straight"]).values.tolist() == [1, 0]
@@ -440,12 +618,16 @@ def test_a_record_drifts_where_one_of_its_components_does():
 def test_many_records_give_a_fragility_and_few_give_none(found):
     assert "fragility" not in found.data
     many = [record(f"record {place}", 2.0 + 0.6 * place, 1.0 + 0.1 * place) for place in range(4)]
-    fitted = assessed(columns=("slim",), records=many, changes=(), least_records=4).data["fragility"]
+    fitted = assessed(columns=("slim",), records=many, least_records=4).data["fragility"]
     states = fitted.sel(column="slim")
     assert states["curve_intensity"].attrs["component"] == states["median"].attrs["component"] == "RotD50"
-    assert int(states.sel(limit_state="overturning")["runs"]) == 40  # the scan, and scale 1
+    assert int(states.sel(limit_state="overturning")["runs"]) == 36  # nine scales
     assert int(states.sel(limit_state="tilt 0.001 α")["runs_reached"]) >= int(
         states.sel(limit_state="overturning")["runs_reached"]
+    )
+    # Runs near the stated scales would give these scales more weight.
+    xr.testing.assert_identical(
+        fitted, assessed(columns=("slim",), records=many, least_records=4, scales=[0.8]).data["fragility"]
     )
 
 
@@ -477,11 +659,9 @@ def test_many_records_give_a_fragility_and_few_give_none(found):
         ({"friction_coefficient": 0.0}, "friction_coefficient must be positive"),
         ({"friction_coefficient": {"other": 0.5}}, "'other' is no column"),
         ({"scales": []}, "scales must be positive numbers"),
-        (
-            {"changes_at": ["middle"]},
-            "changes_at: must name levels of dissipation \\(got 'middle'\\). Use some of low,",
-        ),
-        ({"changes_at": []}, "changes_at: must name levels of dissipation"),
+        ({"variations": -1}, "variations must be a whole number of at least 0"),
+        ({"variations": 1}, "variations: must be 0 or at least 2 .got 1.. Pass a few hundred"),
+        ({"seed": -1}, "seed must be a whole number of at least 0"),
         ({"margin_scales": [1.0]}, "margin_scales must be positive numbers, 2 or more"),
         (
             {"columns": {"planar": sb.PlanarRocking(sb.Column.dimensionless(0.1))}},

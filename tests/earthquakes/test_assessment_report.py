@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from matplotlib.colors import to_rgb
+from stylobate.earthquakes.perturbations import ScaledRecord
 
 import stylobate as sb
 from stylobate.earthquakes import assess, assessment_report, assessment_tables
@@ -23,7 +24,6 @@ from stylobate.earthquakes.assessment.report.summary import column_findings, sum
 from stylobate.earthquakes.assessment.report.wording import bands, least_scale
 from stylobate.earthquakes.assessment.summary import summary_of
 from stylobate.earthquakes.figures.band_regions import UNDECIDED
-from stylobate.earthquakes.perturbations import ScaledRecord
 from stylobate.results import DesignSpectrum, ReportDetails
 
 DETAILS = ReportDetails(

@@ -1,10 +1,12 @@
 """One-line verdicts of an assessment: their classes, the records they name, and the displacements beside tilts."""
 
+import itertools
+
 import numpy as np
 import pytest
 import xarray as xr
 
-from stylobate.earthquakes.assessment import robust
+import stylobate as sb
 from stylobate.earthquakes.assessment.report.cases import cases_of
 from stylobate.earthquakes.assessment.report.column_verdict import (
     VerdictClass,
@@ -15,18 +17,23 @@ from stylobate.earthquakes.assessment.report.displacements import displacement, 
 from stylobate.results import Assessment
 
 LEVELS, ACTS, RECORDS = ("low", "central", "high"), ("with", "without"), ("A", "B", "C")
-CASES = (*LEVELS, "central, no vertical")
+CASES = (*LEVELS, "central, no vertical", *(f"{level}, other contact law" for level in LEVELS))
+SCALES = (0.2, 0.95, 1.0, 1.05, 5.0)
 
 
 def made(
     runs=(),
     *,
-    changed=(),
     uncertain=(),
     need=(),
     friction=0.6,
     contact=True,
-    changes=LEVELS,
+    varied=None,
+    open_runs=None,
+    variations=200,
+    laws=True,
+    other_law=(),
+    in_band=None,
     least=None,
     decided=None,
     slips=None,
@@ -38,15 +45,20 @@ def made(
     ----------
     runs
         Record, dissipation, vertical and state of runs that did not stand.
-    changed
-        Record, dissipation, and state of the run with the small change: 1 overturned, −1 not decided, None where the
-        change does not apply.
     uncertain
         Records.
     need
         Record and friction needed.
-    changes
-        Levels at which small changes were tried.
+    varied, open_runs
+        Number of small variations that overturned the column, and that were not decided, by record.
+    variations
+        Number of small variations; without any there is no share.
+    laws
+        Whether the other contact law was run.
+    other_law
+        Record, level and outcome of the run with the other contact law at scale 1.
+    in_band
+        Share of overturning scales within 10 %, by record and case; 0 if only scales between the 41 overturned.
     least, decided
         Least overturning scale, and the largest up to which every run was decided, by record and case.
     slips
@@ -64,18 +76,10 @@ def made(
         unsure.loc[{"record": record}] = 1
     for record, value in need:
         needed.loc[{"record": record, "dissipation": "high"}] = value
-    by_case = {"column": ["k"], "case": list(CASES), "record": list(RECORDS)}
-    empty = xr.DataArray(np.full((1, 4, 3), np.nan), dims=tuple(by_case), coords=by_case)
-    margins = {"least_overturning": empty, "decided_to": empty.fillna(5.0), "standing_slip": empty.copy()}
-    for name, given in (("least_overturning", least), ("decided_to", decided)):
-        for (record, case), scale in (given or {}).items():
-            margins[name].loc[{"record": record, "case": case}] = scale
-    for record, scale in (slips or {}).items():
-        margins["standing_slip"].loc[{"record": record}] = scale
     peaks = {"peak_acceleration": ("record", [3.0, 1.0, 0.5]), "peak_acceleration_z": ("record", [1.0, 0.5, 0.0])}
     data = {
         "verdicts": xr.Dataset({"overturned": states, "uncertain": unsure, "friction_demand": needed}),
-        "margins": xr.Dataset(margins),
+        "margins": margins_of(laws, other_law, in_band or {}, least or {}, decided or {}, slips or {}),
         "records": xr.Dataset(peaks, coords={"record": list(RECORDS)}),
         "columns": xr.Dataset(
             {
@@ -86,51 +90,52 @@ def made(
             coords={"column": ["k"]},
         ),
     }
-    if changes:
-        central = states.sel(vertical="with", dissipation=list(changes), drop=True)
-        data["robustness"] = repeated(central, [one for one in changed if one[1] in changes])
-    if slid is not None:
+    if variations:
+        counts = [[(given or {}).get(name, 0) for name in RECORDS] for given in (varied, open_runs)]
+        arrays = zip(("share", "open"), (np.array(counts[0]) / variations, np.array(counts[1])), strict=True)
         known = {"column": ["k"], "record": list(RECORDS), "scale": [1.0]}
-        values = np.array([[[slid.get(name, (0, 0))] for name in RECORDS]], dtype=np.int8)
-        arrays = {name: (tuple(known), values[..., place]) for place, name in enumerate(("overturned", "uncertain"))}
-        still = np.where(values[..., 0] == 0, 0.012, np.nan)
-        data["sliding"] = xr.Dataset({**arrays, "peak_slip": (tuple(known), still)}, coords=known)
+        data["variations"] = xr.Dataset({name: (tuple(known), one.reshape(1, 3, 1)) for name, one in arrays}, known)
+    if slid is not None:
+        data["sliding"] = slid_by(slid)
     setting = {
         "friction_coefficient": {"k": friction},
         "contact": contact,
+        "variations": variations,
+        "contact_laws": laws,
         "margin_scales": [0.2, 5.0, 60],
         "scales": [1.0],
     }
     return Assessment(data=data, setting=setting)
 
 
-def repeated(states, changed):
-    """Return the robustness of verdicts under one small change, by the study's own counts."""
-    dims = ("dissipation", "record", "change")
-    given = (
-        states.isel(column=0, scale=0, drop=True).transpose("dissipation", "record").expand_dims(change=["scale +5 %"])
-    )
-    given = given.transpose(*dims)
-    after, applies = given.copy(), xr.ones_like(given, bool)
-    for record, level, state in changed:
-        place = {"record": record, "dissipation": level}
-        after.loc[place] = -1 if state is None else state
-        applies.loc[place] = state is not None
-    zero = xr.zeros_like(given, float)
-    found = xr.Dataset(
-        {
-            "reached": after.expand_dims(limit_state=["overturning"]),
-            "reached_as_given": given.isel(change=0, drop=True).expand_dims(limit_state=["overturning"]),
-            "applies": applies,
-            "tilt_ratio": zero,
-            "tilt_ratio_low": zero.isel(change=0, drop=True),
-            "tilt_ratio_high": zero.isel(change=0, drop=True),
-            "change_of": ("change", ["record"]),
-        }
-    )
-    levels = [robust._as_dataset(found.sel(dissipation=level, drop=True)) for level in given["dissipation"].to_numpy()]
-    joined = xr.concat(levels, dim=given["dissipation"], data_vars="all", join="override")
-    return joined.expand_dims(column=["k"], scale=[1.0])
+def margins_of(laws, other_law, in_band, least, decided, slips):
+    by_case = {"column": ["k"], "case": list(CASES), "record": list(RECORDS)}
+    by_case["case"] = by_case["case"] if laws else by_case["case"][:4]
+    empty = xr.DataArray(np.full((1, len(by_case["case"]), 3), np.nan), dims=tuple(by_case), coords=by_case)
+    margins = {"least_overturning": empty, "decided_to": empty.fillna(5.0), "standing_slip": empty.copy()}
+    for name, given in (("least_overturning", least), ("decided_to", decided)):
+        for (record, case), scale in given.items():
+            margins[name].loc[{"record": record, "case": case}] = scale
+    for record, scale in slips.items():
+        margins["standing_slip"].loc[{"record": record}] = scale
+    shares = empty.fillna(0.0).expand_dims(scale=[1.0]).copy()
+    near = shares.astype(np.int8)
+    for (record, case), share in in_band.items():
+        shares.loc[{"record": record, "case": case}] = share
+        near.loc[{"record": record, "case": case}] = 1
+    codes = empty.fillna(sb.Outcome.AT_REST).astype(np.int8).expand_dims(margin_scale=list(SCALES)).copy()
+    for record, level, outcome in other_law:
+        codes.loc[{"record": record, "case": f"{level}, other contact law", "margin_scale": 1.0}] = outcome
+    margins |= {"band_share": shares, "in_band": near, "outcome": codes}
+    return xr.Dataset(margins)
+
+
+def slid_by(slid):
+    known = {"column": ["k"], "record": list(RECORDS), "scale": [1.0]}
+    values = np.array([[[slid.get(name, (0, 0))] for name in RECORDS]], dtype=np.int8)
+    arrays = {name: (tuple(known), values[..., place]) for place, name in enumerate(("overturned", "uncertain"))}
+    still = np.where(values[..., 0] == 0, 0.012, np.nan)
+    return xr.Dataset({**arrays, "peak_slip": (tuple(known), still)}, coords=known)
 
 
 FALLEN = [("A", level, acts, 1) for level in LEVELS for acts in ACTS]
@@ -146,9 +151,8 @@ def test_a_column_overturned_as_recorded_is_not_shown_safe_and_the_records_are_n
         "overturned at the recorded level under 1 of 3 records (A) and under 1 more, but not at central dissipation "
         "(B at low)."
     )
-    assert (
-        least_overturning_scale(assessment, "k") == "Smallest overturning scale of all cases: 0.7 (B, low dissipation)."
-    )
+    least = "Smallest overturning scale of all cases: at most 0.7 (B, low dissipation)."
+    assert least_overturning_scale(assessment, "k") == least
 
 
 def test_a_column_overturned_at_one_stated_dissipation_only_is_not_shown_safe():
@@ -163,9 +167,15 @@ def test_a_column_that_stood_in_every_run_survived_every_run():
     found = column_verdict(made(), "k", 1.0)
     assert found.verdict is VerdictClass.SURVIVED
     assert "under all 3 records, at every stated dissipation" in found.sentence
-    assert found.sentence.endswith("at every stated dissipation and under every small change tried.")
-    few = column_verdict(made(changes=("central",)), "k", 1.0)
-    assert few.sentence.endswith("under every small change tried at central dissipation.")
+    assert found.sentence.endswith(
+        "at every stated dissipation, with both contact laws, at every scale tried within 10 % and under each of 200 "
+        "small variations."
+    )
+    one = column_verdict(made(laws=False, variations=20), "k", 1.0)
+    assert one.verdict is VerdictClass.SURVIVED
+    assert one.sentence.endswith(
+        "at every stated dissipation, at every scale tried within 10 % and under each of 20 small variations."
+    )
     assert least_overturning_scale(made(), "k") == "No scale up to 5 overturned it in any case."
 
 
@@ -176,17 +186,37 @@ def test_a_column_that_stood_in_every_run_survived_every_run():
         ({"runs": [("B", "central", "with", -1)]}, "not decided under B"),
         ({"runs": [("C", "high", "with", -1)]}, "some run was not decided under C"),
         ({"least": {("B", "high"): 0.8}}, "a smaller scale overturned it: 0.8 (B, high dissipation)"),
-        ({"changed": [("C", "low", 1)]}, "a small change flips the verdict under C"),
-        ({"changed": [("C", "high", -1)]}, "a small change was not decided under C"),
+        ({"varied": {"C": 1}}, "small variations overturned it under C (0.5 % of them)"),
+        ({"varied": {"B": 199, "C": 20}}, "small variations overturned it under B (99.5 % of them), C (10 % of them)"),
+        ({"varied": {"B": 20}, "laws": False}, "small variations overturned it under B (10 % of them)"),
+        ({"open_runs": {"C": 1}}, "a small variation was not decided under C"),
+        ({"open_runs": dict.fromkeys(RECORDS, 200)}, "a small variation was not decided under A, B, C"),
+        ({"in_band": {("B", "low"): 1 / 41}}, "a scale within 10 % overturned it under B (2 % of 41)"),
         (
-            {"changed": [(name, level, -1) for name in RECORDS for level in LEVELS]},
-            "a small change was not decided under A, B, C",
+            {"in_band": {("B", "low"): 1 / 41, ("B", "high, other contact law"): 0.5, ("C", "central"): 0.25}},
+            "a scale within 10 % overturned it under B (50 % of 41), C (25 % of 41)",
+        ),
+        (
+            {"in_band": {("A", "low, other contact law"): 0.0}},
+            "a scale within 10 % overturned it under A (an interval between them)",
+        ),
+        (
+            {"in_band": {("A", "central, no vertical"): np.nan}},
+            "a scale within 10 % overturned it under A (an interval between them)",
+        ),
+        (
+            {"least": {("B", "high, other contact law"): 0.8}},
+            "a smaller scale overturned it: 0.8 (B, high dissipation, other contact law)",
+        ),
+        (
+            {"decided": {("B", "high, other contact law"): 1.05}},
+            "not every scale within 10 % was decided (only up to 1.05)",
         ),
         ({"decided": {("B", "high"): 0.4}}, "not every scale up to this one was decided (only up to 0.4)"),
         ({"decided": {("B", "high"): np.nan}}, "not every scale up to this one was decided"),
         ({"uncertain": ["A"]}, "rounding could change the outcome under A"),
         ({"need": [("A", 0.72)]}, "the base would slip under A (friction 0.72 needed)"),
-        ({"changes": ()}, "small changes were not tried"),
+        ({"variations": 0}, "small variations were not tried"),
         ({"contact": False}, "the friction needed was not computed"),
     ],
 )
@@ -207,12 +237,13 @@ def test_a_column_that_slides_before_it_rocks_is_not_described_where_a_record_ca
 @pytest.mark.parametrize(
     ("least", "decided", "words"),
     [
-        (2.0, 5.0, "Smallest overturning scale of all cases: 2 (B, low dissipation)."),
-        (2.0, 3.0, "Smallest overturning scale of all cases: 2 (B, low dissipation)."),
+        (2.0, 5.0, "Smallest overturning scale of all cases: at most 2 (B, low dissipation)."),
+        (2.0, 3.0, "Smallest overturning scale of all cases: at most 2 (B, low dissipation)."),
         (
             2.0,
             0.4,
-            "Smallest overturning scale of all cases: 2 (B, low dissipation); not every scale above 0.4 was decided.",
+            "Smallest overturning scale of all cases: at most 2 (B, low dissipation); not every scale above 0.4 was "
+            "decided.",
         ),
         (
             2.0,
@@ -272,11 +303,47 @@ def test_one_overturning_outweighs_all_undecided_runs():
     assert "Not decided: A, B, C." in found.sentence
 
 
-def test_flips_at_any_dissipation_count_and_changes_that_do_not_apply_do_not():
-    assert cases_of(made(changed=[("B", "low", 1)]), "k", 1.0).flipped == ("B",)
-    none = made(changed=[(name, level, None) for name in RECORDS for level in LEVELS])
-    assert cases_of(none, "k", 1.0).changes_undecided == ()
-    assert column_verdict(none, "k", 1.0).verdict is VerdictClass.SURVIVED
+@pytest.mark.parametrize("level", LEVELS)
+def test_a_column_overturned_with_the_other_contact_law_only_is_not_shown_safe(level):
+    overturned = sb.Outcome.OVERTURNED
+    found = column_verdict(made(other_law=[("B", level, overturned)]), "k", 1.0)
+    assert found.verdict is VerdictClass.OVERTURNED
+    assert found.sentence == (
+        f"overturned at the recorded level under 1 of 3 records with the other contact law only (B at {level})."
+    )
+    # A record that overturned it with the given law too is named once.
+    both = column_verdict(made([("B", level, "with", 1)], other_law=[("B", level, overturned)]), "k", 1.0)
+    assert both.sentence.count("B") == 1
+    assert cases_of(made(other_law=[("B", level, sb.Outcome.FAILED)]), "k", 1.0).with_other_law == {}
+
+
+def test_the_other_law_beside_the_given_one_and_the_largest_share_are_stated():
+    runs = [*FALLEN, ("B", "low", "with", 1)]
+    other = [("C", level, sb.Outcome.OVERTURNED) for level in LEVELS]
+    found = column_verdict(made(runs, other_law=other, varied={"A": 90, "C": 130}), "k", 1.0)
+    assert found.sentence == (
+        "overturned at the recorded level under 1 of 3 records (A), under 1 more, but not at central dissipation "
+        "(B at low) and under 1 of 3 records with the other contact law only (C at low, central and high). Up to 65 % "
+        "of the small variations overturn it (C)."
+    )
+
+
+def test_nothing_that_overturned_leaves_the_class_of_survivals_at_any_record_level_or_law():
+    for record, case in itertools.product(RECORDS, CASES):
+        for share in (0.0, 1 / 41, 1.0):
+            near = made(in_band={(record, case): share})
+            assert column_verdict(near, "k", 1.0).verdict is VerdictClass.OPEN
+    for record, count in itertools.product(RECORDS, (1, 100, 200)):
+        assert column_verdict(made(varied={record: count}), "k", 1.0).verdict is VerdictClass.OPEN
+    for record, level in itertools.product(RECORDS, LEVELS):
+        other = made(other_law=[(record, level, sb.Outcome.OVERTURNED)])
+        assert column_verdict(other, "k", 1.0).verdict is VerdictClass.OVERTURNED
+
+
+def test_a_scale_that_was_decided_to_ten_percent_above_is_no_reservation():
+    for decided in (1.1, 1.1 * 0.9999999999, 5.0):
+        assert column_verdict(made(decided={("A", "low"): decided}), "k", 1.0).verdict is VerdictClass.SURVIVED
+    assert column_verdict(made(decided={("A", "low"): 1.0999}), "k", 1.0).verdict is VerdictClass.OPEN
 
 
 def test_a_record_is_named_once_where_it_overturns_with_and_without_its_vertical_component():

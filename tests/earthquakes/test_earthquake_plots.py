@@ -140,32 +140,6 @@ def test_directions_are_drawn_by_the_least_scale_that_overturns():
         sb.earthquakes.plot_directions(bias(FLAT, SPACE).isel(direction=0))
 
 
-def verdicts(before, after):
-    """Return a robustness of these verdicts on overturning: (record,) as given, (record, change) after changes."""
-    before, after = np.asarray(before), np.asarray(after)
-    names = {"record": [f"quake {place}" for place in range(len(before))]}
-    return xr.Dataset(
-        {
-            "reached_as_given": (("limit_state", "record"), before[np.newaxis]),
-            "reached": (("limit_state", "record", "change"), after[np.newaxis]),
-            "outcome": (("record", "change"), after),
-            "repeatable": ("record", np.all((after == before[:, np.newaxis]) | (after < 0), axis=1)),
-        },
-        coords={"limit_state": ["overturning"], "change": ["scale +2 %", "turned +3°", "polarity"], **names},
-        attrs={"kind": "robustness"},
-    )
-
-
-def test_flips_are_counted_by_change():
-    figure = sb.plot(verdicts([0, 1, 0], [[0, 0, -1], [1, 0, 1], [1, 0, 0]]))
-    table, bars = figure.axes
-    assert [bar.get_width() for bar in bars.patches] == [1.0, 1.0, 0.0]
-    assert [text.get_text() for text in table.get_xticklabels()] == ["quake 0 *", "quake 1", "quake 2"]
-    assert table.get_title(loc="left") == "1 of 3 verdicts stay under every change (*)"
-    colours = np.array([patch.get_facecolor() for patch in table.patches]).reshape(3, 3, 4)
-    assert len(np.unique(colours.reshape(9, 4), axis=0)) == 5
-
-
 def test_records_are_drawn_over_time_and_period():
     records = [sb.sample_record(), sb.Record(samples=np.sin(0.1 * np.arange(80)), step=0.02, name="one component")]
     spectra = {one.name: response_spectra(one, [0.2, 0.5, 1.0]) for one in records}

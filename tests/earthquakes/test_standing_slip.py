@@ -36,9 +36,11 @@ def test_only_a_column_that_slides_first_has_a_scale_at_which_it_slides_while_it
     record = sb.Record(samples=NOISE, step=0.02, name="noise")
     model = sb.Slender(STOUT)
     levels = {level: {"damping": eta} for level, eta in (("low", 0.01), ("central", 0.05), ("high", 0.1))}
-    more = {"width": 1e-2, "tail": 2.0, "least_records": 20, "options": {}}
+    more = {"contact_laws": False, "variations": 0, "seed": 0, "width": 1e-2, "tail": 2.0, "least_records": 20}
     friction = {"rough": C, "smooth": 0.9 * C}
-    inputs = Inputs.of(dict.fromkeys(friction, model), [record], levels, friction, [1.0], [0.5, 1.0], (), None, **more)
+    inputs = Inputs.of(
+        dict.fromkeys(friction, model), [record], levels, friction, [1.0], [0.5, 1.0], **more, options={}
+    )
     assert inputs.sliding_first == ("smooth",)
     assert math.isnan(standing_slip(inputs, "rough", ["central"]).item())
     assert standing_slip(inputs, "smooth", ["central"]).item() == least_slip_scale(record, 0.9 * C, STOUT)

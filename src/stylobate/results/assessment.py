@@ -16,13 +16,13 @@ _FORMAT = "stylobate assessment 1"
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Assessment:
-    """Result of an assessment: verdicts, margins and robustness of columns under records.
+    """Result of an assessment: verdicts, margins and shares of small variations of columns under records.
 
     Attributes
     ----------
     data
         Datasets by name: "columns", "records", "spectra", "ground_motions", "verdicts", "margins", "histories" and
-        "summary"; "robustness", "planar" and "fragility" if they were requested.
+        "summary"; "variations", "sliding", "planar" and "fragility" if they were requested.
     setting
         Inputs of the assessment as plain values: title, version, models, dissipation, friction, processing of the
         records, scales, range of the margins, the `ReportDetails`, versions of the software.

@@ -1,6 +1,7 @@
 """Result of a verdict: the share of small variations of a case that overturn the column."""
 
 import json
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import Enum
@@ -135,6 +136,11 @@ _FEW = 0.01
 
 
 def percent(share: float) -> str:
-    """Format a share in percent, in whole numbers; near 0 and 1 with a decimal, because a few runs differ from none."""
+    """Format a share in percent, in whole numbers; near 0 and 1 with a decimal, because a few runs differ from none.
+
+    NaN, the share of no runs, is a dash.
+    """
+    if math.isnan(share):
+        return "–"
     few = 0.0 < min(share, 1.0 - share) < _FEW
     return f"{100.0 * share:.1f} %" if few else f"{100.0 * share:.0f} %"

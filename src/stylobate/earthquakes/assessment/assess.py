@@ -29,6 +29,7 @@ from stylobate.earthquakes.assessment.summary import summary_of
 from stylobate.earthquakes.assessment.verdicts import verdict_runs, verdicts_on
 from stylobate.earthquakes.named_records import Records
 from stylobate.earthquakes.remarks import remark_on
+from stylobate.earthquakes.variations import require_variations
 from stylobate.errors import LARGEST_SEED, require_positive, require_whole
 from stylobate.models import Model
 from stylobate.results.assessment import Assessment
@@ -96,8 +97,8 @@ def assess(
         Whether margins and variations include the other contact law: `Rolling` beside `Wobbling`, `SlenderRolling`
         beside `Slender`.
     variations
-        Number of small variations of each verdict, see `stylobate.verdict`; 0 for none. The dissipation varies from its
-        smallest to its largest level.
+        Number of small variations of each verdict, see `stylobate.verdict`: at least 2, or 0 for none. The dissipation
+        varies from its smallest to its largest level.
     seed
         Seed of the variations.
     sliding
@@ -178,7 +179,7 @@ def assess(
         scales,
         np.geomspace(0.2, 5.0, 300) if margin_scales is None else margin_scales,
         contact_laws=contact_laws,
-        variations=require_whole("variations", variations, least=0),
+        variations=require_variations(variations),
         seed=require_whole("seed", seed, least=0, most=LARGEST_SEED),
         width=require_positive("width", width),
         tail=tail,
@@ -208,7 +209,9 @@ def assess(
         data["planar"] = _over_columns([planar_of(inputs, name, parts, executor=executor) for name in names], names)
     if len(inputs.records) >= inputs.least_records:
         peaks = data["records"]["median_peak_acceleration"]
-        data["fragility"] = _over_columns([fragility_of(one["reached"], peaks) for one in margins], names)
+        data["fragility"] = _over_columns(
+            [fragility_of(one["reached"].isel(margin_scale=inputs.scanned), peaks) for one in margins], names
+        )
     governing = [governing_record(one, other, inputs.as_recorded) for one, other in zip(verdicts, margins, strict=True)]
     runs = [
         histories_of(inputs, name, record, own, parts, contact=contact)

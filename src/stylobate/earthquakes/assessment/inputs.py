@@ -53,6 +53,8 @@ class Inputs:
         Scale factors at which verdicts are given.
     margin_scales
         Scale factors of the scan for margins, increasing; they include 41 within 10 % of each of the verdicts' scales.
+    scan
+        Scale factors of the scan as given, to which a fragility is fitted.
     width
         Relative width to which ends of overturning intervals are located.
     tail
@@ -75,6 +77,7 @@ class Inputs:
     friction: Mapping[str, float]
     scales: Floats
     margin_scales: Floats
+    scan: Floats
     width: float
     tail: float | None
     contact_laws: bool
@@ -102,13 +105,15 @@ class Inputs:
             raise ParameterError(message)
         levels = checked_dissipation(dissipation, columns)
         stated = _rising("scales", scales, least=1)
+        scan = _rising("margin_scales", margin_scales, least=2)
         return cls(
             columns={name: _at_levels(model, levels[name]) for name, model in columns.items()},
             records=dict(sorted(named_records(records).items())),
             dissipation=levels,
             friction=_frictions(friction_coefficient, list(columns)),
             scales=stated,
-            margin_scales=_joined(_rising("margin_scales", margin_scales, least=2), stated),
+            margin_scales=_joined(scan, stated),
+            scan=scan,
             contact_laws=contact_laws and all(map(has_other_contact_law, columns.values())),
             **more,
         )
@@ -150,7 +155,14 @@ class Inputs:
 
     def around(self, scale: float) -> npt.NDArray[np.intp]:
         """Return the places in `margin_scales` of the scales near a stated one that are counted for the band share."""
-        near = scale * _NEAR
+        return self._places(scale * _NEAR)
+
+    @property
+    def scanned(self) -> npt.NDArray[np.intp]:
+        """Places in `margin_scales` of the scan as given."""
+        return self._places(self.scan)
+
+    def _places(self, near: Floats) -> npt.NDArray[np.intp]:
         places = np.clip(np.searchsorted(self.margin_scales, near), 1, self.margin_scales.size - 1)
         before = near - self.margin_scales[places - 1] < self.margin_scales[places] - near
         return np.asarray(places - before, dtype=np.intp)

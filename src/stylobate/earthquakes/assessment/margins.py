@@ -44,7 +44,8 @@ def margins_of(inputs: Inputs, column: str, parts: Parts, *, contact: bool, exec
         `contact`: over `margin_scale` too `friction_demand`, standing and moving; `friction_to_margin`, the largest
         demand below the smallest overturning scale, or at any scale if there is none; `least_slipping`, the smallest
         scale that needs more than the stated friction, NaN if none does. Over `scale` too: `band_share`, the share of
-        overturning scales within 10 % of a stated one.
+        overturning scales among the 41 within 10 % of a stated one; `in_band`, whether any scale there overturned it,
+        also one between the 41.
     """
     cases = list(inputs.cases)
     found = of_one_width([_bands(inputs, column, case, parts, contact, executor) for case in cases])
@@ -57,7 +58,7 @@ def margins_of(inputs: Inputs, column: str, parts: Parts, *, contact: bool, exec
         reached=reached.drop_vars("case"),
         standing_slip=standing_slip(inputs, column, cases),
     )
-    labelled = labelled.assign(band_share=_band_shares(inputs, labelled))
+    labelled = labelled.assign(band_share=_band_shares(inputs, labelled), in_band=_in_band(inputs, labelled))
     return labelled.assign(demands_to_margin(labelled, inputs.friction[column]))
 
 
@@ -69,6 +70,15 @@ def _band_shares(inputs: Inputs, margins: xr.Dataset) -> xr.DataArray:
     about = {"units": "1", "long_name": "share of overturning scales within 10 % of the stated scale"}
     joined: xr.DataArray = xr.concat(shares, dim=xr.Variable("scale", inputs.scales))
     return joined.assign_attrs(about)
+
+
+def _in_band(inputs: Inputs, margins: xr.Dataset) -> xr.DataArray:
+    """Return whether an overturning interval lies or begins within 10 % of each stated scale, as 0 or 1."""
+    ends = [inputs.margin_scales[inputs.around(scale)[[0, -1]]] for scale in inputs.scales.tolist()]
+    low, high = (xr.DataArray(one, coords={"scale": inputs.scales}) for one in np.array(ends).T)
+    overlaps = (margins["band_from"] <= high) & (margins["band_to"] >= low)
+    found = overlaps.any("band").astype(np.int8)
+    return found.assign_attrs(long_name="whether a scale within 10 % of the stated scale overturned it")
 
 
 def of_one_width(margins: list[xr.Dataset]) -> list[xr.Dataset]:

@@ -11,6 +11,7 @@ from stylobate.earthquakes.verdict_study import contact_laws, verdict
 from stylobate.results.verdict import Verdict
 from stylobate.studies.sweeps import Executor
 from stylobate.studies.sweeps.computing import Progress
+from stylobate.studies.sweeps.quantities import Floats
 
 _OF_RUNS = ("demands", "recheck")
 _QUANTILES = {"tilt_ratio_low": 0.05, "tilt_ratio_median": 0.5, "tilt_ratio_high": 0.95}
@@ -24,8 +25,8 @@ def shares_of(inputs: Inputs, column: str, parts: Parts, *, executor: Executor |
     xarray.Dataset
         Over `record` and `scale`: `share` of variations that overturn the column, with its 90 % interval `share_low`,
         `share_high`; `word`; `deciding`; numbers of variations: `overturned`, `open` (undecided) and `runs`; quantiles
-        of the peak tilt, infinite if overturned: `tilt_ratio_low`, `tilt_ratio_median`, `tilt_ratio_high` (5, 50, 95
-        %). Over `contact_law` too: `law_share`.
+        of the peak tilt of the decided runs, infinite if overturned: `tilt_ratio_low`, `tilt_ratio_median`,
+        `tilt_ratio_high` (5, 50, 95 %). Over `contact_law` too: `law_share`.
     """
     few = [
         xr.concat(
@@ -95,7 +96,7 @@ def _over_the_levels(inputs: Inputs, column: str) -> dict[str, Spread | None]:
 def _as_dataset(found: list[Verdict], records: list[str]) -> xr.Dataset:
     shares = np.array([(one.share, *one.interval) for one in found])
     states = [one.data["overturned"].to_numpy() for one in found]
-    ratios = [one.data["tilt_ratio"].fillna(np.inf).to_numpy() for one in found]
+    ratios = [one.data["tilt_ratio"].dropna("run").to_numpy() for one in found]
     law_shares = np.array([one.data["model_share"].to_numpy() for one in found])
     one = {"units": "1"}
     return xr.Dataset(
@@ -108,11 +109,13 @@ def _as_dataset(found: list[Verdict], records: list[str]) -> xr.Dataset:
             "overturned": ("record", [int((state == 1).sum()) for state in states]),
             "open": ("record", [int((state < 0).sum()) for state in states]),
             "runs": ("record", [state.size for state in states]),
-            **{
-                name: ("record", [float(np.quantile(ratio, at, method="higher")) for ratio in ratios], one)
-                for name, at in _QUANTILES.items()
-            },
+            **{name: ("record", [_quantile(ratio, at) for ratio in ratios], one) for name, at in _QUANTILES.items()},
             "law_share": (("record", "contact_law"), law_shares, {**one, "long_name": "share of overturning"}),
         },
         coords={"record": records, "contact_law": [str(name) for name in found[0].data["model"].to_numpy()]},
     )
+
+
+def _quantile(ratios: Floats, at: float) -> float:
+    """Return a quantile of peak tilts, one of the values; NaN without any."""
+    return float(np.quantile(ratios, at, method="higher")) if ratios.size else np.nan

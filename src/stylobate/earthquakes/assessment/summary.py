@@ -59,7 +59,7 @@ def summary_of(data: Mapping[str, xr.Dataset], governing: list[str]) -> xr.Datas
     if bool(others.any()):
         law = _at_scales(margins, verdicts["scale"]).where(others, drop=True)
         counts["overturned_other_law"] = (law == 1).any("case").sum("record")
-    counts["in_band"] = (margins["band_share"] > 0.0).any("case").sum("record")
+    counts["in_band"] = (margins["in_band"] > 0).any("case").sum("record")
     if "variations" in data:
         shares = data["variations"]
         counts["variations_disagree"] = ((shares["overturned"] > 0) & (shares["overturned"] < shares["runs"])).sum(

@@ -21,6 +21,7 @@ from stylobate.config.models import ModelConfig, described_model
 from stylobate.config.record_collection import RecordsConfig
 from stylobate.config.suggestions import did_you_mean
 from stylobate.earthquakes.config.design_spectrum import DesignSpectrumConfig
+from stylobate.earthquakes.variations import require_variations
 from stylobate.errors import (
     LARGEST_SEED,
     MOST_STEPS,
@@ -278,7 +279,7 @@ class AssessConfig(Config):
             lambda: require_positive("rtol", self.rtol),
             lambda: require_whole("max_steps", self.max_steps, least=1, most=MOST_STEPS),
             lambda: require_whole("least_records", self.least_records, least=2),
-            lambda: require_whole("variations", self.variations, least=0),
+            lambda: require_variations(self.variations),
             lambda: require_whole("seed", self.seed, least=0, most=LARGEST_SEED),
             lambda: require_not_negative("tail", self.tail or 0.0, "s"),
             *(partial(require_positive, "scales", scale) for scale in self.scales),

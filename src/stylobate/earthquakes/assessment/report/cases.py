@@ -37,7 +37,8 @@ class Cases:
     with_other_law
         Records that overturned the column with the other contact law only, with the levels of dissipation.
     in_band
-        Records with an overturning scale within 10 %, with the largest share of such scales of all cases.
+        Records with an overturning scale within 10 %, with the largest share of such scales of all cases; 0 if only
+        scales between the 41 counted ones overturned the column.
     varied
         Records under which some small variation overturned the column, with the share of variations.
     variations_open
@@ -143,8 +144,9 @@ def _with_other_law(
 
 
 def _in_band(assessment: Assessment, column: str, scale: float) -> dict[str, float]:
-    shares = assessment.data["margins"]["band_share"].sel(column=column, scale=scale).max("case")
-    return {name: float(one) for name, one in zip(_names(shares), shares.to_numpy(), strict=True) if one > 0.0}
+    margins = assessment.data["margins"][["band_share", "in_band"]].sel(column=column, scale=scale)
+    share, found = margins["band_share"].max("case").fillna(0.0), _where((margins["in_band"] > 0).any("case"))
+    return {name: float(share.sel(record=name)) for name in found}
 
 
 def _varied(assessment: Assessment, column: str, scale: float) -> dict[str, float]:

@@ -1,7 +1,6 @@
 """The verdict on one column in one line: overturned, survived with reservations, survived, or not described."""
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import Enum
 
@@ -14,12 +13,15 @@ from stylobate.earthquakes.assessment.report.wording import (
     STOOD,
     UNDECIDED,
     listed,
+    near_share,
     number,
     records,
 )
 from stylobate.results.assessment import Assessment
 from stylobate.results.verdict import percent
 
+# Factor of the highest scale within 10 %, less rounding.
+_HIGHEST = 1.1 * (1.0 - 1e-9)
 _SLID = {1: OVERTURNED, -1: f"was {UNDECIDED}", 0: STOOD}
 
 
@@ -185,8 +187,12 @@ def _reservations(assessment: Assessment, column: str, scale: float, cases: Case
     under = {
         "not decided under {}": cases.undecided,
         "overturned under {} without the vertical component": tuple(cases.without_vertical),
-        "a scale within 10 % overturned it under {}": _with_shares(cases.in_band),
-        "small variations overturned it under {}": _with_shares(cases.varied),
+        "a scale within 10 % overturned it under {}": [
+            f"{name} ({near_share(share)})" for name, share in cases.in_band.items()
+        ],
+        "small variations overturned it under {}": [
+            f"{name} ({percent(share)} of them)" for name, share in cases.varied.items()
+        ],
         "a small variation was not decided under {}": [one for one in cases.variations_open if one not in undecided],
         "some run was not decided under {}": cases.undecided_elsewhere,
         "rounding could change the outcome under {}": cases.borderline,
@@ -195,15 +201,12 @@ def _reservations(assessment: Assessment, column: str, scale: float, cases: Case
     holds = {
         f"a smaller scale overturned it: {words}": least < scale,
         f"not every scale up to this one was decided{_beyond(decided)}": not decided >= scale,
+        f"not every scale within 10 % was decided{_beyond(decided)}": scale <= decided < _HIGHEST * scale,
         "small variations were not tried": "variations" not in assessment.data,
         "the friction needed was not computed": not assessment.setting["contact"],
     }
     named = [phrase.format(listed(names)) for phrase, names in under.items() if names]
     return [*named, *(phrase for phrase, is_so in holds.items() if is_so)]
-
-
-def _with_shares(shares: Mapping[str, float]) -> list[str]:
-    return [f"{name} ({percent(share)} of them)" for name, share in shares.items()]
 
 
 def _beyond(decided: float) -> str:

@@ -7,7 +7,7 @@ from stylobate.earthquakes.assessment.report.cases import acts_in, case_name, ca
 from stylobate.earthquakes.assessment.report.cells import cells
 from stylobate.earthquakes.assessment.report.column_verdict import column_verdict
 from stylobate.earthquakes.assessment.report.displacements import TILT_HEADER, shown_point, tilt_cells
-from stylobate.earthquakes.assessment.report.wording import CENTRAL, listed, number, tilt, verdict
+from stylobate.earthquakes.assessment.report.wording import CENTRAL, listed, near_share, number, tilt, verdict
 from stylobate.earthquakes.variations import LABELS
 from stylobate.plots.page import Table
 from stylobate.results.assessment import Assessment
@@ -32,9 +32,8 @@ def verdicts(assessment: Assessment) -> Table:
             [f"{name} ({listed(levels, 'and')})" for name, levels in one.items()]
             for one in (cases.at_other_dissipation, cases.with_other_law, cases.without_vertical)
         )
-        in_band, varied = (
-            [f"{name} ({percent(share)})" for name, share in one.items()] for one in (cases.in_band, cases.varied)
-        )
+        in_band = [f"{name} ({near_share(share)})" for name, share in cases.in_band.items()]
+        varied = [f"{name} ({percent(share)})" for name, share in cases.varied.items()]
         undecided = (*cases.undecided, *cases.undecided_elsewhere)
         nearby = (in_band, varied, cases.variations_open)
         names = (cases.overturned, at_other, with_other_law, without, *nearby, undecided, tuple(cases.slipping))

@@ -8,6 +8,7 @@ import xarray as xr
 
 from stylobate.column import STANDARD_GRAVITY
 from stylobate.earthquakes.figures.band_regions import undecided_reasons
+from stylobate.results.verdict import percent
 
 CENTRAL = "central"
 OVERTURNED, STOOD, UNDECIDED = "overturned", "did not overturn", "not decided"
@@ -97,6 +98,11 @@ def scales(values: np.ndarray) -> str:
 def degrees(angle: float) -> str:
     """Format an azimuth [rad] in degrees from x."""
     return "–" if math.isnan(angle) else f"{math.degrees(angle) % 360.0:.0f}°"
+
+
+def near_share(share: float) -> str:
+    """State the share of the scales within 10 % that overturned a column; 0 if only scales between them did."""
+    return f"{percent(share)} of 41" if share > 0.0 else "an interval between them"
 
 
 def records(count: int, total: int) -> str:
