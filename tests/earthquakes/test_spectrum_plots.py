@@ -32,7 +32,9 @@ def bands(over, codes, motion=PULSE, uncertain=()):
     scan = Ends(np.broadcast_to(scales, codes.shape), states, np.zeros(codes.shape), unsure)
     dims = (*cases.axes, "scale")
     shape = (*cases.shape, scales.size)
-    found = band_table(cases, scan, Edges.between(scan))
+    found = band_table(
+        cases, scan, Edges.between(np.repeat(np.arange(cases.count), scan.scale.shape[-1]), scan.reshaped(-1))
+    )
     found = found.assign(outcome=(dims, codes.reshape(shape)), uncertain=(dims, unsure.reshape(shape)))
     found = found.assign(peak_tilt=(dims, np.broadcast_to(0.01 * scales, shape)))
     coords = {**cases.coordinates(), "scale": ("scale", scales, {"long_name": "factor of the base motion"})}

@@ -86,13 +86,16 @@ class VerdictOfCase:
 
     def rows(self, run: "Response", verdict: "Verdict | None") -> "Rows":
         """Return the rows of model, verdict and outcome; the outcome of an undecided case says so."""
-        from stylobate.results.summary import outcome_of  # noqa: PLC0415  as in `simulate`
+        from stylobate.results.summary import damping_rows, outcome_of  # noqa: PLC0415  as in `simulate`
 
-        model = ("model", _model(self.setup.model))
+        model = [("model", _model(self.setup.model))]
+        if verdict is None and not self.why_not:
+            return [*model, ("outcome", outcome_of(run))]
+        model += damping_rows(self.setup.model.column, None)
         if verdict is None:
-            return [model, ("outcome", outcome_of(run) + (f" in this run; {self.why_not}" if self.why_not else ""))]
+            return [*model, ("outcome", f"{outcome_of(run)} in this run; {self.why_not}")]
         laws = ", ".join(f"{name} {results.percent(share)}" for name, share in verdict.share_by_model.items())
-        rows = [model, ("verdict", str(verdict)), ("by contact law", f"{laws} overturn")]
+        rows = [*model, ("verdict", str(verdict)), ("by contact law", f"{laws} overturn")]
         if verdict.deciding:
             rows.append(("decided most by", earthquakes.LABELS.get(verdict.deciding, verdict.deciding)))
         undecided = verdict.word is results.VerdictWord.UNDECIDED
