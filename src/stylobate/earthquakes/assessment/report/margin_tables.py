@@ -62,7 +62,7 @@ def friction_to_margin(assessment: Assessment) -> Table:
     """Tabulate the friction needed below the smallest overturning scale, and the smallest scale that needs too much."""
     header = (
         *("column", "record", "case", "smallest overturning scale", "friction needed below it"),
-        *("stated friction", "smallest scale that needs more"),
+        *("stated friction", "smallest scale run that needs more"),
     )
     margins, rows = assessment.data["margins"], []
     for where, one in cells(margins, "column", "record", "case") if assessment.setting["contact"] else ():
@@ -70,6 +70,6 @@ def friction_to_margin(assessment: Assessment) -> Table:
         if not acts_in(assessment, *where[1:]) or (math.isnan(need) and math.isnan(slipping)):
             continue
         stated = float(assessment.setting["friction_coefficient"][where[0]])
-        first = "none that was run" if math.isnan(slipping) else number(slipping, 4)
+        first = "none that was run" if math.isnan(slipping) else number(slipping)
         rows.append((*where, least_scale(one), number(need), number(stated), first))
     return Table(header, rows)

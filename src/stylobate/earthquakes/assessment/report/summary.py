@@ -149,7 +149,7 @@ def _contact_to_margin(own: xr.Dataset) -> str:
         return "The friction needed at other scales was not computed."
     if math.isnan(slipping):
         return "No run for the margin needed more friction than stated."
-    sentence = f"The smallest scale that needs more friction than stated is {number(slipping, 4)}"
+    sentence = f"The smallest scale run that needs more friction than stated is {number(slipping, 3)}"
     if math.isnan(float(own["least_of_all"])):
         return f"{sentence}: beyond it the base would slip, and these runs do not describe the column."
     if int(own["slips_first"]):
