@@ -23,6 +23,8 @@ from stylobate.earthquakes.assessment.sliding import sliding_model
 from stylobate.earthquakes.remarks import remark_on
 from stylobate.errors import FileError, ParameterError, UnlikelyInputWarning
 from stylobate.results import Assessment
+from stylobate.results.verdict import word_of
+from stylobate.studies.proportions import fraction_interval
 
 DISSIPATION = {"low": {"damping": 0.01}, "central": {"damping": 0.05}, "high": {"damping": 0.1}}
 
@@ -234,6 +236,13 @@ def test_a_height_that_is_not_given_is_judged_by_the_centre_of_mass():
     remark_on({"low": body(59.0)}, [])  # warnings are errors
     with pytest.warns(UnlikelyInputWarning, match=r"high: unlikely height of the centre of mass \(got 30\.5 m\)"):
         remark_on({"high": body(61.0)}, [])
+
+
+def test_fewer_than_52_variations_leave_every_case_undecided():
+    for overturned, word in ((0, "stands"), (1, "overturns")):
+        for runs, expected in ((51, "undecided"), (52, word)):
+            low, high = fraction_interval(overturned * runs, 0, runs, confidence=0.9)
+            assert word_of(low, high).value == expected
 
 
 BARE = {

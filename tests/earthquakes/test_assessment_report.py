@@ -9,17 +9,22 @@ import numpy as np
 import pytest
 import xarray as xr
 from matplotlib.colors import to_rgb
-from stylobate.earthquakes.perturbations import ScaledRecord
+from matplotlib.patches import Rectangle
 
 import stylobate as sb
 from stylobate.earthquakes import assess, assessment_report, assessment_tables
 from stylobate.earthquakes.assessment.margins import demands_to_margin
 from stylobate.earthquakes.assessment.report import document
-from stylobate.earthquakes.assessment.report.figures import history_figure, margins_figure, tilts_figure
+from stylobate.earthquakes.assessment.report.figures import (
+    history_figure,
+    margins_figure,
+    shares_figure,
+    tilts_figure,
+)
 from stylobate.earthquakes.assessment.report.pictures import report_pictures
 from stylobate.earthquakes.assessment.report.record_figures import spectra_figure
 from stylobate.earthquakes.assessment.report.record_tables import drifting
-from stylobate.earthquakes.assessment.report.sections import document_table, not_covered
+from stylobate.earthquakes.assessment.report.sections import document_table, not_covered, report_sections
 from stylobate.earthquakes.assessment.report.summary import column_findings, summary_text, verdict_table
 from stylobate.earthquakes.assessment.report.wording import bands, least_scale
 from stylobate.earthquakes.assessment.summary import summary_of
@@ -36,6 +41,10 @@ DETAILS = ReportDetails(
     design_spectrum=DesignSpectrum(period=(0.0, 0.5, 2.0), acceleration=(2.0, 5.0, 1.0), name="spectrum of the site"),
     spectral_period=0.8,
 )
+BODIES = {
+    name: sb.Column.solid(radius=radius, height=2.0, density=2700.0)
+    for name, radius in (("slim <1>", 0.2), ("stout", 0.45))
+}
 DISSIPATION = {"low": {"damping": 0.01}, "central": {"damping": 0.05}, "high": {"damping": 0.1}}
 
 
@@ -49,15 +58,14 @@ def record(name, peak):
 
 @pytest.fixture(scope="module")
 def found():
-    slim, stout = (sb.Slender(sb.Column.solid(radius=radius, height=2.0, density=2700.0)) for radius in (0.2, 0.45))
     bare = assess(
-        {"slim <1>": slim, "stout": stout},
+        {name: sb.Slender(body) for name, body in BODIES.items()},
         [record("strong", 9.0), record("weak & quiet", 0.2)],
         dissipation=DISSIPATION,
         friction_coefficient=0.6,
         scales=[0.5, 1.0],
         margin_scales=np.geomspace(0.5, 3.0, 9),
-        changes=(ScaledRecord(0.95), ScaledRecord(1.05)),
+        variations=20,
         planar=False,
         contact=False,
         tail=2.0,
@@ -147,7 +155,17 @@ def test_the_report_holds_every_cell_of_every_table_and_so_do_the_files(found, f
         assert header == list(table.header)
         assert rows == [list(row) for row in table.rows]
         assert {plain(cell) for row in table.rows for cell in row} <= cells
-    assert {"verdicts", "margins", "runs", "tilts", "robustness", "planar", "governing", "records"} <= set(tables)
+    assert {
+        "verdicts",
+        "margins",
+        "runs",
+        "tilts",
+        "variations",
+        "near-scales",
+        "planar",
+        "governing",
+        "records",
+    } <= set(tables)
 
 
 def test_the_tables_hold_the_numbers_of_the_assessment(found):
@@ -197,11 +215,12 @@ def test_a_column_that_always_overturns_and_one_that_never_moves_are_described_s
     (row,) = verdict_table(always).rows
     assert row[1] == "NOT shown safe"
     assert row[2].startswith(
-        "Overturned at the recorded level under the one record (strong). Smallest overturning scale"
+        "Overturned at the recorded level under the one record (strong). 100 % of the small variations overturn it "
+        "(strong). Smallest overturning scale of all cases: at most "
     )
     findings = dict(column_findings(never, "stout").rows)
     assert findings["tilt, at the recorded level"] == "It did not rock."
-    assert "No scale factor from 0.475 to 3 overturned it" in findings["margin"]
+    assert "No scale factor from 0.45 to 3 overturned it" in findings["margin"]
 
 
 def test_intensities_at_the_margin_are_those_of_the_record_times_the_least_scale(found):
@@ -309,7 +328,7 @@ def test_figures_that_would_show_nothing_are_left_out(found, folder):
     still = _only(found, "stout", "weak & quiet")
     quiet = still.data["histories"].assign(peak_tilt_ratio=("column", [0.0]))
     names = report_pictures(replace(still, data={**still.data, "histories": quiet}))
-    assert not any(name.startswith(("margins", "tilts", "history", "robustness")) for name in names)
+    assert not any(name.startswith(("margins", "tilts", "history", "variations")) for name in names)
 
 
 def test_a_record_that_drifts_is_named(found):
@@ -468,6 +487,164 @@ def test_a_least_scale_that_stands_alone_is_marked(found):
     wider = float(alone["least_lasting"].sel(column="slim <1>", record="strong", case="central"))
     words = dict(column_findings(changed, "slim <1>").rows)["margin"]
     assert f"in an interval so narrow that another scan might miss it; a wider interval begins at {wider:.4g}" in words
+
+
+def test_shares_are_tabulated_with_their_word_and_counts(found):
+    table = assessment_tables(found)["variations"]
+    shares = found.data["variations"]
+    assert len(table.rows) == shares["share"].size
+    for row in table.rows:
+        cells = dict(zip(table.header, row, strict=True))
+        one = shares.sel(column=cells["column"], record=cells["record"], scale=float(cells["scale"]))
+        low, share, high = (100.0 * float(one[name]) for name in ("share_low", "share", "share_high"))
+        assert cells["under small variations"] == one["word"].item()
+        assert cells["share that overturns it"] == f"{share:.0f} %"  # of 20
+        assert cells["90 % interval"] == f"{low:.0f} % to {high:.0f} %"
+        assert cells["not decided"] == "0 of 20"
+        laws = [f"{name} {100.0 * float(value):.0f} %" for name, value in zip(LAWS, one["law_share"], strict=True)]
+        assert cells["by contact law"] == ", ".join(laws)
+        tilt = float(one["tilt_ratio_median"])
+        assert cells["median tilt / α_c"] == ("overturned" if np.isinf(tilt) else f"{tilt:.3g}")
+    assert {row[3] for row in table.rows} == {"undecided"}  # whatever 20 variations do
+
+
+LAWS = ("slender", "slender rolling")
+
+
+def test_shares_of_near_scales_are_tabulated_by_case_and_a_share_of_no_decided_scale_is_a_dash(found):
+    band = found.data["margins"]["band_share"]
+    where = {"column": "stout", "record": "strong", "case": "low"}
+    band = band.copy()
+    band.loc[where] = np.nan
+    margins = found.data["margins"].assign(band_share=band)
+    table = assessment_tables(replace(found, data={**found.data, "margins": margins}))["near-scales"]
+    assert list(table.header[3:]) == list(band["case"].values)
+    for column, record, scale, *cells in table.rows:
+        for case, cell in zip(table.header[3:], cells, strict=True):
+            share = float(band.sel(column=column, record=record, scale=float(scale), case=case))
+            rounded = f"{100.0 * share:.0f} %"
+            assert cell == ("–" if np.isnan(share) else rounded)
+
+
+def with_shares(found):
+    """Return the assessment, with shares of all sizes for the column "stout"."""
+    variations, margins = found.data["variations"].copy(deep=True), found.data["margins"]
+    for record, low, share, high in (("strong", 0.3, 0.45, 0.6), ("weak & quiet", 0.0, 0.0, 0.12)):
+        for name, value in (("share_low", low), ("share", share), ("share_high", high)):
+            variations[name].loc[{"column": "stout", "record": record, "scale": 1.0}] = value
+    band = margins["band_share"].copy()
+    for place, case in enumerate(band["case"].values):
+        band.loc[{"column": "stout", "record": "strong", "case": case, "scale": 1.0}] = 0.1 * place
+    return replace(found, data={**found.data, "variations": variations, "margins": margins.assign(band_share=band)})
+
+
+def test_shares_are_drawn_with_their_intervals_and_those_of_near_scales_as_marks(found):
+    changed = with_shares(found)
+    figure = shares_figure(changed, "stout", 1.0)
+    (axes,) = figure.axes
+    bars = [bar for bar in axes.patches if isinstance(bar, Rectangle) and bar.get_height() == 0.5]
+    drawn = [(bar.get_x(), bar.get_x() + bar.get_width(), bar.get_y() + 0.25) for bar in bars]
+    np.testing.assert_allclose(drawn, [(30.0, 60.0, 0.0), (0.0, 12.0, 1.0)])
+    shares, *marks = [line for line in axes.lines if line.get_linestyle() == "None"]
+    np.testing.assert_allclose(shares.get_xydata(), [(45.0, 0.0), (0.0, 1.0)])
+    cases = found.data["margins"]["case"].values
+    assert len(marks) == len(cases) == len({(line.get_marker(), line.get_markeredgecolor()) for line in marks})
+    for place, line in enumerate(marks):
+        np.testing.assert_allclose(line.get_xydata(), [(10.0 * place, 0.0), (0.0, 1.0)], atol=1e-12)
+    labels = [text.get_text() for legend in figure.legends for text in legend.get_texts()]
+    assert labels == ["variations, 90 % interval", "variations, share", *(f"±10 %: {case}" for case in cases)]
+    assert [text.get_text() for text in axes.get_yticklabels()] == ["strong", "weak & quiet"]
+    limits = sorted(line.get_xdata()[0] for line in axes.lines if line.get_linestyle() == "--")
+    np.testing.assert_allclose(limits, [5.0, 95.0])
+
+
+def test_each_stated_scale_that_moved_a_column_has_a_figure_of_shares(found):
+    names = set(report_pictures(found))
+    assert {"variations-1-scale-0.5", "variations-1-scale-1", "variations-2-scale-1"} <= names
+    bare = replace(found, data={name: one for name, one in found.data.items() if name != "variations"})
+    assert not any(name.startswith("variations") for name in report_pictures(bare))
+
+
+def section(assessment, title):
+    (own,) = [one for one in report_sections(assessment, assessment_tables(assessment), {}) if one.heading == title]
+    return own.content
+
+
+def test_the_section_of_variations_states_what_varied_or_that_nothing_did(found):
+    title = "Small variations and near scales"
+    words, *tables = section(found, title)
+    assert words.startswith("Each verdict was repeated 20 times with everything varied at once")
+    assert "the tolerance, and the contact law" in words
+    assert [table.header[3] for table in tables] == ["under small variations", "low"]
+    one_law = replace(found, setting={**found.setting, "contact_laws": False})
+    assert "the contact law" not in section(one_law, title)[0]
+    without = {name: one for name, one in found.data.items() if name != "variations"}
+    bare = replace(found, data=without, setting={**found.setting, "variations": 0})
+    bare = replace(bare, data={**without, "summary": summary_of(without, ["strong", "strong"])})
+    words, *tables = section(bare, title)
+    assert words.startswith("No verdict was repeated under small variations (variations = 0), so it is not known")
+    assert "41 scales within 10 %" in words
+    assert [table.header[3] for table in tables] == ["low"]
+    assert "No verdict was repeated under small variations here" in summary_text(bare, [])
+    assert "were therefore repeated under small variations" in summary_text(found, [])
+    assert "small variations disagree" not in assessment_tables(bare)["summary"].header
+    assert "variations" not in assessment_tables(bare)
+
+
+def test_margins_are_stated_as_upper_bounds(found):
+    seen = 0
+    for name in ("margins", "governing"):
+        table = assessment_tables(found)[name]
+        for row in table.rows:
+            words = dict(zip(table.header, row, strict=True))["smallest overturning scale"]
+            assert words.startswith(("at most ", "none up to "))
+            seen += words.startswith("at most ")
+    assert seen >= 3
+    words = dict(column_findings(found, "slim <1>").rows)["margin"]
+    assert words.startswith("At central dissipation the smallest overturning scale is at most ")
+    assert "Smallest overturning scale of all cases: at most " in verdict_table(found).rows[0][2]
+    assert "read each margin as “at most”" in section(found, "Margins")[0]
+
+
+def test_verdicts_name_the_records_that_overturned_it_near_by_and_with_the_other_law(found):
+    table = assessment_tables(found)["verdicts"]
+    rows = {row[:2]: dict(zip(table.header, row, strict=True)) for row in table.rows}
+    overturned = rows["slim <1>", "1"]
+    assert overturned["verdict"] == "NOT shown safe"
+    margins = found.data["margins"].sel(column="slim <1>", record="strong", scale=1.0)
+    share = 100.0 * float(margins["band_share"].max())
+    assert overturned["overturned it within 10 % of the scale"] == f"strong ({share:.0f} % of 41)"
+    share = float(found.data["variations"]["share"].sel(column="slim <1>", record="strong", scale=1.0))
+    assert overturned["overturned it in some small variations"] == f"strong ({100.0 * share:.0f} %)"
+    between = found.data["margins"].assign(band_share=found.data["margins"]["band_share"] * 0.0)
+    table = assessment_tables(replace(found, data={**found.data, "margins": between}))["verdicts"]
+    (row,) = [dict(zip(table.header, row, strict=True)) for row in table.rows if row[:2] == ("slim <1>", "1")]
+    assert row["overturned it within 10 % of the scale"] == "strong (an interval between them)"
+
+
+@pytest.mark.parametrize(
+    ("side", "flagged"), [("below", True), ("above", True), ("among", False), ("not compared", False)]
+)
+def test_damping_is_compared_with_what_impacts_lose_and_levels_on_one_side_are_flagged(found, side, flagged):
+    columns = found.data["columns"]
+    values = columns["housner_damping"].sel(column="stout").values
+    changed = columns.assign(damping_side=xr.full_like(columns["damping_side"], side, dtype=object))
+    words = dict(column_findings(replace(found, data={**found.data, "columns": changed}), "stout").rows)["damping"]
+    text = ", ".join(f"{value:.2g}" for value in values)
+    assert words.startswith(f"Housner's impacts lose as much as η = {text} at a peak tilt of ¼, ½, ¾ α_c.")
+    flag = f" All stated levels lie {side} this yardstick: state why, or add a level near it."
+    assert words.endswith(flag) is flagged
+
+
+def test_the_side_of_the_yardstick_is_that_of_the_levels(found):
+    columns = found.data["columns"]
+    for name, body in BODIES.items():
+        yardstick = [body.housner_damping(amplitude) for amplitude in (0.25, 0.5, 0.75)]
+        np.testing.assert_allclose(columns["housner_damping"].sel(column=name), yardstick, rtol=1e-12)
+        dampings = [level["damping"] for level in DISSIPATION.values()]
+        side = "below" if max(dampings) < min(yardstick) else "above" if min(dampings) > max(yardstick) else "among"
+        assert columns["damping_side"].sel(column=name).item() == side
+    assert set(columns["damping_side"].values) == {"below", "among"}
 
 
 MARKUP = ("<script>alert(1)</script>", "<b>\"bold\" & 'italic'</b>", r"$\frac{1$")

@@ -7,11 +7,15 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from stylobate import Outcome
 from stylobate.earthquakes.assessment.summary import summary_of
 
 COLUMNS, SCALES, RECORDS = ("slim", "stout"), (0.5, 1.0), tuple("ABCDEFGHIJKL")
 LEVELS, ACTS = ("low", "central", "high"), ("with", "without")
-CASES = (*LEVELS, "central, no vertical")
+OTHERS = tuple(f"{level}, other contact law" for level in LEVELS)
+CASES = (*LEVELS, "central, no vertical", *OTHERS)
+SCAN = (0.3, 0.5, 0.501, 1.0, 2.0)
+WORDS = ("stands", "undecided", "overturns")
 
 
 def random_assessment(seed):
@@ -29,9 +33,10 @@ def random_assessment(seed):
         values = np.where(rng.random(shape) < missing, np.nan, rng.uniform(0.2, 3.0, shape))
         return xr.DataArray(values, coords={k: list(v) for k, v in over.items()})
 
-    changes = {name: runs[name] for name in ("column", "scale", "record", "dissipation")}
-    planar = {name: runs[name] for name in ("column", "scale", "record")}
-    tilts = numbers(planar, 0.2)
+    each = {name: runs[name] for name in ("column", "scale", "record")}
+    tilts, overturned = numbers(each, 0.2), drawn(each, (0, 3, 20), (0.3, 0.4, 0.3))
+    outcomes = (Outcome.AT_REST, Outcome.OVERTURNED, Outcome.LIFTED_OFF)
+    scan, near = {**margins, "margin_scale": SCAN}, {**margins, "scale": SCALES}
     return {
         "verdicts": xr.Dataset(
             {
@@ -51,10 +56,16 @@ def random_assessment(seed):
                 "stands_again": drawn(margins, (0, 1, 2), (0.4, 0.4, 0.2)),
                 "unknown": drawn(margins, (0, 1, 2), (0.4, 0.4, 0.2)),
                 "decided_to": numbers(margins, 0.04),
+                "outcome": drawn(scan, [int(one) for one in outcomes], (0.9, 0.05, 0.05)),
+                "in_band": drawn(near, (0, 1), (0.95, 0.05)),
             }
         ),
-        "robustness": xr.Dataset(
-            {"flipped": drawn(changes, (0, 1, 2), (0.8, 0.1, 0.1)), "undecided": drawn(changes, (0, 1), (0.9, 0.1))}
+        "variations": xr.Dataset(
+            {
+                "overturned": overturned,
+                "runs": xr.full_like(overturned, 20),
+                "word": drawn(each, WORDS, (0.4, 0.3, 0.3)),
+            }
         ),
         "planar": xr.Dataset({"planar_tilt_ratio": tilts.where(tilts < 2.0, np.inf).where(tilts.notnull())}),
     }
@@ -82,7 +93,12 @@ def test_records_are_counted_by_their_outcomes(assessment):
         planar = {
             record: float(parts["planar"]["planar_tilt_ratio"].sel(at | {"record": record})) for record in RECORDS
         }
-        small = {record: parts["robustness"].sel(at | {"record": record}) for record in RECORDS}
+        varied = {record: parts["variations"].sel(at | {"record": record}) for record in RECORDS}
+        margins = {record: parts["margins"].sel(column=column, record=record) for record in RECORDS}
+        laws = {
+            record: {int(one["outcome"].sel(case=case, margin_scale=scale)) for case in OTHERS}
+            for record, one in margins.items()
+        }
         expected = {
             "stood": sum(value == 0 for value in central.values()),
             "overturned": sum(value == 1 for value in central.values()),
@@ -92,8 +108,10 @@ def test_records_are_counted_by_their_outcomes(assessment):
             "uncertain_in_some": len({name for (name, *_), value in unsure.items() if value}),
             "on_dissipation": sum({0, 1} <= values for values in levels.values()),
             "on_vertical": sum({0, 1} <= values for values in lifts.values()),
-            "not_robust": sum(bool((one["flipped"] > 0).any()) for one in small.values()),
-            "changes_undecided": sum(bool((one["undecided"] > 0).any()) for one in small.values()),
+            "overturned_other_law": sum(int(Outcome.OVERTURNED) in values for values in laws.values()),
+            "in_band": sum(1 in one["in_band"].sel(scale=scale).values for one in margins.values()),
+            "variations_disagree": sum(0 < int(one["overturned"]) < 20 for one in varied.values()),
+            "undecided_word": sum(one["word"].item() == "undecided" for one in varied.values()),
             "planar_differs": sum(
                 central[record] != -1 and not math.isnan(tilt) and math.isinf(tilt) != (central[record] == 1)
                 for record, tilt in planar.items()
@@ -103,6 +121,15 @@ def test_records_are_counted_by_their_outcomes(assessment):
         assert found == expected
         seen |= {name for name, count in expected.items() if 0 < count < len(RECORDS)}
     assert seen == expected.keys()
+
+
+def test_counts_of_what_was_not_computed_are_left_out():
+    parts = random_assessment(4)
+    whole = summary_of(parts, ["A", "A"])
+    few = {name: one for name, one in parts.items() if name in ("verdicts", "margins")}
+    few["margins"] = few["margins"].sel(case=[case for case in CASES if case not in OTHERS])
+    left = {"planar_differs", "variations_disagree", "undecided_word", "overturned_other_law"}
+    assert set(whole) - set(summary_of(few, ["A", "A"])) == left
 
 
 def test_records_are_counted_by_their_margins(assessment):

@@ -330,10 +330,9 @@ def test_the_other_law_beside_the_given_one_and_the_largest_share_are_stated():
 
 def test_nothing_that_overturned_leaves_the_class_of_survivals_at_any_record_level_or_law():
     for record, case in itertools.product(RECORDS, CASES):
-        for share in (0.0, 1 / 41, 1.0):
-            near = made(in_band={(record, case): share})
-            assert column_verdict(near, "k", 1.0).verdict is VerdictClass.OPEN
-    for record, count in itertools.product(RECORDS, (1, 100, 200)):
+        near = made(in_band={(record, case): 1 / 41})
+        assert column_verdict(near, "k", 1.0).verdict is VerdictClass.OPEN
+    for record, count in itertools.product(RECORDS, (1, 200)):
         assert column_verdict(made(varied={record: count}), "k", 1.0).verdict is VerdictClass.OPEN
     for record, level in itertools.product(RECORDS, LEVELS):
         other = made(other_law=[(record, level, sb.Outcome.OVERTURNED)])

@@ -98,7 +98,7 @@ def assess(
         beside `Slender`.
     variations
         Number of small variations of each verdict, see `stylobate.verdict`: at least 2, or 0 for none. The dissipation
-        varies from its smallest to its largest level.
+        varies from its smallest to its largest level. Fewer than 52 leave every case undecided.
     seed
         Seed of the variations.
     sliding

@@ -106,7 +106,7 @@ class AssessConfig(Config):
     contact_laws
         Whether to assess the other contact law too, such as `rolling` beside `wobbling`.
     variations
-        Number of small variations of each verdict; 0 for none.
+        Number of small variations of each verdict; 0 for none. Fewer than 52 leave every case undecided.
     seed
         Seed of the small variations.
     sliding

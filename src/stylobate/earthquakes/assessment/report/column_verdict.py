@@ -108,7 +108,8 @@ def _shares(cases: Cases) -> str:
     if not cases.varied:
         return ""
     record = max(cases.varied, key=lambda name: cases.varied[name])
-    return f" Up to {percent(cases.varied[record])} of the small variations overturn it ({record})."
+    up_to = "Up to " if len(cases.varied) > 1 else ""
+    return f" {up_to}{percent(cases.varied[record])} of the small variations overturn it ({record})."
 
 
 def least_overturning_scale(assessment: Assessment, column: str) -> str:
