@@ -59,7 +59,7 @@ class SimulationConfig(SingleRun, Case):
     rules
         Numbers of `OutcomeRules`, by name.
     recheck
-        Whether to repeat the run if rounding could change its outcome.
+        Whether to repeat the run if rounding or the rest threshold could alter its outcome.
     """
 
     rules: dict[str, float] = Field(default_factory=dict)
