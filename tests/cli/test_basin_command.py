@@ -17,7 +17,7 @@ GRID = ["--x", "tilt-x", "-0.08", "0.08", "9", "--y", "tilt-rate-y", "-0.1", "0.
 SAMPLE = ["--random", "60", "--seed", "3", "--over", "tilt-x", "-0.08", "0.08", "--over", "tilt-rate-y", "-0.1", "0.1"]
 BASIN = ["basin", *SYSTEM, "--periods", "60"]
 
-MODEL = sb.Slender(sb.Column.dimensionless(0.1), damping=0.1)
+MODEL = sb.Wobbling(sb.Column.dimensionless(0.1), damping=0.1)
 CIRCLE = sb.Harmonic.circular(acceleration=0.02, angular_frequency=1.2)
 
 

@@ -28,7 +28,7 @@ def stylobate(*arguments, **options):
 def test_simulate_prints_what_simulate_finds(capsys):
     assert run(["simulate", *COLUMN, *MOTION, *START, "--json"]) == 0
     told = json.loads(capsys.readouterr().out)
-    model = sb.Slender(sb.Column.dimensionless(0.1), damping=0.1)
+    model = sb.Wobbling(sb.Column.dimensionless(0.1), damping=0.1)
     motion = sb.Harmonic.circular(acceleration=0.065, angular_frequency=1.8)
     found = sb.simulate(model, motion, tilt=(0.04, 0.0), tilt_rate=(0.0, 0.07), duration=20.0)
     assert told["outcome"] == found.outcome.name

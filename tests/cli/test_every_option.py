@@ -234,7 +234,7 @@ def test_no_option_of_a_run_is_refused_with_every_column_model_and_motion(capsys
 def test_a_coefficient_of_friction_that_changes_no_run_is_refused_with_a_remedy(command, capsys):
     base = [command, *BASES[command][0]]
     assert outcome([*base, "--friction-coefficient", "0.3"], capsys)[1] == [
-        "stylobate: --friction-coefficient: model 'slender' does not use it (got 0.3). "
+        "stylobate: --friction-coefficient: model 'wobbling' does not use it (got 0.3). "
         "Remove it, or choose --model sliding."
     ]
     assert not outcome([*base, "--model", "sliding", "--friction-coefficient", "0.3"], capsys)[1]

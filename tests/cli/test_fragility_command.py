@@ -25,7 +25,7 @@ from stylobate.earthquakes.config import FragilityConfig
 from stylobate.errors import ConfigError
 
 COLUMN = ["--radius", "0.4", "--height", "4", "--density", "2700", "--damping", "0.05"]
-MODEL = sb.Slender(sb.Column.solid(radius=0.4, height=4.0, density=2700.0), damping=0.05)
+MODEL = sb.Wobbling(sb.Column.solid(radius=0.4, height=4.0, density=2700.0), damping=0.05)
 SCALES = ["--scales", "0.8", "8", "6"]
 STUDY = """
 records = "quakes"
@@ -37,7 +37,7 @@ height = 4.0
 density = 2700.0
 
 [model]
-kind = "slender"
+kind = "wobbling"
 damping = 0.05
 
 [fragility]

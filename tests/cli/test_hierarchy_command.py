@@ -156,11 +156,14 @@ def test_maps_take_models(capsys):
 @pytest.mark.parametrize(
     ("arguments", "line"),
     [
-        (["simulate", *CASE, "--spin-damping", "0.1"], "--spin-damping: model 'slender' does not use it (got "),
-        (["simulate", *CASE, "--constraint", "rubber"], "--constraint: model 'slender' does not use it (got "),
+        (["simulate", *CASE, "--spin-damping", "0.1"], "--spin-damping: model 'wobbling' does not use it (got "),
         (
-            ["map", *CASE, "--passage-tilt", "0.1", "--x", "size", "1", "2", "2", "--y", "damping", "0", "1", "2"],
-            "--passage-tilt: model 'slender' does not use it (got ",
+            ["simulate", *CASE, "--model", "slender", "--constraint", "rubber"],
+            "--constraint: model 'slender' does not use it (got ",
+        ),
+        (
+            ["map", *CASE, "--normal-restitution", "0", "--x", "size", "1", "2", "2", "--y", "damping", "0", "1", "2"],
+            "--normal-restitution: model 'wobbling' does not use it (got ",
         ),
         (
             ["basin", *CASE, "--model", "slender-rolling", "--restitution", "1", *SAMPLE],
@@ -180,8 +183,8 @@ def test_maps_take_models(capsys):
         ),
         (["simulate", *CASE, "--model", "tumbling"], "model.kind must be one of 'slender', 'slender_rolling'"),
         (["simulate", *CASE, "--model", "wobbling", "--constraint", "x"], "input should be 'pure_tilt' or 'rubber'"),
-        (["simulate", *CASE, "--spin", "1"], "spin must be left out: the column of model slender cannot turn"),
-        (["simulate", *CASE, "--twist", "1"], "twist must be left out"),
+        (["simulate", *CASE, "--spin", "1"], "spin must be left out: the column of model wobbling cannot turn"),
+        (["simulate", *CASE, "--model", "slender", "--twist", "1"], "twist must be left out"),
         (["simulate", *CASE, "--model", "planar-rocking"], "must lie in one vertical plane"),
         (["simulate", *CASE, "--friction-coefficient", "0"], "friction_coefficient must be positive, got 0.0"),
         (["hierarchy", *CASE, "--reference", "sliding"], "reference must be a model of this case"),

@@ -20,7 +20,7 @@ MORE = ["--acceleration", "0.2", "--angular-frequency", "2"]
 LARGE = ["map", *COLUMN, "--motion", "circular", "--periods", "3"]
 LARGE += ["--x", "angular-frequency", "0.5", "6", "50", "--y", "acceleration", "0.05", "0.4", "40"]
 
-MODEL = sb.Slender(sb.Column.dimensionless(0.1), damping=0.1)
+MODEL = sb.Wobbling(sb.Column.dimensionless(0.1), damping=0.1)
 CIRCLE = sb.Harmonic.circular(acceleration=1.0, angular_frequency=1.0)
 OVER = {"angular_frequency": np.linspace(0.5, 6.0, 5), "acceleration": np.linspace(0.05, 0.4, 4)}
 
@@ -73,7 +73,7 @@ def test_options_repeat_a_saved_map_with_changes(name, tmp_path, capsys, saved):
     assert run(["map", str(path), "--damping", "0.3", "--duration", "9", "--output", str(changed), "--json"]) == 0
     told = json.loads(capsys.readouterr().out)["provenance"]
     assert (told["model"]["damping"], told["duration"], told["periods"]) == (0.3, 9.0, None)
-    damped = sb.Slender(sb.Column.dimensionless(0.1), damping=0.3)
+    damped = sb.Wobbling(sb.Column.dimensionless(0.1), damping=0.3)
     xr.testing.assert_equal(saved(changed), sb.studies.overturning_map(damped, CIRCLE, over=OVER, duration=9.0))
 
 

@@ -29,7 +29,7 @@ def test_a_record_given_as_options_is_simulated_and_repeated_from_the_saved_run(
     assert run(["simulate", *COLUMN, *options, "--output", str(saved), "--json"]) == 0
     told = json.loads(capsys.readouterr().out)
     (read,) = sb.read_records(files, "g", step=0.01)
-    model = sb.Slender(sb.Column.solid(radius=0.3, height=3.0, density=2700.0), damping=0.05)
+    model = sb.Wobbling(sb.Column.solid(radius=0.3, height=3.0, density=2700.0), damping=0.05)
     motion = read.scaled(1.5).rotated(0.2).with_tail(0.5)
     found = sb.simulate(model, motion, duration=told["provenance"]["duration"])
     assert told["measures"] == dict(found.measures)
@@ -64,7 +64,7 @@ def test_a_map_takes_a_record_and_lasts_as_long(files, tmp_path, capsys):
 STUDY = """
 duration = 2.0
 column = {shape = "solid", radius = 0.3, height = 3.0, density = 2700.0}
-model = {kind = "slender", damping = 0.05}
+model = {kind = "wobbling", damping = 0.05}
 motion = {kind = "record", path = "quakes/quake_NS.txt", units = "g", step = 0.01, one_component = true}
 
 [map]
@@ -152,7 +152,7 @@ def test_listed_components_are_one_event_whatever_their_names(files, tmp_path, c
     told = capsys.readouterr()
     assert told.err == ""
     (read,) = sb.read_records([paths], "g", step=0.01, directions={"left.txt": 10, "right.txt": 100})
-    model = sb.Slender(sb.Column.solid(radius=0.3, height=3.0, density=2700.0), damping=0.05)
+    model = sb.Wobbling(sb.Column.solid(radius=0.3, height=3.0, density=2700.0), damping=0.05)
     assert json.loads(told.out)["measures"] == dict(sb.simulate(model, read, duration=2.0).measures)
 
 

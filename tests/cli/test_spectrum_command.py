@@ -11,10 +11,10 @@ from stylobate.cli.main import run
 from stylobate.earthquakes.config import SpectrumConfig
 from stylobate.errors import ConfigError
 
-SLENDER = ["--slenderness", "0.1", "--damping", "0.1"]
+COLUMN = ["--slenderness", "0.1", "--damping", "0.1"]
 OVER = ["--motion", "one-sine", "--x", "angular-frequency", "3", "6", "2"]
-BANDS = ["spectrum", *SLENDER, *OVER, "--scales", "0.1", "1.5", "10", "--width", "0.01"]
-MODEL = sb.Slender(sb.Column.dimensionless(slenderness=0.1), damping=0.1)
+BANDS = ["spectrum", *COLUMN, *OVER, "--scales", "0.1", "1.5", "10", "--width", "0.01"]
+MODEL = sb.Wobbling(sb.Column.dimensionless(slenderness=0.1), damping=0.1)
 SINE = sb.Pulse.one_sine(acceleration=1.0, angular_frequency=1.0)
 
 
@@ -75,7 +75,7 @@ def test_an_interrupted_scan_is_told_and_can_go_on(tmp_path, capsys, interrupted
 
 def test_a_rocking_spectrum_tells_peaks(tmp_path, capsys):
     path = tmp_path / "rocking.nc"
-    rocking = ["spectrum", *SLENDER, "--motion", "one-sine", "--acceleration", "0.15", "--angular-frequency", "2"]
+    rocking = ["spectrum", *COLUMN, "--motion", "one-sine", "--acceleration", "0.15", "--angular-frequency", "2"]
     assert run([*rocking, "--rocking", "--x", "size", "1", "9", "2", "--output", str(path), "--json"]) == 0
     first, second = json.loads(capsys.readouterr().out)["cases"]
     over = {"size": [1.0, 9.0]}
@@ -89,9 +89,9 @@ def test_a_rocking_spectrum_tells_peaks(tmp_path, capsys):
 
 
 def test_one_column_needs_no_quantity_that_varies(capsys):
-    one = ["spectrum", *SLENDER, "--motion", "half-sine", "--angular-frequency", "2", "--scales", "0.1", "0.5", "4"]
+    one = ["spectrum", *COLUMN, "--motion", "half-sine", "--angular-frequency", "2", "--scales", "0.1", "0.5", "4"]
     assert run(one) == 0
-    assert "1 case, model slender, damping" in capsys.readouterr().out
+    assert "1 case, model wobbling, damping" in capsys.readouterr().out
 
 
 @pytest.mark.parametrize(
@@ -104,10 +104,10 @@ def test_one_column_needs_no_quantity_that_varies(capsys):
         ),
         ([*BANDS, "--y", "angular-frequency", "1", "2", "2"], "spectrum.x and spectrum.y must differ"),
         ([*BANDS, "--y", "weight", "1", "2", "2"], "spectrum.y: weight is not known here"),
-        (["spectrum", *SLENDER, *OVER, "--scales", "1", "0.1", "3"], "scales must be two or more positive numbers"),
-        (["spectrum", *SLENDER, *OVER, "--scales", "0", "1", "3"], "spectrum.scales: from must be positive, got 0.0"),
+        (["spectrum", *COLUMN, *OVER, "--scales", "1", "0.1", "3"], "scales must be two or more positive numbers"),
+        (["spectrum", *COLUMN, *OVER, "--scales", "0", "1", "3"], "spectrum.scales: from must be positive, got 0.0"),
         (
-            ["spectrum", *SLENDER, "--motion", "circular", *OVER[2:], "--scales", "1", "2", "3"],
+            ["spectrum", *COLUMN, "--motion", "circular", *OVER[2:], "--scales", "1", "2", "3"],
             "duration must be given",
         ),
     ],
@@ -128,7 +128,7 @@ def test_a_saved_map_is_no_spectrum(tmp_path, capsys, found):
 def test_a_description_says_the_same_and_leaves_other_commands_alone(found):
     values = {
         "column": {"shape": "dimensionless", "slenderness": 0.1},
-        "model": {"damping": 0.1, "kind": "slender"},
+        "model": {"damping": 0.1, "kind": "wobbling"},
         "motion": {"kind": "one_sine"},
         "periods": 400.0,
         "map": {"x": {"name": "damping", "values": [0.1]}},

@@ -123,7 +123,7 @@ def test_every_kind_of_motion_can_be_written(text, tmp_path):
 @pytest.mark.parametrize("text", COLUMNS)
 def test_every_shape_of_column_can_be_written(text, tmp_path):
     setup = described(f"duration = 5.0\n[column]\n{text}", tmp_path).build()
-    assert setup.model == sb.Slender(COLUMNS[text])
+    assert setup.model == sb.Wobbling(COLUMNS[text])
     assert setup.motion == BASE_AT_REST
 
 

@@ -2,9 +2,10 @@
 
 import pytest
 
-from stylobate.config import HierarchyConfig, SimulationConfig
+from stylobate.config import HierarchyConfig, ResponseConfig, SimulationConfig
 from stylobate.engine.end_of_motion import duration_of
 from stylobate.errors import ConfigError, ParameterError
+from stylobate.models import Slender, Wobbling
 
 EXAMPLES = [
     {"kind": "rest"},
@@ -54,3 +55,15 @@ def test_a_run_needs_a_duration_in_a_file_where_it_needs_one_in_python_and_has_t
 def test_the_numbers_of_a_column_imply_its_shape_in_a_file_as_on_the_command_line(numbers, shape):
     described = SimulationConfig.parse({"column": numbers, "duration": 1.0})
     assert described == SimulationConfig.parse({"column": {"shape": shape, **numbers}, "duration": 1.0})
+
+
+@pytest.mark.parametrize("column", [{"slenderness": 0.1}, {"radius": 0.5, "height": 5.0, "density": 2000.0}])
+@pytest.mark.parametrize("model", [{}, {"model": {"damping": 0.1}}])
+def test_a_file_without_a_model_wobbles_and_theory_of_steady_rolling_is_slender(column, model):
+    motion = {"kind": "circular", "acceleration": 0.1, "angular_frequency": 2.0}
+    values = {"column": column, "motion": motion, "duration": 1.0, "angular_frequency_range": [1.0, 2.0], **model}
+    eta = 0.1 if model else 0.0
+    kinds = ((SimulationConfig, Wobbling), (ResponseConfig, Slender))
+    for config, kind in kinds:
+        built = config.parse({name: one for name, one in values.items() if name in config.model_fields}).build().model
+        assert built == kind(built.column, damping=eta)

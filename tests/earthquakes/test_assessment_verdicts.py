@@ -64,7 +64,7 @@ def made(
     slips
         Scale from which on a record makes the standing column slide, by record.
     slid
-        Verdicts by the model that slides: state and whether rounding could change it, by record.
+        Verdicts by the model that slides: state and whether it is numerically uncertain, by record.
     """
     dims = ("column", "record", "dissipation", "vertical", "scale")
     coords = {"column": ["k"], "record": list(RECORDS), "dissipation": list(LEVELS), "vertical": list(ACTS)}
@@ -214,7 +214,7 @@ def test_a_column_that_stood_in_every_run_survived_every_run():
         ),
         ({"decided": {("B", "high"): 0.4}}, "not every scale up to this one was decided (only up to 0.4)"),
         ({"decided": {("B", "high"): np.nan}}, "not every scale up to this one was decided"),
-        ({"uncertain": ["A"]}, "rounding could change the outcome under A"),
+        ({"uncertain": ["A"]}, "rounding or the rest threshold could alter the outcome under A"),
         ({"need": [("A", 0.72)]}, "the base would slip under A (friction 0.72 needed)"),
         ({"variations": 0}, "small variations were not tried"),
         ({"contact": False}, "the friction needed was not computed"),
@@ -279,8 +279,8 @@ def test_the_least_scale_is_stated_with_the_scales_that_were_not_decided(least, 
         (dict.fromkeys(RECORDS, (-1, 0)), "With the sliding model it was not decided under A, B, C."),
         (
             {"C": (0, 1)},
-            "With the sliding model it did not overturn, and slid by up to 12 mm. Rounding could change the outcome "
-            "under C.",
+            "With the sliding model it did not overturn, and slid by up to 12 mm. Rounding or the rest threshold could "
+            "alter the outcome under C.",
         ),
     ],
 )

@@ -214,9 +214,9 @@ def test_the_schema_excludes_nothing_that_the_laboratory_accepts(client, body):
     excluded = [one for one in changed(body) if not component("Simulation").is_valid(one)]
     assert excluded
     for one in excluded:
-        # A model without its kind is a slender one, a column without its shape has the shape that its numbers imply:
+        # A model without its kind is a wobbling one, a column without its shape has the shape that its numbers imply:
         # a schema of one of several cannot say so.
-        whole = {**one, **({"model": {"kind": "slender", **one["model"]}} if "model" in one else {})}
+        whole = {**one, **({"model": {"kind": "wobbling", **one["model"]}} if "model" in one else {})}
         if "column" in one:
             whole["column"] = {"shape": implied_shape(one["column"]) or "solid", **one["column"]}
         if not component("Simulation").is_valid(whole):

@@ -21,7 +21,7 @@ for seed in range(20):
 
 column = sb.Column.solid(radius=0.4, height=4.0, density=2700.0)  # m, m, kg/m³
 runs = sb.earthquakes.incremental_dynamic_analysis(
-    sb.Slender(column, damping=0.03), quakes, scales=np.geomspace(1.6, 10.0, 10)
+    sb.Wobbling(column, damping=0.03), quakes, scales=np.geomspace(1.6, 10.0, 10)
 )
 fits = sb.earthquakes.fragility_of_runs(
     runs, resamples=200, rng=np.random.default_rng(0)

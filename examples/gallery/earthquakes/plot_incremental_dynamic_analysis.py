@@ -20,7 +20,7 @@ for seed in range(8):
     quakes[f"synthetic {seed}"] = made.trimmed(0.0, 14.0).scaled_to(1.0)  # m/s²
 column = sb.Column.solid(radius=0.4, height=4.0, density=2700.0)  # m, m, kg/m³
 runs = sb.earthquakes.incremental_dynamic_analysis(
-    sb.Slender(column, damping=0.03), quakes, scales=np.linspace(1.6, 5.4, 16)
+    sb.Wobbling(column, damping=0.03), quakes, scales=np.linspace(1.6, 5.4, 16)
 )
 figure = sb.plot(runs)
 

@@ -19,7 +19,7 @@ for seed in range(8):
     quakes[f"synthetic {seed}"] = made.trimmed(0.0, 14.0).scaled_to(1.0)  # m/s²
 column = sb.Column.solid(radius=0.4, height=4.0, density=2700.0)  # m, m, kg/m³
 found = sb.earthquakes.planar_bias(
-    sb.Slender(column, damping=0.03), quakes, scales=np.linspace(1.6, 5.4, 12)
+    sb.Wobbling(column, damping=0.03), quakes, scales=np.linspace(1.6, 5.4, 12)
 )
 ratio = float(np.exp(found["overall_bias"]))
 print(f"peak tilt in three dimensions / planar: {ratio:.1f} (geometric mean)")

@@ -12,7 +12,7 @@ import stylobate as sb
 
 column = sb.Column.solid(radius=0.3, height=3.0, density=2700.0)  # m, m, kg/m³
 found = sb.earthquakes.planar_bias(
-    sb.Slender(column, damping=0.03),
+    sb.Wobbling(column, damping=0.03),
     sb.sample_record("el centro 1940"),
     scales=np.geomspace(0.6, 4.0, 20),
     directions=np.radians(np.arange(0.0, 180.0, 15.0)),

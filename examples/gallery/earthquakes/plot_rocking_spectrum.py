@@ -14,7 +14,7 @@ stone = sb.Column.solid(radius=0.5, height=5.0, density=2000.0)  # m, m, kg/m³
 quake = sb.sample_record("el centro 1940")
 
 peaks = sb.earthquakes.rocking_spectrum(
-    sb.Slender(stone, damping=0.05),
+    sb.Wobbling(stone, damping=0.05),
     quake,
     over={"size": np.geomspace(0.1, 10.0, 40), "slenderness": [0.1, 0.15, 0.2]},
 )

@@ -12,7 +12,7 @@ import stylobate as sb
 
 stone = sb.Column.solid(radius=0.2, height=2.0, density=2700.0)  # m, m, kg/m³
 found = sb.earthquakes.overturning_bands(
-    sb.Slender(stone, damping=0.05),
+    sb.Wobbling(stone, damping=0.05),
     sb.sample_record("el centro 1940"),
     scales=np.geomspace(0.25, 4.0, 21),
     over={"size": np.geomspace(0.5, 6.0, 16)},  # 1 m to 12 m high

@@ -15,7 +15,7 @@ quake = sb.sample_record("el centro 1940")
 
 # Each damping at 24 scales of the record: a small study.
 found = sb.earthquakes.overturning_bands(
-    sb.Slender(column),
+    sb.Wobbling(column),
     quake,
     scales=np.geomspace(0.5, 4.0, 24),
     over={"damping": np.geomspace(0.005, 0.2, 12)},

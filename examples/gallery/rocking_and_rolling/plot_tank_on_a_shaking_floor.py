@@ -9,7 +9,7 @@ shake? Four floor motions, from weak and slow to strong and fast.
 import stylobate as sb
 
 tank = sb.Column.hollow(radius=0.6, inner_radius=0.55, height=9.0, density=7850.0)
-model = sb.Slender(tank, damping=0.05)
+model = sb.Wobbling(tank, damping=0.05)
 cases = [(1.0, 2.0), (1.4, 2.0), (1.4, 5.0), (2.0, 5.0)]  # m/s², rad/s
 
 runs, labels = [], []

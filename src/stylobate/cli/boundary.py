@@ -10,7 +10,7 @@ from stylobate.cli.declarations import OUTPUT, Option
 from stylobate.cli.options import Options
 from stylobate.cli.output import check_writable, deliver, print_table
 from stylobate.cli.overlay import overlay
-from stylobate.cli.parts import COLUMN, HORIZONTAL_MOTION, MODEL
+from stylobate.cli.parts import COLUMN, HORIZONTAL_MOTION, MODEL_OF_STEADY_ROLLING
 from stylobate.cli.response import FREQUENCY_RANGE, plain_curves, save_curves
 from stylobate.cli.source import read_source
 from stylobate.errors import ParameterError
@@ -36,7 +36,7 @@ _ROWS = 9
     ),
     FREQUENCY_RANGE,
     argument="TOML description",
-    groups=(COLUMN, MODEL, HORIZONTAL_MOTION, OUTPUT),
+    groups=(COLUMN, MODEL_OF_STEADY_ROLLING, HORIZONTAL_MOTION, OUTPUT),
 )
 def boundary(options: Options) -> None:
     """Compute the stability boundary of steady rolling over two parameters.

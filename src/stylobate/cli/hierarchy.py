@@ -126,7 +126,7 @@ def _row(at: "xr.Dataset", c: float, *, several: bool) -> list[str]:
     return [
         *([f"{c:.4g}"] if several else []),
         name,
-        outcome_label(int(at["outcome"])) + (" (uncertain)" if bool(at["uncertain"]) else ""),
+        outcome_label(int(at["outcome"])) + (" (numerically uncertain)" if bool(at["uncertain"]) else ""),
         _cell(float(at["peak_tilt"]) / c),
         _cell(float(at["mean_late_tilt"]) / c),
         _cell(float(at["mean_late_spin"])),

@@ -73,4 +73,5 @@ def _print(result: "xr.Dataset") -> None:
     rows = [(name, str(count), f"{100.0 * share:.2f} %") for name, count, share in _shares(result) if count]
     title = number_of_runs(result, f" over {' and '.join(map(str, result['outcome'].dims))}")
     uncertain = int(result["uncertain"].sum())
-    print_table(title + (f"; {uncertain} uncertain" if uncertain else ""), rows, ("outcome", "runs", "share"))
+    doubts = f"; {uncertain} numerically uncertain" if uncertain else ""
+    print_table(title + doubts, rows, ("outcome", "runs", "share"))

@@ -1,17 +1,20 @@
 """Overlay of options on a file: options override values of the same names."""
 
 from collections.abc import Iterable, Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from stylobate.cli.options import Options
 from stylobate.cli.parts import PARTS, Part, kinds_in_files
 from stylobate.errors import ConfigError, ParameterError
 from stylobate.quantities import parameters_of
 
+if TYPE_CHECKING:
+    from pydantic.fields import FieldInfo
+
 _TABLES = ("column", "model", "motion", "records")
 
 
-def overlay(values: Mapping[str, Any], options: Options, fields: Iterable[str]) -> dict[str, Any]:
+def overlay(values: Mapping[str, Any], options: Options, fields: "Mapping[str, FieldInfo]") -> dict[str, Any]:
     """Override the values of a file by the options.
 
     Parameters
@@ -21,19 +24,19 @@ def overlay(values: Mapping[str, Any], options: Options, fields: Iterable[str]) 
     options
         All options of the command.
     fields
-        Names at the top level of the configuration; other options of the run are ignored.
+        Fields of the configuration; other options of the run are ignored.
 
     Raises
     ------
     ConfigError
         With one line for each option that the chosen column shape, model or base motion does not use.
     """
-    result, fields, problems = dict(values), [name for name in fields if name not in _TABLES], list[str]()
+    result, problems = dict(values), list[str]()
     of_parts = {*_column(result, options, problems), *_model(result, options, fields, problems)}
     of_parts |= {*_motion(result, options, problems)}
     if problems:
         raise ConfigError(problems)
-    chosen = options.pick(*(name for name in fields if name not in of_parts))
+    chosen = options.pick(*(name for name in fields if name not in (*_TABLES, *of_parts)))
     for name, other in (("duration", "periods"), ("periods", "duration")):
         if name in chosen and other not in chosen:
             result.pop(other, None)  # either states the duration
@@ -125,7 +128,9 @@ def _column(values: dict[str, Any], options: Options, problems: list[str]) -> li
     return names
 
 
-def _model(values: dict[str, Any], options: Options, fields: Iterable[str], problems: list[str]) -> list[str]:
+def _model(
+    values: dict[str, Any], options: Options, fields: "Mapping[str, FieldInfo]", problems: list[str]
+) -> list[str]:
     """Merge the model; a kind that differs from the kind in the file keeps the numbers that both have."""
     part, table = PARTS["model"], values.get("model", {})
     kind = None
@@ -133,7 +138,7 @@ def _model(values: dict[str, Any], options: Options, fields: Iterable[str], prob
         if options["model"] and isinstance(table, Mapping):
             kind = options.chosen.kinds.get("model", options["model"])
             values["model"] = table = {**_kept(table, kind, options), "kind": kind}
-        kind = table.get("kind", "slender") if isinstance(table, Mapping) else None
+        kind = table.get("kind", fields["model"].default.kind) if isinstance(table, Mapping) else None
     numbers, names = _numbers(part, kind, options, problems, fields)
     merge(values, "model", numbers)
     return names

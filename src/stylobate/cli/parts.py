@@ -131,10 +131,10 @@ def _option(
 
 
 COLUMN = part_group(PARTS["column"], "Column", default="; by default the shape that the other numbers imply")
-MODEL = part_group(PARTS["model"], "Model", default=" (slender by default), or FILE.py:CLASS")
-MODEL_WITHOUT_SLIDING = part_group(
-    PARTS["model"], "Model", left_out=("sliding",), default=" (slender by default), or FILE.py:CLASS"
-)
+_WOBBLING = " (wobbling by default), or FILE.py:CLASS"
+MODEL = part_group(PARTS["model"], "Model", default=_WOBBLING)
+MODEL_OF_STEADY_ROLLING = part_group(PARTS["model"], "Model", default=" (slender by default), or FILE.py:CLASS")
+MODEL_WITHOUT_SLIDING = part_group(PARTS["model"], "Model", left_out=("sliding",), default=_WOBBLING)
 SLIDING = part_group(PARTS["model"], "Model", kinds=lambda: ("sliding",))
 MOTION = part_group(PARTS["motion"], "Base motion", default=" (rest by default), or FILE.py:CLASS")
 MOTION_WITHOUT_RECORDS = part_group(

@@ -11,7 +11,7 @@ from stylobate.cli.declarations import OUTPUT, Option
 from stylobate.cli.options import Options
 from stylobate.cli.output import check_writable, deliver, print_table
 from stylobate.cli.overlay import overlay
-from stylobate.cli.parts import COLUMN, HORIZONTAL_MOTION, MODEL
+from stylobate.cli.parts import COLUMN, HORIZONTAL_MOTION, MODEL_OF_STEADY_ROLLING
 from stylobate.cli.source import read_source
 from stylobate.errors import ParameterError
 
@@ -28,7 +28,7 @@ FREQUENCY_RANGE = Option("angular_frequency_range", "lowest and highest angular 
     Option("points", "number of frequencies; 400 by default", int),
     Option("exact", "exact periodic orbits and bifurcations, no theory", bool, default=False),
     argument="TOML description",
-    groups=(COLUMN, MODEL, HORIZONTAL_MOTION, OUTPUT),
+    groups=(COLUMN, MODEL_OF_STEADY_ROLLING, HORIZONTAL_MOTION, OUTPUT),
 )
 def response(options: Options) -> None:
     """Compute amplitude and phase of steady rolling against frequency.

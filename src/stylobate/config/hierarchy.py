@@ -9,7 +9,7 @@ from pydantic import Field, create_model
 from stylobate.config.columns import ColumnConfig
 from stylobate.config.declared import number_or_word
 from stylobate.config.description import Config, built
-from stylobate.config.models import default_values, described_model
+from stylobate.config.models import DEFAULT_MODEL, default_values, described_model
 from stylobate.config.motions import AT_REST, MotionConfig
 from stylobate.config.run_numbers import OneRun, problems_of_the_numbers
 from stylobate.config.simulation import (
@@ -81,7 +81,7 @@ class HierarchyConfig(OneRun, _HierarchyCase):
         kept = {name: value for name, value in values.items() if name not in of_others}
         described = kept.get("model")
         if isinstance(described, Mapping):
-            usual = {**default_values(described.get("kind", "slender")), "kind": described.get("kind")}
+            usual = {**default_values(described.get("kind", DEFAULT_MODEL)), "kind": described.get("kind")}
             kept["model"] = {name: one for name, one in described.items() if name not in usual or one != usual[name]}
             shared = HierarchyDissipation.model_fields
             strange = {name: value for name, value in kept["model"].items() if name not in shared}

@@ -34,7 +34,7 @@ class ManyRuns(SharedByRuns, Case):
     demands
         Whether to report the contact demand of each run.
     recheck
-        Whether to repeat runs whose outcome rounding could change.
+        Whether to repeat runs whose outcome rounding or the rest threshold could alter.
     rules
         Numbers of `OutcomeRules`, by name.
     """

@@ -1,5 +1,7 @@
 """Describe models by the declarations of their numbers; the key `kind` chooses the model."""
 
+from collections.abc import Mapping
+from functools import partial
 from typing import TYPE_CHECKING, Annotated, Any
 
 from pydantic import BeforeValidator
@@ -35,9 +37,16 @@ DESCRIBED_MODELS: tuple[type[Config], ...] = tuple(_BY_KIND.values())
 """The descriptions of all models."""
 
 
-def _with_kind(described: Any) -> Any:
-    """Return the values of a model with its kind; the default is the slender model."""
-    return {"kind": "slender", **described} if isinstance(described, dict) else described
+DEFAULT_MODEL = "wobbling"
+"""Kind of a model that states none."""
+
+STEADY_MODEL = "slender"
+"""Kind of a model that states none where closed forms of steady rolling are compared with it."""
+
+
+def _with_kind(kind: str, described: Any) -> Any:
+    """Return the values of a model with its kind, which is `kind` if they state none."""
+    return {"kind": kind, **described} if isinstance(described, Mapping) else described
 
 
 def _of_own(place: Place) -> type[DescribedModel]:
@@ -47,8 +56,11 @@ def _of_own(place: Place) -> type[DescribedModel]:
 
 if TYPE_CHECKING:
     ModelConfig = DescribedModel
+    SteadyModelConfig = DescribedModel
 else:
-    ModelConfig = Annotated[one_of(DESCRIBED_MODELS, "kind", _of_own), BeforeValidator(_with_kind)]
+    _Any = one_of(DESCRIBED_MODELS, "kind", _of_own)
+    ModelConfig = Annotated[_Any, BeforeValidator(partial(_with_kind, DEFAULT_MODEL))]
+    SteadyModelConfig = Annotated[_Any, BeforeValidator(partial(_with_kind, STEADY_MODEL))]
 
 
 def described_model(kind: str, **values: Any) -> DescribedModel:

@@ -8,14 +8,22 @@ from typing import Any, Self
 from stylobate.base_motions.declared import kinds_by_acceleration
 from stylobate.config.columns import ColumnConfig
 from stylobate.config.description import Config, built
-from stylobate.config.models import ModelConfig, described_model
+from stylobate.config.models import STEADY_MODEL, SteadyModelConfig, described_model
 from stylobate.config.motions import MotionConfig, made_by
 from stylobate.config.simulation import OF_OTHER_COMMANDS, Setup, SimulationConfig, built_parts
 from stylobate.errors import ConfigError, require_positive, require_whole
 from stylobate.quantities import states
 
 
-class ResponseConfig(Config):
+class SteadyCase(Config):
+    """The case of steady rolling, whose closed forms are those of the slender model: `column`, `model`, `motion`."""
+
+    column: ColumnConfig
+    model: SteadyModelConfig = described_model(STEADY_MODEL)
+    motion: MotionConfig
+
+
+class ResponseConfig(SteadyCase):
     """Response curves over the frequency of the base.
 
     Parameters
@@ -30,9 +38,6 @@ class ResponseConfig(Config):
         Number of frequencies.
     """
 
-    column: ColumnConfig
-    model: ModelConfig = described_model("slender")
-    motion: MotionConfig
     angular_frequency_range: tuple[float, float]
     points: int = 400
 

@@ -14,7 +14,7 @@ from stylobate.base_motions import BaseMotion, Record
 from stylobate.config.columns import ANY_COLUMN, ColumnConfig, describe_column
 from stylobate.config.description import Config, built
 from stylobate.config.file_values import DEEPEST, check_file_values
-from stylobate.config.models import ModelConfig, describe_model, described_model
+from stylobate.config.models import DEFAULT_MODEL, ModelConfig, describe_model, described_model
 from stylobate.config.motions import AT_REST, MotionConfig, describe_motion, is_to_end
 from stylobate.config.records import RecordMotion, anchored
 from stylobate.config.run_numbers import SingleRun, problems_of_the_numbers
@@ -42,7 +42,7 @@ class Case(Config):
     """The case of a run: `column`, `model` and `motion`."""
 
     column: ColumnConfig
-    model: ModelConfig = described_model("slender")
+    model: ModelConfig = described_model(DEFAULT_MODEL)
     motion: MotionConfig = AT_REST
 
 
@@ -59,7 +59,7 @@ class SimulationConfig(SingleRun, Case):
     rules
         Numbers of `OutcomeRules`, by name.
     recheck
-        Whether to repeat the run if rounding could change its outcome.
+        Whether to repeat the run if rounding or the rest threshold could alter its outcome.
     """
 
     rules: dict[str, float] = Field(default_factory=dict)

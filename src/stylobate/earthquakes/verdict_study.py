@@ -279,11 +279,7 @@ class _Case:
             {
                 "outcome": ("run", found["outcome"].astype(np.int8), codes.attrs),
                 "peak_tilt": ("run", found["peak_tilt"], runs["peak_tilt"].attrs),
-                "uncertain": (
-                    "run",
-                    found["uncertain"].astype(np.int8),
-                    {"long_name": "rounding could alter the outcome"},
-                ),
+                "uncertain": ("run", found["uncertain"].astype(np.int8), runs["uncertain"].attrs),
             }
         )
         return data.assign(tilt_ratio=tilt_ratios(data, xr.DataArray(slenderness, dims="run")))

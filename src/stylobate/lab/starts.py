@@ -7,10 +7,7 @@ import numpy as np
 
 from stylobate import orbits, studies
 from stylobate.base_motions import Harmonic
-from stylobate.config.columns import ColumnConfig
-from stylobate.config.description import Config
-from stylobate.config.models import ModelConfig, described_model
-from stylobate.config.motions import MotionConfig
+from stylobate.config.response import SteadyCase
 from stylobate.config.run_numbers import Start, numbers_of
 from stylobate.config.simulation import built_parts
 from stylobate.errors import NoOrbitError, ParameterError, UnsupportedError
@@ -30,12 +27,9 @@ _UNSTABLE = "start: the exact orbit is unstable, and the motion leaves it"
 _ASYMMETRIC = "start: the exact orbit has bifurcated from the branch and lacks its symmetry"
 
 
-class StartConfig(Config):
+class StartConfig(SteadyCase):
     """The case of steady rolling: `column`, `model`, a horizontal harmonic `motion`, and the branch."""
 
-    column: ColumnConfig
-    model: ModelConfig = described_model("slender")
-    motion: MotionConfig
     branch: Literal["upper", "lower"] = "upper"
 
 

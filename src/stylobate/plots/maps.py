@@ -34,8 +34,8 @@ _MAP_WIDTH = 330.0
 def plot_map(runs: xr.Dataset) -> Figure:
     """Return a figure of the outcomes over two parameters.
 
-    Runs that are not computed yet are white, finely hatched. A dot marks an uncertain run: a small change could alter
-    its outcome.
+    Runs that are not computed yet are white, finely hatched. A dot marks an outcome that is numerically
+    uncertain: rounding or the rest threshold could alter it.
 
     Parameters
     ----------

@@ -8,6 +8,9 @@ import numpy.typing as npt
 
 from stylobate.errors import Outcome
 
+NUMERICALLY_UNCERTAIN = "numerically uncertain: rounding or the rest threshold could alter it"
+"""What `uncertain` means, in the same words everywhere."""
+
 NOT_COMPUTED = -1
 """The code of a run that has not been computed."""
 

@@ -76,8 +76,10 @@ class Response:
     decided_at
         Time of the decision [s].
     uncertain
-        Whether a small change could alter the outcome: a three-dimensional passage within 1e-8 c of the vertical, a run
-        that reached its step limit, or a repeated run with another outcome (see `recheck` of `simulate`).
+        Whether the outcome is numerically uncertain: rounding or the rest threshold could alter it. So it is after a
+        three-dimensional passage within 1e-8 c of the vertical, of a run that failed or reached its step limit, and of
+        a repeated run with another outcome (see `recheck` of `simulate`). Small variations of the case are not tried:
+        `stylobate.verdict` tries them.
     planar
         Whether the run was integrated in one vertical plane, which contains initial state and base motion.
     data

@@ -4,13 +4,11 @@ import math
 from typing import TYPE_CHECKING
 
 from stylobate.results.damping_yardstick import damping_yardstick, yardstick_text
+from stylobate.results.outcomes import NUMERICALLY_UNCERTAIN
 
 if TYPE_CHECKING:
     from stylobate.column import Column
     from stylobate.results.response import Response
-
-NUMERICALLY_UNCERTAIN = "numerically uncertain: rounding or the rest threshold could alter it"
-"""What `uncertain` means, in the same words everywhere."""
 
 Rows = list[tuple[str, str]]
 """Labels and their values."""

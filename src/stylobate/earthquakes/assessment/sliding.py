@@ -13,7 +13,7 @@ from stylobate.engine import simulate
 from stylobate.errors import Outcome
 from stylobate.models import Model, Sliding
 from stylobate.models.declared import dissipation_of
-from stylobate.results.outcomes import NOT_COMPUTED, outcome_attributes
+from stylobate.results.outcomes import NOT_COMPUTED, NUMERICALLY_UNCERTAIN, outcome_attributes
 from stylobate.studies.sweeps.computing import Progress
 
 _OPTIONS = tuple(name for name in numbers_of(Accuracy) if name != "tilt_limit")
@@ -33,10 +33,10 @@ def sliding_of(inputs: Inputs, column: str, parts: Parts) -> xr.Dataset:
     Returns
     -------
     xarray.Dataset
-        Over `record` and `scale`: `outcome`; `overturned` (1, 0, −1 not decided); `uncertain` (1 if rounding could
-        change the outcome); `tilt_ratio`, infinite if the column overturned; `residual_slip`, `peak_slip` and
-        `slip_path` [m]; `time_sliding` [s]. A column that rocks before it slides is not run: `outcome` and
-        `overturned` are −1, the rest is NaN.
+        Over `record` and `scale`: `outcome`; `overturned` (1, 0, −1 not decided); `uncertain` (1 if rounding or the
+        rest threshold could alter the outcome); `tilt_ratio`, infinite if the column overturned; `residual_slip`,
+        `peak_slip` and `slip_path` [m]; `time_sliding` [s]. A column that rocks before it slides is not run: `outcome`
+        and `overturned` are −1, the rest is NaN.
     """
     followed = column in inputs.sliding_first
     rows = [
@@ -53,7 +53,7 @@ def sliding_of(inputs: Inputs, column: str, parts: Parts) -> xr.Dataset:
         {
             "outcome": over("outcome", np.int8, **outcome_attributes()),
             "overturned": over("overturned", np.int8, long_name="overturned"),
-            "uncertain": over("uncertain", np.int8, long_name="rounding could change the outcome"),
+            "uncertain": over("uncertain", np.int8, long_name=NUMERICALLY_UNCERTAIN),
             **{
                 name: over(name, float, units=unit, long_name=long_name) for name, (unit, long_name) in _NUMBERS.items()
             },

@@ -17,7 +17,7 @@ from stylobate.config.columns import ColumnConfig
 from stylobate.config.declared import number_or_word
 from stylobate.config.description import Config, built
 from stylobate.config.levels import LEVELS, is_by_level, problems_of_the_levels
-from stylobate.config.models import ModelConfig, described_model
+from stylobate.config.models import DEFAULT_MODEL, ModelConfig, described_model
 from stylobate.config.record_collection import RecordsConfig
 from stylobate.config.suggestions import did_you_mean
 from stylobate.earthquakes.config.design_spectrum import DesignSpectrumConfig
@@ -141,7 +141,7 @@ class AssessConfig(Config):
 
     title: str = "Columns under records"
     columns: dict[str, ColumnConfig]
-    model: ModelConfig = described_model("wobbling")
+    model: ModelConfig = described_model(DEFAULT_MODEL)
     dissipation: dict[str, Annotated[dict[str, Any], BeforeValidator(_as_level)]]
     friction_coefficient: Annotated[float | dict[str, float], BeforeValidator(_as_friction)]
     records: Annotated[RecordsConfig, BeforeValidator(_as_source)]
@@ -180,9 +180,6 @@ class AssessConfig(Config):
         """
         problems: list[str] = []
         given = dict(values)
-        model = given.get("model")
-        if isinstance(model, Mapping):
-            given["model"] = {"kind": "wobbling", **model}
         for name, remedy in _NEEDED.items():
             if name not in given:
                 problems.append(f"{name} is missing: {remedy}")

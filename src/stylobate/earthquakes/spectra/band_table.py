@@ -23,8 +23,8 @@ class _Band:
     open_above: Annotated[bool, "the interval may end higher: it reaches the last scale or an undecided run"] = False
     undecided_below: Annotated[bool, "the next run below the interval is undecided"] = False
     undecided_above: Annotated[bool, "the next run above the interval is undecided"] = False
-    uncertain_below: Annotated[bool, "a run at the lower edge is uncertain or undecided"] = False
-    uncertain_above: Annotated[bool, "a run at the upper edge is uncertain or undecided"] = False
+    uncertain_below: Annotated[bool, "a run at the lower edge is numerically uncertain or undecided"] = False
+    uncertain_above: Annotated[bool, "a run at the upper edge is numerically uncertain or undecided"] = False
 
 
 @dataclass(frozen=True, slots=True)

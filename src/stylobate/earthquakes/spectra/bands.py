@@ -91,7 +91,8 @@ def overturning_bands(
         * `safe_below`, `safe_above`: the nearest scales outside that did not; NaN if the interval is `open_below` or
           `open_above`, reaching the first or last scale, or an undecided run, for which `undecided_below` or
           `undecided_above` is True;
-        * `uncertain_below`, `uncertain_above`: a small change may move that edge.
+        * `uncertain_below`, `uncertain_above`: a run at that edge is numerically uncertain (rounding or the rest
+          threshold could alter it) or undecided.
 
         A run that failed or lifted off is undecided: it ended before it showed whether the column overturns. No
         interval extends across it. Over the names and `stretch`: `undecided_from` and `undecided_to`, the nearest

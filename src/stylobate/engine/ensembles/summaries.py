@@ -21,7 +21,7 @@ from stylobate.engine.tolerances import CLOSE_PASSAGE
 from stylobate.errors import Outcome
 from stylobate.models import Model
 from stylobate.models.contact import LEAST_FORCE
-from stylobate.results.outcomes import NOT_COMPUTED, outcome_attributes
+from stylobate.results.outcomes import NOT_COMPUTED, NUMERICALLY_UNCERTAIN, outcome_attributes
 
 Floats = npt.NDArray[np.float64]
 Arrays = dict[str, npt.NDArray[Any]]
@@ -51,7 +51,7 @@ QUANTITIES: Mapping[str, Quantity] = {
     "outcome": Quantity(np.int8, (), outcome_attributes(), NOT_COMPUTED),
     "decided_at": _numbers("time at which the outcome was decided", "s"),
     "end_time": _numbers("end of the run", "s"),
-    "uncertain": Quantity(np.bool_, (), {"long_name": "a small change could alter the outcome"}),
+    "uncertain": Quantity(np.bool_, (), {"long_name": NUMERICALLY_UNCERTAIN}),
     "in_doubt": Quantity(np.bool_, (), {"long_name": "finer thresholds or another tolerance could change the outcome"}),
     "planar": Quantity(np.bool_, (), {"long_name": "moved in one vertical plane"}),
     "end_tilt": _numbers("tilt vector at the end", "rad", "axis"),

@@ -13,6 +13,7 @@ from stylobate.lab.schema.notation import (
     whole,
     word,
 )
+from stylobate.results.outcomes import NUMERICALLY_UNCERTAIN
 
 KINDS = ("exact", "map", "basin", "animation")
 """The kinds of jobs."""
@@ -21,7 +22,7 @@ _CODE: Schema = {"type": "integer"}
 _NAMES = listed("codes and their meanings", exactly("", _CODE, text("meaning")))
 _CODES = listed("a row for each value of x", listed("a code for each value of y", _CODE))
 _SIZE = {
-    "uncertain": whole("runs whose outcome rounding error could change"),
+    "uncertain": whole(f"runs whose outcome is {NUMERICALLY_UNCERTAIN}"),
     "runs": whole("number of runs"),
 }
 

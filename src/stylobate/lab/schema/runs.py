@@ -20,6 +20,7 @@ from stylobate.lab.schema.notation import (
 from stylobate.models.sliding.phases import Contact
 from stylobate.plots.shape import Shape
 from stylobate.quantities import parameters_of
+from stylobate.results.outcomes import NUMERICALLY_UNCERTAIN
 
 _ANY_NUMBER: Schema = {"type": ["number", "null"]}
 
@@ -144,7 +145,7 @@ _RUN = table(
         "label": word("the outcome in words", [one.label for one in Outcome]),
         "reason": text("reason for the outcome"),
         "decided_at": number("time at which the outcome was decided [s]"),
-        "uncertain": flag("whether rounding error could change the outcome"),
+        "uncertain": flag(f"whether the outcome is {NUMERICALLY_UNCERTAIN}"),
         "planar": flag("whether the motion stayed in one vertical plane"),
         "warnings": listed("one line each", {"type": "string"}),
         "events": listed(

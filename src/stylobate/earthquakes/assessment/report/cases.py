@@ -44,7 +44,7 @@ class Cases:
     variations_open
         Records with a small variation that was not decided.
     borderline
-        Records with a run whose outcome rounding could change.
+        Records with a run that is numerically uncertain: rounding or the rest threshold could alter its outcome.
     slipping
         Records with a run that needed more than the stated friction, with the largest friction needed.
     """

@@ -175,7 +175,7 @@ def _slid(assessment: Assessment, column: str, scale: float) -> str:
     most = float(runs["peak_slip"].max())
     slid = [] if math.isnan(most) else [f"and slid by up to {number(1000.0 * most)} mm"]
     doubtful = names[runs["uncertain"].to_numpy() == 1].tolist()
-    doubt = f" Rounding could change the outcome under {listed(doubtful)}." if doubtful else ""
+    doubt = f" Rounding or the rest threshold could alter the outcome under {listed(doubtful)}." if doubtful else ""
     return f" With the sliding model it {', '.join([*found, *slid])}.{doubt}"
 
 
@@ -196,7 +196,7 @@ def _reservations(assessment: Assessment, column: str, scale: float, cases: Case
         ],
         "a small variation was not decided under {}": [one for one in cases.variations_open if one not in undecided],
         "some run was not decided under {}": cases.undecided_elsewhere,
-        "rounding could change the outcome under {}": cases.borderline,
+        "rounding or the rest threshold could alter the outcome under {}": cases.borderline,
         f"the base would slip under {{}} (friction {need} needed)": tuple(cases.slipping),
     }
     holds = {

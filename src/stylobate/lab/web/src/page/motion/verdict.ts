@@ -29,7 +29,7 @@ export class Verdict {
     const outcome = element("span", { class: "visually-hidden" }, `${capital(answer.label)}.`);
     const reason = element("span", { class: "reason" }, `${sentence(answer.reason)}${at}`);
     const marks = answer.uncertain
-      ? [element("strong", { class: "badge unsure", title: "A small change could change the outcome" }, "Uncertain")]
+      ? [element("strong", { class: "badge unsure", title: "Rounding or the rest threshold could alter the outcome" }, "Numerically uncertain")]
       : [];
     const wanted = durationWanted(answer.reason);
     const longer = wanted === null ? [] : [this.#followOn(wanted)];

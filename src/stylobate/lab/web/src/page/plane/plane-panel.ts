@@ -198,7 +198,7 @@ export class PlanePanel {
       this.#classes.takeFinal(result.names, result.attractors ?? []);
       this.#filled?.takeAll(result.codes);
     }
-    const unsure = result?.uncertain ? `, ${result.uncertain} of them uncertain` : "";
+    const unsure = result?.uncertain ? `, ${result.uncertain} of them numerically uncertain` : "";
     this.#readout.textContent = `${counted(result?.runs ?? 0, "run")}${this.#length}${unsure}. Click a cell to see its motion.`;
     this.#classes.report(this.#filled);
   }

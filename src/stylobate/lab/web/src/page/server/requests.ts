@@ -38,7 +38,7 @@ export function responseRequest(description: Description, range: readonly [numbe
 }
 
 export function isSlender(description: Description): boolean {
-  return (description.model["kind"] ?? "slender") === "slender";
+  return (description.model["kind"] ?? "wobbling") === "slender";
 }
 
 /** Returns the request for a map or a basin with runs of this length. */

@@ -59,7 +59,7 @@ export type About = {
 
 /** The result of a basin: the attractor of each initial condition. */
 export type BasinResult = {
-  /** runs whose outcome rounding error could change */
+  /** runs whose outcome is numerically uncertain: rounding or the rest threshold could alter it */
   readonly uncertain: number;
   /** number of runs */
   readonly runs: number;
@@ -120,7 +120,7 @@ export type ColumnNumbers = {
 
 /** The result of a map of a model that slides: kinds of contact. */
 export type ContactMapResult = {
-  /** runs whose outcome rounding error could change */
+  /** runs whose outcome is numerically uncertain: rounding or the rest threshold could alter it */
   readonly uncertain: number;
   /** number of runs */
   readonly runs: number;
@@ -293,7 +293,7 @@ export type Kind = {
 
 /** The result of a map: frequencies of the outcomes. */
 export type MapResult = {
-  /** runs whose outcome rounding error could change */
+  /** runs whose outcome is numerically uncertain: rounding or the rest threshold could alter it */
   readonly uncertain: number;
   /** number of runs */
   readonly runs: number;
@@ -482,7 +482,7 @@ export type Run = {
   readonly reason: string;
   /** time at which the outcome was decided [s] */
   readonly decided_at: number;
-  /** whether rounding error could change the outcome */
+  /** whether the outcome is numerically uncertain: rounding or the rest threshold could alter it */
   readonly uncertain: boolean;
   /** whether the motion stayed in one vertical plane */
   readonly planar: boolean;

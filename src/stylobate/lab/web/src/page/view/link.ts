@@ -53,7 +53,7 @@ export function viewFrom(link: string, about: About): View {
   const description: Description = {
     ...values,
     column,
-    model: isPart(model) ? model : { kind: "slender" },
+    model: isPart(model) ? model : { kind: "wobbling" },
     motion: isPart(motion) ? motion : { kind: "rest" },
   };
   return viewOf(description, looks);
