@@ -97,7 +97,7 @@ FIGURES := $(filter-out %/saving.py %/choose_a_model.py,$(wildcard docs/figures/
 figures: $(VENV)/.core  ## all figures and animations of the documentation into docs/_static, ten minutes on two cores
 	for one in $(FIGURES); do echo "$$one"; $(BIN)/python "$$one" || exit 1; done
 
-bench: $(VENV)/.core $(VENV)/.test  ## the benchmarks, beside the engines that can be installed, into docs/_static
+bench: $(VENV)/.core $(VENV)/.test  ## the benchmarks, beside the engines that can be installed, into the documentation
 	-$(BIN)/python -m pip install --quiet --group bench
 	$(BIN)/python -m pytest benchmarks --benchmark-enable --benchmark-only
 	$(BIN)/python -m benchmarks.ensembles
@@ -108,6 +108,7 @@ bench: $(VENV)/.core $(VENV)/.test  ## the benchmarks, beside the engines that c
 	$(BIN)/python -m benchmarks.ensembles.sliding
 	$(BIN)/python -m benchmarks.ensembles.records
 	$(BIN)/python -m benchmarks.orbits
+	$(BIN)/python -m benchmarks.page
 
 clean:  ## remove what the targets made
 	rm -rf $(VENV) .venv-* .mutants docs/_build docs/gallery docs/tutorials stylobate-paper

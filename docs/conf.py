@@ -33,6 +33,7 @@ extensions = [
     "sphinx_gallery.gen_gallery",
     "sphinxcontrib.bibtex",
     "citations",  # docs/extensions: BibTeX from CITATION.cff
+    "source_links",  # docs/extensions: links from source code back to the reference
     "stylobate_reference",  # docs/extensions: summaries, options of commands and fields of files from declarations
 ]
 exclude_patterns = ["_build", "inventories", "extensions"]
@@ -99,7 +100,7 @@ sphinx_gallery_conf = {
         )
     ],
     "image_scrapers": ("figure_scraper.new_figures", "matplotlib"),
-    "ignore_repr_types": r"matplotlib|Animation",  # shown as images, not as text
+    "capture_repr": (),  # text is what an example prints; figures are shown as images
     "image_srcset": ["2x"],
     "thumbnail_size": (480, 320),
     "remove_config_comments": True,
@@ -113,6 +114,20 @@ sphinx_gallery_conf = {
     "download_all_examples": False,
     "parallel": 2,
 }
+# A name in a signature or a link that no page describes is an error, but for types that users never construct.
+nitpicky = True
+nitpick_ignore_regex = [
+    ("py:class", pattern)
+    for pattern in (
+        r"stylobate\.orbits\.(arclength|curves|shooting)\.\w+",  # inner values of branches and orbits
+        r"stylobate\.models\.(closed_form\.ClosedForm|sliding\.phases\.Numbers)",  # inner values of models
+        r"stylobate\.plots\.(animation\.drawing|figure|kinds|page|shape)\.\w+",  # parts of figures and reports
+        r"stylobate\.base_motions\.records\.origin\.RecordOrigin",  # kept for files
+        r"stylobate\.studies\.sweeps\.(computing|designs|executors)\.(Computed|Design|Task|Work)",  # given by sweeps
+        r"stylobate\.earthquakes\.config\.(fragility\.Fragility|hazard\.HazardPoints)",  # shown as tables of keys
+        r"starlette\.applications\.Starlette",  # has no inventory of names
+    )
+]
 suppress_warnings = ["config.cache"]
 
 html_theme = "furo"
@@ -160,6 +175,32 @@ def _show_colons(
     lines[:] = [line.replace(_HIDDEN_COLON, ":") for line in lines]
 
 
+# Attributes that share a text, "tilt, tilt_rate": Sphinx would take the first for a type of the second.
+_SHARED_TEXT = re.compile(r"^:ivar ((?:\w+, )+\w+):")
+
+
+def _finish_attributes(
+    app: Any, what: str, name: str, thing: object, options: object, lines: list[str]
+) -> None:
+    del app, what, name, thing, options
+    for index, line in enumerate(lines):
+        line = _SHARED_TEXT.sub(  # noqa: PLW2901
+            lambda match: f":ivar {match[1].replace(' ', '')}:", line
+        )
+        if line.startswith(":vartype "):
+            line = _named(line, {}) or ""  # noqa: PLW2901
+        lines[index] = line
+
+
+def _space_names(app: Any, document: Any) -> None:
+    del app
+    from docutils import nodes  # noqa: PLC0415
+    from sphinx import addnodes  # noqa: PLC0415
+
+    for node in document.findall(addnodes.literal_strong):
+        node.children = [nodes.Text(node.astext().replace(",", ", "))]
+
+
 def _aliases() -> dict[str, str]:
     # numpy's aliases arrive written out in full, and classes with the module where they are defined: in signatures
     # both get the names by which users know them.
@@ -189,10 +230,26 @@ _SHORT = re.compile(r"(?<![\w.~])(npt|np|xr)\.(?=[A-Za-z])")
 _MODULES = {"npt": "~numpy.typing.", "np": "~numpy.", "xr": "~xarray."}
 
 
-# A declared number has a type and a quantity; signatures show the type, the docstring describes the quantity.
-_DECLARED = re.compile(
-    r"~?(?:\w+\.)*Annotated\[([^\[\]]*?(?:\[[^\[\]]*\])?), ~?stylobate\.quantities\.Quantity\((?:[^()]|\([^()]*\))*\)\]"
-)
+# A declared number has a type, and a quantity or a check: signatures show the type, docstrings describe the number.
+_ANNOTATED = re.compile(r"~?(?:\w+\.)*Annotated\[")
+_MARK = re.compile(r"""'(?:[^'\\]|\\.)*'|"(?:[^"\\]|\\.)*"|[][(){},]""")
+
+
+def _without_annotations(text: str) -> str:
+    while start := _ANNOTATED.search(text):
+        depth, comma, end = 0, len(text), len(text)
+        for mark in _MARK.finditer(text, start.end()):
+            if mark[0] in ("[", "(", "{"):
+                depth += 1
+            elif mark[0] == "," and not depth:
+                comma = min(comma, mark.start())
+            elif mark[0] in ("]", ")", "}"):
+                depth -= 1
+                if depth < 0:
+                    end = mark.end()
+                    break
+        text = text[: start.start()] + text[start.end() : comma] + text[end:]
+    return text
 
 
 class NumbersOfThePaper(MathDomain):
@@ -211,17 +268,24 @@ def setup(app: Any) -> None:
     aliases = _aliases()
 
     def name_aliases(*event: Any) -> tuple[str | None, str | None]:
+        if hasattr(
+            event[3], "model_fields"
+        ):  # the keys of a file: listed on the page of description files
+            return "", None
         return _named(event[-2], aliases), _named(event[-1], aliases)
 
     app.connect("autodoc-process-docstring", _escape_bars)
     app.connect("autodoc-process-docstring", _hide_colons, priority=400)
     app.connect("autodoc-process-docstring", _show_colons, priority=600)
+    app.connect("autodoc-process-docstring", _finish_attributes, priority=600)
+    app.connect("doctree-read", _space_names)
     app.connect("autodoc-process-signature", name_aliases)
 
 
 def _named(signature: str | None, aliases: dict[str, str]) -> str | None:
     if not signature:
         return signature
+    signature = signature.replace("<factory>", "...")  # so that it can be parsed
     for alias, name in aliases.items():
         signature = signature.replace(alias, name)
-    return _SHORT.sub(lambda match: _MODULES[match[1]], _DECLARED.sub(r"\1", signature))
+    return _SHORT.sub(lambda match: _MODULES[match[1]], _without_annotations(signature))

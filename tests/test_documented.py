@@ -65,6 +65,36 @@ def test_the_reference_describes_every_public_name(name):
     assert sorted(set(public_names(MODULES[name])) - described_names()) == []
 
 
+def public_paths(module=stylobate, path="stylobate", seen=()):
+    """The packages that users reach from `stylobate`, by the names that users type, such as `stylobate.records`."""
+    yield path, module
+    for name in getattr(module, "__all__", ()):
+        value = getattr(module, name)
+        if isinstance(value, ModuleType) and value.__name__ not in seen:
+            yield from public_paths(value, f"{path}.{name}", (*seen, module.__name__))
+
+
+def described_paths(text):
+    """The names that a page describes, in full."""
+    module = ""
+    for directive, name in re.findall(
+        r"^\.\. (currentmodule|auto(?:function|class|exception)):: (\S+)", text, re.MULTILINE
+    ):
+        if directive == "currentmodule":
+            module = name
+        else:
+            yield name if name.startswith("stylobate.") else f"{module}.{name}"
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_names_are_described_as_users_type_them(page):
+    homes = sorted(public_paths(), key=lambda home: home[0].count("."))
+    for path in described_paths(PAGES[page]):
+        name = path.rpartition(".")[2]
+        shortest = [f"{home}.{name}" for home, module in homes if name in getattr(module, "__all__", ())]
+        assert not shortest or path == shortest[0]
+
+
 @pytest.mark.parametrize("options", [RunOptions, HierarchyArguments])
 def test_options_that_many_functions_share_are_listed(options):
     assert [name for name in get_type_hints(options) if f"`{name}`" not in options.__doc__] == []

@@ -102,7 +102,7 @@ def slipping_boundary(
     See Also
     --------
     stylobate.theory.slipping_rolling, stylobate.theory.full_rolling : the equations.
-    stability_boundary : stability of rolling without slip under any harmonic motion.
+    stylobate.studies.stability_boundary : stability of rolling without slip under any harmonic motion.
 
     Examples
     --------

@@ -42,7 +42,7 @@ from stylobate.theory.pulse_overturning import (
     one_sine_overturning_after_impact,
     one_sine_overturning_without_impact,
 )
-from stylobate.theory.rolling import RollingBranch, SteadyRolling, steady_rolling
+from stylobate.theory.rolling import RollingBranch, SteadyRolling, rolling_gap, steady_rolling
 from stylobate.theory.rolling_friction import RollingFriction, rolling_required_friction
 from stylobate.theory.sliding_block import HorizontalSliding, SlidingRegime, horizontal_sliding, sliding_amplitude
 from stylobate.theory.slipping_rolling import SlippingRolling, slipping_rolling
@@ -105,6 +105,7 @@ __all__ = [
     "planar_free_period",
     "required_friction",
     "rolling_backbone",
+    "rolling_gap",
     "rolling_required_friction",
     "sliding_amplitude",
     "slipping_rolling",
