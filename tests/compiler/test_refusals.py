@@ -138,6 +138,38 @@ def of_unknown_length(x):
     x[0] = a + b
 
 
+def bits(x):
+    x[0] = float(int(x[0]) & 1)
+
+
+def shifted(x):
+    k = int(x[0])
+    k <<= 1
+    x[0] = float(k)
+
+
+def else_after_while(x):
+    while x[0] > 2.0:
+        x[0] -= 1.0
+        if x[1] > 0.0:
+            break
+    else:
+        x[1] = 1.0
+
+
+def else_after_for(x):
+    for k in range(3):
+        x[k] = 2.0
+        if x[1] > 0.0:
+            break
+    else:
+        x[1] = 1.0
+
+
+def spelled_infinity(x):
+    x[0] = min(x[0], float("inf"))
+
+
 REFUSED = {
     comprehension: "ListComp is not compiled; write it with loops",
     a_dictionary: "is not an element of an array or a tuple",
@@ -162,6 +194,11 @@ REFUSED = {
     steps: "a range whose step is not 1",
     with_a_block: "With is not compiled",
     of_unknown_length: "only a row of known length",
+    bits: r"BitAnd is not compiled; write it with \+, -, \*, /, //, % and \*\*$",
+    shifted: r"LShift is not compiled; write it with \+",
+    else_after_while: "else after a loop is not compiled; set a truth value",
+    else_after_for: "else after a loop is not compiled; set a truth value",
+    spelled_infinity: r"float\('inf'\) is not compiled; write math.inf",
 }
 
 

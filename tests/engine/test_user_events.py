@@ -157,6 +157,15 @@ def test_mistakes_in_an_event_function_are_refused():
         sb.EventFunction("", along_x)
     with pytest.raises(ParameterError, match=r"^terminal must be a whole number"):
         sb.EventFunction("some", along_x, terminal=-1)
+    with pytest.raises(ParameterError, match=r"^direction: must be a number \(got nan\)\. Use [^\n]*$"):
+        sb.EventFunction("some", along_x, direction=float("nan"))
+
+
+@pytest.mark.parametrize("truth", [bool, np.bool_])
+def test_a_truth_value_has_no_sign_that_changes_and_is_refused(truth):
+    beyond = sb.EventFunction("beyond", lambda _, state: truth(state["tilt"][0] > 0.0))
+    with pytest.raises(ParameterError, match=r"^events: 'beyond' must return a number \(got True\)\. Return [^\n]*$"):
+        sb.simulate(MODEL, CIRCLE, **START, duration=5.0, events=[beyond])
 
 
 def test_events_are_kept_in_files(tmp_path):

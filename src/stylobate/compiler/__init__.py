@@ -17,8 +17,8 @@ The accepted language
 * Calls of functions written in Python: functions of modules, static methods of classes, closures and lambdas; default
   values, keywords and `*arguments`.
 * `for i in lanes(n)`: straight-line code with conditional expressions, for as many `i` at once as a vector holds. An
-`n`   that is known only at run time must be positive and a multiple of that number. A called function with branches or
-loops is called separately for each lane, which is slow.
+  `n` that is known only at run time must be positive and a multiple of that number. A called function with branches or
+  loops is called separately for each lane, which is slow.
 * Values that are known at compile time, such as constants of modules, enumerations and classes, are evaluated then; of
   an `if` with a known condition only one branch is compiled.
 
@@ -32,7 +32,9 @@ Results equal those of Python to the bit, with these differences:
 
 * Division by zero, a root of a negative number and the like give infinity or NaN, and zero for whole numbers.
 * A name that is a whole number on one path and a fraction on another is a fraction; its product with zero may be -0.0.
-* `int` of a number beyond 64 bits gives the nearest number within 64 bits.
+* `int`, `math.floor`, `math.ceil` and `math.trunc` of a number beyond ±2^53 give ±2^53 in functions of models, and the
+  nearest whole number of 64 bits in functions of the package; of NaN they give 0. In a loop over lanes the last three
+  keep their result as a float in functions of the package.
 * Small whole powers are products; other powers and the functions of NumPy are those of the C library.
 * Functions marked `fast` may fuse products with sums and divide by reciprocals.
 """

@@ -50,6 +50,7 @@ _KNOWN: dict[type, Callable[[Any, Any], Any]] = {
     ast.Is: operator.is_,
     ast.IsNot: operator.is_not,
 }
+_BINARY = (ast.Add, ast.Sub, ast.Mult, ast.Div, ast.Pow, ast.FloorDiv, ast.Mod)
 _FLOAT = {ast.Add: "fadd", ast.Sub: "fsub", ast.Mult: "fmul", ast.Div: "fdiv"}
 _INTEGER = {ast.Add: "add", ast.Sub: "sub", ast.Mult: "mul"}
 _COMPARED = {
@@ -159,6 +160,9 @@ class Arithmetic:
 
     def binary(self, operation: ast.operator, a: Value, b: Value) -> Value:
         """Return the result of a binary operation."""
+        if type(operation) not in _BINARY:
+            message = f"{type(operation).__name__} is not compiled; write it with +, -, *, /, //, % and **"
+            raise Refusal(message)
         if isinstance(a, LaneIndex) or isinstance(b, LaneIndex):
             return _moved(operation, a, b)
         if isinstance(a, tuple) and isinstance(b, tuple) and isinstance(operation, ast.Add):

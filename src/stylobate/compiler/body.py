@@ -134,6 +134,11 @@ class Body(Names):
                 self._while(node)
             case ast.For(orelse=[]):
                 self._for(node)
+            case ast.While() | ast.For():
+                message = (
+                    "else after a loop is not compiled; set a truth value before break and test it behind the loop"
+                )
+                raise Refusal(message)
             case ast.Break() | ast.Continue():
                 self._outside_lanes("break and continue within lanes; write a if condition else b")
                 self.text.jump(self._loops[-1][isinstance(node, ast.Break)])

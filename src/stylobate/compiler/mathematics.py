@@ -123,6 +123,9 @@ def _is_finite(arithmetic: Arithmetic, value: Value) -> Value:
 
 
 def _float(arithmetic: Arithmetic, value: Value) -> Number:
+    if isinstance(value, str):
+        message = f"float({value!r}) is not compiled; write math.inf, math.nan or the number"
+        raise Refusal(message)
     return arithmetic.number(value, Kind.FLOAT)
 
 

@@ -31,10 +31,10 @@ class EventFunction:
     name
         Kind of the events in `Response.events`.
     function
-        Called with the time [s] and the state; returns a number that changes sign at an event. The state is a dict of
-        the variables of `Response.data` at that time, in SI units: "tilt" and "tilt_rate" (arrays of x and y),
-        "amplitude", "resting", "base_acceleration" (x, y and z), and outputs of the model such as "energy", "spin",
-        "twist" and "footprint".
+        Called with the time [s] and the state; returns a number that changes sign at an event, not a truth value. The
+        state is a dict of the variables of `Response.data` at that time, in SI units: "tilt" and "tilt_rate" (arrays of
+        x and y), "amplitude", "resting", "base_acceleration" (x, y and z), and outputs of the model such as "energy",
+        "spin", "twist" and "footprint".
     direction
         Positive: only zeros at which the function rises; negative: only zeros at which it falls; 0: both.
     terminal
@@ -69,7 +69,9 @@ class EventFunction:
         if not callable(self.function):
             message = f"function: not callable (got {self.function!r}). Provide a function of time and state."
             raise ParameterError(message)
-        as_float("direction", self.direction)
+        if math.isnan(as_float("direction", self.direction)):
+            message = f"direction: must be a number (got {self.direction!r}). Use 1, −1, or 0 for both directions."
+            raise ParameterError(message)
         require_whole("terminal", self.terminal, least=0)
 
 
@@ -203,7 +205,11 @@ class EventRecorder:
         at = np.array([tau])
         state = _State(self.model, states(at), self.forcing.along(at), resting=resting)
         one = self.functions[number]
-        value = as_float(f"events: the value of {one.name!r}", one.function(tau * self.model.time_scale, state))
+        found = one.function(tau * self.model.time_scale, state)
+        if isinstance(found, bool | np.bool_):
+            message = f"events: {one.name!r} must return a number (got {found}). Return a − b for a condition a > b."
+            raise ParameterError(message)
+        value = as_float(f"events: the value of {one.name!r}", found)
         if math.isnan(value):
             message = f"events: {one.name!r} is NaN at {tau * self.model.time_scale:.6g} s. Return a number there."
             raise ParameterError(message)
