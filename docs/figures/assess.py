@@ -40,8 +40,8 @@ def assessed(store: Path) -> Assessment:
 
 def head(found: Assessment, spectra: Figure) -> Figure:
     """Draw the first page of the report: title, verdicts, findings, spectra; the page itself needs a browser."""
-    figure = Figure(figsize=(7.4, 9.4))
-    words, below = figure.subplots(2, 1, height_ratios=(6.0, 3.4))
+    figure = Figure(figsize=(7.4, 10.2))
+    words, below = figure.subplots(2, 1, height_ratios=(6.8, 3.4))
     for axes in (words, below):
         axes.set_axis_off()
     title, *lines = summary_text(found, [verdict_table(found)]).splitlines()
