@@ -157,3 +157,15 @@ def test_every_spread_has_its_table():
 def test_examples_of_the_extensions_hold(extensions):
     for module in extensions.values():
         assert doctest.testmod(module).failed == 0
+
+
+def test_the_doors_of_the_readme_lead_to_pages_that_show_figures_without_being_built():
+    readme = (DOCS.parent / "README.md").read_text(encoding="utf-8")
+    doors = re.findall(r"\]\((\S+)\)", readme.partition("## Where to begin")[2].partition("\n## ")[0])
+    assert doors
+    for door in doors:
+        page = DOCS.parent / door
+        assert page.suffix == ".md"
+        images = re.findall(r"!\[[^]]*\]\(([^)]+)\)", page.read_text(encoding="utf-8"))
+        assert images or page.stem == "install"
+        assert all((page.parent / image).is_file() for image in images)

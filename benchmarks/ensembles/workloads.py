@@ -96,7 +96,7 @@ def rolling(count: int) -> Workload:
 
 
 def on_circle(amplitude: Array, psi: Array, nu: Array) -> Array:
-    """Return x, y and their rates on a circle of this amplitude, at the angle ψ and the rate ν."""
+    """Return x, y and their rates on a circle of this amplitude, at the angle `psi` and the rate ν."""
     x, y = amplitude * np.cos(psi), amplitude * np.sin(psi)
     return np.stack([x, y, -nu * y, nu * x], axis=1)
 

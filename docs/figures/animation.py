@@ -9,12 +9,15 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-from PIL import Image
+from matplotlib import font_manager
+from PIL import Image, ImageDraw, ImageFont
 
 import stylobate as sb
+from stylobate.plots.animation import palette
 from stylobate.plots.animation.drawing import Drawing
 from stylobate.plots.animation.gif import gif_of
 from stylobate.plots.animation.motion import DrawnMotion
+from stylobate.plots.style import VERMILION
 
 STATIC = Path(__file__).parents[1] / "_static"
 FOLDER = STATIC / "animation"
@@ -67,17 +70,17 @@ class Falling(sb.Wobbling):
     no_return_tilt = None
 
 
-# The front page: scale of the record, how the pictures follow each other, and their size.
-SCALE, RATE, SIDE = 1.3, 12.0, (360, 400)
-# Shown as fast as it happens to this time [s], then so many times as fast.
-SLOW, PACE = 7.0, 5.0
+# The front page: scales of the record, frames per second, seconds of the motion in one of the animation, its end [s].
+SCALES, RATE, SPEED, END = (0.8, 2.0), 12.0, 2.5, 20.0
+# Size of a picture, its part that is shown, its letters [pixels]: a telephone shows the sheet at half its size.
+SIDE, SHOWN_PART, LETTERS = (400, 500), (20, 50, 380, 408), (32, 26)
 # Rest before the record in the one without drift [s].
 REST = 20.0
 
 
-def without_drift(motion: DrawnMotion) -> DrawnMotion:
+def without_drift(motion: DrawnMotion, scale: float) -> DrawnMotion:
     """Return a motion whose base is displaced by the record without its drift, which no column feels."""
-    ground = sb.sample_record("el centro 1940 corrected").scaled(SCALE)
+    ground = sb.sample_record("el centro 1940 corrected").scaled(scale)
     start, moved = (
         ground.displacement(REST + time) for time in (np.zeros(1), motion.time)
     )
@@ -85,43 +88,56 @@ def without_drift(motion: DrawnMotion) -> DrawnMotion:
 
 
 def home() -> bytes:
-    """A column that overturns under El Centro beside one twice as large, of the same shape, that survives."""
-    quake = sb.sample_record("el centro 1940").scaled(SCALE)
-    drawings: list[dict[float, Drawing]] = []
-    scale = None
-    for size in (2.0, 1.0):
-        stone = sb.Column.solid(radius=0.3 * size, height=3.0 * size, density=2700.0)
-        run = sb.simulate(Falling(stone, damping=0.03), quake)
-        both = {}
-        for pace in (1.0, PACE):
-            title = f"{3.0 * size:g} m high, El Centro 1940 × {SCALE:g}"
-            one = sb.animate(
-                run, size=SIDE, frames_per_second=RATE, speed=pace, title=title
-            )
-            look = replace(one.look, scale=scale)
-            both[pace] = Drawing(
-                without_drift(one.motion), without_drift(one.history), look
-            )
-        scale = both[1.0].pixels_per_metre
-        drawings.insert(0, both)
-    end = float(drawings[1][1.0].motion.time[-1])
-    shown = [(1.0, time) for time in np.arange(0.0, SLOW, 1.0 / RATE)]
-    shown += [(PACE, time) for time in np.arange(SLOW, end + PACE / RATE, PACE / RATE)]
+    """One column under two strengths of El Centro: under the weaker it stands, under the stronger it overturns."""
+    stone = sb.Column.solid(radius=0.3, height=3.0, density=2700.0)
+    model = Falling(stone, damping=stone.housner_damping())
+    quake = sb.sample_record("el centro 1940")
+    drawings, scale = [], None
+    for strength in reversed(SCALES):
+        run = sb.simulate(model, quake.scaled(strength))
+        one = sb.animate(run, size=SIDE, frames_per_second=RATE, speed=SPEED)
+        motion, history = (
+            without_drift(each, strength) for each in (one.motion, one.history)
+        )
+        drawing = Drawing(motion, history, replace(one.look, scale=scale))
+        scale = drawing.pixels_per_metre
+        drawings.insert(0, drawing)
+    fonts = [
+        ImageFont.truetype(font_manager.findfont("DejaVu Sans"), size)
+        for size in LETTERS
+    ]
+    left, top, right, bottom = SHOWN_PART
+    width, height = right - left, bottom - top
+    times = np.arange(0.0, END, SPEED / RATE)
 
     def picture(index: int) -> Image.Image:
-        pace, time = shown[index]
-        sheet = Image.new("RGB", (2 * SIDE[0], SIDE[1]))
-        for place, both in enumerate(drawings):
-            times = both[pace].motion.time
-            sheet.paste(
-                both[pace].picture(
-                    min(int(np.searchsorted(times, time)), times.size - 1)
-                ),
-                (place * SIDE[0], 0),
+        sheet = Image.new("RGB", (2 * width, height + 150), palette.BACKGROUND)
+        write = ImageDraw.Draw(sheet)
+        clock = f"{times[index]:.0f} s"
+        write.text((width, 24), clock, palette.INK, fonts[0], anchor="mt")
+        for place, (strength, one) in enumerate(zip(SCALES, drawings, strict=True)):
+            motion, middle = one.motion, (place + 0.5) * width
+            at = min(
+                int(np.searchsorted(motion.time, times[index])), len(motion.time) - 1
             )
+            sheet.paste(one.picture(at).crop(SHOWN_PART), (place * width, 60))
+            tilt = float(np.hypot(*motion.tilt[at])) / stone.tipping_angle
+            fallen = tilt > 1.0 and motion.outcome is sb.Outcome.OVERTURNED
+            state = f"{tilt:.2f} of the tipping angle"
+            if fallen or index == len(times) - 1:
+                state = "overturns" if fallen else "stands"
+            colour = VERMILION if fallen else palette.INK
+            write.text(
+                (middle, height + 70),
+                f"El Centro × {strength:g}",
+                palette.INK,
+                fonts[0],
+                anchor="mt",
+            )
+            write.text((middle, height + 112), state, colour, fonts[1], anchor="mt")
         return sheet
 
-    return gif_of(picture, len(shown), RATE)
+    return gif_of(picture, len(times), RATE)
 
 
 DRAWINGS: tuple[Callable[[], sb.plots.Animation], ...] = (temple, rolling, coin, part)

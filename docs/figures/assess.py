@@ -25,7 +25,8 @@ from stylobate.results import Assessment
 ROOT = Path(__file__).parents[2]
 FOLDER = ROOT / "docs" / "_static" / "assess"
 STUDY = ROOT / "examples" / "assess" / "study.toml"
-_LINE = 122
+_LINE = 122  # characters
+_FONT = 8.0  # points
 
 
 def assessed(store: Path) -> Assessment:
@@ -40,19 +41,25 @@ def assessed(store: Path) -> Assessment:
 
 def head(found: Assessment, spectra: Figure) -> Figure:
     """Draw the first page of the report: title, verdicts, findings, spectra; the page itself needs a browser."""
+<<<<<<< HEAD
     figure = Figure(figsize=(7.4, 10.2))
     words, below = figure.subplots(2, 1, height_ratios=(6.8, 3.4))
+=======
+    title, *lines = summary_text(found, [verdict_table(found)]).splitlines()
+    text = "\n".join(textwrap.fill(line, _LINE) for line in lines)
+    height = (text.count("\n") + 2) * 1.35 * _FONT / 72  # inches
+    figure = Figure(figsize=(7.4, height + 0.6 + 3.2))
+    words, below = figure.subplots(2, 1, height_ratios=(height, 3.2))
+>>>>>>> b332ad1245fe6d816b1f761ad6227ea87fd017c6
     for axes in (words, below):
         axes.set_axis_off()
-    title, *lines = summary_text(found, [verdict_table(found)]).splitlines()
     words.text(0.0, 1.02, title, fontsize=14, fontweight="bold", va="bottom")
-    text = "\n".join(textwrap.fill(line, _LINE) for line in lines)
-    words.text(0.0, 1.0, text, fontsize=8.0, va="top", linespacing=1.35)
+    words.text(0.0, 1.0, text, fontsize=_FONT, va="top", linespacing=1.35)
     buffer = BytesIO()
     spectra.savefig(buffer, format="png", dpi=300)
     buffer.seek(0)
     below.imshow(imread(buffer))
-    figure.subplots_adjust(left=0.03, right=0.98, top=0.94, bottom=0.01, hspace=0.02)
+    figure.subplots_adjust(left=0.03, right=0.98, top=0.95, bottom=0.01, hspace=0.0)
     return figure
 
 

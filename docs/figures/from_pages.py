@@ -16,6 +16,7 @@ DOCS = Path(__file__).parents[1].resolve()
 PAGES = (
     "getting-started/first-steps",
     "how-to/choose-damping",
+    "how-to/fragility",
 )
 _BLOCK = re.compile(
     r"(% skip: next\n\n)?^```python\n(.*?)^```$", re.DOTALL | re.MULTILINE

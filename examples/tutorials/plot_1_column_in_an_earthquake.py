@@ -146,9 +146,11 @@ print(f"friction needed: {run.measures['peak_friction_demand']:.2f}")
 # Step 6: plot the response
 # -------------------------
 #
-# The tilt angle over the slenderness c against time, and the path of the tilt vector:
-# the direction in which the column leans. This version of the record begins with 20 s
-# of rest, so the column starts to rock late.
+# On the left, against time: the tilt angle θ, the azimuth β of the lean and the
+# horizontal base acceleration. At the tilt c (dashed) the column would balance on its
+# rim; above the acceleration c g (dashed) its edge lifts. On the right, the path of the
+# tilt vector: the direction in which the column leans. This version of the record
+# begins with 20 s of rest, so the column starts to rock late.
 figure = sb.plot(run)
 
 # %%
@@ -163,13 +165,16 @@ scales = np.linspace(0.5, 2.0, 31)
 intervals = sb.earthquakes.overturning_bands(model, quake, scales=scales, width=0.005)
 ends = zip(intervals["band_from"].values, intervals["band_to"].values, strict=True)
 for low, high in ends:
-    print(f"overturns from {low:.3f} to {high:.3f} times the record")
+    reach = f"from {low:.3f} to {high:.3f}" if high - low > 0.001 else f"near {low:.3f}"
+    print(f"overturns {reach} times the record")
 figure = sb.plot(intervals)
 
 # %%
 # The first interval begins a few percent above the recorded level: a small margin.
-# Above some intervals the column survives again (hatched). Such *survival above an
-# overturning scale* is common in rocking: a stronger motion can bring the column back.
+# Between a scale that overturns the column and the next one that does not lies an edge
+# (grey), no wider than `width`: here 0.5 %. Above some intervals the column survives
+# again (hatched). Such *survival above an overturning scale* is common in rocking: a
+# stronger motion can bring the column back.
 
 # %%
 # Step 8: how surely does it stand?
@@ -217,8 +222,10 @@ for place in (0, 4, 8):
 figure = sb.plot(larger)
 
 # %%
-# Larger columns of one shape are safer on average. For a single record there are
-# exceptions, because each record overturns each column at its own scales.
+# The figure shows the size 2R, twice the distance from the centre of mass to the rim:
+# here 1.03 times the height. Larger columns of one shape are safer on average. For a
+# single record there are exceptions, because each record overturns each column at its
+# own scales.
 #
 # What you have learned
 # ---------------------

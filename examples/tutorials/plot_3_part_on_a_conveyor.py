@@ -2,7 +2,7 @@
 A part on a vibrating conveyor
 ==============================
 
-A steel pin stands on a vibrating trough. Does it slide, hop, rock or overturn, and how
+A steel pin stands on a vibrating trough. Does it slide, fly, rock or overturn, and how
 fast does the trough convey it? This tutorial answers in the units of a data sheet:
 frequency in Hz, stroke in mm, angle in degrees. It takes about ten minutes to read and
 needs no knowledge of the equations. The guide :doc:`/how-to/conveyors` lists every
@@ -90,8 +90,8 @@ figure.tight_layout()
 #
 # .. math:: \Gamma = \frac{s\,\Omega^2 \sin\delta}{2 g}, \qquad \Omega = 2\pi f.
 #
-# With Γ < 1 the part stays on the trough. With Γ > 1 it hops in each period.
-# :func:`stylobate.theory.flight_throw_number` relates Γ to the length of the hop.
+# With Γ < 1 the part stays on the trough. With Γ > 1 it *flies* in each period.
+# :func:`stylobate.theory.flight_throw_number` relates Γ to the length of a flight.
 
 strokes_mm = np.array([0.1, 0.3, 0.6, 1.0])
 for stroke in strokes_mm:
@@ -135,15 +135,16 @@ sliding = sb.simulate(model, trough, duration=0.2)
 print(sliding.outcome.name, "-", sliding.reason)
 
 # %%
-# A stroke of 0.6 mm raises Γ to 1.28: the part hops.
+# A stroke of 0.6 mm raises Γ to 1.28: the part flies. The outcome of such a run is
+# `LIFTED_OFF`.
 
-hopping = sb.simulate(model, vibration(50.0, 0.6, 25.0), duration=0.2)
-print(hopping.outcome.name, "-", hopping.reason)
+flying = sb.simulate(model, vibration(50.0, 0.6, 25.0), duration=0.2)
+print(flying.outcome.name, "-", flying.reason)
 
 figure, panels = plt.subplots(2, 1, figsize=(7.0, 4.8), sharex=True)
 for run, name, colour in (
     (sliding, "0.3 mm", "#0072b2"),
-    (hopping, "0.6 mm", "#d55e00"),
+    (flying, "0.6 mm", "#d55e00"),
 ):
     time = np.linspace(0.1, 0.2, 1001)
     sample = run.sample(time)
@@ -159,7 +160,7 @@ figure.tight_layout()
 
 # %%
 # The position moves forwards and backwards in each period of 20 ms, and advances on
-# average. The clearance shows the flights of the hopping part.
+# average. The clearance shows the flights.
 #
 # Transport velocity against stroke
 # ---------------------------------
@@ -187,8 +188,8 @@ block_mm = 1000.0 * block * GRAVITY / trough.angular_frequency
 figure, axes = plt.subplots(figsize=(7.0, 3.6))
 axes.plot(strokes_mm, block_mm, color="black", label="block, closed form")
 axes.plot(strokes_mm, velocity, "o", color="#0072b2", label="simulation")
-hops_from = strokes_mm[0] / (along[0] * math.tan(delta))  # Γ = 1
-axes.axvline(hops_from, color="gray", linestyle=":")
+flies_from = strokes_mm[0] / (along[0] * math.tan(delta))  # Γ = 1
+axes.axvline(flies_from, color="gray", linestyle=":")
 axes.set_xlabel("stroke [mm]")
 axes.set_ylabel("mean transport velocity [mm/s]")
 axes.legend()
@@ -196,8 +197,8 @@ figure.tight_layout()
 print(f"largest difference: {np.nanmax(abs(velocity - block_mm)):.2g} mm/s")
 
 # %%
-# Beyond the dotted line, Γ = 1, the part hops, and the velocity rises faster than the
-# stroke. The curve is not smooth there: the number of periods after which the hops
+# Beyond the dotted line, Γ = 1, the part flies, and the velocity rises faster than the
+# stroke. The curve is not smooth there: the number of periods after which the flights
 # repeat changes.
 #
 # Transport velocity against phase
@@ -265,8 +266,9 @@ figure.tight_layout()
 # Where it rocks and overturns
 # ----------------------------
 #
-# A contact map repeats the simulation over stroke and friction. Each cell is one run of
-# 50 periods from rest.
+# A contact map repeats the simulation over friction and horizontal acceleration, which
+# is `factor` times the stroke in mm. Each cell is one run of 50 periods from rest. A
+# run in which the part leaves the trough is of the class *flies*, even if it rocks too.
 
 accelerations = factor * np.linspace(0.02, 1.5, 30)
 contact = sb.conveying.contact_map(
@@ -284,8 +286,10 @@ axes.axhline(pin.slenderness, color="black", linestyle="--", linewidth=1)
 axes.text(3.0, pin.slenderness + 0.01, "μ = c", backgroundcolor="white")
 
 # %%
-# Below the dashed line, μ = c, the pin stays upright: it slides, and it hops where
-# Γ > 1. Above the line it rocks, hops off its rim, and overturns in some cells.
+# Below the dashed line, μ = c, the pin stays upright: it slides, and it flies where
+# Γ > 1. Above the line it rocks. The classes of rocking do not occur here, because the
+# rim of a rocking pin leaves the trough too: it flies even where Γ < 1. In some cells
+# it overturns.
 #
 # One cell is one start phase of the vibration. A fair answer counts outcomes over many
 # start phases, with a stroke of 1 mm and 5 s of motion:

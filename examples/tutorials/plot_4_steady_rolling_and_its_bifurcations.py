@@ -183,7 +183,8 @@ figure.legend(frameon=False, fontsize="small", ncols=3, loc="outside lower cente
 # %%
 # Check by simulation which attractors are reached near the symmetric orbit: symmetric
 # rolling above the pitchfork and asymmetric rolling below it, then orbits of two and
-# four periods below the period doublings. At the lowest value all runs overturn.
+# four periods below the period doublings. At the lowest value all runs overturn. Each
+# bar is divided by the shares of the attractors; here one attractor takes each bar.
 values = [1.65, 1.6, 1.568, 1.562, 1.5]
 after = sb.studies.after_bifurcation(pitchfork, values=values, count=8)
 figure = sb.plot(after)
@@ -192,8 +193,9 @@ figure = sb.plot(after)
 # The whole frequency response in one call
 # ----------------------------------------
 # :func:`stylobate.studies.exact_response` continues rolling, switches to the branches
-# of its pitchforks and period doublings, and adds the averaged solution. The mean tilt
-# of averaging is close; the frequency of the loss of stability is not.
+# of its pitchforks and period doublings, and adds the averaged solution. Lines are mean
+# tilts; where an orbit is stable, a band shows the range of its tilt over a period. The
+# mean tilt of averaging is close; the frequency of the loss of stability is not.
 response = sb.studies.exact_response(model, line, angular_frequency=(1.3, 2.2))
 figure = sb.plot(response)
 

@@ -165,6 +165,14 @@ def test_a_band_too_narrow_to_be_seen_is_drawn_and_counted_as_such(over):
     assert not [text for text in legend_of(sb.plot(wide)) if "narrower" in text]
 
 
+@pytest.mark.parametrize("over", [None, {"size": [1.0, 2.0, 4.0]}])
+def test_an_edge_is_in_the_legend_if_it_is_wide_enough_to_be_seen(over):
+    found = bands(over, [SAFE, SAFE, FALLEN, FALLEN, SAFE], sb.Record(samples=[0.0, 0.3, 0.0], step=0.1, name="short"))
+    for width, seen in ((0.02, True), (0.002, False)):  # on an axis from 1 to 5, in scales
+        edges = {"safe_below": found["band_from"] - width, "safe_above": found["band_to"] + width}
+        assert ("edge, not resolved" in legend_of(sb.plot(found.assign(edges)))) is seen
+
+
 def test_too_many_parameters_are_refused():
     crowded = bands({"size": np.arange(1.0, 7.0), "damping": np.arange(0.1, 0.6, 0.1)}, PATTERN)
     with pytest.raises(ParameterError, match="two with up to 4 values along one of them"):

@@ -23,6 +23,9 @@ def asymmetric(symmetric):
     return sb.orbits.switch_branch(symmetric.bifurcations[0], bounds=(1.58, 1.65))
 
 
+KEY = ["pitchfork, supercritical", "bold: stable", "range of the tilt over a period"]
+
+
 def texts(axes):
     return [text.get_text() for text in axes.get_legend().get_texts()]
 
@@ -37,7 +40,7 @@ def test_a_branch_is_bold_where_it_is_stable_and_marks_its_bifurcation(symmetric
     assert drawn[points["stable"]].all()
     assert 0 < np.count_nonzero(~drawn) < points.sizes["point"]
     np.testing.assert_array_equal(mark.get_xdata(), [symmetric.bifurcations[0].parameter])
-    assert texts(axes) == ["pitchfork, supercritical", "bold: stable"]
+    assert texts(axes) == KEY
     assert axes.get_xlabel() == r"base frequency $\Omega/\omega_0$"
 
 
@@ -46,7 +49,7 @@ def test_branches_are_compared_under_their_names(symmetric, asymmetric):
     named = texts(axes)
     assert named[:2] == ["symmetric", "asymmetric"]
     assert len(set(named)) == len(named)
-    assert texts(sb.plot([symmetric, symmetric]).axes[0]) == ["pitchfork, supercritical", "bold: stable"]
+    assert texts(sb.plot([symmetric, symmetric]).axes[0]) == KEY
 
 
 def test_branches_over_different_parameters_have_no_common_axis(symmetric):

@@ -145,6 +145,7 @@ def test_bold_lines_and_bands_end_at_the_bifurcations():
     assert not np.any((drawn > other) & (drawn < doubling))
     ends = np.sort([edge for band in tilt.collections for path in band.get_paths() for edge in ends_of(path)])
     np.testing.assert_allclose(ends, np.sort([pitchfork, 3.0, pitchfork, doubling, other, torus]))
+    assert texts(tilt.get_legend()).count("range of the tilt over a period") == 1
 
 
 def ends_of(path):

@@ -1,9 +1,9 @@
 """
-A slender tank on a floor that begins to shake
-==============================================
+A slender water tank on a floor that begins to shake
+====================================================
 
-Does a slender steel tank stand, rock or overturn when the floor below it begins to
-shake? Four floor motions, from weak and slow to strong and fast.
+Does a slender, empty water tank of steel stand, rock or overturn when the floor below
+it begins to shake? Four floor motions, from weak and slow to strong and fast.
 """
 
 import stylobate as sb

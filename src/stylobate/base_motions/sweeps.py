@@ -58,10 +58,10 @@ class SineSweep(BaseMotion):
     amplitude
         Amplitude of the constant quantity [m/s²] or [m].
     quantity
-        ACCELERATION: the acceleration is A cos ψ(t). DISPLACEMENT: the displacement is D cos ψ(t), and the acceleration
-        −D(ψ̇² cos ψ + ψ̈ sin ψ).
+        ACCELERATION: the acceleration is A cos Φ(t). DISPLACEMENT: the displacement is D cos Φ(t), and the acceleration
+        −D(Φ̇² cos Φ + Φ̈ sin Φ).
     law
-        Linear or exponential change of ψ̇/2π from the first to the last frequency.
+        Linear or exponential change of Φ̇/2π from the first to the last frequency.
     frequencies
         First and last frequency [Hz], increasing or decreasing.
     length
@@ -69,7 +69,7 @@ class SineSweep(BaseMotion):
     direction
         Azimuth of the line [rad] from x.
     start_phase
-        ψ at the start [rad]; with 0 the acceleration (displacement) starts at its peak.
+        Φ at the start [rad]; with 0 the acceleration (displacement) starts at its peak.
     start
         Time at which the sweep begins [s].
     vertical
@@ -77,7 +77,7 @@ class SineSweep(BaseMotion):
 
     Notes
     -----
-    ψ has a closed form: 2π(f₁t + ½(f₂ − f₁)t²/T), or 2πf₁T (rᵗ⁄ᵀ − 1)/ln r with r = f₂/f₁. A sweep by displacement has
+    Φ has a closed form: 2π(f₁t + ½(f₂ − f₁)t²/T), or 2πf₁T (rᵗ⁄ᵀ − 1)/ln r with r = f₂/f₁. A sweep by displacement has
     closed forms. For a sweep by acceleration, velocity and displacement (Fresnel and exponential integrals) come from
     Gauss quadrature, to 1e-12 of A/(2πf) and A T/(2πf) with the lower frequency f. Their initial values are those of
     the steady motion at the first frequency. Before the start and after the end the base moves uniformly.
@@ -198,12 +198,12 @@ class SineSweep(BaseMotion):
         return math.cos(self.direction) * along, math.sin(self.direction) * along, self.vertical * along
 
     def peak_horizontal(self, since: float = 0.0) -> float:
-        """Return a bound of |a_h| from `since` on [m/s²]: A, or the maximum of D√(ψ̇⁴ + ψ̈²); 0 after the end."""
+        """Return a bound of |a_h| from `since` on [m/s²]: A, or the maximum of D√(Φ̇⁴ + Φ̈²); 0 after the end."""
         if since >= self.duration:
             return 0.0
         if self.quantity is SweepQuantity.ACCELERATION:
             return abs(self.amplitude)
-        # ψ̇ and |ψ̈| increase or decrease together, or one is constant.
+        # Φ̇ and |Φ̈| increase or decrease together, or one is constant.
         times = np.array([min(max(since - self.start, 0.0), self.length), self.length])
         _, rate, change = self._rates(times)
         return float(abs(self.amplitude) * np.hypot(rate**2, change).max())
@@ -256,7 +256,7 @@ class SineSweep(BaseMotion):
         return np.asarray(self.amplitude * np.cos(self._rates(since)[0]))
 
     def _rates(self, since: Floats) -> tuple[Floats, Floats, Floats]:
-        """Return ψ, ψ̇ and ψ̈."""
+        """Return Φ, Φ̇ and Φ̈."""
         first, last = (2.0 * math.pi * frequency for frequency in self.frequencies)
         if self.law is SweepLaw.LINEAR:
             slope = (last - first) / self.length

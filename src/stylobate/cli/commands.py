@@ -21,7 +21,6 @@ class Entry(NamedTuple):
 
 
 COMMANDS = {
-    "paper": Entry("paper", "paper", "Reproduce the source paper: figures, measured claims, corrected misprints."),
     "simulate": Entry(
         "simulate", "simulate", "Integrate one column; under a record or a pulse also decide how surely it overturns."
     ),
@@ -38,4 +37,5 @@ COMMANDS = {
         "fragility", "fragility", "Fit fragility curves: probability of each limit state versus intensity."
     ),
     "lab": Entry("lab", "lab", "Open the laboratory in the browser."),
+    "paper": Entry("paper", "paper", "Reproduce the source paper: figures, measured claims, corrected misprints."),
 }

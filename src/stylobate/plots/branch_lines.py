@@ -1,9 +1,12 @@
 """Lines of branches of orbits: bold if stable, thin if unstable, with the range of tilt and the bifurcations."""
 
+from typing import Any
+
 import numpy as np
 import numpy.typing as npt
 import xarray as xr
 from matplotlib.axes import Axes
+from matplotlib.patches import Rectangle
 
 from stylobate.plots.style import STABLE_WIDTH, UNSTABLE_WIDTH
 
@@ -16,6 +19,7 @@ BIFURCATION_MARKS = {
 }
 """Marker and name of each kind."""
 
+_SHADE: dict[str, Any] = {"alpha": 0.15, "linewidth": 0.0}
 _FILLS = {1: ("black", ", supercritical"), 0: ("white", ", subcritical"), -1: ("#bbbbbb", "")}
 
 
@@ -31,7 +35,7 @@ def draw_part(axes: Axes, part: xr.Dataset, x: str, y: str, colour: str, *, labe
 def shade_range(axes: Axes, part: xr.Dataset, x: str, colour: str) -> None:
     """Shade the range of the tilt over a period where the orbits of one branch are stable."""
     along, low, high = (part[name].to_numpy() for name in (x, "minimum_tilt", "peak_tilt"))
-    axes.fill_between(along, low, high, where=_beside_stable(part), color=colour, alpha=0.15, linewidth=0.0)
+    axes.fill_between(along, low, high, where=_beside_stable(part), color=colour, **_SHADE)
 
 
 def mark_bifurcations(axes: Axes, found: xr.Dataset, x: xr.DataArray) -> None:
@@ -57,9 +61,12 @@ def mark_bifurcations(axes: Axes, found: xr.Dataset, x: xr.DataArray) -> None:
 
 
 def key_of_stability(axes: Axes, found: xr.Dataset) -> None:
-    """Add the meaning of bold lines to the legend if an orbit of `found` is stable."""
+    """Add the meaning of bold lines and shades to the legend if an orbit of `found` is stable."""
     if found["stable"].any():
         axes.plot([], [], color="black", linewidth=STABLE_WIDTH, label=f"bold: {stability_of(found)}")
+        axes.add_patch(
+            Rectangle((0.0, 0.0), 0.0, 0.0, color="black", label="range of the tilt over a period", **_SHADE)
+        )
 
 
 def stability_of(found: xr.Dataset) -> str:

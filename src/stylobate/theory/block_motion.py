@@ -1,12 +1,12 @@
 """Motion of a block that slides and flies on a vibrating, possibly inclined plane, as exact segments.
 
-The plane rises by `incline` = ψ along x; its normal is z. With the base acceleration (ax cos τ, az cos(τ + φ)) in g,
+The plane rises by `incline` = ι along x; its normal is z. With the base acceleration (ax cos τ, az cos(τ + φ)) in g,
 τ = Ωt, lengths in g/Ω² and velocities in g/Ω, a point mass at the distance s above the plane with the velocity u along
 the plane obeys
 
-    u̇ = T − sin ψ − ax cos τ,    s̈ = N − cos ψ − az cos(τ + φ).
+    u̇ = T − sin ι − ax cos τ,    s̈ = N − cos ι − az cos(τ + φ).
 
-    stick      u = 0, s = 0       T = sin ψ + ax cos τ, while |T| ≤ μs N
+    stick      u = 0, s = 0       T = sin ι + ax cos τ, while |T| ≤ μs N
     slide      u ≷ 0, s = 0       T = ∓μk N, while N ≥ 0
     flight     s > 0              T = N = 0
     landing    at the speed v     Pn = (1 + e)v, |Pt| ≤ μk Pn, at most the impulse that stops the slip

@@ -93,7 +93,7 @@ def block_cycle(
     phase
         Phase of the normal component [rad].
     incline
-        Angle ψ of the plane [rad], between −π/2 and π/2.
+        Angle ι of the plane [rad], between −π/2 and π/2.
     start_velocity, start_normal_velocity
         Velocity relative to the plane at τ = 0, along it and, zero or positive, away from it [g/Ω].
     cycles
@@ -123,8 +123,8 @@ def block_cycle(
     -----
     A contact whose slip has just stopped has static friction: slip resumes only if abs(T) > μs N.
 
-    Averaged over a cycle that repeats, the friction carries the component sin ψ of the weight and the normal force
-    cos ψ, landings included. So with μk < abs(tan ψ) a block that never sticks slides down ever faster.
+    Averaged over a cycle that repeats, the friction carries the component sin ι of the weight and the normal force
+    cos ι, landings included. So with μk < abs(tan ι) a block that never sticks slides down ever faster.
 
     Examples
     --------

@@ -1,14 +1,14 @@
 """Block that bounces once per period of a vibrating plane, in closed form.
 
-In the simplest motion of a bouncing ball the block leaves with the absolute normal velocity π cos ψ in g/Ω, flies for
-one period and lands with −π cos ψ. The velocity w of the plane then obeys π cos ψ − w = e(π cos ψ + w). With the throw
+In the simplest motion of a bouncing ball the block leaves with the absolute normal velocity π cos ι in g/Ω, flies for
+one period and lands with −π cos ι. The velocity w of the plane then obeys π cos ι − w = e(π cos ι + w). With the throw
 number Γ,
 
-    sin θ = π(1 − e)/((1 + e)Γ),  cos θ < 0,
+    sin s = π(1 − e)/((1 + e)Γ),  cos s < 0,
 
-where θ is the phase of the base acceleration cos ψ Γ cos θ at the landing. The map of deviations δt and δv from one
-landing to the next has the determinant e² and the trace 1 + e² + (1 + e)²Γ cos θ. So the motion is stable between its
-onset at cos θ = 0 and the period doubling at −Γ cos θ = 2(1 + e²)/(1 + e)² (Holmes 1982).
+where s is the phase of the base acceleration cos ι Γ cos s at the landing. The map of deviations δt and δv from one
+landing to the next has the determinant e² and the trace 1 + e² + (1 + e)²Γ cos s. So the motion is stable between its
+onset at cos s = 0 and the period doubling at −Γ cos s = 2(1 + e²)/(1 + e)² (Holmes 1982).
 """
 
 import numpy as np
@@ -55,10 +55,10 @@ def hopping_speed(
 
     Notes
     -----
-    A landing has the normal impulse 2π cos ψ. It can stop the slip 2π sin ψ, which gravity adds in a flight, if μk ≥
-    abs(tan ψ). Then the block is thrown without slip and moves, for any friction, at
+    A landing has the normal impulse 2π cos ι. It can stop the slip 2π sin ι, which gravity adds in a flight, if μk ≥
+    abs(tan ι). Then the block is thrown without slip and moves, for any friction, at
 
-        along sin(θ − phase) − π sin ψ
+        along sin(s − phase) − π sin ι
 
     on average. On a horizontal plane that vibrates along a line this is π(1 − e)/(1 + e) along/normal.
 
@@ -79,8 +79,8 @@ def hopping_speed(
         steepness(incline),
     )
     gamma = z / np.cos(psi)
-    rising = np.pi * (1.0 - e) / (1.0 + e)  # Γ sin θ
-    falling = np.sqrt(np.maximum((gamma - rising) * (gamma + rising), 0.0))  # −Γ cos θ
+    rising = np.pi * (1.0 - e) / (1.0 + e)  # Γ sin s
+    falling = np.sqrt(np.maximum((gamma - rising) * (gamma + rising), 0.0))  # −Γ cos s
     stable = (gamma > rising) & (falling * (1.0 + e) ** 2 < 2.0 * (1.0 + e**2))
     holds = mu * np.cos(psi) >= np.abs(np.sin(psi))
     speed = x * np.sin(np.arctan2(rising, -falling) - phi) - np.pi * np.sin(psi)

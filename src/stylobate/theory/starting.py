@@ -1,9 +1,9 @@
 """Onset of sliding, rocking or lift-off of a column that stands on a moving, possibly inclined plane.
 
-The plane rises by `incline` = ψ along x. With the base acceleration ax uphill along the plane and az along its normal,
+The plane rises by `incline` = ι along x. With the base acceleration ax uphill along the plane and az along its normal,
 in g, a column at rest on the plane needs the friction T and the normal force N, in units of its weight,
 
-    T = sin ψ + ax,    N = cos ψ + az.
+    T = sin ι + ax,    N = cos ι + az.
 
 The column does not slide while |T| ≤ μN. It does not rock while the line of T and N through the centre of mass meets
 the base inside its rim, |T| ≤ cN. Both limits scale with N, so their order does not depend on N, the vertical
@@ -85,7 +85,7 @@ def start_of_motion(
     phase
         Phase of the normal component [rad].
     incline
-        Angle ψ of the plane [rad], between −π/2 and π/2.
+        Angle ι of the plane [rad], between −π/2 and π/2.
 
     Returns
     -------
@@ -102,9 +102,9 @@ def start_of_motion(
     With k = μ or c, abs(T) ≤ kN is a bound on the peak of two harmonic functions, one for each sense of T. It holds up
     to
 
-        s = min over ± of (k cos ψ ∓ sin ψ)/√(along² ∓ 2k along normal cos(phase) + k² normal²).
+        s = min over ± of (k cos ι ∓ sin ι)/√(along² ∓ 2k along normal cos(phase) + k² normal²).
 
-    For k ≤ abs(tan ψ) the column does not stay on the plane at rest. N ≥ 0 holds up to cos ψ/normal. For c = μ sliding
+    For k ≤ abs(tan ι) the column does not stay on the plane at rest. N ≥ 0 holds up to cos ι/normal. For c = μ sliding
     and rocking begin together; the result is ROCK.
 
     A vertical acceleration in phase with the horizontal acceleration subtracts k·normal from `along` for one sense of T
@@ -158,7 +158,7 @@ def first_motion(
     friction
         Static friction μ.
     incline
-        Angle ψ of the plane [rad], between −π/2 and π/2.
+        Angle ι of the plane [rad], between −π/2 and π/2.
 
     Returns
     -------

@@ -19,12 +19,12 @@ def throw_number(normal: Real, *, incline: Real = 0.0) -> FloatArray:
     normal
         Peak base acceleration along the normal of the plane [g].
     incline
-        Angle ψ of the plane [rad], between −π/2 and π/2.
+        Angle ι of the plane [rad], between −π/2 and π/2.
 
     Returns
     -------
     numpy.ndarray
-        Γ = normal/cos ψ, of the broadcast shape.
+        Γ = normal/cos ι, of the broadcast shape.
 
     Raises
     ------
@@ -59,8 +59,8 @@ def flight_throw_number(duration: Real) -> FloatArray:
 
     Notes
     -----
-    The block leaves the base when the normal force cos ψ (1 + Γ cos Ωt) falls through zero. A phase x later its
-    distance from the base is cos ψ/Ω² times √(Γ² − 1)(x − sin x) − (½x² + cos x − 1). It lands at x = 2πn:
+    The block leaves the base when the normal force cos ι (1 + Γ cos Ωt) falls through zero. A phase x later its
+    distance from the base is cos ι/Ω² times √(Γ² − 1)(x − sin x) − (½x² + cos x − 1). It lands at x = 2πn:
 
         Γ² = 1 + [(½x² + cos x − 1)/(x − sin x)]².
 
@@ -93,7 +93,7 @@ def bounce_time(speed: Real, *, normal_restitution: Real, weight: Real = 1.0) ->
     normal_restitution
         Normal restitution e, below 1.
     weight
-        Acceleration N of the block towards its base: cos ψ plus the base acceleration along the normal [g].
+        Acceleration N of the block towards its base: cos ι plus the base acceleration along the normal [g].
 
     Returns
     -------

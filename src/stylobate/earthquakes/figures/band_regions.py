@@ -36,18 +36,19 @@ _SAFE, _AGAIN, _FALLEN = Look("#ffffff"), Look("#DCEBF5", "////", BLUE), OUTCOME
 _EDGE = Look(GREY)
 UNDECIDED = Look("#e6e6e6", "xxx", GREY)
 """Look of undecided scales."""
-# An edge wider than this fraction appears in the legend.
-_WIDE_EDGE = 0.01
+# An edge that takes more than this fraction of the axis is seen, and appears in the legend.
+_SEEN = 0.002
 # A box that takes less than this fraction of the axis is drawn as a line of this width [points].
 _HAIRLINE, _THINNEST = 0.007, 2.0
 
 
 @dataclass(frozen=True, slots=True)
 class Regions:
-    """The boxes of each look, and `hairlines`, the overturning intervals too narrow to be seen."""
+    """The boxes of each look; `hairlines`, overturning intervals too narrow to be seen; whether `edges` are seen."""
 
     boxes: dict[Look, Boxes]
     hairlines: Boxes
+    edges: bool
 
     @classmethod
     def of(cls, one: xr.Dataset, factor: Floats, edges: Floats, *, geometric: bool) -> "Regions":
@@ -74,12 +75,8 @@ class Regions:
             for look, intervals in own.looks(float(scales[-1])).items():
                 boxes[look] += [(left, right, unit * low, unit * high) for low, high in intervals]
         thin = [box for box in boxes[_FALLEN] if _share(box, ends, geometric=geometric) < _HAIRLINE]
-        return cls(boxes, thin)
-
-    @property
-    def has_wide_edges(self) -> bool:
-        """Whether an edge is wide enough for the legend."""
-        return any(high > (1.0 + _WIDE_EDGE) * low for _, _, low, high in self.boxes[_EDGE])
+        seen = any(_share(box, ends, geometric=geometric) > _SEEN for box in boxes[_EDGE])
+        return cls(boxes, thin, seen)
 
     def draw(self, axes: Axes, *, along_x: bool = False) -> None:
         """Fill the boxes with amplitudes upwards; or `along_x`, with their other sides as fractions of the height."""
@@ -148,7 +145,7 @@ def amplitude_label(found: xr.Dataset) -> str:
     return r"peak base acceleration $a/(c\,g)$" if is_normalized(found) else axis_label(found["scale"])
 
 
-def band_legend(found: xr.Dataset, *, hairlines: int, wide_edges: bool) -> list[Patch | Line2D]:
+def band_legend(found: xr.Dataset, *, hairlines: int, edges: bool) -> list[Patch | Line2D]:
     """Return the legend entries for the overturning intervals `found`."""
     entries: list[Patch | Line2D] = [
         Patch(label=name, **fill_options(look))
@@ -161,8 +158,8 @@ def band_legend(found: xr.Dataset, *, hairlines: int, wide_edges: bool) -> list[
         entries.append(Patch(label=undecided_label(found["outcome"]), **fill_options(UNDECIDED)))
     if np.unique(found["acceleration_ratio"]).size > 1 and is_normalized(found):
         entries.append(Patch(label="not computed", **fill_options(UNFINISHED)))
-    if wide_edges:
-        entries.append(Patch(label="edge, undecided", **fill_options(_EDGE)))
+    if edges:
+        entries.append(Patch(label="edge, not resolved", **fill_options(_EDGE)))
     if not is_normalized(found) and bool((found["acceleration_ratio"] > 0.0).all()):
         entries.append(Line2D([], [], **WEAKEST, label=r"peak acceleration $c\,g$"))
     return entries

@@ -55,7 +55,7 @@ def plot_bands_of_one(found: xr.Dataset) -> Figure:
     axes.grid(visible=False)
     axes.set_title(_title(found), fontsize="small")
     tilts = Line2D([], [], color=BLACK, marker=".", markersize=4.0, linewidth=0.9, label="peak tilt where it survives")
-    handles = band_legend(found, hairlines=len(regions.hairlines), wide_edges=regions.has_wide_edges)
+    handles = band_legend(found, hairlines=len(regions.hairlines), edges=regions.edges)
     figure.legend(handles=[*handles, tilts, *run_legend(counts, _DOT)], loc="outside lower center", ncols=3)
     return figure
 

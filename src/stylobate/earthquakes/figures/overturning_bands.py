@@ -41,12 +41,12 @@ _MOST_MARKED = 0.2
 
 @dataclass(slots=True)
 class _Marks:
-    """Contents of the panels for the legend: numbers of uncertain and undecided runs, hairlines, wide edges."""
+    """Contents of the panels for the legend: uncertain and undecided runs, hairlines, whether edges are seen."""
 
     panels: int = 1
     counts: list[int] = field(default_factory=lambda: [0, 0])
     hairlines: int = 0
-    wide_edges: bool = False
+    edges: bool = False
 
 
 @figure_of("overturning bands")
@@ -81,7 +81,7 @@ def plot_overturning_bands(found: xr.Dataset) -> Figure:
         if panel is not None:
             axes.set_title(named(found, panel, place))
     rows[0].set_ylabel(amplitude_label(found))
-    handles = band_legend(found, hairlines=marks.hairlines, wide_edges=marks.wide_edges)
+    handles = band_legend(found, hairlines=marks.hairlines, edges=marks.edges)
     columns = 3 if marks.hairlines else 4
     figure.legend(handles=[*handles, *run_legend(marks.counts, _DOTS[1])], loc="outside lower center", ncols=columns)
     return figure
@@ -107,7 +107,7 @@ def _draw(axes: Axes, one: xr.Dataset, along: Horizontal, marks: _Marks) -> None
     regions = Regions.of(one, factor, edges, geometric=is_geometric(scales))
     regions.draw(axes)
     marks.hairlines += len(regions.hairlines)
-    marks.wide_edges |= regions.has_wide_edges
+    marks.edges |= regions.edges
     _mark(axes, one, along, factor, marks)
     if not is_normalized(one) and np.all(ratio > 0.0):
         axes.step(edges.T.ravel("F"), np.repeat(1.0 / ratio, 2), **WEAKEST)

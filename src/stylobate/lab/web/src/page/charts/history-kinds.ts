@@ -153,7 +153,7 @@ function tilt(values: Numbers): History {
 }
 
 function rollingRate(values: Numbers, frequency: number | null): History {
-  const made = signed("rolling_rate", "purple", "ψ̇", "rad/s", values);
+  const made = signed("rolling_rate", "purple", "β̇", "rad/s", values);
   if (frequency === null) return made;
   const backwards = quantile(values, 0.5) < 0;
   return { ...made, level: { value: backwards ? -frequency : frequency, label: "Ω of the base" } };

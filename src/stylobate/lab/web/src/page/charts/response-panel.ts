@@ -80,7 +80,7 @@ export class ResponsePanel {
     );
     this.#phase = new ResponsePlot("phase", this.#phaseHost, [
       () => axisLabel("angular frequency", "rad/s"),
-      "φ [rad]",
+      "ψ [rad]",
     ]);
     this.#plots.addEventListener("pointerdown", (event) => this.#chooseOrbit(event), { capture: true });
     this.#marker = new FrequencyMarker(this.#plots, () => this.#extent(), hearing.frequency);
