@@ -41,16 +41,11 @@ def assessed(store: Path) -> Assessment:
 
 def head(found: Assessment, spectra: Figure) -> Figure:
     """Draw the first page of the report: title, verdicts, findings, spectra; the page itself needs a browser."""
-<<<<<<< HEAD
-    figure = Figure(figsize=(7.4, 10.2))
-    words, below = figure.subplots(2, 1, height_ratios=(6.8, 3.4))
-=======
     title, *lines = summary_text(found, [verdict_table(found)]).splitlines()
     text = "\n".join(textwrap.fill(line, _LINE) for line in lines)
     height = (text.count("\n") + 2) * 1.35 * _FONT / 72  # inches
     figure = Figure(figsize=(7.4, height + 0.6 + 3.2))
     words, below = figure.subplots(2, 1, height_ratios=(height, 3.2))
->>>>>>> b332ad1245fe6d816b1f761ad6227ea87fd017c6
     for axes in (words, below):
         axes.set_axis_off()
     words.text(0.0, 1.02, title, fontsize=14, fontweight="bold", va="bottom")
