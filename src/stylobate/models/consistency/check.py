@@ -30,7 +30,12 @@ from stylobate.models.consistency.near_vertical import (
 from stylobate.models.consistency.overturning import balance_of, problems_of_balance, problems_of_no_return
 from stylobate.models.consistency.plane import problems_in_planes, problems_of_maps
 from stylobate.models.consistency.samples import Subject
-from stylobate.models.consistency.signatures import problems_of_lengths, problems_of_signatures
+from stylobate.models.consistency.signatures import (
+    problems_of_lengths,
+    problems_of_members,
+    problems_of_numbers,
+    problems_of_signatures,
+)
 from stylobate.models.consistency.steady_rolling import problems_of_closed_form, steady_rolling
 from stylobate.models.model import Model
 
@@ -55,8 +60,10 @@ class Law(NamedTuple):
 
 # Each stage requires that the stages before it found no problem.
 _STAGES: tuple[tuple[Law, ...], ...] = (
+    (Law("name", problems_of_members, ""),),
     (Law("parameters", problems_of_signatures, "each function takes them as its last arguments"),),
     (Law("state_names", problems_of_lengths, "each function returns as many numbers as needed"),),
+    (Law("rates", problems_of_numbers, ""),),
     (Law("start", problems_of_maps, "makes a state with the tilt and the rate that tilt_of returns"),),
 )
 _OF_EQUATIONS: tuple[Law, ...] = (
@@ -217,7 +224,8 @@ def _found(subject: Subject, laws: tuple[Law, ...]) -> list[str]:
                 problems += law.problems(subject)
         except Exception as error:  # noqa: BLE001  a user's function may raise anything
             if subject.thorough:
-                problems.append(f"{_member(error)}: raises {type(error).__name__} at a random state ({error}).")
+                name = _member(subject.model, error) or law.member
+                problems.append(f"{name}: raises {type(error).__name__} at a random state ({error}).")
     return problems
 
 
@@ -228,9 +236,19 @@ def _without_warnings() -> Iterator[None]:
         yield
 
 
-def _member(error: BaseException) -> str:
-    """Return the name of the function that raised."""
-    trace, name = error.__traceback__, ""
+def _member(model: Model, error: BaseException) -> str:
+    """Return the name of the member of a model that raised, itself or in a function that it calls; "" if none did."""
+    members = {_code(value): name for cls in reversed(type(model).__mro__) for name, value in vars(cls).items()}
+    trace = error.__traceback__
     while trace is not None:
-        name, trace = trace.tb_frame.f_code.co_name, trace.tb_next
-    return name
+        name = members.get(trace.tb_frame.f_code)
+        if name:
+            return name
+        trace = trace.tb_next
+    return ""
+
+
+def _code(value: Any) -> Any:
+    """Return the code of a function, static method or property; None for other values."""
+    function = getattr(value, "__func__", None) or getattr(value, "fget", None) or value
+    return getattr(function, "__code__", None)
