@@ -139,6 +139,18 @@ def test_a_model_that_cannot_run_is_refused_with_member_and_remedy(mistake, use)
         use(model)
 
 
+@pytest.mark.parametrize("use", [sb.models.check, check_once])
+def test_rates_that_are_numbers_at_some_states_only_are_refused(use):
+    def failing(x, y, vx, vy, ax, ay, az, c, eta):
+        bx, by = Base.rates(x, y, vx, vy, ax, ay, az, c, eta)[2:]
+        return vx, vy, math.nan if math.hypot(x, y) > c else bx, by
+
+    with pytest.raises(ModelError) as caught:
+        use(own(rates=staticmethod(failing)))
+    assert caught.value.problems[0].startswith("Own.rates: must return 4 finite numbers (got (")
+    assert "nan" in caught.value.problems[0]
+
+
 @pytest.mark.parametrize("use", [sb.models.check, check_once, runs, runs_many])
 def test_a_missing_member_is_named_with_its_remedy(use):
     assert problem_of(use, own(Named)).startswith("Own.rates: missing. Define it as a static method")

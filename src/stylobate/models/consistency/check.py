@@ -33,7 +33,6 @@ from stylobate.models.consistency.samples import Subject
 from stylobate.models.consistency.signatures import (
     problems_of_lengths,
     problems_of_members,
-    problems_of_numbers,
     problems_of_signatures,
 )
 from stylobate.models.consistency.steady_rolling import problems_of_closed_form, steady_rolling
@@ -63,7 +62,6 @@ _STAGES: tuple[tuple[Law, ...], ...] = (
     (Law("name", problems_of_members, ""),),
     (Law("parameters", problems_of_signatures, "each function takes them as its last arguments"),),
     (Law("state_names", problems_of_lengths, "each function returns as many numbers as needed"),),
-    (Law("rates", problems_of_numbers, ""),),
     (Law("start", problems_of_maps, "makes a state with the tilt and the rate that tilt_of returns"),),
 )
 _OF_EQUATIONS: tuple[Law, ...] = (
@@ -116,6 +114,7 @@ def check(model: Model) -> CheckReport:
 
     Call it in a test of a model of your own. It compares, at random states:
 
+    * the members that a model needs, static functions, and results that are finite numbers;
     * the number of arguments and results of each function with `parameters` and `state_names`;
     * `start`, `tilt_of` and `from_plane` with each other, and the rate of the tilt with `rates`;
     * compiled with plain `rates` and `planar_rates`;
@@ -125,7 +124,7 @@ def check(model: Model) -> CheckReport:
     * the side to which the column leans if the base accelerates with the law of inertia.
 
     The first run of a model of your own makes the cheap comparisons by itself. Of a model that switches between kinds
-    of contact only the first three and the last are compared.
+    of contact only the first four and the last are compared.
 
     Parameters
     ----------

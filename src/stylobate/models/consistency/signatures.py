@@ -134,7 +134,7 @@ def problems_of_lengths(subject: Subject) -> Iterator[str]:
             found = found[1]  # the first result is the duration
         at = subject.described(state) if arguments[:states] == state else f"the arguments {arguments}"
         if not _are_numbers(found):
-            yield _not_numbers(subject, name, length, found, at)
+            yield not_numbers(subject, name, length, found, at)
         elif len(found) != length:
             yield (
                 f"{name}: returns {len(found)} numbers{subject.origin(name)} where {length} are needed. "
@@ -144,26 +144,13 @@ def problems_of_lengths(subject: Subject) -> Iterator[str]:
         yield "from_plane: missing beside planar_rates. Define it, or set planar_rates = None."
 
 
-def problems_of_numbers(subject: Subject) -> Iterator[str]:
-    """Yield a line if `rates` or `tilt_of` return a result that is no finite number, at random states."""
-    zero = (0.0,) * _PUSH
-    states = subject.random_states(40 if subject.thorough else 4)
-    for name, push in (("tilt_of", ()), ("rates", zero)):
-        function = getattr(subject.model, name)
-        for state in states:
-            found = function(*state, *push, *subject.numbers)
-            if not np.isfinite(np.array(found, dtype=float)).all():
-                yield _not_numbers(subject, name, len(found), found, subject.described(state))
-                break
-
-
 def _problem_of_start(subject: Subject) -> str:
     """Return the line of a `start` that returns no state; "" for one that does."""
     model, c = subject.model, subject.slenderness
     tilt, rate = (0.3 * c, 0.0), (0.1 * c, 0.0)
     made, states = model.start(tilt, rate), len(model.state_names)
     if not _are_numbers(made):
-        return _not_numbers(subject, "start", states, made, f"the tilt {_shown(tilt)} and the rate {_shown(rate)}")
+        return not_numbers(subject, "start", states, made, f"the tilt {_shown(tilt)} and the rate {_shown(rate)}")
     if len(made) != states:
         return f"start: returns {len(made)} numbers for {states} states. Return one for each of `state_names`."
     return ""
@@ -179,7 +166,7 @@ def _are_numbers(found: Any) -> bool:
         return False
 
 
-def _not_numbers(subject: Subject, name: str, length: int, found: Any, at: str) -> str:
+def not_numbers(subject: Subject, name: str, length: int, found: Any, at: str) -> str:
     """Return the line of a function that returns something else than numbers."""
     return (
         f"{name}: must return {length} finite numbers{subject.origin(name)} (got {_shown(found)} at {at}). Return a "
