@@ -30,7 +30,11 @@ from stylobate.models.consistency.near_vertical import (
 from stylobate.models.consistency.overturning import balance_of, problems_of_balance, problems_of_no_return
 from stylobate.models.consistency.plane import problems_in_planes, problems_of_maps
 from stylobate.models.consistency.samples import Subject
-from stylobate.models.consistency.signatures import problems_of_lengths, problems_of_signatures
+from stylobate.models.consistency.signatures import (
+    problems_of_lengths,
+    problems_of_members,
+    problems_of_signatures,
+)
 from stylobate.models.consistency.steady_rolling import problems_of_closed_form, steady_rolling
 from stylobate.models.model import Model
 
@@ -55,6 +59,7 @@ class Law(NamedTuple):
 
 # Each stage requires that the stages before it found no problem.
 _STAGES: tuple[tuple[Law, ...], ...] = (
+    (Law("name", problems_of_members, ""),),
     (Law("parameters", problems_of_signatures, "each function takes them as its last arguments"),),
     (Law("state_names", problems_of_lengths, "each function returns as many numbers as needed"),),
     (Law("start", problems_of_maps, "makes a state with the tilt and the rate that tilt_of returns"),),
@@ -109,6 +114,7 @@ def check(model: Model) -> CheckReport:
 
     Call it in a test of a model of your own. It compares, at random states:
 
+    * the members that a model needs, static functions, and results that are finite numbers;
     * the number of arguments and results of each function with `parameters` and `state_names`;
     * `start`, `tilt_of` and `from_plane` with each other, and the rate of the tilt with `rates`;
     * compiled with plain `rates` and `planar_rates`;
@@ -118,7 +124,7 @@ def check(model: Model) -> CheckReport:
     * the side to which the column leans if the base accelerates with the law of inertia.
 
     The first run of a model of your own makes the cheap comparisons by itself. Of a model that switches between kinds
-    of contact only the first three and the last are compared.
+    of contact only the first four and the last are compared.
 
     Parameters
     ----------
@@ -217,7 +223,8 @@ def _found(subject: Subject, laws: tuple[Law, ...]) -> list[str]:
                 problems += law.problems(subject)
         except Exception as error:  # noqa: BLE001  a user's function may raise anything
             if subject.thorough:
-                problems.append(f"{_member(error)}: raises {type(error).__name__} at a random state ({error}).")
+                name = _member(subject.model, error) or law.member
+                problems.append(f"{name}: raises {type(error).__name__} at a random state ({error}).")
     return problems
 
 
@@ -228,9 +235,19 @@ def _without_warnings() -> Iterator[None]:
         yield
 
 
-def _member(error: BaseException) -> str:
-    """Return the name of the function that raised."""
-    trace, name = error.__traceback__, ""
+def _member(model: Model, error: BaseException) -> str:
+    """Return the name of the member of a model that raised, itself or in a function that it calls; "" if none did."""
+    members = {_code(value): name for cls in reversed(type(model).__mro__) for name, value in vars(cls).items()}
+    trace = error.__traceback__
     while trace is not None:
-        name, trace = trace.tb_frame.f_code.co_name, trace.tb_next
-    return name
+        name = members.get(trace.tb_frame.f_code)
+        if name:
+            return name
+        trace = trace.tb_next
+    return ""
+
+
+def _code(value: Any) -> Any:
+    """Return the code of a function, static method or property; None for other values."""
+    function = getattr(value, "__func__", None) or getattr(value, "fget", None) or value
+    return getattr(function, "__code__", None)

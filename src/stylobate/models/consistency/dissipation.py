@@ -28,11 +28,31 @@ def problems_of_coming_to_rest(subject: Subject) -> Iterator[str]:
             f"slow the column by {loss:.4g} per unit of time, not 0, {where}). Return True for these numbers, or set "
             "rest_energy = None."
         )
-    if model.comes_to_rest and not loss > 0.0 and not model.loss_tilt > 0.0:
+    if model.comes_to_rest and not loss > 0.0 and not _impacts_lose(subject):
         yield (
             f"comes_to_rest: is True although rates lose no energy in free motion{subject.origin('comes_to_rest')} "
-            f"(they slow the column by {loss:.4g} per unit of time, {where}). Return False for these numbers."
+            f"(they slow the column by {loss:.4g} per unit of time, {where}{_of_impacts(subject)}). Return False for "
+            "these numbers, or define the loss in rates or impact_map."
         )
+
+
+def _impacts_lose(subject: Subject) -> bool:
+    """Return whether a passage near the vertical can lose speed."""
+    model = subject.model
+    if model.impact_map is None or not model.loss_tilt > 0.0:
+        return False
+    return any(
+        np.hypot(*subject.lean(tuple(model.impact_map(*state, *subject.numbers)))[2:])
+        < np.hypot(*subject.lean(state)[2:]) * (1.0 - _ROUNDING)
+        for state in subject.random_states(6)
+    )
+
+
+def _of_impacts(subject: Subject) -> str:
+    """Return the reason why impacts lose nothing, for a message."""
+    if not subject.model.loss_tilt > 0.0:
+        return ""
+    return "; impact_map is missing" if subject.model.impact_map is None else "; impact_map takes no speed"
 
 
 def dissipation(subject: Subject) -> str:

@@ -5,6 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from stylobate.models.consistency.samples import Subject
+from stylobate.models.consistency.signatures import not_numbers
 
 _AGREE = 1e-5  # relative, above the error of the differences
 _IGNORED = 1e-9  # response to the base that counts as none
@@ -17,11 +18,20 @@ _DIRECTIONS = {
 
 
 def problems_of_tilt_rate(subject: Subject) -> Iterator[str]:
-    """Yield a line if the rate of the tilt that `tilt_of` returns is not the derivative of its tilt along `rates`."""
+    """Yield a line if the rate of the tilt that `tilt_of` returns is not the derivative of its tilt along `rates`.
+
+    A state at which one of the two returns a number that is not finite is a line of its own.
+    """
     c = subject.slenderness
     for state in subject.random_states(40 if subject.thorough else 4):
         push = (0.2 * c, -0.1 * c, 0.1)
-        rate, found = subject.lean(state)[2:], subject.tilt_change(state, push)[:2]
+        lean, change = subject.lean(state), subject.tilt_change(state, push)
+        if not (np.isfinite(change).all() and np.isfinite(lean).all()):
+            rates, at = subject.rates(state, push), subject.described(state, push)
+            name, results = ("tilt_of", lean) if np.isfinite(rates).all() else ("rates", rates)
+            yield not_numbers(subject, name, len(results), tuple(results.tolist()), at)
+            return
+        rate, found = lean[2:], change[:2]
         error = np.abs(found - rate)
         if error.max() > _AGREE * (c + np.hypot(*rate)):
             axis = int(np.argmax(error))

@@ -1,9 +1,13 @@
-"""Number of arguments and of results of each function of a model."""
+"""Members that a model must have, and the arguments and results of its functions."""
 
 import inspect
+import math
 from collections.abc import Callable, Iterator, Sequence
 from functools import cache
+from types import MethodType
 from typing import Any
+
+import numpy as np
 
 from stylobate.models.consistency.samples import Subject
 from stylobate.models.inheritance import owner_of
@@ -28,11 +32,39 @@ _BEHIND_STATE = {
 }
 
 
+_REQUIRED = {
+    "rates": "Define it as a static method that returns the rate of each state",
+    "tilt_of": "Define it as a static method that returns x, y, vx, vy",
+    "name": "State a short text, as in name = 'own'",
+    "state_names": "State a name for each state, as in state_names = ('tilt_x', 'tilt_y', …)",
+}
+
+
+def problems_of_members(subject: Subject) -> Iterator[str]:
+    """Yield a line for each member that every model needs and that is missing or no name."""
+    model = subject.model
+    for name, remedy in _REQUIRED.items():
+        if getattr(model, name, None) is None:
+            yield f"{name}: missing. {remedy}."
+    if not isinstance(getattr(model, "name", ""), str):
+        yield f"name: must be a text (got {model.name!r}). {_REQUIRED['name']}."
+    names: Any = getattr(model, "state_names", ())
+    if not isinstance(names, tuple | list) or not all(isinstance(name, str) for name in names):
+        yield f"state_names: must be a tuple of texts (got {names!r}). {_REQUIRED['state_names']}."
+    elif len(set(names)) < len(names):
+        yield f"state_names: the names of two states are equal (got {names!r}). Give each state a name of its own."
+    if any(map(math.isnan, subject.numbers)):
+        yield f"parameters: must not contain NaN (got {subject.numbers!r}). Return a number for each."
+
+
 def problems_of_signatures(subject: Subject) -> Iterator[str]:
-    """Yield a line for each function that does not take the numbers with which it is called."""
+    """Yield a line for each function that is not static, or does not take the numbers with which it is called."""
     for name in (*_BEHIND_STATE, *_WITHOUT_STATE):
         function = getattr(subject.model, name)
         if function is None:
+            continue
+        if isinstance(function, MethodType) and function.__self__ is subject.model:
+            yield f"{name}: must be a static method (got an instance method). Put @staticmethod above it."
             continue
         takes, given = _positions(function), _given(subject, name)
         if takes is None or takes[0] <= given <= takes[1]:
@@ -70,13 +102,14 @@ def _remedy(subject: Subject, name: str) -> str:
 
 
 def problems_of_lengths(subject: Subject) -> Iterator[str]:
-    """Yield a line for each function that returns a wrong number of results."""
+    """Yield a line for each function that returns a wrong number of results, or results that are no numbers."""
     model, numbers = subject.model, subject.numbers
     states = len(model.state_names)
-    state = subject.random_states(1)[0]
-    if len(state) != states:
-        yield f"start: returns {len(state)} numbers for {states} states. Return one for each of `state_names`."
+    problem = _problem_of_start(subject)
+    if problem:
+        yield problem
         return
+    state = subject.random_states(1)[0]
     zero = (0.0,) * _PUSH
     push = Push((1.0, 0.0), subject.slenderness, 0.0, 1.0, 0.0)
     calls: Sequence[tuple[str, int, tuple[Any, ...]]] = (
@@ -97,12 +130,51 @@ def problems_of_lengths(subject: Subject) -> Iterator[str]:
         if function is None:
             continue
         found = function(*arguments, *numbers)
-        if name == "passage":
+        if name == "passage" and isinstance(found, tuple) and len(found) == 2:  # noqa: PLR2004
             found = found[1]  # the first result is the duration
-        if len(found) != length:
+        at = subject.described(state) if arguments[:states] == state else f"the arguments {arguments}"
+        if not _are_numbers(found):
+            yield not_numbers(subject, name, length, found, at)
+        elif len(found) != length:
             yield (
                 f"{name}: returns {len(found)} numbers{subject.origin(name)} where {length} are needed. "
                 f"Define it for the states {', '.join(model.state_names)}."
             )
     if model.planar_rates is not None and model.from_plane is None:
         yield "from_plane: missing beside planar_rates. Define it, or set planar_rates = None."
+
+
+def _problem_of_start(subject: Subject) -> str:
+    """Return the line of a `start` that returns no state; "" for one that does."""
+    model, c = subject.model, subject.slenderness
+    tilt, rate = (0.3 * c, 0.0), (0.1 * c, 0.0)
+    made, states = model.start(tilt, rate), len(model.state_names)
+    if not _are_numbers(made):
+        return not_numbers(subject, "start", states, made, f"the tilt {_shown(tilt)} and the rate {_shown(rate)}")
+    if len(made) != states:
+        return f"start: returns {len(made)} numbers for {states} states. Return one for each of `state_names`."
+    return ""
+
+
+def _are_numbers(found: Any) -> bool:
+    """Return whether the result of a function is a sequence of real numbers without NaN."""
+    if not isinstance(found, Sequence | np.ndarray) or isinstance(found, str):
+        return False
+    try:
+        return not any(math.isnan(number + 0.0) for number in found)
+    except (TypeError, ValueError):
+        return False
+
+
+def not_numbers(subject: Subject, name: str, length: int, found: Any, at: str) -> str:
+    """Return the line of a function that returns something else than numbers."""
+    return (
+        f"{name}: must return {length} finite numbers{subject.origin(name)} (got {_shown(found)} at {at}). Return a "
+        f"tuple of {length} real, finite numbers at each state."
+    )
+
+
+def _shown(found: Any) -> str:
+    if not isinstance(found, Sequence | np.ndarray) or isinstance(found, str):
+        return repr(found)
+    return f"({', '.join(f'{one:.4g}' if isinstance(one, int | float | complex) else repr(one) for one in found)})"
