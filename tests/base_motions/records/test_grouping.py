@@ -140,32 +140,3 @@ def test_components_that_begin_at_different_times_are_refused(tmp_path, waves):
     second.write_text("".join(f"{1.0 + STEP * i:.5f} {value!r}\n" for i, value in enumerate(waves[1].tolist())))
     with pytest.raises(FileError, match="components begin at different times"):
         sb.read_records([first, second], "g")
-
-
-@pytest.mark.parametrize(
-    ("unit", "factor"), [("s", 1.0), ("ms", 1e-3), ("Sec", 1.0), ("µs", 1e-6), ("min", 60.0), ("", 1.0)]
-)
-@pytest.mark.parametrize("between", [",", "\t", ";"])
-def test_a_stated_unit_of_time_is_converted(tmp_path, unit, factor, between):
-    rows = [f"{0.02 * place / factor!r}{between}{0.1 * (place % 3)!r}" for place in range(9)]
-    name = f"time [{unit}]" if unit else "time"
-    path = tmp_path / "h.csv"
-    path.write_text("\n".join([f"{name}{between}x [g]", *rows]), encoding="utf-8")
-    assert sb.read_record(path).step == pytest.approx(0.02, rel=1e-9)
-
-
-@pytest.mark.parametrize(
-    ("header", "problem"),
-    [
-        ("time [h],x [g],y [g]", "unknown unit of time 'h'. Use s, ms"),
-        ("time [samples],x [g],y [g]", "unknown unit of time 'samples'"),
-        ("time [s],x [g],x [g]", "columns 'x' and 'x' are the same component"),
-        ("time [s],NS [g],NS [g]", "columns 'NS' and 'NS' are the same component"),
-        ("time [s],NS [g],N [g]", "columns 'NS' and 'N' are the same component"),
-    ],
-)
-def test_an_unknown_unit_of_time_and_doubled_components_are_refused(tmp_path, header, problem):
-    path = tmp_path / "h.csv"
-    path.write_text("\n".join([header, *(f"{0.01 * k!r},0.1,0.2" for k in range(5))]), encoding="utf-8")
-    with pytest.raises(FileError, match=problem):
-        sb.read_record(path)

@@ -17,13 +17,6 @@ from stylobate.base_motions.records.units import unit_of
 
 _NAME = re.compile(r"\s*(?P<name>[^\[(]*?)\s*(?:[\[(](?P<unit>[^\])]*)[\])])?\s*")
 _ACCELERATION = ("acceleration", "accel", "acc", "a")
-_SECONDS = {
-    **dict.fromkeys(("", "s", "sec", "secs", "second", "seconds"), 1.0),
-    **dict.fromkeys(("ms", "msec", "millisecond", "milliseconds"), 1e-3),
-    **dict.fromkeys(("µs", "μs", "us", "microseconds"), 1e-6),
-    **dict.fromkeys(("min", "minutes"), 60.0),
-}
-"""Units of time in seconds, in small letters."""
 _SAME = {name: name for name in ("time", *AXES)}
 
 
@@ -70,7 +63,7 @@ def read_csv(text: Text, columns: Mapping[str, str] | None, step: float | None) 
     places = [at for at, _ in body]
     start = 0.0
     if "time" in by_name:
-        start, step = equal_steps(text, by_name["time"] * _seconds(text, first, units[chosen["time"]]), places, step)
+        start, step = equal_steps(text, by_name["time"], places, step)
     elif step is None:
         raise text.fault(first, "no column of times: state step, the time step in s")
     unit = _unit(text, first, {names[place]: units[place] for axis, place in chosen.items() if axis != "time"})
@@ -107,7 +100,6 @@ def _chosen(text: Text, line: int, names: list[str], columns: Mapping[str, str] 
     times = [lower.index(name) for name in TIMES if name in lower]
     chosen = {"time": times[0]} if times else {}
     others = [place for place in range(len(names)) if place not in times[:1]]
-    _require_different(text, line, [names[place] for place in others])
     axes = {axis: lower.index(name) for axis in AXES for name in (axis, f"a{axis}") if name in lower}
     directed = _directed(names, others)
     accelerations = [place for place in others if lower[place] in _ACCELERATION]
@@ -141,22 +133,3 @@ def _unit(text: Text, line: int, units: Mapping[str, str | None]) -> str | None:
     if len(known) > 1:
         raise text.fault(line, f"columns of different units: {', '.join(map(repr, units.values()))}")
     return next(iter(known), None)
-
-
-def _seconds(text: Text, line: int, unit: str | None) -> float:
-    """Return the factor from the stated unit of time to s; 1 for none."""
-    factor = _SECONDS.get((unit or "").strip().lower())
-    if factor is None:
-        raise text.fault(line, f"unknown unit of time {unit!r}. Use s, ms, µs or min, or state step and no times")
-    return factor
-
-
-def _require_different(text: Text, line: int, names: list[str]) -> None:
-    """Raise FileError if two columns that could be accelerations have one name or one direction."""
-    named: dict[str, str] = {}
-    for name in names:
-        direction = _direction(name)
-        one = name.lower() if direction is None else repr(direction)
-        if one and one in named:
-            raise text.fault(line, f"columns {named[one]!r} and {name!r} are the same component. Rename or remove one")
-        named[one] = name
