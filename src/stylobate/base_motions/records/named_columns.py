@@ -13,7 +13,7 @@ from stylobate.base_motions.records.lines import Floats, Text, is_number
 from stylobate.base_motions.records.naming import split_name
 from stylobate.base_motions.records.record import AXES
 from stylobate.base_motions.records.tables import equal_steps
-from stylobate.base_motions.records.units import unit_of
+from stylobate.base_motions.records.units import SECOND, TimeUnit, time_unit_of, unit_of
 
 _NAME = re.compile(r"\s*(?P<name>[^\[(]*?)\s*(?:[\[(](?P<unit>[^\])]*)[\])])?\s*")
 _ACCELERATION = ("acceleration", "accel", "acc", "a")
@@ -43,7 +43,7 @@ def read_csv(text: Text, columns: Mapping[str, str] | None, step: float | None) 
     Raises
     ------
     FileError
-        If a column is missing, units differ, or a number is wrong.
+        If a column is missing, units differ or are unknown, or a number is wrong.
     """
     first = next(at for at, line in enumerate(text.lines) if line.strip() and not line.lstrip().startswith("#"))
     between = ";" if text.lines[first].count(";") > text.lines[first].count(",") else ","
@@ -62,13 +62,22 @@ def read_csv(text: Text, columns: Mapping[str, str] | None, step: float | None) 
     by_name = dict(zip(chosen, values.T, strict=True))
     places = [at for at, _ in body]
     start = 0.0
+    clock = _time_unit(text, first, units[chosen["time"]]) if "time" in chosen else None
     if "time" in by_name:
-        start, step = equal_steps(text, by_name["time"], places, step)
+        start, step = equal_steps(text, by_name["time"], places, step, clock or SECOND)
     elif step is None:
         raise text.fault(first, "no column of times: state step, the time step in s")
     unit = _unit(text, first, {names[place]: units[place] for axis, place in chosen.items() if axis != "time"})
     samples, direction, title = _components(text, {name: by_name[name] for name in by_name if name != "time"})
-    return Component(samples=samples, step=step, start=start, unit=unit, direction=direction, title=title)
+    return Component(
+        samples=samples,
+        step=step,
+        start=start,
+        unit=unit,
+        direction=direction,
+        title=title,
+        states_time_unit=clock is not None,
+    )
 
 
 def _components(text: Text, columns: Mapping[str, Floats]) -> tuple[Floats, Direction | None, str]:
@@ -124,6 +133,17 @@ def _directed(names: list[str], places: list[int]) -> dict[str, int]:
     if len(places) == 1 or (len(found) > 1 and is_one_set([one for one in map(_direction, found) if one])):
         return found
     return {name: place for name, place in found.items() if len(name) > 1}
+
+
+def _time_unit(text: Text, line: int, unit: str | None) -> TimeUnit | None:
+    """Return the unit of the column of times, or None if the file does not state it."""
+    if unit is None:
+        return None
+    if (known := time_unit_of(unit)) is None:
+        raise text.fault(
+            line, f"unknown unit of time {unit!r}. Convert the times to s, ms, µs or min, and state that unit"
+        )
+    return known
 
 
 def _unit(text: Text, line: int, units: Mapping[str, str | None]) -> str | None:
