@@ -126,7 +126,14 @@ def test_a_column_that_is_called_acceleration_wins_over_single_letters(tmp_path,
 
 @pytest.mark.parametrize(
     ("names", "filled"),
-    [("t,N,E,Z", (0, 1, 2)), ("t,L,T,V", (0, 1, 2)), ("t,L,T", (0, 1)), ("t,NS,V", (0, 2)), ("t,V", (2,))],
+    [
+        ("t,N,E,Z", (0, 1, 2)),
+        ("t,L,T,V", (0, 1, 2)),
+        ("t,L,T", (0, 1)),
+        ("t,NS,V", (0, 2)),
+        ("t,V", (2,)),
+        ("t,N,E,Z,V", (0, 1, 2)),
+    ],
 )
 def test_single_letters_that_fit_together_are_directions(tmp_path, names, filled):
     rows = "\n".join(",".join(f"{0.01 * at}" for _ in names.split(",")) for at in range(3))
@@ -134,11 +141,62 @@ def test_single_letters_that_fit_together_are_directions(tmp_path, names, filled
     assert tuple(np.flatnonzero(record.samples.any(axis=0))) == filled
 
 
-@pytest.mark.parametrize("names", ["t,v,d", "t,accel_g,v,d", "t,acc,NS,EW", "t,a,ax,ay", "t,acc,acceleration"])
+OPEN = (
+    "t,v,d",
+    "t,accel_g,v,d",
+    "t,acc,NS,EW",
+    "t,acc,acc_NS",
+    "t,a,ax,ay",
+    "t,acc,acceleration",
+    "t,x,y,UD",
+    "t,x,NS",
+    "t,N,E,Z,UD",
+)
+
+
+@pytest.mark.parametrize("names", OPEN)
 def test_columns_that_leave_the_acceleration_open_are_refused(tmp_path, names):
     rows = "\n".join(",".join(f"{0.01 * at}" for _ in names.split(",")) for at in range(3))
     with pytest.raises(FileError, match=r"line 1: which of .* is the acceleration\? state columns"):
         sb.read_record(written(tmp_path, "a.csv", f"{names}\n{rows}\n"), "m/s2")
+
+
+@pytest.mark.parametrize(
+    ("names", "same", "remedy"),
+    [
+        ("time,x,x", "'x', 'x'", "Rename or remove one"),
+        ("time,x,X,y", "'x', 'X'", "State columns, or rename or remove one"),
+        ("time,x,ax", "'x', 'ax'", "State columns, or rename or remove one"),
+        ("time,y,z,z", "'z', 'z'", "Rename or remove one"),
+        ("time,z,z", "'z', 'z'", "Rename or remove one"),
+        ("time,NS,NS", "'NS', 'NS'", "Rename or remove one"),
+        ("time,NS,N", "'NS', 'N'", "State columns, or rename or remove one"),
+        ("time,N,S", "'N', 'S'", "State columns, or rename or remove one"),
+        ("time,N,N", "'N', 'N'", "Rename or remove one"),
+        ("time,NS,EW,acc_EW", "'EW', 'acc_EW'", "State columns, or rename or remove one"),
+        ("time,L,T,L", "'L', 'L'", "Rename or remove one"),
+        ("time,a_090,a_270", "'a_090', 'a_270'", "State columns, or rename or remove one"),
+    ],
+)
+def test_no_component_is_dropped_for_another_column_of_the_same_meaning(tmp_path, names, same, remedy):
+    rows = "\n".join(",".join(f"{0.01 * at}" for _ in names.split(",")) for at in range(3))
+    path = written(tmp_path, "a.csv", f"{names}\n{rows}\n")
+    with pytest.raises(FileError) as raised:
+        sb.read_record(path, "m/s2")
+    assert str(raised.value) == f"{path}, line 1: columns for one component: {same}. {remedy}"
+
+
+def test_stated_columns_choose_between_columns_of_the_same_meaning(tmp_path):
+    path = written(tmp_path, "a.csv", "time,NS,N,N\n0,1,2,3\n0.01,1,2,3\n")
+    assert sb.read_record(path, "m/s2", columns={"time": "time", "x": "NS"}).samples[:, 0].tolist() == [1.0, 1.0]
+    with pytest.raises(FileError, match=r"columns for one component: 'N', 'N'\. Rename or remove one"):
+        sb.read_record(path, "m/s2", columns={"time": "time", "x": "N"})
+
+
+@pytest.mark.parametrize("names", ["time,x,y,disp_x,disp_y", "time,x,v,v_x", "time,NS,UD,V", "time,acc,v,v"])
+def test_columns_of_other_quantities_leave_the_components_alone(tmp_path, names):
+    rows = "\n".join(",".join(f"{0.01 * at}" for _ in names.split(",")) for at in range(3))
+    assert len(sb.read_record(written(tmp_path, "a.csv", f"{names}\n{rows}\n"), "m/s2").samples) == 3
 
 
 def test_writing_and_reading_csv_restores_every_number(tmp_path):
