@@ -221,11 +221,11 @@ BROKEN = {
     "short": (
         NEW.replace("  -.2000000E-04   .5000000E+00\n", ""),
         None,
-        r"line 5: the header states 7 samples, the file has 5",
+        r"line 5: the header states 7 samples, the file has 5\. Download the file again, or correct the count in",
     ),
     "long": (NEW + " .1 .2\n", None, r"line 7: the header states 7 samples, the file has 9"),
     "token": (NEW.replace("-.2000000E-04", "-.2oo0000E-04"), None, r"line 6: not a number: '-.2oo0000E-04'"),
-    "nan": (NEW.replace(".5000000E+00", "NaN"), None, r"line 6: not a finite number: 'NaN'"),
+    "nan": (NEW.replace(".5000000E+00", "NaN"), None, r"line 6: not a finite number: 'NaN'\. Replace it by"),
     "count": (NEW.replace("NPTS=      7", "NPTS=    7.5"), None, r"line 4: NPTS must be a whole number, got '7.5'"),
     "none": (
         NEW.replace("NPTS=      7", "NPTS=      1"),
@@ -254,8 +254,17 @@ BROKEN = {
     "one": ("0.0 1.0\n", "g", r"line 1: the file is too short: one sample"),
     "csv": ("time,x\n0,1\n1,2,3\n", "g", r"line 3: 3 columns, the first line names 2"),
     "csv units": ("time,x [g],y [m/s2]\n0,1,1\n1,2,2\n", None, r"line 1: columns of different units"),
-    "csv unit": ("time,x [stone]\n0,1\n1,2\n", None, r"line 1: unknown unit among 'stone'"),
+    "csv unit": (
+        "time,x [stone]\n0,1\n1,2\n",
+        None,
+        r"line 1: unknown unit 'stone'\. Give accelerations in .g., .m/s²",
+    ),
     "csv time": ("x [g],y [g]\n0,1\n1,2\n", None, r"line 1: no column of times: state step"),
+    "csv milli": (
+        "time,x [mg],y [g]\n0,1,1\n1,2,1\n",
+        None,
+        r"line 1: unknown unit 'mg'\. Give accelerations in .g., ",
+    ),
     "huge": (
         TABLE.replace("0.5", "1e300"),
         "g",
@@ -270,6 +279,10 @@ BROKEN = {
 }
 
 
+# A sentence of its own, which begins with a verb, or "state" what is missing.
+REMEDY = re.compile(r"\. [A-Z][a-z]+ |[:?] state ")
+
+
 @pytest.mark.parametrize(("content", "units", "message"), BROKEN.values(), ids=BROKEN)
 def test_a_broken_file_gets_one_clear_line(tmp_path, content, units, message):
     path = written(tmp_path, "broken.txt", content)
@@ -277,6 +290,7 @@ def test_a_broken_file_gets_one_clear_line(tmp_path, content, units, message):
         sb.read_record(path, units)
     assert str(raised.value).startswith(str(path))
     assert "\n" not in str(raised.value)
+    assert REMEDY.search(str(raised.value).removeprefix(str(path)))
 
 
 def test_files_that_cannot_be_opened_are_named(tmp_path):
@@ -289,7 +303,7 @@ def test_files_that_cannot_be_opened_are_named(tmp_path):
     with pytest.raises(FileError, match=r"none\.txt: cannot be read: No such file"):
         sb.read_record(tmp_path / "none.txt", "g")
     cut = written(tmp_path, "cut.gz", gzip.compress(NEW.encode())[:60])
-    with pytest.raises(FileError, match=r"cut\.gz: cannot be read"):
+    with pytest.raises(FileError, match=r"cut\.gz: cannot be read: .*\. Download the file again$"):
         sb.read_record(cut)
 
 
@@ -300,7 +314,10 @@ def test_bytes_that_are_called_at2_are_told_to_be_none(tmp_path, name, asked):
     path = written(tmp_path, name, gzip.compress(noise) if name.endswith("gz") else noise)
     with pytest.raises(FileError) as raised:
         sb.read_record(path, "g", format=asked)
-    assert str(raised.value) == f"{path}: no AT2 file: it is no text, and has no header with NPTS and DT"
+    assert (
+        str(raised.value)
+        == f"{path}: no AT2 file: it is no text, and has no header with NPTS and DT. Download it again"
+    )
 
 
 # Messages are read on the command line and on the page too, where nothing is written name=value.
@@ -367,8 +384,25 @@ def test_miniseed_and_sac_are_read_through_obspy(tmp_path):
         assert "azimuth 90° along x" in record.provenance
     with pytest.raises(FileError, match="names no unit"):
         sb.read_record(tmp_path / "a.mseed")
-    with pytest.raises(FileError, match="ObsPy cannot read it"):
-        sb.read_record(written(tmp_path, "b.bin", bytes(range(64))), "g")
+
+
+@pytest.mark.filterwarnings("ignore")  # ObsPy's own
+@pytest.mark.parametrize(
+    ("name", "content"),
+    [
+        ("noise.bin", bytes(range(64))),
+        ("first.bin", bytes(range(256)) * 10),
+        ("quality.mseed", b"000001D \x00\x01\x02"),
+        ("random.bin", np.random.default_rng(5).bytes(3000)),
+    ],
+)
+def test_a_file_that_obspy_refuses_is_refused_in_our_own_words(tmp_path, name, content):
+    path = written(tmp_path, name, content)
+    with pytest.raises(FileError) as raised:
+        sb.read_record(path, "g")
+    problem = "ObsPy cannot read it: its format is unknown or its content damaged"
+    remedy = "Download the file again, or export the record as text or miniSEED"
+    assert str(raised.value) == f"{path}: {problem}. {remedy}"
 
 
 KNET = """Origin Time       1996/08/11 03:12:00

@@ -8,7 +8,7 @@ import re
 
 from stylobate.base_motions.records.component import Component, Direction
 from stylobate.base_motions.records.lines import Text, is_number
-from stylobate.base_motions.records.units import SECOND, time_unit_of, unit_of
+from stylobate.base_motions.records.units import SECOND, time_unit_of, unit_of, unknown_unit
 
 _NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[EeDd][-+]?\d+)?"
 _NEW = re.compile(
@@ -48,12 +48,12 @@ def read_at2(text: Text, step: float | None = None) -> Component:
     found = _NEW.search(text.lines[at]) or _OLD.match(text.lines[at])
     assert found is not None
     if found["step"] is None:
-        raise text.fault(at, "the time step DT is missing")
+        raise text.fault(at, "the time step DT is missing. State it in the header, in s")
     count = text.count(at, "NPTS", found["count"])
     clock = time_unit_of(found["clock"])
     step = (clock or SECOND).in_seconds(text.number(at, found["step"].upper().replace("D", "E")))
     if step <= 0.0:
-        raise text.fault(at, f"the time step DT must be positive, got {step!r}")
+        raise text.fault(at, f"the time step DT must be positive, got {step!r}. Correct the header")
     return _component(text, at, count, step, states_time_unit=clock is not None)
 
 
@@ -105,7 +105,7 @@ def _unit(text: Text, header: int) -> str | None:
         if found := _UNITS.search(line):
             unit = unit_of(found["unit"])
             if unit is None:
-                raise text.fault(index, f"unknown unit {found['unit']!r}")
+                raise text.fault(index, unknown_unit(found["unit"]))
             return unit
     return None
 

@@ -13,7 +13,7 @@ from stylobate.base_motions.records.lines import Floats, Text, is_number
 from stylobate.base_motions.records.naming import split_name
 from stylobate.base_motions.records.record import AXES
 from stylobate.base_motions.records.tables import equal_steps
-from stylobate.base_motions.records.units import SECOND, TimeUnit, time_unit_of, unit_of
+from stylobate.base_motions.records.units import SECOND, TimeUnit, time_unit_of, unit_of, unknown_unit
 
 _NAME = re.compile(r"\s*(?P<name>[^\[(]*?)\s*(?:[\[(](?P<unit>[^\])]*)[\])])?\s*")
 _ACCELERATION = ("acceleration", "accel", "acc", "a")
@@ -58,10 +58,10 @@ def read_csv(text: Text, columns: Mapping[str, str] | None, step: float | None) 
     chosen = _chosen(text, first, names, columns)
     for at, row in body:
         if len(row) != len(names):
-            raise text.fault(at, f"{len(row)} columns, the first line names {len(names)}")
+            raise text.fault(at, f"{len(row)} columns, the first line names {len(names)}. Correct the line")
     values = text.rows([(at, [row[place] for place in chosen.values()]) for at, row in body])
     if not body:
-        raise text.fault(first, "the file has no numbers")
+        raise text.fault(first, "the file has no numbers. Export it again")
     by_name = dict(zip(chosen, values.T, strict=True))
     places = [at for at, _ in body]
     start = 0.0
@@ -186,9 +186,11 @@ def _time_unit(text: Text, line: int, unit: str | None) -> TimeUnit | None:
 
 
 def _unit(text: Text, line: int, units: Mapping[str, str | None]) -> str | None:
-    known = {unit_of(unit) for unit in units.values() if unit is not None}
-    if None in known:
-        raise text.fault(line, f"unknown unit among {', '.join(map(repr, units.values()))}")
-    if len(known) > 1:
-        raise text.fault(line, f"columns of different units: {', '.join(map(repr, units.values()))}")
-    return next(iter(known), None)
+    known = {unit: unit_of(unit) for unit in units.values() if unit is not None}
+    for unit, its in known.items():
+        if its is None:
+            raise text.fault(line, unknown_unit(unit))
+    if len(set(known.values())) > 1:
+        listed = ", ".join(map(repr, units.values()))
+        raise text.fault(line, f"columns of different units: {listed}. Convert them to one unit")
+    return next(iter(known.values()), None)

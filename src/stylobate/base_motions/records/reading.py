@@ -119,14 +119,15 @@ def read_component(
     """Read the component of a file in the units of the file."""
     content = read_bytes(path)
     if is_binary(content) and format in (None, RecordFormat.AT2) and _is_called_at2(path):
-        message = f"{path}: no AT2 file: it is no text, and has no header with NPTS and DT"
+        message = f"{path}: no AT2 file: it is no text, and has no header with NPTS and DT. Download it again"
         raise FileError(message)
     if format is RecordFormat.WAVEFORM or (
         format is None and (is_binary(content) or content.startswith(b"Origin Time"))
     ):
         return read_waveform(path, content)
     if is_binary(content):
-        message = f"{path}: a binary file, not {format.value if format else 'text'}"
+        remedy = "Leave format out, or export the record as text"
+        message = f"{path}: a binary file, not {format.value if format else 'text'}. {remedy}"
         raise FileError(message)
     return _read_text(Text.of(path, content), step, columns, format)
 
@@ -138,7 +139,7 @@ def _read_text(
     format: RecordFormat | None,  # noqa: A002
 ) -> Component:
     if all(not line.strip() or line.lstrip().startswith(REMARKS[0]) for line in text.lines):
-        raise text.fault(len(text.lines) - 1, "the file has no numbers")
+        raise text.fault(len(text.lines) - 1, "the file has no numbers. Export it again")
     without_header = _is_called_at2(text.path) and is_wrapped(text)
     if format is RecordFormat.AT2 or (format is None and (is_at2(text) or without_header)):
         return read_at2(text, step)

@@ -24,7 +24,7 @@ def read_table(text: Text, step: float | None) -> Component:
     tokens = [(at, line.replace(",", " ").replace(";", " ").split()) for at, line in enumerate(text.lines)]
     tokens = [(at, row) for at, row in tokens if row and not row[0].startswith(REMARKS)]
     if not tokens:
-        raise text.fault(len(text.lines) - 1, "the file has no numbers")
+        raise text.fault(len(text.lines) - 1, "the file has no numbers. Export it again")
     width = len(tokens[0][1])
     if width > _TIME_AND_ACCELERATION:
         text.rows(tokens[:1])
@@ -33,7 +33,7 @@ def read_table(text: Text, step: float | None) -> Component:
     for at, row in tokens:
         if len(row) != width:
             text.rows([(at, row)])
-            raise text.fault(at, f"{len(row)} columns, the lines before have {width}")
+            raise text.fault(at, f"{len(row)} columns, the lines before have {width}. Correct the line")
     values = text.rows(tokens)
     places = [at for at, _ in tokens]
     if width == 1:
@@ -89,7 +89,9 @@ def _rounded(text: Text, times: Floats, places: list[int], step: float | None, u
 
 def _require_two(text: Text, places: list[int]) -> None:
     if len(places) < 2:  # noqa: PLR2004  a step has two ends
-        raise text.fault(places[-1] if places else len(text.lines) - 1, "the file is too short: one sample")
+        raise text.fault(
+            places[-1] if places else len(text.lines) - 1, "the file is too short: one sample. Give two or more"
+        )
 
 
 def _as_printed(step: float) -> float:

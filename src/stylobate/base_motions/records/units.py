@@ -65,6 +65,11 @@ def time_unit_of(text: str) -> TimeUnit | None:
     return _TIME_UNITS.get(text.strip().lower().replace(_GREEK_MU, _MICRO_SIGN).rstrip("."))
 
 
+def unknown_unit(text: str) -> str:
+    """Describe, for a message, a unit in a file that `unit_of` does not know."""
+    return f"unknown unit {text!r}. Give accelerations in {KNOWN}, and state that unit"
+
+
 def require_unit(text: str) -> str:
     """Parse a unit, or raise ParameterError.
 
