@@ -6,7 +6,7 @@ import pytest
 import stylobate as sb
 from stylobate.base_motions.records import RecordFormat
 from stylobate.column import STANDARD_GRAVITY
-from stylobate.errors import FileError
+from stylobate.errors import FileError, UnlikelyInputWarning
 
 STEP = 0.005
 VALUES = np.array([0.0, 0.125, -1.25, 0.0625, -0.001, 0.002, 1.5, -0.75])
@@ -68,7 +68,8 @@ def test_an_ambiguous_comma_is_named_with_its_remedy(tmp_path, content, line, fo
 
 def test_commas_between_whole_numbers_stay_separators(tmp_path):
     for content in ("0,1\n1,-2\n2,4\n", "0, 1\n1, -2\n2, 4\n", "0.0,1.0,\n1.0,-2.0,\n2.0,4.0,\n"):
-        record = sb.read_record(written(tmp_path, content), "m/s2")
+        with pytest.warns(UnlikelyInputWarning, match="the step read in s is 1 s"):
+            record = sb.read_record(written(tmp_path, content), "m/s2")
         assert (record.samples[:, 0].tolist(), record.step) == ([1.0, -2.0, 4.0], 1.0)
 
 

@@ -126,7 +126,14 @@ def test_a_column_that_is_called_acceleration_wins_over_single_letters(tmp_path,
 
 @pytest.mark.parametrize(
     ("names", "filled"),
-    [("t,N,E,Z", (0, 1, 2)), ("t,L,T,V", (0, 1, 2)), ("t,L,T", (0, 1)), ("t,NS,V", (0, 2)), ("t,V", (2,))],
+    [
+        ("t,N,E,Z", (0, 1, 2)),
+        ("t,L,T,V", (0, 1, 2)),
+        ("t,L,T", (0, 1)),
+        ("t,NS,V", (0, 2)),
+        ("t,V", (2,)),
+        ("t,N,E,Z,V", (0, 1, 2)),
+    ],
 )
 def test_single_letters_that_fit_together_are_directions(tmp_path, names, filled):
     rows = "\n".join(",".join(f"{0.01 * at}" for _ in names.split(",")) for at in range(3))
@@ -134,11 +141,62 @@ def test_single_letters_that_fit_together_are_directions(tmp_path, names, filled
     assert tuple(np.flatnonzero(record.samples.any(axis=0))) == filled
 
 
-@pytest.mark.parametrize("names", ["t,v,d", "t,accel_g,v,d", "t,acc,NS,EW", "t,a,ax,ay", "t,acc,acceleration"])
+OPEN = (
+    "t,v,d",
+    "t,accel_g,v,d",
+    "t,acc,NS,EW",
+    "t,acc,acc_NS",
+    "t,a,ax,ay",
+    "t,acc,acceleration",
+    "t,x,y,UD",
+    "t,x,NS",
+    "t,N,E,Z,UD",
+)
+
+
+@pytest.mark.parametrize("names", OPEN)
 def test_columns_that_leave_the_acceleration_open_are_refused(tmp_path, names):
     rows = "\n".join(",".join(f"{0.01 * at}" for _ in names.split(",")) for at in range(3))
     with pytest.raises(FileError, match=r"line 1: which of .* is the acceleration\? state columns"):
         sb.read_record(written(tmp_path, "a.csv", f"{names}\n{rows}\n"), "m/s2")
+
+
+@pytest.mark.parametrize(
+    ("names", "same", "remedy"),
+    [
+        ("time,x,x", "'x', 'x'", "Rename or remove one"),
+        ("time,x,X,y", "'x', 'X'", "State columns, or rename or remove one"),
+        ("time,x,ax", "'x', 'ax'", "State columns, or rename or remove one"),
+        ("time,y,z,z", "'z', 'z'", "Rename or remove one"),
+        ("time,z,z", "'z', 'z'", "Rename or remove one"),
+        ("time,NS,NS", "'NS', 'NS'", "Rename or remove one"),
+        ("time,NS,N", "'NS', 'N'", "State columns, or rename or remove one"),
+        ("time,N,S", "'N', 'S'", "State columns, or rename or remove one"),
+        ("time,N,N", "'N', 'N'", "Rename or remove one"),
+        ("time,NS,EW,acc_EW", "'EW', 'acc_EW'", "State columns, or rename or remove one"),
+        ("time,L,T,L", "'L', 'L'", "Rename or remove one"),
+        ("time,a_090,a_270", "'a_090', 'a_270'", "State columns, or rename or remove one"),
+    ],
+)
+def test_no_component_is_dropped_for_another_column_of_the_same_meaning(tmp_path, names, same, remedy):
+    rows = "\n".join(",".join(f"{0.01 * at}" for _ in names.split(",")) for at in range(3))
+    path = written(tmp_path, "a.csv", f"{names}\n{rows}\n")
+    with pytest.raises(FileError) as raised:
+        sb.read_record(path, "m/s2")
+    assert str(raised.value) == f"{path}, line 1: columns for one component: {same}. {remedy}"
+
+
+def test_stated_columns_choose_between_columns_of_the_same_meaning(tmp_path):
+    path = written(tmp_path, "a.csv", "time,NS,N,N\n0,1,2,3\n0.01,1,2,3\n")
+    assert sb.read_record(path, "m/s2", columns={"time": "time", "x": "NS"}).samples[:, 0].tolist() == [1.0, 1.0]
+    with pytest.raises(FileError, match=r"columns for one component: 'N', 'N'\. Rename or remove one"):
+        sb.read_record(path, "m/s2", columns={"time": "time", "x": "N"})
+
+
+@pytest.mark.parametrize("names", ["time,x,y,disp_x,disp_y", "time,x,v,v_x", "time,NS,UD,V", "time,acc,v,v"])
+def test_columns_of_other_quantities_leave_the_components_alone(tmp_path, names):
+    rows = "\n".join(",".join(f"{0.01 * at}" for _ in names.split(",")) for at in range(3))
+    assert len(sb.read_record(written(tmp_path, "a.csv", f"{names}\n{rows}\n"), "m/s2").samples) == 3
 
 
 def test_writing_and_reading_csv_restores_every_number(tmp_path):
@@ -163,11 +221,11 @@ BROKEN = {
     "short": (
         NEW.replace("  -.2000000E-04   .5000000E+00\n", ""),
         None,
-        r"line 5: the header states 7 samples, the file has 5",
+        r"line 5: the header states 7 samples, the file has 5\. Download the file again, or correct the count in",
     ),
     "long": (NEW + " .1 .2\n", None, r"line 7: the header states 7 samples, the file has 9"),
     "token": (NEW.replace("-.2000000E-04", "-.2oo0000E-04"), None, r"line 6: not a number: '-.2oo0000E-04'"),
-    "nan": (NEW.replace(".5000000E+00", "NaN"), None, r"line 6: not a finite number: 'NaN'"),
+    "nan": (NEW.replace(".5000000E+00", "NaN"), None, r"line 6: not a finite number: 'NaN'\. Replace it by"),
     "count": (NEW.replace("NPTS=      7", "NPTS=    7.5"), None, r"line 4: NPTS must be a whole number, got '7.5'"),
     "none": (
         NEW.replace("NPTS=      7", "NPTS=      1"),
@@ -196,8 +254,17 @@ BROKEN = {
     "one": ("0.0 1.0\n", "g", r"line 1: the file is too short: one sample"),
     "csv": ("time,x\n0,1\n1,2,3\n", "g", r"line 3: 3 columns, the first line names 2"),
     "csv units": ("time,x [g],y [m/s2]\n0,1,1\n1,2,2\n", None, r"line 1: columns of different units"),
-    "csv unit": ("time,x [stone]\n0,1\n1,2\n", None, r"line 1: unknown unit among 'stone'"),
+    "csv unit": (
+        "time,x [stone]\n0,1\n1,2\n",
+        None,
+        r"line 1: unknown unit 'stone'\. Give accelerations in .g., .m/s²",
+    ),
     "csv time": ("x [g],y [g]\n0,1\n1,2\n", None, r"line 1: no column of times: state step"),
+    "csv milli": (
+        "time,x [mg],y [g]\n0,1,1\n1,2,1\n",
+        None,
+        r"line 1: unknown unit 'mg'\. Give accelerations in .g., ",
+    ),
     "huge": (
         TABLE.replace("0.5", "1e300"),
         "g",
@@ -212,6 +279,10 @@ BROKEN = {
 }
 
 
+# A sentence of its own, which begins with a verb, or "state" what is missing.
+REMEDY = re.compile(r"\. [A-Z][a-z]+ |[:?] state ")
+
+
 @pytest.mark.parametrize(("content", "units", "message"), BROKEN.values(), ids=BROKEN)
 def test_a_broken_file_gets_one_clear_line(tmp_path, content, units, message):
     path = written(tmp_path, "broken.txt", content)
@@ -219,6 +290,7 @@ def test_a_broken_file_gets_one_clear_line(tmp_path, content, units, message):
         sb.read_record(path, units)
     assert str(raised.value).startswith(str(path))
     assert "\n" not in str(raised.value)
+    assert REMEDY.search(str(raised.value).removeprefix(str(path)))
 
 
 def test_files_that_cannot_be_opened_are_named(tmp_path):
@@ -231,7 +303,7 @@ def test_files_that_cannot_be_opened_are_named(tmp_path):
     with pytest.raises(FileError, match=r"none\.txt: cannot be read: No such file"):
         sb.read_record(tmp_path / "none.txt", "g")
     cut = written(tmp_path, "cut.gz", gzip.compress(NEW.encode())[:60])
-    with pytest.raises(FileError, match=r"cut\.gz: cannot be read"):
+    with pytest.raises(FileError, match=r"cut\.gz: cannot be read: .*\. Download the file again$"):
         sb.read_record(cut)
 
 
@@ -242,7 +314,10 @@ def test_bytes_that_are_called_at2_are_told_to_be_none(tmp_path, name, asked):
     path = written(tmp_path, name, gzip.compress(noise) if name.endswith("gz") else noise)
     with pytest.raises(FileError) as raised:
         sb.read_record(path, "g", format=asked)
-    assert str(raised.value) == f"{path}: no AT2 file: it is no text, and has no header with NPTS and DT"
+    assert (
+        str(raised.value)
+        == f"{path}: no AT2 file: it is no text, and has no header with NPTS and DT. Download it again"
+    )
 
 
 # Messages are read on the command line and on the page too, where nothing is written name=value.
@@ -309,8 +384,25 @@ def test_miniseed_and_sac_are_read_through_obspy(tmp_path):
         assert "azimuth 90° along x" in record.provenance
     with pytest.raises(FileError, match="names no unit"):
         sb.read_record(tmp_path / "a.mseed")
-    with pytest.raises(FileError, match="ObsPy cannot read it"):
-        sb.read_record(written(tmp_path, "b.bin", bytes(range(64))), "g")
+
+
+@pytest.mark.filterwarnings("ignore")  # ObsPy's own
+@pytest.mark.parametrize(
+    ("name", "content"),
+    [
+        ("noise.bin", bytes(range(64))),
+        ("first.bin", bytes(range(256)) * 10),
+        ("quality.mseed", b"000001D \x00\x01\x02"),
+        ("random.bin", np.random.default_rng(5).bytes(3000)),
+    ],
+)
+def test_a_file_that_obspy_refuses_is_refused_in_our_own_words(tmp_path, name, content):
+    path = written(tmp_path, name, content)
+    with pytest.raises(FileError) as raised:
+        sb.read_record(path, "g")
+    problem = "ObsPy cannot read it: its format is unknown or its content damaged"
+    remedy = "Download the file again, or export the record as text or miniSEED"
+    assert str(raised.value) == f"{path}: {problem}. {remedy}"
 
 
 KNET = """Origin Time       1996/08/11 03:12:00

@@ -17,7 +17,7 @@ from dataclasses import dataclass
 
 from stylobate.base_motions.records.component import Component, Direction
 from stylobate.base_motions.records.lines import Text
-from stylobate.base_motions.records.units import unit_of
+from stylobate.base_motions.records.units import unit_of, unknown_unit
 
 _KEY = re.compile(r"(?P<key>[A-Z][A-Z0-9_/^.%]*)\s*:\s*(?P<value>.*?)\s*")
 _NEEDED = ("SAMPLING_INTERVAL_S", "NDATA")
@@ -77,7 +77,10 @@ def read_asc(text: Text) -> Component:
         raise text.fault(header.places["DATA_TYPE"], what)
     step = text.number(header.places["SAMPLING_INTERVAL_S"], header.get("SAMPLING_INTERVAL_S"))
     if step <= 0.0:
-        raise text.fault(header.places["SAMPLING_INTERVAL_S"], f"SAMPLING_INTERVAL_S must be positive, got {step!r}")
+        raise text.fault(
+            header.places["SAMPLING_INTERVAL_S"],
+            f"SAMPLING_INTERVAL_S must be positive, got {step!r}. Correct the header",
+        )
     count = text.count(header.places["NDATA"], "NDATA", header.get("NDATA"))
     return Component(
         samples=text.series(header.last, count),
@@ -101,7 +104,7 @@ def _unit(header: _Header) -> str | None:
     stated = header.get("UNITS")
     unit = unit_of(stated)
     if stated and unit is None:
-        raise header.text.fault(header.places["UNITS"], f"unknown unit {stated!r}")
+        raise header.text.fault(header.places["UNITS"], unknown_unit(stated))
     return unit
 
 

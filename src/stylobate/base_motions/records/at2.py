@@ -8,11 +8,13 @@ import re
 
 from stylobate.base_motions.records.component import Component, Direction
 from stylobate.base_motions.records.lines import Text, is_number
-from stylobate.base_motions.records.units import unit_of
+from stylobate.base_motions.records.units import SECOND, time_unit_of, unit_of, unknown_unit
 
 _NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[EeDd][-+]?\d+)?"
-_NEW = re.compile(rf"NPTS\s*=\s*(?P<count>\S+?)\s*,\s*DT\s*=\s*(?P<step>{_NUMBER})?", re.IGNORECASE)
-_OLD = re.compile(rf"\s*(?P<count>\d+)\s+(?P<step>{_NUMBER})?\s*NPTS\s*,\s*DT", re.IGNORECASE)
+_NEW = re.compile(
+    rf"NPTS\s*=\s*(?P<count>\S+?)\s*,\s*DT\s*=\s*(?P<step>{_NUMBER})?\s*(?P<clock>[^\W\d_]*)", re.IGNORECASE
+)
+_OLD = re.compile(rf"\s*(?P<count>\d+)\s+(?P<step>{_NUMBER})?\s*(?P<clock>)NPTS\s*,\s*DT", re.IGNORECASE)
 _UNITS = re.compile(r"UNITS?\s+OF\s+(?P<unit>[^\s,.;]+)", re.IGNORECASE)
 _OTHERS = re.compile(r"^\s*(VELOCITY|DISPLACEMENT)\b", re.IGNORECASE)
 # The line with the count is the fourth; an additional blank or comment line is tolerated.
@@ -46,12 +48,13 @@ def read_at2(text: Text, step: float | None = None) -> Component:
     found = _NEW.search(text.lines[at]) or _OLD.match(text.lines[at])
     assert found is not None
     if found["step"] is None:
-        raise text.fault(at, "the time step DT is missing")
+        raise text.fault(at, "the time step DT is missing. State it in the header, in s")
     count = text.count(at, "NPTS", found["count"])
-    step = text.number(at, found["step"].upper().replace("D", "E"))
+    clock = time_unit_of(found["clock"])
+    step = (clock or SECOND).in_seconds(text.number(at, found["step"].upper().replace("D", "E")))
     if step <= 0.0:
-        raise text.fault(at, f"the time step DT must be positive, got {step!r}")
-    return _component(text, at, count, step)
+        raise text.fault(at, f"the time step DT must be positive, got {step!r}. Correct the header")
+    return _component(text, at, count, step, states_time_unit=clock is not None)
 
 
 def is_wrapped(text: Text) -> bool:
@@ -66,10 +69,10 @@ def _without_count(text: Text, step: float | None) -> Component:
         state = "incomplete header" if header else "no header"
         remedy = "Restore it, or state step, in s, and units"
         raise text.fault(0, f"{state} of an AT2 file: the line with NPTS and DT is missing. {remedy}")
-    return _component(text, header - 1, None, step)
+    return _component(text, header - 1, None, step, states_time_unit=False)
 
 
-def _component(text: Text, last: int, count: int | None, step: float) -> Component:
+def _component(text: Text, last: int, count: int | None, step: float, *, states_time_unit: bool) -> Component:
     """Read the component below the header, whose last line has the index `last`."""
     return Component(
         samples=text.series(last, count),
@@ -77,6 +80,7 @@ def _component(text: Text, last: int, count: int | None, step: float) -> Compone
         unit=_unit(text, last + 1),
         direction=_direction(text.lines[: last + 1]),
         title=text.lines[1].strip() if last > 0 else "",
+        states_time_unit=states_time_unit,
     )
 
 
@@ -101,7 +105,7 @@ def _unit(text: Text, header: int) -> str | None:
         if found := _UNITS.search(line):
             unit = unit_of(found["unit"])
             if unit is None:
-                raise text.fault(index, f"unknown unit {found['unit']!r}")
+                raise text.fault(index, unknown_unit(found["unit"]))
             return unit
     return None
 

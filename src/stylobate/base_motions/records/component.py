@@ -123,6 +123,7 @@ class Component:
     """Accelerations of one component from a file, in the unit of the file.
 
     `samples` has the shape (n,), or (n, 3) if a file holds x, y and z; `unit` is None if the file does not state it.
+    `states_time_unit` is whether the file or its format states the unit of time; otherwise it is assumed to be s.
     """
 
     samples: npt.NDArray[np.float64]
@@ -131,3 +132,4 @@ class Component:
     start: float = 0.0
     direction: Direction | None = None
     title: str = ""
+    states_time_unit: bool = True

@@ -48,11 +48,12 @@ def read_bytes(path: Path) -> bytes:
     except (OSError, EOFError, zlib.error) as error:
         reason = getattr(error, "strerror", None) or str(error)
         several = path.is_dir() or "*" in path.name
-        remedy = ". Read folders and patterns with read_records" if several else ""
+        damaged = isinstance(error, (EOFError, zlib.error, gzip.BadGzipFile))
+        remedy = ". Read folders and patterns with read_records" if several else ". Download the file again" * damaged
         message = f"{path}: cannot be read: {reason}{remedy}"
         raise FileError(message) from error
     if not content.strip():
-        message = f"{path}: the file is empty"
+        message = f"{path}: the file is empty. Download or export it again"
         raise FileError(message)
     for begin, what in _PACKED.items():
         if content.startswith(begin):
@@ -105,18 +106,21 @@ class Text:
         try:
             value = float(token)
         except ValueError:
-            remedy = ". Write decimal points" if _DECIMAL_COMMA.fullmatch(token) else ""
-            raise self.fault(index, f"not a number: {token!r}{remedy}") from None
+            remedy = "Write decimal points" if _DECIMAL_COMMA.fullmatch(token) else "Correct or remove it"
+            raise self.fault(index, f"not a number: {token!r}. {remedy}") from None
         if not math.isfinite(value):
-            raise self.fault(index, f"not a finite number: {token!r}")
+            raise self.fault(
+                index,
+                f"not a finite number: {token!r}. Replace it by a number, or trim the file to the samples without gaps",
+            )
         return value
 
     def count(self, index: int, name: str, token: str) -> int:
         """Parse a token of the line at `index` as a number of samples, at least two."""
         if not _WHOLE.fullmatch(token):
-            raise self.fault(index, f"{name} must be a whole number, got {token!r}")
+            raise self.fault(index, f"{name} must be a whole number, got {token!r}. Correct the header")
         if int(token) < 2:  # noqa: PLR2004  a step has two ends
-            raise self.fault(index, f"{name} must be at least 2 samples, got {token}")
+            raise self.fault(index, f"{name} must be at least 2 samples, got {token}. Correct the header")
         return int(token)
 
     def rows(self, tokens: Sequence[tuple[int, list[str]]]) -> Floats:
@@ -145,5 +149,6 @@ class Text:
         values = self.rows([(at, [token]) for at, row in tokens for token in row]) if found else np.empty((0, 1))
         if count is not None and found != count:
             last = tokens[-1][0] if tokens else after
-            raise self.fault(last, f"the header states {count} samples, the file has {found}")
+            remedy = "Download the file again, or correct the count in the header"
+            raise self.fault(last, f"the header states {count} samples, the file has {found}. {remedy}")
         return values[:, 0]

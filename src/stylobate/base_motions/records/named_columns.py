@@ -2,7 +2,7 @@
 
 import csv
 import re
-from collections.abc import Mapping
+from collections.abc import Hashable, Mapping, Sequence
 
 import numpy as np
 
@@ -13,10 +13,13 @@ from stylobate.base_motions.records.lines import Floats, Text, is_number
 from stylobate.base_motions.records.naming import split_name
 from stylobate.base_motions.records.record import AXES
 from stylobate.base_motions.records.tables import equal_steps
-from stylobate.base_motions.records.units import unit_of
+from stylobate.base_motions.records.units import SECOND, TimeUnit, time_unit_of, unit_of, unknown_unit
 
 _NAME = re.compile(r"\s*(?P<name>[^\[(]*?)\s*(?:[\[(](?P<unit>[^\])]*)[\])])?\s*")
 _ACCELERATION = ("acceleration", "accel", "acc", "a")
+# Single letters that are a velocity, a length, a time or a radius unless they fit the directions of other columns.
+_UNSURE = ("v", "l", "t", "r")
+_AXIS_NAMES = {name for axis in AXES for name in (axis, f"a{axis}")}
 _SAME = {name: name for name in ("time", *AXES)}
 
 
@@ -43,7 +46,7 @@ def read_csv(text: Text, columns: Mapping[str, str] | None, step: float | None) 
     Raises
     ------
     FileError
-        If a column is missing, units differ, or a number is wrong.
+        If a column is missing, units differ or are unknown, or a number is wrong.
     """
     first = next(at for at, line in enumerate(text.lines) if line.strip() and not line.lstrip().startswith("#"))
     between = ";" if text.lines[first].count(";") > text.lines[first].count(",") else ","
@@ -55,20 +58,29 @@ def read_csv(text: Text, columns: Mapping[str, str] | None, step: float | None) 
     chosen = _chosen(text, first, names, columns)
     for at, row in body:
         if len(row) != len(names):
-            raise text.fault(at, f"{len(row)} columns, the first line names {len(names)}")
+            raise text.fault(at, f"{len(row)} columns, the first line names {len(names)}. Correct the line")
     values = text.rows([(at, [row[place] for place in chosen.values()]) for at, row in body])
     if not body:
-        raise text.fault(first, "the file has no numbers")
+        raise text.fault(first, "the file has no numbers. Export it again")
     by_name = dict(zip(chosen, values.T, strict=True))
     places = [at for at, _ in body]
     start = 0.0
+    clock = _time_unit(text, first, units[chosen["time"]]) if "time" in chosen else None
     if "time" in by_name:
-        start, step = equal_steps(text, by_name["time"], places, step)
+        start, step = equal_steps(text, by_name["time"], places, step, clock or SECOND)
     elif step is None:
         raise text.fault(first, "no column of times: state step, the time step in s")
     unit = _unit(text, first, {names[place]: units[place] for axis, place in chosen.items() if axis != "time"})
     samples, direction, title = _components(text, {name: by_name[name] for name in by_name if name != "time"})
-    return Component(samples=samples, step=step, start=start, unit=unit, direction=direction, title=title)
+    return Component(
+        samples=samples,
+        step=step,
+        start=start,
+        unit=unit,
+        direction=direction,
+        title=title,
+        states_time_unit=clock is not None,
+    )
 
 
 def _components(text: Text, columns: Mapping[str, Floats]) -> tuple[Floats, Direction | None, str]:
@@ -96,23 +108,55 @@ def _chosen(text: Text, line: int, names: list[str], columns: Mapping[str, str] 
         for axis, name in columns.items():
             if axis not in _SAME or name not in names:
                 raise text.fault(line, f"no column {name!r} for {axis!r}: the columns are {', '.join(names)}")
+        _require_distinct(text, line, [(name, name) for name in names if name in columns.values()])
         return {axis: names.index(name) for axis, name in columns.items()}
     times = [lower.index(name) for name in TIMES if name in lower]
     chosen = {"time": times[0]} if times else {}
     others = [place for place in range(len(names)) if place not in times[:1]]
-    axes = {axis: lower.index(name) for axis in AXES for name in (axis, f"a{axis}") if name in lower}
-    directed = _directed(names, others)
     accelerations = [place for place in others if lower[place] in _ACCELERATION]
-    spelt_out = any(len(names[place]) > 1 for place in (*axes.values(), *directed.values()))
-    if not accelerations and (axes.keys() - {"z"} or (axes and len(directed) < 2)):  # noqa: PLR2004  others beside z
-        return chosen | axes
-    if not accelerations and directed:
-        return chosen | directed
+    components = {} if accelerations else _components_among(text, line, names, others)
     likely = accelerations or others
-    if len(likely) != 1 or spelt_out:
+    if not components and (len(likely) != 1 or any(_spells_direction(names[place]) for place in others)):
         listed = ", ".join(names)
         raise text.fault(line, f"which of {listed} is the acceleration? state columns, or name it x or acceleration")
-    return chosen | {"x": likely[0]}
+    return chosen | (components or {"x": likely[0]})
+
+
+def _components_among(text: Text, line: int, names: list[str], places: list[int]) -> dict[str, int]:
+    """Return the columns at `places` whose names state an axis, else a direction; none if both kinds are mixed."""
+    on_axes = {place: names[place].lower()[-1] for place in places if names[place].lower() in _AXIS_NAMES}
+    axes = {axis: place for place, axis in on_axes.items()}
+    directed = _directed(names, places)
+    if axes.keys() - {"z"} or (axes and len(directed) < 2):  # noqa: PLR2004  others beside z
+        _require_distinct(text, line, [(names[place], axis) for place, axis in on_axes.items()])
+        # velocities and displacements such as vel_NS may stand beside axes
+        mixed = any(len(names[at]) > 1 and Direction.parse(names[at]) for at in places if at not in on_axes)
+        return {} if mixed else axes
+    _require_distinct(text, line, [(names[place], _line_of(names[place])) for place in places])
+    return directed
+
+
+def _spells_direction(name: str) -> bool:
+    """Return whether a name of more than one letter is an axis or a direction."""
+    return len(name) > 1 and (name.lower() in _AXIS_NAMES or _direction(name) is not None)
+
+
+def _line_of(name: str) -> Hashable:
+    """Return the line along which a column acts, whatever its sign; None if its name does not state one."""
+    if name.lower() in _UNSURE:
+        return name
+    if (way := _direction(name)) is None:
+        return None
+    return way.vertical != 0, None if way.azimuth is None else way.azimuth % 180.0, way.axis
+
+
+def _require_distinct(text: Text, line: int, components: Sequence[tuple[str, Hashable]]) -> None:
+    """Raise FileError if two columns, each with its name, state one component."""
+    for at, (_, component) in enumerate(components):
+        same = [other for other, its in components[at:] if its == component]
+        if component is not None and len(same) > 1:
+            remedy = "Rename or remove one" if len(set(same)) == 1 else "State columns, or rename or remove one"
+            raise text.fault(line, f"columns for one component: {', '.join(map(repr, same))}. {remedy}")
 
 
 def _directed(names: list[str], places: list[int]) -> dict[str, int]:
@@ -121,15 +165,32 @@ def _directed(names: list[str], places: list[int]) -> dict[str, int]:
     A single letter such as V counts only if it fits the other directions or names the only column.
     """
     found = {names[place]: place for place in places if _direction(names[place])}
-    if len(places) == 1 or (len(found) > 1 and is_one_set([one for one in map(_direction, found) if one])):
+    sure = {name: place for name, place in found.items() if name.lower() not in _UNSURE}
+    if len(places) == 1:
         return found
+    for some in (found, sure):
+        if len(some) > 1 and is_one_set([one for one in map(_direction, some) if one]):
+            return some
     return {name: place for name, place in found.items() if len(name) > 1}
 
 
+def _time_unit(text: Text, line: int, unit: str | None) -> TimeUnit | None:
+    """Return the unit of the column of times, or None if the file does not state it."""
+    if unit is None:
+        return None
+    if (known := time_unit_of(unit)) is None:
+        raise text.fault(
+            line, f"unknown unit of time {unit!r}. Convert the times to s, ms, µs or min, and state that unit"
+        )
+    return known
+
+
 def _unit(text: Text, line: int, units: Mapping[str, str | None]) -> str | None:
-    known = {unit_of(unit) for unit in units.values() if unit is not None}
-    if None in known:
-        raise text.fault(line, f"unknown unit among {', '.join(map(repr, units.values()))}")
-    if len(known) > 1:
-        raise text.fault(line, f"columns of different units: {', '.join(map(repr, units.values()))}")
-    return next(iter(known), None)
+    known = {unit: unit_of(unit) for unit in units.values() if unit is not None}
+    for unit, its in known.items():
+        if its is None:
+            raise text.fault(line, unknown_unit(unit))
+    if len(set(known.values())) > 1:
+        listed = ", ".join(map(repr, units.values()))
+        raise text.fault(line, f"columns of different units: {listed}. Convert them to one unit")
+    return next(iter(known.values()), None)

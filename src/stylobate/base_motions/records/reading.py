@@ -27,6 +27,8 @@ from stylobate.errors import FileError, ParameterError, UnlikelyInputWarning, re
 
 # Horizontal and vertical peaks of earthquakes are below, except a few close to the fault [g].
 _LARGEST_PEAK = 3.0
+# Longest step and duration of an accelerogram that are likely [s].
+_LONGEST_STEP, _LONGEST_DURATION = 0.5, 7200.0
 # Range of steps of readable records [s], and a bound on accelerations in any unit.
 _STEPS = (1e-9, 1e6)
 _BEYOND_ALL = 1e30
@@ -83,7 +85,8 @@ def read_record(
     Warns
     -----
     UnlikelyInputWarning
-        If the peak exceeds 3 g, for example because a file in cm/s² is read in g.
+        If the peak exceeds 3 g, for example because a file in cm/s² is read in g. If a file that states no unit of time
+        has steps of more than 0.5 s or lasts more than 2 h, for example because its times are in ms.
     """
     path = require_path("path", path)
     step = None if step is None else require_positive("step", step, "s")
@@ -116,14 +119,15 @@ def read_component(
     """Read the component of a file in the units of the file."""
     content = read_bytes(path)
     if is_binary(content) and format in (None, RecordFormat.AT2) and _is_called_at2(path):
-        message = f"{path}: no AT2 file: it is no text, and has no header with NPTS and DT"
+        message = f"{path}: no AT2 file: it is no text, and has no header with NPTS and DT. Download it again"
         raise FileError(message)
     if format is RecordFormat.WAVEFORM or (
         format is None and (is_binary(content) or content.startswith(b"Origin Time"))
     ):
         return read_waveform(path, content)
     if is_binary(content):
-        message = f"{path}: a binary file, not {format.value if format else 'text'}"
+        remedy = "Leave format out, or export the record as text"
+        message = f"{path}: a binary file, not {format.value if format else 'text'}. {remedy}"
         raise FileError(message)
     return _read_text(Text.of(path, content), step, columns, format)
 
@@ -135,7 +139,7 @@ def _read_text(
     format: RecordFormat | None,  # noqa: A002
 ) -> Component:
     if all(not line.strip() or line.lstrip().startswith(REMARKS[0]) for line in text.lines):
-        raise text.fault(len(text.lines) - 1, "the file has no numbers")
+        raise text.fault(len(text.lines) - 1, "the file has no numbers. Export it again")
     without_header = _is_called_at2(text.path) and is_wrapped(text)
     if format is RecordFormat.AT2 or (format is None and (is_at2(text) or without_header)):
         return read_at2(text, step)
@@ -160,6 +164,7 @@ def as_record(component: Component, path: Path, units: str | None, axis: str | N
         f"read from {path.name}, {unit_text}" + (f": {component.title}" if component.title else ""),
     )
     _remark_on_the_peak(factor * component.samples, path, unit_text)
+    _remark_on_the_times(component, path)
     direction = component.direction
     if component.samples.ndim > 1:
         samples = factor * component.samples
@@ -199,6 +204,17 @@ def _remark_on_the_peak(samples: Floats, path: Path, unit_text: str) -> None:
             f"{_LARGEST_PEAK:g} g: if the file is in another unit, such as cm/s², name that (units)"
         )
         warnings.warn(message, UnlikelyInputWarning, stacklevel=2)
+
+
+def _remark_on_the_times(component: Component, path: Path) -> None:
+    duration = component.step * (len(component.samples) - 1)
+    if component.states_time_unit or (component.step <= _LONGEST_STEP and duration <= _LONGEST_DURATION):
+        return
+    message = (
+        f"{path}: check the unit of time: the step read in s is {component.step:g} s, the duration {duration:.5g} s. "
+        "State the unit beside the name of the times, such as time [ms] or time [s], or give times and step in s"
+    )
+    warnings.warn(message, UnlikelyInputWarning, stacklevel=2)
 
 
 def name_of(path: Path) -> str:

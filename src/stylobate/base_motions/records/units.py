@@ -1,4 +1,6 @@
-"""Units of acceleration and their spellings."""
+"""Units of acceleration and of time, and their spellings."""
+
+from typing import NamedTuple
 
 from stylobate.column import STANDARD_GRAVITY
 from stylobate.errors import ParameterError
@@ -22,6 +24,28 @@ _SPELLINGS = {
 }
 
 
+class TimeUnit(NamedTuple):
+    """Unit of the times in a file: its symbol, and its length [s]."""
+
+    symbol: str
+    seconds: float
+
+    def in_seconds(self, time: float) -> float:
+        """Convert a time in this unit to s, without the last digits of the product: 35 ms are 0.035 s."""
+        return time if self.seconds == 1.0 else float(f"{time * self.seconds:.14g}")
+
+
+SECOND = TimeUnit("s", 1.0)
+_TIME_SPELLINGS = {
+    SECOND: "s sec secs second seconds sek sekunde sekunden seconde secondes secondi seg segundo segundos",
+    TimeUnit("ms", 1e-3): "ms msec msecs millisecond milliseconds",
+    TimeUnit("µs", 1e-6): "µs us µsec usec microsecond microseconds",
+    TimeUnit("min", 60.0): "min mins minute minutes",
+}
+_TIME_UNITS = {spelling: unit for unit, spellings in _TIME_SPELLINGS.items() for spelling in spellings.split()}
+_GREEK_MU, _MICRO_SIGN = "μ", "µ"
+
+
 def unit_of(text: str) -> str | None:
     """Parse a unit to "g", "m/s²", "cm/s²" or "mm/s²", or None.
 
@@ -30,6 +54,20 @@ def unit_of(text: str) -> str | None:
     """
     plain = text.strip().lower().replace(" ", "").replace("sec", "s").replace("²", "2").replace("⁻", "-")
     return _SPELLINGS.get(plain.replace("**", "").replace("^", ""))
+
+
+def time_unit_of(text: str) -> TimeUnit | None:
+    """Parse a unit of time: s, ms, µs or min; None for other units.
+
+    >>> time_unit_of("Sec."), time_unit_of("ms"), time_unit_of("samples")
+    (TimeUnit(symbol='s', seconds=1.0), TimeUnit(symbol='ms', seconds=0.001), None)
+    """
+    return _TIME_UNITS.get(text.strip().lower().replace(_GREEK_MU, _MICRO_SIGN).rstrip("."))
+
+
+def unknown_unit(text: str) -> str:
+    """Describe, for a message, a unit in a file that `unit_of` does not know."""
+    return f"unknown unit {text!r}. Give accelerations in {KNOWN}, and state that unit"
 
 
 def require_unit(text: str) -> str:
