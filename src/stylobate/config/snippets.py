@@ -41,7 +41,7 @@ def as_python(description: SimulationConfig) -> str:
     import stylobate as sb
     <BLANKLINE>
     column = sb.Column.dimensionless(slenderness=0.1)
-    model = sb.Slender(column)
+    model = sb.Wobbling(column)
     run = sb.simulate(model, tilt=(0.05, 0.0), duration=20.0)
     print(run.outcome.name, "-", run.reason)
     sb.plot(run).savefig("run.png")

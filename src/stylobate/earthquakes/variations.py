@@ -11,7 +11,7 @@ import numpy as np
 from stylobate.base_motions import BASE_AT_REST
 from stylobate.earthquakes.property_spreads import Choice, LognormalSpread, LogUniformSpread, NormalSpread, Spread
 from stylobate.engine.parameters import COLUMN_NAMES, model_names, present_value
-from stylobate.errors import MOST_RUNS, ParameterError, require_whole
+from stylobate.errors import ParameterError
 from stylobate.models import Model
 from stylobate.models.declared import dissipation_of
 from stylobate.studies.sweeps.quantities import Floats
@@ -126,21 +126,6 @@ def check_variations(models: tuple[Model, ...], variations: Mapping[str, Spread]
             names = ", ".join((*VARIATIONS, *(one for one in model_names(models[0]) if one not in VARIATIONS)))
             message = f"variations: {name} is not known here (got {models[0]!r}). Use names such as {names}."
             raise ParameterError(message)
-
-
-def require_variations(count: int) -> int:
-    """Return the number of variations of each verdict of an assessment: 0 for none, else 2 or more.
-
-    Raises
-    ------
-    ParameterError
-        If `count` is another number.
-    """
-    checked = require_whole("variations", count, least=0, most=MOST_RUNS)
-    if checked == 1:
-        message = "variations: must be 0 or at least 2 (got 1). Pass a few hundred, or 0 for none."
-        raise ParameterError(message)
-    return checked
 
 
 def drawn(name: str, spread: Spread, model: Model, *, runs: int, seed: int) -> Floats:

@@ -8,7 +8,7 @@ from enum import Enum
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
-from stylobate.errors import FileError
+from stylobate.errors import MOST_RUNS, FileError, ParameterError, require_whole
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -144,3 +144,18 @@ def percent(share: float) -> str:
         return "–"
     few = 0.0 < min(share, 1.0 - share) < _FEW
     return f"{100.0 * share:.1f} %" if few else f"{100.0 * share:.0f} %"
+
+
+def require_variations(count: int) -> int:
+    """Return the number of variations of each verdict of an assessment: 0 for none, else 2 or more.
+
+    Raises
+    ------
+    ParameterError
+        If `count` is another number.
+    """
+    checked = require_whole("variations", count, least=0, most=MOST_RUNS)
+    if checked == 1:
+        message = "variations: must be 0 or at least 2 (got 1). Pass a few hundred, or 0 for none."
+        raise ParameterError(message)
+    return checked

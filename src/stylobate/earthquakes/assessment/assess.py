@@ -29,12 +29,12 @@ from stylobate.earthquakes.assessment.summary import summary_of
 from stylobate.earthquakes.assessment.verdicts import verdict_runs, verdicts_on
 from stylobate.earthquakes.named_records import Records
 from stylobate.earthquakes.remarks import remark_on
-from stylobate.earthquakes.variations import require_variations
 from stylobate.errors import LARGEST_SEED, require_positive, require_whole
 from stylobate.models import Model
 from stylobate.results.assessment import Assessment
 from stylobate.results.few_records import FEW_RECORDS
 from stylobate.results.report_details import ReportDetails
+from stylobate.results.verdict import require_variations
 from stylobate.studies.checks import require_no_tilt_limit
 from stylobate.studies.sweeps import Executor
 from stylobate.studies.sweeps.computing import silent

@@ -21,7 +21,6 @@ from stylobate.config.models import DEFAULT_MODEL, ModelConfig, described_model
 from stylobate.config.record_collection import RecordsConfig
 from stylobate.config.suggestions import did_you_mean
 from stylobate.earthquakes.config.design_spectrum import DesignSpectrumConfig
-from stylobate.earthquakes.variations import require_variations
 from stylobate.errors import (
     LARGEST_SEED,
     MOST_STEPS,
@@ -37,6 +36,7 @@ from stylobate.models import Model
 from stylobate.models.declared import model_quantities
 from stylobate.results.few_records import FEW_RECORDS
 from stylobate.results.report_details import ReportDetails
+from stylobate.results.verdict import require_variations
 
 _MARGIN = {"from": 0.2, "to": 5.0, "number": 300, "spacing": "log"}
 
