@@ -11,7 +11,7 @@ import stylobate as sb
 
 FOLDER = STATIC / "shaking"
 
-MODEL = sb.Slender(
+MODEL = sb.Wobbling(
     sb.Column.solid(radius=0.4, height=4.0, density=2700.0), damping=0.03
 )
 QUAKES = sb.records.EvolvingNoise(

@@ -31,7 +31,7 @@ def one() -> xr.Dataset:
     column = sb.Column.solid(radius=0.3, height=3.0, density=2700.0)
     quake = sb.sample_record("el centro 1940")
     return sb.earthquakes.overturning_bands(
-        sb.Slender(column, damping=0.03), quake, scales=np.geomspace(0.5, 2.0, 61)
+        sb.Wobbling(column, damping=0.03), quake, scales=np.geomspace(0.5, 2.0, 61)
     )
 
 
@@ -39,7 +39,7 @@ def record() -> xr.Dataset:
     """Overturn by El Centro 1940, three components: size and scale, for three slendernesses."""
     quake = sb.sample_record("el centro 1940")
     over = {"size": np.geomspace(0.2, 4.0, 27), "slenderness": [0.1, 0.15, 0.2]}
-    model = sb.Slender(STONE, damping=0.05)
+    model = sb.Wobbling(STONE, damping=0.05)
     scales = np.geomspace(0.25, 4.0, 41)
     return sb.earthquakes.overturning_bands(
         model, quake, scales=scales, over=over, width=3e-3
@@ -51,7 +51,7 @@ def rocking() -> xr.Dataset:
     quake = sb.sample_record("el centro 1940")
     over = {"size": np.geomspace(0.1, 10.0, 60), "slenderness": [0.1, 0.15, 0.2, 0.25]}
     return sb.earthquakes.rocking_spectrum(
-        sb.Slender(STONE, damping=0.05), quake, over=over
+        sb.Wobbling(STONE, damping=0.05), quake, over=over
     )
 
 

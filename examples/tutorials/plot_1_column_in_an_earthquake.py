@@ -108,13 +108,14 @@ print(f"peak of the horizontal vector: {quake.peak_horizontal():.2f} m/s²")
 # ----------------------------------------
 #
 # :class:`stylobate.Wobbling` describes a column that rocks and rolls on its rim in
-# three dimensions without turning about its own axis. Assessments use it by default.
-# (If the column can also spin about its axis, use :class:`stylobate.Rolling`; step 9
-# compares the two.)
+# three dimensions without turning about its own axis. It is the model for columns under
+# earthquakes (:doc:`/getting-started/choose-a-model`). :class:`stylobate.Rolling` lets
+# the column spin about its axis; step 9 compares the two.
 #
 # `damping` is the dimensionless damping parameter η. It states how quickly a rocking
-# column loses energy. It is seldom measured, so one value is not enough: start with
-# 0.03 and try others in step 8.
+# column loses energy. It is seldom measured, so one value is not enough. This tutorial
+# uses 0.03, and step 8 varies it; :doc:`/how-to/choose-damping` has a recipe for your
+# own column.
 model = sb.Wobbling(column, damping=0.03)
 
 # %%
