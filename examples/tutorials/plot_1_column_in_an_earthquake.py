@@ -190,8 +190,8 @@ figure = sb.plot(verdict)
 
 # %%
 # The case is *undecided*: this column survived the record in the run of step 5, but
-# many variations that nobody can exclude overturn it. Report the printed line, not the
-# run.
+# many variations that measurements cannot exclude overturn it. Report the printed line,
+# not the run.
 #
 # Which variation decides? The right panel ranks them. The damping is the least certain
 # number, so it varies by a factor of 1.5 up and down; a free-decay test narrows it.

@@ -71,8 +71,8 @@ def verdict(
 ) -> Verdict:
     """Decide whether a column overturns, from many runs that differ in what is never known exactly.
 
-    A single rocking run answers a question that nobody asked: a change far below the accuracy of any record or
-    measurement can turn its outcome over. The share of such changes that overturn the column does not have this defect.
+    A change far below the accuracy of any record or measurement can alter the outcome of a single rocking run. The
+    share of such changes that overturn the column does not have this defect.
 
     Parameters
     ----------
@@ -321,43 +321,38 @@ class _Case:
 
     def labelled(self, data: xr.Dataset) -> xr.Dataset:
         """Add shares, intervals and influences to the runs."""
-        state = np.maximum(overturned_or_not(data), -1).astype(np.int8)
-        law = self.law
-        one = {"units": "1"}
-        share, low, high = _share(state, self.confidence)
-        by_model = [(_share(state[law == place], self.confidence), (law == place).sum()) for place in self._places]
+        state, law = np.maximum(overturned_or_not(data), -1).astype(np.int8), self.law
         values = {**({CONTACT_LAW: law.astype(float)} if len(self.models) > 1 else {}), **self.values}
         parts = {name: _parts_of(array) for name, array in values.items()}
         influence = np.array([_influence(state, part) for part in parts.values()])
-        part_share = np.array([_part_shares(state, part) for part in parts.values()]).reshape(-1, _PARTS)
-        about = f"{100.0 * self.confidence:g} % interval"
+        of_law = [state[law == place] for place in range(len(self.models))]
+        level = f"{100.0 * self.confidence:g} % interval"
+        names = {"": "share of overturning", "_low": f"lower end of its {level}", "_high": f"upper end of its {level}"}
+        shares = _share(state, self.confidence)
+        law_shares = np.array([_share(one, self.confidence) for one in of_law]).T
+        counted: dict[str, Any] = {}
+        for place, (end, text) in enumerate(names.items()):
+            counted[f"share{end}"] = ((), shares[place], _about(text))
+            counted[f"model_share{end}"] = ("model", law_shares[place], _about(text))
         return (
             data.assign(
+                counted,
                 law=("run", law.astype(np.int8), {"long_name": "index of the model"}),
                 overturned=("run", state, {"long_name": "1 overturned, 0 did not overturn, −1 undecided"}),
                 value=(
                     ("variation", "run"),
-                    np.array(list(values.values())).reshape(-1, self.runs),
+                    np.reshape(list(values.values()), (-1, self.runs)),
                     {"long_name": "value"},
                 ),
-                share=((), share, {**one, "long_name": "share of variations that overturn the column"}),
-                share_low=((), low, {**one, "long_name": f"lower end of the {about}"}),
-                share_high=((), high, {**one, "long_name": f"upper end of the {about}"}),
-                model_share=(
-                    "model",
-                    [one[0][0] for one in by_model],
-                    {"units": "1", "long_name": "share of overturning"},
+                model_runs=("model", [one.size for one in of_law], _about("runs")),
+                influence=("variation", influence, _about("fraction of the variance explained")),
+                part_share=(
+                    ("variation", "part"),
+                    np.reshape([_part_shares(state, part) for part in parts.values()], (-1, _PARTS)),
+                    _about(names[""]),
                 ),
-                model_share_low=("model", [one[0][1] for one in by_model], {"units": "1"}),
-                model_share_high=("model", [one[0][2] for one in by_model], {"units": "1"}),
-                model_runs=("model", [int(one[1]) for one in by_model], {"units": "1", "long_name": "runs"}),
-                influence=("variation", influence, {"units": "1", "long_name": "fraction of the variance explained"}),
-                part_share=(("variation", "part"), part_share, {"units": "1", "long_name": "share of overturning"}),
             )
-            .assign_coords(
-                model=[model.name for model in self.models],
-                variation=list(values),
-            )
+            .assign_coords(model=[model.name for model in self.models], variation=list(values))
             .assign_attrs(
                 kind=KIND,
                 confidence=self.confidence,
@@ -365,10 +360,6 @@ class _Case:
                 provenance=json.dumps(self.provenance),
             )
         )
-
-    @property
-    def _places(self) -> range:
-        return range(len(self.models))
 
     @property
     def provenance(self) -> dict[str, Any]:
@@ -393,6 +384,10 @@ class _Case:
                 },
             },
         }
+
+
+def _about(long_name: str) -> dict[str, str]:
+    return {"units": "1", "long_name": long_name}
 
 
 def _filtered(motion: BaseMotion, corner: float) -> BaseMotion:

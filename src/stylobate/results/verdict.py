@@ -33,7 +33,7 @@ def word_of(low: float, high: float) -> VerdictWord:
     """Return the word for a share of overturning whose confidence interval is `low` to `high`.
 
     The column stands if the whole interval lies below `CLEAR`, and overturns if it lies above 1 − `CLEAR`. Otherwise
-    the case is undecided: small changes that nobody can exclude alter the outcome.
+    the case is undecided: small changes that measurements cannot exclude alter the outcome.
     """
     if high <= CLEAR:
         return VerdictWord.STANDS
