@@ -335,8 +335,8 @@ class _Case:
             counted[f"share{end}"] = ((), shares[place], _about(text))
             counted[f"model_share{end}"] = ("model", law_shares[place], _about(text))
         return (
-            data.assign(
-                counted,
+            data.assign(counted)
+            .assign(
                 law=("run", law.astype(np.int8), {"long_name": "index of the model"}),
                 overturned=("run", state, {"long_name": "1 overturned, 0 did not overturn, −1 undecided"}),
                 value=(
