@@ -13,7 +13,7 @@ Halt = npt.NDArray[np.uint8]
 
 # Size of parts: small enough that every thread has one, all threads end together and progress is visible; large enough
 # to fill the lanes and to keep the overhead of Python small.
-_FEWEST, _ENOUGH, _MOST, _PARTS_PER_THREAD = 128, 512, 4096, 4
+_FEWEST, _ENOUGH, _MOST, _PARTS_PER_THREAD = 32, 512, 4096, 4
 
 
 def parts_of(count: int, threads: int) -> list[slice]:
