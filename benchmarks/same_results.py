@@ -97,7 +97,7 @@ def studies() -> Iterator[tuple[str, Callable[[], xr.Dataset]]]:
     )
     yield "section", partial(sb.studies.poincare_section, SLENDER, CIRCLE, periods=60, skip=20, **steady)
     tail = 5.0 / COLUMN.frequency_parameter
-    yield "bands", partial(sb.earthquakes.overturning_bands, WOBBLING, record, scales=scales, tail=tail)
+    yield "intervals", partial(sb.earthquakes.overturning_intervals, WOBBLING, record, scales=scales, tail=tail)
     yield (
         "incremental analysis",
         partial(

@@ -41,10 +41,13 @@ def analysis() -> Figure:
     found = sb.earthquakes.incremental_dynamic_analysis(
         MODEL, quakes(12), scales=np.linspace(1.6, 5.4, 20), component="RotD100"
     )
-    bands = sb.earthquakes.reached_bands(
+    intervals = sb.earthquakes.reached_intervals(
         found["intensity"], found["reached"].sel(limit_state="overturning")
     )
-    print(bands["monotone"].to_numpy(), np.unique(found["outcome"], return_counts=True))
+    print(
+        intervals["monotone"].to_numpy(),
+        np.unique(found["outcome"], return_counts=True),
+    )
     return sb.plot(found)
 
 

@@ -21,7 +21,7 @@ def pulse() -> xr.Dataset:
         "angular_frequency": np.linspace(0.5, 9.0, 86) * column.frequency_parameter,
         "damping": [0.02, 0.1, 0.2],
     }
-    return sb.earthquakes.overturning_bands(
+    return sb.earthquakes.overturning_intervals(
         sb.Slender(column), sine, scales=np.geomspace(1.0, 20.0, 41), over=over
     )
 
@@ -30,7 +30,7 @@ def one() -> xr.Dataset:
     """Overturn one column by El Centro 1940, three components, at many scales."""
     column = sb.Column.solid(radius=0.3, height=3.0, density=2700.0)
     quake = sb.sample_record("el centro 1940")
-    return sb.earthquakes.overturning_bands(
+    return sb.earthquakes.overturning_intervals(
         sb.Wobbling(column, damping=0.03), quake, scales=np.geomspace(0.5, 2.0, 61)
     )
 
@@ -41,7 +41,7 @@ def record() -> xr.Dataset:
     over = {"size": np.geomspace(0.2, 4.0, 27), "slenderness": [0.1, 0.15, 0.2]}
     model = sb.Wobbling(STONE, damping=0.05)
     scales = np.geomspace(0.25, 4.0, 41)
-    return sb.earthquakes.overturning_bands(
+    return sb.earthquakes.overturning_intervals(
         model, quake, scales=scales, over=over, width=3e-3
     )
 

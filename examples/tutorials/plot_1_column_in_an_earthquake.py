@@ -160,11 +160,15 @@ figure = sb.plot(run)
 #
 # At which scale of the record does the column overturn? Do not stop at the first such
 # scale: a column that overturns at one scale may survive a larger one.
-# :func:`stylobate.earthquakes.overturning_bands` finds all *overturning intervals*
+# :func:`stylobate.earthquakes.overturning_intervals` finds all *overturning intervals*
 # between the scales that you give, and refines their ends by bisection.
 scales = np.linspace(0.5, 2.0, 31)
-intervals = sb.earthquakes.overturning_bands(model, quake, scales=scales, width=0.005)
-ends = zip(intervals["band_from"].values, intervals["band_to"].values, strict=True)
+intervals = sb.earthquakes.overturning_intervals(
+    model, quake, scales=scales, width=0.005
+)
+ends = zip(
+    intervals["interval_from"].values, intervals["interval_to"].values, strict=True
+)
 for low, high in ends:
     reach = f"from {low:.3f} to {high:.3f}" if high - low > 0.001 else f"near {low:.3f}"
     print(f"overturns {reach} times the record")
@@ -213,11 +217,11 @@ for law, share in verdict.share_by_model.items():
 # A large column needs longer pulses to overturn than a small one of the same shape.
 # `size` multiplies all lengths at constant density.
 sizes = np.geomspace(1.0, 4.0, 9)
-larger = sb.earthquakes.overturning_bands(
+larger = sb.earthquakes.overturning_intervals(
     model, quake, scales=scales, over={"size": sizes}, width=0.01
 )
 for place in (0, 4, 8):
-    first = larger["band_from"].isel(size=place).min().item()
+    first = larger["interval_from"].isel(size=place).min().item()
     limit = "none up to 2" if np.isnan(first) else f"{first:.2f}"
     print(f"{3.0 * sizes[place]:4.1f} m high: smallest overturning scale {limit}")
 figure = sb.plot(larger)

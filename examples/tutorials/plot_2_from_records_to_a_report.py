@@ -82,7 +82,7 @@ figure = sb.plot(runs)
 # Circles are runs that survived above a scale that overturned: the record is
 # *non-monotonic*. Count these records.
 overturned = runs["reached"].sel(limit_state="overturning")
-intervals = sb.earthquakes.reached_bands(runs["intensity"], overturned)
+intervals = sb.earthquakes.reached_intervals(runs["intensity"], overturned)
 count = int((~intervals["monotone"]).sum())
 print(f"{count} of {runs.sizes['record']} records are non-monotonic at these scales")
 

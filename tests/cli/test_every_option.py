@@ -85,7 +85,7 @@ COMPUTING = (
     *("studies.stability_boundary", "studies.overturning_map", "conveying.contact_map", "studies.basins"),
     *(
         "conveying.drift",
-        "earthquakes.overturning_bands",
+        "earthquakes.overturning_intervals",
         "earthquakes.rocking_spectrum",
         "earthquakes.FragilityStudy.runs",
     ),

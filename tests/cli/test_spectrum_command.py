@@ -13,7 +13,7 @@ from stylobate.errors import ConfigError
 
 COLUMN = ["--slenderness", "0.1", "--damping", "0.1"]
 OVER = ["--motion", "one-sine", "--x", "angular-frequency", "3", "6", "2"]
-BANDS = ["spectrum", *COLUMN, *OVER, "--scales", "0.1", "1.5", "10", "--width", "0.01"]
+INTERVALS = ["spectrum", *COLUMN, *OVER, "--scales", "0.1", "1.5", "10", "--width", "0.01"]
 MODEL = sb.Wobbling(sb.Column.dimensionless(slenderness=0.1), damping=0.1)
 SINE = sb.Pulse.one_sine(acceleration=1.0, angular_frequency=1.0)
 
@@ -21,42 +21,42 @@ SINE = sb.Pulse.one_sine(acceleration=1.0, angular_frequency=1.0)
 @pytest.fixture(scope="module")
 def found():
     scales, over = np.geomspace(0.1, 1.5, 10), {"angular_frequency": [3.0, 6.0]}
-    return sb.earthquakes.overturning_bands(MODEL, SINE, scales=scales, over=over, width=0.01)
+    return sb.earthquakes.overturning_intervals(MODEL, SINE, scales=scales, over=over, width=0.01)
 
 
 def test_it_finds_saves_and_shows_what_the_study_finds(tmp_path, capsys, saved, found):
-    path, drawn = tmp_path / "bands.nc", tmp_path / "bands.png"
-    assert run([*BANDS, "--output", str(path), "--json"]) == 0
+    path, drawn = tmp_path / "intervals.nc", tmp_path / "intervals.png"
+    assert run([*INTERVALS, "--output", str(path), "--json"]) == 0
     told = json.loads(capsys.readouterr().out)
     xr.testing.assert_equal(saved(path), found)
     assert [case["angular_frequency"] for case in told["cases"]] == [3.0, 6.0]
     for place, case in enumerate(told["cases"]):
-        assert len(case["bands"]) == int(found["bands"][place])
-        for band, row in enumerate(case["bands"]):
-            assert row["band_from"] == found["band_from"][place, band]
+        assert len(case["intervals"]) == int(found["intervals"][place])
+        for interval, row in enumerate(case["intervals"]):
+            assert row["interval_from"] == found["interval_from"][place, interval]
     assert run(["spectrum", str(path), "--figure", str(drawn)]) == 0
     table = capsys.readouterr().out
     assert "overturns at scales" in table
-    assert f"{found['band_from'][0, 0]:.4g} to {found['band_to'][0, 0]:.4g}; " in table
+    assert f"{found['interval_from'][0, 0]:.4g} to {found['interval_to'][0, 0]:.4g}; " in table
     assert "may be missed" in table
     assert drawn.read_bytes().startswith(b"\x89PNG")
 
 
 def test_a_saved_spectrum_is_repeated_with_other_numbers(tmp_path, capsys, saved, found):
-    path, other = tmp_path / "bands.nc", tmp_path / "other.nc"
+    path, other = tmp_path / "intervals.nc", tmp_path / "other.nc"
     found.to_netcdf(path, engine="h5netcdf")
     assert run(["spectrum", str(path), "--free-tail", "30", "--output", str(other)]) == 0
     again = saved(other)
     assert json.loads(again.attrs["provenance"])["tail"] == 30.0
-    np.testing.assert_array_equal(again["band_from"], found["band_from"])
+    np.testing.assert_array_equal(again["interval_from"], found["interval_from"])
     np.testing.assert_array_equal(again["scale"], found["scale"])
 
 
 def test_a_store_goes_on_with_the_same_options(tmp_path, capsys):
-    store = tmp_path / "bands.zarr"
+    store = tmp_path / "intervals.zarr"
     told = []
     for more in ([], ["--resume"]):
-        assert run([*BANDS, "--output", str(store), "--json", *more]) == 0
+        assert run([*INTERVALS, "--output", str(store), "--json", *more]) == 0
         told.append(json.loads(capsys.readouterr().out))
     assert told[0] == told[1]
     assert run(["spectrum", str(store)]) == 2
@@ -64,13 +64,13 @@ def test_a_store_goes_on_with_the_same_options(tmp_path, capsys):
 
 
 def test_an_interrupted_scan_is_told_and_can_go_on(tmp_path, capsys, interrupted):
-    store = tmp_path / "bands.zarr"
-    assert run([*BANDS, "--output", str(store)]) == 130
+    store = tmp_path / "intervals.zarr"
+    assert run([*INTERVALS, "--output", str(store)]) == 130
     told = capsys.readouterr()
     assert "20 of 20 runs are done" in told.err
     assert "--resume" in told.err
     interrupted.undo()
-    assert run([*BANDS, "--output", str(store), "--resume"]) == 0
+    assert run([*INTERVALS, "--output", str(store), "--resume"]) == 0
 
 
 def test_a_rocking_spectrum_tells_peaks(tmp_path, capsys):
@@ -97,13 +97,13 @@ def test_one_column_needs_no_quantity_that_varies(capsys):
 @pytest.mark.parametrize(
     ("arguments", "line"),
     [
-        (BANDS[:-6], "spectrum.scales are missing"),
+        (INTERVALS[:-6], "spectrum.scales are missing"),
         (
-            [*BANDS, "--rocking", "--acceleration", "1"],
+            [*INTERVALS, "--rocking", "--acceleration", "1"],
             "spectrum.scales is not supported by a rocking spectrum. Remove it.",
         ),
-        ([*BANDS, "--y", "angular-frequency", "1", "2", "2"], "spectrum.x and spectrum.y must differ"),
-        ([*BANDS, "--y", "weight", "1", "2", "2"], "spectrum.y: weight is not known here"),
+        ([*INTERVALS, "--y", "angular-frequency", "1", "2", "2"], "spectrum.x and spectrum.y must differ"),
+        ([*INTERVALS, "--y", "weight", "1", "2", "2"], "spectrum.y: weight is not known here"),
         (["spectrum", *COLUMN, *OVER, "--scales", "1", "0.1", "3"], "scales must be two or more positive numbers"),
         (["spectrum", *COLUMN, *OVER, "--scales", "0", "1", "3"], "spectrum.scales: from must be positive, got 0.0"),
         (

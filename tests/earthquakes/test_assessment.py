@@ -109,7 +109,7 @@ def test_what_always_overturns_and_what_never_moves_are_told_so(found):
     assert (quiet["overturned"] == 0).all()
     assert (quiet["tilt_ratio"] == 0.0).all()
     margins = found.data["margins"].sel(record="weak")
-    assert (margins["bands"] == 0).all()
+    assert (margins["intervals"] == 0).all()
     assert np.isnan(margins["least_overturning"]).all()
     assert (found.data["summary"]["never_overturned"] >= 1).all()
 
@@ -294,22 +294,22 @@ def test_a_scale_that_overturns_between_the_41_is_within_ten_percent_too():
     inputs = inputs_of({"slim": model(0.2)}, [RECORDS[0]])
     near = inputs.margin_scales[inputs.around(1.0)]
     np.testing.assert_allclose(near, np.linspace(0.9, 1.1, 41), rtol=1e-9)
-    bands = {(near[3] * 1.001, near[3] * 1.002): 1, (near[-1] * 1.001, 3.0): 0, (0.5, near[0] * 0.999): 0}
-    bands |= {(near[-1], 3.0): 1, (0.5, near[0]): 1, (0.5, 3.0): 1, (np.nan, np.nan): 0}
-    for (low, high), inside in bands.items():
-        margins = xr.Dataset({"band_from": ("band", [low]), "band_to": ("band", [high])})
+    intervals = {(near[3] * 1.001, near[3] * 1.002): 1, (near[-1] * 1.001, 3.0): 0, (0.5, near[0] * 0.999): 0}
+    intervals |= {(near[-1], 3.0): 1, (0.5, near[0]): 1, (0.5, 3.0): 1, (np.nan, np.nan): 0}
+    for (low, high), inside in intervals.items():
+        margins = xr.Dataset({"interval_from": ("interval", [low]), "interval_to": ("interval", [high])})
         assert _in_band(inputs, margins).values.tolist() == [inside]
 
 
-MARGINS = ("least_overturning", "least_lasting", "largest_below", "decided_to", "bands", "unknown", "stands_again")
+MARGINS = ("least_overturning", "least_lasting", "largest_below", "decided_to", "intervals", "unknown", "stands_again")
 MARGINS = (
     *MARGINS,
     "outcome",
     "tilt_ratio",
     "band_share",
     "in_band",
-    "band_from",
-    "band_to",
+    "interval_from",
+    "interval_to",
     "safe_below",
     "safe_above",
 )
@@ -317,7 +317,7 @@ MARGINS = (
 
 def own_margins(assessment, column, record, **case):
     margins = assessment.data["margins"][list(MARGINS)].sel(column=column, record=record, **case, drop=True)
-    return margins.dropna("band", how="all")
+    return margins.dropna("interval", how="all")
 
 
 # The kernel with contact demands rounds otherwise: tilts agree to the tolerance of the integration.
@@ -481,7 +481,7 @@ def test_runs_that_lift_off_are_undecided_and_end_what_is_known():
         # Edges are halved to 0.5 %; a column that overturned before the base falls is decided beyond the limit.
         assert last >= limit / 1.005
         assert np.isnan(float(own["safe_above"].max())) or float(own["safe_above"].max()) <= last
-        assert (own["band_to"].fillna(0.0) <= last).all()
+        assert (own["interval_to"].fillna(0.0) <= last).all()
     verdicts = assessment.data["verdicts"].sel(column="stout", dissipation="central", vertical="with", record="lifting")
     assert int(verdicts["overturned"].sel(scale=2.9)) == -1
     assert sb.Outcome(int(verdicts["outcome"].sel(scale=2.9))) is sb.Outcome.LIFTED_OFF
@@ -521,7 +521,7 @@ def test_the_margin_is_drawn_by_its_two_runs_and_the_stated_one(found):
         assert int(stands["overturned"]) == 0
     assert float(runs["scale"].sel(run="stated")) == 1.0
     never = found.data["histories"].sel(column="stout")
-    if (found.data["margins"]["bands"].sel(column="stout") == 0).all():
+    if (found.data["margins"]["intervals"].sel(column="stout") == 0).all():
         assert np.isnan(never["scale"].sel(run="overturns"))
         assert float(never["scale"].sel(run="stands")) == found.data["margins"]["margin_scale"].values[-1]
         assert float(never["peak_tilt_ratio"].sel(run="stands")) > 0.0
@@ -552,7 +552,7 @@ def judged(states, least, tilt):
 @pytest.mark.parametrize(
     ("states", "least", "governs"),
     [
-        # b overturned as recorded; a has a lower least scale in a narrow band.
+        # b overturned as recorded; a has a lower least scale in a narrow interval.
         ([[0, 0], [1, 1], [0, 0]], [[0.7, 0.7], [0.9, 0.9], [1.2, 1.2]], "b"),
         # b overturned as recorded at low dissipation only; a not as recorded.
         ([[0, 0], [1, 0], [0, 0]], [[0.7, 0.7], [0.9, 1.4], [1.2, 1.2]], "b"),

@@ -26,9 +26,9 @@ from stylobate.earthquakes.assessment.report.record_figures import spectra_figur
 from stylobate.earthquakes.assessment.report.record_tables import drifting
 from stylobate.earthquakes.assessment.report.sections import document_table, not_covered, report_sections
 from stylobate.earthquakes.assessment.report.summary import column_findings, summary_text, verdict_table
-from stylobate.earthquakes.assessment.report.wording import bands, least_scale
+from stylobate.earthquakes.assessment.report.wording import intervals, least_scale
 from stylobate.earthquakes.assessment.summary import summary_of
-from stylobate.earthquakes.figures.band_regions import UNDECIDED
+from stylobate.earthquakes.figures.interval_regions import UNDECIDED
 from stylobate.results import DesignSpectrum, ReportDetails
 
 DETAILS = ReportDetails(
@@ -392,13 +392,13 @@ def test_undecided_scales_are_drawn_named_and_written_as_such(found):
         assert bar.get_x() + bar.get_width() == pytest.approx(end)
     one = margins.sel(record="weak & quiet", case="central")
     where = f"not decided from {begin:.4g} to {end:.4g} (lifted off)"
-    assert least_scale(one) == bands(one) == f"none found; {where}"
+    assert least_scale(one) == intervals(one) == f"none found; {where}"
     labels = [text.get_text() for legend in margins_figure(found, "stout").legends for text in legend.get_texts()]
     assert not any("not decided" in label for label in labels)
 
 
 @pytest.mark.parametrize(
-    ("band", "stretch", "words"),
+    ("interval", "stretch", "words"),
     [
         ((4.735, 4.735, 0, 1, 0, 1), (4.735, 5.0), "4.735; not decided from 4.735 to 5 (lifted off)"),
         ((1.582, 4.735, 0, 1, 0, 1), (4.735, 5.0), "1.582 to 4.735; not decided from 4.735 to 5 (lifted off)"),
@@ -408,12 +408,12 @@ def test_undecided_scales_are_drawn_named_and_written_as_such(found):
         ((np.nan, np.nan, 0, 0, 0, 0), (np.nan, np.nan), "none"),
     ],
 )
-def test_a_band_is_written_as_far_as_runs_are_decided(band, stretch, words):
-    names = ("band_from", "band_to", "open_below", "open_above", "undecided_below", "undecided_above")
+def test_an_interval_is_written_as_far_as_runs_are_decided(interval, stretch, words):
+    names = ("interval_from", "interval_to", "open_below", "open_above", "undecided_below", "undecided_above")
     lifted = [sb.Outcome.AT_REST, sb.Outcome.LIFTED_OFF]
-    one = xr.Dataset({name: ("band", [value]) for name, value in zip(names, band, strict=True)})
+    one = xr.Dataset({name: ("interval", [value]) for name, value in zip(names, interval, strict=True)})
     one = one.assign(undecided_from=("stretch", [stretch[0]]), undecided_to=("stretch", [stretch[1]]))
-    assert bands(one.assign(outcome=("margin_scale", lifted))) == words
+    assert intervals(one.assign(outcome=("margin_scale", lifted))) == words
 
 
 def test_an_undecided_run_has_a_place_of_its_own_among_the_tilts(found):

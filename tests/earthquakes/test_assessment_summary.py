@@ -52,7 +52,7 @@ def random_assessment(seed):
                 "least_slipping": numbers(margins, 0.7),
                 "standing_slip": numbers(margins, 0.97),
                 "friction_to_margin": numbers(margins),
-                "bands": drawn(margins, (0, 1, 2), (0.4, 0.4, 0.2)),
+                "intervals": drawn(margins, (0, 1, 2), (0.4, 0.4, 0.2)),
                 "stands_again": drawn(margins, (0, 1, 2), (0.4, 0.4, 0.2)),
                 "unknown": drawn(margins, (0, 1, 2), (0.4, 0.4, 0.2)),
                 "decided_to": numbers(margins, 0.04),
@@ -137,7 +137,7 @@ def test_records_are_counted_by_their_margins(assessment):
     for column in COLUMNS:
         margins = parts["margins"].sel(column=column)
         central = [margins.sel(case="central", record=record) for record in RECORDS]
-        assert int(summary["never_overturned"].sel(column=column)) == sum(int(one["bands"]) == 0 for one in central)
+        assert int(summary["never_overturned"].sel(column=column)) == sum(int(one["intervals"]) == 0 for one in central)
         assert int(summary["stands_again"].sel(column=column)) == sum(int(one["stands_again"]) > 0 for one in central)
         assert int(summary["scan_undecided"].sel(column=column)) == sum(int(one["unknown"]) > 0 for one in central)
         # Undefined if one is, unlike Python's min.

@@ -5,7 +5,7 @@ import pytest
 import xarray as xr
 
 import stylobate as sb
-from stylobate.earthquakes import HazardCurve, annual_rate, fit_fragility, lognormal_fragility, reached_bands
+from stylobate.earthquakes import HazardCurve, annual_rate, fit_fragility, lognormal_fragility, reached_intervals
 
 SCALE = xr.DataArray(
     np.geomspace(1.0, 9.0, 9), dims="scale", attrs={"units": "m s-2", "long_name": "peak ground acceleration"}
@@ -107,11 +107,11 @@ def test_a_rate_mostly_from_beyond_the_hazard_is_not_drawn_as_a_fact():
 
 
 @pytest.mark.parametrize("records", [20, 100])
-def test_bands_of_records_that_are_not_monotone_are_named(reached, records):
+def test_intervals_of_records_that_are_not_monotone_are_named(reached, records):
     one = reached.sel(limit_state="overturning")
     many = xr.concat([one.isel(record=0), *[one.isel(record=1)] * (records - 1)], dim="record")
     many = many.assign_coords(record=[f"r{place}" for place in range(records)])
-    figure = sb.plot(reached_bands(SCALE, many))
+    figure = sb.plot(reached_intervals(SCALE, many))
     (axes,) = figure.axes
     labels = [label.get_text() for label in axes.get_yticklabels()]
     assert [label for label in labels if label.endswith("*")] == ["r0 *"]

@@ -1,4 +1,4 @@
-"""Figures of spectra show each band where it is, and say what is not known."""
+"""Figures of spectra show each interval where it is, and say what is not known."""
 
 import numpy as np
 import pytest
@@ -6,10 +6,10 @@ import xarray as xr
 from matplotlib.patches import PathPatch
 
 import stylobate as sb
-from stylobate.earthquakes.figures.band_regions import UNDECIDED
-from stylobate.earthquakes.spectra.band_table import band_table
+from stylobate.earthquakes.figures.interval_regions import UNDECIDED
 from stylobate.earthquakes.spectra.cases import Cases
 from stylobate.earthquakes.spectra.edges import Edges, Ends
+from stylobate.earthquakes.spectra.interval_table import interval_table
 from stylobate.errors import Outcome, ParameterError
 from stylobate.plots.cells import cell_edges
 from stylobate.plots.classes import OUTCOME_LOOKS
@@ -21,8 +21,8 @@ FALLEN, SAFE, LIFTED = (Outcome.OVERTURNED, Outcome.AT_REST, Outcome.LIFTED_OFF)
 STATES = {FALLEN: 1, SAFE: 0, LIFTED: -2}
 
 
-def bands(over, codes, motion=PULSE, uncertain=()):
-    """Return the bands of a scan that came to these outcomes, at the scales 1, 2, 3 …"""
+def intervals(over, codes, motion=PULSE, uncertain=()):
+    """Return the intervals of a scan that came to these outcomes, at the scales 1, 2, 3 …"""
     cases = Cases.of(MODEL, motion, over)
     codes = np.broadcast_to(np.array(codes), (cases.count, len(codes)))
     scales = np.arange(1.0, codes.shape[1] + 1.0)
@@ -32,13 +32,13 @@ def bands(over, codes, motion=PULSE, uncertain=()):
     scan = Ends(np.broadcast_to(scales, codes.shape), states, np.zeros(codes.shape), unsure)
     dims = (*cases.axes, "scale")
     shape = (*cases.shape, scales.size)
-    found = band_table(
+    found = interval_table(
         cases, scan, Edges.between(np.repeat(np.arange(cases.count), scan.scale.shape[-1]), scan.reshaped(-1))
     )
     found = found.assign(outcome=(dims, codes.reshape(shape)), uncertain=(dims, unsure.reshape(shape)))
     found = found.assign(peak_tilt=(dims, np.broadcast_to(0.01 * scales, shape)))
     coords = {**cases.coordinates(), "scale": ("scale", scales, {"long_name": "factor of the base motion"})}
-    return found.assign_coords(coords).assign_attrs(kind="overturning bands", width=1e-3)
+    return found.assign_coords(coords).assign_attrs(kind="overturning intervals", width=1e-3)
 
 
 def legend_of(figure):
@@ -68,8 +68,8 @@ DARK = rgb(OUTCOME_LOOKS[Outcome.OVERTURNED].colour)
 PATTERN = [SAFE, FALLEN, FALLEN, SAFE, FALLEN]
 
 
-def test_bands_of_a_pulse_stand_over_the_frequency_ratio_in_units_of_g_tan_alpha():
-    found = bands({"angular_frequency": [2.0, 3.0, 4.0]}, PATTERN)
+def test_intervals_of_a_pulse_stand_over_the_frequency_ratio_in_units_of_g_tan_alpha():
+    found = intervals({"angular_frequency": [2.0, 3.0, 4.0]}, PATTERN)
     (axes,) = sb.plot(found).axes
     ratio, unit = found["frequency_ratio"].values, found["acceleration_ratio"].values
     edges = cell_edges(ratio)
@@ -84,7 +84,7 @@ def test_bands_of_a_pulse_stand_over_the_frequency_ratio_in_units_of_g_tan_alpha
 
 
 def test_the_order_of_the_values_does_not_matter():
-    first = bands({"angular_frequency": [2.0, 3.0, 4.0]}, PATTERN)
+    first = intervals({"angular_frequency": [2.0, 3.0, 4.0]}, PATTERN)
     second = first.isel(angular_frequency=[2, 0, 1])
     one, other = (boxes(sb.plot(found).axes[0], DARK) for found in (first, second))
     np.testing.assert_allclose(one, other)
@@ -92,7 +92,7 @@ def test_the_order_of_the_values_does_not_matter():
 
 def test_what_is_undecided_is_drawn_by_itself_and_neither_safe_nor_overturned():
     # Safe, overturned, undecided, safe again, overturned, undecided, at the scales 1, 2 ... 6.
-    figure = sb.plot(bands({"damping": [0.1, 0.2]}, [SAFE, FALLEN, LIFTED, SAFE, FALLEN, LIFTED], uncertain=[0]))
+    figure = sb.plot(intervals({"damping": [0.1, 0.2]}, [SAFE, FALLEN, LIFTED, SAFE, FALLEN, LIFTED], uncertain=[0]))
     assert {"not decided: lifted off", "not decided: 4 runs", "uncertain: 2 runs"} <= set(legend_of(figure))
     (axes,) = figure.axes
     grey, again = rgb(UNDECIDED.colour), rgb("#DCEBF5")
@@ -102,16 +102,16 @@ def test_what_is_undecided_is_drawn_by_itself_and_neither_safe_nor_overturned():
 
 
 def test_what_stands_above_an_undecided_stretch_is_safe_again_if_something_overturned_below():
-    (axes,) = sb.plot(bands({"damping": [0.1, 0.2]}, [FALLEN, LIFTED, SAFE, SAFE])).axes
+    (axes,) = sb.plot(intervals({"damping": [0.1, 0.2]}, [FALLEN, LIFTED, SAFE, SAFE])).axes
     assert heights(axes, rgb("#DCEBF5")) == {(3.0, 4.0)}
-    (axes,) = sb.plot(bands({"damping": [0.1, 0.2]}, [SAFE, LIFTED, SAFE, FALLEN])).axes
+    (axes,) = sb.plot(intervals({"damping": [0.1, 0.2]}, [SAFE, LIFTED, SAFE, FALLEN])).axes
     assert not boxes(axes, rgb("#DCEBF5"))
 
 
 def test_a_record_is_drawn_by_its_scale_over_the_size_a_panel_for_each_slenderness():
     record = sb.Record(samples=[0.0, 0.3, 0.0], step=0.1, name="short")
     over = {"size": [1.0, 2.0, 4.0, 8.0], "slenderness": [0.1, 0.2]}
-    figure = sb.plot(bands(over, PATTERN, record))
+    figure = sb.plot(intervals(over, PATTERN, record))
     assert [axes.get_title(loc="left") for axes in figure.axes] == ["slenderness 0.1", "slenderness 0.2"]
     first, second = figure.axes
     assert first.get_xlabel() == second.get_xlabel() == "size 2R [m]"
@@ -123,12 +123,12 @@ def test_a_record_is_drawn_by_its_scale_over_the_size_a_panel_for_each_slenderne
 
 def test_motions_stand_side_by_side_under_their_names():
     records = tuple(sb.Record(samples=[0.0, 0.3, 0.0], step=0.1, name=name) for name in ("Aigio", "Bam"))
-    (axes,) = sb.plot(bands({"motion": [0, 1]}, PATTERN, sb.OneOf(motions=records))).axes
+    (axes,) = sb.plot(intervals({"motion": [0, 1]}, PATTERN, sb.OneOf(motions=records))).axes
     assert [text.get_text() for text in axes.get_xticklabels()] == ["Aigio", "Bam"]
 
 
-def test_bands_of_one_column_lie_along_the_amplitude_with_the_peak_tilts_between_them():
-    found = bands(None, PATTERN, uncertain=[0])
+def test_intervals_of_one_column_lie_along_the_amplitude_with_the_peak_tilts_between_them():
+    found = intervals(None, PATTERN, uncertain=[0])
     figure = sb.plot(found)
     (axes,) = figure.axes
     unit = float(found["acceleration_ratio"])
@@ -144,15 +144,17 @@ def test_bands_of_one_column_lie_along_the_amplitude_with_the_peak_tilts_between
 
 
 def test_a_single_value_of_a_parameter_is_drawn_as_one_column():
-    (axes,) = sb.plot(bands({"size": [2.0], "damping": [0.1]}, PATTERN)).axes
+    (axes,) = sb.plot(intervals({"size": [2.0], "damping": [0.1]}, PATTERN)).axes
     assert axes.get_ylabel() == r"peak tilt $\theta/\alpha_c$"
 
 
 @pytest.mark.parametrize("over", [None, {"size": [1.0, 2.0, 4.0]}])
-def test_a_band_too_narrow_to_be_seen_is_drawn_and_counted_as_such(over):
+def test_an_interval_too_narrow_to_be_seen_is_drawn_and_counted_as_such(over):
     record = sb.Record(samples=[0.0, 0.3, 0.0], step=0.1, name="short")
-    found = bands(over, [SAFE, SAFE, FALLEN, SAFE, SAFE], record)
-    narrow = found.assign(band_from=0.0 * found["band_from"] + 3.0, band_to=0.0 * found["band_to"] + 3.001)
+    found = intervals(over, [SAFE, SAFE, FALLEN, SAFE, SAFE], record)
+    narrow = found.assign(
+        interval_from=0.0 * found["interval_from"] + 3.0, interval_to=0.0 * found["interval_to"] + 3.001
+    )
     count = 1 if over is None else 3
     label = f"overturns, narrower than drawn: {count} interval{'s' if count > 1 else ''}"
     figure = sb.plot(narrow)
@@ -161,24 +163,26 @@ def test_a_band_too_narrow_to_be_seen_is_drawn_and_counted_as_such(over):
     lines = [line for line in axes.lines if line.get_color() == VERMILION and line.get_linestyle() == "-"]
     along = [np.mean(line.get_xdata() if over is None else line.get_ydata()) for line in lines]
     np.testing.assert_allclose(along, [3.0005] * count, rtol=1e-12)
-    wide = found.assign(band_to=0.0 * found["band_to"] + 3.5)
+    wide = found.assign(interval_to=0.0 * found["interval_to"] + 3.5)
     assert not [text for text in legend_of(sb.plot(wide)) if "narrower" in text]
 
 
 @pytest.mark.parametrize("over", [None, {"size": [1.0, 2.0, 4.0]}])
 def test_an_edge_is_in_the_legend_if_it_is_wide_enough_to_be_seen(over):
-    found = bands(over, [SAFE, SAFE, FALLEN, FALLEN, SAFE], sb.Record(samples=[0.0, 0.3, 0.0], step=0.1, name="short"))
+    found = intervals(
+        over, [SAFE, SAFE, FALLEN, FALLEN, SAFE], sb.Record(samples=[0.0, 0.3, 0.0], step=0.1, name="short")
+    )
     for width, seen in ((0.02, True), (0.002, False)):  # on an axis from 1 to 5, in scales
-        edges = {"safe_below": found["band_from"] - width, "safe_above": found["band_to"] + width}
+        edges = {"safe_below": found["interval_from"] - width, "safe_above": found["interval_to"] + width}
         assert ("edge, not resolved" in legend_of(sb.plot(found.assign(edges)))) is seen
 
 
 def test_too_many_parameters_are_refused():
-    crowded = bands({"size": np.arange(1.0, 7.0), "damping": np.arange(0.1, 0.6, 0.1)}, PATTERN)
+    crowded = intervals({"size": np.arange(1.0, 7.0), "damping": np.arange(0.1, 0.6, 0.1)}, PATTERN)
     with pytest.raises(ParameterError, match="two with up to 4 values along one of them"):
         sb.plot(crowded)
     with pytest.raises(ParameterError, match="one dimension, or two"):
-        sb.plot(bands({"size": [1.0], "damping": [0.1], "slenderness": [0.1]}, PATTERN))
+        sb.plot(intervals({"size": [1.0], "damping": [0.1], "slenderness": [0.1]}, PATTERN))
 
 
 @pytest.fixture

@@ -106,8 +106,8 @@ def test_without_variations_all_runs_are_the_given_one():
 
 
 def test_what_alone_moves_the_column_across_the_boundary_decides():
-    bands = sb.earthquakes.overturning_bands(MODEL, PULSE, scales=np.geomspace(0.5, 2.0, 40))
-    edge = float(bands["band_from"][0])
+    intervals = sb.earthquakes.overturning_intervals(MODEL, PULSE, scales=np.geomspace(0.5, 2.0, 40))
+    edge = float(intervals["interval_from"][0])
     assert edge < 1.9
     near = {"scale": LognormalSpread(0.3, median=edge), "tolerance": None, "slenderness": None}
     found = sb.verdict([MODEL], PULSE, variations=near, runs=200)

@@ -13,10 +13,10 @@ import stylobate as sb
 column = sb.Column.solid(radius=0.3, height=3.0, density=2700.0)  # m, m, kg/m³
 quake = sb.sample_record("el centro 1940")
 
-found = sb.earthquakes.overturning_bands(
+found = sb.earthquakes.overturning_intervals(
     sb.Wobbling(column, damping=0.03), quake, scales=np.geomspace(0.5, 2.0, 41)
 )
-pairs = zip(found["band_from"].values, found["band_to"].values, strict=True)
+pairs = zip(found["interval_from"].values, found["interval_to"].values, strict=True)
 for low, high in pairs:
     print(f"overturns from {low:.4f} to {high:.4f} times the record")
 figure = sb.plot(found)

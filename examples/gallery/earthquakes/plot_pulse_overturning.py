@@ -13,7 +13,7 @@ import stylobate as sb
 column = sb.Column.dimensionless(slenderness=0.1)
 pulse = sb.Pulse.one_sine(acceleration=0.1, angular_frequency=1.0)  # g, ω₀
 
-found = sb.earthquakes.overturning_bands(
+found = sb.earthquakes.overturning_intervals(
     sb.Slender(column, damping=0.1),
     pulse,
     scales=np.geomspace(1.0, 20.0, 25),  # factors of the pulse

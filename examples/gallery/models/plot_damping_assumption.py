@@ -14,14 +14,14 @@ column = sb.Column.solid(radius=0.3, height=3.0, density=2700.0)  # m, m, kg/m³
 quake = sb.sample_record("el centro 1940")
 
 # Each damping at 24 scales of the record: a small study.
-found = sb.earthquakes.overturning_bands(
+found = sb.earthquakes.overturning_intervals(
     sb.Wobbling(column),
     quake,
     scales=np.geomspace(0.5, 4.0, 24),
     over={"damping": np.geomspace(0.005, 0.2, 12)},
     width=0.02,  # relative error of the edges
 )
-lowest = found["band_from"].min("band")
+lowest = found["interval_from"].min("interval")
 for damping in found["damping"].values[[0, -1]]:
     scale = float(lowest.sel(damping=damping))
     print(f"damping {damping:.3f}: the record overturns it from {scale:.2f} times on")

@@ -78,7 +78,7 @@ def _prepared(saved: "xr.Dataset | None", options: Options) -> "tuple[Callable[.
     setup = kind.parse(values).build()
     check_axes("spectrum", setup)
     rocking = values["spectrum"].get("rocking")
-    return (earthquakes.rocking_spectrum if rocking else earthquakes.overturning_bands), setup
+    return (earthquakes.rocking_spectrum if rocking else earthquakes.overturning_intervals), setup
 
 
 def _saved(source: Path | None) -> "xr.Dataset | None":
@@ -89,8 +89,8 @@ def _saved(source: Path | None) -> "xr.Dataset | None":
     return open_study(source, _KINDS, lacks="spectrum", store=store)
 
 
-_BANDS, _ROCKING = "overturning bands", "rocking spectrum"
-_KINDS = (_BANDS, _ROCKING)
+_INTERVALS, _ROCKING = "overturning intervals", "rocking spectrum"
+_KINDS = (_INTERVALS, _ROCKING)
 
 
 def _with_spectrum(values: Mapping[str, Any], options: Options) -> dict[str, Any]:
@@ -117,7 +117,7 @@ _ACCURACY = ("width", "scale_step", "resolution")
 
 
 def _summary(result: "xr.Dataset") -> dict[str, Any]:
-    rows = _bands(result) if result.attrs["kind"] == _BANDS else _peaks(result)
+    rows = _intervals(result) if result.attrs["kind"] == _INTERVALS else _peaks(result)
     return {
         "kind": result.attrs["kind"],
         "cases": rows,
@@ -137,17 +137,17 @@ def _cases(result: "xr.Dataset", name: str) -> list[tuple[dict[str, Any], "xr.Da
     return [({dim: one[name].item() for name, dim in names}, one) for one in cases]
 
 
-def _bands(result: "xr.Dataset") -> list[dict[str, Any]]:
-    ends = ("band_from", "band_to", "safe_below", "safe_above", "uncertain_below", "uncertain_above")
+def _intervals(result: "xr.Dataset") -> list[dict[str, Any]]:
+    ends = ("interval_from", "interval_to", "safe_below", "safe_above", "uncertain_below", "uncertain_above")
     return [
         {
             **case,
             "frequency_parameter": one["frequency_parameter"].item(),
             "acceleration_ratio": one["acceleration_ratio"].item(),
-            "bands": [{name: one[name][place].item() for name in ends} for place in range(int(one["bands"]))],
+            "intervals": [{name: one[name][place].item() for name in ends} for place in range(int(one["intervals"]))],
             "unknown": int(one["unknown"]),
         }
-        for case, one in _cases(result, "bands")
+        for case, one in _cases(result, "intervals")
     ]
 
 
@@ -163,20 +163,20 @@ def _peaks(result: "xr.Dataset") -> list[dict[str, Any]]:
 
 
 def _print(result: "xr.Dataset") -> None:
-    if result.attrs["kind"] == _BANDS:
-        _print_bands(result)
+    if result.attrs["kind"] == _INTERVALS:
+        _print_intervals(result)
     else:
         _print_peaks(result)
 
 
-def _print_bands(result: "xr.Dataset") -> None:
-    rows = sorted(_bands(result), key=_least) if result["bands"].size > _ROWS else _bands(result)
-    dims = [str(dim) for dim in result["bands"].dims]
+def _print_intervals(result: "xr.Dataset") -> None:
+    rows = sorted(_intervals(result), key=_least) if result["intervals"].size > _ROWS else _intervals(result)
+    dims = [str(dim) for dim in result["intervals"].dims]
     table = [
         (
             *(_written(row[dim]) for dim in dims),
-            "; ".join(map(_band, row["bands"])) or "never",
-            _written(_least(row) * row["acceleration_ratio"]) if row["bands"] else "",
+            "; ".join(map(_interval, row["intervals"])) or "never",
+            _written(_least(row) * row["acceleration_ratio"]) if row["intervals"] else "",
         )
         for row in (rows[:_FIRST] if len(rows) > _ROWS else rows)
     ]
@@ -189,14 +189,14 @@ def _print_bands(result: "xr.Dataset") -> None:
 
 
 def _least(row: Mapping[str, Any]) -> float:
-    return min((float(band["band_from"]) for band in row["bands"]), default=float("inf"))
+    return min((float(interval["interval_from"]) for interval in row["intervals"]), default=float("inf"))
 
 
-def _band(band: Mapping[str, Any]) -> str:
-    sure = "?" if band["uncertain_below"] or band["uncertain_above"] else ""
-    low = "" if math.isfinite(band["safe_below"]) else "below "
-    high = f"to {band['band_to']:.4g}" if math.isfinite(band["safe_above"]) else "on"
-    return f"{low}{band['band_from']:.4g} {high}{sure}"
+def _interval(interval: Mapping[str, Any]) -> str:
+    sure = "?" if interval["uncertain_below"] or interval["uncertain_above"] else ""
+    low = "" if math.isfinite(interval["safe_below"]) else "below "
+    high = f"to {interval['interval_to']:.4g}" if math.isfinite(interval["safe_above"]) else "on"
+    return f"{low}{interval['interval_from']:.4g} {high}{sure}"
 
 
 def _print_peaks(result: "xr.Dataset") -> None:

@@ -4,7 +4,6 @@ from .assessment.report import assessment_report, assessment_tables
 from .figures.planar_bias import plot_directions
 from .figures.records import plot_records
 from .fragility.annual_rate import annual_rate
-from .fragility.bands import reached_bands
 from .fragility.curves import lognormal_fragility
 from .fragility.dispersion import Samples, dispersion_parts
 from .fragility.fit import fit_fragility
@@ -12,6 +11,7 @@ from .fragility.hazard import HazardCurve
 from .fragility.limit_states import limit_states
 from .fragility.observations import Counting
 from .fragility.probit import FitStatus
+from .fragility.reached import reached_intervals
 from .fragility_study import FragilityStudy
 from .incremental import incremental_dynamic_analysis
 from .intensities import Intensity, SpectralAcceleration
@@ -26,7 +26,7 @@ from .property_spreads import (
     property_samples,
 )
 from .run_fragility import fragility_of_runs
-from .spectra.bands import overturning_bands
+from .spectra.overturning import overturning_intervals
 from .spectra.rocking import rocking_spectrum
 from .variations import LABELS, VARIATIONS
 from .verdict_study import repeat_verdict, verdict
@@ -58,12 +58,12 @@ __all__ = [
     "incremental_dynamic_analysis",
     "limit_states",
     "lognormal_fragility",
-    "overturning_bands",
+    "overturning_intervals",
     "planar_bias",
     "plot_directions",
     "plot_records",
     "property_samples",
-    "reached_bands",
+    "reached_intervals",
     "repeat_verdict",
     "rocking_spectrum",
     "verdict",

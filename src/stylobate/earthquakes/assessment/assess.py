@@ -129,7 +129,7 @@ def assess(
     Assessment
         Its data: "columns" and "records", their properties; "verdicts" over column, record, dissipation, vertical and
         scale: `overturned` (1, 0, −1 not decided), `outcome`, `tilt_ratio`, contact demand; "margins" over
-        column, case, record and band; "variations" over column, record and scale; "sliding" over
+        column, case, record and interval; "variations" over column, record and scale; "sliding" over
         column, record and scale; "planar"; "fragility" over column if there are enough records; "histories" over
         column and run, under the governing record of each column; "summary", counts;
         "spectra" over record and period, "ground_motions" over record and instant, for the figures of the report.

@@ -154,7 +154,7 @@ class Inputs:
         return with_other_contact_law(model) if case.endswith(OTHER_LAW) else model
 
     def around(self, scale: float) -> npt.NDArray[np.intp]:
-        """Return the places in `margin_scales` of the scales near a stated one that are counted for the band share."""
+        """Return the places in `margin_scales` of the scales near a stated one, counted for `band_share`."""
         return self._places(scale * _NEAR)
 
     @property

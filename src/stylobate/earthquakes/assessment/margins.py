@@ -10,7 +10,7 @@ from stylobate.earthquakes.assessment.slip import standing_slip
 from stylobate.earthquakes.following import tail_of
 from stylobate.earthquakes.fragility import limit_states
 from stylobate.earthquakes.incremental import tilt_ratios, without_vertical
-from stylobate.earthquakes.spectra import overturning_bands
+from stylobate.earthquakes.spectra import overturning_intervals
 from stylobate.models import Model
 from stylobate.studies.maps.uncertainty_exponent import overturned_or_not
 from stylobate.studies.sweeps import Executor
@@ -19,10 +19,10 @@ from stylobate.studies.sweeps.computing import Progress
 FINE_SCALES = 2000
 """Scales over the range of the scan that are run below the smallest overturning scale."""
 
-_BAND = ("band_from", "band_to", "safe_below", "safe_above")
+_INTERVAL = ("interval_from", "interval_to", "safe_below", "safe_above")
 _FLAGS = ("open_below", "open_above", "undecided_below", "undecided_above")
 _STRETCH = ("undecided_from", "undecided_to")
-_COUNTS = ("bands", "unknown", "decided_to")
+_COUNTS = ("intervals", "unknown", "decided_to")
 _RUNS = ("outcome", "peak_tilt", "friction_demand")
 
 
@@ -36,10 +36,10 @@ def margins_of(inputs: Inputs, column: str, parts: Parts, *, contact: bool, exec
         other contact law) and `record`:
         `least_overturning`, the smallest overturning scale, NaN if none; `largest_below`, the largest surviving scale
         below it, NaN if none; `least_lasting`, the smallest scale at which an interval begins that is wider than the
-        uncertainty of its ends; `bands`, the number of intervals; `unknown`, the number of undecided runs of the scan;
+        uncertainty of its ends; `intervals`, their number; `unknown`, the number of undecided runs of the scan;
         `decided_to`, the largest scale up to which every run was decided; `stands_again`, whether the column survived a
         scale above an overturning one; `standing_slip`, the smallest scale at which it slides before it rocks, NaN if
-        it rocks first. Over `band` and `stretch` too all variables of `overturning_bands`. Over `margin_scale` too:
+        it rocks first. Over `interval` and `stretch` all variables of `overturning_intervals`. Over `margin_scale` too:
         `outcome`, `tilt_ratio`; for the central case over `limit_state`: `reached`. The contact demand, NaN without
         `contact`: over `margin_scale` too `friction_demand`, standing and moving; `friction_to_margin`, the largest
         demand below the smallest overturning scale, or at any scale if there is none; `least_slipping`, the smallest
@@ -48,7 +48,7 @@ def margins_of(inputs: Inputs, column: str, parts: Parts, *, contact: bool, exec
         also one between the 41.
     """
     cases = list(inputs.cases)
-    found = of_one_width([_bands(inputs, column, case, parts, contact, executor) for case in cases])
+    found = of_one_width([_intervals(inputs, column, case, parts, contact, executor) for case in cases])
     joined: xr.Dataset = xr.concat(found, dim=xr.Variable("case", cases), data_vars="all", join="override")
     body = inputs.columns[column][CENTRAL].column
     scanned = joined[["outcome", "peak_tilt"]].sel(case=CENTRAL)
@@ -76,14 +76,14 @@ def _in_band(inputs: Inputs, margins: xr.Dataset) -> xr.DataArray:
     """Return whether an overturning interval lies or begins within 10 % of each stated scale, as 0 or 1."""
     ends = [inputs.margin_scales[inputs.around(scale)[[0, -1]]] for scale in inputs.scales.tolist()]
     low, high = (xr.DataArray(one, coords={"scale": inputs.scales}) for one in np.array(ends).T)
-    overlaps = (margins["band_from"] <= high) & (margins["band_to"] >= low)
-    found = overlaps.any("band").astype(np.int8)
+    overlaps = (margins["interval_from"] <= high) & (margins["interval_to"] >= low)
+    found = overlaps.any("interval").astype(np.int8)
     return found.assign_attrs(long_name="whether a scale within 10 % of the stated scale overturned it")
 
 
 def of_one_width(margins: list[xr.Dataset]) -> list[xr.Dataset]:
     """Pad margins with NaN to equal numbers of intervals and undecided stretches."""
-    for dim in ("band", "stretch"):
+    for dim in ("interval", "stretch"):
         widest = max(one.sizes[dim] for one in margins)
         margins = [one.pad({dim: (0, widest - one.sizes[dim])}) if one.sizes[dim] < widest else one for one in margins]
     return margins
@@ -116,7 +116,7 @@ def _scan_runs(inputs: Inputs) -> int:
     return len(inputs.records) * inputs.margin_scales.size
 
 
-def _bands(
+def _intervals(
     inputs: Inputs, column: str, case: str, parts: Parts, contact: bool, executor: Executor | None
 ) -> xr.Dataset:
     model = inputs.model_of(column, case)
@@ -147,7 +147,7 @@ def _found(
 ) -> xr.Dataset:
     options = inputs.options.copy()
     options["demands"] = contact
-    return overturning_bands(
+    return overturning_intervals(
         model,
         OneOf(motions=tuple(motions)),
         over={"motion": np.arange(len(motions))},
@@ -167,20 +167,20 @@ def _as_dataset(found: xr.Dataset, names: list[str], width: float) -> xr.Dataset
     demand = plain.get("peak_friction_demand", xr.full_like(plain["peak_tilt"], np.nan))
     about = {"units": "1", "long_name": "peak friction force over normal force"}
     plain = plain.assign(friction_demand=demand.assign_attrs(about))
-    kept = plain[[*_BAND, *_FLAGS, *_STRETCH, *_COUNTS, *_RUNS]].transpose("record", ...)
-    flags = {name: kept[name].astype(float) for name in (*_FLAGS, "bands", "unknown")}
-    first = kept.isel(band=0)
-    lasting = kept["band_to"] > kept["band_from"] * (1.0 + width)
+    kept = plain[[*_INTERVAL, *_FLAGS, *_STRETCH, *_COUNTS, *_RUNS]].transpose("record", ...)
+    flags = {name: kept[name].astype(float) for name in (*_FLAGS, "intervals", "unknown")}
+    first = kept.isel(interval=0)
+    lasting = kept["interval_to"] > kept["interval_from"] * (1.0 + width)
     stood = kept["outcome"].copy(data=overturned_or_not(kept) == 0)
-    higher = (stood & (kept["margin_scale"] > first["band_from"])).any("margin_scale")
-    again = kept["safe_above"].notnull().any("band") | higher
+    higher = (stood & (kept["margin_scale"] > first["interval_from"])).any("margin_scale")
+    again = kept["safe_above"].notnull().any("interval") | higher
     return (
         kept.assign(flags)
         .assign(
-            least_overturning=first["band_from"].assign_attrs(units="1", long_name="smallest overturning scale"),
-            least_lasting=kept["band_from"]
+            least_overturning=first["interval_from"].assign_attrs(units="1", long_name="smallest overturning scale"),
+            least_lasting=kept["interval_from"]
             .where(lasting)
-            .min("band")
+            .min("interval")
             .assign_attrs(units="1", long_name="smallest scale at which an interval wider than its edges begins"),
             largest_below=first["safe_below"].assign_attrs(
                 units="1", long_name="largest surviving scale below the smallest overturning scale"

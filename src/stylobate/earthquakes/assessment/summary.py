@@ -87,7 +87,7 @@ def summary_of(data: Mapping[str, xr.Dataset], governing: list[str]) -> xr.Datas
             "least_slipping": margins["least_slipping"].min(("record", "case")),
             "slips_first": _slips_first(margins).any(("record", "case")).astype(np.int8),
             "slides_first": margins["standing_slip"].notnull().any(("record", "case")).astype(np.int8),
-            "never_overturned": (central_margins["bands"] == 0).sum("record"),
+            "never_overturned": (central_margins["intervals"] == 0).sum("record"),
             "stands_again": (central_margins["stands_again"] > 0).sum("record"),
             "scan_undecided": (central_margins["unknown"] > 0).sum("record"),
             "decided_to": central_margins["decided_to"].min("record", skipna=False),

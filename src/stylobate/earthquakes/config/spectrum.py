@@ -95,7 +95,7 @@ class SpectrumConfig(ManyRuns):
         return cls.parse({**common_values(provenance), "spectrum": table})
 
     def build(self) -> Setup:
-        """Build model and motion; the options are arguments of `overturning_bands`, or of `rocking_spectrum`.
+        """Build model and motion; the options are arguments of `overturning_intervals`, or of `rocking_spectrum`.
 
         Raises
         ------

@@ -190,9 +190,9 @@ def _rate_of(state: xr.Dataset, years: float) -> str:
     )
 
 
-@figure_of("reached bands")
+@figure_of("reached intervals")
 @styled
-def plot_reached_bands(found: xr.Dataset) -> Figure:
+def plot_reached_intervals(found: xr.Dataset) -> Figure:
     """Draw the intervals of each record: survival, limit state reached, and survival above it.
 
     Records are sorted by the smallest scale that reached the limit state. A star marks records that are not monotonic;
@@ -205,9 +205,9 @@ def plot_reached_bands(found: xr.Dataset) -> Figure:
     order = np.argsort(np.where(np.isnan(first), np.inf, first), kind="stable")
     height = np.empty(rows)
     height[order] = np.arange(rows)
-    owner = found["band_record"].to_numpy()
-    reached = found["band_reached"].to_numpy()
-    low, high = found["band_from"].to_numpy(), found["band_to"].to_numpy()
+    owner = found["interval_record"].to_numpy()
+    reached = found["interval_reached"].to_numpy()
+    low, high = found["interval_from"].to_numpy(), found["interval_to"].to_numpy()
     kinds = {
         "survives": (~reached & ~(low > first[owner]), SKY, "", "o"),
         "reached": (reached, VERMILION, "", "s"),
@@ -227,7 +227,7 @@ def plot_reached_bands(found: xr.Dataset) -> Figure:
     named = np.flatnonzero(~monotone | (_ROW * rows <= _TALLEST))
     axes.set_yticks(named, [f"{names[row]}{'' if monotone[row] else ' *'}" for row in named])
     axes.set(ylim=(-0.7, rows - 0.3), ylabel="record", xscale="log")
-    axes.set_xlabel(axis_label(found["band_from"]))
+    axes.set_xlabel(axis_label(found["interval_from"]))
     _plain_ticks(axes)
     axes.grid(visible=False, axis="y")
     share = 100.0 * float(found.attrs["non_monotone_share"])

@@ -4,7 +4,6 @@ The functions accept runs of any origin: they need intensity, record and limit s
 """
 
 from stylobate.earthquakes.fragility.annual_rate import annual_rate
-from stylobate.earthquakes.fragility.bands import reached_bands
 from stylobate.earthquakes.fragility.curves import lognormal_fragility
 from stylobate.earthquakes.fragility.dispersion import Samples, dispersion_parts
 from stylobate.earthquakes.fragility.fit import fit_fragility
@@ -12,6 +11,7 @@ from stylobate.earthquakes.fragility.hazard import HazardCurve
 from stylobate.earthquakes.fragility.limit_states import limit_states
 from stylobate.earthquakes.fragility.observations import Counting
 from stylobate.earthquakes.fragility.probit import FitStatus
+from stylobate.earthquakes.fragility.reached import reached_intervals
 
 __all__ = [
     "Counting",
@@ -23,5 +23,5 @@ __all__ = [
     "fit_fragility",
     "limit_states",
     "lognormal_fragility",
-    "reached_bands",
+    "reached_intervals",
 ]

@@ -52,25 +52,25 @@ def rocking_spectrum(
     model, motion
         The column and the base motion: a `Pulse`, a `Record`, or a `OneOf` several.
     over
-        Parameters with their values, one at least, as for `overturning_bands`, and `scale`: size, which sets
+        Parameters with their values, one at least, as for `overturning_intervals`, and `scale`: size, which sets
         p ~ 1/√size, and slenderness, motion, angular_frequency …
     tail, duration
-        As for `overturning_bands`.
+        As for `overturning_intervals`.
     store, executor, resume, progress, **options
-        As for `overturning_bands`; the peak rate is taken over `samples` (2001 by default) at equal times of each run.
-        Its error is of the second order of the time between two. Peak tilts do not depend on it.
+        As for `overturning_intervals`; the peak rate is taken over `samples` (2001 by default) at equal times of each
+        run. Its error is of the second order of the time between two. Peak tilts do not depend on it.
 
     Returns
     -------
     xarray.Dataset
         Of kind "rocking spectrum", over the names: `peak_tilt_ratio`, peak tilt over α_c; `peak_rate_ratio`, peak rate
         of the tilt vector over p [rad]; both NaN if the column overturned or the run is undecided, see `outcome`;
-        and all variables of ensembles. Coordinates as for `overturning_bands`, and `rocking_period` 2π/p [s].
+        and all variables of ensembles. Coordinates as for `overturning_intervals`, and `rocking_period` 2π/p [s].
 
     Raises
     ------
     ParameterError, UnsupportedError, Interrupted
-        As `overturning_bands`.
+        As `overturning_intervals`.
 
     Examples
     --------

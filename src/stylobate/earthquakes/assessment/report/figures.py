@@ -12,7 +12,7 @@ from matplotlib.patches import Patch
 from matplotlib.ticker import FuncFormatter, NullFormatter
 
 from stylobate.earthquakes.assessment.report.wording import number
-from stylobate.earthquakes.figures.band_regions import UNDECIDED, undecided_label, undecided_reasons
+from stylobate.earthquakes.figures.interval_regions import UNDECIDED, undecided_label, undecided_reasons
 from stylobate.plots.cells import fill_options
 from stylobate.plots.style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION, new_figure, styled
 from stylobate.results.assessment import Assessment
@@ -48,7 +48,7 @@ def margins_figure(assessment: Assessment, column: str) -> Figure:
     for place, record in enumerate(records):
         for line, case in enumerate(cases):
             height = place * (len(cases) + 1) + line
-            _band_line(axes, own.sel(record=record, case=case), height, (low, high))
+            _interval_line(axes, own.sel(record=record, case=case), height, (low, high))
             heights.append(height)
             labels.append(f"{record} · {case}" if line == 0 else case)
     axes.set_yticks(heights, labels, fontsize=7.5)
@@ -76,13 +76,13 @@ def margins_figure(assessment: Assessment, column: str) -> Figure:
     return figure
 
 
-def _band_line(axes: Axes, own: xr.Dataset, height: float, ends: tuple[float, float]) -> None:
+def _interval_line(axes: Axes, own: xr.Dataset, height: float, ends: tuple[float, float]) -> None:
     axes.barh(height, ends[1] - ends[0], _BAR, left=ends[0], color=SKY, linewidth=0.0)
     overturned = {"color": VERMILION, "hatch": "////", "edgecolor": "white"}
     _bars(axes, own["undecided_from"], own["undecided_to"], height, fill_options(UNDECIDED))
-    _bars(axes, own["band_from"], own["band_to"], height, overturned)
+    _bars(axes, own["interval_from"], own["interval_to"], height, overturned)
     # This mark shows an interval too narrow for its bar.
-    first = own["band_from"].to_numpy()
+    first = own["interval_from"].to_numpy()
     axes.plot(first, np.full(first.size, height), "|", color=VERMILION, markersize=6.5)
 
 

@@ -7,12 +7,12 @@ import xarray as xr
 from stylobate.earthquakes.assessment.report.cases import acts_in
 from stylobate.earthquakes.assessment.report.cells import cells
 from stylobate.earthquakes.assessment.report.displacements import tilt_cells
-from stylobate.earthquakes.assessment.report.wording import CENTRAL, bands, degrees, least_scale, number
+from stylobate.earthquakes.assessment.report.wording import CENTRAL, degrees, intervals, least_scale, number
 from stylobate.plots.page import Table
 from stylobate.results.assessment import Assessment
 
 
-def bands_by_record(assessment: Assessment) -> Table:
+def intervals_by_record(assessment: Assessment) -> Table:
     """Tabulate the overturning intervals of each column, by record and case."""
     own = assessment.data["margins"]
     header = (
@@ -24,7 +24,7 @@ def bands_by_record(assessment: Assessment) -> Table:
         "runs not decided",
     )
     rows = [
-        (*where, least_scale(one), bands(one), f"{int(one['unknown'])}")
+        (*where, least_scale(one), intervals(one), f"{int(one['unknown'])}")
         for where, one in cells(own, "column", "record", "case")
         if acts_in(assessment, *where[1:])
     ]

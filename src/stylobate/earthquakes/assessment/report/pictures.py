@@ -55,7 +55,7 @@ def _of_records(assessment: Assessment) -> Pictures:
 def _of_column(assessment: Assessment, column: str, called: str, place: int) -> Pictures:
     """Return the pictures of a `column`, which is `called` otherwise outside figures."""
     found = {}
-    if bool((assessment.data["margins"]["bands"].sel(column=column) > 0).any()):
+    if bool((assessment.data["margins"]["intervals"].sel(column=column) > 0).any()):
         found[f"margins-{place}"] = Picture(
             margins_figure(assessment, column),
             f"{called}: scale factors of each record at which it overturned (hatched) or did not, at each dissipation. "

@@ -106,7 +106,7 @@ _TABLES: dict[str, Callable[[Assessment], Table]] = {
     "spectra": record_tables.spectra,
     "margin-intensities": record_tables.margin_intensities,
     "governing": margin_tables.governing,
-    "margins": margin_tables.bands_by_record,
+    "margins": margin_tables.intervals_by_record,
     "tilts": run_tables.tilts,
     "verdicts-by-record": run_tables.verdicts_by_record,
     "contact-by-record": run_tables.friction_by_record,

@@ -7,7 +7,7 @@ import numpy as np
 import xarray as xr
 
 from stylobate.column import STANDARD_GRAVITY
-from stylobate.earthquakes.figures.band_regions import undecided_reasons
+from stylobate.earthquakes.figures.interval_regions import undecided_reasons
 from stylobate.results.verdict import percent
 
 CENTRAL = "central"
@@ -35,7 +35,7 @@ def tilt(value: float) -> str:
 
 def least_scale(margins: xr.Dataset) -> str:
     """State the smallest overturning scale of one column, case and record, and the next smaller run that survived."""
-    if int(margins["bands"]) == 0:
+    if int(margins["intervals"]) == 0:
         if undecided := undecided_scales(margins):
             return f"none found; {undecided}"
         return f"none up to {number(float(margins['margin_scale'][-1]))}"
@@ -47,9 +47,9 @@ def least_scale(margins: xr.Dataset) -> str:
     return f"at most {number(found)}"
 
 
-def bands(margins: xr.Dataset) -> str:
+def intervals(margins: xr.Dataset) -> str:
     """List the overturning intervals of one column, case and record, and the undecided scales."""
-    names = ("band_from", "band_to", "open_below", "open_above", "undecided_below", "undecided_above")
+    names = ("interval_from", "interval_to", "open_below", "open_above", "undecided_below", "undecided_above")
     found = []
     for low, high, below, above, unknown_below, unknown_above in zip(
         *(margins[name].to_numpy() for name in names), strict=True

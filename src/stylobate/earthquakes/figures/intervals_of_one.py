@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from stylobate.earthquakes.figures.band_regions import (
+from stylobate.earthquakes.figures.interval_regions import (
     UNCERTAIN,
     UNKNOWN,
     UNRESOLVED,
@@ -15,7 +15,7 @@ from stylobate.earthquakes.figures.band_regions import (
     Regions,
     amplitude_ends,
     amplitude_label,
-    band_legend,
+    interval_legend,
     is_normalized,
     run_legend,
 )
@@ -30,13 +30,13 @@ _HEIGHT, _DOT = 3.8, 3.2
 
 
 @styled
-def plot_bands_of_one(found: xr.Dataset) -> Figure:
+def plot_intervals_of_one(found: xr.Dataset) -> Figure:
     """Draw the overturning intervals of one column, and its peak tilts between them.
 
     Parameters
     ----------
     found
-        Overturning bands of one case: `band_from` … over the bands, `outcome` and `peak_tilt` over the scale.
+        Overturning intervals of one case: `interval_from` … over `interval`, `outcome` and `peak_tilt` over the scale.
     """
     figure = new_figure(_HEIGHT)
     axes = figure.subplots()
@@ -55,7 +55,7 @@ def plot_bands_of_one(found: xr.Dataset) -> Figure:
     axes.grid(visible=False)
     axes.set_title(_title(found), fontsize="small")
     tilts = Line2D([], [], color=BLACK, marker=".", markersize=4.0, linewidth=0.9, label="peak tilt where it survives")
-    handles = band_legend(found, hairlines=len(regions.hairlines), edges=regions.edges)
+    handles = interval_legend(found, hairlines=len(regions.hairlines), edges=regions.edges)
     figure.legend(handles=[*handles, tilts, *run_legend(counts, _DOT)], loc="outside lower center", ncols=3)
     return figure
 

@@ -8,7 +8,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from stylobate.earthquakes.figures.band_regions import (
+from stylobate.earthquakes.figures.interval_regions import (
     UNCERTAIN,
     UNKNOWN,
     UNRESOLVED,
@@ -16,11 +16,11 @@ from stylobate.earthquakes.figures.band_regions import (
     Regions,
     amplitude_ends,
     amplitude_label,
-    band_legend,
+    interval_legend,
     is_normalized,
     run_legend,
 )
-from stylobate.earthquakes.figures.bands_of_one import plot_bands_of_one
+from stylobate.earthquakes.figures.intervals_of_one import plot_intervals_of_one
 from stylobate.earthquakes.figures.spectrum_axes import Horizontal, finish, motion_names, named, split
 from stylobate.plots.cells import cell_edges, is_geometric, set_scale
 from stylobate.plots.kinds import figure_of
@@ -49,9 +49,9 @@ class _Marks:
     edges: bool = False
 
 
-@figure_of("overturning bands")
+@figure_of("overturning intervals")
 @styled
-def plot_overturning_bands(found: xr.Dataset) -> Figure:
+def plot_overturning_intervals(found: xr.Dataset) -> Figure:
     """Draw the overturning intervals of the amplitude, with a panel for each value of a second parameter.
 
     White means survival, dark overturning, hatched survival above an overturning interval, grey and cross-hatched
@@ -66,10 +66,10 @@ def plot_overturning_bands(found: xr.Dataset) -> Figure:
     ParameterError
         If the result has more than two parameters or more than four panels: choose some by `found.sel`.
     """
-    dims = [str(dim) for dim in found["bands"].dims]
-    along, panel = split(found, dims, _MOST_PANELS, "overturning bands")
+    dims = [str(dim) for dim in found["intervals"].dims]
+    along, panel = split(found, dims, _MOST_PANELS, "overturning intervals")
     if along is None or found.sizes[along] == 1:
-        return plot_bands_of_one(found.squeeze(dims))
+        return plot_intervals_of_one(found.squeeze(dims))
     count = 1 if panel is None else found.sizes[panel]
     figure = new_figure(_HEIGHT)
     rows = figure.subplots(1, count, sharey=True, squeeze=False)[0]
@@ -81,7 +81,7 @@ def plot_overturning_bands(found: xr.Dataset) -> Figure:
         if panel is not None:
             axes.set_title(named(found, panel, place))
     rows[0].set_ylabel(amplitude_label(found))
-    handles = band_legend(found, hairlines=marks.hairlines, edges=marks.edges)
+    handles = interval_legend(found, hairlines=marks.hairlines, edges=marks.edges)
     columns = 3 if marks.hairlines else 4
     figure.legend(handles=[*handles, *run_legend(marks.counts, _DOTS[1])], loc="outside lower center", ncols=columns)
     return figure

@@ -10,9 +10,9 @@ import numpy.typing as npt
 import xarray as xr
 
 from stylobate.base_motions import BaseMotion
-from stylobate.earthquakes.spectra.band_table import band_table
 from stylobate.earthquakes.spectra.cases import Cases
 from stylobate.earthquakes.spectra.edges import Edges, Ends, Integers, joined
+from stylobate.earthquakes.spectra.interval_table import interval_table
 from stylobate.earthquakes.spectra.provenance import provenance_of_spectrum
 from stylobate.engine.parameter_quantities import attributes_of
 from stylobate.errors import Interrupted, Most, ParameterError, require_positive, require_whole
@@ -31,7 +31,7 @@ _NARROWEST = 1e-9
 _FINEST = Most(1_000_000, "since each scale is a run")
 
 
-def overturning_bands(
+def overturning_intervals(
     model: Model,
     motion: BaseMotion,
     *,
@@ -84,10 +84,10 @@ def overturning_bands(
     Returns
     -------
     xarray.Dataset
-        Of kind "overturning bands": the runs over the names and `scale`, with `outcome`, `uncertain` and all that
-        ensembles hold; and over the names and `band`, from the weakest on, NaN beyond the last:
+        Of kind "overturning intervals": the runs over the names and `scale`, with `outcome`, `uncertain` and all that
+        ensembles hold; and over the names and `interval`, from the weakest on, NaN beyond the last:
 
-        * `band_from`, `band_to`: the smallest and the largest scale of the interval that overturned;
+        * `interval_from`, `interval_to`: the smallest and the largest scale of the interval that overturned;
         * `safe_below`, `safe_above`: the nearest scales outside that did not; NaN if the interval is `open_below` or
           `open_above`, reaching the first or last scale, or an undecided run, for which `undecided_below` or
           `undecided_above` is True;
@@ -96,7 +96,7 @@ def overturning_bands(
 
         A run that failed or lifted off is undecided: it ended before it showed whether the column overturns. No
         interval extends across it. Over the names and `stretch`: `undecided_from` and `undecided_to`, the nearest
-        decided scales on both sides, or the ends of the scan. `bands` counts intervals; `reversals` the changes of
+        decided scales on both sides, or the ends of the scan. `intervals` counts intervals; `reversals` the changes of
         direction in them without a surviving scale between; `unknown` the undecided runs of the scan; `decided_to` is
         the largest scale up to which every run was decided. Coordinates normalize: `frequency_parameter` p,
         `tipping_angle` α_c, `rim_distance` R, `acceleration_ratio` (peak horizontal base acceleration over g tan α, at
@@ -119,7 +119,7 @@ def overturning_bands(
 
     See Also
     --------
-    reached_bands : intervals of existing runs, as fine as their scales.
+    reached_intervals : intervals of existing runs, as fine as their scales.
 
     Notes
     -----
@@ -138,8 +138,8 @@ def overturning_bands(
     >>> import stylobate as sb
     >>> model = sb.Slender(sb.Column.dimensionless(slenderness=0.1), damping=0.1)
     >>> pulse = sb.Pulse.one_sine(acceleration=0.1, angular_frequency=5.0)
-    >>> found = sb.earthquakes.overturning_bands(model, pulse, scales=np.geomspace(1.0, 20.0, 21))
-    >>> print(found["band_from"].values.round(2), found["band_to"].values.round(2), found["open_above"].values)
+    >>> found = sb.earthquakes.overturning_intervals(model, pulse, scales=np.geomspace(1.0, 20.0, 21))
+    >>> print(found["interval_from"].values.round(2), found["interval_to"].values.round(2), found["open_above"].values)
     [2.57 7.72] [ 6.9 20. ] [False  True]
     """
     require_no_tilt_limit(options)
@@ -245,7 +245,7 @@ class _Search:
         computed = int((runs["outcome"] != NOT_COMPUTED).sum())
         step = float((self.scales[1:] / self.scales[:-1]).max())
         return (
-            band_table(self.cases, scan.reshaped((self.cases.count, self.scales.size)), edges)
+            interval_table(self.cases, scan.reshaped((self.cases.count, self.scales.size)), edges)
             .assign({**kept, "computed": ((), computed, {"units": "1", "long_name": "runs of the scan computed"})})
             .assign_coords(
                 {
@@ -255,7 +255,7 @@ class _Search:
                 }
             )
             .assign_attrs(
-                kind="overturning bands",
+                kind="overturning intervals",
                 provenance=self.provenance,
                 width=self.width,
                 scale_step=step - 1.0,

@@ -14,9 +14,9 @@ from stylobate.earthquakes.spectra.edges import Edges, Ends, Integers
 
 # Each annotation has the type of a field and its long name, an attribute of the result.
 @dataclass(frozen=True, slots=True)
-class _Band:
-    band_from: Annotated[float, "smallest scale of the interval that overturned"]
-    band_to: Annotated[float, "largest scale of the interval that overturned"]
+class _Interval:
+    interval_from: Annotated[float, "smallest scale of the interval that overturned"]
+    interval_to: Annotated[float, "largest scale of the interval that overturned"]
     safe_below: Annotated[float, "largest scale below the interval that did not overturn"] = np.nan
     safe_above: Annotated[float, "smallest scale above the interval that did not overturn"] = np.nan
     open_below: Annotated[bool, "the interval may begin lower: it reaches the first scale or an undecided run"] = False
@@ -33,21 +33,21 @@ class _Stretch:
     undecided_to: Annotated[float, "smallest decided scale above undecided runs, or the last scale"]
 
 
-def band_table(cases: Cases, scan: Ends, edges: Edges) -> xr.Dataset:
+def interval_table(cases: Cases, scan: Ends, edges: Edges) -> xr.Dataset:
     """Tabulate the overturning intervals and undecided stretches of each case.
 
     Returns
     -------
     xarray.Dataset
-        Over the axes and `band`, NaN beyond the last: the intervals. Over the axes and `stretch`: `undecided_from` and
-        `undecided_to`. Over the axes: the numbers of intervals, `reversals` and undecided runs, and `decided_to`.
+        Over the axes and `interval`, NaN beyond the last: the intervals. Over the axes and `stretch`: `undecided_from`
+        and `undecided_to`. Over the axes: the numbers of intervals, `reversals` and undecided runs, and `decided_to`.
     """
     own = [np.flatnonzero((edges.case == case) & ~edges.turns) for case in range(cases.count)]
-    bands = [_bands_of(scan[case], edges, chosen) for case, chosen in enumerate(own)]
+    intervals = [_intervals_of(scan[case], edges, chosen) for case, chosen in enumerate(own)]
     stretches = [_stretches_of(scan[case], edges, chosen) for case, chosen in enumerate(own)]
     dims = tuple(cases.axes)
     counts = {
-        "bands": ([len(row) for row in bands], "overturning intervals"),
+        "intervals": ([len(row) for row in intervals], "overturning intervals"),
         "reversals": (
             np.bincount(edges.case[edges.turns], minlength=cases.count),
             "changes of direction within the intervals, without a safe gap as wide as an edge",
@@ -55,7 +55,7 @@ def band_table(cases: Cases, scan: Ends, edges: Edges) -> xr.Dataset:
         "unknown": (np.count_nonzero(~scan.decided, axis=1), "undecided runs of the scan"),
     }
     table: dict[str, xr.Variable] = {}
-    for dim, kind, rows in (("band", _Band, bands), ("stretch", _Stretch, stretches)):
+    for dim, kind, rows in (("interval", _Interval, intervals), ("stretch", _Stretch, stretches)):
         for name, declared in get_type_hints(kind, include_extras=True).items():
             of, long_name = get_args(declared)
             attributes = {"long_name": long_name} if of is bool else {"units": "1", "long_name": long_name}
@@ -70,7 +70,7 @@ def band_table(cases: Cases, scan: Ends, edges: Edges) -> xr.Dataset:
     return xr.Dataset(table)
 
 
-def _column(rows: Sequence[Sequence[_Band]] | Sequence[Sequence[_Stretch]], name: str, of: type) -> Any:
+def _column(rows: Sequence[Sequence[_Interval]] | Sequence[Sequence[_Stretch]], name: str, of: type) -> Any:
     values: npt.NDArray[Any] = np.full(
         (len(rows), max(1, *(len(row) for row in rows))), False if of is bool else np.nan, dtype=of
     )
@@ -79,23 +79,23 @@ def _column(rows: Sequence[Sequence[_Band]] | Sequence[Sequence[_Stretch]], name
     return values
 
 
-def _bands_of(scan: Ends, edges: Edges, own: Integers) -> list[_Band]:
+def _intervals_of(scan: Ends, edges: Edges, own: Integers) -> list[_Interval]:
     """Return the overturning intervals of one case from its `own` edges; an interval ends at an undecided run."""
-    bands: list[_Band] = []
+    intervals: list[_Interval] = []
     begun: dict[str, Any] = {}
     if scan.state[0] == 1:
-        begun = {"band_from": float(scan.scale[0]), "open_below": True}
+        begun = {"interval_from": float(scan.scale[0]), "open_below": True}
     for edge in own:
         low, high = edges.low[edge], edges.high[edge]
         unsure = bool(low.uncertain | high.uncertain)
         if low.state == 1:
             outside = _outside("above", high, unsure=unsure)
-            bands.append(_Band(**begun, band_to=float(low.scale), **outside))
+            intervals.append(_Interval(**begun, interval_to=float(low.scale), **outside))
         if high.state == 1:
-            begun = {"band_from": float(high.scale), **_outside("below", low, unsure=unsure)}
+            begun = {"interval_from": float(high.scale), **_outside("below", low, unsure=unsure)}
     if scan.state[-1] == 1:
-        bands.append(_Band(**begun, band_to=float(scan.scale[-1]), open_above=True))
-    return bands
+        intervals.append(_Interval(**begun, interval_to=float(scan.scale[-1]), open_above=True))
+    return intervals
 
 
 def _outside(side: str, run: Ends, *, unsure: bool) -> dict[str, Any]:

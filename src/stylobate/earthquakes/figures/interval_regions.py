@@ -57,7 +57,7 @@ class Regions:
         Parameters
         ----------
         one
-            Bands over (case, band), runs over (case, scale).
+            Intervals over (case, interval), runs over (case, scale).
         factor
             Factor from scales to drawn amplitudes, shape (case,).
         edges
@@ -69,7 +69,7 @@ class Regions:
         boxes: dict[Look, Boxes] = {_EDGE: [], _AGAIN: [], _FALLEN: [], UNDECIDED: [], UNFINISHED: []}
         for place, (left, right) in enumerate(edges.tolist()):
             unit = float(factor[place])
-            own = _Intervals.of(one.isel({one["bands"].dims[0]: place}))
+            own = _Intervals.of(one.isel({one["intervals"].dims[0]: place}))
             first, last = unit * float(scales[0]), unit * float(scales[-1])
             boxes[UNFINISHED] += [(left, right, ends[0], first), (left, right, last, ends[1])]
             for look, intervals in own.looks(float(scales[-1])).items():
@@ -92,17 +92,17 @@ class Regions:
 
 @dataclass(frozen=True, slots=True)
 class _Intervals:
-    """Intervals of scales of one case: `bands`; `reach`, to the decided runs beside each band; `undecided`."""
+    """Intervals of scales of one case: `intervals`; `reach`, to the decided runs beside each interval; `undecided`."""
 
-    bands: list[tuple[float, float]]
+    intervals: list[tuple[float, float]]
     reach: list[tuple[float, float]]
     undecided: list[tuple[float, float]]
 
     @classmethod
     def of(cls, one: xr.Dataset) -> "_Intervals":
-        """Read the intervals from a table of bands without axes."""
+        """Read the intervals from a table of intervals without axes."""
         begin, end, below, above = (
-            one[name].to_numpy() for name in ("band_from", "band_to", "safe_below", "safe_above")
+            one[name].to_numpy() for name in ("interval_from", "interval_to", "safe_below", "safe_above")
         )
         outside = np.where(np.isnan(below), begin, below), np.where(np.isnan(above), end, above)
         stretch = one["undecided_from"].to_numpy(), one["undecided_to"].to_numpy()
@@ -112,14 +112,14 @@ class _Intervals:
         """Return the intervals of each look up to the `last` scale; the column survives at all other scales."""
         taken = sorted([*self.reach, *self.undecided])
         free = [(high, low) for (_, high), (low, _) in pairwise([*taken, (last, last)])]
-        lowest = min((low for low, _ in self.bands), default=np.inf)
+        lowest = min((low for low, _ in self.intervals), default=np.inf)
         sides = [
             side
-            for (low, high), (below, above) in zip(self.bands, self.reach, strict=True)
+            for (low, high), (below, above) in zip(self.intervals, self.reach, strict=True)
             for side in ((below, low), (high, above))
         ]
         again = [pair for pair in free if pair[0] > lowest]
-        return {_EDGE: sides, _AGAIN: again, _FALLEN: self.bands, UNDECIDED: self.undecided}
+        return {_EDGE: sides, _AGAIN: again, _FALLEN: self.intervals, UNDECIDED: self.undecided}
 
 
 def _finite(low: Floats, high: Floats) -> list[tuple[float, float]]:
@@ -145,7 +145,7 @@ def amplitude_label(found: xr.Dataset) -> str:
     return r"peak base acceleration $a/(c\,g)$" if is_normalized(found) else axis_label(found["scale"])
 
 
-def band_legend(found: xr.Dataset, *, hairlines: int, edges: bool) -> list[Patch | Line2D]:
+def interval_legend(found: xr.Dataset, *, hairlines: int, edges: bool) -> list[Patch | Line2D]:
     """Return the legend entries for the overturning intervals `found`."""
     entries: list[Patch | Line2D] = [
         Patch(label=name, **fill_options(look))

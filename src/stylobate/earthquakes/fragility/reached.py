@@ -13,7 +13,7 @@ from stylobate.earthquakes.fragility.observations import Data, Floats, Integers,
 from stylobate.errors import ParameterError
 
 
-def reached_bands(scale: Data, reached: Data, *, record: Data | None = None) -> xr.Dataset:
+def reached_intervals(scale: Data, reached: Data, *, record: Data | None = None) -> xr.Dataset:
     """Find the intervals of successive scales with the same verdict for each record, and whether it is monotonic.
 
     Intervals are as fine as the scales: changes between two scales are not seen.
@@ -30,11 +30,11 @@ def reached_bands(scale: Data, reached: Data, *, record: Data | None = None) -> 
     Returns
     -------
     xarray.Dataset
-        Of kind "reached bands". Over `record`: `monotone`, False if it survives above a scale that reached it;
+        Of kind "reached intervals". Over `record`: `monotone`, False if it survives above a scale that reached it;
         `first_reached` [as scale], NaN if none did; `last_safe`, NaN if none was; `safe_again`, the number of surviving
-        intervals above the first reached; `runs`. Over `band`, by record and scale: `band_record`, `band_reached`,
-        `band_from` and `band_to`, the first and last scale computed in it, and `band_runs`. Attribute
-        `non_monotone_share` of the records.
+        intervals above the first reached; `runs`. Over `interval`, by record and scale: `interval_record`,
+        `interval_reached`, `interval_from` and `interval_to`, the first and last scale computed in it, and
+        `interval_runs`. Attribute `non_monotone_share` of the records.
 
     Raises
     ------
@@ -43,8 +43,8 @@ def reached_bands(scale: Data, reached: Data, *, record: Data | None = None) -> 
 
     Examples
     --------
-    >>> found = reached_bands([1.0, 2.0, 3.0, 4.0], [False, True, False, True])
-    >>> found["monotone"].item(), found["band_from"].values.tolist(), found["band_reached"].values.tolist()
+    >>> found = reached_intervals([1.0, 2.0, 3.0, 4.0], [False, True, False, True])
+    >>> found["monotone"].item(), found["interval_from"].values.tolist(), found["interval_reached"].values.tolist()
     (False, [1.0, 2.0, 3.0, 4.0], [False, True, False, True])
     """
     seen = Observations.of(scale, reached, record)
@@ -56,17 +56,17 @@ def reached_bands(scale: Data, reached: Data, *, record: Data | None = None) -> 
     names = seen.records or ("all",)
     groups_of_runs = [(groups == place) & (state >= 0) for place in range(len(names))]
     parts = [
-        _bands_of(seen.intensity[runs], state[runs], name) for runs, name in zip(groups_of_runs, names, strict=True)
+        _intervals_of(seen.intensity[runs], state[runs], name) for runs, name in zip(groups_of_runs, names, strict=True)
     ]
-    flat = [(place, *band) for place, part in enumerate(parts) for band in part]
+    flat = [(place, *interval) for place, part in enumerate(parts) for interval in part]
     return _dataset(seen, names, parts, flat)
 
 
 # Reached, first scale, last scale, number of runs.
-Band: TypeAlias = tuple[bool, float, float, int]
+Interval: TypeAlias = tuple[bool, float, float, int]
 
 
-def _bands_of(scale: Floats, state: Integers, name: str) -> list[Band]:
+def _intervals_of(scale: Floats, state: Integers, name: str) -> list[Interval]:
     x, where = np.unique(scale, return_inverse=True)
     runs = np.bincount(where, minlength=x.size)
     hits = np.bincount(where, weights=state, minlength=x.size)
@@ -74,7 +74,7 @@ def _bands_of(scale: Floats, state: Integers, name: str) -> list[Band]:
     if torn.size:
         message = (
             f"reached must agree between runs of one record at one scale, got both at {float(x[torn[0]])!r} "
-            f"of record {name}; compute bands for each property sample separately"
+            f"of record {name}; compute intervals for each property sample separately"
         )
         raise ParameterError(message)
     if not x.size:
@@ -85,7 +85,10 @@ def _bands_of(scale: Floats, state: Integers, name: str) -> list[Band]:
 
 
 def _dataset(
-    seen: Observations, names: tuple[str, ...], parts: list[list[Band]], flat: list[tuple[int, bool, float, float, int]]
+    seen: Observations,
+    names: tuple[str, ...],
+    parts: list[list[Interval]],
+    flat: list[tuple[int, bool, float, float, int]],
 ) -> xr.Dataset:
     first = [min((low for hit, low, _, _ in part if hit), default=np.nan) for part in parts]
     safe = [max((high for hit, _, high, _ in part if not hit), default=np.nan) for part in parts]
@@ -102,16 +105,20 @@ def _dataset(
                 again,
                 {"units": "1", "long_name": "surviving intervals above the first reached"},
             ),
-            "runs": ("record", [sum(band[3] for band in part) for part in parts], {"units": "1", "long_name": "runs"}),
-            "band_record": ("band", columns[0].astype(np.int64), {"long_name": "index of the record"}),
-            "band_reached": ("band", columns[1].astype(bool), {"long_name": "reached the limit state"}),
-            "band_from": ("band", columns[2].astype(float), {**seen.attributes}),
-            "band_to": ("band", columns[3].astype(float), {**seen.attributes}),
-            "band_runs": ("band", columns[4].astype(np.int64), {"units": "1", "long_name": "runs"}),
+            "runs": (
+                "record",
+                [sum(interval[3] for interval in part) for part in parts],
+                {"units": "1", "long_name": "runs"},
+            ),
+            "interval_record": ("interval", columns[0].astype(np.int64), {"long_name": "index of the record"}),
+            "interval_reached": ("interval", columns[1].astype(bool), {"long_name": "reached the limit state"}),
+            "interval_from": ("interval", columns[2].astype(float), {**seen.attributes}),
+            "interval_to": ("interval", columns[3].astype(float), {**seen.attributes}),
+            "interval_runs": ("interval", columns[4].astype(np.int64), {"units": "1", "long_name": "runs"}),
         },
         coords={"record": list(names)},
         attrs={
-            "kind": "reached bands",
+            "kind": "reached intervals",
             "limit_state": seen.names[0],
             "non_monotone_share": float(np.mean(np.array(again) > 0)),
         },

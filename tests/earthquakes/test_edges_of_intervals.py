@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 import stylobate as sb
-from stylobate.earthquakes.spectra.band_table import band_table
 from stylobate.earthquakes.spectra.cases import Cases
 from stylobate.earthquakes.spectra.edges import Edges, Ends
+from stylobate.earthquakes.spectra.interval_table import interval_table
 
 MODEL = sb.Slender(sb.Column.dimensionless(0.1))
 PULSE = sb.Pulse.half_sine(acceleration=0.1, angular_frequency=2.0)
@@ -44,21 +44,21 @@ def searched(tell, scales, width):
     return scan, edges, runs
 
 
-def bands(scan, edges):
-    return band_table(Cases.of(MODEL, PULSE, None), scan, edges)
+def intervals(scan, edges):
+    return interval_table(Cases.of(MODEL, PULSE, None), scan, edges)
 
 
 SCALES = np.geomspace(1.0, 10.0, 11)
 
 
-def test_every_band_that_a_scale_falls_into_is_found_to_the_width():
+def test_every_interval_that_a_scale_falls_into_is_found_to_the_width():
     changes = [1.7, 2.9, 4.0, 6.5, 8.3]
     scan, edges, _ = searched(outcomes_of(changes), SCALES, 1e-6)
-    found = bands(scan, edges)
-    np.testing.assert_allclose(found["band_from"], [1.7, 4.0, 8.3], rtol=1e-6)
-    np.testing.assert_allclose(found["band_to"], [2.9, 6.5, 10.0], rtol=1e-6)
+    found = intervals(scan, edges)
+    np.testing.assert_allclose(found["interval_from"], [1.7, 4.0, 8.3], rtol=1e-6)
+    np.testing.assert_allclose(found["interval_to"], [2.9, 6.5, 10.0], rtol=1e-6)
     assert (found["safe_below"] < [1.7, 4.0, 8.3]).all()
-    assert (found["band_from"] > [1.7, 4.0, 8.3]).all()
+    assert (found["interval_from"] > [1.7, 4.0, 8.3]).all()
     assert (found["safe_above"][:2] > [2.9, 6.5]).all()
     assert found["open_above"].values.tolist() == [False, False, True]
     assert not found["open_below"].any()
@@ -66,16 +66,16 @@ def test_every_band_that_a_scale_falls_into_is_found_to_the_width():
 
 def test_a_gap_between_two_scales_shows_by_the_direction_on_either_side():
     scan, edges, _ = searched(outcomes_of([1.5, 4.1, 4.2, 20.0]), [1.0, 3.0, 9.0], 1e-4)
-    found = bands(scan, edges)
-    assert int(found["bands"]) == 2
-    np.testing.assert_allclose(found["band_to"][0], 4.1, rtol=1e-4)
-    np.testing.assert_allclose(found["band_from"][1], 4.2, rtol=1e-4)
+    found = intervals(scan, edges)
+    assert int(found["intervals"]) == 2
+    np.testing.assert_allclose(found["interval_to"][0], 4.1, rtol=1e-4)
+    np.testing.assert_allclose(found["interval_from"][1], 4.2, rtol=1e-4)
 
 
-def test_a_direction_that_turns_without_a_gap_leaves_one_band():
+def test_a_direction_that_turns_without_a_gap_leaves_one_interval():
     scan, edges, _ = searched(outcomes_of([1.5, 4.1, 4.1, 20.0]), [1.0, 3.0, 9.0], 1e-4)
-    found = bands(scan, edges)
-    assert int(found["bands"]) == int(found["reversals"]) == 1
+    found = intervals(scan, edges)
+    assert int(found["intervals"]) == int(found["reversals"]) == 1
     assert found["open_above"].item()
 
 
@@ -99,13 +99,13 @@ def test_the_halvings_announced_are_those_made():
     assert runs == between(tell(np.array([SCALES]))).halvings(1e-3)
 
 
-def test_undecided_runs_part_bands_and_are_halved_like_every_other_edge():
+def test_undecided_runs_part_intervals_and_are_halved_like_every_other_edge():
     # Overturns from 1.7 to 2.9 and from 4 to 6.5; undecided inside both, and where the second ends.
     hidden = [(2.1, 2.7), (5.0, 7.0)]
     scan, edges, _ = searched(outcomes_of([1.7, 2.9, 4.0, 6.5], unknown=hidden), SCALES, 1e-6)
-    found = bands(scan, edges)
-    np.testing.assert_allclose(found["band_from"], [1.7, 2.7, 4.0], rtol=1e-6)
-    np.testing.assert_allclose(found["band_to"], [2.1, 2.9, 5.0], rtol=1e-6)
+    found = intervals(scan, edges)
+    np.testing.assert_allclose(found["interval_from"], [1.7, 2.7, 4.0], rtol=1e-6)
+    np.testing.assert_allclose(found["interval_to"], [2.1, 2.9, 5.0], rtol=1e-6)
     assert found["open_above"].values.tolist() == found["undecided_above"].values.tolist() == [True, False, True]
     assert found["open_below"].values.tolist() == found["undecided_below"].values.tolist() == [False, True, False]
     # No edge to an undecided run is called safe on its other side.
@@ -123,26 +123,26 @@ def test_undecided_runs_part_bands_and_are_halved_like_every_other_edge():
     [([(0.0, 2.4)], np.nan, [(1.0, 2.4)]), ([(7.0, 20.0)], 7.0, [(7.0, 10.0)]), ([(0.0, 20.0)], np.nan, [(1.0, 10.0)])],
 )
 def test_undecided_runs_at_an_end_of_the_scan_reach_to_it(hidden, decided_to, stretches):
-    found = bands(*searched(outcomes_of([30.0], unknown=hidden), SCALES, 1e-6)[:2])
-    assert int(found["bands"]) == 0
+    found = intervals(*searched(outcomes_of([30.0], unknown=hidden), SCALES, 1e-6)[:2])
+    assert int(found["intervals"]) == 0
     np.testing.assert_allclose(found["decided_to"], decided_to, rtol=1e-6)
     shown = np.stack([found["undecided_from"], found["undecided_to"]], axis=-1)
     np.testing.assert_allclose(shown, stretches, rtol=1e-6)
 
 
 def test_a_scan_that_is_decided_throughout_has_no_undecided_stretch():
-    found = bands(*searched(outcomes_of([1.7, 2.9]), SCALES, 1e-3)[:2])
+    found = intervals(*searched(outcomes_of([1.7, 2.9]), SCALES, 1e-3)[:2])
     assert found["undecided_from"].isnull().all()
     assert float(found["decided_to"]) == SCALES[-1]
 
 
 @pytest.mark.parametrize("states", [[1, 1, 1], [UNKNOWN] * 3, [0, 0, 0]])
-def test_what_never_changes_has_one_band_or_none(states):
+def test_what_never_changes_has_one_interval_or_none(states):
     scan = Ends(np.array([[1.0, 2.0, 3.0]]), np.array([states]), np.zeros((1, 3)), np.zeros((1, 3), dtype=bool))
-    found = bands(scan, between(scan))
-    assert int(found["bands"]) == (1 if states[0] == 1 else 0)
+    found = intervals(scan, between(scan))
+    assert int(found["intervals"]) == (1 if states[0] == 1 else 0)
     if states[0] == 1:
         assert bool(found["open_below"].all() & found["open_above"].all())
-        assert (found["band_from"].item(), found["band_to"].item()) == (1.0, 3.0)
+        assert (found["interval_from"].item(), found["interval_to"].item()) == (1.0, 3.0)
     else:
-        assert found["band_from"].isnull().all()
+        assert found["interval_from"].isnull().all()

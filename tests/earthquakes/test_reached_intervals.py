@@ -8,38 +8,38 @@ from hypothesis import strategies as st
 
 import stylobate as sb
 from stylobate import Outcome
-from stylobate.earthquakes import fit_fragility, limit_states, reached_bands
+from stylobate.earthquakes import fit_fragility, limit_states, reached_intervals
 from stylobate.errors import ParameterError
 
 
 @given(st.lists(st.lists(st.booleans(), min_size=1, max_size=12), min_size=1, max_size=5), st.randoms())
-def test_bands_tell_every_run_whatever_their_order(series, random):
+def test_intervals_tell_every_run_whatever_their_order(series, random):
     runs = [(place, 1.0 + k, one) for place, states in enumerate(series) for k, one in enumerate(states)]
     random.shuffle(runs)
     record, scale, reached = (np.array(column) for column in zip(*runs, strict=True))
-    found = reached_bands(scale, reached, record=record)
-    assert int(found["band_runs"].sum()) == len(runs)
+    found = reached_intervals(scale, reached, record=record)
+    assert int(found["interval_runs"].sum()) == len(runs)
     for place, states in enumerate(series):
-        bands = found.isel(band=found["band_record"].values == place)
+        intervals = found.isel(interval=found["interval_record"].values == place)
         states_of_bands = np.concatenate(
-            [np.repeat(one["band_reached"], one["band_runs"]) for _, one in bands.groupby("band")]
+            [np.repeat(one["interval_reached"], one["interval_runs"]) for _, one in intervals.groupby("interval")]
         )
         assert states_of_bands.tolist() == states
         # Neighbours differ.
-        assert np.all(np.diff(bands["band_reached"].values.astype(int)) != 0)
+        assert np.all(np.diff(intervals["interval_reached"].values.astype(int)) != 0)
         assert bool(found["monotone"][place]) == (states == sorted(states))
         assert int(found["safe_again"][place]) == "".join("01"[one] for one in states).count("10")
 
 
 def test_first_reached_and_last_safe_enclose_what_is_not_monotone():
-    found = reached_bands([1.0, 2.0, 3.0, 4.0], [0, 1, 0, 1], record=["a"] * 4)
+    found = reached_intervals([1.0, 2.0, 3.0, 4.0], [0, 1, 0, 1], record=["a"] * 4)
     assert (found["first_reached"].item(), found["last_safe"].item()) == (2.0, 3.0)
     assert found.attrs["non_monotone_share"] == 1.0
     assert found["record"].values.tolist() == ["a"]
 
 
 def test_a_record_that_never_reached_it_has_no_first():
-    found = reached_bands([1.0, 2.0, 1.0, 2.0], [0, 0, 1, -1], record=[0, 0, 1, 1])
+    found = reached_intervals([1.0, 2.0, 1.0, 2.0], [0, 0, 1, -1], record=[0, 0, 1, 1])
     np.testing.assert_array_equal(found["first_reached"], [np.nan, 1.0])
     np.testing.assert_array_equal(found["last_safe"], [2.0, np.nan])
     assert found["runs"].values.tolist() == [2, 1]
@@ -47,7 +47,7 @@ def test_a_record_that_never_reached_it_has_no_first():
 
 def test_runs_that_disagree_are_refused():
     with pytest.raises(ParameterError, match=r"reached must agree .* at 1.0 of record all"):
-        reached_bands([1.0, 1.0], [0, 1])
+        reached_intervals([1.0, 1.0], [0, 1])
 
 
 def test_several_limit_states_are_refused_by_name():
@@ -55,7 +55,7 @@ def test_several_limit_states_are_refused_by_name():
         [[0], [1]], dims=("limit_state", "run"), coords={"limit_state": ["tilt 0.1 α", "overturning"]}
     )
     with pytest.raises(ParameterError, match=r"one limit state, got tilt 0\.1 α, overturning"):
-        reached_bands([1.0], reached)
+        reached_intervals([1.0], reached)
 
 
 def codes(*outcomes):
