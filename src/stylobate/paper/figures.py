@@ -49,8 +49,8 @@ def sketch() -> Figure:
         ("contact point on the rim, radius r", (0.1, -0.36)),
         (r"$\theta$", (foot[0] + 0.42, foot[1] + height * 1.08)),
     ):
-        side.annotate(text, place, fontsize=8)
-    side.annotate("acceleration of the base", (-1.6, -0.75), fontsize=8, va="center")
+        side.annotate(text, place, fontsize="small")
+    side.annotate("acceleration of the base", (-1.6, -0.75), fontsize="small", va="center")
     side.annotate("", (2.6, -0.75), (1.5, -0.75), arrowprops={"arrowstyle": "-|>", "color": BLACK, "linewidth": 1.6})
     angle = 0.9
     above.add_patch(Circle((0.0, 0.0), 1.0, fill=False, color=BLACK, linewidth=1.2))

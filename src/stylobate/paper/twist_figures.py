@@ -51,7 +51,7 @@ def twist_boundary(data: xr.Dataset) -> Figure:
         axes.set_xscale("log")
     least, limit = float(data["eta"][0]), data.attrs["weak_limit"]
     damping.plot(least, limit, "o", color=BLACK, clip_on=False)
-    damping.annotate(r"$\sqrt{1 + 2a_0/c}$", (least, limit), (0.0, 7.0), textcoords="offset points", fontsize=8.5)
+    damping.annotate(r"$\sqrt{1 + 2a_0/c}$", (least, limit), (0.0, 7.0), textcoords="offset points", fontsize="small")
     damping.set_ylim(0.0, 1.2 * limit)
     amplitude.set_xlim(0.0, float(data["a0"][-1]))
     for k, highest in enumerate(data["upper_limit"].to_numpy()):

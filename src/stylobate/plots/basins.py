@@ -96,7 +96,7 @@ def _draw_fractions(axes: Axes, found: xr.Dataset) -> None:
             xytext=(4, 0),
             textcoords="offset points",
             va="center",
-            fontsize=8.5,
+            fontsize="small",
         )
     bounds = np.maximum([fraction - low, high - fraction], 0.0)
     axes.errorbar(fraction, np.arange(len(classes)), xerr=bounds, fmt="none", ecolor=GREY, capsize=3, zorder=3)

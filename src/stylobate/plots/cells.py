@@ -7,12 +7,14 @@ from typing import Any, Literal
 import numpy as np
 import numpy.typing as npt
 from matplotlib.axes import Axes
-from matplotlib.colors import ListedColormap
+from matplotlib.colors import ListedColormap, to_rgb
+from matplotlib.font_manager import FontProperties
 from matplotlib.patches import Patch, PathPatch
 from matplotlib.path import Path
 from matplotlib.ticker import FormatStrFormatter, LogLocator, MaxNLocator, NullFormatter
 
 from stylobate.plots.classes import Look, MapClass
+from stylobate.plots.style import AS_DRAWN
 
 Floats = npt.NDArray[np.float64]
 Integers = npt.NDArray[np.integer]
@@ -26,6 +28,9 @@ _LEAST_FOR_SPACING = 3
 # of the cells within so many to each side: elsewhere the texture would look like noise. A class has no texture if
 # less than the last fraction of its cells qualifies.
 _FINE, _FILLED, _ABOUT, _LEAST = 60, 0.97, 4, 0.5
+# Names within areas: part of the panel that legend and labels leave, points per inch, width of a character of the font
+# size, room about a name [of its half width and height], and the brightness below which it is white.
+_PANEL, _POINTS, _CHARACTER, _ROOM, _DARK = 0.85, 72.0, 0.55, 1.2, 0.45
 
 
 def cell_edges(values: npt.ArrayLike) -> Floats:
@@ -73,11 +78,40 @@ def draw_cells(axes: Axes, x: npt.ArrayLike, y: npt.ArrayLike, codes: Integers, 
         inside = _coherent(places == place) if one.look.texture else np.zeros((1, 1), dtype=bool)
         if np.any(inside):
             axes.add_patch(_texture(_outline(x_edges, y_edges, inside), one.look))
+    _name_areas(axes, x_edges, y_edges, places, classes)
     set_scale(axes, "x", x)
     set_scale(axes, "y", y)
     axes.set_xlim(x_edges[0], x_edges[-1])
     axes.set_ylim(y_edges[0], y_edges[-1])
     axes.grid(visible=False)
+
+
+def _name_areas(axes: Axes, x_edges: Floats, y_edges: Floats, places: Integers, classes: Sequence[MapClass]) -> None:
+    """Write the name of each class into its widest area, where the area has room for it."""
+    from scipy.ndimage import distance_transform_edt  # noqa: PLC0415  slow to import, and only maps need it
+
+    rows, columns = places.shape
+    figure = axes.get_figure(root=True)
+    assert figure is not None
+    extent = axes.get_position()
+    width, height = (
+        _PANEL * _POINTS * part * side
+        for part, side in zip((extent.width, extent.height), figure.get_size_inches(), strict=True)
+    )
+    size = float(FontProperties(size="small").get_size_in_points())
+    for place, one in enumerate(classes):
+        inside = np.pad(places == place, 1)  # the frame bounds an area too
+        # Cells to each side of the middle that the name covers.
+        across = int(np.ceil(0.5 * _CHARACTER * size * (len(one.name) + 2) * columns / width))
+        along = int(np.ceil(0.9 * size * rows / height))
+        room = distance_transform_edt(inside, sampling=(1.0 / along, 1.0 / across))
+        row, column = np.unravel_index(int(np.argmax(room)), room.shape)
+        if room[row, column] < _ROOM:
+            continue
+        red, green, blue = to_rgb(one.look.colour)
+        ink = "#ffffff" if 0.3 * red + 0.6 * green + 0.1 * blue < _DARK else "#222222"
+        middle = x_edges[column - 1 : column + 1].mean(), y_edges[row - 1 : row + 1].mean()
+        axes.annotate(one.name, middle, ha="center", va="center", fontsize="small", color=ink, gid=AS_DRAWN)
 
 
 def set_scale(axes: Axes, name: Literal["x", "y"], values: npt.ArrayLike) -> None:

@@ -7,7 +7,9 @@ tenth of its range or more; textures tell the others apart in print without colo
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
+import numpy as np
 import xarray as xr
+from matplotlib.colors import to_hex, to_rgb
 
 from stylobate.errors import Outcome
 from stylobate.results.outcomes import NOT_COMPUTED
@@ -15,27 +17,32 @@ from stylobate.results.outcomes import NOT_COMPUTED
 
 @dataclass(frozen=True, slots=True)
 class Look:
-    """A fill `colour`, and a `texture` (a hatch of Matplotlib) drawn on it in the colour `ink`."""
+    """A fill `colour`, and a `texture` (a hatch of Matplotlib) drawn on it in the colour `ink`, by default faint."""
 
     colour: str
     texture: str = ""
-    ink: str = "#ffffff"
+    ink: str = ""
+
+    def __post_init__(self) -> None:
+        if not self.ink:
+            red, green, blue = to_rgb(self.colour)
+            towards = 0.0 if 0.3 * red + 0.6 * green + 0.1 * blue > _DARK else 1.0
+            mixed = ((1.0 - _FAINT) * np.array([red, green, blue]) + _FAINT * towards).tolist()
+            object.__setattr__(self, "ink", to_hex(mixed))
 
 
-# Lightness L* in steps of ten, from standing to falling: 95, 85, 74, 63, 51, 41, then 5.
-_CREAM, _LILAC, _SKY, _AMBER, _SEA, _BLUE, _NIGHT = (
-    "#F6F1DA", "#DAD2E8", "#74C0EA", "#D58900", "#008B65", "#0063A0", "#1B0B16",
+# Contrast of a texture to its fill, and the brightness below which it is lighter than the fill.
+_FAINT, _DARK = 0.3, 0.25
+# Lightness L* in steps of ten, from standing to falling: 95, 84, 74, 63, 51, 41, then 5.
+_CREAM, _LEAF, _SKY, _AMBER, _SEA, _BLUE, _NIGHT = (
+    "#F6F1DA", "#B5D9BE", "#74C0EA", "#D58900", "#008B65", "#0063A0", "#1B0B16",
 )  # fmt: skip
-_MAUVE, _ROSE, _MINT = "#A4558C", "#DDA6CD", "#7CCDB4"
-_GREY, _SAND = "#767676", "#E5BE8F"
-_DARK_INK, _LILAC_INK = "#333333", "#8E7DA3"
+_MAUVE, _ROSE, _MINT, _PURPLE = "#A4558C", "#DDA6CD", "#7CCDB4", "#6E4A9E"
+_GREY, _SAND, _LILAC, _STEEL = "#767676", "#E5BE8F", "#DAD2E8", "#4F9BD0"
 
-_AT_REST, _ROCKING = Look(_CREAM, ink=_DARK_INK), Look(_SKY, ink=_DARK_INK)
-_SLIDING = Look(_SAND, "--", _DARK_INK)
-_ROLLING, _ROLLING_BACK = Look(_AMBER, ink=_DARK_INK), Look(_BLUE, "\\\\\\")
-_MODULATED, _MODULATED_BACK = Look(_SEA, "..."), Look(_MINT, "ooo", _DARK_INK)
-_APERIODIC, _MIXED = Look(_MAUVE, "---"), Look(_MAUVE, "+++")
-_UNSETTLED, _OVERTURNED = Look(_LILAC, "xx", _LILAC_INK), Look(_NIGHT)
+_AT_REST, _ROCKING, _OVERTURNED = Look(_CREAM), Look(_SKY), Look(_NIGHT)
+_ROLLING, _MODULATED, _APERIODIC = Look(_AMBER), Look(_SEA), Look(_MAUVE, "\\\\")
+_UNSETTLED, _SLIDING, _FLYING = Look(_LILAC, "--"), Look(_SAND, "||"), Look(_GREY, "||")
 UNFINISHED = Look("#ffffff", "//////", "#b0b0b0")
 """Runs that are not computed: white, finely hatched."""
 
@@ -44,29 +51,29 @@ OUTCOME_LOOKS = {
     Outcome.AT_REST: _AT_REST,
     Outcome.ROCKING: _ROCKING,
     Outcome.ROLLING: _ROLLING,
-    Outcome.PERIODIC: replace(_ROCKING, texture="///"),
+    Outcome.PERIODIC: Look(_STEEL, "//"),
     Outcome.MODULATED: _MODULATED,
-    Outcome.APERIODIC: _MIXED,
-    Outcome.SURVIVED: Look(_CREAM, "...", _LILAC_INK),
+    Outcome.APERIODIC: _APERIODIC,
+    Outcome.SURVIVED: Look(_LEAF),
     Outcome.STILL_MOVING: _UNSETTLED,
     Outcome.OVERTURNED: _OVERTURNED,
-    Outcome.LIMIT_REACHED: replace(_OVERTURNED, texture="///"),
-    Outcome.LIFTED_OFF: Look(_GREY, "**"),
+    Outcome.LIMIT_REACHED: replace(_OVERTURNED, texture="//"),
+    Outcome.LIFTED_OFF: _FLYING,
     Outcome.SLID: _SLIDING,
-    Outcome.STOPPED: Look("#ffffff", "oo", _GREY),
-    Outcome.FAILED: Look("#ffffff", "xxx", "#D55E00"),
+    Outcome.STOPPED: Look("#ffffff", ".."),
+    Outcome.FAILED: Look("#ffffff", "xx", "#D55E00"),
 }
 
 KIND_LOOKS = {
     "at rest": _AT_REST,
     "rocking": _ROCKING,
     "rolling anticlockwise": _ROLLING,
-    "rolling clockwise": _ROLLING_BACK,
+    "rolling clockwise": Look(_BLUE),
     "modulated anticlockwise": _MODULATED,
-    "modulated clockwise": _MODULATED_BACK,
+    "modulated clockwise": Look(_MINT, "\\\\"),
     "aperiodic anticlockwise": _APERIODIC,
-    "aperiodic clockwise": Look(_ROSE, "|||", _DARK_INK),
-    "aperiodic": _MIXED,
+    "aperiodic clockwise": Look(_ROSE, "||"),
+    "aperiodic": Look(_PURPLE, "--"),
     "overturned": _OVERTURNED,
     "tilt limit reached": OUTCOME_LOOKS[Outcome.LIMIT_REACHED],
     "lifted off": OUTCOME_LOOKS[Outcome.LIFTED_OFF],
@@ -74,7 +81,7 @@ KIND_LOOKS = {
     "not settled": _UNSETTLED,
 }
 # Textures of the second, third … attractor of a kind; after the last texture the first one follows.
-_MORE_TEXTURES = ("///", "...", "|||", "---", "ooo", "+++")
+_MORE_TEXTURES = ("//", "..", "||", "--", "\\\\", "++")
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,7 +108,7 @@ def outcome_classes() -> tuple[MapClass, ...]:
 
 def contact_classes(found: xr.Dataset) -> tuple[MapClass, ...]:
     """Return the classes of a contact map, from standing to falling, and last the class of runs not computed."""
-    looks = (_AT_REST, _SLIDING, _ROCKING, _ROLLING_BACK, Look(_GREY, "**"), _OVERTURNED)
+    looks = (_AT_REST, _SLIDING, _ROCKING, Look(_BLUE), _FLYING, _OVERTURNED)
     return (*classes_of(found["class_name"].to_numpy(), (*looks, OUTCOME_LOOKS[Outcome.FAILED])), UNFINISHED_CLASS)
 
 

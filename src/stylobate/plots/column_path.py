@@ -158,7 +158,7 @@ def _draw_ground(axes: Axes, view: View, low: Floats, high: Floats, unit: str) -
             textcoords="offset points",
             ha="center",
             va="center",
-            fontsize=8,
+            fontsize="small",
         )
 
 
@@ -244,7 +244,7 @@ def _draw_plan(
                 textcoords="offset points",
                 ha="center",
                 va="center",
-                fontsize=7,
+                fontsize="x-small",
                 bbox={"facecolor": "white", "alpha": 0.7, "linewidth": 0.0, "pad": 0.6},
             )
     axes.set_xlim(low[0], high[0])

@@ -1,15 +1,23 @@
 """`plot`: draw any result as the figure of its kind."""
 
-from collections.abc import Sequence
-from typing import Protocol, runtime_checkable
+from collections.abc import Callable, Sequence
+from typing import Any, Protocol, TypeAlias, runtime_checkable
 
 import xarray as xr
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from stylobate.base_motions import BaseMotion
+from stylobate.column import Column
 from stylobate.errors import ParameterError
+from stylobate.models import Model
+from stylobate.plots.base_motion import plot_motion
 from stylobate.plots.bifurcation_curves import plot_bifurcation_curves
 from stylobate.plots.branches import plot_branches
+from stylobate.plots.column_sketch import plot_column
 from stylobate.plots.kinds import figure_for
+from stylobate.plots.orbit import Orbit, plot_orbit
+from stylobate.plots.result_figure import drawing
 from stylobate.plots.runs import plot_runs
 from stylobate.results import Assessment, Response, Verdict
 
@@ -26,31 +34,60 @@ class HasPoints(Protocol):
         """Its points as data."""
 
 
+_OBJECTS: tuple[tuple[type, Callable[[Any], Figure]], ...] = (
+    (Column, plot_column),
+    (Model, lambda model: plot_column(model.column)),
+    (BaseMotion, plot_motion),
+    (Orbit, plot_orbit),
+)
+
+Plotted: TypeAlias = Column | Model | BaseMotion | Response | Verdict | xr.Dataset | HasPoints | Orbit
+
+
 def plot(
-    result: Response | Verdict | xr.Dataset | HasPoints | Sequence[Response] | Sequence[HasPoints],
+    result: Plotted | Sequence[Response] | Sequence[HasPoints],
     *,
     labels: Sequence[str] | None = None,
+    size: float | tuple[float, float] | None = None,
+    axes: Axes | None = None,
 ) -> Figure:
     """Draw a result as the figure of its kind.
 
     Parameters
     ----------
     result
-        A run, several runs to compare, a verdict, the Dataset of a study, or one or several branches of orbits or
-        curves of bifurcations. A sweep over two dimensions is drawn as a map, finished or not.
+        A column (or a model, for its column), a base motion, a record, a run or several runs to compare, a verdict, a
+        periodic orbit, one or several branches of orbits or curves of bifurcations, or the Dataset of an ensemble or a
+        study. Runs over one dimension are drawn as points, over two as a map, finished or not.
     labels
-        A name for each of several runs, branches or curves; by default the outcomes of runs and the kinds of curves.
+        A name for each of several runs, branches or curves; by default what varies between the runs, or the kinds of
+        the curves.
+    size
+        Width of the figure, or width and height [inches]; by default 7.2 inches with a height that suits the content.
+        A figure of 3.5 inches, a column of a journal, has its panels and legends below each other.
+    axes
+        Axes to draw in, for results of one panel; of a run the tilt is drawn.
 
     Returns
     -------
     matplotlib.figure.Figure
-        A figure of its own, drawn without pyplot; show it in a notebook or save it with `savefig`.
+        The figure, drawn without pyplot: a notebook displays it, `show` opens a window, `savefig` saves it. It follows
+        Matplotlib's settings (`rcParams`, styles), also dark ones. With `axes`, their figure.
 
     Raises
     ------
     ParameterError
-        If no figure is registered for results of this kind; see `stylobate.plots.figure_of`.
+        If no figure is registered for results of this kind (see `stylobate.plots.figure_of`), or axes are given for a
+        figure of several panels.
     """
+    with drawing(size, axes):
+        return _drawn(result, labels)
+
+
+def _drawn(result: Any, labels: Sequence[str] | None) -> Figure:
+    for kind, draw_one in _OBJECTS:
+        if isinstance(result, kind):
+            return draw_one(result)
     if isinstance(result, Verdict):
         result = result.data
     results: Sequence[object] = result if isinstance(result, Sequence) else [result]
@@ -68,7 +105,7 @@ def plot(
         message = "result must have one figure, got an Assessment. Write its report by earthquakes.assessment_report"
         raise ParameterError(message)
     message = (
-        f"result must be a run, a branch, a curve, a sequence of one of these or the result of a study, "
-        f"got {type(result).__name__}"
+        "result must be a column, a base motion, a run, an orbit, a branch, a curve, a sequence of runs, branches or "
+        f"curves, or the result of a study, got {type(result).__name__}"
     )
     raise ParameterError(message)

@@ -88,7 +88,13 @@ def _draw_histories(axes: Axes, shown: xr.Dataset, c: float) -> None:
     axes.axhline(c, color=GREY, linewidth=0.9, linestyle=(0, (4, 2)))
     axes.set_ylim(0.0, 1.05 * max(c, min(float(shown["amplitude"].max()), 3.0 * c)))
     axes.annotate(
-        r"$\theta = c$", (1.0, c), xycoords=("axes fraction", "data"), ha="right", va="bottom", fontsize=8, color=GREY
+        r"$\theta = c$",
+        (1.0, c),
+        xycoords=("axes fraction", "data"),
+        ha="right",
+        va="bottom",
+        fontsize="small",
+        color=GREY,
     )
     axes.set_ylabel(r"tilt $\theta$ [rad]")
     axes.set_xlabel(axis_label(shown["time"]))
@@ -120,7 +126,7 @@ def _draw_tilts(axes: Axes, found: xr.Dataset, c: float) -> None:
     axes.set_ylim(-0.6, place.size - 0.1)
     axes.set_xlim(left=0.0)
     axes.set_xlabel(r"tilt $\theta/c$")
-    axes.legend(loc="upper right", ncols=2, fontsize=7.5, borderpad=0.1, handletextpad=0.1, columnspacing=0.8)
+    axes.legend(loc="upper right", ncols=2, fontsize="small", borderpad=0.1, handletextpad=0.1, columnspacing=0.8)
 
 
 def _draw_dots(axes: Axes, place: np.ndarray, values: np.ndarray, models: np.ndarray, *, filled: bool) -> None:
@@ -145,7 +151,7 @@ def _draw_demands(axes: Axes, found: xr.Dataset) -> None:
     axes.set_ylim(-0.6, place.size - 0.1)
     axes.set_xlim(left=0.0)
     axes.set_xlabel("peak contact demand")
-    axes.legend(loc="upper left", ncols=3, fontsize=7.5, borderpad=0.1, handletextpad=0.1, columnspacing=0.8)
+    axes.legend(loc="upper left", ncols=3, fontsize="small", borderpad=0.1, handletextpad=0.1, columnspacing=0.8)
 
 
 def _draw_convergence(axes: Axes, found: xr.Dataset) -> None:
@@ -164,7 +170,7 @@ def _draw_convergence(axes: Axes, found: xr.Dataset) -> None:
     axes.plot(c, guide, color=GREY, linewidth=0.8, linestyle=(0, (4, 2)), label="proportional to $c^2$")
     axes.set_xscale("log")
     axes.set_yscale("log")
-    axes.legend(loc="upper left", bbox_to_anchor=(0.0, 0.93), fontsize=7)
+    axes.legend(loc="upper left", bbox_to_anchor=(0.0, 0.93), fontsize="x-small")
     _set_slendernesses(axes, c)
     axes.set_ylabel(r"maximum distance of tilts over $c$")
 
@@ -182,7 +188,7 @@ def _draw_over_slenderness(axes: Axes, found: xr.Dataset) -> None:
     _set_slendernesses(axes, c)
     axes.set_ylim(0.0, 1.1 * top or 1.0)
     axes.set_ylabel(r"late mean tilt $\theta/c$")
-    axes.legend(fontsize=7.5)
+    axes.legend(fontsize="small")
 
 
 def _set_slendernesses(axes: Axes, c: np.ndarray) -> None:

@@ -80,9 +80,9 @@ def in_own_units(result: _Result) -> _Result:
         A run, the Dataset of a study, or a sequence of either.
     """
     found: Any = result
-    if isinstance(found, Response) and _is_dimensionless(found.provenance):
+    if isinstance(found, Response) and is_dimensionless(found.provenance):
         found = replace(found, data=_relabelled(found.data))
-    elif isinstance(found, xr.Dataset) and _is_dimensionless(json.loads(found.attrs.get("provenance", "{}"))):
+    elif isinstance(found, xr.Dataset) and is_dimensionless(json.loads(found.attrs.get("provenance", "{}"))):
         found = _relabelled(found)
     elif isinstance(found, Sequence) and any(isinstance(one, Response | xr.Dataset) for one in found):
         found = [in_own_units(one) for one in found]
@@ -103,7 +103,7 @@ def with_literal_names(data: xr.Dataset) -> xr.Dataset:
     )
 
 
-def _is_dimensionless(provenance: Mapping[str, Any]) -> bool:
+def is_dimensionless(provenance: Mapping[str, Any]) -> bool:
     """Return whether a result has a column with m = g = ω0 = 1; two compared models have the same column."""
     column = provenance.get("column") or provenance.get("first", {}).get("column") or {}
     try:

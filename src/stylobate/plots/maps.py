@@ -29,7 +29,7 @@ _MOST_MARKED = 0.2
 _MAP_WIDTH = 330.0
 
 
-@figure_of("ensemble", "sweep", "overturning map")
+@figure_of("overturning map")
 @styled
 def plot_map(runs: xr.Dataset) -> Figure:
     """Return a figure of the outcomes over two parameters.

@@ -1,19 +1,22 @@
-"""Figures of single runs: tilt against time, orbit of the tilt vector, azimuth; one run or several compared."""
+"""Figures of runs: what moves against time, and the path of the tilt vector; one run, or several compared."""
 
-import textwrap
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
 import xarray as xr
+from matplotlib import colormaps
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Circle
 
 from stylobate.plots.contact_strip import ContactHistory, draw_contact
-from stylobate.plots.labels import axis_label
+from stylobate.plots.labels import axis_label, unit_label
+from stylobate.plots.pose import Floats
+from stylobate.plots.result_figure import InAxes, ResultFigure, heading
 from stylobate.plots.style import BLACK, DASHES, GREY, PALETTE, new_figure, styled
+from stylobate.plots.varied import what_varies
 from stylobate.results import Response
 
 _EVENT_NAMES = {
@@ -24,188 +27,329 @@ _EVENT_NAMES = {
     "lifted": "lifted off",
     "failed": "failed",
 }
-# Heights of a panel, of a row of kinds of contact, and of the margin about the rows [inches].
-_PANEL, _ROW, _GAP = 1.75, 0.19, 0.3
-# If the base does not move, two panels have the height of three, as the path beside them needs.
-_HIGH_PANEL = 1.5 * _PANEL
+# Heights of the panels, of a row of kinds of contact, and of the margin about the rows [inches].
+_HEIGHTS = {"tilt": 1.75, "azimuth": 1.45, "travel": 1.45, "clearance": 1.0, "twist": 1.0, "base": 1.55, "path": 3.0}
+_ROW, _GAP = 0.19, 0.3
+# Minimum height of all panels against time, if the path of the tilt vector stands beside them [inches].
+_BESIDE_PATH = 3.9
 # The name of an event later than this fraction of the run is written to its left.
 _LATE = 0.8
 # Tolerance for rounding: a direction with no more than this fraction along x is the direction of y.
 _ALONG_Y = 1e-9
-# Margin about the orbit, and characters in a line of the reason beside it.
-_ROOM, _LINE = 1.08, 46
-_MOST_REASONS = 2
-_DASHED = (0, (4, 2))
-_LIMIT: dict[str, Any] = {"color": GREY, "linewidth": 0.9, "linestyle": _DASHED}
+# Movements within this of the largest are rounding; movements below this fraction of the radius are not drawn.
+_ROUNDING, _SMALL = 1e-9, 1e-3
+# A line with more turning points than this looks like a solid block: its extremes in so many intervals are drawn.
+_TURNS, _INTERVALS = 150, 240
+# Margin about the orbit.
+_ROOM = 1.08
+_LIMIT: dict[str, Any] = {"color": GREY, "linewidth": 0.9, "linestyle": (0, (4, 2))}
 
 
 @styled
 def plot_runs(runs: Sequence[Response], labels: Sequence[str] | None = None) -> Figure:
     """Return a figure of one run, or of several compared.
 
-    The panels show the tilt angle, the azimuth of the lean (for planar motion: the tilt with its sign) and the base
-    acceleration against time, and the path of the tilt vector. Dashed lines show θ = c, beyond which the column falls
-    on a base at rest, and the acceleration c g at which it uplifts. For one run of a model that changes its contact, a
-    strip shows the contact history. The text below the path is the reason for the outcome, or a key to several runs.
+    The panels show what moves, against time: the tilt (for planar motion with its sign), the azimuth of the lean,
+    travel and clearance of parts that slide and fly, their turn about the axis, and the acceleration of the base;
+    beside them the path of the tilt vector. Dashed lines show the tilt c, beyond which the column falls on a base at
+    rest, and the acceleration c g at which it uplifts. For one run of a model that changes its contact, a strip shows
+    the contact history. A curve that would be a solid block is drawn between its extremes. In given axes only the tilt
+    is drawn.
 
     Parameters
     ----------
     runs
         The runs, at least one.
     labels
-        A name for each; by default its outcome.
+        A name for each; by default the values that differ between the runs.
     """
-    names = labels or [run.outcome.label for run in runs]
-    contact = ContactHistory.of(runs[0]) if len(runs) == 1 and "contact" in runs[0].data else None
-    shaken = any(bool((run.data["base_acceleration"] != 0.0).any()) for run in runs)
-    figure, axes = _panels(contact, shaken=shaken)
-    tilt, azimuth, orbit = axes["tilt"], axes["azimuth"], axes["orbit"]
+    names = list(labels or what_varies(runs))
     planar = all(run.planar for run in runs)
-    for index, (run, name) in enumerate(zip(runs, names, strict=True)):
-        line: dict[str, Any] = {
-            "color": PALETTE[index % len(PALETTE)],
-            "linestyle": DASHES[index % len(DASHES)] if index else "-",
-        }
-        time = run.data["time"]
-        tilt.plot(time, run.data["amplitude"], linewidth=1.1, label=name, **line)
-        azimuth.plot(
-            time, _signed_tilt(run.data) if planar else run.data["azimuth"] / (2.0 * np.pi), linewidth=1.1, **line
-        )
-        if shaken:  # later runs below, so that weaker ones stay visible
-            acceleration = np.hypot(*run.data["base_acceleration"].to_numpy()[:, :2].T)
-            axes["base"].plot(time, acceleration, linewidth=0.9, zorder=2.0 - 0.01 * index, **line)
-        _draw_orbit(orbit, run.data, line)
-        if len(runs) == 1:
-            _mark_events(tilt, run)
-    limits = {float(run.data.attrs["slenderness"]) for run in runs}
-    for c in limits:
-        tilt.axhline(c, **_LIMIT)
-        orbit.add_patch(Circle((0.0, 0.0), c, fill=False, **_LIMIT))
-    if shaken:
-        for level in {float(run.data.attrs["uplift_acceleration"]) for run in runs}:
-            axes["base"].axhline(level, **_LIMIT)
-        axes["base"].set_ylabel(axis_label(runs[0].data["base_acceleration"]))
-    axes["base" if shaken else "azimuth"].set_xlabel(axis_label(runs[0].data["time"]))
-    azimuth.set_ylabel("tilt along its line [rad]" if planar else r"azimuth $\beta$ [turns]")
-    _finish(tilt, orbit, max(limits), runs)
-    _write_key(axes["notes"], runs, names, shaken=shaken)
+    panels = _panels(runs, planar=planar)
+    figure, axes = _arranged(panels)
+    lines = _looks(runs)
+    draw = _DRAWN | {"tilt": _draw_signed_tilt if planar else _draw_tilt}
+    for run, line in zip(runs, lines, strict=True):
+        for name in axes.keys() - {"contact", "base"}:
+            draw[name](axes[name], run, line)
+    if "base" in axes:
+        for run, line in _with_other_bases(runs, lines):
+            _draw_base(axes["base"], run, line)
+    _finish(axes, runs, planar=planar)
+    if len(runs) == 1:
+        if "contact" in axes and (history := panels.get("contact")) is not None:
+            draw_contact(axes["contact"], history)
+        if "tilt" in axes:
+            _mark_events(axes["tilt"], runs[0], planar=planar)
+    _write(figure, runs, names, lines)
     return figure
 
 
-def _panels(contact: ContactHistory | None, *, shaken: bool) -> tuple[Figure, dict[str, Axes]]:
-    """Return a figure and its panels by name; contact and base have panels only if they change or move."""
-    panel = _PANEL if shaken else _HIGH_PANEL
-    heights = {"tilt": panel, "contact": 0.0, "azimuth": panel, "base": panel}
-    if contact is None:
-        del heights["contact"]
+def _panels(runs: Sequence[Response], *, planar: bool) -> dict[str, Any]:
+    """Return the names of the panels that show something, in their order, with the contact history."""
+    tilted = any(float(run.data["amplitude"].max()) > 0.0 for run in runs)
+    found: dict[str, Any] = dict.fromkeys(["tilt"] if tilted else [])
+    if len(runs) == 1 and "contact" in runs[0].data:
+        found["contact"] = ContactHistory.of(runs[0])
+    if tilted and not planar:
+        found |= {"azimuth": None, "path": None}
+    found |= dict.fromkeys(name for name in ("travel", "clearance", "twist") if any(_moves(run, name) for run in runs))
+    if any(bool((run.data["base_acceleration"] != 0.0).any()) for run in runs):
+        found["base"] = None
+    return found or {"tilt": None}
+
+
+def _moves(run: Response, name: str) -> bool:
+    """Whether the column slides, flies or turns about its axis far enough to be seen."""
+    data, radius = run.data, float(run.data.attrs.get("base_radius", 1.0))
+    if "contact" not in data:
+        return False
+    moved = {"travel": "footprint"}.get(name, name)
+    return float(np.abs(data[moved]).max()) > _SMALL * (1.0 if name == "twist" else radius)
+
+
+def _arranged(panels: Mapping[str, Any]) -> tuple[Figure, dict[str, Axes]]:
+    """Return a figure and its panels by name: those against time below each other, the path beside or below them."""
+    heights = {name: _HEIGHTS.get(name, 0.0) for name in panels}
+    if panels.get("contact") is not None:
+        heights["contact"] = _GAP + _ROW * len(panels["contact"].shown)
+    along = [name for name in heights if name != "path"]
+    total = sum(heights[name] for name in along)
+    beside = "path" in heights
+    figure = new_figure(max(total, _BESIDE_PATH if beside else 2.4))
+    if isinstance(figure, InAxes):
+        return figure, {"tilt": figure.subplots()}
+    assert isinstance(figure, ResultFigure)
+    if beside and figure.narrow:
+        figure.grow(heights["path"])
+        rows: list[Any] = [[name] for name in [*along, "path"]]
+        options: dict[str, Any] = {"height_ratios": [heights[name] for name in [*along, "path"]]}
     else:
-        heights["contact"] = _GAP + _ROW * len(contact.shown)
-    if not shaken:
-        del heights["base"]
-    figure = new_figure(sum(heights.values()))
-    *upper, lowest = heights
-    rows: list[Any] = [*([name, "orbit"] for name in upper), [lowest, "notes"]]
-    axes = figure.subplot_mosaic(
-        rows,
-        width_ratios=(1.15, 1.0),
-        height_ratios=list(heights.values()),
-    )
-    for name in heights:
-        if name != "tilt":
-            axes[name].sharex(axes["tilt"])
-        if name != lowest:
+        rows = [[name, "path"] if beside else [name] for name in along]
+        options = {"height_ratios": [heights[name] for name in along]}
+        options |= {"width_ratios": (1.25, 1.0)} if beside else {}
+    axes = figure.subplot_mosaic(rows, **options)
+    for name in along:
+        if name != along[0]:
+            axes[name].sharex(axes[along[0]])
+        if name != along[-1]:
             axes[name].tick_params(axis="x", labelbottom=False)
-    if contact is not None:
-        draw_contact(axes["contact"], contact)
     return figure, axes
 
 
-def _draw_orbit(axes: Axes, data: xr.Dataset, line: dict[str, Any]) -> None:
-    x, y = data["tilt"].sel(axis="x"), data["tilt"].sel(axis="y")
+def _looks(runs: Sequence[Response]) -> list[dict[str, Any]]:
+    """Return colour and dashes of each run; more runs than colours have those of a sequence, from dark to light."""
+    if len(runs) > len(PALETTE):
+        colours = colormaps["viridis"](np.linspace(0.0, 0.9, len(runs)))
+        return [{"color": colour, "linestyle": DASHES[i % len(DASHES)]} for i, colour in enumerate(colours)]
+    return [{"color": PALETTE[i], "linestyle": DASHES[i % len(DASHES)] if i else "-"} for i in range(len(runs))]
+
+
+def _with_other_bases(runs: Sequence[Response], lines: Sequence[dict[str, Any]]) -> list[tuple[Response, Any]]:
+    """Return the runs with their looks, without repetition of a base motion; one of all runs is black."""
+    first = {repr(run.provenance.get("motion")): (run, line) for run, line in zip(runs[::-1], lines[::-1], strict=True)}
+    if len(first) == 1 and len(runs) > 1:
+        longest = max(runs, key=lambda run: float(run.data["time"][-1]))
+        return [(longest, {"color": BLACK, "linestyle": "-"})]
+    return list(first.values())[::-1]
+
+
+def draw_history(axes: Axes, time: Any, values: Floats, **line: Any) -> bool:
+    """Draw `values` against time; if the line would be a solid block, fill between its extremes and return True."""
+    time = np.asarray(time, dtype=float)
+    turns = np.count_nonzero(np.diff(np.sign(np.diff(values))) != 0.0)
+    if turns <= _TURNS:
+        axes.plot(time, values, **line)
+        return False
+    edges = np.linspace(time[0], time[-1], _INTERVALS + 1)
+    first = np.unique(np.searchsorted(time, edges[:-1]))
+    look = {"color": line.get("color"), "alpha": 0.55, "linewidth": 0.3, "zorder": line.get("zorder", 2.0)}
+    low, high = np.fmin.reduceat(values, first), np.fmax.reduceat(values, first)
+    axes.fill_between(time[first], low, high, label=line.get("label"), **look)
+    return True
+
+
+def _draw_tilt(axes: Axes, run: Response, line: dict[str, Any]) -> None:
+    draw_history(axes, run.data["time"], run.data["amplitude"].to_numpy(), linewidth=1.1, **line)
+
+
+def _draw_signed_tilt(axes: Axes, run: Response, line: dict[str, Any]) -> None:
+    draw_history(axes, run.data["time"], _along_line(run.data["tilt"].to_numpy()), linewidth=1.1, **line)
+
+
+def _draw_azimuth(axes: Axes, run: Response, line: dict[str, Any]) -> None:
+    axes.plot(run.data["time"], run.data["azimuth"] / (2.0 * np.pi), linewidth=1.1, **line)
+
+
+def _draw_travel(axes: Axes, run: Response, line: dict[str, Any]) -> None:
+    travel = _in_print(run.data["footprint"])
+    moving = [along for along in (0, 1) if np.abs(travel[:, along]).max() > _ROUNDING * np.abs(travel).max()]
+    for along in moving:
+        draw_history(axes, run.data["time"], travel[:, along], linewidth=(1.1, 0.7)[along], **line)
+        if moving != [0]:
+            end = float(run.data["time"][-1]), float(travel[-1, along])
+            look: dict[str, Any] = {"textcoords": "offset points", "va": "center", "fontsize": "small"}
+            axes.annotate("xy"[along], end, xytext=(4, 0), **look)
+
+
+def _draw_clearance(axes: Axes, run: Response, line: dict[str, Any]) -> None:
+    draw_history(axes, run.data["time"], _in_print(run.data["clearance"]), linewidth=1.0, **line)
+
+
+def _draw_twist(axes: Axes, run: Response, line: dict[str, Any]) -> None:
+    draw_history(axes, run.data["time"], run.data["twist"].to_numpy() / (2.0 * np.pi), linewidth=1.0, **line)
+
+
+def _draw_base(axes: Axes, run: Response, line: dict[str, Any]) -> None:
+    """Draw the horizontal acceleration of the base, with its sign if it has one direction; dotted the vertical one."""
+    acceleration = run.data["base_acceleration"].to_numpy()
+    plane = acceleration[:, :2]
+    horizontal = _along_line(plane) if _is_along_a_line(plane) else np.hypot(*plane.T)
+    # Later runs below, so that weaker ones stay visible.
+    below = 2.0 - 0.01 * len(axes.lines)
+    filled = False
+    if np.any(horizontal):
+        filled = draw_history(axes, run.data["time"], horizontal, linewidth=0.9, zorder=below, **line)
+    if np.any(acceleration[:, 2]):
+        look = line | {"linestyle": ":", "color": line["color"] if not np.any(horizontal) else GREY}
+        filled |= draw_history(axes, run.data["time"], acceleration[:, 2], linewidth=0.8, zorder=below - 0.5, **look)
+    if filled:
+        axes.set_title("base between its extremes", fontsize="small", pad=2.0)
+
+
+def _draw_path(axes: Axes, run: Response, line: dict[str, Any]) -> None:
+    x, y = run.data["tilt"].sel(axis="x"), run.data["tilt"].sel(axis="y")
     axes.plot(x, y, linewidth=0.9, **line)
     axes.plot(x[:1], y[:1], marker="o", markersize=5, markerfacecolor="white", color=line["color"])
     axes.plot(x[-1:], y[-1:], marker="s", markersize=5, color=line["color"])
 
 
-def _signed_tilt(data: xr.Dataset) -> np.ndarray:
-    """Return the tilt along the line of a planar run, positive towards +x, or towards +y if the line is along y."""
-    tilt = data["tilt"].to_numpy()
-    x, y = tilt[np.argmax(np.hypot(*tilt.T))]
+_DRAWN = {
+    "tilt": _draw_tilt,
+    "azimuth": _draw_azimuth,
+    "path": _draw_path,
+    "travel": _draw_travel,
+    "clearance": _draw_clearance,
+    "twist": _draw_twist,
+}
+
+
+def _in_print(quantity: xr.DataArray) -> Floats:
+    """Return lengths in mm, or in the units of a dimensionless column."""
+    return np.asarray(quantity.to_numpy() * (1e3 if unit_label(quantity) == "m" else 1.0))
+
+
+def _is_along_a_line(vectors: Floats) -> bool:
+    """Whether plane `vectors` have a common line."""
+    x, y = vectors[np.argmax(np.hypot(*vectors.T))]
+    return bool(np.abs(vectors @ (-y, x)).max() <= _ROUNDING * (x * x + y * y))
+
+
+def _along_line(vectors: Floats) -> Floats:
+    """Return components of plane `vectors` along the line of the longest, positive towards +x, or +y along y."""
+    x, y = vectors[np.argmax(np.hypot(*vectors.T))]
     length = np.hypot(x, y)
     if length == 0.0:
-        return np.zeros(len(tilt))
+        return np.zeros(len(vectors))
     positive = x > 0.0 if abs(x) > _ALONG_Y * length else y > 0.0
-    return np.asarray(tilt @ (x, y) / (length if positive else -length))
+    return np.asarray(vectors @ (x, y) / (length if positive else -length))
 
 
-def _mark_events(axes: Axes, run: Response) -> None:
+def _mark_events(axes: Axes, run: Response, *, planar: bool) -> None:
     # The first and the last only: a run may uplift and come to rest in every period.
     events = [event for event in run.events if not event.repeats]
+    tilt = _along_line(run.data["tilt"].to_numpy()) if planar else run.data["amplitude"].to_numpy()
     for event in dict.fromkeys((*events[:1], *events[-1:])):
-        height = float(np.interp(event.time, run.data["time"], run.data["amplitude"]))
+        if event.kind not in _EVENT_NAMES:
+            continue
+        height = float(np.interp(event.time, run.data["time"], tilt))
         axes.annotate(
-            _EVENT_NAMES.get(event.kind, event.kind),
+            _EVENT_NAMES[event.kind],
             (event.time, height),
             xytext=(0, 10),
             textcoords="offset points",
             ha="right" if event.time > _LATE * run.data["time"][-1] else "left",
-            fontsize=7.5,
+            fontsize="small",
             bbox={"facecolor": "white", "alpha": 0.75, "linewidth": 0.0, "pad": 0.5},
             arrowprops={"arrowstyle": "-|>", "color": BLACK, "linewidth": 0.6, "mutation_scale": 7},
         )
 
 
-def _finish(tilt: Axes, orbit: Axes, c: float, runs: Sequence[Response]) -> None:
-    tilt.set_ylabel(r"tilt $\theta$ [rad]")
-    tilt.margins(y=0.15)
-    tilt.set_ylim(bottom=0.0)
-    tilt.annotate(
-        r"$\theta = c$",
-        (0.01, c),
-        xycoords=("axes fraction", "data"),
-        ha="left",
-        va="bottom",
-        fontsize=8,
-        color=GREY,
-    )
-    reach = _ROOM * max(c, *(float(np.abs(run.data["tilt"]).max()) for run in runs))
-    orbit.set(xlim=(-reach, reach), ylim=(-reach, reach))
-    orbit.set_aspect("equal", adjustable="box", anchor="N")
-    orbit.set_xlabel(r"tilt $\theta_x$ [rad]")
-    orbit.set_ylabel(r"tilt $\theta_y$ [rad]")
-    orbit.locator_params(nbins=5)
+def _finish(axes: Mapping[str, Axes], runs: Sequence[Response], *, planar: bool) -> None:
+    """Label the panels and draw the limits in them."""
+    data = runs[0].data
+    limits = sorted({float(run.data.attrs["slenderness"]) for run in runs})
+    peak = max(float(run.data["amplitude"].max()) for run in runs)
+    if "tilt" in axes:
+        _finish_tilt(axes["tilt"], limits, peak, planar=planar)
+    labels = {
+        "azimuth": "azimuth\n[turns]",
+        "travel": f"travel\n[{_length_unit(data)}]",
+        "clearance": f"clearance\n[{_length_unit(data)}]",
+        "twist": "twist\n[turns]",
+        "base": _base_label(data["base_acceleration"]),
+    }
+    for name, text in labels.items():
+        if name in axes:
+            axes[name].set_ylabel(text)
+    if "base" in axes:
+        signed = all(_is_along_a_line(run.data["base_acceleration"].to_numpy()[:, :2]) for run in runs)
+        for level in {float(run.data.attrs["uplift_acceleration"]) for run in runs}:
+            for sign in (1.0, -1.0) if signed else (1.0,):
+                axes["base"].axhline(sign * level, **_LIMIT)
+    if (path := axes.get("path")) is not None:
+        for c in limits:
+            path.add_patch(Circle((0.0, 0.0), c, fill=False, **_LIMIT))
+        reach = _ROOM * max(*limits, *(float(np.abs(run.data["tilt"]).max()) for run in runs))
+        path.set(xlim=(-reach, reach), ylim=(-reach, reach))
+        path.set_aspect("equal", adjustable="box", anchor="N")
+        path.set(xlabel=r"tilt $\theta_x$ [rad]", ylabel=r"tilt $\theta_y$ [rad]")
+        path.locator_params(nbins=5)
+        mark: dict[str, Any] = {"linestyle": "none", "color": BLACK, "markersize": 4}
+        ends = [Line2D([], [], marker="o", markerfacecolor="white", label="start", **mark)]
+        ends += [Line2D([], [], marker="s", label="end", **mark)]
+        path.legend(handles=ends, loc="upper right", fontsize="x-small", handlelength=1.0, borderaxespad=0.0)
+    last = [name for name in axes if name != "path"][-1]
+    axes[last].set_xlabel(axis_label(data["time"]))
 
 
-def _write_key(axes: Axes, runs: Sequence[Response], names: Sequence[str], *, shaken: bool) -> None:
-    """Write the legend, and the outcomes with their reasons as far as there is room."""
-    axes.axis("off")
-    mark: dict[str, Any] = {"linestyle": "none", "color": BLACK, "markersize": 5}
-    entries = [
-        Line2D([], [], marker="o", markerfacecolor="white", label="start", **mark),
-        Line2D([], [], marker="s", label="end", **mark),
-        Line2D([], [], label=r"$\theta = c$; uplift at $c\,g$" if shaken else r"$\theta = c$", **_LIMIT),
-    ]
-    axes.legend(handles=entries, loc="upper left", ncols=3, columnspacing=1.2, handlelength=1.8, borderaxespad=0.0)
-    if len(runs) > 1:
-        assert isinstance(axes.figure, Figure)
-        handles = axes.figure.axes[0].get_legend_handles_labels()[0]
-        axes.figure.legend(handles=handles, loc="outside upper left", ncols=4)
-    if len(runs) > _MOST_REASONS:
+def _finish_tilt(axes: Axes, limits: Sequence[float], peak: float, *, planar: bool) -> None:
+    axes.set_ylabel("tilt [rad]" if planar else r"tilt $\theta$ [rad]")
+    axes.margins(y=0.15)
+    # A limit far above the tilts would press them to the bottom.
+    shown = [c for c in limits if peak > c / 8.0 or peak == 0.0]
+    for c in shown:
+        for sign in (1.0, -1.0) if planar else (1.0,):
+            axes.axhline(sign * c, **_LIMIT)
+    if shown:
+        look: dict[str, Any] = {"ha": "left", "va": "bottom", "fontsize": "small", "color": GREY}
+        axes.annotate(r"$\theta = c$", (0.01, max(shown)), xycoords=("axes fraction", "data"), **look)
+    if not planar:
+        axes.set_ylim(bottom=0.0)
+
+
+def _length_unit(data: xr.Dataset) -> str:
+    unit = unit_label(data["base_displacement"])
+    return "mm" if unit == "m" else unit
+
+
+def _base_label(quantity: xr.DataArray) -> str:
+    unit = unit_label(quantity)
+    return f"base\n[{unit}]" if unit == "m/s²" else "base $a/g$"
+
+
+def _write(figure: Figure, runs: Sequence[Response], names: Sequence[str], lines: Sequence[dict[str, Any]]) -> None:
+    """Write outcome and reason above one run, and a key to several below them."""
+    if isinstance(figure, InAxes):
+        if len(runs) > 1:
+            figure.legend(handles=[Line2D([], [], label=n, **line) for n, line in zip(names, lines, strict=True)])
         return
-    lines: list[tuple[str, dict[str, Any]]] = []
-    for index, (run, name) in enumerate(zip(runs, names, strict=True)):
-        heading = name if name == run.outcome.label else f"{name}: {run.outcome.label}"
-        lines += [(heading, {"weight": "bold", "color": PALETTE[index % len(PALETTE)] if len(runs) > 1 else BLACK})]
-        lines += [(line, {}) for line in textwrap.wrap(run.reason, _LINE)]
-    for place, (line, look) in enumerate(lines):
-        offset = (0, -18 - 12.0 * place)
-        axes.annotate(
-            line,
-            (0.0, 1.0),
-            xytext=offset,
-            xycoords="axes fraction",
-            textcoords="offset points",
-            va="top",
-            size=8.5,
-            **look,
-        )
+    if len(runs) == 1:
+        name = names[0] if names[0] == runs[0].outcome.label else f"{names[0]}: {runs[0].outcome.label}"
+        heading(figure, f"{name[:1].upper()}{name[1:]}: {runs[0].reason}")
+        return
+    entries = [
+        Line2D([], [], label=name if run.outcome.label in name else f"{name}: {run.outcome.label}", **line)
+        for run, name, line in zip(runs, names, lines, strict=True)
+    ]
+    figure.legend(handles=entries, loc="outside lower left", ncols=3)

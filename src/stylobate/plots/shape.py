@@ -36,8 +36,15 @@ class Shape:
 
     @classmethod
     def of(cls, run: Response) -> Self:
-        """Return the shape of the column of `run`: a frustum if its inertia is that of a solid one, else a cylinder."""
-        column = run.provenance["column"]
+        """Return the shape of the column of `run`."""
+        return cls.of_column(run.provenance["column"])
+
+    @classmethod
+    def of_column(cls, column: Mapping[str, Any]) -> Self:
+        """Return the shape of a column with these fields: a frustum if its inertia is that of a solid one, else a tube.
+
+        A tube is drawn as a cylinder.
+        """
         radius, mass_height = float(column["radius"]), float(column["mass_height"])
         return cls(
             radius=radius,

@@ -143,4 +143,4 @@ def _contours(axes: Axes, x: np.ndarray, y: np.ndarray, error: np.ndarray) -> No
     if not inside or min(error.shape) < 2:  # noqa: PLR2004
         return
     lines = axes.contour(x, y, error, levels=inside, colors="black", linewidths=0.8)
-    axes.clabel(lines, fmt=lambda level: f"{100.0 * level:g} %", fontsize=7)
+    axes.clabel(lines, fmt=lambda level: f"{100.0 * level:g} %", fontsize="x-small")

@@ -1,14 +1,27 @@
-"""Style of figures: a palette for colour-blind readers and grey print, and one page width."""
+"""Style of figures: a palette for colour-blind readers and grey print, below the settings of the user's own style.
 
-from collections.abc import Callable
+Figures are drawn for white paper. `styled` then gives their neutral colours (black, white, grey) those of the user's
+style, so that a dark style has light lines on a dark ground. The colours of the palette keep their meaning.
+"""
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from functools import wraps
 from typing import Any, ParamSpec
 
+import numpy as np
 import xarray as xr
-from matplotlib import rc_context
+from matplotlib import rc_context, rcParams, rcParamsDefault
+from matplotlib.artist import Artist
+from matplotlib.collections import Collection
+from matplotlib.colors import ListedColormap, to_rgba, to_rgba_array
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+from matplotlib.text import Annotation, Text
 
 from stylobate.plots.labels import in_own_units, with_literal_names
+from stylobate.plots.result_figure import WIDTH, InAxes, ResultFigure, asked_for
 
 # Okabe and Ito's palette ("Color Universal Design", 2008) without its yellow; the lightness alternates.
 PALETTE = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#000000")
@@ -19,12 +32,17 @@ GREY = "#767676"
 DASHES = ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)), (0, (1, 3)))
 
 STABLE_WIDTH, UNSTABLE_WIDTH = 2.8, 0.9
-WIDTH = 7.2
-"""Width of a figure that spans a page [inches]."""
+
+# Font size [points] of a figure that spans a page, and of one in a column of a journal, which is at most this wide.
+_FONT, _FONT_OF_A_COLUMN, _COLUMN = 9.5, 8.0, 4.5
+# Above this width [inches], as on a slide, everything grows with the figure.
+_SLIDE = 8.5
+
+AS_DRAWN = "as drawn"
+"""Gid of texts and patches that keep their colours in dark styles: what is written on a coloured ground."""
 
 _SETTINGS: dict[Any, Any] = {
-    "font.size": 9.5,
-    "axes.titlesize": 10,
+    "axes.titlesize": "medium",
     "axes.titlelocation": "left",
     "axes.spines.top": False,
     "axes.spines.right": False,
@@ -32,30 +50,122 @@ _SETTINGS: dict[Any, Any] = {
     "grid.color": "#dddddd",
     "grid.linewidth": 0.6,
     "legend.frameon": False,
-    "legend.fontsize": 8.5,
+    "legend.fontsize": "small",
     "hatch.linewidth": 0.55,
 }
-
+_COLOURS = (
+    *("text.color", "axes.facecolor", "axes.edgecolor", "axes.labelcolor", "axes.titlecolor", "figure.facecolor"),
+    *("xtick.color", "xtick.labelcolor", "ytick.color", "ytick.labelcolor", "legend.facecolor", "legend.edgecolor"),
+    *("legend.labelcolor", "patch.edgecolor", "hatch.color"),
+)
+# Colours differ from grey by less than this in any component, or they are no neutral colours.
+_NEUTRAL = 0.02
+# On a dark ground, colours with components below this mean are mixed with so much of the colour of text.
+_DIM, _LIGHTER = 0.5, 0.3
 
 P = ParamSpec("P")
 
 
 def styled(draw: Callable[P, Figure]) -> Callable[P, Figure]:
-    """Apply the common settings; the user's settings stay.
+    """Apply the settings of this package below those of the user.
 
     Dimensionless columns are labelled in their units, and names that a study states are printed as they are.
     """
 
     @wraps(draw)
     def drawn(*args: P.args, **kwargs: P.kwargs) -> Figure:
-        with rc_context(_SETTINGS):
+        with _settings():
             results: Any = [in_own_units(one) for one in args]
             shown: Any = [with_literal_names(one) if isinstance(one, xr.Dataset) else one for one in results]
-            return draw(*shown, **kwargs)
+            figure = draw(*shown, **kwargs)
+        scale = _width() / WIDTH if _width() > _SLIDE else 1.0
+        if isinstance(figure, InAxes):
+            return figure.finished()
+        _restyle(figure, scale)
+        return figure
 
     return drawn
 
 
 def new_figure(height: float, *, width: float = WIDTH) -> Figure:
-    """Return an empty figure of this `width` and `height` [inches], apart from any interactive backend."""
-    return Figure(figsize=(width, height), layout="constrained")
+    """Return an empty figure of this `width` and `height` [inches], or of the size or in the axes that were asked for.
+
+    It is drawn apart from any interactive backend.
+    """
+    return ResultFigure.asked_for(height, width)
+
+
+def _width() -> float:
+    size = asked_for().size
+    return WIDTH if size is None else size[0]
+
+
+@contextmanager
+def _settings() -> Iterator[None]:
+    """Draw for white paper with our settings, except for those that the user changed."""
+    width = _width()
+    font = _FONT_OF_A_COLUMN if width <= _COLUMN else _FONT * max(1.0, width / WIDTH if width > _SLIDE else 1.0)
+    ours = {"font.size": font, **_SETTINGS}
+    theirs: dict[Any, Any] = dict(rcParams)
+    factory: dict[Any, Any] = dict(rcParamsDefault)
+    settings = {name: value for name, value in ours.items() if theirs[name] == factory[name]}
+    white = {name: factory[name] for name in _COLOURS}
+    with rc_context(settings | white | {"grid.color": _SETTINGS["grid.color"]}):
+        yield
+
+
+def _restyle(figure: Figure, scale: float) -> None:
+    """Give the neutral colours of a figure those of the user's style, and enlarge its lines and marks."""
+    ink, paper = (np.array(to_rgba(rcParams[name])[:3]) for name in ("text.color", "axes.facecolor"))
+    dark = not (np.all(ink == 0.0) and np.all(paper == 1.0))
+    if not dark and scale == 1.0:
+        return
+
+    def themed(colours: Any) -> Any:
+        found = to_rgba_array(colours)
+        neutral = np.ptp(found[:, :3], axis=1, keepdims=True) < _NEUTRAL if len(found) else np.zeros((0, 1), bool)
+        level = found[:, :3].mean(axis=1, keepdims=True) if len(found) else np.zeros((0, 1))
+        lighter = found[:, :3] + (_LIGHTER * (ink - found[:, :3]) if paper.mean() < ink.mean() else 0.0)
+        found[:, :3] = np.where(neutral, ink + level * (paper - ink), np.where(level < _DIM, lighter, found[:, :3]))
+        return found
+
+    for artist in figure.findobj():
+        if dark and artist.get_gid() != AS_DRAWN:
+            _recolour(artist, themed)
+        _enlarge(artist, scale)
+    for axes in figure.axes:
+        if dark:
+            tick = dict.fromkeys(("color", "labelcolor"), rcParams["xtick.color"])
+            axes.tick_params(which="both", **tick, grid_color=themed(_SETTINGS["grid.color"])[0])
+    if dark:
+        figure.patch.set_facecolor(rcParams["figure.facecolor"])
+
+
+def _recolour(artist: Artist, themed: Callable[[Any], Any]) -> None:
+    match artist:
+        case Line2D():
+            artist.set(color=themed(artist.get_color())[0], markerfacecolor=themed(artist.get_markerfacecolor())[0])
+            artist.set_markeredgecolor(themed(artist.get_markeredgecolor())[0])
+        case Text():
+            artist.set_color(themed(artist.get_color())[0])
+            for patch in (artist.get_bbox_patch(), artist.arrow_patch if isinstance(artist, Annotation) else None):
+                if patch is not None:
+                    _recolour(patch, themed)
+        case Patch():
+            artist.set(facecolor=themed(artist.get_facecolor())[0], edgecolor=themed(artist.get_edgecolor())[0])
+        case Collection():
+            if artist.get_array() is None:
+                artist.set_facecolor(themed(artist.get_facecolor()))
+                artist.set_edgecolor(themed(artist.get_edgecolor()))
+            elif isinstance(artist.cmap, ListedColormap):
+                artist.set_cmap(ListedColormap(themed(artist.cmap.colors)))
+
+
+def _enlarge(artist: Artist, scale: float) -> None:
+    if isinstance(artist, Line2D):
+        artist.set(linewidth=scale * artist.get_linewidth(), markersize=scale * artist.get_markersize())
+        artist.set_markeredgewidth(scale * artist.get_markeredgewidth())
+    elif isinstance(artist, Patch):
+        artist.set_linewidth(scale * artist.get_linewidth())
+    elif isinstance(artist, Collection):
+        artist.set_linewidth([scale * width for width in np.atleast_1d(artist.get_linewidth())])

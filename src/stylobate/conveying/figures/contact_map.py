@@ -68,7 +68,7 @@ def plot_drift(found: xr.Dataset) -> Figure:
             xytext=(3, 0),
             textcoords="offset points",
             va="top",
-            fontsize=8,
+            fontsize="small",
             color=GREY,
         )
     return figure
@@ -104,8 +104,8 @@ def _draw_speed(figure: Figure, axes: Axes, found: xr.Dataset) -> None:
     throw = ordered["throw_number"].to_numpy()
     if throw.min() < 1.0 < throw.max():
         axes.contour(ordered[x], ordered[y], throw, levels=[1.0], colors="white", linestyles=":")
-        axes.set_title("dotted: throw number 1", fontsize=8.5)
+        axes.set_title("dotted: throw number 1", fontsize="small")
     if speed.mask.any():
-        axes.set_title("hatched: motion ends before the last period", loc="right", fontsize=8.5)
+        axes.set_title("hatched: motion ends before the last period", loc="right", fontsize="small")
     axes.set_xlabel(axis_label(found[x]))
     axes.set_ylabel(axis_label(found[y]))

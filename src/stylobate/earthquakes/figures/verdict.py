@@ -10,7 +10,8 @@ from matplotlib.figure import Figure
 
 from stylobate.earthquakes.variations import CONTACT_LAW, LABELS
 from stylobate.plots.kinds import figure_of
-from stylobate.plots.style import BLUE, DASHES, GREY, ORANGE, VERMILION, new_figure, styled
+from stylobate.plots.result_figure import heading
+from stylobate.plots.style import AS_DRAWN, BLUE, DASHES, GREY, ORANGE, VERMILION, new_figure, styled
 from stylobate.results.verdict import KIND, Verdict, percent
 
 _SHARES = LinearSegmentedColormap.from_list("share", [BLUE, "#f4f4f4", VERMILION])
@@ -29,7 +30,7 @@ def plot_verdict(found: xr.Dataset) -> Figure:
     tilts, shares = figure.subplots(1, 2, width_ratios=(1.0, 1.15))
     _draw_tilts(tilts, found)
     _draw_shares(shares, found)
-    figure.suptitle(str(Verdict(found)), fontsize=9.5, x=0.01, ha="left")
+    heading(figure, str(Verdict(found)))
     return figure
 
 
@@ -69,16 +70,17 @@ def _draw_shares(axes: Axes, found: xr.Dataset) -> None:
         cells = cells[~np.isnan(cells)]
         width = 1.0 / max(cells.size, 1)
         starts = np.arange(cells.size) * width
-        axes.barh(np.full(cells.size, row), width, 0.8, starts, color=_SHARES(cells), edgecolor="white", align="center")
+        look: dict[str, Any] = {"color": _SHARES(cells), "edgecolor": "white", "gid": AS_DRAWN}
+        axes.barh(np.full(cells.size, row), width, 0.8, starts, **look)
         laws = found["model"].to_numpy() if names[row] == CONTACT_LAW else np.full(cells.size, "")
         for start, cell, law in zip(starts, cells, laws, strict=True):
             label = f"{law} {100.0 * cell:.0f}".strip()
-            axes.text(start + 0.5 * width, row, label, ha="center", va="center", fontsize=7)
-        axes.text(1.02, row, percent(float(found["influence"][place])), va="center", fontsize=8)
+            axes.text(start + 0.5 * width, row, label, ha="center", va="center", fontsize="x-small", gid=AS_DRAWN)
+        axes.text(1.02, row, percent(float(found["influence"][place])), va="center", fontsize="small")
     axes.set_yticks(np.arange(len(names)), [LABELS.get(name, name.replace("_", " ")) for name in names])
     axes.set(xlim=(0.0, 1.0), ylim=(len(names) - 0.5, -0.5), xticks=[0.08, 0.92])
     axes.set_xticklabels(["low values", "high values"])
     axes.tick_params(axis="both", length=0)
     axes.grid(visible=False)
     axes.spines[:].set_visible(False)
-    axes.set_title("share of overturning [%]; right: influence", fontsize=9.5)
+    axes.set_title("share of overturning [%]; right: influence", loc="right")

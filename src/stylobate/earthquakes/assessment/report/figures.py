@@ -51,7 +51,7 @@ def margins_figure(assessment: Assessment, column: str) -> Figure:
             _interval_line(axes, own.sel(record=record, case=case), height, (low, high))
             heights.append(height)
             labels.append(f"{record} · {case}" if line == 0 else case)
-    axes.set_yticks(heights, labels, fontsize=7.5)
+    axes.set_yticks(heights, labels, fontsize="small")
     axes.set(xscale="log", xlim=(low, high), xlabel="scale factor of the record [1]", ylim=(lines - 0.5, -1.0))
     _plain(axes)
     axes.grid(visible=False, axis="y")
@@ -243,7 +243,7 @@ def _run_words(run: xr.Dataset) -> str:
 def _rows_figure(records: list[str]) -> tuple[Figure, Axes]:
     figure = new_figure(min(_FRAME + 2.0 * _ROW * len(records), _TALLEST))
     axes = figure.subplots()
-    axes.set_yticks(range(len(records)), records, fontsize=8)
+    axes.set_yticks(range(len(records)), records, fontsize="small")
     axes.set_ylim(len(records) - 0.5, -0.5)
     return figure, axes
 

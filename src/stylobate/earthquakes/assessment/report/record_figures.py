@@ -28,12 +28,12 @@ def records_figure(assessment: Assessment, records: Sequence[str]) -> Figure:
             acceleration = one["acceleration"].sel(axis=axis) / STANDARD_GRAVITY
             axes.plot(one["time"], acceleration, color=BLACK, linewidth=0.4)
             if not bool((acceleration != 0.0).where(one["time"].notnull()).any()):
-                axes.text(0.5, 0.6, "none", transform=axes.transAxes, color=GREY, ha="center", fontsize=8)
+                axes.text(0.5, 0.6, "none", transform=axes.transAxes, color=GREY, ha="center", fontsize="small")
             axes.tick_params(labelsize=7.5)
-        row[0].set_title(name, fontsize=8, pad=2.0)
+        row[0].set_title(name, fontsize="small", pad=2.0)
     for axes, title in zip(grid[-1], ("along x", "along y", "up"), strict=True):
-        axes.set_xlabel(f"{title}: time [s]", fontsize=8)
-    figure.supylabel("ground acceleration [g]", fontsize=8.5)
+        axes.set_xlabel(f"{title}: time [s]", fontsize="small")
+    figure.supylabel("ground acceleration [g]", fontsize="small")
     return figure
 
 
@@ -61,6 +61,6 @@ def spectra_figure(assessment: Assessment) -> Figure:
             label=literal(str(design["name"])),
         )
     axes.set(xlim=(0.0, float(period[-1])), ylim=(0.0, None), xlabel="natural period [s]", ylabel="Sa [g]")
-    axes.legend(loc="upper right", fontsize=8)
+    axes.legend(loc="upper right", fontsize="small")
     axes.set_title("Response spectra, 5 % damping, records as recorded (scale 1)")
     return figure
