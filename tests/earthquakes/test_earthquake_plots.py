@@ -158,4 +158,4 @@ def test_records_are_drawn_over_time_and_period():
         if "RotD50" in curves:
             np.testing.assert_array_equal(curves["RotD50"], spectra[record.name]["rotd50"])
         assert left.get_title(loc="left") == record.name
-        assert right.get_title(loc="left") == "5 % damping"
+        assert right.get_title(loc="left") == "response spectrum, 5 % damping"

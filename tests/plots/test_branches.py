@@ -73,5 +73,5 @@ def test_a_curve_is_drawn_over_its_two_parameters(symmetric):
                 sb.orbits.bifurcation_curve(symmetric.bifurcations[0], "damping", bounds=((1.6, 1.66), (0.099, 0.101))),
             ]
         )
-    with pytest.raises(ParameterError, match="a sequence of one of these"):
+    with pytest.raises(ParameterError, match="a sequence of runs, branches or curves"):
         sb.plot([curve, symmetric])

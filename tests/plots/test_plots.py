@@ -22,8 +22,8 @@ def run():
 def test_a_run_shows_tilt_azimuth_and_orbit_with_units(run):
     figure = sb.plot(run)
     labels = {axes.get_ylabel() for axes in figure.axes} | {axes.get_xlabel() for axes in figure.axes}
-    tilt = {r"tilt $\theta$ [rad]", r"azimuth $\beta$ [turns]", r"tilt $\theta_x$ [rad]", r"tilt $\theta_y$ [rad]"}
-    assert tilt | {"base acceleration $a/g$", r"time $\omega_0 t$"} <= labels
+    tilt = {r"tilt $\theta$ [rad]", "azimuth $\\beta$\n[turns]", r"tilt $\theta_x$ [rad]", r"tilt $\theta_y$ [rad]"}
+    assert tilt | {"base acceleration\n$a/g$", r"time $\omega_0 t$"} <= labels
     drawn = figure.axes[0].lines[0].get_xydata()
     np.testing.assert_array_equal(drawn[:, 1], run.data["amplitude"])
     circles = [patch for axes in figure.axes for patch in axes.patches if isinstance(patch, Circle)]
@@ -36,14 +36,15 @@ def test_the_tilt_along_its_line_is_positive_towards_x_or_else_y(direction, posi
     motion = sb.Harmonic.straight(acceleration=0.15, angular_frequency=3.0, direction=direction)
     tilt = (0.05 * sign * np.cos(direction), 0.05 * sign * np.sin(direction))
     figure = sb.plot(sb.simulate(MODEL, motion, tilt=tilt, duration=10.0))
-    shown = next(axes for axes in figure.axes if axes.get_ylabel() == "tilt along its line [rad]")
+    shown = next(axes for axes in figure.axes if axes.get_ylabel() == "tilt [rad]")
     assert shown.lines[0].get_ydata()[0] == pytest.approx(0.05 * sign * positive)
 
 
 def test_several_runs_are_compared_with_a_legend(run):
     other = sb.simulate(MODEL, tilt=(0.05, 0.0), duration=20.0)
     figure = sb.plot([run, other], labels=["forced", "free"])
-    assert [text.get_text() for text in figure.legends[0].get_texts()] == ["forced", "free"]
+    named = [f"forced: {run.outcome.label}", f"free: {other.outcome.label}"]
+    assert [text.get_text() for text in figure.legends[0].get_texts()] == named
 
 
 def test_a_released_and_overturned_column_is_marked():

@@ -283,7 +283,7 @@ def _finish(axes: Mapping[str, Axes], runs: Sequence[Response], *, planar: bool)
     if "tilt" in axes:
         _finish_tilt(axes["tilt"], limits, peak, planar=planar)
     labels = {
-        "azimuth": "azimuth\n[turns]",
+        "azimuth": "azimuth $\\beta$\n[turns]",
         "travel": f"travel\n[{_length_unit(data)}]",
         "clearance": f"clearance\n[{_length_unit(data)}]",
         "twist": "twist\n[turns]",
@@ -335,7 +335,7 @@ def _length_unit(data: xr.Dataset) -> str:
 
 def _base_label(quantity: xr.DataArray) -> str:
     unit = unit_label(quantity)
-    return f"base\n[{unit}]" if unit == "m/s²" else "base $a/g$"
+    return f"base acceleration\n{f'[{unit}]' if unit == 'm/s²' else '$a/g$'}"
 
 
 def _write(figure: Figure, runs: Sequence[Response], names: Sequence[str], lines: Sequence[dict[str, Any]]) -> None:
