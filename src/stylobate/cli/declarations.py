@@ -234,7 +234,7 @@ COMPUTING = Group.of(
     Option("executor", "threads (by default), dask:// (workers here) or dask://host:port?wait=seconds", str),
     Option("threads", "number of threads; all cores by default", int),
 )
-FIGURE = Option("figure", "draw into this file (.png, .pdf, .svg)", Path)
+FIGURE = Option("figure", "draw into this file (.png, .pdf, .svg, or .html to zoom and hover)", Path)
 JSON = Option("as_json", "print JSON instead of a table", bool, flag="--json", default=False)
 OUTPUT = Group.of("Output", FIGURE, Option("output", "save the result as netCDF (.nc)", Path), JSON)
 OUTPUT_OR_STORE = Group.of(

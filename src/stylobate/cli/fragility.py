@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from stylobate import config, earthquakes, plots
+from stylobate import config, earthquakes
 from stylobate.cli.command import command
 from stylobate.cli.declarations import (
     COMPUTING,
@@ -21,7 +21,7 @@ from stylobate.cli.declarations import (
 from stylobate.cli.fragility_table import print_fits, summary
 from stylobate.cli.many_runs import check_outputs, computed, end, is_to_compute, save
 from stylobate.cli.options import Options
-from stylobate.cli.output import check_writable, print_json, save_figure
+from stylobate.cli.output import check_writable, print_json, save_plot
 from stylobate.cli.overlay import axis_values, overlay, spacing
 from stylobate.cli.parts import COLUMN, MODEL
 from stylobate.cli.saved import open_study
@@ -266,4 +266,4 @@ def _write(runs: "xr.Dataset", fits: "xr.Dataset", options: Options) -> None:
         save(runs, options["output"])
     for result, path in ((fits, options["figure"]), (runs, options["runs_figure"])):
         if path is not None:
-            save_figure(plots.plot(result), path)
+            save_plot(result, path)

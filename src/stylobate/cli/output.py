@@ -5,6 +5,7 @@ import math
 import os
 import sys
 from collections.abc import Callable, Mapping, Sequence
+from importlib.util import find_spec
 from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -18,7 +19,8 @@ if TYPE_CHECKING:
 
 NETCDF, STORE = ".nc", ".zarr"
 """Endings of files and of stores."""
-FIGURES = (".png", ".pdf", ".svg")
+PAGE = ".html"
+FIGURES = (".png", ".pdf", ".svg", PAGE)
 """Endings of figures."""
 
 
@@ -66,12 +68,10 @@ def deliver(
     show
         Function that prints a table.
     """
-    from stylobate import plots  # noqa: PLC0415  only figures need it
-
     if options["output"] is not None:
         save(result, options["output"])
     if options["figure"] is not None:
-        save_figure(plots.plot(result), options["figure"])
+        save_plot(result, options["figure"])
     if options["as_json"]:
         print_json(summary(result))
     else:
@@ -99,6 +99,9 @@ def check_writable(figure: Path | None, output: Path | None = None, *, stores: b
     """
     if figure is not None and figure.suffix.lower() not in FIGURES:
         message = f"cannot draw into {figure}: --figure must end with {', '.join(FIGURES[:-1])} or {FIGURES[-1]}"
+        raise ParameterError(message)
+    if figure is not None and figure.suffix.lower() == PAGE and find_spec("plotly") is None:
+        message = f"cannot draw into {figure}: interactive figures need Plotly (pip install stylobate[interactive])"
         raise ParameterError(message)
     if output is not None:
         endings = (NETCDF, STORE) if stores else (NETCDF,)
@@ -136,6 +139,30 @@ def check_place(path: Path) -> None:
         reason = "it is a folder" if path.is_dir() else f"{folder} is not a writable folder"
         message = f"cannot write {path}: {reason}"
         raise FileError(message)
+
+
+def save_plot(result: Any, path: Path) -> None:
+    """Write the figure of `result` into the file `path`: a page if it ends in .html, else a picture.
+
+    A page has the interactive figure of the result, or its picture if there is no interactive one.
+
+    Raises
+    ------
+    FileError
+        If the file cannot be written, or its ending is not a format for figures.
+    """
+    from stylobate import plots  # noqa: PLC0415  slow to import
+
+    if path.suffix.lower() != PAGE:
+        save_figure(plots.plot(result), path)
+        return
+    try:
+        text = plots.plot_interactive(result).to_html(include_plotlyjs=True)
+    except ParameterError:
+        from stylobate.plots.page import Picture, page  # noqa: PLC0415
+
+        text = page(path.stem, [Picture(plots.plot(result), path.stem)], [])
+    write_whole(path, text.encode())
 
 
 def save_figure(figure: "Figure", path: Path) -> None:

@@ -6,10 +6,10 @@ from dataclasses import dataclass, fields, is_dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from stylobate import earthquakes, plots, results
+from stylobate import earthquakes, results
 from stylobate.cli.declarations import Option
 from stylobate.cli.options import Options
-from stylobate.cli.output import NETCDF, check_writable, save_figure
+from stylobate.cli.output import NETCDF, check_writable, save_plot
 from stylobate.cli.progress import runs_done
 from stylobate.cli.saved import relocated
 from stylobate.config.run_numbers import Accuracy, Start
@@ -116,7 +116,7 @@ class VerdictOfCase:
         if verdict is not None and self.output is not None:
             verdict.save(self.output)
         if verdict is not None and self.figure is not None:
-            save_figure(plots.plot(verdict), self.figure)
+            save_plot(verdict, self.figure)
 
 
 def _why_not(model: "Model", *, single: bool, asked: bool) -> str:

@@ -1,7 +1,7 @@
 """`plot`: draw any result as the figure of its kind."""
 
 from collections.abc import Callable, Sequence
-from typing import Any, Protocol, TypeAlias, runtime_checkable
+from typing import Any, TypeAlias
 
 import xarray as xr
 from matplotlib.axes import Axes
@@ -15,7 +15,7 @@ from stylobate.plots.base_motion import plot_motion
 from stylobate.plots.bifurcation_curves import plot_bifurcation_curves
 from stylobate.plots.branches import plot_branches
 from stylobate.plots.column_sketch import plot_column
-from stylobate.plots.kinds import figure_for
+from stylobate.plots.kinds import HasPoints, figure_for
 from stylobate.plots.orbit import Orbit, plot_orbit
 from stylobate.plots.result_figure import drawing
 from stylobate.plots.runs import plot_runs
@@ -23,15 +23,6 @@ from stylobate.results import Assessment, Response, Verdict
 
 # Functions that draw several results of a kind in one figure.
 _COMPARED = {"branch": plot_branches, "bifurcation curve": plot_bifurcation_curves}
-
-
-@runtime_checkable
-class HasPoints(Protocol):
-    """A branch of orbits or a curve of bifurcations: its `points` are a Dataset."""
-
-    @property
-    def points(self) -> xr.Dataset:
-        """Its points as data."""
 
 
 _OBJECTS: tuple[tuple[type, Callable[[Any], Figure]], ...] = (

@@ -4,7 +4,7 @@ import pkgutil
 from collections.abc import Callable
 from functools import cache
 from importlib import import_module
-from typing import TypeAlias, TypeVar
+from typing import Protocol, TypeAlias, TypeVar, runtime_checkable
 
 import xarray as xr
 from matplotlib.figure import Figure
@@ -16,6 +16,15 @@ _Draw = TypeVar("_Draw", bound=Draw)
 _FOLDERS = ("stylobate.plots", "stylobate.earthquakes.figures", "stylobate.conveying.figures")
 
 _FIGURES: dict[str, Draw] = {}
+
+
+@runtime_checkable
+class HasPoints(Protocol):
+    """A branch of orbits or a curve of bifurcations: its `points` are a Dataset."""
+
+    @property
+    def points(self) -> xr.Dataset:
+        """Its points as data."""
 
 
 def figure_of(*kinds: str) -> Callable[[_Draw], _Draw]:

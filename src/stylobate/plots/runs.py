@@ -138,11 +138,14 @@ def _arranged(panels: Mapping[str, Any]) -> tuple[Figure, dict[str, Axes]]:
 
 
 def _looks(runs: Sequence[Response]) -> list[dict[str, Any]]:
-    """Return colour and dashes of each run; more runs than colours have those of a sequence, from dark to light."""
-    if len(runs) > len(PALETTE):
-        colours = colormaps["viridis"](np.linspace(0.0, 0.9, len(runs)))
-        return [{"color": colour, "linestyle": DASHES[i % len(DASHES)]} for i, colour in enumerate(colours)]
-    return [{"color": PALETTE[i], "linestyle": DASHES[i % len(DASHES)] if i else "-"} for i in range(len(runs))]
+    """Return colour and dashes of each run."""
+    colours = colours_of(len(runs))
+    return [{"color": colour, "linestyle": DASHES[i % len(DASHES)]} for i, colour in enumerate(colours)]
+
+
+def colours_of(count: int) -> list[Any]:
+    """Return so many colours that differ: those of the palette or, if there are too few, of a sequence."""
+    return [*PALETTE[:count]] if count <= len(PALETTE) else [*colormaps["viridis"](np.linspace(0.0, 0.9, count))]
 
 
 def _with_other_bases(runs: Sequence[Response], lines: Sequence[dict[str, Any]]) -> list[tuple[Response, Any]]:
@@ -174,7 +177,7 @@ def _draw_tilt(axes: Axes, run: Response, line: dict[str, Any]) -> None:
 
 
 def _draw_signed_tilt(axes: Axes, run: Response, line: dict[str, Any]) -> None:
-    draw_history(axes, run.data["time"], _along_line(run.data["tilt"].to_numpy()), linewidth=1.1, **line)
+    draw_history(axes, run.data["time"], along_line(run.data["tilt"].to_numpy()), linewidth=1.1, **line)
 
 
 def _draw_azimuth(axes: Axes, run: Response, line: dict[str, Any]) -> None:
@@ -204,7 +207,7 @@ def _draw_base(axes: Axes, run: Response, line: dict[str, Any]) -> None:
     """Draw the horizontal acceleration of the base, with its sign if it has one direction; dotted the vertical one."""
     acceleration = run.data["base_acceleration"].to_numpy()
     plane = acceleration[:, :2]
-    horizontal = _along_line(plane) if _is_along_a_line(plane) else np.hypot(*plane.T)
+    horizontal = along_line(plane) if _is_along_a_line(plane) else np.hypot(*plane.T)
     # Later runs below, so that weaker ones stay visible.
     below = 2.0 - 0.01 * len(axes.lines)
     filled = False
@@ -245,7 +248,7 @@ def _is_along_a_line(vectors: Floats) -> bool:
     return bool(np.abs(vectors @ (-y, x)).max() <= _ROUNDING * (x * x + y * y))
 
 
-def _along_line(vectors: Floats) -> Floats:
+def along_line(vectors: Floats) -> Floats:
     """Return components of plane `vectors` along the line of the longest, positive towards +x, or +y along y."""
     x, y = vectors[np.argmax(np.hypot(*vectors.T))]
     length = np.hypot(x, y)
@@ -258,7 +261,7 @@ def _along_line(vectors: Floats) -> Floats:
 def _mark_events(axes: Axes, run: Response, *, planar: bool) -> None:
     # The first and the last only: a run may uplift and come to rest in every period.
     events = [event for event in run.events if not event.repeats]
-    tilt = _along_line(run.data["tilt"].to_numpy()) if planar else run.data["amplitude"].to_numpy()
+    tilt = along_line(run.data["tilt"].to_numpy()) if planar else run.data["amplitude"].to_numpy()
     for event in dict.fromkeys((*events[:1], *events[-1:])):
         if event.kind not in _EVENT_NAMES:
             continue

@@ -7,7 +7,16 @@ from stylobate.results import Response
 
 _MOST_NAMES = 2
 # Inputs that follow from others, or that no reader would name a run by.
-_SILENT = ("version", "column.transverse_inertia", "column.axial_inertia", "column.mass", "rules", "recheck", "samples", "atol")
+_SILENT = (
+    "version",
+    "column.transverse_inertia",
+    "column.axial_inertia",
+    "column.mass",
+    "rules",
+    "recheck",
+    "samples",
+    "atol",
+)
 _SYMBOLS = {
     "damping": "η",
     "slenderness": "c",
