@@ -6,7 +6,7 @@ BIN    := $(VENV)/bin
 .DEFAULT_GOAL := help
 # Without files of bytecode, each process that a test starts compiles all modules again.
 unexport PYTHONDONTWRITEBYTECODE
-.PHONY: help demo lab page test test-all test-python test-lowest uv coverage mutants lint docs figures bench clean
+.PHONY: help demo lab page test test-all test-python test-lowest uv coverage mutants lint docs figures sheet bench clean
 
 help:  ## list the targets
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## /\t/' | expand -t 14
@@ -96,6 +96,9 @@ FIGURES := $(filter-out %/saving.py %/choose_a_model.py,$(wildcard docs/figures/
 
 figures: $(VENV)/.core  ## all figures and animations of the documentation into docs/_static, ten minutes on two cores
 	for one in $(FIGURES); do echo "$$one"; $(BIN)/python "$$one" || exit 1; done
+
+sheet: $(VENV)/.core  ## all kinds of figures in light, dark, one column and as a slide into figure-sheet/, to look at
+	$(BIN)/python tools/figure_sheet.py figure-sheet
 
 bench: $(VENV)/.core $(VENV)/.test  ## the benchmarks, beside the engines that can be installed, into the documentation
 	-$(BIN)/python -m pip install --quiet --group bench

@@ -280,7 +280,7 @@ def test_orbits_on_one_path_and_of_one_kind_are_told_apart():
     figure = sb.plot(orbits_of_six())
     orbits = figure.axes[1]
     named = {line.get_label(): line for line in orbits.lines if not line.get_label().startswith("_")}
-    assert list(named) == [text.get_text() for text in orbits.get_legend().get_texts()]
+    assert list(named) == [text.get_text() for text in figure.legends[0].get_texts()]
     assert len(named) == 4
     assert len({line.get_color() for line in named.values()}) == 4
     assert named["rolling anticlockwise"].get_linestyle() == named["aperiodic anticlockwise"].get_linestyle() == "-"

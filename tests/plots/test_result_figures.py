@@ -1,6 +1,8 @@
 """Figures suit the page they are drawn for: its size, the caller's axes, the user's style; objects have figures too."""
 
+import importlib.util
 import sys
+from pathlib import Path
 from types import SimpleNamespace
 
 import matplotlib.pyplot as plt
@@ -15,9 +17,11 @@ from PIL import Image
 
 import stylobate as sb
 from stylobate.errors import ParameterError
+from stylobate.plots.kinds import _FIGURES, figure_for
 from stylobate.plots.style import AS_DRAWN, BLUE
 from stylobate.plots.varied import what_varies
 
+ROOT = Path(__file__).parents[2]
 STONE = sb.Column.solid(radius=0.35, height=5.2, density=2700.0)
 MODEL = sb.Wobbling(STONE, damping=0.05)
 CIRCLE = sb.Harmonic.circular(acceleration=1.2, angular_frequency=4.0)
@@ -272,3 +276,11 @@ def test_a_picture_of_the_dark_style_is_dark(run, tmp_path):
     assert np.median(grey) < 10
     assert grey.max() > 200
     assert BLUE not in {to_hex(one.get_color()) for one in figure.findobj(Line2D)}
+
+
+def test_the_sheet_of_figures_has_every_kind():
+    spec = importlib.util.spec_from_file_location("figure_sheet", ROOT / "tools" / "figure_sheet.py")
+    sheet = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(sheet)
+    figure_for("ensemble")
+    assert set(_FIGURES) - {"sweep"} <= set(sheet.RESULTS)  # a sweep is drawn as an ensemble

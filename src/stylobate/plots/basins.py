@@ -134,8 +134,11 @@ def _draw_orbits(axes: Axes, found: xr.Dataset) -> None:
             axes.plot(strobes.sel(axis="x"), strobes.sel(axis="y"), zorder=3, **look)
             marks += 1
     if sum(drawn) > 1:
-        axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.22), borderaxespad=0.0, handlelength=3.2)
+        figure = axes.get_figure(root=True)
+        assert figure is not None
+        figure.legend(*axes.get_legend_handles_labels(), loc="outside lower right", ncols=2, handlelength=3.2)
     axes.set_aspect("equal", adjustable="datalim")
+    axes.locator_params(nbins=5)
     axes.set_xlabel(r"tilt $\theta_x$ [rad]")
     axes.set_ylabel(r"tilt $\theta_y$ [rad]")
     axes.set_title("orbits, ○ stroboscopic samples")

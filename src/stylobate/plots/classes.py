@@ -32,7 +32,7 @@ class Look:
 
 
 # Contrast of a texture to its fill, and the brightness below which it is lighter than the fill.
-_FAINT, _DARK = 0.3, 0.25
+_FAINT, _DARK = 0.2, 0.25
 # Lightness L* in steps of ten, from standing to falling: 95, 84, 74, 63, 51, 41, then 5.
 _CREAM, _LEAF, _SKY, _AMBER, _SEA, _BLUE, _NIGHT = (
     "#F6F1DA", "#B5D9BE", "#74C0EA", "#D58900", "#008B65", "#0063A0", "#1B0B16",

@@ -42,6 +42,7 @@ def plot_section(found: xr.Dataset) -> Figure:
         unit = unit_label(found[name])
         axes.set(xlabel=f"{label} ${symbol}_x$ [{unit}]", ylabel=f"{label} ${symbol}_y$ [{unit}]")
         axes.set_aspect("equal", adjustable="datalim")
+        axes.locator_params(nbins=5)
         if not np.isfinite(runs[name]).any():
             axes.text(0.5, 0.5, _NOTHING, transform=axes.transAxes, ha="center", va="center", color=GREY)
     if count <= _MOST_NAMED:

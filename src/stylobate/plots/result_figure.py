@@ -9,13 +9,14 @@ from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass
 from io import BytesIO
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from matplotlib import rcParams
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.legend import Legend
+from matplotlib.text import Text
 
 from stylobate.errors import ParameterError
 
@@ -28,9 +29,12 @@ _NARROW = 5.2
 _SHRINKS, _LEAST = 0.65, 1.9
 # Dots per inch in a notebook: twice those of the page, for screens of high resolution.
 _SCREEN = 96.0
-# Width of a character, of the font size; of the mark of an entry of a legend and the space about it [inches].
-_CHARACTER, _MARK = 0.52, 0.5
+# Width of a character, of the font size; of the mark of an entry of a legend and the
+# space about it [inches]; height of a line, of the font size.
+_CHARACTER, _MARK, _LINE = 0.52, 0.5, 1.5
 _POINTS = 72.0
+# Part of its place that a panel keeps beside labels and legends.
+_PANEL = 0.9
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,6 +88,26 @@ def heading(figure: Figure, text: str) -> None:
     """Write `text` above all panels, in lines that fit the width."""
     characters = figure.get_figwidth() * _POINTS / (_CHARACTER * rcParams["font.size"])
     figure.suptitle("\n".join(textwrap.wrap(text, int(characters))), x=0.01, ha="left", fontsize="medium")
+
+
+def beside_or_below(figure: Figure) -> Literal["right", "bottom"]:
+    """Return the place of a colour bar: below the panel in a narrow figure."""
+    return "bottom" if isinstance(figure, ResultFigure) and figure.narrow else "right"
+
+
+def fit_texts(figure: Figure) -> None:
+    """Break titles and labels of axes that are longer than their panel."""
+    width, height = figure.get_size_inches() * _POINTS / _CHARACTER
+    for axes in figure.axes:
+        extent = axes.get_position()
+        across, along = _PANEL * extent.width * width, _PANEL * extent.height * height
+        title = axes.get_title(loc="left")
+        titles = [(one, 1.15 * across) for one in axes.findobj(Text) if title and one.get_text() == title]
+        for text, room in (*titles, (axes.xaxis.label, across), (axes.yaxis.label, along)):
+            characters = max(12, int(room / text.get_fontsize()))
+            lines = text.get_text().splitlines()
+            if any(len(line) > characters for line in lines):
+                text.set_text("\n".join(part for line in lines for part in textwrap.wrap(line, characters)))
 
 
 def _checked(size: Any) -> tuple[float, float | None]:
@@ -172,11 +196,14 @@ class ResultFigure(Figure):
         size = float(legend.get_texts()[0].get_fontsize()) if texts else 1.0
         longest = max((len(line) for text in texts for line in text.splitlines()), default=1)
         fitting = int(self.get_figwidth() // (_CHARACTER * size * longest / _POINTS + _MARK))
-        most = options.get("ncols", 2)
-        if min(max(fitting, 1), most) == most and "ncols" in options:
+        columns = max(1, min(fitting, options.get("ncols", 2), len(texts)))
+        if self.narrow:
+            lines = sum(1 + text.count("\n") for text in texts) / columns
+            self.grow(_LINE * size * lines / _POINTS)
+        if columns == options.get("ncols"):
             return legend
         legend.remove()
-        return super().legend(*args, **options | {"ncols": max(1, min(fitting, most, len(texts)))})
+        return super().legend(*args, **options | {"ncols": columns})
 
     @classmethod
     def asked_for(cls, height: float, width: float) -> "ResultFigure":

@@ -21,7 +21,7 @@ from matplotlib.patches import Patch
 from matplotlib.text import Annotation, Text
 
 from stylobate.plots.labels import in_own_units, with_literal_names
-from stylobate.plots.result_figure import WIDTH, InAxes, ResultFigure, asked_for
+from stylobate.plots.result_figure import WIDTH, InAxes, ResultFigure, asked_for, fit_texts
 
 # Okabe and Ito's palette ("Color Universal Design", 2008) without its yellow; the lightness alternates.
 PALETTE = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#000000")
@@ -62,6 +62,8 @@ _COLOURS = (
 _NEUTRAL = 0.02
 # On a dark ground, colours with components below this mean are mixed with so much of the colour of text.
 _DIM, _LIGHTER = 0.5, 0.3
+# Colour maps of so many colours or fewer are those of classes.
+_CLASSES = 32
 
 P = ParamSpec("P")
 
@@ -81,6 +83,8 @@ def styled(draw: Callable[P, Figure]) -> Callable[P, Figure]:
         scale = _width() / WIDTH if _width() > _SLIDE else 1.0
         if isinstance(figure, InAxes):
             return figure.finished()
+        if _width() < WIDTH:
+            fit_texts(figure)
         _restyle(figure, scale)
         return figure
 
@@ -122,7 +126,7 @@ def _restyle(figure: Figure, scale: float) -> None:
         return
 
     def themed(colours: Any) -> Any:
-        found = to_rgba_array(colours)
+        found = np.array([to_rgba(colours)]) if isinstance(colours, str | tuple) else to_rgba_array(colours)
         neutral = np.ptp(found[:, :3], axis=1, keepdims=True) < _NEUTRAL if len(found) else np.zeros((0, 1), bool)
         level = found[:, :3].mean(axis=1, keepdims=True) if len(found) else np.zeros((0, 1))
         lighter = found[:, :3] + (_LIGHTER * (ink - found[:, :3]) if paper.mean() < ink.mean() else 0.0)
@@ -157,7 +161,7 @@ def _recolour(artist: Artist, themed: Callable[[Any], Any]) -> None:
             if artist.get_array() is None:
                 artist.set_facecolor(themed(artist.get_facecolor()))
                 artist.set_edgecolor(themed(artist.get_edgecolor()))
-            elif isinstance(artist.cmap, ListedColormap):
+            elif isinstance(artist.cmap, ListedColormap) and artist.cmap.N <= _CLASSES:
                 artist.set_cmap(ListedColormap(themed(artist.cmap.colors)))
 
 

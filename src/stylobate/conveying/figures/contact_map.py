@@ -11,6 +11,7 @@ from stylobate.plots.classes import contact_classes
 from stylobate.plots.kinds import figure_of
 from stylobate.plots.labels import axis_label
 from stylobate.plots.maps import draw_classes
+from stylobate.plots.result_figure import beside_or_below
 from stylobate.plots.style import BLACK, BLUE, GREY, VERMILION, new_figure, styled
 
 Floats = npt.NDArray[np.float64]
@@ -100,7 +101,12 @@ def _draw_speed(figure: Figure, axes: Axes, found: xr.Dataset) -> None:
     axes.grid(visible=False)
     axes.patch.set(facecolor="white", hatch="////", edgecolor="#b0b0b0")
     drawn = axes.pcolormesh(cell_edges(ordered[x]), cell_edges(ordered[y]), speed, cmap="viridis", rasterized=True)
-    figure.colorbar(drawn, ax=axes, label=axis_label(found["transport_speed"], "mean transport speed"))
+    figure.colorbar(
+        drawn,
+        ax=axes,
+        location=beside_or_below(figure),
+        label=axis_label(found["transport_speed"], "mean transport speed"),
+    )
     throw = ordered["throw_number"].to_numpy()
     if throw.min() < 1.0 < throw.max():
         axes.contour(ordered[x], ordered[y], throw, levels=[1.0], colors="white", linestyles=":")

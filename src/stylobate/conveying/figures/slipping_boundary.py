@@ -81,9 +81,13 @@ def plot_slipping_boundary(found: xr.Dataset, *, friction_coefficient: Sequence[
     _draw_required(plane, found)
     plane.set_ylabel(axis_label(found["friction_coefficient"]))
     plane.set_xlabel(axis_label(found["angular_frequency"]))
-    tilt.legend(loc="center left", bbox_to_anchor=(1.02, 0.5))
+    lines = tilt.get_legend_handles_labels()[0]
     handles = [*class_legend(codes, classes), *plane.get_legend_handles_labels()[0]]
-    plane.legend(handles=handles, loc="center left", bbox_to_anchor=(1.04, 0.5))
+    if figure.get_figwidth() < _WIDTH:
+        figure.legend(handles=[*lines, *handles], loc="outside lower left", ncols=2)
+    else:
+        tilt.legend(loc="center left", bbox_to_anchor=(1.02, 0.5))
+        plane.legend(handles=handles, loc="center left", bbox_to_anchor=(1.04, 0.5))
     return figure
 
 

@@ -10,6 +10,7 @@ from matplotlib.ticker import MaxNLocator
 
 from stylobate.errors import ParameterError
 from stylobate.plots.kinds import figure_of
+from stylobate.plots.result_figure import beside_or_below
 from stylobate.plots.style import BLACK, BLUE, DASHES, GREY, VERMILION, new_figure, styled
 from stylobate.text import plural
 
@@ -40,7 +41,7 @@ def plot_planar_bias(found: xr.Dataset) -> Figure:
     x, y = (np.where(np.isinf(values), beyond, values) for values in (flat, space))
     points = axes.scatter(x[known], y[known], c=scale[known], s=16.0, cmap="cividis", zorder=3, linewidths=0.0)
     if np.ptp(scale) > 0.0:
-        figure.colorbar(points, ax=axes, label="scale of the record", shrink=0.8)
+        figure.colorbar(points, ax=axes, location=beside_or_below(figure), label="scale of the record", shrink=0.8)
     axes.plot([0.0, end], [0.0, end], color=BLACK, linewidth=1.0)
     for line in (axes.axvline, axes.axhline):
         line(end, color=GREY, linewidth=0.8, linestyle=DASHES[1])
