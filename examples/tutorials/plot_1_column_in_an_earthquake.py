@@ -65,7 +65,7 @@ for note in mine.provenance:
 # ``figure.savefig("record.png")``.
 periods = np.geomspace(0.05, 5.0, 60)
 spectra = sb.records.response_spectra(quake, periods, damping=0.05)
-figure = sb.earthquakes.plot_records([quake], {quake.name: spectra})
+sb.earthquakes.plot_records([quake], {quake.name: spectra})
 
 # %%
 # PGA and PGV are the peak ground acceleration and velocity; D5-95 is the time between 5
@@ -152,7 +152,7 @@ print(f"friction needed: {run.measures['peak_friction_demand']:.2f}")
 # rim; above the acceleration c g (dashed) its edge lifts. On the right, the path of the
 # tilt vector: the direction in which the column leans. This version of the record
 # begins with 20 s of rest, so the column starts to rock late.
-figure = sb.plot(run)
+sb.plot(run)
 
 # %%
 # Step 7: find the margin
@@ -172,7 +172,7 @@ ends = zip(
 for low, high in ends:
     reach = f"from {low:.3f} to {high:.3f}" if high - low > 0.001 else f"near {low:.3f}"
     print(f"overturns {reach} times the record")
-figure = sb.plot(intervals)
+sb.plot(intervals)
 
 # %%
 # The first interval begins a few percent above the recorded level: a small margin.
@@ -190,7 +190,7 @@ figure = sb.plot(intervals)
 # the integration, and the contact law.
 verdict = sb.verdict(model, quake)
 print(verdict)
-figure = sb.plot(verdict)
+sb.plot(verdict)
 
 # %%
 # The case is *undecided*: this column survived the record in the run of step 5, but
@@ -224,7 +224,7 @@ for place in (0, 4, 8):
     first = larger["interval_from"].isel(size=place).min().item()
     limit = "none up to 2" if np.isnan(first) else f"{first:.2f}"
     print(f"{3.0 * sizes[place]:4.1f} m high: smallest overturning scale {limit}")
-figure = sb.plot(larger)
+sb.plot(larger)
 
 # %%
 # The figure shows the size 2R, twice the distance from the centre of mass to the rim:

@@ -46,7 +46,7 @@ for number in range(1, 21):
 shown = list(quakes.values())[:2]
 periods = np.geomspace(0.05, 5.0, 60)
 spectra = {one.name: sb.records.response_spectra(one, periods) for one in shown}
-figure = sb.earthquakes.plot_records(shown, spectra)
+sb.earthquakes.plot_records(shown, spectra)
 
 # %%
 # Step 2: describe the columns
@@ -75,7 +75,7 @@ model = sb.Wobbling(slim, damping=slim.housner_damping())
 runs = sb.earthquakes.incremental_dynamic_analysis(
     model, quakes, scales=np.geomspace(0.6, 2.4, 15)
 )
-figure = sb.plot(runs)
+sb.plot(runs)
 
 # %%
 # Each grey line is one record. In the upper panel, crosses are runs that overturned.
@@ -105,7 +105,7 @@ for state in ("tilt 0.5 α", "overturning"):
         f"dispersion {one['dispersion'].item():.2f} "
         f"({one['dispersion_low'].item():.2f} to {one['dispersion_high'].item():.2f})"
     )
-figure = sb.plot(fits.sel(limit_state=["tilt 0.5 α", "overturning"]))
+sb.plot(fits.sel(limit_state=["tilt 0.5 α", "overturning"]))
 
 # %%
 # Step 5: the annual rate of overturning

@@ -324,7 +324,7 @@ changed = sb.with_parameters(
 fallen = sb.simulate(*changed, duration=5.0)
 print(fallen.outcome.name, f"after {fallen.decided_at:.2f} s")
 
-animation = sb.animate(fallen, size=(420, 320), speed=0.125)
+sb.animate(fallen, size=(420, 320), speed=0.125)
 
 # %%
 # What to do with these results

@@ -42,7 +42,7 @@ frequencies = np.linspace(0.5, 4.0, 351)
 curves = sb.studies.response_curves(model, circle, angular_frequency=frequencies)
 critical = float(curves["critical_frequency"].item())
 print(f"critical frequency: {critical:.7f}")
-figure = sb.plot(curves)
+sb.plot(curves)
 
 # %%
 # A simulation confirms the stable branch: start on it, and the column keeps rolling.
@@ -78,7 +78,7 @@ lines = axes.plot(time / below.period, tilt, color="#0072b2", linewidth=0.8)
 # Stroboscopic (Poincaré) samples, one per period, show its type: a closed curve means
 # that the motion is quasi-periodic.
 section = sb.studies.poincare_section(model, below, **disturbed, periods=400, skip=200)
-figure = sb.plot(section)
+sb.plot(section)
 
 # %%
 # The Lyapunov exponents agree. The largest one is zero within its error, and the others
@@ -187,7 +187,7 @@ figure.legend(frameon=False, fontsize="small", ncols=3, loc="outside lower cente
 # bar is divided by the shares of the attractors; here one attractor takes each bar.
 values = [1.65, 1.6, 1.568, 1.562, 1.5]
 after = sb.studies.after_bifurcation(pitchfork, values=values, count=8)
-figure = sb.plot(after)
+sb.plot(after)
 
 # %%
 # The whole frequency response in one call
@@ -197,7 +197,7 @@ figure = sb.plot(after)
 # tilts; where an orbit is stable, a band shows the range of its tilt over a period. The
 # mean tilt of averaging is close; the frequency of the loss of stability is not.
 response = sb.studies.exact_response(model, line, angular_frequency=(1.3, 2.2))
-figure = sb.plot(response)
+sb.plot(response)
 
 # %%
 # Where to go on

@@ -39,7 +39,7 @@ frequencies = np.linspace(0.5, 8.0, 80)
 accelerations = np.linspace(0.06, 0.6, 60)
 over = {"angular_frequency": frequencies, "acceleration": accelerations}
 found = sb.studies.overturning_map(model, line, over=over, duration=500.0)
-figure = sb.plot(found)
+sb.plot(found)
 
 # %%
 # Read the map from below:
@@ -91,7 +91,7 @@ value, error = (
 )
 print(f"uncertainty exponent {value:.2f} ± {error:.2f}")
 print(f"an initial condition ten times as accurate: uncertainty / {10.0**value:.1f}")
-figure = sb.plot(exponent)
+sb.plot(exponent)
 
 # %%
 # Basins of attraction
@@ -106,7 +106,7 @@ basins = sb.studies.basins(
     over={"tilt_x": axis, "tilt_y": axis},
     periods=300.0,
 )
-figure = sb.plot(basins)
+sb.plot(basins)
 
 # %%
 # Outside the circle of radius :math:`c` the column overturns at once. Within it,
@@ -134,7 +134,7 @@ for value, error in zip(
     exponents["lyapunov_exponent"].values, exponents["error"].values, strict=True
 ):
     print(f"Lyapunov exponent {value:+.5f} ± {error:.5f}")
-figure = sb.plot(section)
+sb.plot(section)
 
 # %%
 # Basin fractions with intervals
@@ -152,7 +152,7 @@ fractions = sb.studies.basin_fractions(
     count=300,
     periods=300.0,
 )
-figure = sb.plot(fractions)
+sb.plot(fractions)
 
 # %%
 # Below about 0.09 g the column rolls once round per period in either sense. Above,

@@ -221,7 +221,7 @@ for stiffness in (0.0, 0.5, 1.2):
     runs.append(run)
     labels.append(f"k = {stiffness:g}")
     print(f"{labels[-1]}: {run.outcome.name} - {run.reason}")
-figure = sb.plot(runs, labels=labels)
+sb.plot(runs, labels=labels)
 
 # %%
 # Compute a map
@@ -240,7 +240,7 @@ found = sb.studies.overturning_map(
     },
     periods=40,
 )
-figure = sb.plot(found)
+sb.plot(found)
 
 # %%
 # The black region shrinks as the spring becomes stiffer, and its border is irregular:

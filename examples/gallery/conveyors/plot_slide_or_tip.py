@@ -21,7 +21,7 @@ found = sb.conveying.contact_map(
     },
     periods=10.0,
 )
-figure = sb.plot(found)
+sb.plot(found)
 
 # %%
 # The column stays where the acceleration is below both limits: μ g, at which it slides,

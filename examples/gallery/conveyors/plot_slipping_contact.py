@@ -15,7 +15,7 @@ run = sb.simulate(model, tilt=(0.05, 0.0), tilt_rate=(0.0, 0.05), duration=30.0)
 print(run)
 for name in ("time_rolling", "time_slipping", "slip_distance"):
     print(f"{name}: {run.measures[name]:.3f}")
-figure = sb.plot(run)
+sb.plot(run)
 
 # %%
 # Time is in units of 1/ω₀, the slip distance in units of the column's own length scale.

@@ -22,7 +22,7 @@ hazard = sb.earthquakes.HazardCurve(
 rates = sb.earthquakes.annual_rate(fragility, hazard, years=50.0)
 print(f"mean annual rate: {rates['annual_rate'].item():.1e}")
 print(f"probability in 50 years: {100.0 * rates['probability'].item():.1f} %")
-figure = sb.plot(rates)
+sb.plot(rates)
 
 # %%
 # The figure shows which intensities contribute to the rate. Fragility and hazard must

@@ -17,7 +17,7 @@ weaker = sb.simulate(model, quake.scaled(0.8))
 for name, run in (("full strength", full), ("80 %", weaker)):
     print(f"{name}: {run.outcome.label}, {run.reason}")
 
-figure = sb.plot([full, weaker], labels=["full strength", "80 %"])
+sb.plot([full, weaker], labels=["full strength", "80 %"])
 
 # %%
 # The column survives the full record, and overturns under the weaker one: rocking is

@@ -31,7 +31,7 @@ low, median, high = (float(fall[f"median{end}"]) for end in ("_low", "", "_high"
 print(f"overturning: median {median:.1f} m/s², 95 % interval {low:.1f} to {high:.1f}")
 
 # Draw two of the limit states: half the tipping angle, and overturning.
-figure = sb.plot(fits.sel(limit_state=["tilt 0.5 α", "overturning"]))
+sb.plot(fits.sel(limit_state=["tilt 0.5 α", "overturning"]))
 
 # %%
 # Bands are 95 % intervals. A curve describes these records, and no site. See

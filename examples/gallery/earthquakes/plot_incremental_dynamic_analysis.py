@@ -22,7 +22,7 @@ column = sb.Column.solid(radius=0.4, height=4.0, density=2700.0)  # m, m, kg/m³
 runs = sb.earthquakes.incremental_dynamic_analysis(
     sb.Wobbling(column, damping=0.03), quakes, scales=np.linspace(1.6, 5.4, 16)
 )
-figure = sb.plot(runs)
+sb.plot(runs)
 
 # %%
 # Each curve is one record; crosses mark runs that overturn. A circle is a run that

@@ -19,7 +19,7 @@ found = sb.earthquakes.overturning_intervals(
 pairs = zip(found["interval_from"].values, found["interval_to"].values, strict=True)
 for low, high in pairs:
     print(f"overturns from {low:.4f} to {high:.4f} times the record")
-figure = sb.plot(found)
+sb.plot(found)
 
 # %%
 # Dark intervals overturn the column; in the hatched ones it survives although a weaker

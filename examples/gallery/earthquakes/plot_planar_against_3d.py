@@ -23,7 +23,7 @@ found = sb.earthquakes.planar_bias(
 )
 ratio = float(np.exp(found["overall_bias"]))
 print(f"peak tilt in three dimensions / planar: {ratio:.1f} (geometric mean)")
-figure = sb.plot(found)
+sb.plot(found)
 
 # %%
 # Above the diagonal the round column tilts farther than the planar block. The two also

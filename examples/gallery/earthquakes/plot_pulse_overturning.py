@@ -20,7 +20,7 @@ found = sb.earthquakes.overturning_intervals(
     over={"angular_frequency": np.linspace(0.5, 9.0, 30)},
     width=0.01,  # relative error of the edges
 )
-figure = sb.plot(found)
+sb.plot(found)
 
 # %%
 # Two regions overturn the column. In the lower one it passes the vertical and falls to

@@ -20,7 +20,7 @@ found = sb.earthquakes.planar_bias(
 planar = found["least_planar_overturning"].values
 print(f"planar: overturned from {np.nanmin(planar):.2f} to {np.nanmax(planar):.2f}")
 print(f"three-dimensional: from {found['least_overturning'].values[0]:.2f}")
-figure = sb.earthquakes.plot_directions(found)
+sb.earthquakes.plot_directions(found)
 
 # %%
 # The radius is the lowest scale of the record that overturns the planar column when it

@@ -18,7 +18,7 @@ for name, unit in (("pga", "m/s²"), ("pgv", "m/s"), ("arias", "m/s")):
 
 periods = np.geomspace(0.05, 5.0, 60)  # s
 spectra = sb.records.response_spectra(record, periods, damping=0.05)
-figure = sb.earthquakes.plot_records([record], {record.name: spectra})
+sb.earthquakes.plot_records([record], {record.name: spectra})
 
 # %%
 # Left: the accelerations. Right: spectral accelerations at 5 % damping. To read your

@@ -18,7 +18,7 @@ peaks = sb.earthquakes.rocking_spectrum(
     quake,
     over={"size": np.geomspace(0.1, 10.0, 40), "slenderness": [0.1, 0.15, 0.2]},
 )
-figure = sb.plot(peaks)
+sb.plot(peaks)
 
 # %%
 # Triangles mark columns that overturn. The horizontal axis is the size, as the time

@@ -22,7 +22,7 @@ lowest = found["interval_from"].min("interval")
 small, large = float(lowest[0]), float(lowest[-1])
 print(f"1 m column: overturned from {small:.2f} times the record on")
 print(f"12 m column: overturned from {large:.2f} times the record on")
-figure = sb.plot(found)
+sb.plot(found)
 
 # %%
 # On the whole a larger column needs a stronger record. In detail the limit goes up and

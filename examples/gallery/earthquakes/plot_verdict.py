@@ -13,7 +13,7 @@ model = sb.Wobbling(column, damping=column.housner_damping())
 quake = sb.sample_record("el centro 1940")
 verdict = sb.verdict(model, quake)
 print(verdict)
-figure = sb.plot(verdict)
+sb.plot(verdict)
 
 # %%
 # Left: peak tilts of the variations by contact law. Right: the share of overturning

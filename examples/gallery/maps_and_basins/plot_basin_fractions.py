@@ -23,7 +23,7 @@ fractions = sb.studies.basin_fractions(
     periods=300.0,
     attractor_rules=sb.studies.AttractorRules(branch_tolerance=2.0),
 )
-figure = sb.plot(fractions)
+sb.plot(fractions)
 
 # %%
 # The height of a band is the fraction of columns that end in its motion. Each bar is

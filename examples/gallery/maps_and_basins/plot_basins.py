@@ -18,7 +18,7 @@ found = sb.studies.basins(
     model, line, over={"tilt_x": axis, "tilt_y": axis}, periods=200.0
 )
 print(*found["attractor_name"].values, sep="\n")
-figure = sb.plot(found)
+sb.plot(found)
 
 # %%
 # Each cell is an initial tilt with the column at rest in it. The disc has the radius c:

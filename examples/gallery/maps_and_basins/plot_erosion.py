@@ -22,7 +22,7 @@ erosion = sb.studies.erosion(
     over={"tilt_x": axis, "tilt_y": axis},
     periods=30.0,
 )
-figure = sb.plot(erosion)
+sb.plot(erosion)
 
 # %%
 # Without base motion only tilts near c overturn the column. At half of c g, a small

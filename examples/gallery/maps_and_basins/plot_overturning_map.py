@@ -28,7 +28,7 @@ for name, share in zip(
 ):
     if share > 0.0:
         print(f"{name}: {100.0 * share:.1f} %")
-figure = sb.plot(found)
+sb.plot(found)
 
 # %%
 # Up to c g, here 0.1 g, nothing moves. Above it slow motions overturn the column. Under

@@ -43,11 +43,11 @@ with tempfile.TemporaryDirectory() as folder:
     whole = sb.studies.run_sweep(sweep, store=store, resume=True).load()
     print(f"runs after resuming: {whole.attrs['runs_done']}")
 
-figure = sb.plot(unfinished)
+sb.plot(unfinished)
 
 # %%
 # The store after the interruption: cells without a colour are not computed yet.
-figure = sb.plot(whole)
+sb.plot(whole)
 
 # %%
 # The same store after it was resumed. See :doc:`/how-to/sweeps`.

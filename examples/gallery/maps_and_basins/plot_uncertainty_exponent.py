@@ -22,7 +22,7 @@ found = sb.studies.uncertainty_exponent(
 )
 exponent, error = float(found["uncertainty_exponent"]), float(found["standard_error"])
 print(f"uncertainty exponent: {exponent:.2f} ± {error:.2f}")
-figure = sb.plot(found)
+sb.plot(found)
 
 # %%
 # The fraction of uncertain initial conditions falls with the error of the start, as a

@@ -25,7 +25,7 @@ lowest = found["interval_from"].min("interval")
 for damping in found["damping"].values[[0, -1]]:
     scale = float(lowest.sel(damping=damping))
     print(f"damping {damping:.3f}: the record overturns it from {scale:.2f} times on")
-figure = sb.plot(found)
+sb.plot(found)
 
 # %%
 # The lowest scale that overturns the column more than doubles from the smallest to the

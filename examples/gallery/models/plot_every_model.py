@@ -24,7 +24,7 @@ found = sb.studies.model_hierarchy(
 table = found["mean_late_tilt"] / found["slenderness"]
 print(table.to_pandas().round(3).to_string())
 
-figure = sb.plot(found)
+sb.plot(found)
 
 # %%
 # Above: tilt and spin of each model. The models that may spin tilt half as far as the

@@ -45,7 +45,7 @@ class Dragged(sb.Model):
 column = sb.Column.dimensionless(slenderness=0.1)
 start = {"tilt": (0.06, 0.0), "tilt_rate": (0.0, 0.05), "duration": 60.0}
 runs = [sb.simulate(Dragged(column, drag=k), **start) for k in (0.0, 2.0)]
-figure = sb.plot(runs, labels=["no drag", "drag k = 2"])
+sb.plot(runs, labels=["no drag", "drag k = 2"])
 
 # %%
 # Without drag the column rolls on for ever; with it the tilt falls, fast at first and

@@ -25,7 +25,7 @@ for name, count in zip(
     found["comparison_name"].values, found["count"].values, strict=True
 ):
     print(f"{name}: {count} runs")
-figure = sb.plot(found)
+sb.plot(found)
 
 # %%
 # All runs start at rest. :doc:`/explanation/model-hierarchy` discusses a finer map, and

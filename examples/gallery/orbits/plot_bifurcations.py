@@ -18,7 +18,7 @@ for kind, at in zip(kinds, curves["bifurcation_angular_frequency"].values, stric
 averaged = float(curves["averaged_critical_frequency"])
 print(f"averaged theory: stable above {averaged:.6f} ω₀")
 
-figure = sb.plot(curves)
+sb.plot(curves)
 
 # %%
 # Bold: stable orbits; shaded: the range of the tilt over a period. The averaged theory

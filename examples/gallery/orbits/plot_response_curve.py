@@ -20,7 +20,7 @@ curves = sb.studies.response_curves(
 critical = float(curves["critical_frequency"][0])
 print(f"steady rolling is stable above {critical:.4f} ω₀")
 
-figure = sb.plot(curves)
+sb.plot(curves)
 
 # %%
 # Steady rolling has two branches. The lower one is unstable at all frequencies; the

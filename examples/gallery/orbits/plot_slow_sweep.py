@@ -24,7 +24,7 @@ swept = sb.studies.slow_sweep(
     periods_each=60,  # few, to be quick
     back=True,
 )
-figure = sb.plot(swept)
+sb.plot(swept)
 
 # %%
 # On the way down the column rolls until the rolling motion vanishes, and then comes to

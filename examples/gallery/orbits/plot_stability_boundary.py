@@ -21,7 +21,7 @@ boundary = sb.studies.stability_boundary(
     control=sb.orbits.StepControl(first=0.02, largest=0.2),  # long steps, to be quick
 )
 print("kinds of curves:", *boundary["curve_kind"].values)
-figure = sb.plot(boundary)
+sb.plot(boundary)
 
 # %%
 # Rolling is stable to the right of the bold curve. Averaged theory calls it stable from

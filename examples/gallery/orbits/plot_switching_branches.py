@@ -21,7 +21,7 @@ mirrored = sb.orbits.switch_branch(pitchfork, bounds=(1.5, 2.0), opposite=True)
 print(pitchfork)
 print(asymmetric.bifurcations[0])
 
-figure = sb.plot([symmetric, asymmetric], labels=["symmetric", "asymmetric"])
+sb.plot([symmetric, asymmetric], labels=["symmetric", "asymmetric"])
 
 # %%
 # Bold: stable orbits; shaded: the range of the tilt over a period. The mirrored branch

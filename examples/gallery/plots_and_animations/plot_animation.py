@@ -14,7 +14,7 @@ circle = sb.Harmonic.circular(acceleration=0.9, angular_frequency=5.5)  # m/s²,
 run = sb.simulate(model, circle, tilt=(0.05, 0.0), tilt_rate=(0.0, 0.25), duration=2.5)
 
 # Small and with few pictures, so that this page loads fast.
-animation = sb.animate(run, size=(420, 340), frames_per_second=12)
+sb.animate(run, size=(420, 340), frames_per_second=12)
 
 # %%
 # The column rolls round its rim. To save the animation, pass a path that ends with

@@ -31,7 +31,7 @@ repeated = sb.simulate(setup.model, setup.motion, **setup.options)
 difference = abs(repeated.data["tilt"] - run.data["tilt"]).max().item()
 print(f"largest difference of the tilt: {difference} rad")
 
-figure = sb.plot([loaded, repeated], labels=["loaded", "repeated"])
+sb.plot([loaded, repeated], labels=["loaded", "repeated"])
 
 # %%
 # The two curves coincide: the repeated run is the same to the last digit. See

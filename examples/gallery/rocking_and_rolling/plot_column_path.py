@@ -17,7 +17,7 @@ print(
     f"turns of the contact point: {run.measures['turns']:.1f}, spin: {spin:.2f} rad/s"
 )
 
-figure = sb.plots.plot_column_path(run)
+sb.plots.plot_column_path(run)
 
 # %%
 # The column with the path of its contact point, seen from the moving base. See

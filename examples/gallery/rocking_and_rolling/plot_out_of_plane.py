@@ -16,7 +16,7 @@ pushed = sb.simulate(model, tilt_rate=(0.0, 0.006), **start)  # rad × ω₀
 print(f"planar motion: {inside.planar} without the push, {pushed.planar} with it")
 print(f"turns of the contact point with the push: {pushed.measures['turns']:.1f}")
 
-figure = sb.plot([inside, pushed], labels=["no push", "sideways push"])
+sb.plot([inside, pushed], labels=["no push", "sideways push"])
 
 # %%
 # The contact point of the pushed column runs half round the rim at each passage near

@@ -26,7 +26,7 @@ found = sb.studies.overturning_map(
 overturned = (found["outcome"] == sb.Outcome.OVERTURNED).mean("start_phase")
 mixed = float(((overturned > 0.0) & (overturned < 1.0)).mean())
 print(f"the start phase decides at {100.0 * mixed:.0f} % of the amplitudes")
-figure = sb.plot(found)
+sb.plot(found)
 
 # %%
 # At an amplitude whose row shows both survival and overturning, the start phase

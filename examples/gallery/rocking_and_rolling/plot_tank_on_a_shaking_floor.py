@@ -29,4 +29,4 @@ for acceleration, angular_frequency in cases:
 # %%
 # The tilt of each run against time, and the paths of the tilt vector. The dashed circle
 # marks the tilt at which the centre of mass stands above the rim.
-figure = sb.plot(runs, labels=labels)
+sb.plot(runs, labels=labels)
