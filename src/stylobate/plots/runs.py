@@ -216,8 +216,10 @@ def _draw_base(axes: Axes, run: Response, line: dict[str, Any]) -> None:
     if np.any(acceleration[:, 2]):
         look = line | {"linestyle": ":", "color": line["color"] if not np.any(horizontal) else GREY}
         filled |= draw_history(axes, run.data["time"], acceleration[:, 2], linewidth=0.8, zorder=below - 0.5, **look)
-    if filled:
-        axes.set_title("base between its extremes", fontsize="small", pad=2.0)
+    notes = ["filled between extremes"] if filled else []
+    if np.any(acceleration[:, 2]):
+        notes.append("grey: vertical" if np.any(horizontal) else "vertical")
+    axes.set_title("; ".join(notes), fontsize="small", pad=2.0)
 
 
 def _draw_path(axes: Axes, run: Response, line: dict[str, Any]) -> None:
