@@ -33,8 +33,10 @@ DUTIES = {
     "kinds": "names of classes in files",
     "files": "files written whole, with checksums",
     "processes": "worker processes",
+    "equality": "equality by content",
     "errors": "exceptions, checks, outcomes",
-    "text": "plurals",
+    "text": "plurals, digits, similar names",
+    "cards": "objects in notebooks",
 }
 
 

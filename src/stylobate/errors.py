@@ -8,6 +8,7 @@
     │   └── ModelError                 a model whose members contradict each other: one line for each mistake
     ├── UnsupportedError               a study that the model does not support
     ├── NoOrbitError                   no periodic orbit was reached from a guess
+    ├── UnknownNameError (KeyError)    a name that a result does not have
     ├── FileError                      a file that cannot be read or written
     └── WorkerLostError                a worker process that ended before its result
 
@@ -85,6 +86,12 @@ class UnsupportedError(StylobateError):
 
 class NoOrbitError(StylobateError):
     """No periodic orbit was reached from a guess; the message says how the search ended."""
+
+
+class UnknownNameError(StylobateError, KeyError):
+    """A name that a result does not have; the message suggests the most similar one."""
+
+    __str__ = Exception.__str__  # a KeyError quotes its message
 
 
 class FileError(StylobateError):

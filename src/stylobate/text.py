@@ -1,9 +1,11 @@
-"""Counts, numbers and misspelt names in text."""
+"""Counts, numbers, units and misspelt names in text."""
 
+import re
 from collections.abc import Iterable
 from difflib import get_close_matches
 
 _LIKENESS = 0.7
+_EXPONENTS = str.maketrans("0123456789", "⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 def plural(number: int, noun: str) -> str:
@@ -26,6 +28,19 @@ def four_digits(number: float) -> str:
     ('21210', '0.1', '1.235e-07', '0')
     """
     return f"{float(f'{number:.4g}') + 0.0:.6g}"
+
+
+def unit_in_text(units: str) -> str:
+    """Write the units of a variable in netCDF files as in text; empty for a number without unit.
+
+    >>> unit_in_text("m s-2"), unit_in_text("s-1"), unit_in_text("kg m2"), unit_in_text("1")
+    ('m/s²', '1/s', 'kg m²', '')
+    """
+    above, below = list[str](), list[str]()
+    for symbol, power in re.findall(r"([^\s\d-]+)(-?\d*)", units):
+        raised = power.lstrip("-").translate(_EXPONENTS) if power not in ("", "-1") else ""
+        (below if power.startswith("-") else above).append(symbol + raised)
+    return "/".join([" ".join(above) or "1", *below]) if above or below else ""
 
 
 def did_you_mean(name: str, known: Iterable[str]) -> str:

@@ -8,6 +8,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from stylobate.engine.flow.status import Status
+from stylobate.equality import ByContent
 from stylobate.orbits.arclength import Floats, Point, corrected
 from stylobate.orbits.conditions import Condition, conditions_between
 from stylobate.orbits.multipliers import without_damping
@@ -40,8 +41,8 @@ class Kind(Enum):
     """A modulated motion branches off; not located without damping, because pairs then stay on the unit circle."""
 
 
-@dataclass(frozen=True)
-class Bifurcation:
+@dataclass(frozen=True, eq=False)
+class Bifurcation(ByContent):
     """A bifurcation of a periodic orbit.
 
     Attributes

@@ -10,23 +10,26 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
+from stylobate.cards import Row, Section, card
 from stylobate.config import provenance_of_run
 from stylobate.engine.flow.status import Status
-from stylobate.engine.parameter_quantities import attributes_of
+from stylobate.engine.parameter_quantities import attributes_of, quantity_of
 from stylobate.engine.parameters import present_value
+from stylobate.equality import ByContent
 from stylobate.errors import NoOrbitError, ParameterError, require_finite
 from stylobate.orbits.arclength import Family, Floats, Point, on_family
 from stylobate.orbits.arguments import control_of, enclosing, require_followed, require_orbit
 from stylobate.orbits.bifurcations import Bifurcation, between, orbit_at
 from stylobate.orbits.multipliers import is_stable
-from stylobate.orbits.orbit import PeriodicOrbit
+from stylobate.orbits.orbit import PeriodicOrbit, range_of, system_sections
 from stylobate.orbits.saving import BRANCH, SUPERCRITICAL, file_attributes, write
 from stylobate.orbits.shooting import WHY_LOST, arcs_of
 from stylobate.orbits.tracing import End, StepControl, Stretch, trace
+from stylobate.text import four_digits, unit_in_text
 
 
-@dataclass(frozen=True)
-class Branch:
+@dataclass(frozen=True, eq=False)
+class Branch(ByContent):
     """A branch of periodic orbits over one parameter.
 
     Attributes
@@ -173,8 +176,25 @@ class Branch:
     def __repr__(self) -> str:
         """Describe the branch in one line."""
         values = [point.value for point in self.path]
-        kinds = ", ".join(f"{one.kind.value} at {one.parameter:.8g}" for one in self.bifurcations)
-        return f"Branch({len(values)} orbits, {self.parameter} {min(values):.6g}…{max(values):.6g}; {kinds})"
+        kinds = ", ".join(f"{one.kind.value} at {four_digits(one.parameter)}" for one in self.bifurcations)
+        return f"Branch({len(values)} orbits, {self.parameter} {range_of(values)}; {kinds or 'no bifurcations'})"
+
+    def _repr_html_(self) -> str:
+        """Render the card that notebooks show."""
+        stable = sum(is_stable(point.multipliers) for point in self.path)
+        unit = unit_in_text(quantity_of(self.parameter).units)
+        rows = [
+            Row(self.parameter.replace("_", " "), f"{range_of(point.value for point in self.path)} {unit}"),
+            Row("orbits", f"{len(self.path)}, {stable} of them stable"),
+            Row("ends", "; ".join(end.value for end in self.ends)),
+        ]
+        how = {True: ", supercritical", False: ", subcritical", None: ""}
+        found = [
+            Row(one.kind.value, f"{four_digits(one.parameter)} {unit}{how[one.supercritical]}")
+            for one in self.bifurcations
+        ]
+        sections = system_sections(self.path[0].family.system)
+        return card("Branch of periodic orbits", [Section("", rows), Section("bifurcations", found), *sections])
 
 
 def _table_of(bifurcations: tuple[Bifurcation, ...]) -> dict[str, tuple[str, list[object]]]:

@@ -11,18 +11,22 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
+from stylobate.cards import Row, Section, card
 from stylobate.config import provenance_of_run
 from stylobate.engine.flow.periodic import Numbers, PeriodicSystem
 from stylobate.engine.flow.status import Status
-from stylobate.engine.parameter_quantities import attributes_of
+from stylobate.engine.parameter_quantities import attributes_of, quantity_of
 from stylobate.engine.parameters import present_value
+from stylobate.equality import ByContent
 from stylobate.errors import NoOrbitError, ParameterError, StylobateError
 from stylobate.orbits.arguments import control_of, enclosing, require_bifurcation, require_followed
 from stylobate.orbits.bifurcations import Bifurcation, Kind
 from stylobate.orbits.normal_forms import PeriodMap, neimark_sacker_coefficient, period_doubling_coefficient
+from stylobate.orbits.orbit import range_of, system_sections
 from stylobate.orbits.saving import CURVE, file_attributes, write
 from stylobate.orbits.shooting import Shots, shots
 from stylobate.orbits.tracing import ASTRAY, End, StepControl
+from stylobate.text import unit_in_text
 
 _log = logging.getLogger("stylobate")
 
@@ -58,8 +62,8 @@ _CONDITIONS: dict[Kind, Callable[[Floats], float]] = {
 }
 
 
-@dataclass(frozen=True, slots=True)
-class CurvePoint:
+@dataclass(frozen=True, slots=True, eq=False)
+class CurvePoint(ByContent):
     """A bifurcation on a curve: both parameters, the shooting segments of its orbit, and the critical eigenvalue."""
 
     values: tuple[float, float]
@@ -67,8 +71,8 @@ class CurvePoint:
     multiplier: complex
 
 
-@dataclass(frozen=True)
-class BifurcationCurve:
+@dataclass(frozen=True, eq=False)
+class BifurcationCurve(ByContent):
     """The curve of a bifurcation in the plane of two parameters.
 
     Attributes
@@ -150,7 +154,24 @@ class BifurcationCurve:
 
     def __repr__(self) -> str:
         """Describe the curve in one line."""
-        return f"BifurcationCurve({self.kind.value} over {' and '.join(self.parameters)}, {len(self.path)} points)"
+        ranges = " and ".join(f"{name} {values}" for name, values in self._ranges().items())
+        return f"BifurcationCurve({self.kind.value}, {len(self.path)} points over {ranges})"
+
+    def _repr_html_(self) -> str:
+        """Render the card that notebooks show."""
+        rows = [
+            Row("kind", self.kind.value),
+            *(
+                Row(name.replace("_", " "), f"{values} {unit_in_text(quantity_of(name).units)}")
+                for name, values in self._ranges().items()
+            ),
+            Row("points", str(len(self.path))),
+            Row("ends", "; ".join(end.value for end in self.ends)),
+        ]
+        return card("Bifurcation curve", [Section("", rows), *system_sections(self.plane.system)])
+
+    def _ranges(self) -> dict[str, str]:
+        return {name: range_of(point.values[k] for point in self.path) for k, name in enumerate(self.parameters)}
 
 
 def bifurcation_curve(
@@ -244,8 +265,8 @@ class _Step:
     steps: int
 
 
-@dataclass(frozen=True)
-class Plane:
+@dataclass(frozen=True, eq=False)
+class Plane(ByContent):
     """The plane of two parameters, over which orbits of a system are continued."""
 
     system: PeriodicSystem

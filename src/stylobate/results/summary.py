@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 
 from stylobate.results.damping_yardstick import damping_yardstick, yardstick_text
 from stylobate.results.outcomes import NUMERICALLY_UNCERTAIN
+from stylobate.text import four_digits
 
 if TYPE_CHECKING:
     from stylobate.column import Column
@@ -41,6 +42,12 @@ def reason_rows(run: "Response") -> Rows:
 def measure_rows(run: "Response") -> Rows:
     """Return the rows of the summary numbers of `run`: tilt, final position and contact demand."""
     return [*_motion_rows(run), *_contact_rows(run), *_demand_rows(run)]
+
+
+def threshold_rows(run: "Response") -> Rows:
+    """Return the rows of the thresholds that decided the outcome of `run`."""
+    texts = {name: f"{four_digits(value)} {_UNITS.get(name, '')}".rstrip() for name, value in run.thresholds.items()}
+    return [(name.replace("_", " "), text) for name, text in texts.items()]
 
 
 def _motion_rows(run: "Response") -> Rows:
@@ -92,6 +99,13 @@ def _demand_rows(run: "Response") -> Rows:
 def _bounded(value: float, unit: str) -> str:
     return f"{value:.4g}{unit}" if math.isfinite(value) else "no bound: nothing presses on the base"
 
+
+_UNITS = {
+    **dict.fromkeys(("passage_tilt", "no_return_tilt", "tilt_limit", "overturned_tilt"), "rad"),
+    **dict.fromkeys(("close_passage", "rest_tilt"), "c"),
+    **dict.fromkeys(("rest_energy", "rest_energy_for_good"), "c²"),
+}
+"""Units of thresholds."""
 
 _SHOWN = 4
 """Maximum number of listed events."""

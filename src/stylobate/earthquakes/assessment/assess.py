@@ -31,6 +31,7 @@ from stylobate.earthquakes.named_records import Records
 from stylobate.earthquakes.remarks import remark_on
 from stylobate.errors import LARGEST_SEED, require_positive, require_whole
 from stylobate.models import Model
+from stylobate.quantities import exact_repr
 from stylobate.results.assessment import Assessment
 from stylobate.results.few_records import FEW_RECORDS
 from stylobate.results.report_details import ReportDetails
@@ -273,7 +274,7 @@ def _setting(inputs: Inputs) -> dict[str, Any]:
         },
         "records": {
             name: {
-                "processing": list(motion.provenance) if isinstance(motion, Record) else [repr(motion)],
+                "processing": list(motion.provenance) if isinstance(motion, Record) else [exact_repr(motion)],
                 "digest": motion.digest if isinstance(motion, Record) else "",
                 "motion": provenance_of_run(next(iter(inputs.columns.values()))[CENTRAL], motion)["motion"],
             }

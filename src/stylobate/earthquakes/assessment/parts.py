@@ -12,6 +12,7 @@ import xarray as xr
 
 from stylobate.base_motions import BaseMotion, Record
 from stylobate.errors import FileError
+from stylobate.quantities import exact_repr
 from stylobate.results.storage import read_dataset, write_netcdf
 from stylobate.studies.sweeps.computing import Progress
 from stylobate.studies.sweeps.fingerprint import identity_of
@@ -90,7 +91,7 @@ def identities(motions: Mapping[str, BaseMotion]) -> dict[str, Any]:
 
 
 def _digest(identity: Mapping[str, Any]) -> str:
-    return hashlib.sha256(json.dumps(identity, sort_keys=True, default=repr).encode()).hexdigest()[:24]
+    return hashlib.sha256(json.dumps(identity, sort_keys=True, default=exact_repr).encode()).hexdigest()[:24]
 
 
 def _kept(path: Path) -> xr.Dataset | None:
