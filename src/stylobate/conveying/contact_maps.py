@@ -10,7 +10,7 @@ import numpy.typing as npt
 import xarray as xr
 
 from stylobate.base_motions import BaseMotion
-from stylobate.errors import Outcome, ParameterError, UnsupportedError
+from stylobate.errors import Named, Outcome, ParameterError, UnsupportedError
 from stylobate.models import Model
 from stylobate.results.outcomes import NOT_COMPUTED, flag_attributes
 from stylobate.studies.checks import require_values
@@ -22,7 +22,7 @@ from stylobate.studies.sweeps.recipe import RunOptions
 _PLANE = 2
 
 
-class ContactClass(IntEnum):
+class ContactClass(Named, IntEnum):
     """Class of a run by the kinds of contact that occurred in it."""
 
     STAYS = 0

@@ -9,6 +9,7 @@ from scipy.optimize import brentq
 
 from stylobate.engine.flow.status import Status
 from stylobate.equality import ByContent
+from stylobate.errors import Named
 from stylobate.orbits.arclength import Floats, Point, corrected
 from stylobate.orbits.conditions import Condition, conditions_between
 from stylobate.orbits.multipliers import without_damping
@@ -27,7 +28,7 @@ _LOCATED = 1e-13
 _CRITICAL = 1e-4
 
 
-class Kind(Enum):
+class Kind(Named, Enum):
     """Kind of a bifurcation."""
 
     FOLD = "fold"

@@ -8,7 +8,7 @@ from enum import Enum
 import numpy as np
 
 from stylobate.engine.flow.status import Status
-from stylobate.errors import ParameterError, require_positive, require_whole
+from stylobate.errors import Named, ParameterError, require_positive, require_whole
 from stylobate.orbits.arclength import Family, Floats, Point, corrected
 
 _log = logging.getLogger("stylobate")
@@ -24,7 +24,7 @@ ASTRAY = 0.5
 _CLOSED = 0.75
 
 
-class End(Enum):
+class End(Named, Enum):
     """Reason why a branch ends."""
 
     BOUND = "the parameter reached its bound"

@@ -8,10 +8,11 @@ from enum import Enum
 import xarray as xr
 
 from stylobate.equality import ByContent
+from stylobate.errors import Named
 from stylobate.results.plain import ByName
 
 
-class ClaimStatus(Enum):
+class ClaimStatus(Named, Enum):
     """The verdict on a statement of a publication."""
 
     HOLDS = "holds"

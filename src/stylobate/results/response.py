@@ -16,6 +16,7 @@ from stylobate.results.samples import Samples
 from stylobate.text import four_digits
 
 if TYPE_CHECKING:
+    import pandas as pd
     import xarray as xr
 
 _PLAIN = ("decided_at", "uncertain", "planar", "thresholds", "measures", "provenance", "warnings")
@@ -136,6 +137,12 @@ class Response(ByContent):
             message = "sample needs a run made in this process: a loaded result has the samples in .data only"
             raise UnsupportedError(message)
         return self.sampler(time)
+
+    def to_dataframe(self) -> "pd.DataFrame":
+        """Convert the samples to a table in pandas, with one row per sample; see `results.to_dataframe`."""
+        from stylobate.results.tables import to_dataframe  # noqa: PLC0415  heavy imports wait until they are needed
+
+        return to_dataframe(self.data)
 
     def save(self, path: str | Path) -> Path:
         """Write the run to a netCDF file at `path`, with its provenance; `stylobate.load` reads it again."""

@@ -30,7 +30,7 @@ def damping_rows(column: "Column", damping: float | None) -> Rows:
 
 def outcome_of(run: Any) -> str:
     """Return the outcome in words, with a remark if it is numerically uncertain."""
-    return run.outcome.label + (f" ({NUMERICALLY_UNCERTAIN})" if run.uncertain else "")
+    return f"{run.outcome.label}" + (f" ({NUMERICALLY_UNCERTAIN})" if run.uncertain else "")
 
 
 def reason_rows(run: Any) -> Rows:

@@ -10,18 +10,19 @@ from typing import TYPE_CHECKING, Any, Self
 
 from stylobate.cards import Row, Section, card
 from stylobate.equality import ByContent
-from stylobate.errors import MOST_RUNS, FileError, ParameterError, require_whole
+from stylobate.errors import MOST_RUNS, FileError, Named, ParameterError, require_whole
 from stylobate.results.plain import ByName, plain_value
 from stylobate.text import plural
 
 if TYPE_CHECKING:
+    import pandas as pd
     import xarray as xr
 
 KIND = "verdict"
 """Value of the attribute `kind` of the data of a verdict."""
 
 
-class VerdictWord(Enum):
+class VerdictWord(Named, Enum):
     """The word of a verdict."""
 
     OVERTURNS = "overturns"
@@ -124,6 +125,12 @@ class Verdict(ByContent):
             for law, share, low, high in zip(self.share_by_model, *of_models, strict=True)
         ]
         return card("Verdict", [Section("", rows), Section("share by contact law, with interval", laws)])
+
+    def to_dataframe(self) -> "pd.DataFrame":
+        """Convert the variations to a table in pandas, with one row per variation; see `results.to_dataframe`."""
+        from stylobate.results.tables import to_dataframe  # noqa: PLC0415  heavy imports wait until they are needed
+
+        return to_dataframe(self.data)
 
     def save(self, path: str | Path) -> Path:
         """Write the verdict to a netCDF file at `path`, with its provenance; `stylobate.load` reads it again."""

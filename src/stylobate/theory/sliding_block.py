@@ -19,13 +19,13 @@ from enum import IntEnum
 import numpy as np
 import numpy.typing as npt
 
-from stylobate.errors import ParameterError
+from stylobate.errors import Named, ParameterError
 from stylobate.theory.arguments import FloatArray, Real, not_negative
 
 _BISECTIONS = 60  # from an interval shorter than π down to rounding
 
 
-class SlidingRegime(IntEnum):
+class SlidingRegime(Named, IntEnum):
     """Regime of a block on a horizontally vibrating plane."""
 
     STICKS = 0

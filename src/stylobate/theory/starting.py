@@ -17,14 +17,14 @@ from enum import IntEnum
 import numpy as np
 import numpy.typing as npt
 
-from stylobate.errors import ParameterError
+from stylobate.errors import Named, ParameterError
 from stylobate.theory.arguments import ComplexArray, FloatArray, Real, finite, not_negative, positive
 
 # Relative difference, a few roundings, below which lift-off and leaving the friction cone coincide.
 _SAME = 8.0 * float(np.finfo(float).eps)
 
 
-class FirstMotion(IntEnum):
+class FirstMotion(Named, IntEnum):
     """The first motion of a standing column."""
 
     NONE = 0
