@@ -34,6 +34,7 @@ DUTIES = {
     "files": "files written whole, with checksums",
     "processes": "worker processes",
     "equality": "equality by content",
+    "progress": "bars of long computations",
     "errors": "exceptions, checks, outcomes",
     "text": "plurals, digits, similar names",
     "cards": "objects in notebooks",
