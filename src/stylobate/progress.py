@@ -153,14 +153,15 @@ class _Bar:
 
     def beat(self) -> None:
         """Draw the bar if it is due."""
+        news = self._news._replace(what=self._news.what or self._what)
         if self._drawn is None and time.monotonic() - self._begun >= DUE:
             # In a thread, because an import that Ctrl-C interrupts may leave modules half imported.
             imported = threading.Thread(target=import_module, args=("rich.progress",))
             imported.start()
             imported.join()
-            self._drawn = (_InNotebook if _place() == "notebook" else _OnTerminal)()
+            self._drawn = (_InNotebook if _place() == "notebook" else _OnTerminal)(news)
         if self._drawn is not None:
-            self._drawn.update(self._news._replace(what=self._news.what or self._what))
+            self._drawn.update(news)
 
     def close(self) -> None:
         """Remove the bar."""
@@ -171,7 +172,7 @@ class _Bar:
 class _Drawn:
     """A bar of rich: what is computed, the bar, how much is done, and the time that remains."""
 
-    def __init__(self, console: "Console") -> None:
+    def __init__(self, news: News, console: "Console") -> None:
         from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn  # noqa: PLC0415
 
         what, state = (TextColumn(f"{{task.{name}}}", markup=False) for name in ("description", "fields[state]"))
@@ -179,7 +180,7 @@ class _Drawn:
         self.bar: RichProgress = Progress(
             what, BarColumn(), state, TimeRemainingColumn(), console=console, transient=True, redirect_stdout=False
         )
-        self.task = self.bar.add_task("", total=None, state="")
+        self.task = self.bar.add_task(news.what, total=None, state=news.state)
 
     def update(self, news: News) -> None:
         """Set the progress."""
@@ -193,22 +194,22 @@ class _Drawn:
 class _OnTerminal(_Drawn):
     """A bar on the last line of a terminal; text on stderr appears above it."""
 
-    def __init__(self) -> None:
+    def __init__(self, news: News) -> None:
         from rich.console import Console  # noqa: PLC0415
 
-        super().__init__(Console(stderr=True, markup=False, highlight=False))
+        super().__init__(news, Console(stderr=True, markup=False, highlight=False))
         self.bar.start()
 
 
 class _InNotebook(_Drawn):
     """A bar as text in the output of a cell, which is replaced; it needs no widgets."""
 
-    def __init__(self) -> None:
+    def __init__(self, news: News) -> None:
         from IPython.display import display  # noqa: PLC0415
         from rich.console import Console  # noqa: PLC0415
 
         self._page = io.StringIO()
-        super().__init__(Console(file=self._page, width=_WIDTH, force_jupyter=False))
+        super().__init__(news, Console(file=self._page, width=_WIDTH, force_jupyter=False))
         self._shown = 0.0
         self._handle = display({"text/plain": ""}, raw=True, display_id=True)
 

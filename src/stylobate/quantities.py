@@ -225,7 +225,7 @@ class Declared:
         """Raise ParameterError for numbers that contradict each other; each number has been checked before."""
 
     def _call(self) -> tuple[Callable[..., Any], Mapping[str, Any]]:
-        """Return what makes the value, and its arguments: by default its class and its fields."""
+        """Return the constructor of the value, and its arguments: by default its class and its fields."""
         return type(self), _fields_of(self)
 
     def __repr__(self) -> str:

@@ -167,7 +167,7 @@ def _add_curves(
     bounds: tuple[tuple[float, float], tuple[float, float]],
     control: StepControl | None,
 ) -> None:
-    """Append the curves from the losses of stability that lie on none of the curves; after Ctrl-C the last one so far."""
+    """Append curves from the losses of stability that lie on no known curve; after Ctrl-C the last one so far."""
     for one in losses(branch):
         if any(_on(curve, one, value, *bounds) for curve in curves):
             continue
