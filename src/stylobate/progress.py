@@ -209,7 +209,7 @@ class _InNotebook(_Drawn):
         from rich.console import Console  # noqa: PLC0415
 
         self._page = io.StringIO()
-        super().__init__(news, Console(file=self._page, width=_WIDTH, force_jupyter=False))
+        super().__init__(news, Console(file=self._page, width=_WIDTH, force_jupyter=False, color_system=None))
         self._shown = 0.0
         self._handle = display({"text/plain": ""}, raw=True, display_id=True)
 

@@ -112,6 +112,7 @@ def test_after_ctrl_c_what_was_computed_is_in_the_file(tmp_path, capsys, interru
         CIRCLE,
         over={"angular_frequency": np.linspace(0.5, 6.0, 50), "acceleration": np.linspace(0.05, 0.4, 40)},
         periods=3.0,
+        progress=False,
     )
     np.testing.assert_array_equal(partial["outcome"].values[known], whole["outcome"].values[known])
     assert drawn.stat().st_size > 10_000
