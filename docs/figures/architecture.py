@@ -33,8 +33,11 @@ DUTIES = {
     "kinds": "names of classes in files",
     "files": "files written whole, with checksums",
     "processes": "worker processes",
+    "equality": "equality by content",
+    "progress": "bars of long computations",
     "errors": "exceptions, checks, outcomes",
-    "text": "plurals",
+    "text": "plurals, digits, similar names",
+    "cards": "objects in notebooks",
 }
 
 

@@ -8,7 +8,7 @@ from typing import Annotated, Self
 import numpy as np
 
 from stylobate.errors import ParameterError, as_float, require_positive
-from stylobate.quantities import Quantity, check_declared
+from stylobate.quantities import Declared, Quantity
 
 STANDARD_GRAVITY = 9.80665
 """Standard gravity [m/s²]."""
@@ -28,11 +28,14 @@ Gravity = Annotated[
 
 TopRadius = Annotated[float, Quantity(symbol="r_t", unit="m", text="radius of the top", gt=0.0)]
 MassHeight = Annotated[float, Quantity(symbol="h", unit="m", text="height of the centre of mass", gt=0.0)]
+FrequencyScale = Annotated[
+    float, Quantity(symbol="ω0", unit="rad/s", text="√(m g h/J0), the unit of dimensionless frequency")
+]
 Slenderness = Annotated[float, Quantity(symbol="c", text="slenderness r/h", gt=0.0, slider=(0.02, 0.5))]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Column:
+class Column(Declared):
     """A rigid free-standing body of revolution on a flat circular base.
 
     Parameters
@@ -75,16 +78,17 @@ class Column:
             unit="kg m²",
             text="moment of inertia about a horizontal axis through the centre of mass",
             gt=0.0,
+            in_repr=False,
         ),
     ]
     axial_inertia: Annotated[
-        float, Quantity(symbol="I_a", unit="kg m²", text="moment of inertia about the axis", gt=0.0)
+        float, Quantity(symbol="I_a", unit="kg m²", text="moment of inertia about the axis", gt=0.0, in_repr=False)
     ]
     height: Height | None = None
     gravity: Gravity = STANDARD_GRAVITY
 
-    def __post_init__(self) -> None:
-        check_declared(self)
+    def validate(self) -> None:
+        """Raise ParameterError if the centre of mass lies outside the body, or no body can have these inertias."""
         self._check_inertias()
         if self.height is not None:
             self._check_height(self.height)
@@ -236,7 +240,7 @@ class Column:
         )
 
     @property
-    def slenderness(self) -> float:
+    def slenderness(self) -> Slenderness:
         """c = r/h, the tipping angle of the small-angle models."""
         return self.radius / self.mass_height
 
@@ -261,12 +265,14 @@ class Column:
         return self.axial_inertia / (self.mass * self.radius**2)
 
     @property
-    def frequency_scale(self) -> float:
+    def frequency_scale(self) -> FrequencyScale:
         """ω0 = √(m g h/J0), the unit of dimensionless frequency [rad/s]."""
         return math.sqrt(self.mass * self.gravity * self.mass_height / self.base_inertia)
 
     @property
-    def tipping_angle(self) -> float:
+    def tipping_angle(
+        self,
+    ) -> Annotated[float, Quantity(symbol="α_c", unit="rad", text="angle of static tipping", in_repr=False)]:
         """α_c = atan(r/h), the angle of static tipping of the rocking-block literature [rad]."""
         return math.atan2(self.radius, self.mass_height)
 
@@ -276,7 +282,9 @@ class Column:
         return math.hypot(self.mass_height, self.radius)
 
     @property
-    def frequency_parameter(self) -> float:
+    def frequency_parameter(
+        self,
+    ) -> Annotated[float, Quantity(symbol="p", unit="rad/s", text="√(m g R/K) of the rocking block", in_repr=False)]:
         """p = √(m g R/K) of the rocking-block literature [rad/s]."""
         return math.sqrt(self.mass * self.gravity * self.rim_distance / self.rim_inertia)
 

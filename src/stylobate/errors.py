@@ -8,6 +8,7 @@
     │   └── ModelError                 a model whose members contradict each other: one line for each mistake
     ├── UnsupportedError               a study that the model does not support
     ├── NoOrbitError                   no periodic orbit was reached from a guess
+    ├── UnknownNameError (KeyError)    a name that a result does not have
     ├── FileError                      a file that cannot be read or written
     └── WorkerLostError                a worker process that ended before its result
 
@@ -18,9 +19,12 @@ Misuse raises an exception. A physical result, numerical failure included, is an
 """
 
 import math
+import warnings
 from collections.abc import Sequence
 from enum import IntEnum
 from typing import Any, NamedTuple
+
+from stylobate.text import did_you_mean
 
 SMALLEST, LARGEST = 1e-30, 1e15
 """Limits for the size of a number other than zero: numbers of columns are far inside, and no product overflows."""
@@ -87,6 +91,12 @@ class NoOrbitError(StylobateError):
     """No periodic orbit was reached from a guess; the message says how the search ended."""
 
 
+class UnknownNameError(StylobateError, KeyError):
+    """A name that a result does not have; the message suggests the most similar one."""
+
+    __str__ = Exception.__str__  # a KeyError quotes its message
+
+
 class FileError(StylobateError):
     """A file that cannot be read or written; the message names it."""
 
@@ -113,8 +123,46 @@ class UnlikelyInputWarning(UserWarning):
     """Input that is possible but unlikely; the message names it and the remedy."""
 
 
-class Outcome(IntEnum):
-    """Outcome of a run: a code, as in arrays and files, with a label.
+class Named:
+    """An enumeration whose members equal their names in text: `run.outcome == "AT_REST"`, or "at rest".
+
+    Comparison with a text that names no member warns. In sets and as keys members differ from their names.
+    """
+
+    name: str
+    value: Any
+
+    def __eq__(self, other: object) -> bool:
+        return self._names(other) if isinstance(other, str) else super().__eq__(other)
+
+    def __ne__(self, other: object) -> bool:
+        return not self._names(other) if isinstance(other, str) else super().__ne__(other)
+
+    def __hash__(self) -> int:
+        return super().__hash__()
+
+    def _names(self, text: str) -> bool:
+        names: Any = type(self).__members__  # type: ignore[attr-defined]
+        known = {text: member for member in names.values() for text in member.texts}
+        if text not in known:
+            remedy = did_you_mean(text, known) or f"use one of {', '.join(names)}"
+            message = f"{type(self).__name__}: compared with a text that names none (got {text!r}); {remedy}"
+            warnings.warn(message, UnlikelyInputWarning, stacklevel=3)
+        return known.get(text) is self
+
+    @property
+    def label(self) -> str:
+        """The label in text, such as "at rest"."""
+        return self.name.lower().replace("_", " ")
+
+    @property
+    def texts(self) -> tuple[str, ...]:
+        """The texts that the member equals: its name, its label, and its value if that is a text."""
+        return (self.name, self.label, *([self.value] if isinstance(self.value, str) else []))
+
+
+class Outcome(Named, IntEnum):
+    """Outcome of a run: a code, as in arrays and files, with a label. It equals its name and its label in text.
 
     Examples
     --------
@@ -157,11 +205,6 @@ class Outcome(IntEnum):
 
     It is chaotic, or quasi-periodic, such as rolling at another mean rate.
     """
-
-    @property
-    def label(self) -> str:
-        """The label of the outcome, such as "at rest"."""
-        return self.name.lower().replace("_", " ")
 
     def __str__(self) -> str:
         return self.label

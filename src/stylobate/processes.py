@@ -21,6 +21,7 @@ from dataclasses import dataclass
 from typing import IO, Any, TypeVar, cast
 
 from stylobate.errors import WorkerLostError
+from stylobate.progress import never
 
 _K = TypeVar("_K")
 _R = TypeVar("_R")
@@ -189,6 +190,7 @@ def _serve() -> None:
     """Compute the tasks of the parent process until it closes the pipe or ends."""
     requests, answers = sys.stdin.buffer, os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)  # keeps the output of a task out of the answers
+    never()
     while request := requests.read(int.from_bytes(requests.read(_LENGTH))):
         end_when_closed(0)
         task, arguments = pickle.loads(request)  # noqa: S301  our own parent; imports what the task needs

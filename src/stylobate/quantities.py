@@ -1,14 +1,15 @@
 """Declare a number once, at its field or argument: `Annotated[float, Quantity(symbol="η", …)]`.
 
-Checks, bounds in studies, units and names in Datasets, and the controls of the laboratory follow from the declaration:
-`parameters_of` reads it from a frozen dataclass or from a named constructor.
+Checks, bounds in studies, units and names in Datasets, the controls of the laboratory, and how an object shows itself
+follow from the declaration: `parameters_of` reads it from a frozen dataclass or from a named constructor, `derived_of`
+from the properties of a class.
 """
 
 import inspect
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, is_dataclass
-from enum import StrEnum
+from dataclasses import dataclass, field, fields, is_dataclass
+from enum import Enum, StrEnum
 from functools import cache, wraps
 from types import NoneType
 from typing import Annotated, Any, Literal, ParamSpec, TypeVar, get_args, get_origin
@@ -16,11 +17,16 @@ from typing import Annotated, Any, Literal, ParamSpec, TypeVar, get_args, get_or
 import numpy as np
 import numpy.typing as npt
 
+from stylobate.cards import Row, Section, card
 from stylobate.errors import LARGEST, ParameterError, as_float, require_size, require_vector, require_whole
 from stylobate.kinds import new_of, place_of
+from stylobate.text import four_digits
 
 _P = ParamSpec("_P")
 _T = TypeVar("_T")
+
+# Members of a tuple of objects that a line or a card shows.
+_SHOWN = 3
 
 _CF_POWERS = str.maketrans({"²": "2", "³": "3"})
 
@@ -53,6 +59,8 @@ class Quantity:
         Value of a dissipation parameter without energy loss.
     by_word
         Words that descriptions accept in place of the number, and the function that computes it for the column.
+    in_repr
+        Whether the `repr` of an object shows the number; its card always does.
     """
 
     symbol: str = ""
@@ -69,6 +77,7 @@ class Quantity:
     dissipates: bool = False
     lossless: float = 0.0
     by_word: Mapping[str, Callable[[Any], float]] = field(default_factory=dict, hash=False)
+    in_repr: bool = True
 
     def __repr__(self) -> str:
         """Write the declaration as in signatures: symbol, unit and bounds."""
@@ -99,6 +108,10 @@ class Quantity:
         above, _, below = self.unit.translate(_CF_POWERS).partition("/")
         inverse = (f"{part}-1" if part.isalpha() else f"{part[:-1]}-{part[-1]}" for part in below.split())
         return " ".join((*(one for one in above.split() if one != "1"), *inverse)) or "1"
+
+    def shown(self, value: Any) -> str:
+        """Format a value of the quantity, with four digits and its unit."""
+        return f"{_shown(value)} {self.unit}".rstrip()
 
     def for_column(self, stated: Any, column: Any) -> Any:
         """Return the number that a description states: that of a word for this column, or the number itself."""
@@ -193,9 +206,15 @@ class Parameter:
 
 
 class Declared:
-    """A frozen dataclass whose declared numbers are checked where it is made."""
+    """A frozen dataclass whose declared numbers are checked where it is made, and shown in its `repr` and its card."""
 
     __slots__ = ()
+
+    def __init_subclass__(cls, **options: Any) -> None:
+        """Keep the `repr` of declared numbers, in place of which a dataclass would write its own."""
+        super().__init_subclass__(**options)
+        if "__repr__" not in vars(cls):
+            cls.__repr__ = cls.__repr__  # type: ignore[method-assign]  # a dataclass leaves a method of the class
 
     def __post_init__(self) -> None:
         """Check the numbers by their declarations, then all of them together by `validate`."""
@@ -205,12 +224,121 @@ class Declared:
     def validate(self) -> None:
         """Raise ParameterError for numbers that contradict each other; each number has been checked before."""
 
+    def _call(self) -> tuple[Callable[..., Any], Mapping[str, Any]]:
+        """Return the constructor of the value, and its arguments: by default its class and its fields."""
+        return type(self), _fields_of(self)
+
+    def __repr__(self) -> str:
+        """Write the value in one line: arguments other than defaults, with units, then the derived numbers."""
+        make, arguments = self._call()
+        declared, signature = parameters_of(make), inspect.signature(make).parameters
+        given = {
+            name: _with_unit(value, declared.get(name))
+            for name, value in arguments.items()
+            if name in signature and _in_repr(declared.get(name)) and not _is_default(value, signature[name].default)
+        }
+        # A method of another motion is written as its call.
+        called = f"{arguments['motion']!r}.{make.__name__}" if "self" in signature else _name_of(make)
+        derived = {
+            one.quantity.symbol or one.name: one.quantity.shown(value)
+            for one, value in self._derived()
+            if _in_repr(one)
+        }
+        return f"{called}({'; '.join(_listed(numbers) for numbers in (given, derived) if numbers)})"
+
+    def _repr_html_(self) -> str:
+        """Render the card that notebooks show."""
+        return card(self._title(), self._sections())
+
+    def _title(self) -> str:
+        make, _ = self._call()
+        return type(self).__name__ if "self" in inspect.signature(make).parameters else _name_of(make)
+
+    def _sections(self, *, derived: bool = True) -> list[Section]:
+        """Return the rows of the card: the arguments, the derived numbers, then the rows of each object among both.
+
+        Objects in an object with derived numbers show none of their own.
+        """
+        make, arguments = self._call()
+        declared = parameters_of(make)
+        inner = {name: value for name, value in arguments.items() if isinstance(value, Declared)}
+        rows = [_row(name, value, declared.get(name)) for name, value in arguments.items() if name not in inner]
+        numbers = [_row(one.name, value, one) for one, value in self._derived()] if derived else []
+        sections = [Section("", rows), Section("derived", numbers)]
+        for name, value in inner.items():
+            own, *others = value._sections(derived=derived and not numbers)  # noqa: SLF001  of the same class, as below
+            sections += [Section(f"{name}: {value._title()}", own.rows), *others]  # noqa: SLF001
+        return sections
+
+    def _derived(self) -> list[tuple["Parameter", Any]]:
+        """Return the declared derived numbers with their values, without those that the object does not have."""
+        kind: Any = type(self)
+        values = ((one, getattr(self, name)) for name, one in derived_of(kind).items())
+        called = ((one, value() if callable(value) else value) for one, value in values)
+        return [(one, value) for one, value in called if value is not None and np.all(np.isfinite(value))]
+
     def __reduce_ex__(self, protocol: Any) -> Any:
         """Pickle a value of a class from a user's file by the place of the class; another process can load it then."""
         place = place_of(type(self))
         if not place.rpartition(":")[0].endswith(".py"):
             return object.__reduce_ex__(self, protocol)
         return new_of, (place,), self.__getstate__()
+
+
+def exact_repr(value: Any) -> str:
+    """Write a value with all fields and all digits, for the provenance of a run that no description can repeat."""
+    if isinstance(value, tuple):
+        return f"({', '.join(map(exact_repr, value))})"
+    if not isinstance(value, Declared) or vars(type(value))["__repr__"] is not vars(Declared)["__repr__"]:
+        return repr(value)  # a class with a text of its own
+    return f"{type(value).__qualname__}({_listed({name: exact_repr(one) for name, one in _fields_of(value).items()})})"
+
+
+def _fields_of(value: Any) -> dict[str, Any]:
+    if not is_dataclass(value):
+        return {name: getattr(value, name) for name in parameters_of(value.__class__) if hasattr(value, name)}
+    return {one.name: getattr(value, one.name) for one in fields(value) if one.init and one.repr}
+
+
+def _listed(numbers: Mapping[str, str]) -> str:
+    return ", ".join(f"{name}={value}" for name, value in numbers.items())
+
+
+def _name_of(make: Callable[..., Any]) -> str:
+    return make.__qualname__.rpartition("<locals>.")[2]
+
+
+def _in_repr(parameter: "Parameter | None") -> bool:
+    return parameter is None or parameter.quantity.in_repr
+
+
+def _is_default(value: Any, default: Any) -> bool:
+    return value is default or (isinstance(value, (int, float, str, tuple)) and value == default)
+
+
+def _row(name: str, value: Any, parameter: "Parameter | None") -> Row:
+    text = "–" if value is None else value if isinstance(value, str) else _with_unit(value, parameter)
+    quantity = Quantity() if parameter is None else parameter.quantity
+    return Row(name.replace("_", " "), text, quantity.symbol, quantity.text)
+
+
+def _with_unit(value: Any, parameter: "Parameter | None") -> str:
+    return _shown(value) if parameter is None or value is None else parameter.quantity.shown(value)
+
+
+def _shown(value: Any) -> str:
+    """Describe a value in one line."""
+    if isinstance(value, np.generic):
+        value = value.item()
+    if isinstance(value, float):
+        return four_digits(value)
+    if isinstance(value, (tuple, list)):
+        listed = [_shown(one) for one in value[:_SHOWN]]
+        more = [f"… {len(value) - _SHOWN} more"] if len(value) > _SHOWN else []
+        return f"({', '.join([*listed, *more])})"
+    if isinstance(value, np.ndarray):
+        return f"array of shape {value.shape}"
+    return " ".join((repr(value.value) if isinstance(value, Enum) else repr(value)).split())
 
 
 @cache
@@ -226,6 +354,22 @@ def parameters_of(make: Callable[..., Any]) -> Mapping[str, Parameter]:
     arguments = signature.parameters.items()
     declared = (parameter_of(name, argument.annotation, argument.default) for name, argument in arguments)
     return {one.name: one for one in declared if one is not None}
+
+
+@cache
+def derived_of(kind: Any) -> Mapping[str, Parameter]:
+    """Return the declared derived numbers of a class by name: its properties, and its methods that need no argument.
+
+    A subclass that overrides such a property need not declare it again.
+    """
+    found: dict[str, Parameter] = {}
+    for name, member in (item for base in reversed(kind.__mro__) for item in vars(base).items()):
+        function = member.fget if isinstance(member, property) else member
+        annotation = getattr(function, "__annotations__", {}).get("return")
+        parameter = parameter_of(name, annotation, inspect.Parameter.empty)
+        if parameter is not None:
+            found[name] = parameter
+    return found
 
 
 def parameter_of(name: str, annotation: Any, default: Any) -> Parameter | None:

@@ -321,8 +321,7 @@ def test_a_pulse_is_a_value():
     one, two = (P.ricker(acceleration=A, angular_frequency=W) for _ in range(2))
     assert one == two
     assert hash(one) == hash(two)
-    waveform = Ricker(acceleration=A, angular_frequency=W)
-    assert repr(one) == f"Pulse(waveform={waveform!r}, direction=0.0, start=0.0, vertical=0.0)"
+    assert one.waveform == Ricker(acceleration=A, angular_frequency=W)
 
 
 @pytest.mark.parametrize("shape", [(), (0,), (4,), (2, 3)])

@@ -2,13 +2,12 @@
 
 import logging
 import signal
-from contextlib import contextmanager
 from importlib import import_module
 
 import pytest
 import xarray as xr
 
-from stylobate.cli import many_runs
+from stylobate import progress
 
 ROOMS = (
     "config",
@@ -46,15 +45,13 @@ def saved():
 def interrupted(monkeypatch):
     """Ctrl-C as soon as some runs are done; `undo` lifts it."""
 
-    @contextmanager
-    def runs_done(what):
-        def stop(done, total):
+    class Stop(progress._Bar):
+        def __call__(self, done, total):
             if 0 < done < total:
                 signal.raise_signal(signal.SIGINT)
 
-        yield stop
-
-    monkeypatch.setattr(many_runs, "runs_done", runs_done)
+    monkeypatch.setattr(progress, "_Bar", Stop)
+    monkeypatch.setattr(progress, "_place", lambda: "terminal")
     return monkeypatch
 
 

@@ -11,7 +11,7 @@ import xarray as xr
 
 import stylobate as sb
 from stylobate.cli.main import run
-from stylobate.cli.progress import runs_done
+from stylobate.cli.progress import log_lines
 
 COLUMN = ["--slenderness", "0.1", "--damping", "0.1"]
 AXES = ["--x", "angular-frequency", "0.5", "6", "5", "--y", "acceleration", "0.05", "0.4", "4"]
@@ -112,6 +112,7 @@ def test_after_ctrl_c_what_was_computed_is_in_the_file(tmp_path, capsys, interru
         CIRCLE,
         over={"angular_frequency": np.linspace(0.5, 6.0, 50), "acceleration": np.linspace(0.05, 0.4, 40)},
         periods=3.0,
+        progress=False,
     )
     np.testing.assert_array_equal(partial["outcome"].values[known], whole["outcome"].values[known])
     assert drawn.stat().st_size > 10_000
@@ -260,8 +261,7 @@ def test_a_single_run_is_no_map(tmp_path, capsys):
 
 def test_warnings_of_the_library_are_told_on_stderr_one_to_a_line(capsys):
     log = logging.getLogger("stylobate")
-    with runs_done("map") as progress:
-        progress(1, 2)
+    with log_lines():
         log.warning("compiling %s", "a model " * 40)
     captured = capsys.readouterr()
     assert captured.out == ""

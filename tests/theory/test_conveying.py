@@ -500,7 +500,7 @@ def test_speeds_of_many_blocks_are_those_of_each():
     assert speed.shape == (2, 3)
     each = block_cycle(1.0, 1.5, static_friction=0.8, kinetic_friction=0.2).mean_speed
     assert speed[1, 2] == each
-    assert mean_block_speed(0.1, static_friction=0.2).shape == ()
+    assert isinstance(mean_block_speed(0.1, static_friction=0.2), float)
 
 
 @pytest.mark.parametrize(

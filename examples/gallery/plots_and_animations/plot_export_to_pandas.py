@@ -2,8 +2,9 @@
 How do I export results to xarray, pandas or CSV?
 =================================================
 
-Every result is an ``xarray.Dataset`` with units. From there it is one step to a table
-in pandas, and from pandas to a spreadsheet.
+Every result is an ``xarray.Dataset`` with units, or holds one.
+``sb.results.to_dataframe`` makes a table in pandas of it, with one row per run; from
+pandas it is one step to a spreadsheet.
 """
 
 import matplotlib.pyplot as plt
@@ -24,13 +25,12 @@ found = sb.studies.overturning_map(
     periods=30.0,
 )
 
-# A table with one row a run; names of outcomes in place of codes.
-table = found[["outcome", "peak_tilt"]].to_dataframe().reset_index()
-table["outcome"] = [sb.Outcome(code).label for code in table["outcome"]]
-print(table.head())
+# A table with one row per run; names of outcomes in place of codes.
+table = sb.results.to_dataframe(found).reset_index()
+print(table[["angular_frequency", "acceleration", "outcome", "peak_tilt"]].head())
 # table.to_csv("runs.csv") would write a file that a spreadsheet opens.
 
-fallen = table["outcome"].eq("overturned").groupby(table["angular_frequency"]).mean()
+fallen = table["outcome"].eq("OVERTURNED").groupby(table["angular_frequency"]).mean()
 figure, axes = plt.subplots(figsize=(7.2, 3.4), layout="constrained")
 axes.plot(fallen.index, 100.0 * fallen, "o-")
 axes.set(xlabel="Ω/ω₀", ylabel="runs that overturn [%]")

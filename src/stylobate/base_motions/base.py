@@ -8,6 +8,7 @@ from typing import Any, ClassVar
 import numpy as np
 import numpy.typing as npt
 
+from stylobate.base_motions.numbers import Duration, HighestFrequency, PeakHorizontal, Period
 from stylobate.errors import ParameterError
 from stylobate.quantities import Declared
 
@@ -54,7 +55,7 @@ class MotionContract(Declared, ABC):
         """
 
     @abstractmethod
-    def peak_horizontal(self, since: float = 0.0) -> float:
+    def peak_horizontal(self, since: float = 0.0) -> PeakHorizontal:
         """Return sup |a_h| from the time `since` [s] on, or a bound above it [m/s²]."""
 
     @abstractmethod
@@ -69,17 +70,17 @@ class MotionContract(Declared, ABC):
         """
 
     @property
-    def duration(self) -> float:
+    def duration(self) -> Duration:
         """Time after which the base stands still [s]; infinite for a motion that never ends."""
         return math.inf
 
     @property
-    def period(self) -> float | None:
+    def period(self) -> Period | None:
         """Common period of the steady motion [s]; None without period."""
         return None
 
     @property
-    def highest_frequency(self) -> float:
+    def highest_frequency(self) -> HighestFrequency:
         """Highest angular frequency in the acceleration [rad/s]; 0 if the acceleration is constant between its breaks.
 
         Uplift is searched on 64 samples per period of this frequency, and no step exceeds half of this period. A custom

@@ -41,6 +41,13 @@ class BaseMotion(MotionContract):
         """
         return type(self), {name: getattr(self, name) for name in parameters_of(type(self))}
 
+    def _call(self) -> tuple[Callable[..., Any], Mapping[str, Any]]:
+        if "made_by" in vars(type(self)):  # a subclass is another motion
+            make, arguments = self.made_by()
+            if make is not type(self):
+                return make, arguments
+        return super()._call()
+
     def scaled(self, factor: Factor, *, vertical: VerticalFactor | None = None) -> "Scaled":
         """Scale this motion by `factor`; the vertical component by `vertical`, if given."""
         return Scaled(motion=self, factor=factor, vertical=factor if vertical is None else vertical)

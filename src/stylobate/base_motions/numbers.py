@@ -40,3 +40,11 @@ Chosen = Annotated[int, Quantity(text="number of the motion, from 0 on")]
 Delay = Annotated[float, Quantity(unit="s", text="delay")]
 OffsetAcceleration = Annotated[float, Quantity(unit="m/s²", text="constant acceleration of the base")]
 Phases = Annotated[Sequence[float], Quantity(unit="rad", text="phases of the components", components=3)]
+PeakHorizontal = Annotated[
+    float, Quantity(symbol="sup |a_h|", unit="m/s²", text="largest horizontal acceleration, or a bound", in_repr=False)
+]
+Duration = Annotated[float, Quantity(unit="s", text="time after which the base stands still", in_repr=False)]
+Period = Annotated[float, Quantity(symbol="T", unit="s", text="period of the steady motion", in_repr=False)]
+HighestFrequency = Annotated[
+    float, Quantity(unit="rad/s", text="highest angular frequency in the acceleration", in_repr=False)
+]

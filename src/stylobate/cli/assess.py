@@ -16,7 +16,7 @@ from stylobate.cli.declarations import COMPUTING, JSON, Group, Option
 from stylobate.cli.interrupts import INTERRUPTED
 from stylobate.cli.options import Options
 from stylobate.cli.output import NETCDF, check_place, print_json, print_table
-from stylobate.cli.progress import parts_done
+from stylobate.cli.progress import log_lines, part_lines
 from stylobate.errors import FileError, Interrupted
 
 if TYPE_CHECKING:
@@ -60,10 +60,7 @@ def assess(options: Options) -> None:
             result = _loaded(source)
         else:
             result = _computed(setup, options["store"] or target / "store", options["threads"])
-        with parts_done() as progress:
-            report = earthquakes.assessment_report(
-                result, target, progress=lambda done, total: progress("drawing figures", done, total)
-            )
+        report = earthquakes.assessment_report(result, target)
     summary = earthquakes.assessment_tables(result)["summary"]
     if options["as_json"]:
         print_json({"summary": _rows(summary), "setting": result.setting, "report": str(report)})
@@ -119,14 +116,14 @@ def _described(source: Path, target: Path) -> "AssessmentSetup":
 
 def _computed(setup: "AssessmentSetup", store: Path, threads: int | None) -> "Assessment":
     try:
-        with _locked(store), parts_done() as progress:
+        with _locked(store), log_lines(quiet=0.0):
             return earthquakes.assess(
                 setup.columns,
                 setup.records,
                 **setup.options,
                 store=store,
                 executor=studies.Threads(threads),
-                progress=progress,
+                progress=part_lines(),
             )
     except (Interrupted, KeyboardInterrupt):
         print(

@@ -58,7 +58,6 @@ def basin(options: Options) -> None:
     source = options["source"]
     result, complete = run_study(
         options,
-        "basins",
         open_saved(source),
         lambda saved: _labelled(saved, source, options["confidence"]),
         lambda saved: _prepared(saved, options),

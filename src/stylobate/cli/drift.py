@@ -52,7 +52,6 @@ def drift(options: Options) -> None:
     source = options["source"]
     result, complete = run_study(
         options,
-        "drift",
         open_saved(source),
         lambda saved: _with_speeds(saved, source),
         lambda saved: _prepared(saved, options),

@@ -258,7 +258,7 @@ def _computed(study: "FragilityStudy", options: Options) -> "tuple[xr.Dataset, b
     def run(_model: Any, _motion: Any, **computing: Any) -> "xr.Dataset":
         return study.runs(**computing)
 
-    return computed(run, config.Setup(study.model, BASE_AT_REST, {}), options, "fragility")
+    return computed(run, config.Setup(study.model, BASE_AT_REST, {}), options)
 
 
 def _write(runs: "xr.Dataset", fits: "xr.Dataset", options: Options) -> None:

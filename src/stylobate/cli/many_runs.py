@@ -12,7 +12,6 @@ from stylobate.cli.interrupts import INTERRUPTED
 from stylobate.cli.options import Options
 from stylobate.cli.output import STORE, check_writable, deliver
 from stylobate.cli.overlay import overlay
-from stylobate.cli.progress import runs_done
 from stylobate.cli.saved import axes_of, provenance_of
 from stylobate.cli.source import read_source
 from stylobate.errors import Interrupted, ParameterError, StylobateError
@@ -59,7 +58,6 @@ def check_outputs(options: Options) -> None:
 
 def run_study(
     options: Options,
-    what: str,
     saved: "xr.Dataset | None",
     show_saved: Callable[["xr.Dataset"], "xr.Dataset"],
     prepare: Callable[["xr.Dataset | None"], "tuple[Callable[..., xr.Dataset], Setup]"],
@@ -70,8 +68,6 @@ def run_study(
     ----------
     options
         Options of the command.
-    what
-        Name of the study in its progress.
     saved
         The saved study, or None.
     show_saved
@@ -89,7 +85,7 @@ def run_study(
         assert saved is not None
         return show_saved(saved), True
     study, setup = prepare(saved)
-    return computed(study, setup, options, what)
+    return computed(study, setup, options)
 
 
 def study_values(
@@ -139,9 +135,7 @@ def check_axes(section: str, setup: "Setup") -> None:
         checked_values(f"{section}.{place}", name, values)
 
 
-def computed(
-    study: Callable[..., "xr.Dataset"], setup: "Setup", options: Options, what: str
-) -> "tuple[xr.Dataset, bool]":
+def computed(study: Callable[..., "xr.Dataset"], setup: "Setup", options: Options) -> "tuple[xr.Dataset, bool]":
     """Compute a study; return the result, and whether it is complete: False after Ctrl-C.
 
     Raises
@@ -155,16 +149,7 @@ def computed(
     executor = _executor(options["executor"], options["threads"])
     options.refuse_unused()
     try:
-        with runs_done(what) as progress:
-            result = study(
-                setup.model,
-                setup.motion,
-                **setup.options,
-                store=store,
-                executor=executor,
-                resume=resume,
-                progress=progress,
-            )
+        result = study(setup.model, setup.motion, **setup.options, store=store, executor=executor, resume=resume)
     except Interrupted as stop:
         if store is None and not (stop.partial["outcome"] >= 0).any():
             print("stylobate: no run is complete, and nothing is written", file=sys.stderr)

@@ -36,7 +36,7 @@ def overturning_map(options: Options) -> None:
     stylobate map map.zarr --resume
     """
     result, complete = run_study(
-        options, "map", open_saved(options["source"]), _counted, lambda saved: _prepared(saved, options)
+        options, open_saved(options["source"]), _counted, lambda saved: _prepared(saved, options)
     )
     finish(result, options, _summary, _print, complete=complete)
 

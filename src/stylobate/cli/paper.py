@@ -9,7 +9,7 @@ from stylobate.cli.command import command
 from stylobate.cli.declarations import JSON, Group, Option
 from stylobate.cli.options import Options
 from stylobate.cli.output import check_place, print_json, print_table
-from stylobate.cli.progress import sections_done
+from stylobate.cli.progress import section_lines
 
 
 @command(
@@ -31,8 +31,7 @@ def paper(options: Options) -> None:
 
     folder, workers = options["folder"], options["workers"]
     check_place(folder / "report.html" if folder.exists() else folder)
-    with sections_done() as progress:
-        check = check_paper(workers=workers or os.cpu_count() or 1, progress=progress, folder=folder)
+    check = check_paper(workers=workers or os.cpu_count() or 1, progress=section_lines(), folder=folder)
     report = paper_report(check, folder)
     rows = [(f.source, f.statement, f.measured, f.verdict.value) for f in check.findings]
     if options["as_json"]:

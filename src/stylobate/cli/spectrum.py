@@ -65,7 +65,7 @@ def spectrum(options: Options) -> None:
     --x size 0.2 4 12 --x-spacing log --rocking --output rocking.nc
     """
     result, complete = run_study(
-        options, "spectrum", _saved(options["source"]), lambda saved: saved, lambda saved: _prepared(saved, options)
+        options, _saved(options["source"]), lambda saved: saved, lambda saved: _prepared(saved, options)
     )
     finish(result, options, _summary, _print, complete=complete)
 

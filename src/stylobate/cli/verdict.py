@@ -10,7 +10,6 @@ from stylobate import earthquakes, results
 from stylobate.cli.declarations import Option
 from stylobate.cli.options import Options
 from stylobate.cli.output import NETCDF, check_writable, save_plot
-from stylobate.cli.progress import runs_done
 from stylobate.cli.saved import relocated
 from stylobate.config.run_numbers import Accuracy, Start
 from stylobate.errors import ParameterError
@@ -81,8 +80,7 @@ class VerdictOfCase:
             return None
         if self.saved is not None:
             return earthquakes.repeat_verdict(self.saved)
-        with runs_done("small variations") as progress:
-            return earthquakes.verdict(self.setup.model, self.setup.motion, progress=progress, **self.arguments)
+        return earthquakes.verdict(self.setup.model, self.setup.motion, **self.arguments)
 
     def rows(self, run: "Response", verdict: "Verdict | None") -> "Rows":
         """Return the rows of model, verdict and outcome; the outcome of an undecided case says so."""

@@ -6,8 +6,9 @@ from typing import Any, ClassVar, Self, TypeVar
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 
-from stylobate.config.suggestions import did_you_mean, with_suggestions
+from stylobate.config.suggestions import with_suggestions
 from stylobate.errors import ConfigError, ParameterError
+from stylobate.text import did_you_mean
 
 _T = TypeVar("_T")
 

@@ -6,9 +6,9 @@ from typing import Any, TypeAlias
 from stylobate.column import Column
 from stylobate.config.columns import ANY_COLUMN
 from stylobate.config.description import Config
-from stylobate.config.suggestions import did_you_mean
 from stylobate.errors import ParameterError, require_not_negative
 from stylobate.models.declared import dissipation_names, model_quantities
+from stylobate.text import did_you_mean
 
 LEVELS = ("low", "central", "high")
 """Required levels."""

@@ -26,6 +26,7 @@ from stylobate.errors import (
 )
 from stylobate.kinds import with_places
 from stylobate.models import Model
+from stylobate.quantities import exact_repr
 from stylobate.results import OutcomeRules
 
 
@@ -216,7 +217,7 @@ def _described(describe: Callable[[], Config], thing: object) -> dict[str, Any]:
     try:
         return describe().values()
     except UnsupportedError:
-        return {"kind": "other", "repr": repr(thing), **_identity_of_record(thing)}
+        return {"kind": "other", "repr": exact_repr(thing), **_identity_of_record(thing)}
 
 
 def _identity_of_record(thing: object) -> dict[str, Any]:

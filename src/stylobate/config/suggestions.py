@@ -1,24 +1,14 @@
 """Suggestions for misspelt names in a description."""
 
 import re
-from collections.abc import Iterable, Sequence
-from difflib import get_close_matches
+from collections.abc import Sequence
 from typing import Annotated, Any, get_args, get_origin
 
 from pydantic import BaseModel
 
+from stylobate.text import did_you_mean
+
 _NOT_KNOWN = re.compile(r"(?P<problem>(?P<path>\S+) (is not known here|does not belong to \w+ '\w+')); .*")
-_LIKENESS = 0.7
-
-
-def did_you_mean(name: str, known: Iterable[str]) -> str:
-    """Return a question that suggests the most similar of the `known` names; empty without a similar name.
-
-    >>> did_you_mean("dampign", ["damping", "restitution"])
-    'did you mean damping?'
-    """
-    found = get_close_matches(name, sorted(known), n=1, cutoff=_LIKENESS)
-    return f"did you mean {found[0]}?" if found else ""
 
 
 def with_suggestions(description: type[BaseModel], problems: Sequence[str]) -> list[str]:

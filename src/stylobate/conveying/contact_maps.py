@@ -10,19 +10,19 @@ import numpy.typing as npt
 import xarray as xr
 
 from stylobate.base_motions import BaseMotion
-from stylobate.errors import Outcome, ParameterError, UnsupportedError
+from stylobate.errors import Named, Outcome, ParameterError, UnsupportedError
 from stylobate.models import Model
+from stylobate.progress import Progress, shows_progress
 from stylobate.results.outcomes import NOT_COMPUTED, flag_attributes
 from stylobate.studies.checks import require_values
 from stylobate.studies.sweeps import Executor, Sweep
-from stylobate.studies.sweeps.computing import Progress
 from stylobate.studies.sweeps.labelled import labelled_sweep
 from stylobate.studies.sweeps.recipe import RunOptions
 
 _PLANE = 2
 
 
-class ContactClass(IntEnum):
+class ContactClass(Named, IntEnum):
     """Class of a run by the kinds of contact that occurred in it."""
 
     STAYS = 0
@@ -43,6 +43,7 @@ CONTACT_CLASSES = ("stays", "slides", "rocks or rolls", "slides and rocks", "fli
 """Names of the classes, in the order of their codes."""
 
 
+@shows_progress("contact map")
 def contact_map(
     model: Model,
     motion: BaseMotion | None = None,
@@ -54,7 +55,7 @@ def contact_map(
     store: str | Path | None = None,
     executor: Executor | None = None,
     resume: bool = False,
-    progress: Progress | None = None,
+    progress: Progress = None,
     **options: Unpack[RunOptions],
 ) -> xr.Dataset:
     """Compute a contact map: the kinds of contact over two parameters, such as friction and base acceleration.

@@ -14,7 +14,7 @@ from stylobate import theory
 from stylobate.base_motions import BaseMotion, Harmonic
 from stylobate.config import provenance_of_run
 from stylobate.engine.parameter_quantities import attributes_of
-from stylobate.errors import ParameterError, UnsupportedError
+from stylobate.errors import Named, ParameterError, UnsupportedError
 from stylobate.models import Model
 from stylobate.models.closed_form import ClosedForm, RollingLaw
 from stylobate.models.declared import name_by_symbol
@@ -38,7 +38,7 @@ _HALVINGS = 30
 _ROUND = 1e-9
 
 
-class RollingRegime(IntEnum):
+class RollingRegime(Named, IntEnum):
     """Steady rolling at one friction coefficient and one frequency."""
 
     NONE = 0

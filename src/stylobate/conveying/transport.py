@@ -13,11 +13,11 @@ from stylobate.conveying.contact_maps import contact_classes
 from stylobate.engine.parameters import with_parameters
 from stylobate.errors import Outcome, ParameterError, UnsupportedError, require_whole
 from stylobate.models import Model
+from stylobate.progress import Progress, shows_progress
 from stylobate.results import OutcomeRules
 from stylobate.results.outcomes import NOT_COMPUTED
 from stylobate.studies.checks import require_values
 from stylobate.studies.sweeps import Executor, Sweep
-from stylobate.studies.sweeps.computing import Progress
 from stylobate.studies.sweeps.labelled import labelled_sweep
 from stylobate.studies.sweeps.quantities import OF_A_RUN
 from stylobate.studies.sweeps.recipe import RunOptions
@@ -25,6 +25,7 @@ from stylobate.studies.sweeps.recipe import RunOptions
 _MOST_NAMES = 2
 
 
+@shows_progress("drift")
 def drift(
     model: Model,
     motion: BaseMotion,
@@ -35,7 +36,7 @@ def drift(
     store: str | Path | None = None,
     executor: Executor | None = None,
     resume: bool = False,
-    progress: Progress | None = None,
+    progress: Progress = None,
     **options: Unpack[RunOptions],
 ) -> xr.Dataset:
     """Compute the mean transport velocity of a column on a vibrating base, and its mean rate of rotation.

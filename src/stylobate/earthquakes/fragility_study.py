@@ -19,9 +19,9 @@ from stylobate.earthquakes.remarks import remark_on
 from stylobate.earthquakes.run_fragility import fragility_of_runs
 from stylobate.earthquakes.site_hazard import site_hazard
 from stylobate.models import Model
+from stylobate.progress import Progress, shows_progress
 from stylobate.results.damping_yardstick import damping_yardstick
 from stylobate.studies.sweeps import Executor
-from stylobate.studies.sweeps.computing import Progress
 from stylobate.studies.sweeps.recipe import RunOptions
 
 _OVERTURNING = "overturning"
@@ -105,13 +105,14 @@ class FragilityStudy:
             options=RunOptions(**setup.options),  # type: ignore[typeddict-item]
         )
 
+    @shows_progress("incremental dynamic analysis")
     def runs(
         self,
         *,
         store: str | Path | None = None,
         executor: Executor | None = None,
         resume: bool = False,
-        progress: Progress | None = None,
+        progress: Progress = None,
     ) -> xr.Dataset:
         """Run the incremental dynamic analysis, with the samples of the properties."""
         remark_on({"column": self.model.column}, self.records)

@@ -20,11 +20,11 @@ from stylobate.engine.parameter_quantities import attributes_of
 from stylobate.engine.parameters import changed_model
 from stylobate.errors import Outcome, ParameterError, require_finite
 from stylobate.models import Model
+from stylobate.progress import Progress, shows_progress
 from stylobate.results.outcomes import NOT_COMPUTED
 from stylobate.studies.checks import remark_on_lengths, require_no_tilt_limit
 from stylobate.studies.maps.safe_distance import UNRESOLVED
 from stylobate.studies.sweeps import Executor, Sweep
-from stylobate.studies.sweeps.computing import Progress
 from stylobate.studies.sweeps.labelled import labelled_sweep
 from stylobate.studies.sweeps.quantities import Floats, checked_values
 from stylobate.studies.sweeps.recipe import RunOptions
@@ -38,6 +38,7 @@ _SET_BY_ARGUMENTS = {
 }
 
 
+@shows_progress("incremental dynamic analysis")
 def incremental_dynamic_analysis(
     model: Model,
     records: Records,
@@ -52,7 +53,7 @@ def incremental_dynamic_analysis(
     store: str | Path | None = None,
     executor: Executor | None = None,
     resume: bool = False,
-    progress: Progress | None = None,
+    progress: Progress = None,
     **options: Unpack[RunOptions],
 ) -> xr.Dataset:
     """Compute the response of a column to each record at each scale (incremental dynamic analysis).

@@ -15,8 +15,8 @@ from stylobate.earthquakes.intensities import Intensity, SpectralAcceleration
 from stylobate.earthquakes.named_records import Records, named_records
 from stylobate.errors import ParameterError, UnsupportedError
 from stylobate.models import Model, PlanarRocking
+from stylobate.progress import Progress, Report, report_of, shows_progress
 from stylobate.studies.sweeps import Executor
-from stylobate.studies.sweeps.computing import Progress
 from stylobate.studies.sweeps.quantities import Floats, checked_values
 from stylobate.studies.sweeps.recipe import RunOptions
 
@@ -27,6 +27,7 @@ AXES = (0.0, 0.5 * math.pi)
 _LEAST = 2
 
 
+@shows_progress("planar comparison")
 def planar_bias(
     model: Model,
     records: Records,
@@ -38,7 +39,7 @@ def planar_bias(
     intensity: str | Intensity | SpectralAcceleration = Intensity.PEAK_ACCELERATION,
     least_ratio: float = 1e-3,
     executor: Executor | None = None,
-    progress: Progress | None = None,
+    progress: Progress = None,
     **options: Unpack[RunOptions],
 ) -> xr.Dataset:
     """Compare Housner's planar column under each horizontal component with the three-dimensional column.
@@ -132,8 +133,9 @@ def planar_bias(
     return _compared(space, _by_direction(flat, list(named), angles), least_ratio)
 
 
-def _part_of(progress: Progress | None, before: int, total: int) -> Progress | None:
-    return None if progress is None else (lambda done, _: progress(before + done, total))
+def _part_of(progress: Progress, before: int, total: int) -> Report:
+    report = report_of(progress)
+    return lambda done, _: report(before + done, total)
 
 
 def planar_of(model: Model) -> PlanarRocking:

@@ -3,6 +3,7 @@
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, fields
+from functools import partial
 from typing import Any, Unpack, cast
 
 import numpy as np
@@ -28,17 +29,19 @@ from stylobate.earthquakes.variations import (
     shares_of,
 )
 from stylobate.engine.parameters import COLUMN_NAMES, model_names
-from stylobate.errors import LARGEST_SEED, MOST_RUNS, ParameterError, UnsupportedError, require_whole
+from stylobate.errors import LARGEST_SEED, MOST_RUNS, Interrupted, ParameterError, UnsupportedError, require_whole
 from stylobate.models import Model, Rolling, Slender, SlenderRolling, Wobbling
+from stylobate.progress import Progress, Report, report_of, shows_progress
 from stylobate.results import OutcomeRules
+from stylobate.results.outcomes import NOT_COMPUTED
 from stylobate.results.verdict import KIND, Verdict
 from stylobate.studies.checks import require_no_tilt_limit
 from stylobate.studies.maps.uncertainty_exponent import overturned_or_not
 from stylobate.studies.proportions import fraction_interval, require_confidence
 from stylobate.studies.sweeps import Executor, Sweep, run_sweep
-from stylobate.studies.sweeps.computing import Progress, silent
 from stylobate.studies.sweeps.quantities import Floats
 from stylobate.studies.sweeps.recipe import DEFAULTS, RunOptions
+from stylobate.text import plural
 
 # A rim that carries no twisting moment, and one that keeps a column from turning about its axis.
 _OTHER_CONTACT_LAW: Mapping[type[Model], type[Model]] = {
@@ -56,6 +59,7 @@ _BY_CHANCE = 0.01
 _KEPT = ("outcome", "peak_tilt", "uncertain")
 
 
+@shows_progress("variations")
 def verdict(
     models: Model | Sequence[Model],
     motion: BaseMotion,
@@ -66,7 +70,7 @@ def verdict(
     confidence: float = 0.9,
     tail: float | None = None,
     executor: Executor | None = None,
-    progress: Progress | None = None,
+    progress: Progress = None,
     **options: Unpack[RunOptions],
 ) -> Verdict:
     """Decide whether a column overturns, from many runs that differ in what is never known exactly.
@@ -121,7 +125,7 @@ def verdict(
     ParameterError
         If an argument is out of range.
     Interrupted
-        On Ctrl-C.
+        On Ctrl-C; `partial` is the verdict on the runs so far, in which the others count as undecided.
 
     Notes
     -----
@@ -149,7 +153,10 @@ def verdict(
         options=options,
     )
     check_variations(case.models, case.variations)
-    return Verdict(case.labelled(case.computed(executor, progress or silent)))
+    try:
+        return Verdict(case.labelled(case.computed(executor, report_of(progress))))
+    except Interrupted as stop:
+        raise Interrupted(str(stop), Verdict(case.labelled(stop.partial))) from None
 
 
 def repeat_verdict(saved: Verdict) -> Verdict:
@@ -253,14 +260,20 @@ class _Case:
         ]
         return {name: np.choose(self.law, [values[name] for values in by_model]) for name in self.variations}
 
-    def computed(self, executor: Executor | None, progress: Progress) -> xr.Dataset:
-        """Compute the runs, in one sweep for each model and tolerance."""
+    def computed(self, executor: Executor | None, progress: Report) -> xr.Dataset:
+        """Compute the runs, in one sweep for each model and tolerance.
+
+        Raises
+        ------
+        Interrupted
+            On Ctrl-C; `partial` has the runs so far, those that were not computed with the outcome −1.
+        """
         values, law = self.values, self.law
         members, member = self._members(values)
         kinds = np.stack([law, *(values[name] for name in _OF_THE_INTEGRATION if name in values)], axis=1)
         groups = np.unique(kinds, axis=0)
-        found = {name: np.full(self.runs, np.nan) for name in _KEPT}
-        slenderness, done = np.empty(self.runs), 0
+        found = {name: np.full(self.runs, NOT_COMPUTED if name == "outcome" else np.nan) for name in _KEPT}
+        slenderness, done, stopped = np.full(self.runs, np.nan), 0, ""
         for group in groups:
             chosen = np.flatnonzero((kinds == group).all(axis=1))
             model = self.models[int(group[0])]
@@ -269,20 +282,29 @@ class _Case:
             slenderness[chosen] = at.get("slenderness", np.full(chosen.size, model.column.slenderness))
             tolerance = float(group[1]) if group.size > 1 else 1.0
             sweep = Sweep.points(model, OneOf(motions=members), at=at, **self._integrated(tolerance))
-            runs = run_sweep(sweep, executor=executor)
+            try:
+                runs = run_sweep(sweep, executor=executor, progress=partial(_within, progress, done, self.runs))
+            except Interrupted as stop:
+                runs, stopped = stop.partial, str(stop)
             for name in _KEPT:
                 found[name][chosen] = runs[name].to_numpy()
             done += chosen.size
-            progress(done, self.runs)
+            if stopped:
+                break
         codes = runs["outcome"]
         data = xr.Dataset(
             {
                 "outcome": ("run", found["outcome"].astype(np.int8), codes.attrs),
                 "peak_tilt": ("run", found["peak_tilt"], runs["peak_tilt"].attrs),
-                "uncertain": ("run", found["uncertain"].astype(np.int8), runs["uncertain"].attrs),
+                "uncertain": ("run", np.nan_to_num(found["uncertain"]).astype(np.int8), runs["uncertain"].attrs),
             }
         )
-        return data.assign(tilt_ratio=tilt_ratios(data, xr.DataArray(slenderness, dims="run")))
+        data = data.assign(tilt_ratio=tilt_ratios(data, xr.DataArray(slenderness, dims="run")))
+        if stopped:
+            computed = int((data["outcome"] != NOT_COMPUTED).sum())
+            message = f"stopped after {computed} of {plural(self.runs, 'variation')}; `partial` is the verdict so far"
+            raise Interrupted(message, data)
+        return data
 
     def _members(self, values: Mapping[str, Floats]) -> tuple[tuple[BaseMotion, ...], npt.NDArray[np.intp]]:
         """Return the filtered copies of the motion, and the index of that of each run."""
@@ -384,6 +406,10 @@ class _Case:
                 },
             },
         }
+
+
+def _within(progress: Report, before: int, total: int, done: int, _: int) -> None:
+    progress(before + done, total)
 
 
 def _about(long_name: str) -> dict[str, str]:

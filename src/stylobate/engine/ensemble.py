@@ -1,7 +1,7 @@
 """Integration of many runs: `simulate_ensemble`."""
 
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import asdict
 from typing import Any
 
@@ -29,11 +29,13 @@ from stylobate.engine.starts import require_nouns
 from stylobate.errors import MOST_THREADS, Interrupted, Outcome, ParameterError, UnsupportedError, require_whole
 from stylobate.models import Model
 from stylobate.models.consistency import check_once
+from stylobate.progress import Progress, Report, report_of, shows_progress, silent
 from stylobate.quantities import Parameter, parameters_of
 from stylobate.results import OutcomeRules
 from stylobate.results.outcomes import NOT_COMPUTED
 
 
+@shows_progress("runs")
 def simulate_ensemble(
     model: Model,
     motion: BaseMotion | None = None,
@@ -56,7 +58,7 @@ def simulate_ensemble(
     recheck: bool = False,
     known_orbits: KnownOrbits | None = None,
     threads: int | None = None,
-    progress: Callable[[int, int], None] | None = None,
+    progress: Progress = None,
 ) -> xr.Dataset:
     """Integrate many columns, each from its initial state until its outcome is decided.
 
@@ -103,7 +105,8 @@ def simulate_ensemble(
     threads
         Number of threads; all cores by default.
     progress
-        Called from time to time as `progress(finished runs, all runs)`.
+        A function that is called from time to time as `progress(finished runs, all runs)`, or False. By default a bar
+        appears after two seconds if stderr is a terminal, or in a notebook.
 
     Returns
     -------
@@ -187,7 +190,7 @@ def simulate_ensemble(
         declared = {**parameters_of(Column), **parameters_of(type(model)), **numbers_of(moved)}
         return _dataset(runs, arrays, _provenance(model, moved, options, same), declared)
 
-    if _followed(plan, runs, arrays, threads, progress) and _rechecked(plan, runs, arrays, threads):
+    if _followed(plan, runs, arrays, threads, report_of(progress)) and _rechecked(plan, runs, arrays, threads):
         return result()
     message = "interrupted; `partial` has the finished runs"
     raise Interrupted(message, result())
@@ -207,9 +210,7 @@ def _named(parameters: Mapping[str, ArrayLike] | None) -> dict[str, ArrayLike]:
     return dict(parameters or {})
 
 
-def _followed(
-    plan: Plan, runs: Runs, arrays: Arrays, threads: int, progress: Callable[[int, int], None] | None
-) -> bool:
+def _followed(plan: Plan, runs: Runs, arrays: Arrays, threads: int, progress: Report) -> bool:
     """Fill `arrays`; return False after Ctrl-C."""
     done = 0
 
@@ -221,8 +222,7 @@ def _followed(
     def count(part: slice) -> None:
         nonlocal done
         done += part.stop - part.start
-        if progress is not None:
-            progress(done, len(runs))
+        progress(done, len(runs))
 
     return run_parts(parts_of(len(runs), threads), compute, threads, count)
 
@@ -236,7 +236,7 @@ def _rechecked(plan: Plan, runs: Runs, arrays: Arrays, threads: int) -> bool:
         return True
     again = plan.repeated()
     other = empty(plan.model, again.options, places.size)
-    finished = _followed(again, runs.part(places), other, threads, None)
+    finished = _followed(again, runs.part(places), other, threads, silent)
     changed = fallen(other["outcome"]) != fallen(arrays["outcome"][places])
     changed |= other["outcome"] == Outcome.FAILED
     arrays["uncertain"][places] |= changed & (other["outcome"] != NOT_COMPUTED)

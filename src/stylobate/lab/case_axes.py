@@ -14,9 +14,9 @@ from stylobate.engine.parameters import COLUMN_NAMES, present_value
 from stylobate.errors import UnsupportedError
 from stylobate.lab.parameter_info import CASE_NUMBERS
 from stylobate.models import Model
+from stylobate.progress import Progress
 from stylobate.studies.maps.overturning import outcome_shares
 from stylobate.studies.sweeps import Executor, Sweep
-from stylobate.studies.sweeps.computing import Progress
 from stylobate.studies.sweeps.labelled import labelled_sweep
 
 Floats = npt.NDArray[np.float64]
@@ -45,7 +45,7 @@ def case_numbers(values: Mapping[str, Any], over: Mapping[str, Floats]) -> dict[
 
 
 def case_map(
-    setup: config.Setup, values: Mapping[str, Any], *, executor: Executor, progress: Progress | None = None
+    setup: config.Setup, values: Mapping[str, Any], *, executor: Executor, progress: Progress = None
 ) -> xr.Dataset:
     """Compute a map whose axes are numbers of the described case.
 

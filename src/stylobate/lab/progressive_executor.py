@@ -7,7 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from stylobate.studies.sweeps.computing import Arrays, Computed, Progress, Task
+from stylobate.progress import Report
+from stylobate.studies.sweeps.computing import Arrays, Computed, Task
 from stylobate.studies.sweeps.executors import Work
 
 Cells = npt.NDArray[np.int64]
@@ -37,7 +38,7 @@ class Refining:
     shape: tuple[int, ...] | None = None
 
     def results(
-        self, work: Work, tasks: Iterable[Task], progress: Progress | None = None
+        self, work: Work, tasks: Iterable[Task], progress: Report | None = None
     ) -> Generator[tuple[Task, Computed], None, None]:
         """Yield each task with its result when all are computed."""
         asked = list(tasks)

@@ -83,7 +83,7 @@ def animation(values: Mapping[str, Any], emit: Emit) -> bytes:
     setup = config.SimulationConfig.parse(values).build()
     run = engine.simulate(setup.model, setup.motion, **setup.options)
     return animate(run, speed=speed_of_pictures(setup, float(run.data["time"][-1]))).gif(
-        lambda done, total: emit(Progress(done, total))
+        progress=lambda done, total: emit(Progress(done, total))
     )
 
 

@@ -8,6 +8,7 @@ import numpy.typing as npt
 
 from stylobate.engine.flow.periodic import PeriodicSystem
 from stylobate.engine.flow.status import Status
+from stylobate.equality import ByContent
 from stylobate.errors import StylobateError
 from stylobate.orbits.shooting import Shots, shots
 
@@ -17,8 +18,8 @@ Complexes = npt.NDArray[np.complex128]
 _CLOSE, _MOST_STEPS = 1e-11, 12
 
 
-@dataclass(frozen=True, slots=True)
-class Family:
+@dataclass(frozen=True, slots=True, eq=False)
+class Family(ByContent):
     """Periodic orbits of one system and one length over the parameter `name`.
 
     The vector u of a point has the states in units of c, and the parameter in units of `span`, the width of its range.
@@ -44,8 +45,8 @@ class Family:
         return np.append(np.full(count, self.system.scale * np.sqrt(count)), self.span)
 
 
-@dataclass(frozen=True)
-class Point:
+@dataclass(frozen=True, eq=False)
+class Point(ByContent):
     """A periodic orbit of a family."""
 
     family: Family

@@ -8,6 +8,8 @@ import numpy as np
 from scipy.optimize import brentq
 
 from stylobate.engine.flow.status import Status
+from stylobate.equality import ByContent
+from stylobate.errors import Named
 from stylobate.orbits.arclength import Floats, Point, corrected
 from stylobate.orbits.conditions import Condition, conditions_between
 from stylobate.orbits.multipliers import without_damping
@@ -26,7 +28,7 @@ _LOCATED = 1e-13
 _CRITICAL = 1e-4
 
 
-class Kind(Enum):
+class Kind(Named, Enum):
     """Kind of a bifurcation."""
 
     FOLD = "fold"
@@ -40,8 +42,8 @@ class Kind(Enum):
     """A modulated motion branches off; not located without damping, because pairs then stay on the unit circle."""
 
 
-@dataclass(frozen=True)
-class Bifurcation:
+@dataclass(frozen=True, eq=False)
+class Bifurcation(ByContent):
     """A bifurcation of a periodic orbit.
 
     Attributes

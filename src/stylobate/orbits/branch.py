@@ -10,23 +10,27 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
+from stylobate.cards import Row, Section, card
 from stylobate.config import provenance_of_run
 from stylobate.engine.flow.status import Status
-from stylobate.engine.parameter_quantities import attributes_of
+from stylobate.engine.parameter_quantities import attributes_of, quantity_of
 from stylobate.engine.parameters import present_value
-from stylobate.errors import NoOrbitError, ParameterError, require_finite
+from stylobate.equality import ByContent
+from stylobate.errors import Interrupted, NoOrbitError, ParameterError, require_finite
 from stylobate.orbits.arclength import Family, Floats, Point, on_family
 from stylobate.orbits.arguments import control_of, enclosing, require_followed, require_orbit
 from stylobate.orbits.bifurcations import Bifurcation, between, orbit_at
 from stylobate.orbits.multipliers import is_stable
-from stylobate.orbits.orbit import PeriodicOrbit
+from stylobate.orbits.orbit import PeriodicOrbit, range_of, system_sections
 from stylobate.orbits.saving import BRANCH, SUPERCRITICAL, file_attributes, write
 from stylobate.orbits.shooting import WHY_LOST, arcs_of
 from stylobate.orbits.tracing import End, StepControl, Stretch, trace
+from stylobate.progress import Progress, at_value, report_of, shows_progress
+from stylobate.text import four_digits, plural, unit_in_text
 
 
-@dataclass(frozen=True)
-class Branch:
+@dataclass(frozen=True, eq=False)
+class Branch(ByContent):
     """A branch of periodic orbits over one parameter.
 
     Attributes
@@ -173,8 +177,25 @@ class Branch:
     def __repr__(self) -> str:
         """Describe the branch in one line."""
         values = [point.value for point in self.path]
-        kinds = ", ".join(f"{one.kind.value} at {one.parameter:.8g}" for one in self.bifurcations)
-        return f"Branch({len(values)} orbits, {self.parameter} {min(values):.6g}…{max(values):.6g}; {kinds})"
+        kinds = ", ".join(f"{one.kind.value} at {four_digits(one.parameter)}" for one in self.bifurcations)
+        return f"Branch({len(values)} orbits, {self.parameter} {range_of(values)}; {kinds or 'no bifurcations'})"
+
+    def _repr_html_(self) -> str:
+        """Render the card that notebooks show."""
+        stable = sum(is_stable(point.multipliers) for point in self.path)
+        unit = unit_in_text(quantity_of(self.parameter).units)
+        rows = [
+            Row(self.parameter.replace("_", " "), f"{range_of(point.value for point in self.path)} {unit}"),
+            Row("orbits", f"{len(self.path)}, {stable} of them stable"),
+            Row("ends", "; ".join(end.value for end in self.ends)),
+        ]
+        how = {True: ", supercritical", False: ", subcritical", None: ""}
+        found = [
+            Row(one.kind.value, f"{four_digits(one.parameter)} {unit}{how[one.supercritical]}")
+            for one in self.bifurcations
+        ]
+        sections = system_sections(self.path[0].family.system)
+        return card("Branch of periodic orbits", [Section("", rows), Section("bifurcations", found), *sections])
 
 
 def _table_of(bifurcations: tuple[Bifurcation, ...]) -> dict[str, tuple[str, list[object]]]:
@@ -208,6 +229,7 @@ def phase_of(orbit: PeriodicOrbit) -> float:
     return float(sense * np.angle(lean / base))
 
 
+@shows_progress("branch", at_value)
 def continue_branch(
     orbit: PeriodicOrbit,
     parameter: str,
@@ -215,7 +237,7 @@ def continue_branch(
     bounds: tuple[float, float],
     both_ways: bool = True,
     control: StepControl | None = None,
-    progress: Callable[[float], None] | None = None,
+    progress: Progress = None,
 ) -> Branch:
     """Continue a periodic orbit over one parameter, through folds, and locate its bifurcations.
 
@@ -233,7 +255,7 @@ def continue_branch(
     control
         Length of steps, and maximum number of points in each direction.
     progress
-        Called with the parameter of each new point.
+        A function that is called with the parameter of each new point; a bar by default, False for none.
 
     Returns
     -------
@@ -245,6 +267,8 @@ def continue_branch(
     ParameterError
         If the orbit does not lie between the bounds, the bounds are invalid, or the parameter is unknown or is `delay`,
         which changes no orbit.
+    Interrupted
+        On Ctrl-C; `partial` is the branch so far.
 
     Notes
     -----
@@ -275,9 +299,10 @@ def continue_branch(
     return branch_through(start, up, (low, high), control, seen_by(progress), both_ways=both_ways)
 
 
-def seen_by(progress: Callable[[float], None] | None) -> Callable[[Point], None] | None:
-    """Return a callback for points that passes their parameter to `progress`; None without `progress`."""
-    return None if progress is None else (lambda point: progress(point.value))
+def seen_by(progress: Progress) -> Callable[[Point], None]:
+    """Return a callback for points that passes their parameter to `progress`."""
+    report = report_of(progress)
+    return lambda point: report(point.value)
 
 
 def point_of(orbit: PeriodicOrbit, parameter: str, value: float, span: float) -> Point | Status:
@@ -301,11 +326,21 @@ def branch_through(
     *,
     both_ways: bool = True,
 ) -> Branch:
-    """Continue the branch through a point in the sense of `direction`, and with `both_ways` against it too."""
+    """Continue the branch through a point in the sense of `direction`, and with `both_ways` against it too.
+
+    Raises
+    ------
+    Interrupted
+        On Ctrl-C; `partial` is the branch so far.
+    """
     forward = trace(start, direction, bounds, control, seen)
-    if forward.end is End.CLOSED or not both_ways:
-        return _joined(start.family.name, forward, None)
-    return _joined(start.family.name, forward, trace(start, -start.along(direction), bounds, control, seen))
+    alone = forward.end in (End.CLOSED, End.INTERRUPTED) or not both_ways
+    backward = None if alone else trace(start, -start.along(direction), bounds, control, seen)
+    branch = _joined(start.family.name, forward, backward)
+    if End.INTERRUPTED in branch.ends:
+        message = f"stopped after {plural(len(branch.path), 'orbit')}; `partial` is the branch so far"
+        raise Interrupted(message, branch)
+    return branch
 
 
 def _joined(name: str, forward: Stretch, backward: Stretch | None) -> Branch:

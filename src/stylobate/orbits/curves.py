@@ -11,18 +11,23 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
+from stylobate.cards import Row, Section, card
 from stylobate.config import provenance_of_run
 from stylobate.engine.flow.periodic import Numbers, PeriodicSystem
 from stylobate.engine.flow.status import Status
-from stylobate.engine.parameter_quantities import attributes_of
+from stylobate.engine.parameter_quantities import attributes_of, quantity_of
 from stylobate.engine.parameters import present_value
-from stylobate.errors import NoOrbitError, ParameterError, StylobateError
+from stylobate.equality import ByContent
+from stylobate.errors import Interrupted, NoOrbitError, ParameterError, StylobateError
 from stylobate.orbits.arguments import control_of, enclosing, require_bifurcation, require_followed
 from stylobate.orbits.bifurcations import Bifurcation, Kind
 from stylobate.orbits.normal_forms import PeriodMap, neimark_sacker_coefficient, period_doubling_coefficient
+from stylobate.orbits.orbit import range_of, system_sections
 from stylobate.orbits.saving import CURVE, file_attributes, write
 from stylobate.orbits.shooting import Shots, shots
 from stylobate.orbits.tracing import ASTRAY, End, StepControl
+from stylobate.progress import Progress, Report, at_value, report_of, shows_progress
+from stylobate.text import plural, unit_in_text
 
 _log = logging.getLogger("stylobate")
 
@@ -58,8 +63,8 @@ _CONDITIONS: dict[Kind, Callable[[Floats], float]] = {
 }
 
 
-@dataclass(frozen=True, slots=True)
-class CurvePoint:
+@dataclass(frozen=True, slots=True, eq=False)
+class CurvePoint(ByContent):
     """A bifurcation on a curve: both parameters, the shooting segments of its orbit, and the critical eigenvalue."""
 
     values: tuple[float, float]
@@ -67,8 +72,8 @@ class CurvePoint:
     multiplier: complex
 
 
-@dataclass(frozen=True)
-class BifurcationCurve:
+@dataclass(frozen=True, eq=False)
+class BifurcationCurve(ByContent):
     """The curve of a bifurcation in the plane of two parameters.
 
     Attributes
@@ -150,15 +155,34 @@ class BifurcationCurve:
 
     def __repr__(self) -> str:
         """Describe the curve in one line."""
-        return f"BifurcationCurve({self.kind.value} over {' and '.join(self.parameters)}, {len(self.path)} points)"
+        ranges = " and ".join(f"{name} {values}" for name, values in self._ranges().items())
+        return f"BifurcationCurve({self.kind.value}, {len(self.path)} points over {ranges})"
+
+    def _repr_html_(self) -> str:
+        """Render the card that notebooks show."""
+        rows = [
+            Row("kind", self.kind.value),
+            *(
+                Row(name.replace("_", " "), f"{values} {unit_in_text(quantity_of(name).units)}")
+                for name, values in self._ranges().items()
+            ),
+            Row("points", str(len(self.path))),
+            Row("ends", "; ".join(end.value for end in self.ends)),
+        ]
+        return card("Bifurcation curve", [Section("", rows), *system_sections(self.plane.system)])
+
+    def _ranges(self) -> dict[str, str]:
+        return {name: range_of(point.values[k] for point in self.path) for k, name in enumerate(self.parameters)}
 
 
+@shows_progress("curve", at_value)
 def bifurcation_curve(
     bifurcation: Bifurcation,
     parameter: str,
     *,
     bounds: tuple[tuple[float, float], tuple[float, float]],
     control: StepControl | None = None,
+    progress: Progress = None,
 ) -> BifurcationCurve:
     """Continue a fold, a pitchfork, a period doubling or a Neimark–Sacker point in a second parameter.
 
@@ -173,6 +197,8 @@ def bifurcation_curve(
     control
         Length of steps, in units of c for states and of the widths of the bounds for parameters, and maximum number of
         points in each direction.
+    progress
+        A function that is called with both parameters of each new point; a bar by default, False for none.
 
     Raises
     ------
@@ -180,6 +206,8 @@ def bifurcation_curve(
         If the bifurcation is a branch point, the second parameter is the first, or it lies outside the bounds.
     NoOrbitError
         If no first point of the curve was found.
+    Interrupted
+        On Ctrl-C; `partial` is the curve so far.
 
     Notes
     -----
@@ -217,12 +245,17 @@ def bifurcation_curve(
     if isinstance(start, End):
         message = f"the curve could not start: {start.value}"
         raise NoOrbitError(message)
-    forward, last = _followed(plane, start, 1.0, bounds, control)
-    if last is End.CLOSED:
-        return BifurcationCurve(bifurcation.kind, plane.names, tuple(forward), (last, last), plane)
-    backward, begin = _followed(plane, start, -1.0, bounds, control)
-    path = (*reversed(backward[1:]), *forward)
-    return BifurcationCurve(bifurcation.kind, plane.names, path, (begin, last), plane)
+    seen = report_of(progress)
+    path, last = _followed(plane, start, 1.0, bounds, control, seen)
+    begin: End = last if last is End.CLOSED else End.BEGUN
+    if last not in (End.CLOSED, End.INTERRUPTED):
+        backward, begin = _followed(plane, start, -1.0, bounds, control, seen)
+        path = [*reversed(backward[1:]), *path]
+    curve = BifurcationCurve(bifurcation.kind, plane.names, tuple(path), (begin, last), plane)
+    if End.INTERRUPTED in curve.ends:
+        message = f"stopped after {plural(len(path), 'point')}; `partial` is the curve so far"
+        raise Interrupted(message, curve)
+    return curve
 
 
 def _pairs(bounds: tuple[tuple[float, float], tuple[float, float]]) -> tuple[Sequence[float], Sequence[float]]:
@@ -244,8 +277,8 @@ class _Step:
     steps: int
 
 
-@dataclass(frozen=True)
-class Plane:
+@dataclass(frozen=True, eq=False)
+class Plane(ByContent):
     """The plane of two parameters, over which orbits of a system are continued."""
 
     system: PeriodicSystem
@@ -351,8 +384,27 @@ def _followed(
     sign: float,
     bounds: tuple[tuple[float, float], tuple[float, float]],
     control: StepControl,
+    seen: Report,
 ) -> tuple[list[CurvePoint], End]:
-    points, here, length = [start.point], start, min(control.first, control.largest)
+    """Return the points of the curve from `start` in one sense, and the reason of its end, which may be Ctrl-C."""
+    points = [start.point]
+    try:
+        return points, _follow(plane, start, sign, bounds, control, seen, points)
+    except KeyboardInterrupt:
+        return points, End.INTERRUPTED
+
+
+def _follow(
+    plane: Plane,
+    start: _Step,
+    sign: float,
+    bounds: tuple[tuple[float, float], tuple[float, float]],
+    control: StepControl,
+    seen: Report,
+    points: list[CurvePoint],
+) -> End:
+    """Append the points of the curve to `points`, and return the reason of its end."""
+    here, length = start, min(control.first, control.largest)
     sense = sign * start.tangent
     while len(points) <= control.most:
         _log.info("%d points of a curve of bifurcations, at %.4g, %.4g", len(points), *points[-1].values)
@@ -365,22 +417,24 @@ def _followed(
         if isinstance(found, End) or bent:
             length *= _SHORTER
             if length < control.least:
-                return points, found if isinstance(found, End) else End.SHORT
+                return found if isinstance(found, End) else End.SHORT
             continue
         outside = [not low <= value <= high for value, (low, high) in zip(found.point.values, bounds, strict=True)]
         if any(outside):
             last = _at_bound(plane, here, found, bounds, outside.index(True))
-            return ([*points, last] if last is not None else points), End.BOUND
+            points += [] if last is None else [last]
+            return End.BOUND
         if plane.kind is Kind.NEIMARK_SACKER and not _on_circle(found.point.multiplier):
-            return points, End.RESONANCE
+            return End.RESONANCE
         points.append(found.point)
+        seen(*found.point.values)
         sense = found.tangent if found.tangent @ sense > 0.0 else -found.tangent
         if len(points) > 10 and np.linalg.norm(found.u - start.u) < 0.75 * length:  # noqa: PLR2004
-            return points, End.CLOSED
+            return End.CLOSED
         here = found
         length = min(_LONGER * length, control.largest) if found.steps <= _EASY else length
         length = _SHORTER * length if found.steps >= _HARD else length
-    return points, End.STEPS
+    return End.STEPS
 
 
 def _at_bound(

@@ -1,5 +1,7 @@
 """A periodic orbit and its properties."""
 
+import cmath
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -9,12 +11,15 @@ import numpy.typing as npt
 import xarray as xr
 
 from stylobate.base_motions import BaseMotion
+from stylobate.cards import Row, Section, card
 from stylobate.engine.flow.periodic import PeriodicSystem
 from stylobate.engine.forcing import common_line
+from stylobate.equality import ByContent
 from stylobate.models import Model
 from stylobate.orbits.multipliers import is_stable
 from stylobate.orbits.saving import ORBIT, file_attributes, write
 from stylobate.orbits.shooting import Shots
+from stylobate.text import four_digits, plural
 
 Floats = npt.NDArray[np.float64]
 Complexes = npt.NDArray[np.complex128]
@@ -26,8 +31,8 @@ _SAME = 1e-7
 _PASSING, _LATER = 1e-9, 0.03
 
 
-@dataclass(frozen=True)
-class PeriodicOrbit:
+@dataclass(frozen=True, eq=False)
+class PeriodicOrbit(ByContent):
     """A periodic orbit, exact to rounding, with its Floquet multipliers.
 
     Attributes
@@ -205,7 +210,31 @@ class PeriodicOrbit:
         """Describe the orbit in one line."""
         stability = "stable" if self.stable else "unstable"
         kind = f"period {self.periods}, {self.turns:+.3g} turns per period"
-        return f"PeriodicOrbit({stability}, {kind}, tilt {self.minimum_tilt:.6g}…{self.peak_tilt:.6g} rad)"
+        return f"PeriodicOrbit({stability}, {kind}, tilt {range_of([self.minimum_tilt, self.peak_tilt])} rad)"
+
+    def _repr_html_(self) -> str:
+        """Render the card that notebooks show."""
+        largest = complex(self.multipliers[0])
+        angle = f" at {four_digits(abs(cmath.phase(largest)))} rad" if largest.imag else ""
+        rows = [
+            Row("stability", f"{'stable' if self.stable else 'unstable'}{' within its plane' if self.planar else ''}"),
+            Row("period", f"{four_digits(self.period)} s, {plural(self.periods, 'period')} of the base motion"),
+            Row("turns per period", f"{self.turns:+.4g}"),
+            Row("tilt", f"{range_of([self.minimum_tilt, self.peak_tilt])} rad", "θ"),
+            Row("largest multiplier", f"{four_digits(abs(largest))}{angle}"),
+        ]
+        return card("Periodic orbit", [Section("", rows), *system_sections(self.system)])
+
+
+def range_of(values: Iterable[float]) -> str:
+    """Format the minimum and maximum of numbers in one line."""
+    values = list(values)
+    return f"{four_digits(min(values))}…{four_digits(max(values))}"
+
+
+def system_sections(system: PeriodicSystem) -> list[Section]:
+    """Return the rows of a card for the model and the base motion of a system."""
+    return [Section("system", [Row("model", repr(system.model)), Row("base motion", repr(system.motion))])]
 
 
 def lean_of(system: PeriodicSystem, states: Floats) -> Floats:

@@ -8,6 +8,7 @@ import numpy.typing as npt
 
 from stylobate.engine.flow.periodic import Flow, Numbers, PeriodicSystem
 from stylobate.engine.flow.status import Status
+from stylobate.equality import ByContent
 from stylobate.errors import NoOrbitError
 
 Floats = npt.NDArray[np.float64]
@@ -25,8 +26,8 @@ WHY_LOST = {
 }
 
 
-@dataclass(frozen=True, slots=True)
-class Shots:
+@dataclass(frozen=True, slots=True, eq=False)
+class Shots(ByContent):
     """A closed chain of arcs: states at the beginning of arcs, shape (arcs, order), and the flow along each arc.
 
     With a `factor` other than ones the chain covers half an orbit with x(t + nT/2) = −x(t), where x is the lean: the

@@ -1,7 +1,5 @@
 """Switch from a bifurcation to the branch that begins there."""
 
-from collections.abc import Callable
-
 import numpy as np
 
 from stylobate.engine.flow.status import Status
@@ -12,18 +10,20 @@ from stylobate.orbits.bifurcations import Bifurcation, Kind
 from stylobate.orbits.branch import Branch, branch_through, seen_by
 from stylobate.orbits.shooting import arcs_of
 from stylobate.orbits.tracing import StepControl
+from stylobate.progress import Progress, at_value, shows_progress
 
 # First step off the old family, in units of c, and maximum number of doublings if Newton's method falls back.
 _OFF, _DOUBLINGS = 2e-3, 5
 
 
+@shows_progress("branch", at_value)
 def switch_branch(
     bifurcation: Bifurcation,
     *,
     bounds: tuple[float, float],
     opposite: bool = False,
     control: StepControl | None = None,
-    progress: Callable[[float], None] | None = None,
+    progress: Progress = None,
 ) -> Branch:
     """Continue the branch that begins at, or crosses, a bifurcation.
 
@@ -44,6 +44,8 @@ def switch_branch(
         If no branch of periodic orbits begins here: at a fold or a Neimark-Sacker point.
     NoOrbitError
         If no orbit of the new branch was reached.
+    Interrupted
+        On Ctrl-C; `partial` is the branch so far.
     """
     require_bifurcation(bifurcation)
     control = control_of(control)

@@ -8,7 +8,7 @@ from enum import Enum
 import numpy as np
 
 from stylobate.engine.flow.status import Status
-from stylobate.errors import ParameterError, require_positive, require_whole
+from stylobate.errors import Named, ParameterError, require_positive, require_whole
 from stylobate.orbits.arclength import Family, Floats, Point, corrected
 
 _log = logging.getLogger("stylobate")
@@ -24,7 +24,7 @@ ASTRAY = 0.5
 _CLOSED = 0.75
 
 
-class End(Enum):
+class End(Named, Enum):
     """Reason why a branch ends."""
 
     BOUND = "the parameter reached its bound"
@@ -35,6 +35,7 @@ class End(Enum):
     SHORT = "the steps became too short"
     BEGUN = "the continuation began here"
     RESONANCE = "the pair of multipliers meets on the real axis"
+    INTERRUPTED = "Ctrl-C stopped the continuation"
     MERGED = "the orbit regains the symmetry that its branch had broken"
 
 
@@ -87,22 +88,28 @@ def trace(
     control: StepControl,
     seen: Callable[[Point], None] | None = None,
 ) -> Stretch:
-    """Follow a family from `start` in the sense of `direction` until it ends."""
-    points, directions = [start], [start.along(direction)]
+    """Follow a family from `start` in the sense of `direction` until it ends, or until Ctrl-C."""
+    passed = [(start, start.along(direction))]
+    end = End.STEPS
     broken = _asymmetry(start)
-    for item in _points(start, direction, bounds, control):
-        if isinstance(item, End):
-            return Stretch(tuple(points), tuple(directions), item)
-        point, sense = item
-        before, broken = broken, _asymmetry(point)
-        if float(before @ broken) < 0.0:
-            return Stretch(tuple(points), tuple(directions), End.MERGED)
-        points.append(point)
-        directions.append(sense)
-        _log.info("%d orbits of a branch, at %s = %.4g", len(points), point.family.name, point.value)
-        if seen is not None:
-            seen(point)
-    return Stretch(tuple(points), tuple(directions), End.STEPS)
+    try:
+        for item in _points(start, direction, bounds, control):
+            if isinstance(item, End):
+                end = item
+                break
+            point, _ = item
+            before, broken = broken, _asymmetry(point)
+            if float(before @ broken) < 0.0:
+                end = End.MERGED
+                break
+            passed.append(item)
+            _log.info("%d orbits of a branch, at %s = %.4g", len(passed), point.family.name, point.value)
+            if seen is not None:
+                seen(point)
+    except KeyboardInterrupt:
+        end = End.INTERRUPTED
+    points, directions = zip(*passed, strict=True)
+    return Stretch(points, directions, end)
 
 
 def _points(

@@ -10,8 +10,7 @@ from typing import Any, TypeVar
 import xarray as xr
 
 from stylobate.results import Response
-
-_EXPONENTS = str.maketrans("0123456789", "⁰¹²³⁴⁵⁶⁷⁸⁹")
+from stylobate.text import unit_in_text
 
 # SI units in units of a column with m = g = ω0 = 1, as TeX.
 _OWN_UNITS = {
@@ -65,7 +64,7 @@ def unit_label(quantity: xr.DataArray) -> str:
     if _UNIT in quantity.attrs:
         return str(quantity.attrs[_UNIT])
     unit = str(quantity.attrs.get("units", ""))
-    return "" if unit in ("", "1") else _written(unit)
+    return unit_in_text(unit)
 
 
 def in_own_units(result: _Result) -> _Result:
@@ -122,13 +121,3 @@ def _relabelled(data: xr.Dataset) -> xr.Dataset:
             label = _OWN_LABELS.get(str(name))
             variable.attrs = {**variable.attrs, _UNIT: unit} | ({} if label is None else {_LABEL: label})
     return data
-
-
-def _written(unit: str) -> str:
-    """Return "m s-2" as m/s²."""
-    above: list[str] = []
-    below: list[str] = []
-    for symbol, power in re.findall(r"([^\s\d-]+)(-?\d*)", unit):
-        raised = power.lstrip("-").translate(_EXPONENTS) if power not in ("", "-1") else ""
-        (below if power.startswith("-") else above).append(symbol + raised)
-    return "/".join([" ".join(above) or "1", *below])

@@ -4,6 +4,7 @@ from .report_details import DesignSpectrum, ReportDetails
 from .response import Event, Response
 from .rules import OutcomeRules
 from .storage import read_dataset, write_netcdf
+from .tables import to_dataframe
 from .verdict import Verdict, VerdictWord, percent
 
 __all__ = [
@@ -21,5 +22,6 @@ __all__ = [
     "VerdictWord",
     "percent",
     "read_dataset",
+    "to_dataframe",
     "write_netcdf",
 ]

@@ -8,14 +8,21 @@ from typing import Any
 
 import xarray as xr
 
+from stylobate.cards import Row, Section, card
+from stylobate.equality import ByContent
 from stylobate.errors import FileError
+from stylobate.results.plain import ByName, plain_value
 from stylobate.results.storage import read_tree, require_this_version, write_netcdf
+from stylobate.text import four_digits, plural
+
+# Records that a card names.
+_SHOWN = 6
 
 _FORMAT = "stylobate assessment 1"
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Assessment:
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Assessment(ByContent):
     """Result of an assessment: verdicts, margins and shares of small variations of columns under records.
 
     Attributes
@@ -30,6 +37,42 @@ class Assessment:
 
     data: Mapping[str, xr.Dataset]
     setting: Mapping[str, Any]
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "data", ByName(self.data))
+        object.__setattr__(self, "setting", plain_value(self.setting))
+
+    def __repr__(self) -> str:
+        verdicts = "; ".join(f"{name}: {row}" for name, row in self._verdicts().items())
+        counts = ", ".join(plural(len(self.setting.get(f"{noun}s", ())), noun) for noun in ("column", "record"))
+        return f"Assessment({counts}; {verdicts})"
+
+    def _repr_html_(self) -> str:
+        """Render the card that notebooks show."""
+        records = list(self.setting.get("records", ()))
+        more = [f"… {len(records) - _SHOWN} more"] if records[_SHOWN:] else []
+        rows = [
+            Row("title", str(self.setting.get("title") or "–")),
+            Row(
+                "records",
+                ", ".join([*records[:_SHOWN], *more]),
+            ),
+            Row("scales", ", ".join(map(four_digits, self.setting.get("scales", ())))),
+        ]
+        verdicts = [Row(name, row) for name, row in self._verdicts().items()]
+        return card("Assessment", [Section("", rows), Section("records that overturn the column", verdicts)])
+
+    def _verdicts(self) -> dict[str, str]:
+        """Return for each column how many records overturn it at the first scale, in the central case."""
+        if "summary" not in self.data:
+            return {}
+        summary, total = self.data["summary"].isel(scale=0), len(self.setting["records"])
+        counts = {name: summary[name].to_numpy() for name in ("overturned", "undecided")}
+        texts = (
+            f"{fallen} of {total} overturn" + (f", {unclear} undecided" if unclear else "")
+            for fallen, unclear in zip(*counts.values(), strict=True)
+        )
+        return dict(zip(map(str, summary["column"].to_numpy()), texts, strict=True))
 
     def save(self, path: str | Path) -> Path:
         """Write the assessment to the netCDF file `path`; `Assessment.load` reads it again.

@@ -7,8 +7,12 @@ from enum import Enum
 
 import xarray as xr
 
+from stylobate.equality import ByContent
+from stylobate.errors import Named
+from stylobate.results.plain import ByName
 
-class ClaimStatus(Enum):
+
+class ClaimStatus(Named, Enum):
     """The verdict on a statement of a publication."""
 
     HOLDS = "holds"
@@ -29,19 +33,22 @@ class Finding:
     verdict: ClaimStatus
 
 
-@dataclass(frozen=True, slots=True)
-class Section:
+@dataclass(frozen=True, slots=True, eq=False)
+class Section(ByContent):
     """The findings of one section and the data of its figures, by name."""
 
     findings: tuple[Finding, ...]
     data: Mapping[str, xr.Dataset] = field(default_factory=dict)
 
 
-@dataclass(frozen=True, slots=True)
-class PaperCheck:
+@dataclass(frozen=True, slots=True, eq=False)
+class PaperCheck(ByContent):
     """Check of a publication: `sections` by heading, in the order of the publication."""
 
     sections: Mapping[str, Section]
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "sections", ByName(self.sections))
 
     @property
     def findings(self) -> tuple[Finding, ...]:
@@ -51,7 +58,7 @@ class PaperCheck:
     @property
     def data(self) -> Mapping[str, xr.Dataset]:
         """The data of all figures, by name."""
-        return {name: data for section in self.sections.values() for name, data in section.data.items()}
+        return ByName({name: data for section in self.sections.values() for name, data in section.data.items()})
 
     @property
     def summary(self) -> str:

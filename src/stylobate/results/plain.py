@@ -1,10 +1,30 @@
-"""Arrays and NumPy scalars as plain numbers that JSON can hold."""
+"""Plain values of results, which JSON can hold: numbers for arrays and NumPy scalars, and values by name."""
 
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, Never, TypeVar
 
 import numpy as np
 import numpy.typing as npt
+
+from stylobate.errors import UnknownNameError
+from stylobate.text import did_you_mean
+
+_T = TypeVar("_T")
+
+
+class ByName(dict[str, _T]):
+    """Values of a result by name; an unknown name raises a KeyError that suggests the most similar one.
+
+    >>> ByName(peak_tilt=0.1, turns=0.0)["peak_tlit"]
+    Traceback (most recent call last):
+    ...
+    stylobate.errors.UnknownNameError: the result has no such name (got 'peak_tlit'); did you mean peak_tilt?
+    """
+
+    def __missing__(self, name: object) -> Never:
+        remedy = did_you_mean(str(name), self) or f"its names are {', '.join(self) or 'none'}"
+        message = f"the result has no such name (got {name!r}); {remedy}"
+        raise UnknownNameError(message)
 
 
 def plain_numbers(values: npt.ArrayLike, digits: int) -> list[Any]:
@@ -42,7 +62,7 @@ def plain_value(value: Any) -> Any:
     if isinstance(value, np.generic):
         return value.item()
     if isinstance(value, Mapping):
-        return {name: plain_value(one) for name, one in value.items()}
+        return ByName({name: plain_value(one) for name, one in value.items()})
     if type(value) in (list, tuple):
         return type(value)(plain_value(one) for one in value)
     return value

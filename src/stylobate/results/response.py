@@ -1,18 +1,22 @@
 """The result of one run."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
 import numpy.typing as npt
 
+from stylobate.cards import Row, Section, card
+from stylobate.equality import ByContent
 from stylobate.errors import Outcome, UnsupportedError
 from stylobate.results.plain import plain_value
 from stylobate.results.samples import Samples
+from stylobate.text import four_digits
 
 if TYPE_CHECKING:
+    import pandas as pd
     import xarray as xr
 
 _PLAIN = ("decided_at", "uncertain", "planar", "thresholds", "measures", "provenance", "warnings")
@@ -63,8 +67,8 @@ class _Data:
         vars(response)["data"] = data
 
 
-@dataclass(frozen=True, kw_only=True)
-class Response:
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Response(ByContent):
     """Result of one run: outcome, history, events and provenance.
 
     Attributes
@@ -134,6 +138,12 @@ class Response:
             raise UnsupportedError(message)
         return self.sampler(time)
 
+    def to_dataframe(self) -> "pd.DataFrame":
+        """Convert the samples to a table in pandas, with one row per sample; see `results.to_dataframe`."""
+        from stylobate.results.tables import to_dataframe  # noqa: PLC0415  heavy imports wait until they are needed
+
+        return to_dataframe(self.data)
+
     def save(self, path: str | Path) -> Path:
         """Write the run to a netCDF file at `path`, with its provenance; `stylobate.load` reads it again."""
         from stylobate.results.run_file import as_dataset  # noqa: PLC0415  heavy imports wait until they are needed
@@ -161,5 +171,21 @@ class Response:
         kept = {name: value for name, value in vars(self).items() if name != "sampler"}
         return partial(Response, **kept), ()
 
+    def __copy__(self) -> Self:
+        return replace(self)
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Self:
+        return replace(self, data=self.data.copy(deep=True))  # with the dense output, which nothing changes
+
     def __repr__(self) -> str:
-        return f"Response({self.outcome.name} at {self.decided_at:.6g} s: {self.reason})"
+        return f"Response({self.outcome.name} at {four_digits(self.decided_at)} s: {self.reason})"
+
+    def _repr_html_(self) -> str:
+        """Render the card that notebooks show."""
+        from stylobate.results.summary import measure_rows, outcome_of, reason_rows, threshold_rows  # noqa: PLC0415
+
+        flags = [(name, "yes" if getattr(self, name) else "no") for name in ("uncertain", "planar")]
+        rows = [("outcome", outcome_of(self)), *reason_rows(self), *flags]
+        warnings = [("", warning) for warning in self.warnings]
+        named = {"": rows, "measures": measure_rows(self), "thresholds": threshold_rows(self), "warnings": warnings}
+        return card("Response", (Section(heading, [Row(*row) for row in rows]) for heading, rows in named.items()))

@@ -1,14 +1,14 @@
-"""Summary of a run in lines of text, for the command line and the laboratory."""
+"""Summary of a run, a `Response`, in lines of text: for its card, the command line and the laboratory."""
 
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from stylobate.results.damping_yardstick import damping_yardstick, yardstick_text
 from stylobate.results.outcomes import NUMERICALLY_UNCERTAIN
+from stylobate.text import four_digits
 
 if TYPE_CHECKING:
     from stylobate.column import Column
-    from stylobate.results.response import Response
 
 Rows = list[tuple[str, str]]
 """Labels and their values."""
@@ -28,22 +28,28 @@ def damping_rows(column: "Column", damping: float | None) -> Rows:
     return [*own, ("Housner's impacts lose as", yardstick_text(damping_yardstick(column).values()))]
 
 
-def outcome_of(run: "Response") -> str:
+def outcome_of(run: Any) -> str:
     """Return the outcome in words, with a remark if it is numerically uncertain."""
-    return run.outcome.label + (f" ({NUMERICALLY_UNCERTAIN})" if run.uncertain else "")
+    return f"{run.outcome.label}" + (f" ({NUMERICALLY_UNCERTAIN})" if run.uncertain else "")
 
 
-def reason_rows(run: "Response") -> Rows:
+def reason_rows(run: Any) -> Rows:
     """Return the rows of the reason of the outcome and the time of its decision."""
     return [("because", run.reason), ("decided at", f"{run.decided_at:.4f} s")]
 
 
-def measure_rows(run: "Response") -> Rows:
+def measure_rows(run: Any) -> Rows:
     """Return the rows of the summary numbers of `run`: tilt, final position and contact demand."""
     return [*_motion_rows(run), *_contact_rows(run), *_demand_rows(run)]
 
 
-def _motion_rows(run: "Response") -> Rows:
+def threshold_rows(run: Any) -> Rows:
+    """Return the rows of the thresholds that decided the outcome of `run`."""
+    texts = {name: f"{four_digits(value)} {_UNITS.get(name, '')}".rstrip() for name, value in run.thresholds.items()}
+    return [(name.replace("_", " "), text) for name, text in texts.items()]
+
+
+def _motion_rows(run: Any) -> Rows:
     measures = run.measures
     rows = [("peak tilt", f"{measures['peak_tilt']:.6g} rad, {measures['peak_tilt_over_c']:.4g} c")]
     if measures["peak_tilt"] > 0.0:
@@ -54,7 +60,7 @@ def _motion_rows(run: "Response") -> Rows:
     return [*rows, ("events", _events(run)), ("steps", f"{measures['steps']:.0f}")]
 
 
-def _events(run: "Response") -> str:
+def _events(run: Any) -> str:
     events = [event for event in run.events if not event.repeats]
     listed = [f"{event.kind} at {event.time:.4f} s" for event in events[:_SHOWN]]
     if len(events) > _SHOWN:
@@ -62,7 +68,7 @@ def _events(run: "Response") -> str:
     return ", ".join(listed) or "none"
 
 
-def _contact_rows(run: "Response") -> Rows:
+def _contact_rows(run: Any) -> Rows:
     """Return the rows of contact times and residual displacement of a model that slides."""
     measures = run.measures
     if "residual_displacement" not in measures:
@@ -79,7 +85,7 @@ def _contact_rows(run: "Response") -> Rows:
     ]
 
 
-def _demand_rows(run: "Response") -> Rows:
+def _demand_rows(run: Any) -> Rows:
     measures = run.measures
     rows = [
         ("required friction coefficient", "peak_friction_demand", ""),
@@ -92,6 +98,13 @@ def _demand_rows(run: "Response") -> Rows:
 def _bounded(value: float, unit: str) -> str:
     return f"{value:.4g}{unit}" if math.isfinite(value) else "no bound: nothing presses on the base"
 
+
+_UNITS = {
+    **dict.fromkeys(("passage_tilt", "no_return_tilt", "tilt_limit", "overturned_tilt"), "rad"),
+    **dict.fromkeys(("close_passage", "rest_tilt"), "c"),
+    **dict.fromkeys(("rest_energy", "rest_energy_for_good"), "c²"),
+}
+"""Units of thresholds."""
 
 _SHOWN = 4
 """Maximum number of listed events."""

@@ -8,16 +8,21 @@ from enum import Enum
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
-from stylobate.errors import MOST_RUNS, FileError, ParameterError, require_whole
+from stylobate.cards import Row, Section, card
+from stylobate.equality import ByContent
+from stylobate.errors import MOST_RUNS, FileError, Named, ParameterError, require_whole
+from stylobate.results.plain import ByName, plain_value
+from stylobate.text import plural
 
 if TYPE_CHECKING:
+    import pandas as pd
     import xarray as xr
 
 KIND = "verdict"
 """Value of the attribute `kind` of the data of a verdict."""
 
 
-class VerdictWord(Enum):
+class VerdictWord(Named, Enum):
     """The word of a verdict."""
 
     OVERTURNS = "overturns"
@@ -40,8 +45,8 @@ def word_of(low: float, high: float) -> VerdictWord:
     return VerdictWord.OVERTURNS if low >= 1.0 - CLEAR else VerdictWord.UNDECIDED
 
 
-@dataclass(frozen=True, slots=True, repr=False)
-class Verdict:
+@dataclass(frozen=True, slots=True, repr=False, eq=False)
+class Verdict(ByContent):
     """The verdict on a case: a column under a base motion, with everything that is not known exactly.
 
     Attributes
@@ -81,7 +86,7 @@ class Verdict:
     def share_by_model(self) -> Mapping[str, float]:
         """Share of overturning of each contact law, by the kind of its model; NaN if no variation has it."""
         names, shares = self.data["model"].to_numpy(), self.data["model_share"].to_numpy()
-        return {str(name): float(share) for name, share in zip(names, shares, strict=True)}
+        return ByName({str(name): float(share) for name, share in zip(names, shares, strict=True)})
 
     @property
     def deciding(self) -> str:
@@ -91,7 +96,7 @@ class Verdict:
     @property
     def provenance(self) -> Mapping[str, Any]:
         """All inputs that repeat the verdict."""
-        found: dict[str, Any] = json.loads(self.data.attrs["provenance"])
+        found: Mapping[str, Any] = plain_value(json.loads(self.data.attrs["provenance"]))
         return found
 
     def __str__(self) -> str:
@@ -104,6 +109,28 @@ class Verdict:
 
     def __repr__(self) -> str:
         return f"Verdict({self})"
+
+    def _repr_html_(self) -> str:
+        """Render the card that notebooks show."""
+        low, high = map(percent, self.interval)
+        rows = [
+            Row("verdict", self.word.value),
+            Row("share of overturning", f"{percent(self.share)} of {plural(self.runs, 'variation')}"),
+            Row(f"{percent(self.confidence)} interval", f"{low} to {high}"),
+            Row("decided most by", self.deciding.replace("_", " ") or "none distinguished from chance"),
+        ]
+        of_models = (self.data[f"model_share{end}"].to_numpy() for end in ("", "_low", "_high"))
+        laws = [
+            Row(law, f"{percent(share)} ({percent(low)} to {percent(high)})")
+            for law, share, low, high in zip(self.share_by_model, *of_models, strict=True)
+        ]
+        return card("Verdict", [Section("", rows), Section("share by contact law, with interval", laws)])
+
+    def to_dataframe(self) -> "pd.DataFrame":
+        """Convert the variations to a table in pandas, with one row per variation; see `results.to_dataframe`."""
+        from stylobate.results.tables import to_dataframe  # noqa: PLC0415  heavy imports wait until they are needed
+
+        return to_dataframe(self.data)
 
     def save(self, path: str | Path) -> Path:
         """Write the verdict to a netCDF file at `path`, with its provenance; `stylobate.load` reads it again."""

@@ -2,8 +2,8 @@
 
 All quantities are dimensionless as in the equations (1) to (11): angles in rad, the time τ = ω0 t, frequencies in units
 of ω0, accelerations in g. θ is the tilt, ν = Ω/ω0 the frequency ratio of the base motion, c = tan α_c the slenderness
-with the tipping angle α_c, and η the damping. Arguments are numbers or arrays that broadcast; a result
-has the broadcast shape, with NaN (False in a truth value) where there is no solution.
+with the tipping angle α_c, and η the damping. Arguments are numbers or arrays that broadcast. Numbers give
+numbers; arrays give arrays of the broadcast shape, with NaN (False in a truth value) where there is no solution.
 """
 
 from stylobate.theory.averaging import AveragedRolling, averaged_rolling

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from stylobate.theory.arguments import ComplexArray, Real, finite, not_negative, positive
+from stylobate.theory.arguments import ComplexArray, Real, finite, not_negative, plain_results, positive
 from stylobate.theory.rolling import SteadyRolling, steady_rolling
 
 
@@ -64,6 +64,7 @@ def circular_components(a1: Real, a2: Real, phi2: Real) -> tuple[ComplexArray, C
     return 0.5 * (a1 + 1.0j * a2 * turn), 0.5 * (a1 + 1.0j * a2 * turn.conj())
 
 
+@plain_results
 def averaged_rolling(nu: Real, a1: Real, a2: Real = 0.0, phi2: Real = 0.0, *, c: Real, eta: Real) -> AveragedRolling:
     """Compute steady rolling under straight-line or elliptic base motion by averaging.
 
@@ -101,7 +102,7 @@ def averaged_rolling(nu: Real, a1: Real, a2: Real = 0.0, phi2: Real = 0.0, *, c:
     Examples
     --------
     >>> rolling = averaged_rolling(3.0, 0.13, c=0.1, eta=0.1)
-    >>> print(rolling.forward.upper.amplitude.round(4), rolling.backward.upper.amplitude.round(4))
+    >>> print(round(rolling.forward.upper.amplitude, 4), round(rolling.backward.upper.amplitude, 4))
     0.0165 0.0165
     """
     nu, c, eta = positive("nu", nu), positive("c", c), not_negative("eta", eta)
@@ -114,5 +115,5 @@ def averaged_rolling(nu: Real, a1: Real, a2: Real = 0.0, phi2: Real = 0.0, *, c:
 
 def _rolling(nu: Real, component: ComplexArray, c: Real, eta: Real, *, sense: int) -> SteadyRolling:
     rolling = steady_rolling(nu, np.abs(component), c=c, eta=eta)
-    offset = np.broadcast_to(np.angle(component), rolling.azimuth_offset.shape).copy()
+    offset = np.broadcast_to(np.angle(component), np.shape(rolling.azimuth_offset)).copy()
     return SteadyRolling(upper=rolling.upper, lower=rolling.lower, sense=sense, azimuth_offset=offset)

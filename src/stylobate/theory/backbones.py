@@ -5,10 +5,11 @@ The curve of a rolling column (5) resembles the curve of planar rocking (3) but 
 
 import numpy as np
 
-from stylobate.theory.arguments import FloatArray, Real, finite, positive
+from stylobate.theory.arguments import Real, Values, finite, plain_results, positive
 
 
-def rolling_backbone(omega: Real, c: Real) -> FloatArray:
+@plain_results
+def rolling_backbone(omega: Real, c: Real) -> Values:
     """Compute the tilt of free steady rolling round the rim at a rolling rate.
 
     Parameters
@@ -41,7 +42,8 @@ def rolling_backbone(omega: Real, c: Real) -> FloatArray:
     return c / (1.0 + omega**2)  # (5)
 
 
-def planar_backbone(omega: Real, c: Real) -> FloatArray:
+@plain_results
+def planar_backbone(omega: Real, c: Real) -> Values:
     """Compute the amplitude of free planar rocking at the frequency ω.
 
     Parameters

@@ -26,7 +26,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from enum import IntEnum
 
-from stylobate.errors import ParameterError
+from stylobate.errors import Named, ParameterError
 from stylobate.theory.arguments import finite, not_negative, positive
 from stylobate.theory.harmonic_force import HarmonicForce, root
 from stylobate.theory.starting import steepness
@@ -39,7 +39,7 @@ _FORCE_ROUNDING = 1e-13
 _LEAST_SPAN = 1e-12
 
 
-class BlockPhase(IntEnum):
+class BlockPhase(Named, IntEnum):
     """The phase of motion of a block on a vibrating plane."""
 
     STICK = 0

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from stylobate.errors import require_whole
-from stylobate.theory.arguments import FloatArray, Real, finite, not_negative, positive
+from stylobate.theory.arguments import Real, Values, finite, not_negative, plain_results, positive
 from stylobate.theory.block_motion import TURN, Block, BlockPhase, BlockSegment, State
 from stylobate.theory.starting import steepness
 from stylobate.theory.throwing import below_elastic
@@ -61,6 +61,7 @@ class BlockCycle:
         return tuple(segment.end for segment in self.segments[:-1])
 
 
+@plain_results
 def block_cycle(
     along: float,
     normal: float = 0.0,
@@ -160,6 +161,7 @@ def block_cycle(
     return replace(cycle, mean_speed=-math.copysign(math.inf, incline)) if _escapes(block, cycle) else cycle
 
 
+@plain_results
 def mean_block_speed(
     along: Real,
     normal: Real = 0.0,
@@ -170,7 +172,7 @@ def mean_block_speed(
     phase: Real = 0.0,
     incline: Real = 0.0,
     cycles: int = 1000,
-) -> FloatArray:
+) -> Values:
     """Compute the mean transport velocity of a block that begins at rest on a harmonically vibrating plane.
 
     Parameters

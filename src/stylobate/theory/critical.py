@@ -13,13 +13,14 @@ frequencies below the band without rolling and stable at all frequencies above i
 
 import numpy as np
 
-from stylobate.theory.arguments import FloatArray, Real, not_negative, positive
+from stylobate.theory.arguments import FloatArray, Real, Values, not_negative, plain_results, positive
 from stylobate.theory.stability import critical_ratio
 
 _BISECTIONS = 64  # from an interval as long as the root is large to rounding
 
 
-def critical_amplitude(nu: Real, *, c: Real, eta: Real) -> FloatArray:
+@plain_results
+def critical_amplitude(nu: Real, *, c: Real, eta: Real) -> Values:
     """Compute the base acceleration at which a frequency ratio ν is the critical one.
 
     Parameters
@@ -56,7 +57,8 @@ def critical_amplitude(nu: Real, *, c: Real, eta: Real) -> FloatArray:
     return np.where(nu >= begins, c * _amplitude_ratio(nu, eta), np.nan)
 
 
-def critical_frequency(a0: Real, *, c: Real, eta: Real) -> FloatArray:
+@plain_results
+def critical_frequency(a0: Real, *, c: Real, eta: Real) -> Values:
     """Compute the critical frequency ratio ν* above which steady rolling on a circling base is stable.
 
     Parameters
@@ -100,7 +102,8 @@ def critical_frequency(a0: Real, *, c: Real, eta: Real) -> FloatArray:
     return np.where(exists, 0.5 * (low + high), np.nan)
 
 
-def crossing_frequency(a0: Real, *, c: Real, eta: Real) -> FloatArray:
+@plain_results
+def crossing_frequency(a0: Real, *, c: Real, eta: Real) -> Values:
     """Compute the frequency ω_H of the modulation that begins at the critical frequency.
 
     Parameters
@@ -137,7 +140,8 @@ def crossing_frequency(a0: Real, *, c: Real, eta: Real) -> FloatArray:
     return np.sqrt(np.maximum(nu**2 - 1.0 + 0.5 * critical_ratio(nu, eta), 0.0))
 
 
-def undamped_critical_frequency(a0: Real, *, c: Real) -> FloatArray:
+@plain_results
+def undamped_critical_frequency(a0: Real, *, c: Real) -> Values:
     """Compute the critical frequency ratio ν* of the undamped column in closed form.
 
     Parameters

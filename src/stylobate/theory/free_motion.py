@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from stylobate.theory.arguments import FloatArray, Real, finite, positive
+from stylobate.theory.arguments import FloatArray, Real, Values, finite, plain_results, positive
 from stylobate.theory.quadrature import quarter_turn
 
 _NEWTON_STEPS = 64  # each step halves the distance to a double root: enough to go from 1 to rounding
@@ -28,14 +28,15 @@ class FreeMotion:
         Angle of travel of the contact point round the rim in one period [rad], with the sign of the rolling rate.
     """
 
-    smallest_tilt: FloatArray
-    peak_tilt: FloatArray
-    energy: FloatArray
-    angular_momentum: FloatArray
-    period: FloatArray
-    azimuth_advance: FloatArray
+    smallest_tilt: Values
+    peak_tilt: Values
+    energy: Values
+    angular_momentum: Values
+    period: Values
+    azimuth_advance: Values
 
 
+@plain_results
 def free_motion(tilt: Real, rolling_rate: Real, c: Real) -> FreeMotion:
     """Compute free motion without damping, started at a turning point of the tilt.
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from stylobate.errors import ParameterError
-from stylobate.theory.arguments import BoolArray, ComplexArray, FloatArray, Real, finite
+from stylobate.theory.arguments import BoolArray, ComplexArray, FloatArray, Real, Values, finite, plain_results
 from stylobate.theory.rigid_body import Numbers, RigidBody
 
 
@@ -37,6 +37,7 @@ class FreeRolling:
     eigenvalue: ComplexArray
 
 
+@plain_results
 def free_rolling(
     tilt: Real, spin: Real = 0.0, *, c: Real, inertia_ratio: Real = 0.75, axial_ratio: Real = 0.5
 ) -> FreeRolling:
@@ -113,9 +114,10 @@ def free_rolling(
     )
 
 
+@plain_results
 def free_rolling_spin(
     tilt: Real, rate: Real, *, c: Real, inertia_ratio: Real = 0.75, axial_ratio: Real = 0.5
-) -> FloatArray:
+) -> Values:
     """Compute the spin of free steady rolling from tilt and rolling rate.
 
     Parameters

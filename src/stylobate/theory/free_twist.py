@@ -10,7 +10,17 @@ from dataclasses import dataclass
 import numpy as np
 
 from stylobate.errors import ParameterError
-from stylobate.theory.arguments import BoolArray, ComplexArray, FloatArray, Real, not_negative, positive
+from stylobate.theory.arguments import (
+    BoolArray,
+    ComplexArray,
+    FloatArray,
+    Real,
+    Truths,
+    Values,
+    not_negative,
+    plain_results,
+    positive,
+)
 from stylobate.theory.finite_tilt import no_deviation_grows
 from stylobate.theory.rolling import rolling_amplitudes
 from stylobate.theory.rotating_frame import rotating_frame_jacobian
@@ -42,15 +52,16 @@ class FreeTwistRolling:
         follows at once: the four eigenvalues of the paper's column, and −∞.
     """
 
-    amplitude: FloatArray
-    phase: FloatArray
-    spin: FloatArray
-    friction_moment: FloatArray
-    exists: BoolArray
-    stable: BoolArray
+    amplitude: Values
+    phase: Values
+    spin: Values
+    friction_moment: Values
+    exists: Truths
+    stable: Truths
     eigenvalues: ComplexArray
 
 
+@plain_results
 def free_twist_rolling(
     nu: Real,
     a0: Real,

@@ -14,7 +14,7 @@ frequency is then unstable above some b.
 
 import numpy as np
 
-from stylobate.theory.arguments import BoolArray, FloatArray, Real
+from stylobate.theory.arguments import BoolArray, FloatArray, Real, Values, plain_results
 from stylobate.theory.critical import critical_frequency
 from stylobate.theory.free_twist import checked_numbers
 from stylobate.theory.free_twist_stability import DampedColumn, deviations_decay
@@ -25,9 +25,10 @@ _BELOW, _ABOVE = 40, 240  # nodes below and above the band without rolling
 _BISECTIONS = 60
 
 
+@plain_results
 def free_twist_critical_frequency(
     a0: Real, *, c: Real, eta: Real, zeta: Real, inertia_ratio: Real = 0.75, axial_ratio: Real = 0.5
-) -> FloatArray:
+) -> Values:
     """Compute the critical frequency ratio ν* above which steady rolling with free spin is stable.
 
     Parameters
@@ -80,9 +81,10 @@ def free_twist_critical_frequency(
     return _crossing(a0, c, eta, zeta, inertia_ratio, axial_ratio, gained=True)
 
 
+@plain_results
 def free_twist_upper_frequency(
     a0: Real, *, c: Real, eta: Real, zeta: Real, inertia_ratio: Real = 0.75, axial_ratio: Real = 0.5
-) -> FloatArray:
+) -> Values:
     """Compute the upper frequency ratio ν** up to which steady rolling with free spin is stable.
 
     Parameters

@@ -4,7 +4,16 @@ from collections.abc import Callable
 
 import numpy as np
 
-from stylobate.theory.arguments import BoolArray, ComplexArray, FloatArray, Real, finite, not_negative, positive
+from stylobate.theory.arguments import (
+    BoolArray,
+    ComplexArray,
+    FloatArray,
+    Real,
+    finite,
+    not_negative,
+    plain_results,
+    positive,
+)
 from stylobate.theory.finite_tilt import (
     FiniteTiltRolling,
     eigenvalues,
@@ -17,6 +26,7 @@ from stylobate.theory.rigid_body import Numbers, RigidBody
 from stylobate.theory.zeros import Rows
 
 
+@plain_results
 def full_rolling(
     nu: Real,
     a0: Real,

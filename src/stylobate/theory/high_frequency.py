@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from stylobate.errors import ParameterError
-from stylobate.theory.arguments import BoolArray, FloatArray, Real, not_negative
+from stylobate.theory.arguments import FloatArray, Real, Truths, Values, not_negative, plain_results
 
 _STATE_LENGTH = 4
 
@@ -29,10 +29,10 @@ class HighFrequencyRolling:
         Whether the upper branch is neutrally stable: no deviation grows and none decays.
     """
 
-    upper: FloatArray
-    lower: FloatArray
+    upper: Values
+    lower: Values
     frequencies: FloatArray
-    stable: BoolArray
+    stable: Truths
 
 
 def high_frequency_rates(
@@ -78,6 +78,7 @@ def high_frequency_rates(
     return np.stack(np.broadcast_arrays(y[2], y[3], first, second))
 
 
+@plain_results
 def high_frequency_rolling(ratio: Real) -> HighFrequencyRolling:
     """Compute averaged steady rolling in the limit of fast straight-line base motion.
 

@@ -13,7 +13,7 @@ onset at cos s = 0 and the period doubling at −Γ cos s = 2(1 + e²)/(1 + e)²
 
 import numpy as np
 
-from stylobate.theory.arguments import BoolArray, FloatArray, Real, finite, not_negative
+from stylobate.theory.arguments import BoolArray, FloatArray, Real, Values, finite, not_negative, plain_results
 from stylobate.theory.starting import steepness
 from stylobate.theory.throwing import below_elastic
 
@@ -21,6 +21,7 @@ from stylobate.theory.throwing import below_elastic
 _NODES, _FIRST = 1024, 1e-4
 
 
+@plain_results
 def hopping_speed(
     along: Real,
     normal: Real,
@@ -29,7 +30,7 @@ def hopping_speed(
     kinetic_friction: Real,
     phase: Real = 0.0,
     incline: Real = 0.0,
-) -> FloatArray:
+) -> Values:
     """Compute the mean transport velocity of a block that bounces once per period of the base motion.
 
     Parameters

@@ -3,11 +3,12 @@
 import numpy as np
 
 from stylobate.errors import ParameterError
-from stylobate.theory.arguments import FloatArray, Real, not_negative, positive
+from stylobate.theory.arguments import FloatArray, Real, Values, not_negative, plain_results, positive
 from stylobate.theory.rigid_body import below_one
 
 
-def housner_restitution(c: Real, *, inertia_ratio: Real = 0.75) -> FloatArray:
+@plain_results
+def housner_restitution(c: Real, *, inertia_ratio: Real = 0.75) -> Values:
     """Compute the restitution of an impact that neither bounces nor slips (Housner).
 
     Parameters
@@ -51,7 +52,8 @@ def housner_restitution(c: Real, *, inertia_ratio: Real = 0.75) -> FloatArray:
     return np.asarray(np.maximum((1.0 - flatness) / (1.0 + flatness), 0.0))
 
 
-def block_restitution(c: Real) -> FloatArray:
+@plain_results
+def block_restitution(c: Real) -> Values:
     """Compute the restitution of an impact of a uniform rectangular block.
 
     Parameters
@@ -86,7 +88,8 @@ def block_restitution(c: Real) -> FloatArray:
     return np.asarray(np.maximum(1.0 - 1.5 * square / (1.0 + square), 0.0))
 
 
-def equivalent_viscous_damping(amplitude: Real, *, c: Real, restitution: Real) -> FloatArray:
+@plain_results
+def equivalent_viscous_damping(amplitude: Real, *, c: Real, restitution: Real) -> Values:
     """Compute the damping that dissipates as much energy per cycle of planar rocking as impacts do.
 
     Parameters

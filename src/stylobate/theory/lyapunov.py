@@ -8,13 +8,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from stylobate.theory.arguments import ComplexArray, FloatArray, Real, not_negative, positive
+from stylobate.theory.arguments import ComplexArray, FloatArray, Real, Values, not_negative, plain_results, positive
 from stylobate.theory.critical import critical_frequency, crossing_frequency
 from stylobate.theory.rolling import steady_rolling
 from stylobate.theory.rotating_frame import rotating_frame_jacobian
 
 
-def first_lyapunov_coefficient(a0: Real, *, c: Real, eta: Real) -> FloatArray:
+@plain_results
+def first_lyapunov_coefficient(a0: Real, *, c: Real, eta: Real) -> Values:
     """Compute the first Lyapunov coefficient of steady rolling on a circling base at the critical frequency.
 
     Parameters
@@ -55,7 +56,7 @@ def first_lyapunov_coefficient(a0: Real, *, c: Real, eta: Real) -> FloatArray:
     [-4.3987 -1.6652]
     """
     amplitude, c, eta = np.broadcast_arrays(not_negative("a0", a0), positive("c", c), not_negative("eta", eta))
-    nu, frequency = critical_frequency(amplitude, c=c, eta=eta), crossing_frequency(amplitude, c=c, eta=eta)
+    nu, frequency = (np.asarray(of(amplitude, c=c, eta=eta)) for of in (critical_frequency, crossing_frequency))
     regular = (frequency > 0.0) & (eta > 0.0)
     coefficient = np.full(amplitude.shape, np.nan)
     coefficient[regular] = _coefficient(nu[regular], frequency[regular], amplitude[regular] / c[regular], eta[regular])

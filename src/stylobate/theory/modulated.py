@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from stylobate.errors import ParameterError, require_not_negative, require_positive
-from stylobate.theory.arguments import ComplexArray, FloatArray
+from stylobate.theory.arguments import ComplexArray, FloatArray, plain_results
 from stylobate.theory.cycle import Cycle, NoCycleError, cycle_at
 from stylobate.theory.floquet import floquet_multipliers
 from stylobate.theory.rolling import steady_rolling
@@ -54,6 +54,7 @@ class ModulatedRolling:
     amplitude_range: tuple[float, float]
 
 
+@plain_results
 def modulated_rolling(nu: float, a0: float, *, c: float, eta: float, points: int = 101) -> ModulatedRolling:
     """Find modulated rolling on a circling base below the critical frequency.
 

@@ -2,11 +2,12 @@
 
 import numpy as np
 
-from stylobate.theory.arguments import FloatArray, Real, finite, positive
+from stylobate.theory.arguments import Real, Values, finite, plain_results, positive
 from stylobate.theory.rigid_body import below_one
 
 
-def angle_of_turn(c: Real, *, inertia_ratio: Real = 0.75, spin_ratio: Real = 0.0) -> FloatArray:
+@plain_results
+def angle_of_turn(c: Real, *, inertia_ratio: Real = 0.75, spin_ratio: Real = 0.0) -> Values:
     """Compute the angle of travel of the contact point round the rim in a passage near the vertical.
 
     Parameters
@@ -60,7 +61,8 @@ def angle_of_turn(c: Real, *, inertia_ratio: Real = 0.75, spin_ratio: Real = 0.0
     return np.asarray((np.pi + 2.0 * np.arctan(kappa * c * spin / rim)) * rim)
 
 
-def required_friction(c: Real, *, inertia_ratio: Real = 0.75) -> FloatArray:
+@plain_results
+def required_friction(c: Real, *, inertia_ratio: Real = 0.75) -> Values:
     """Compute the friction coefficient that prevents slip of the rim near the vertical.
 
     Parameters

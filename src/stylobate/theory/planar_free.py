@@ -2,10 +2,11 @@
 
 import numpy as np
 
-from stylobate.theory.arguments import FloatArray, Real, finite, positive
+from stylobate.theory.arguments import Real, Values, finite, plain_results, positive
 
 
-def planar_free_period(amplitude: Real, c: Real) -> FloatArray:
+@plain_results
+def planar_free_period(amplitude: Real, c: Real) -> Values:
     """Compute the period of free planar rocking: two passages of the vertical.
 
     Parameters
@@ -41,7 +42,8 @@ def planar_free_period(amplitude: Real, c: Real) -> FloatArray:
     return np.where(inside, 8.0 * np.arctanh(np.sqrt(ratio / (2.0 - ratio))), np.nan)
 
 
-def planar_free_motion(tau: Real, amplitude: Real, c: Real) -> tuple[FloatArray, FloatArray]:
+@plain_results
+def planar_free_motion(tau: Real, amplitude: Real, c: Real) -> tuple[Values, Values]:
     """Compute free planar rocking at any time, from its peak tilt on the positive side at τ = 0.
 
     Parameters

@@ -7,7 +7,7 @@ from typing import Self
 import numpy as np
 
 from stylobate.errors import ParameterError
-from stylobate.theory.arguments import BoolArray, FloatArray, Real, positive
+from stylobate.theory.arguments import BoolArray, FloatArray, Real, Values, plain_results, positive
 
 _HALVINGS = 60
 # A golden section shrinks its bracket by 0.618 per step: to 2e-16 after 75 steps.
@@ -16,7 +16,8 @@ _GOLDEN, _SECTIONS = 0.5 * (np.sqrt(5.0) - 1.0), 75
 _LEAST_FREQUENCY = 0.1
 
 
-def half_sine_overturning(nu: Real, c: Real) -> FloatArray:
+@plain_results
+def half_sine_overturning(nu: Real, c: Real) -> Values:
     """Compute the minimum half-sine pulse that overturns a column at rest, without damping.
 
     Parameters
@@ -62,7 +63,8 @@ def half_sine_overturning(nu: Real, c: Real) -> FloatArray:
     return c * _least(nu, lambda s: s + _left(s, 0.5, nu), nu)
 
 
-def one_sine_overturning_without_impact(nu: Real, c: Real) -> FloatArray:
+@plain_results
+def one_sine_overturning_without_impact(nu: Real, c: Real) -> Values:
     """Compute the minimum one-sine pulse that overturns a column at rest without an impact and without damping.
 
     This is mode 2 of Zhang and Makris (2001), often not the minimum overturning amplitude: weaker pulses may overturn
@@ -100,14 +102,15 @@ def one_sine_overturning_without_impact(nu: Real, c: Real) -> FloatArray:
 
     Examples
     --------
-    >>> print(one_sine_overturning_without_impact(5.0, c=1.0).round(4))
+    >>> print(round(one_sine_overturning_without_impact(5.0, c=1.0), 4))
     7.1681
     """
     nu, c = np.broadcast_arrays(positive("nu", nu), positive("c", c))
     return c * _without_impact(nu)
 
 
-def one_sine_overturning_after_impact(nu: Real, c: Real, *, restitution: Real) -> tuple[FloatArray, FloatArray]:
+@plain_results
+def one_sine_overturning_after_impact(nu: Real, c: Real, *, restitution: Real) -> tuple[Values, Values]:
     """Compute the interval of one-sine amplitudes that overturn a column at rest after one impact.
 
     This is mode 1 of Zhang and Makris (2001). If the interval is not empty, its lower end is the minimum overturning
@@ -153,7 +156,7 @@ def one_sine_overturning_after_impact(nu: Real, c: Real, *, restitution: Real) -
     Examples
     --------
     >>> lowest, highest = one_sine_overturning_after_impact(5.0, c=1.0, restitution=0.9)
-    >>> print(lowest.round(4), highest.round(4))
+    >>> print(round(lowest, 4), round(highest, 4))
     3.0186 6.3181
     """
     nu, c, e = np.broadcast_arrays(positive("nu", nu), positive("c", c), positive("restitution", restitution))

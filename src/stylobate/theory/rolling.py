@@ -4,7 +4,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from stylobate.theory.arguments import BoolArray, ComplexArray, FloatArray, Real, not_negative, positive
+from stylobate.theory.arguments import (
+    ComplexArray,
+    FloatArray,
+    Real,
+    Truths,
+    Values,
+    not_negative,
+    plain_results,
+    positive,
+)
 from stylobate.theory.stability import rolling_eigenvalues, satisfies_routh_hurwitz
 
 
@@ -27,10 +36,10 @@ class RollingBranch:
         The four eigenvalues of the Jacobian of (7), complex, along a last axis of length 4.
     """
 
-    amplitude: FloatArray
-    phase: FloatArray
-    exists: BoolArray
-    stable: BoolArray
+    amplitude: Values
+    phase: Values
+    exists: Truths
+    stable: Truths
     eigenvalues: ComplexArray
 
 
@@ -53,9 +62,10 @@ class SteadyRolling:
     upper: RollingBranch
     lower: RollingBranch
     sense: int = 1
-    azimuth_offset: FloatArray
+    azimuth_offset: Values
 
 
+@plain_results
 def steady_rolling(nu: Real, a0: Real, *, c: Real, eta: Real) -> SteadyRolling:
     """Compute steady rolling of a column round its rim on a circularly moving base.
 
@@ -144,7 +154,8 @@ def _branch(
     )
 
 
-def rolling_gap(a0: Real, *, c: Real, eta: Real) -> tuple[FloatArray, FloatArray]:
+@plain_results
+def rolling_gap(a0: Real, *, c: Real, eta: Real) -> tuple[Values, Values]:
     """Compute the band of frequency ratios in which damping excludes steady rolling.
 
     Parameters
@@ -174,7 +185,7 @@ def rolling_gap(a0: Real, *, c: Real, eta: Real) -> tuple[FloatArray, FloatArray
     Examples
     --------
     >>> low, high = rolling_gap(0.01, c=0.1, eta=0.3)
-    >>> print(low.round(4), high.round(4))
+    >>> print(round(low, 4), round(high, 4))
     0.3846 2.6004
     """
     a, eta = np.broadcast_arrays(not_negative("a0", a0) / positive("c", c), not_negative("eta", eta))

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from stylobate.theory.arguments import FloatArray, Real
+from stylobate.theory.arguments import FloatArray, Real, Values, plain_results
 from stylobate.theory.free_twist import checked_numbers
 from stylobate.theory.rolling import rolling_amplitudes
 
@@ -21,10 +21,11 @@ class RollingFriction:
         On the branch of the smaller tilt.
     """
 
-    upper: FloatArray
-    lower: FloatArray
+    upper: Values
+    lower: Values
 
 
+@plain_results
 def rolling_required_friction(
     nu: Real,
     a0: Real,

@@ -19,13 +19,13 @@ from enum import IntEnum
 import numpy as np
 import numpy.typing as npt
 
-from stylobate.errors import ParameterError
-from stylobate.theory.arguments import FloatArray, Real, not_negative
+from stylobate.errors import Named, ParameterError
+from stylobate.theory.arguments import FloatArray, Real, Values, not_negative, plain_results
 
 _BISECTIONS = 60  # from an interval shorter than π down to rounding
 
 
-class SlidingRegime(IntEnum):
+class SlidingRegime(Named, IntEnum):
     """Regime of a block on a horizontally vibrating plane."""
 
     STICKS = 0
@@ -57,13 +57,14 @@ class HorizontalSliding:
     """
 
     regime: npt.NDArray[np.int64]
-    onset: FloatArray
-    slip_duration: FloatArray
-    peak_velocity: FloatArray
-    stroke: FloatArray
-    dissipation: FloatArray
+    onset: Values
+    slip_duration: Values
+    peak_velocity: Values
+    stroke: Values
+    dissipation: Values
 
 
+@plain_results
 def horizontal_sliding(a0: Real, *, static_friction: Real, kinetic_friction: Real | None = None) -> HorizontalSliding:
     """Compute the stick and slip of a block on a horizontal plane with harmonic base motion.
 
@@ -128,7 +129,8 @@ def horizontal_sliding(a0: Real, *, static_friction: Real, kinetic_friction: Rea
     )
 
 
-def sliding_amplitude(*, static_friction: Real, kinetic_friction: Real | None = None) -> FloatArray:
+@plain_results
+def sliding_amplitude(*, static_friction: Real, kinetic_friction: Real | None = None) -> Values:
     """Compute the acceleration amplitude of a horizontal plane above which a block on it never sticks.
 
     Parameters

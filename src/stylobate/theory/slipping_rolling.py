@@ -4,7 +4,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from stylobate.theory.arguments import BoolArray, ComplexArray, FloatArray, Real, finite, not_negative, positive
+from stylobate.theory.arguments import (
+    BoolArray,
+    ComplexArray,
+    FloatArray,
+    Real,
+    finite,
+    not_negative,
+    plain_results,
+    positive,
+)
 from stylobate.theory.finite_tilt import eigenvalues
 from stylobate.theory.rigid_body import Numbers, RigidBody
 from stylobate.theory.slipping_balance import Forced, solutions
@@ -52,6 +61,7 @@ class SlippingRolling:
     eigenvalues: ComplexArray
 
 
+@plain_results
 def slipping_rolling(
     nu: Real,
     a0: Real,

@@ -17,14 +17,23 @@ from enum import IntEnum
 import numpy as np
 import numpy.typing as npt
 
-from stylobate.errors import ParameterError
-from stylobate.theory.arguments import ComplexArray, FloatArray, Real, finite, not_negative, positive
+from stylobate.errors import Named, ParameterError
+from stylobate.theory.arguments import (
+    ComplexArray,
+    FloatArray,
+    Real,
+    Values,
+    finite,
+    not_negative,
+    plain_results,
+    positive,
+)
 
 # Relative difference, a few roundings, below which lift-off and leaving the friction cone coincide.
 _SAME = 8.0 * float(np.finfo(float).eps)
 
 
-class FirstMotion(IntEnum):
+class FirstMotion(Named, IntEnum):
     """The first motion of a standing column."""
 
     NONE = 0
@@ -59,14 +68,15 @@ class StartOfMotion:
         Factor above which N ≥ 0 fails.
     """
 
-    amplitude: FloatArray
+    amplitude: Values
     first: npt.NDArray[np.int64]
-    phase: FloatArray
-    slide: FloatArray
-    rock: FloatArray
-    lift_off: FloatArray
+    phase: Values
+    slide: Values
+    rock: Values
+    lift_off: Values
 
 
+@plain_results
 def start_of_motion(
     along: Real = 1.0, normal: Real = 0.0, *, c: Real, friction: Real, phase: Real = 0.0, incline: Real = 0.0
 ) -> StartOfMotion:
@@ -144,6 +154,7 @@ def start_of_motion(
     )
 
 
+@plain_results
 def first_motion(
     along: Real, normal: Real = 0.0, *, c: Real, friction: Real, incline: Real = 0.0
 ) -> npt.NDArray[np.int64]:

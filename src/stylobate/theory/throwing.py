@@ -3,7 +3,7 @@
 import numpy as np
 
 from stylobate.errors import ParameterError
-from stylobate.theory.arguments import FloatArray, Real, not_negative, positive
+from stylobate.theory.arguments import FloatArray, Real, Values, not_negative, plain_results, positive
 from stylobate.theory.starting import steepness
 
 # Below this angle 2πn the quotient of the throw number comes from its series, since both terms vanish as x³.
@@ -11,7 +11,8 @@ _SMALL_ANGLE = 0.3
 _TERMS = 8
 
 
-def throw_number(normal: Real, *, incline: Real = 0.0) -> FloatArray:
+@plain_results
+def throw_number(normal: Real, *, incline: Real = 0.0) -> Values:
     """Compute the throw number Γ of a base motion: a body on the base leaves it if Γ > 1.
 
     Parameters
@@ -39,7 +40,8 @@ def throw_number(normal: Real, *, incline: Real = 0.0) -> FloatArray:
     return np.asarray(not_negative("normal", normal) / np.cos(steepness(incline)))
 
 
-def flight_throw_number(duration: Real) -> FloatArray:
+@plain_results
+def flight_throw_number(duration: Real) -> Values:
     """Compute the throw number at which a flight that begins in contact lasts a given fraction of the period.
 
     Parameters
@@ -83,7 +85,8 @@ def flight_throw_number(duration: Real) -> FloatArray:
     return np.asarray(np.hypot(1.0, np.where(small, _small_quotient(x), closed)))
 
 
-def bounce_time(speed: Real, *, normal_restitution: Real, weight: Real = 1.0) -> FloatArray:
+@plain_results
+def bounce_time(speed: Real, *, normal_restitution: Real, weight: Real = 1.0) -> Values:
     """Compute the total time of the bounces that follow a landing under a constant normal acceleration.
 
     Parameters

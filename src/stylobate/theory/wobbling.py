@@ -6,7 +6,7 @@ takes the upright column to its position. The circle of the upright base stays f
 
 import numpy as np
 
-from stylobate.theory.arguments import FloatArray, Real, not_negative, positive
+from stylobate.theory.arguments import FloatArray, Real, not_negative, plain_results, positive
 from stylobate.theory.finite_tilt import (
     FiniteTiltRolling,
     eigenvalues,
@@ -18,6 +18,7 @@ from stylobate.theory.rigid_body import Numbers, RigidBody
 from stylobate.theory.zeros import Rows
 
 
+@plain_results
 def wobbling_rolling(
     nu: Real, a0: Real, *, c: Real, eta: Real, inertia_ratio: Real = 0.75, axial_ratio: Real = 0.5
 ) -> FiniteTiltRolling:

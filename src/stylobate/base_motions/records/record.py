@@ -12,7 +12,9 @@ from stylobate.base_motions.base import ACCELERATION, VELOCITY, Components
 from stylobate.base_motions.combined import BaseMotion
 from stylobate.base_motions.records.knots import corners, integrals, largest_from_each, mean_frequency
 from stylobate.base_motions.records.origin import RecordOrigin
+from stylobate.cards import Row, Section
 from stylobate.errors import ParameterError, require_finite, require_not_negative, require_positive
+from stylobate.text import four_digits
 
 Floats = npt.NDArray[np.float64]
 
@@ -164,6 +166,20 @@ class Record(BaseMotion):
             f"Record({self.name!r}, {len(self.samples)} samples every {self.step:g} s{begun}, {axes}, "
             f"peak {peak:.4g} m/s², {self.digest[:12]})"
         )
+
+    def _sections(self, *, derived: bool = True) -> list[Section]:
+        """Return the rows of the card: the samples, the peak of each axis, and the processing steps."""
+        del derived
+        peaks = dict(zip(AXES, np.abs(self.samples).max(axis=0), strict=True))
+        rows = [
+            Row("name", self.name),
+            Row("samples", f"{len(self.samples)} every {four_digits(self.step)} s"),
+            Row("time", f"{four_digits(self.start)} to {four_digits(self.end)} s"),
+            *(Row(f"peak along {axis}", f"{four_digits(peaks[axis])} m/s²") for axis in self.axes),
+            Row("digest", self.digest[:12], meaning="SHA-256 of samples, step and start"),
+        ]
+        steps = [Row(str(number), step) for number, step in enumerate(self.provenance, 1)]
+        return [Section("", rows), Section("source and processing", steps)]
 
     def derivative(self, time: npt.ArrayLike, order: int) -> Components:
         """Compute the displacement (`order` 0), velocity (1) or acceleration (2), exact for linear interpolation."""

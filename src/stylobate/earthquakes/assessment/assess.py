@@ -20,7 +20,7 @@ from stylobate.earthquakes.assessment.governing import governing_record, histori
 from stylobate.earthquakes.assessment.ground_motions import ground_motions, spectra_of
 from stylobate.earthquakes.assessment.inputs import CENTRAL, Inputs
 from stylobate.earthquakes.assessment.margins import margin_runs, margins_of, of_one_width
-from stylobate.earthquakes.assessment.parts import Announce, Parts
+from stylobate.earthquakes.assessment.parts import Parts
 from stylobate.earthquakes.assessment.planar import planar_of, planar_runs
 from stylobate.earthquakes.assessment.properties import column_properties, record_properties
 from stylobate.earthquakes.assessment.shares import share_runs, shares_of
@@ -31,19 +31,21 @@ from stylobate.earthquakes.named_records import Records
 from stylobate.earthquakes.remarks import remark_on
 from stylobate.errors import LARGEST_SEED, require_positive, require_whole
 from stylobate.models import Model
+from stylobate.progress import Progress, in_parts, report_of, shows_progress
+from stylobate.quantities import exact_repr
 from stylobate.results.assessment import Assessment
 from stylobate.results.few_records import FEW_RECORDS
 from stylobate.results.report_details import ReportDetails
 from stylobate.results.verdict import require_variations
 from stylobate.studies.checks import require_no_tilt_limit
 from stylobate.studies.sweeps import Executor
-from stylobate.studies.sweeps.computing import silent
 from stylobate.studies.sweeps.recipe import RunOptions
 
 # Packages whose versions can change the last digits of the results.
 _PACKAGES = ("stylobate", "numpy", "scipy", "llvmlite", "xarray")
 
 
+@shows_progress("assessment", in_parts)
 def assess(
     columns: Mapping[str, Model],
     records: Records,
@@ -66,7 +68,7 @@ def assess(
     details: ReportDetails | None = None,
     store: str | Path | None = None,
     executor: Executor | None = None,
-    progress: Announce | None = None,
+    progress: Progress = None,
     **options: Unpack[RunOptions],
 ) -> Assessment:
     """Assess columns under records: outcomes, margins, and how robust they are.
@@ -119,7 +121,8 @@ def assess(
     executor
         As in `run_sweep`.
     progress
-        Called with the name of the part, the runs done and the approximate number of runs.
+        A function that is called with the name of the part, the runs done and the approximate number of runs; a bar by
+        default, False for none.
     **options
         Options of all runs, as in `simulate_ensemble`, such as `rest_energy`, the energy below which a column comes to
         rest.
@@ -188,7 +191,7 @@ def assess(
     )
     remark_on({name: levels[CENTRAL].column for name, levels in inputs.columns.items()}, inputs.records)
     parts = Parts(
-        None if store is None else Path(store), _runs(inputs, planar=planar, sliding=sliding), progress or silent
+        None if store is None else Path(store), _runs(inputs, planar=planar, sliding=sliding), report_of(progress)
     )
     names = list(inputs.columns)
     verdicts = [verdicts_on(inputs, name, parts, contact=contact, executor=executor) for name in names]
@@ -273,7 +276,7 @@ def _setting(inputs: Inputs) -> dict[str, Any]:
         },
         "records": {
             name: {
-                "processing": list(motion.provenance) if isinstance(motion, Record) else [repr(motion)],
+                "processing": list(motion.provenance) if isinstance(motion, Record) else [exact_repr(motion)],
                 "digest": motion.digest if isinstance(motion, Record) else "",
                 "motion": provenance_of_run(next(iter(inputs.columns.values()))[CENTRAL], motion)["motion"],
             }

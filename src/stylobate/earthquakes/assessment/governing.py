@@ -14,8 +14,8 @@ from stylobate.earthquakes.following import tail_of
 from stylobate.earthquakes.incremental import without_vertical
 from stylobate.engine import simulate_ensemble
 from stylobate.errors import Outcome
+from stylobate.progress import Report
 from stylobate.results.outcomes import outcome_attributes
-from stylobate.studies.sweeps.computing import Progress
 
 STATED, STANDS, OVERTURNS = "stated", "stands", "overturns"
 """The runs under a governing record: at the stated scale nearest to 1; the last survival below the margin, and the
@@ -109,7 +109,7 @@ def histories_of(
     shown = _shown(inputs, record, margins)
     known = [one for one in shown if math.isfinite(one.scale)]
 
-    def compute(progress: Progress) -> xr.Dataset:
+    def compute(progress: Report) -> xr.Dataset:
         found = []
         for place, one in enumerate(known):
             progress(place, len(known))

@@ -12,7 +12,7 @@ from stylobate.base_motions.records.record import AXES
 from stylobate.earthquakes.assessment.inputs import Inputs
 from stylobate.earthquakes.assessment.parts import Parts, identities
 from stylobate.earthquakes.intensities import has_two_components, horizontal_peak
-from stylobate.studies.sweeps.computing import Progress
+from stylobate.progress import Report
 from stylobate.studies.sweeps.quantities import Floats
 
 ROTD50, ONE_COMPONENT = HorizontalComponent.ROTD50.value, "one component"
@@ -69,7 +69,7 @@ def spectra_of(inputs: Inputs, parts: Parts, period: float) -> xr.Dataset:
     """
     periods = np.unique(np.append(_PERIODS, period))
 
-    def compute(progress: Progress) -> xr.Dataset:
+    def compute(progress: Report) -> xr.Dataset:
         found = []
         for place, motion in enumerate(inputs.records.values()):
             progress(place, len(inputs.records))

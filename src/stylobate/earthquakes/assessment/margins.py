@@ -12,9 +12,9 @@ from stylobate.earthquakes.fragility import limit_states
 from stylobate.earthquakes.incremental import tilt_ratios, without_vertical
 from stylobate.earthquakes.spectra import overturning_intervals
 from stylobate.models import Model
+from stylobate.progress import Report
 from stylobate.studies.maps.uncertainty_exponent import overturned_or_not
 from stylobate.studies.sweeps import Executor
-from stylobate.studies.sweeps.computing import Progress
 
 FINE_SCALES = 2000
 """Scales over the range of the scan that are run below the smallest overturning scale."""
@@ -122,7 +122,7 @@ def _intervals(
     model = inputs.model_of(column, case)
     motions = [without_vertical(one) if case == NO_VERTICAL else one for one in inputs.records.values()]
 
-    def compute(progress: Progress) -> xr.Dataset:
+    def compute(progress: Report) -> xr.Dataset:
         found = _found(inputs, model, motions, contact, executor, progress)
         return _as_dataset(found, list(inputs.records), inputs.width)
 
@@ -143,7 +143,7 @@ def _found(
     motions: list[BaseMotion],
     contact: bool,
     executor: Executor | None,
-    progress: Progress,
+    progress: Report,
 ) -> xr.Dataset:
     options = inputs.options.copy()
     options["demands"] = contact

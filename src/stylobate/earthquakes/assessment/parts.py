@@ -12,8 +12,9 @@ import xarray as xr
 
 from stylobate.base_motions import BaseMotion, Record
 from stylobate.errors import FileError
+from stylobate.progress import Report
+from stylobate.quantities import exact_repr
 from stylobate.results.storage import read_dataset, write_netcdf
-from stylobate.studies.sweeps.computing import Progress
 from stylobate.studies.sweeps.fingerprint import identity_of
 
 _log = logging.getLogger("stylobate")
@@ -43,7 +44,7 @@ class Parts:
     _known: list[str] = field(default_factory=list, init=False)
 
     def get(
-        self, name: str, runs: int, identity: Mapping[str, Any], compute: Callable[[Progress], xr.Dataset]
+        self, name: str, runs: int, identity: Mapping[str, Any], compute: Callable[[Report], xr.Dataset]
     ) -> xr.Dataset:
         """Return the part `name` of about `runs` runs; compute it if the store has none of the same `identity`.
 
@@ -90,7 +91,7 @@ def identities(motions: Mapping[str, BaseMotion]) -> dict[str, Any]:
 
 
 def _digest(identity: Mapping[str, Any]) -> str:
-    return hashlib.sha256(json.dumps(identity, sort_keys=True, default=repr).encode()).hexdigest()[:24]
+    return hashlib.sha256(json.dumps(identity, sort_keys=True, default=exact_repr).encode()).hexdigest()[:24]
 
 
 def _kept(path: Path) -> xr.Dataset | None:

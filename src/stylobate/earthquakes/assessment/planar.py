@@ -6,8 +6,8 @@ from stylobate.earthquakes import planar_bias
 from stylobate.earthquakes.assessment.inputs import CENTRAL, Inputs
 from stylobate.earthquakes.assessment.parts import Parts
 from stylobate.earthquakes.planar_comparison import bias_of
+from stylobate.progress import Report
 from stylobate.studies.sweeps import Executor
-from stylobate.studies.sweeps.computing import Progress
 
 _AXES = 2
 # Variables that count records.
@@ -45,7 +45,7 @@ def planar_of(inputs: Inputs, column: str, parts: Parts, *, executor: Executor |
 
 
 def _planar_at(inputs: Inputs, column: str, parts: Parts, executor: Executor | None) -> xr.Dataset:
-    def compute(progress: Progress) -> xr.Dataset:
+    def compute(progress: Report) -> xr.Dataset:
         found = planar_bias(
             inputs.columns[column][CENTRAL],
             dict(inputs.records),

@@ -8,9 +8,9 @@ from stylobate.earthquakes.assessment.parts import Parts
 from stylobate.earthquakes.assessment.planar import part_name, some_at_a_time
 from stylobate.earthquakes.property_spreads import LogUniformSpread, Spread, UniformSpread
 from stylobate.earthquakes.verdict_study import contact_laws, verdict
+from stylobate.progress import Report
 from stylobate.results.verdict import Verdict
 from stylobate.studies.sweeps import Executor
-from stylobate.studies.sweeps.computing import Progress
 from stylobate.studies.sweeps.quantities import Floats
 
 _OF_RUNS = ("demands", "recheck")
@@ -46,7 +46,7 @@ def _shares_at(inputs: Inputs, column: str, scale: float, parts: Parts, executor
     central = models[CENTRAL]
     variations = _over_the_levels(inputs, column)
 
-    def compute(progress: Progress) -> xr.Dataset:
+    def compute(progress: Report) -> xr.Dataset:
         found = []
         for place, motion in enumerate(inputs.records.values()):
             progress(place, len(inputs.records))

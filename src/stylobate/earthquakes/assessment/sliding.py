@@ -13,8 +13,8 @@ from stylobate.engine import simulate
 from stylobate.errors import Outcome
 from stylobate.models import Model, Sliding
 from stylobate.models.declared import dissipation_of
+from stylobate.progress import Report
 from stylobate.results.outcomes import NOT_COMPUTED, NUMERICALLY_UNCERTAIN, outcome_attributes
-from stylobate.studies.sweeps.computing import Progress
 
 _OPTIONS = tuple(name for name in numbers_of(Accuracy) if name != "tilt_limit")
 _NUMBERS = {
@@ -82,7 +82,7 @@ def _run(inputs: Inputs, column: str, record: str, scale: float, parts: Parts) -
     motion = inputs.records[record].scaled(scale)
     options: dict[str, Any] = {name: value for name, value in inputs.options.items() if name in _OPTIONS}
 
-    def compute(progress: Progress) -> xr.Dataset:
+    def compute(progress: Report) -> xr.Dataset:
         progress(0, 1)
         duration = motion.duration + tail_of(given.column, inputs.tail)
         run = simulate(model, motion, duration=duration, **options)

@@ -9,8 +9,8 @@ from stylobate.earthquakes import incremental_dynamic_analysis
 from stylobate.earthquakes.assessment.inputs import CENTRAL, Inputs
 from stylobate.earthquakes.assessment.parts import Parts
 from stylobate.earthquakes.fragility.observations import LIMIT_STATE
+from stylobate.progress import Report
 from stylobate.studies.sweeps import Executor
-from stylobate.studies.sweeps.computing import Progress
 
 _DEMANDS: Mapping[str, tuple[str, str]] = {
     "peak_friction_demand": ("friction_demand", "peak friction force over normal force"),
@@ -38,7 +38,7 @@ def verdicts_on(inputs: Inputs, column: str, parts: Parts, *, contact: bool, exe
     options["demands"] = contact
     options.setdefault("recheck", True)
 
-    def compute(progress: Progress) -> xr.Dataset:
+    def compute(progress: Report) -> xr.Dataset:
         runs = incremental_dynamic_analysis(
             inputs.columns[column][CENTRAL],
             dict(inputs.records),

@@ -19,7 +19,6 @@ from stylobate.config.description import Config, built
 from stylobate.config.levels import LEVELS, is_by_level, problems_of_the_levels
 from stylobate.config.models import DEFAULT_MODEL, ModelConfig, described_model
 from stylobate.config.record_collection import RecordsConfig
-from stylobate.config.suggestions import did_you_mean
 from stylobate.earthquakes.config.design_spectrum import DesignSpectrumConfig
 from stylobate.errors import (
     LARGEST_SEED,
@@ -37,6 +36,7 @@ from stylobate.models.declared import model_quantities
 from stylobate.results.few_records import FEW_RECORDS
 from stylobate.results.report_details import ReportDetails
 from stylobate.results.verdict import require_variations
+from stylobate.text import did_you_mean
 
 _MARGIN = {"from": 0.2, "to": 5.0, "number": 300, "spacing": "log"}
 

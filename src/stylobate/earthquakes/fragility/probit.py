@@ -17,6 +17,7 @@ import numpy.typing as npt
 from scipy.special import log_ndtr
 
 from stylobate.earthquakes.fragility.observations import Floats, Integers
+from stylobate.errors import Named
 
 # Newton's method ends if a step gains less than this fraction of ℓ, far below any standard error.
 _GAIN = 1e-14
@@ -25,7 +26,7 @@ _HALVINGS = 40
 _LOG_ROOT_2PI = 0.5 * np.log(2.0 * np.pi)
 
 
-class FitStatus(IntEnum):
+class FitStatus(Named, IntEnum):
     """Whether the data determine a lognormal fragility, and if not, the reason."""
 
     FITTED = 0

@@ -17,10 +17,10 @@ from stylobate.earthquakes.spectra.provenance import provenance_of_spectrum
 from stylobate.engine.parameter_quantities import attributes_of
 from stylobate.errors import Interrupted, Most, ParameterError, require_positive, require_whole
 from stylobate.models import Model
+from stylobate.progress import Progress, Report, report_of, shows_progress
 from stylobate.results.outcomes import NOT_COMPUTED
 from stylobate.studies.checks import require_no_tilt_limit
 from stylobate.studies.sweeps import Executor, run_sweep
-from stylobate.studies.sweeps.computing import Progress, silent
 from stylobate.studies.sweeps.quantities import Floats, checked_values
 from stylobate.studies.sweeps.recipe import RunOptions
 
@@ -31,6 +31,7 @@ _NARROWEST = 1e-9
 _FINEST = Most(1_000_000, "since each scale is a run")
 
 
+@shows_progress("overturning intervals")
 def overturning_intervals(
     model: Model,
     motion: BaseMotion,
@@ -44,7 +45,7 @@ def overturning_intervals(
     store: str | Path | None = None,
     executor: Executor | None = None,
     resume: bool = False,
-    progress: Progress | None = None,
+    progress: Progress = None,
     **options: Unpack[RunOptions],
 ) -> xr.Dataset:
     """Find all overturning intervals of the amplitude of a base motion, over any parameters.
@@ -156,7 +157,7 @@ def overturning_intervals(
         ),
         store=None if store is None else Path(store),
         how={"executor": executor, "resume": resume},
-        progress=progress or silent,
+        progress=report_of(progress),
     )
     return search.result()
 
@@ -174,7 +175,7 @@ class _Search:
     provenance: str
     store: Path | None
     how: Mapping[str, Any]
-    progress: Progress
+    progress: Report
     done: list[int] = field(default_factory=list)
 
     def result(self) -> xr.Dataset:

@@ -15,11 +15,11 @@ from stylobate.earthquakes.spectra.peak_rate import peak_tilt_rate
 from stylobate.earthquakes.spectra.provenance import provenance_of_spectrum
 from stylobate.errors import ParameterError, require_whole
 from stylobate.models import Model
+from stylobate.progress import Progress, shows_progress
 from stylobate.results.outcomes import NOT_COMPUTED
 from stylobate.studies.checks import require_no_tilt_limit
 from stylobate.studies.maps.uncertainty_exponent import overturned_or_not
 from stylobate.studies.sweeps import Executor
-from stylobate.studies.sweeps.computing import Progress
 from stylobate.studies.sweeps.labelled import labelled_sweep
 from stylobate.studies.sweeps.recipe import RunOptions
 
@@ -28,6 +28,7 @@ _SAMPLES = 2001
 _HISTORIES = ("sample_time", "sampled_tilt", "sampled_tilt_rate")
 
 
+@shows_progress("rocking spectrum")
 def rocking_spectrum(
     model: Model,
     motion: BaseMotion,
@@ -38,7 +39,7 @@ def rocking_spectrum(
     store: str | Path | None = None,
     executor: Executor | None = None,
     resume: bool = False,
-    progress: Progress | None = None,
+    progress: Progress = None,
     **options: Unpack[RunOptions],
 ) -> xr.Dataset:
     """Compute the peak tilt and the peak rate of tilt of columns of many sizes under one base motion.

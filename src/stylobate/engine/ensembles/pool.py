@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from stylobate.processes import end_all
+from stylobate.progress import beat
 
 Halt = npt.NDArray[np.uint8]
 
@@ -55,6 +56,7 @@ def run_parts(
             while running:
                 # The timeout lets Python react to Ctrl-C, which it can only do between its own steps.
                 finished, _ = wait(running, timeout=0.1, return_when=FIRST_COMPLETED)
+                beat()
                 for future in finished:
                     part = running.pop(future)
                     future.result()

@@ -14,6 +14,7 @@ from stylobate.engine.flow.flows import columns_of, flow_of
 from stylobate.engine.flow.status import Status
 from stylobate.engine.forcing import common_line
 from stylobate.engine.parameters import present_value, with_parameters
+from stylobate.equality import ByContent
 from stylobate.errors import StylobateError, UnsupportedError
 from stylobate.models import Model
 
@@ -35,8 +36,8 @@ _BACKWARD = {-offset: -weight for offset, weight in _FORWARD.items()}
 _ANGLES = ("phase_difference", "rotation", "start_phase")
 
 
-@dataclass(frozen=True, slots=True)
-class Numbers:
+@dataclass(frozen=True, slots=True, eq=False)
+class Numbers(ByContent):
     """Inputs of the flow: the period, the parameters of the model, and the harmonic terms of the base motion [g].
 
     `terms` has a row for each term: its multiple of the frequency, then coefficients of cosine and sine for each axis.
@@ -47,8 +48,8 @@ class Numbers:
     terms: Floats
 
 
-@dataclass(frozen=True, slots=True)
-class Flow:
+@dataclass(frozen=True, slots=True, eq=False)
+class Flow(ByContent):
     """Result of the flow: final state, its derivatives with respect to the start and a parameter, and extremes.
 
     `turns` counts the turns of the tilt vector about the vertical; it is 0 in planar motion.
@@ -65,8 +66,8 @@ class Flow:
     turns: float
 
 
-@dataclass(frozen=True, slots=True)
-class PeriodicSystem:
+@dataclass(frozen=True, slots=True, eq=False)
+class PeriodicSystem(ByContent):
     """Model under a periodic base motion.
 
     Parameters

@@ -19,6 +19,7 @@ from stylobate.paper.analyses.standing import check_standing
 from stylobate.paper.analyses.straight import check_straight
 from stylobate.paper.analyses.twist import check_twist
 from stylobate.processes import computed
+from stylobate.progress import News, Progress, report_of, shows_progress
 from stylobate.results import PaperCheck, Section
 
 __all__ = ["check_paper"]
@@ -45,10 +46,15 @@ _ANALYSES: Mapping[str, _Analysis] = {
 }
 
 
+def _in_sections(heading: str, done: int, total: int, fraction: float) -> News:
+    return News(heading, f"{done}/{total}", fraction, 1.0)
+
+
+@shows_progress("checking the paper", _in_sections)
 def check_paper(
     *,
     workers: int = 1,
-    progress: Callable[[str, int, int, float], None] | None = None,
+    progress: Progress = None,
     folder: str | Path | None = None,
 ) -> PaperCheck:
     """Check every claim of the source paper and compute its figures.
@@ -58,8 +64,9 @@ def check_paper(
     workers
         Number of processes; with 1 everything runs in this process.
     progress
-        Called after each section with its heading, the number of finished sections, the total number, and the finished
-        fraction of the work. The first call has an empty heading and reports the sections of an earlier call.
+        A function that is called after each section with its heading, the number of finished sections, the total
+        number, and the finished fraction of the work; a bar by default, False for none. The first call has an empty
+        heading and reports the sections of an earlier call.
     folder
         Folder that stores each finished section, in `analyses`. A later call with the same versions of stylobate and
         its libraries reads the section from there, so that an interrupted check resumes.
@@ -81,9 +88,8 @@ def check_paper(
         done = {heading: section for heading in _ANALYSES if (section := kept.read(heading)) is not None}
 
         def advance(heading: str) -> None:
-            if progress is not None:
-                cost = sum(_ANALYSES[heading].cost for heading in done)
-                progress(heading, len(done), len(_ANALYSES), cost / sum(one.cost for one in _ANALYSES.values()))
+            cost, whole = (sum(_ANALYSES[heading].cost for heading in some) for some in (done, _ANALYSES))
+            report_of(progress)(heading, len(done), len(_ANALYSES), cost / whole)
 
         advance("")
         with closing(_computed([heading for heading in _ANALYSES if heading not in done], workers)) as sections:

@@ -20,11 +20,12 @@ from stylobate.errors import (
 )
 from stylobate.files import written_aside
 from stylobate.plots.animation.drawing import Drawing, Look
-from stylobate.plots.animation.gif import Progress, gif_of
+from stylobate.plots.animation.gif import gif_of
 from stylobate.plots.animation.motion import DrawnMotion
 from stylobate.plots.animation.page import page_of
 from stylobate.plots.animation.video import write_mp4
 from stylobate.plots.axonometry import View
+from stylobate.progress import Progress, Report, report_of, shows_progress, silent
 from stylobate.results import Response
 
 # Maximum number of frames in an animation: a minute at the usual rate.
@@ -63,18 +64,22 @@ class Animation:
         """Return the number of frames."""
         return int(self.motion.time.size)
 
-    def pictures(self, progress: Progress | None = None) -> Iterator[Image.Image]:
+    def pictures(self, progress: Report = silent) -> Iterator[Image.Image]:
         """Yield the frames in order; call `progress` after each with the number done and the total."""
         drawing = Drawing(self.motion, self.history, self.look)
         for index in range(len(self)):
             yield drawing.picture(index)
-            if progress is not None:
-                progress(index + 1, len(self))
+            progress(index + 1, len(self))
 
-    def gif(self, progress: Progress | None = None) -> bytes:
-        """Render a GIF and return its bytes; call `progress` after each frame with the number done and the total."""
+    @shows_progress("frames")
+    def gif(self, *, progress: Progress = None) -> bytes:
+        """Render a GIF and return its bytes.
+
+        `progress` is a function that is called after each frame with the number done and the total; a bar by default,
+        False for none.
+        """
         drawing = Drawing(self.motion, self.history, self.look)
-        return gif_of(drawing.picture, len(self), self.frames_per_second, progress)
+        return gif_of(drawing.picture, len(self), self.frames_per_second, report_of(progress))
 
     def html(self) -> str:
         """Return the HTML of a web page in which one can turn, stop and slow down the motion.
@@ -86,8 +91,11 @@ class Animation:
         """
         return page_of(self.history.as_dict())
 
-    def save(self, path: str | Path, progress: Progress | None = None) -> Path:
+    @shows_progress("frames")
+    def save(self, path: str | Path, *, progress: Progress = None) -> Path:
         """Save the animation as .gif, .mp4 or .html, by the suffix of `path`, and return the path.
+
+        `progress` is as for `gif`.
 
         Raises
         ------
@@ -103,9 +111,9 @@ class Animation:
             beside.touch()  # raises before the first frame is drawn if the folder is not writable
             match path.suffix.lower():
                 case ".gif":
-                    beside.write_bytes(self.gif(progress))
+                    beside.write_bytes(self.gif(progress=progress))
                 case ".mp4":
-                    write_mp4(beside, self.pictures(progress), self.look.size, self.frames_per_second)
+                    write_mp4(beside, self.pictures(report_of(progress)), self.look.size, self.frames_per_second)
                 case _:
                     beside.write_text(self.html(), encoding="utf-8", newline="\n")
         return path

@@ -10,8 +10,7 @@ from matplotlib.colors import to_rgb
 from PIL import Image
 
 from stylobate.plots.animation.palette import BACKGROUND, CONTACT, CONTACT_POINT, MARK, mixed
-
-Progress = Callable[[int, int], None]
+from stylobate.progress import Report, silent
 
 # Number of colours that all frames share, and the index of one more colour, for unchanged pixels.
 _COLOURS = 96
@@ -30,7 +29,7 @@ _HOLD = 2.5
 
 
 def gif_of(
-    picture: Callable[[int], Image.Image], count: int, frames_per_second: float, progress: Progress | None = None
+    picture: Callable[[int], Image.Image], count: int, frames_per_second: float, progress: Report = silent
 ) -> bytes:
     """Encode a GIF that repeats forever and pauses at its end.
 
@@ -51,8 +50,7 @@ def gif_of(
         now = picture(number).quantize(palette=palette, dither=Image.Dither.NONE)
         parts.append(_encoded(now, duration, loop=0) if before is None else _changes(before, now, duration))
         before = now
-        if progress is not None:
-            progress(number + 1, count)
+        progress(number + 1, count)
     return b"".join([*parts, _TRAILER])
 
 

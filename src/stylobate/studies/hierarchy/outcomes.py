@@ -12,10 +12,10 @@ import xarray as xr
 from stylobate.base_motions import BaseMotion
 from stylobate.errors import Outcome
 from stylobate.models import Model
+from stylobate.progress import Progress, shows_progress
 from stylobate.results.outcomes import NOT_COMPUTED, flag_attributes
 from stylobate.studies.maps.overturning import overturning_map
 from stylobate.studies.sweeps import Executor
-from stylobate.studies.sweeps.computing import Progress
 from stylobate.studies.sweeps.recipe import RunOptions
 
 
@@ -30,6 +30,7 @@ class Comparison(Enum):
     """A run failed, or lifted off, or was stopped by a tilt limit."""
 
 
+@shows_progress("outcome differences")
 def outcome_differences(
     first: Model,
     second: Model,
@@ -39,7 +40,7 @@ def outcome_differences(
     duration: float | None = None,
     periods: float | None = None,
     executor: Executor | None = None,
-    progress: Progress | None = None,
+    progress: Progress = None,
     **options: Unpack[RunOptions],
 ) -> xr.Dataset:
     """Compare, over two parameters, whether a column overturns in two models.

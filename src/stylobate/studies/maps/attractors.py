@@ -11,6 +11,7 @@ import xarray as xr
 from stylobate.base_motions import BaseMotion
 from stylobate.errors import MOST_RUNS, require_whole
 from stylobate.models import Model
+from stylobate.progress import Progress, shows_progress
 from stylobate.results.outcomes import NOT_COMPUTED, flag_attributes
 from stylobate.results.random_numbers import Rng
 from stylobate.studies.checks import require_starts
@@ -28,13 +29,13 @@ from stylobate.studies.maps.stroboscopic import AttractorRules, OrbitScales
 from stylobate.studies.maps.stroboscopic_count import with_strobes
 from stylobate.studies.proportions import fraction_interval
 from stylobate.studies.sweeps import Executor, Sweep
-from stylobate.studies.sweeps.computing import Progress
 from stylobate.studies.sweeps.labelled import labelled_sweep
 from stylobate.studies.sweeps.recipe import RunOptions
 
 _TABLE = "attractor_index"
 
 
+@shows_progress("attractors")
 def attractors(
     model: Model,
     motion: BaseMotion | None = None,
@@ -49,7 +50,7 @@ def attractors(
     store: str | Path | None = None,
     executor: Executor | None = None,
     resume: bool = False,
-    progress: Progress | None = None,
+    progress: Progress = None,
     **options: Unpack[RunOptions],
 ) -> xr.Dataset:
     """Find the attractors of a column under one base motion, and their fractions, from random initial conditions.

@@ -14,6 +14,7 @@ from stylobate.engine import with_parameters
 from stylobate.engine.parameter_quantities import attributes_of
 from stylobate.errors import MOST_RUNS, require_whole
 from stylobate.models import Model
+from stylobate.progress import Progress, shows_progress
 from stylobate.results.outcomes import NOT_COMPUTED
 from stylobate.results.random_numbers import Rng
 from stylobate.studies.checks import SYSTEM_STARTS, one_parameter, require_starts
@@ -24,12 +25,12 @@ from stylobate.studies.maps.stroboscopic import AttractorRules, OrbitScales
 from stylobate.studies.maps.stroboscopic_count import with_strobes
 from stylobate.studies.proportions import fraction_interval, require_confidence
 from stylobate.studies.sweeps import Executor, Sweep
-from stylobate.studies.sweeps.computing import Progress
 from stylobate.studies.sweeps.designs import Box, whole
 from stylobate.studies.sweeps.labelled import labelled_sweep
 from stylobate.studies.sweeps.recipe import RunOptions
 
 
+@shows_progress("basin fractions")
 def basin_fractions(
     model: Model,
     motion: BaseMotion | None = None,
@@ -45,7 +46,7 @@ def basin_fractions(
     store: str | Path | None = None,
     executor: Executor | None = None,
     resume: bool = False,
-    progress: Progress | None = None,
+    progress: Progress = None,
     **options: Unpack[RunOptions],
 ) -> xr.Dataset:
     """Compute basin fractions along one parameter, from random initial conditions.

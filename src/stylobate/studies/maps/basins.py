@@ -12,6 +12,7 @@ from stylobate.base_motions import BASE_AT_REST, BaseMotion
 from stylobate.errors import MOST_RUNS, ParameterError, require_whole
 from stylobate.models import Model
 from stylobate.orbits import PeriodicOrbit
+from stylobate.progress import Progress, shows_progress
 from stylobate.results.random_numbers import Rng
 from stylobate.studies.checks import require_starts, require_values
 from stylobate.studies.known_rolling import known_orbit_of
@@ -19,13 +20,13 @@ from stylobate.studies.maps.attractors import label_attractors
 from stylobate.studies.maps.stroboscopic import AttractorRules
 from stylobate.studies.maps.stroboscopic_count import with_strobes
 from stylobate.studies.sweeps import Executor, Sweep
-from stylobate.studies.sweeps.computing import Progress
 from stylobate.studies.sweeps.labelled import labelled_sweep
 from stylobate.studies.sweeps.recipe import RunOptions
 
 _PLANE = 2
 
 
+@shows_progress("basins")
 def basins(
     model: Model,
     motion: BaseMotion | None = None,
@@ -41,7 +42,7 @@ def basins(
     store: str | Path | None = None,
     executor: Executor | None = None,
     resume: bool = False,
-    progress: Progress | None = None,
+    progress: Progress = None,
     **options: Unpack[RunOptions],
 ) -> xr.Dataset:
     """Compute basins of attraction, on a grid of two initial conditions or from a random sample.

@@ -13,6 +13,7 @@ import xarray as xr
 from stylobate.base_motions import BaseMotion
 from stylobate.errors import ParameterError
 from stylobate.models import Model
+from stylobate.progress import Progress, shows_progress
 from stylobate.studies.checks import (
     SYSTEM_STARTS,
     one_parameter,
@@ -22,11 +23,11 @@ from stylobate.studies.checks import (
 )
 from stylobate.studies.maps.safe_distance import Metric, distance_to_overturning
 from stylobate.studies.sweeps import Executor, Sweep
-from stylobate.studies.sweeps.computing import Progress
 from stylobate.studies.sweeps.labelled import labelled_sweep
 from stylobate.studies.sweeps.recipe import RunOptions
 
 
+@shows_progress("integrity")
 def integrity(
     model: Model,
     motion: BaseMotion | None = None,
@@ -38,7 +39,7 @@ def integrity(
     store: str | Path | None = None,
     executor: Executor | None = None,
     resume: bool = False,
-    progress: Progress | None = None,
+    progress: Progress = None,
     **options: Unpack[RunOptions],
 ) -> xr.Dataset:
     """Compute the distance from a state to the nearest initial condition that overturns.
@@ -90,6 +91,7 @@ def integrity(
     return labelled_sweep(sweep, label, store=store, executor=executor, resume=resume, progress=progress)
 
 
+@shows_progress("erosion")
 def erosion(
     model: Model,
     motion: BaseMotion | None = None,
@@ -102,7 +104,7 @@ def erosion(
     store: str | Path | None = None,
     executor: Executor | None = None,
     resume: bool = False,
-    progress: Progress | None = None,
+    progress: Progress = None,
     **options: Unpack[RunOptions],
 ) -> xr.Dataset:
     """Compute the integrity measure along a parameter, such as a growing amplitude.

@@ -11,16 +11,17 @@ import xarray as xr
 from stylobate.base_motions import BaseMotion
 from stylobate.errors import Outcome, ParameterError
 from stylobate.models import Model
+from stylobate.progress import Progress, shows_progress
 from stylobate.results.outcomes import NOT_COMPUTED
 from stylobate.studies.checks import require_values
 from stylobate.studies.sweeps import Executor, Sweep
-from stylobate.studies.sweeps.computing import Progress
 from stylobate.studies.sweeps.labelled import labelled_sweep
 from stylobate.studies.sweeps.recipe import RunOptions
 
 _PLANE = 2
 
 
+@shows_progress("map")
 def overturning_map(
     model: Model,
     motion: BaseMotion | None = None,
@@ -31,7 +32,7 @@ def overturning_map(
     store: str | Path | None = None,
     executor: Executor | None = None,
     resume: bool = False,
-    progress: Progress | None = None,
+    progress: Progress = None,
     **options: Unpack[RunOptions],
 ) -> xr.Dataset:
     """Compute the outcome of a column over two parameters, from rest or a given initial state.

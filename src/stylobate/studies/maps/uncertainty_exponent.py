@@ -14,6 +14,7 @@ from stylobate.base_motions import BaseMotion
 from stylobate.engine.parameter_quantities import attributes_of
 from stylobate.errors import MOST_RUNS, Outcome, ParameterError, require_whole
 from stylobate.models import Model
+from stylobate.progress import Progress, shows_progress
 from stylobate.results.outcomes import NOT_COMPUTED
 from stylobate.results.random_numbers import Rng
 from stylobate.studies.checks import require_no_tilt_limit, require_starts
@@ -24,7 +25,6 @@ from stylobate.studies.maps.stroboscopic import AttractorRules, Floats, Integers
 from stylobate.studies.maps.stroboscopic_count import with_strobes
 from stylobate.studies.proportions import require_confidence, wilson_interval
 from stylobate.studies.sweeps import Executor, Sweep
-from stylobate.studies.sweeps.computing import Progress
 from stylobate.studies.sweeps.designs import Box, whole
 from stylobate.studies.sweeps.labelled import labelled_sweep
 from stylobate.studies.sweeps.quantities import checked_values
@@ -38,6 +38,7 @@ _MANY_DROPPED = 0.1
 _log = logging.getLogger("stylobate")
 
 
+@shows_progress("uncertainty exponent")
 def uncertainty_exponent(
     model: Model,
     motion: BaseMotion | None = None,
@@ -55,7 +56,7 @@ def uncertainty_exponent(
     store: str | Path | None = None,
     executor: Executor | None = None,
     resume: bool = False,
-    progress: Progress | None = None,
+    progress: Progress = None,
     **options: Unpack[RunOptions],
 ) -> xr.Dataset:
     """Estimate the uncertainty exponent υ of a basin boundary, f(ε) ~ ε^υ, and the boundary's dimension.

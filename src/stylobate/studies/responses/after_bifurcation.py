@@ -1,7 +1,7 @@
 """Outcome statistics near a bifurcation, started on the orbit that lost its stability there."""
 
 import json
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 import xarray as xr
@@ -9,13 +9,16 @@ import xarray as xr
 from stylobate.config import provenance_of_run
 from stylobate.engine import simulate_ensemble
 from stylobate.engine.parameter_quantities import attributes_of
-from stylobate.errors import ParameterError, require_positive, require_whole
+from stylobate.errors import Interrupted, ParameterError, require_positive, require_whole
 from stylobate.orbits import Bifurcation
 from stylobate.orbits.arguments import require_bifurcation
+from stylobate.progress import Progress, report_of, shows_progress
 from stylobate.results.random_numbers import Rng, seed_of
 from stylobate.studies.maps.attractors import label_attractors
+from stylobate.text import plural
 
 
+@shows_progress("after the bifurcation")
 def after_bifurcation(
     bifurcation: Bifurcation,
     *,
@@ -24,7 +27,7 @@ def after_bifurcation(
     size: float = 1e-3,
     periods: float = 600.0,
     rng: Rng = 0,
-    progress: Callable[[int, int], None] | None = None,
+    progress: Progress = None,
 ) -> xr.Dataset:
     """Count the outcomes of runs near the orbit of a bifurcation, at values of the parameter around it.
 
@@ -43,7 +46,7 @@ def after_bifurcation(
     periods
         Duration of each run in periods of the base motion.
     progress
-        Called with the number of values done and of all values.
+        A function that is called with the number of values done and of all values; a bar by default, False for none.
 
     Returns
     -------
@@ -55,6 +58,8 @@ def after_bifurcation(
     ------
     ParameterError
         If values or numbers are out of range.
+    Interrupted
+        On Ctrl-C; `partial` has the values that were done.
     """
     require_bifurcation(bifurcation)
     chosen = np.asarray(values, dtype=float)
@@ -66,26 +71,29 @@ def after_bifurcation(
     c, scale = orbit.model.column.slenderness, orbit.model.time_scale
     off = size * c * np.random.default_rng(seed_of(rng)).standard_normal((2, count, 2))
     counted: list[dict[str, int]] = []
-    for index, value in enumerate(chosen):
-        system = orbit.system.changed(**{name: float(value)})
-        period = system.motion.period
-        assert period is not None
-        runs = simulate_ensemble(
-            system.model,
-            system.motion,
-            tilt=orbit.tilt + off[0],
-            tilt_rate=orbit.tilt_rate + off[1] / scale,
-            duration=require_positive("periods", periods) * period,
-            strobes=32,
-        )
-        counted.append(_counted(label_attractors(runs, system.model, system.motion)))
-        if progress is not None:
-            progress(index + 1, chosen.size)
+    try:
+        for index, value in enumerate(chosen):
+            system = orbit.system.changed(**{name: float(value)})
+            period = system.motion.period
+            assert period is not None
+            runs = simulate_ensemble(
+                system.model,
+                system.motion,
+                tilt=orbit.tilt + off[0],
+                tilt_rate=orbit.tilt_rate + off[1] / scale,
+                duration=require_positive("periods", periods) * period,
+                strobes=32,
+            )
+            counted.append(_counted(label_attractors(runs, system.model, system.motion)))
+            report_of(progress)(index + 1, chosen.size)
+    except KeyboardInterrupt:
+        if not counted:
+            raise
     names = sorted({name for counts in counted for name in counts})
     table = np.array([[counts.get(name, 0) for name in names] for counts in counted])
-    return xr.Dataset(
+    found = xr.Dataset(
         {"count": ((name, "fate"), table, {"units": "1", "long_name": "runs"})},
-        coords={name: (name, chosen, attributes_of(name)), "fate": names},
+        coords={name: (name, chosen[: len(counted)], attributes_of(name)), "fate": names},
         attrs={
             "kind": "after bifurcation",
             "parameter": name,
@@ -94,6 +102,10 @@ def after_bifurcation(
             "provenance": json.dumps(provenance_of_run(orbit.model, orbit.motion)),
         },
     )
+    if len(counted) < chosen.size:
+        message = f"stopped after {len(counted)} of {plural(chosen.size, 'value')}, which `partial` has"
+        raise Interrupted(message, found)
+    return found
 
 
 def _counted(labelled: xr.Dataset) -> dict[str, int]:

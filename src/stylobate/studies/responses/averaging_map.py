@@ -1,7 +1,7 @@
 """Validity of averaging: predicted stability and amplitude compared with exact orbits."""
 
 import json
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from functools import cache
 
 import numpy as np
@@ -12,15 +12,17 @@ from stylobate.base_motions import BaseMotion
 from stylobate.config import provenance_of_run
 from stylobate.engine import with_parameters
 from stylobate.engine.parameter_quantities import attributes_of
-from stylobate.errors import NoOrbitError
+from stylobate.errors import Interrupted, NoOrbitError
 from stylobate.models import Model
 from stylobate.orbits import Branch, continue_branch
 from stylobate.orbits.arguments import require_subject
 from stylobate.orbits.multipliers import is_stable
+from stylobate.progress import Progress, report_of, shows_progress
 from stylobate.studies.ranges import require_rising_frequencies, require_values
 from stylobate.studies.responses.first_orbit import first_orbit
 from stylobate.studies.responses.orbit_families import between_bifurcations
 from stylobate.studies.responses.response_curves import response_curves
+from stylobate.text import plural
 
 Floats = npt.NDArray[np.float64]
 
@@ -28,6 +30,7 @@ _UNSTABLE, _STABLE, _NONE = 0, 1, -1
 _ROUNDED = 1e-12
 
 
+@shows_progress("averaging map")
 def averaging_map(
     model: Model,
     motion: BaseMotion,
@@ -36,7 +39,7 @@ def averaging_map(
     values: Sequence[float],
     angular_frequency: Sequence[float],
     sense: int | None = None,
-    progress: Callable[[int, int], None] | None = None,
+    progress: Progress = None,
 ) -> xr.Dataset:
     """Compare averaged rolling with the exact orbit, over a parameter and the frequency.
 
@@ -51,7 +54,7 @@ def averaging_map(
     sense
         Sense of rolling, +1 or −1; by default that of the larger circular component of the base motion.
     progress
-        Called with the number of values done and of all values.
+        A function that is called with the number of values done and of all values; a bar by default, False for none.
 
     Returns
     -------
@@ -64,38 +67,45 @@ def averaging_map(
     ------
     ParameterError
         If values are missing or have an impossible sign, or the frequencies are not positive and increasing.
+    Interrupted
+        On Ctrl-C; `partial` has the values of the parameter that were done.
     """
     require_subject(model, motion)
     frequencies, chosen = require_rising_frequencies(angular_frequency), require_values(values, parameter)
     shape = (chosen.size, frequencies.size)
     exact, averaged = (np.full(shape, _NONE, dtype=np.int8) for _ in range(2))
     error, swing = np.full(shape, np.nan), np.full(shape, np.nan)
-    for row, value in enumerate(chosen):
-        changed = with_parameters(model, motion, **{parameter: float(value)})
-        theory = response_curves(*changed, angular_frequency=frequencies)
-        wanted = "clockwise" if sense == -1 else "anticlockwise"
-        name = wanted if wanted in theory["sense"] else str(theory["sense"][0].item())
-        upper = theory.sel(sense=name, branch="upper")
-        amplitude = upper["amplitude"].to_numpy()
-        averaged[row] = np.where(np.isfinite(amplitude), upper["stable"].to_numpy(), _NONE)
-        branch = _followed(*changed, frequencies, sense)
-        if branch is not None:
-            at = np.array([point.value for point in branch.path])
-            of_theory = response_curves(*changed, angular_frequency=at)["amplitude"].sel(sense=name, branch="upper")
-            exact[row], error[row], swing[row] = _at(branch, of_theory.to_numpy(), frequencies)
-        if progress is not None:
-            progress(row + 1, chosen.size)
+    done = 0
+    try:
+        for row, value in enumerate(chosen):
+            changed = with_parameters(model, motion, **{parameter: float(value)})
+            theory = response_curves(*changed, angular_frequency=frequencies)
+            wanted = "clockwise" if sense == -1 else "anticlockwise"
+            name = wanted if wanted in theory["sense"] else str(theory["sense"][0].item())
+            upper = theory.sel(sense=name, branch="upper")
+            amplitude = upper["amplitude"].to_numpy()
+            averaged[row] = np.where(np.isfinite(amplitude), upper["stable"].to_numpy(), _NONE)
+            branch = _followed(*changed, frequencies, sense)
+            if branch is not None:
+                at = np.array([point.value for point in branch.path])
+                of_theory = response_curves(*changed, angular_frequency=at)["amplitude"].sel(sense=name, branch="upper")
+                exact[row], error[row], swing[row] = _at(branch, of_theory.to_numpy(), frequencies)
+            done = row + 1
+            report_of(progress)(done, chosen.size)
+    except KeyboardInterrupt:
+        if not done:
+            raise
     dims = (parameter, "angular_frequency")
     states = {"long_name": "1 stable, 0 unstable, -1 no such rolling"}
-    return xr.Dataset(
+    found = xr.Dataset(
         {
-            "exact": (dims, exact, states),
-            "averaged": (dims, averaged, states),
-            "error": (dims, error, {"units": "1", "long_name": "exact mean tilt over averaged tilt, less 1"}),
-            "swing": (dims, swing, {"units": "1", "long_name": "peak exact tilt over averaged tilt"}),
+            "exact": (dims, exact[:done], states),
+            "averaged": (dims, averaged[:done], states),
+            "error": (dims, error[:done], {"units": "1", "long_name": "exact mean tilt over averaged tilt, less 1"}),
+            "swing": (dims, swing[:done], {"units": "1", "long_name": "peak exact tilt over averaged tilt"}),
         },
         coords={
-            parameter: (parameter, chosen, attributes_of(parameter)),
+            parameter: (parameter, chosen[:done], attributes_of(parameter)),
             "angular_frequency": ("angular_frequency", frequencies, {"units": "rad s-1"}),
         },
         attrs={
@@ -105,6 +115,10 @@ def averaging_map(
             "provenance": json.dumps(provenance_of_run(model, motion)),
         },
     )
+    if done < chosen.size:
+        message = f"stopped after {done} of {plural(chosen.size, 'value')}, which `partial` has"
+        raise Interrupted(message, found)
+    return found
 
 
 def _followed(model: Model, motion: BaseMotion, frequencies: Floats, sense: int | None) -> Branch | None:

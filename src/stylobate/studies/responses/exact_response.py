@@ -1,7 +1,7 @@
 """Frequency response with exact periodic orbits, compared with theory."""
 
 import json
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 import xarray as xr
@@ -10,10 +10,11 @@ from stylobate.base_motions import BaseMotion
 from stylobate.config import provenance_of_run
 from stylobate.engine import with_parameters
 from stylobate.engine.parameters import present_value
-from stylobate.errors import ParameterError, UnsupportedError, require_whole
+from stylobate.errors import Interrupted, ParameterError, UnsupportedError, require_whole
 from stylobate.models import Model
 from stylobate.orbits import PeriodicOrbit, StepControl, continue_branch
 from stylobate.orbits.arguments import require_orbit, require_subject
+from stylobate.progress import Progress, at_value, shows_progress
 from stylobate.studies.ranges import require_frequencies
 from stylobate.studies.responses.first_orbit import first_orbit
 from stylobate.studies.responses.orbit_families import Followed, between_bifurcations, born
@@ -25,6 +26,7 @@ _SAME, _PHASES = 1e-9, 16
 _BIFURCATION_UNITS = {"angular_frequency": "rad s-1", "mean_tilt": "rad", "peak_tilt": "rad"}
 
 
+@shows_progress("response", at_value)
 def exact_response(
     model: Model,
     motion: BaseMotion,
@@ -34,7 +36,7 @@ def exact_response(
     sense: int | None = None,
     generations: int = 1,
     control: StepControl | None = None,
-    progress: Callable[[float], None] | None = None,
+    progress: Progress = None,
 ) -> xr.Dataset:
     """Compute the exact frequency response of rolling: tilts, phase, stability and bifurcations.
 
@@ -54,7 +56,7 @@ def exact_response(
     control
         Length of steps along the branches.
     progress
-        Called with the frequency of each new orbit.
+        A function that is called with the frequency of each new orbit; a bar by default, False for none.
 
     Returns
     -------
@@ -72,6 +74,8 @@ def exact_response(
         If the range is invalid, or `orbit` belongs to another model or base motion.
     NoOrbitError
         If no orbit was found to begin with.
+    Interrupted
+        On Ctrl-C; `partial` has the branches so far.
 
     Examples
     --------
@@ -89,19 +93,34 @@ def exact_response(
         orbit = first_orbit(model, motion, (low, high), sense)
     else:
         _require_of(orbit, model, motion, (low, high))
-    main = continue_branch(orbit, "angular_frequency", bounds=(low, high), control=control, progress=progress)
-    families = [Followed("rolling" if orbit.turns != 0.0 else "periodic", main)]
-    families += list(born(main, (low, high), generations, control, progress))
-    found = _joined(families)
-    if orbit.turns != 0.0:
-        found = found.assign(_by_theory(model, motion, low, high, 1 if orbit.turns > 0.0 else -1))
-    return found.assign_attrs(
-        kind="exact response",
-        sense=float(orbit.turns),
-        planar=int(orbit.planar),
-        friction=int(model.comes_to_rest),
-        provenance=json.dumps(provenance_of_run(model, orbit.motion)),
-    )
+    families, turns, planar = list[Followed](), orbit.turns, orbit.planar
+    provenance = json.dumps(provenance_of_run(model, orbit.motion))
+
+    def result() -> xr.Dataset:
+        found = _joined(families)
+        if turns != 0.0:
+            found = found.assign(_by_theory(model, motion, low, high, 1 if turns > 0.0 else -1))
+        return found.assign_attrs(
+            kind="exact response",
+            sense=float(turns),
+            planar=int(planar),
+            friction=int(model.comes_to_rest),
+            provenance=provenance,
+        )
+
+    name = "rolling" if turns != 0.0 else "periodic"
+    try:
+        main = continue_branch(orbit, "angular_frequency", bounds=(low, high), control=control, progress=progress)
+        families.append(Followed(name, main))
+        families += born(main, (low, high), generations, control, progress)  # one by one
+    except KeyboardInterrupt as stop:
+        if not families and isinstance(stop, Interrupted):
+            families.append(Followed(name, stop.partial))
+        if not families:
+            raise
+        message = "interrupted; `partial` has the branches so far"
+        raise Interrupted(message, result()) from None
+    return result()
 
 
 def _require_of(orbit: PeriodicOrbit, model: Model, motion: BaseMotion, bounds: tuple[float, float]) -> None:

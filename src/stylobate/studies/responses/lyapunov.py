@@ -11,9 +11,11 @@ from stylobate.base_motions import BaseMotion
 from stylobate.config import provenance_of_run
 from stylobate.engine.flow.periodic import PeriodicSystem, plane_of
 from stylobate.engine.flow.status import Status
-from stylobate.errors import ParameterError, require_positive, require_vector, require_whole
+from stylobate.errors import Interrupted, ParameterError, require_positive, require_vector, require_whole
 from stylobate.models import Model
 from stylobate.orbits.arguments import require_subject
+from stylobate.progress import Progress, report_of, shows_progress
+from stylobate.text import plural
 
 Floats = npt.NDArray[np.float64]
 
@@ -26,6 +28,7 @@ _ENDINGS = {
 _LEAST_BLOCKS = 2
 
 
+@shows_progress("Lyapunov exponents")
 def lyapunov_exponents(
     model: Model,
     motion: BaseMotion,
@@ -37,6 +40,7 @@ def lyapunov_exponents(
     count: int | None = None,
     blocks: int = 10,
     rtol: float = 1e-10,
+    progress: Progress = None,
 ) -> xr.Dataset:
     """Compute Lyapunov exponents: the mean exponential rates at which nearby motions separate.
 
@@ -62,6 +66,8 @@ def lyapunov_exponents(
         Number of blocks of the counted periods; their scatter gives the error.
     rtol
         Relative tolerance of the flow.
+    progress
+        A function that is called with the number of periods done and of all periods; a bar by default, False for none.
 
     Returns
     -------
@@ -77,6 +83,8 @@ def lyapunov_exponents(
         If an argument is out of range.
     UnsupportedError
         If the motion is not periodic from t = 0, or the model's equations cannot be differentiated.
+    Interrupted
+        On Ctrl-C; `partial` has the estimates from the periods that were counted, as `running`.
 
     Notes
     -----
@@ -105,25 +113,36 @@ def lyapunov_exponents(
         require_vector(name, np.ravel(value).tolist(), 2) for name, value in (("tilt", tilt), ("tilt_rate", tilt_rate))
     ]
     frame = _start(model, motion, start[0], start[1], count, require_positive("rtol", rtol))
-    skipped = 0
-    while frame.status is Status.DONE and skipped < skip:
-        frame = frame.following()
-        skipped += frame.status is Status.DONE
-    growths: list[Floats] = []
-    while frame.status is Status.DONE and len(growths) < periods:
-        frame = frame.following()
-        if frame.status is Status.DONE:
-            growths.append(frame.growth)
+    skipped, growths, stopped = 0, list[Floats](), False
+    report = report_of(progress)
+    try:
+        while frame.status is Status.DONE and skipped < skip:
+            frame = frame.following()
+            skipped += frame.status is Status.DONE
+            report(skipped, skip + periods)
+        while frame.status is Status.DONE and len(growths) < periods:
+            frame = frame.following()
+            if frame.status is Status.DONE:
+                growths.append(frame.growth)
+            report(skip + len(growths), skip + periods)
+    except KeyboardInterrupt:
+        if not growths:
+            raise
+        stopped = True
     assert motion.period is not None  # PeriodicSystem refuses a motion without
     kept = {"tilt": start[0], "tilt_rate": start[1], "periods": periods, "skip": skip, "blocks": blocks, "rtol": rtol}
     found = _summary(np.reshape(growths, (len(growths), frame.directions.shape[1])), periods, blocks, motion.period)
-    return found.assign_attrs(
+    found = found.assign_attrs(
         kind="Lyapunov exponents",
-        ending=_ENDINGS[frame.status],
+        ending="was interrupted" if stopped else _ENDINGS[frame.status],
         periods_skipped=skipped,
         planar=int(frame.system.planar),
         provenance=json.dumps(provenance_of_run(model, motion, **kept)),
     )
+    if stopped:
+        message = f"stopped after {len(growths)} of {plural(periods, 'period')}; `partial` has the estimates from these"
+        raise Interrupted(message, found)
+    return found
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,6 +1,6 @@
 """Families of orbits for diagrams: each is continued once and split at its bifurcations."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
@@ -12,6 +12,7 @@ from stylobate.orbits import Bifurcation, Branch, End, Kind, StepControl, switch
 from stylobate.orbits.arclength import Family, Point, corrected
 from stylobate.orbits.bifurcations import orbit_at
 from stylobate.orbits.shooting import arcs_of, shots
+from stylobate.progress import Progress
 
 _BORN = (Kind.PITCHFORK, Kind.PERIOD_DOUBLING, Kind.BRANCH_POINT)
 # Two orbits are related by symmetry if their tilts agree to this fraction of c, and the sums of their multipliers to
@@ -34,7 +35,7 @@ def born(
     bounds: tuple[float, float],
     generations: int,
     control: StepControl | None,
-    progress: Callable[[float], None] | None = None,
+    progress: Progress = None,
 ) -> Iterator[Followed]:
     """Continue the bifurcating branches of a branch; a pair related by symmetry, or by both ends, is continued once."""
     if generations <= 0:

@@ -1,7 +1,6 @@
 """Poincaré sections: states of columns once per period of the base motion."""
 
 import json
-from collections.abc import Callable
 
 import numpy as np
 import xarray as xr
@@ -12,10 +11,12 @@ from stylobate.engine.ensembles.broadcasting import ArrayLike
 from stylobate.errors import ParameterError, UnsupportedError, require_whole
 from stylobate.models import Model
 from stylobate.orbits.arguments import require_subject
+from stylobate.progress import Progress, shows_progress
 
 _FOLLOWED = ("outcome", "decided_at", "uncertain")
 
 
+@shows_progress("Poincaré section")
 def poincare_section(
     model: Model,
     motion: BaseMotion,
@@ -27,7 +28,7 @@ def poincare_section(
     rtol: float = 1e-10,
     rest_energy: float | None = None,
     threads: int | None = None,
-    progress: Callable[[int, int], None] | None = None,
+    progress: Progress = None,
 ) -> xr.Dataset:
     """Compute Poincaré sections: states once per period, when the base motion has the phase of t = 0.
 

@@ -1,7 +1,7 @@
 """Slow sweep: integration of a column while a parameter steps through its values."""
 
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from typing import Any
 
@@ -16,6 +16,7 @@ from stylobate.engine.parameter_quantities import attributes_of
 from stylobate.errors import Interrupted, Outcome, ParameterError, UnsupportedError, require_whole
 from stylobate.models import Model
 from stylobate.orbits.arguments import require_subject
+from stylobate.progress import Progress, report_of, shows_progress
 from stylobate.results import OutcomeRules
 from stylobate.results.outcomes import NOT_COMPUTED, outcome_attributes
 from stylobate.studies.sweeps.quantities import Floats, checked_values
@@ -41,6 +42,7 @@ _VECTORS = {
 _PLANE, _AXES = 2, 2
 
 
+@shows_progress("slow sweep")
 def slow_sweep(
     model: Model,
     motion: BaseMotion,
@@ -55,7 +57,7 @@ def slow_sweep(
     rest_energy: float | None = None,
     rules: OutcomeRules | None = None,
     threads: int | None = None,
-    progress: Callable[[int, int], None] | None = None,
+    progress: Progress = None,
 ) -> xr.Dataset:
     """Integrate columns while a parameter steps through its values, to show jumps and hysteresis.
 
@@ -86,7 +88,7 @@ def slow_sweep(
         Rules of the outcome at each value; by default with 25 `periods` and 51 `steady_periods`. With n =
         `rules.periods` the last 2n + 1 periods decide.
     progress
-        Called as `progress(steps done, steps in all)`.
+        A function that is called as `progress(steps done, steps in all)`; a bar by default, False for none.
 
     Returns
     -------
@@ -152,8 +154,7 @@ def slow_sweep(
             table[name][step, moving] = column
         state = table["end_tilt"][step], table["end_tilt_rate"][step]
         moving &= ~np.isin(table["outcome"][step], _ENDINGS)
-        if progress is not None:
-            progress(step + 1, len(steps))
+        report_of(progress)(step + 1, len(steps))
     return result()
 
 

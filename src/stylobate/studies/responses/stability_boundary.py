@@ -10,7 +10,7 @@ from stylobate.base_motions import BaseMotion
 from stylobate.config import provenance_of_run
 from stylobate.engine import with_parameters
 from stylobate.engine.parameter_quantities import attributes_of
-from stylobate.errors import NoOrbitError, ParameterError, UnsupportedError, require_positive
+from stylobate.errors import Interrupted, NoOrbitError, ParameterError, UnsupportedError, require_positive
 from stylobate.models import Model
 from stylobate.orbits import (
     Bifurcation,
@@ -23,10 +23,12 @@ from stylobate.orbits import (
 )
 from stylobate.orbits.arguments import require_subject
 from stylobate.orbits.multipliers import is_stable
+from stylobate.progress import Progress, report_of, shows_progress
 from stylobate.studies.ranges import require_bounds, require_frequencies
 from stylobate.studies.responses.first_orbit import first_orbit
 from stylobate.studies.responses.orbit_families import between_bifurcations
 from stylobate.studies.responses.response_curves import response_curves
+from stylobate.text import plural
 
 _THEORY_POINTS = 201
 # A bifurcation within this distance from a curve, as a fraction of the widths of the bounds, lies on the curve.
@@ -36,6 +38,7 @@ _BENT = 0.05
 _FOLLOWED = (Kind.FOLD, Kind.PITCHFORK, Kind.PERIOD_DOUBLING, Kind.NEIMARK_SACKER)
 
 
+@shows_progress("stability boundary")
 def stability_boundary(
     model: Model,
     motion: BaseMotion,
@@ -46,6 +49,7 @@ def stability_boundary(
     values: Sequence[float] | None = None,
     sense: int | None = None,
     control: StepControl | None = None,
+    progress: Progress = None,
 ) -> xr.Dataset:
     """Compute the curves on which exact rolling loses stability, with the critical frequency of theory.
 
@@ -66,6 +70,8 @@ def stability_boundary(
         Sense of rolling, +1 or −1; by default that of the larger circular component of the base motion.
     control
         Length of steps along the curves.
+    progress
+        A function that is called with the number of values done and of all values; a bar by default, False for none.
 
     Returns
     -------
@@ -82,6 +88,8 @@ def stability_boundary(
         If bounds or values are invalid, or there is no damping, without which nothing decays.
     NoOrbitError
         If rolling was found at none of the values.
+    Interrupted
+        On Ctrl-C; `partial` has the curves so far.
 
     Examples
     --------
@@ -105,31 +113,69 @@ def stability_boundary(
     curves: list[BifurcationCurve] = []
     looked_at: set[bool] = set()
     reason: Exception | None = None
-    for value in chosen:
+
+    def result() -> xr.Dataset:
+        return (
+            _joined(curves, parameter)
+            .assign(_of_theory(model, motion, parameter, (low, high), sense))
+            .assign_attrs(
+                kind="stability boundary",
+                parameter=parameter,
+                bounds=[low, high],
+                angular_frequency_range=list(frequencies),
+                rolling=_everywhere(looked_at),
+                provenance=json.dumps(provenance_of_run(model, motion)),
+            )
+        )
+
+    for done, value in enumerate(chosen):
+        report_of(progress)(done, chosen.size)
+        at = with_parameters(model, motion, **{parameter: float(value)})
         try:
-            orbit = first_orbit(*with_parameters(model, motion, **{parameter: float(value)}), frequencies, sense)
-        except NoOrbitError as error:
-            reason = error
-            continue
-        branch = between_bifurcations(continue_branch(orbit, "angular_frequency", bounds=frequencies))
-        looked_at |= {is_stable(point.multipliers) for point in branch.path}
-        for one in losses(branch):
-            if not any(_on(curve, one, float(value), frequencies, (low, high)) for curve in curves):
-                curves.append(bifurcation_curve(one, parameter, bounds=(frequencies, (low, high)), control=control))
+            branch = _rolling(*at, frequencies, sense)
+            if isinstance(branch, NoOrbitError):
+                reason = branch
+                continue
+            looked_at |= {is_stable(point.multipliers) for point in branch.path}
+            _add_curves(curves, branch, parameter, float(value), (frequencies, (low, high)), control)
+        except KeyboardInterrupt:
+            if not curves:
+                raise
+            message = f"stopped after {done} of {plural(chosen.size, 'value')}; `partial` has the curves so far"
+            raise Interrupted(message, result()) from None
     if not looked_at and reason is not None:
         raise NoOrbitError(str(reason))
-    return (
-        _joined(curves, parameter)
-        .assign(_of_theory(model, motion, parameter, (low, high), sense))
-        .assign_attrs(
-            kind="stability boundary",
-            parameter=parameter,
-            bounds=[low, high],
-            angular_frequency_range=list(frequencies),
-            rolling=_everywhere(looked_at),
-            provenance=json.dumps(provenance_of_run(model, motion)),
-        )
-    )
+    return result()
+
+
+def _rolling(
+    model: Model, motion: BaseMotion, frequencies: tuple[float, float], sense: int | None
+) -> Branch | NoOrbitError:
+    """Continue rolling over the frequency; return the reason if no orbit was found."""
+    try:
+        orbit = first_orbit(model, motion, frequencies, sense)
+    except NoOrbitError as error:
+        return error
+    return between_bifurcations(continue_branch(orbit, "angular_frequency", bounds=frequencies))
+
+
+def _add_curves(
+    curves: list[BifurcationCurve],
+    branch: Branch,
+    parameter: str,
+    value: float,
+    bounds: tuple[tuple[float, float], tuple[float, float]],
+    control: StepControl | None,
+) -> None:
+    """Append curves from the losses of stability that lie on no known curve; after Ctrl-C the last one so far."""
+    for one in losses(branch):
+        if any(_on(curve, one, value, *bounds) for curve in curves):
+            continue
+        try:
+            curves.append(bifurcation_curve(one, parameter, bounds=bounds, control=control))
+        except Interrupted as stop:
+            curves.append(stop.partial)
+            raise
 
 
 def losses(branch: Branch) -> list[Bifurcation]:

@@ -1,6 +1,6 @@
 """Computation of one block of a sweep, shared by all executors."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -10,16 +10,12 @@ import xarray as xr
 
 from stylobate.engine import simulate_ensemble
 from stylobate.errors import Interrupted
+from stylobate.progress import Report
 from stylobate.studies.sweeps.blocks import Block
 from stylobate.studies.sweeps.quantities import Floats
 from stylobate.studies.sweeps.recipe import Recipe
 
-Progress = Callable[[int, int], None]
 Arrays = dict[str, npt.NDArray[Any]]
-
-
-def silent(*_: object) -> None:
-    """Show no progress."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,7 +35,7 @@ class Computed:
 
 
 def compute(
-    recipe: Recipe, values: Mapping[str, Floats], threads: int | None, progress: Progress | None = None
+    recipe: Recipe, values: Mapping[str, Floats], threads: int | None, progress: Report | None = None
 ) -> Computed:
     """Compute the runs of `recipe` at these `values`."""
     arguments = recipe.arguments(values)

@@ -21,7 +21,8 @@ from stylobate.errors import (
     require_positive,
     require_whole,
 )
-from stylobate.studies.sweeps.computing import Computed, Progress, Task
+from stylobate.progress import Report
+from stylobate.studies.sweeps.computing import Computed, Task
 from stylobate.studies.sweeps.dask_tasks import SealedTask, package_identity
 
 if TYPE_CHECKING:
@@ -81,7 +82,7 @@ class Dask:
             raise ParameterError(message)
 
     def results(
-        self, work: "Work", tasks: Iterable[Task], progress: Progress | None = None
+        self, work: "Work", tasks: Iterable[Task], progress: Report | None = None
     ) -> Generator[tuple[Task, Computed], None, None]:
         """Yield each task with its result, in the order in which they finish.
 

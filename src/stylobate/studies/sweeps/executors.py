@@ -5,13 +5,14 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from stylobate.errors import MOST_THREADS, require_whole
-from stylobate.studies.sweeps.computing import Computed, Progress, Task
+from stylobate.progress import Report
+from stylobate.studies.sweeps.computing import Computed, Task
 
 
 class Work(Protocol):
     """Function that computes a task; it can be pickled."""
 
-    def __call__(self, task: Task, *, threads: int | None, progress: Progress | None) -> Computed:
+    def __call__(self, task: Task, *, threads: int | None, progress: Report | None) -> Computed:
         """Return the results of `task`, or no arrays if they have been stored."""
 
 
@@ -25,7 +26,7 @@ class Executor(Protocol):
     """
 
     def results(
-        self, work: Work, tasks: Iterable[Task], progress: Progress | None = None
+        self, work: Work, tasks: Iterable[Task], progress: Report | None = None
     ) -> Generator[tuple[Task, Computed], None, None]:
         """Yield each task with its result."""
 
@@ -47,7 +48,7 @@ class Threads:
             object.__setattr__(self, "threads", require_whole("threads", self.threads, least=1, most=MOST_THREADS))
 
     def results(
-        self, work: Work, tasks: Iterable[Task], progress: Progress | None = None
+        self, work: Work, tasks: Iterable[Task], progress: Report | None = None
     ) -> Generator[tuple[Task, Computed], None, None]:
         """Yield each task with its result, in order."""
         for task in tasks:

@@ -12,6 +12,7 @@ import numpy as np
 
 from stylobate.compiler.fingerprint import fingerprint
 from stylobate.models import Model
+from stylobate.quantities import exact_repr
 
 # Packages whose classes are identified by their versions.
 _NOT_ITS_OWN = ("stylobate", "builtins", "abc", "typing", "numpy")
@@ -113,7 +114,7 @@ def _name_of(thing: Any) -> str:
 
 
 def _stable_repr(thing: object) -> str:
-    return _ADDRESS.sub("", repr(thing))
+    return _ADDRESS.sub("", exact_repr(thing))
 
 
 def _hash(parts: Iterator[str]) -> str:

@@ -6,8 +6,8 @@ from pathlib import Path
 import xarray as xr
 
 from stylobate.errors import Interrupted
+from stylobate.progress import Progress
 from stylobate.studies.sweeps import Executor, Sweep, run_sweep
-from stylobate.studies.sweeps.computing import Progress
 
 Label = Callable[[xr.Dataset], xr.Dataset]
 
@@ -19,7 +19,7 @@ def labelled_sweep(
     store: str | Path | None = None,
     executor: Executor | None = None,
     resume: bool = False,
-    progress: Progress | None = None,
+    progress: Progress = None,
 ) -> xr.Dataset:
     """Run `sweep` and return its runs labelled by `label`; the other arguments are those of `run_sweep`.
 

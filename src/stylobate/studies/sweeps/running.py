@@ -6,14 +6,15 @@ from pathlib import Path
 import xarray as xr
 
 from stylobate.errors import MOST_RUNS, FileError, Interrupted, ParameterError, require_whole
+from stylobate.progress import Progress, Report, report_of, shows_progress
 from stylobate.studies.sweeps.blocks import Blocks
-from stylobate.studies.sweeps.computing import Progress, silent
 from stylobate.studies.sweeps.executors import Executor, Threads
 from stylobate.studies.sweeps.sinks import InMemory, OnDisk, Sink, tasks_of
 from stylobate.studies.sweeps.store import continue_store, create_store
 from stylobate.studies.sweeps.sweep import Sweep
 
 
+@shows_progress("runs")
 def run_sweep(
     sweep: Sweep,
     *,
@@ -21,7 +22,7 @@ def run_sweep(
     executor: Executor | None = None,
     resume: bool = False,
     chunk_size: int | None = None,
-    progress: Progress | None = None,
+    progress: Progress = None,
 ) -> xr.Dataset:
     """Compute all runs of `sweep`, chunk by chunk.
 
@@ -40,7 +41,8 @@ def run_sweep(
     chunk_size
         Maximum number of runs in a chunk; by default about a 64th of the sweep, between 1024 and 16384.
     progress
-        Called with the number of runs done and of all runs.
+        A function that is called with the number of runs done and of all runs, or False. By default a bar appears after
+        two seconds if stderr is a terminal, or in a notebook.
 
     Returns
     -------
@@ -79,7 +81,7 @@ def run_sweep(
         chunk_size = require_whole("chunk_size", chunk_size, least=1, most=MOST_RUNS)
     sink = _sink(sweep, _folder(store), chunk_size, resume=resume)
     try:
-        _fill(sink, sweep, executor or Threads(), progress or silent)
+        _fill(sink, sweep, executor or Threads(), report_of(progress))
     except Interrupted:
         raise
     except KeyboardInterrupt:
@@ -113,7 +115,7 @@ def _sink(sweep: Sweep, path: Path | None, chunk_size: int | None, *, resume: bo
     return OnDisk(sweep, *continue_store(path, sweep, layout, chunk_size))
 
 
-def _fill(sink: Sink, sweep: Sweep, executor: Executor, progress: Progress) -> None:
+def _fill(sink: Sink, sweep: Sweep, executor: Executor, progress: Report) -> None:
     done, total = sink.runs_done, sweep.runs
     progress(done, total)
     if done == total:  # nothing to do: start no workers

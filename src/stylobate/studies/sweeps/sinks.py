@@ -9,9 +9,10 @@ import xarray as xr
 
 from stylobate.engine.memory import require_memory
 from stylobate.errors import FileError
+from stylobate.progress import Report
 from stylobate.studies.sweeps.blocks import Block, Blocks
 from stylobate.studies.sweeps.chunks import OUTCOME, Chunks, State
-from stylobate.studies.sweeps.computing import Arrays, Computed, Progress, Task, compute
+from stylobate.studies.sweeps.computing import Arrays, Computed, Task, compute
 from stylobate.studies.sweeps.executors import Work
 from stylobate.studies.sweeps.layout import Layout, dataset
 from stylobate.studies.sweeps.recipe import Recipe
@@ -117,7 +118,7 @@ class OnDisk:
 class _Compute:
     recipe: Recipe
 
-    def __call__(self, task: Task, *, threads: int | None, progress: Progress | None) -> Computed:
+    def __call__(self, task: Task, *, threads: int | None, progress: Report | None) -> Computed:
         return compute(self.recipe, task.values, threads, progress)
 
 
@@ -126,7 +127,7 @@ class _ComputeAndStore:
     recipe: Recipe
     chunks: Chunks
 
-    def __call__(self, task: Task, *, threads: int | None, progress: Progress | None) -> Computed:
+    def __call__(self, task: Task, *, threads: int | None, progress: Report | None) -> Computed:
         try:
             return self._stored(task, threads, progress)
         except (OSError, FileError) as error:
@@ -134,7 +135,7 @@ class _ComputeAndStore:
             message = f"cannot write {self.chunks.path}: {reason}. Continue it with resume=True"
             raise FileError(message) from error
 
-    def _stored(self, task: Task, threads: int | None, progress: Progress | None) -> Computed:
+    def _stored(self, task: Task, threads: int | None, progress: Report | None) -> Computed:
         state = self.chunks.state(task.block.index)
         if state is State.DONE:  # by another process
             return Computed({})

@@ -1,6 +1,5 @@
 """The report of an assessment: one page with all tables and figures, and a file for each table and figure."""
 
-from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -11,8 +10,8 @@ from stylobate.earthquakes.assessment.report.tables import assessment_tables
 from stylobate.errors import FileError
 from stylobate.files import csv_text, write_whole
 from stylobate.plots.page import page, png_of
+from stylobate.progress import Progress, Report, report_of, shows_progress
 from stylobate.results.assessment import Assessment
-from stylobate.studies.sweeps.computing import silent
 
 # Tables of a dozen columns fit a wide screen; a narrow screen scrolls tables and figures. In print, figures are only as
 # wide as legibility needs, so that a page holds two or three.
@@ -31,9 +30,8 @@ body > .wide:nth-of-type(2) td:nth-child(2) { font-weight: 600; } nav a { displa
 """
 
 
-def assessment_report(
-    assessment: Assessment, folder: str | Path, *, progress: Callable[[int, int], None] | None = None
-) -> Path:
+@shows_progress("figures")
+def assessment_report(assessment: Assessment, folder: str | Path, *, progress: Progress = None) -> Path:
     """Write report, tables and figures of an assessment; return the path of the report.
 
     Parameters
@@ -44,7 +42,7 @@ def assessment_report(
         Folder for `report.html` (which needs no other file and no network), `summary.txt`, `tables/*.csv`,
         `figures/*.png` and `assessment.nc`.
     progress
-        Called with the number of figures drawn and their total number.
+        A function that is called with the number of figures drawn and their total; a bar by default, False for none.
 
     Raises
     ------
@@ -53,7 +51,7 @@ def assessment_report(
     """
     target = Path(folder)
     tables = assessment_tables(assessment)
-    pictures = _drawn(report_pictures(assessment), progress or silent)
+    pictures = _drawn(report_pictures(assessment), report_of(progress))
     title, document = str(assessment.setting["title"]), document_table(assessment)
     verdicts = verdict_table(assessment)
     try:
@@ -77,7 +75,7 @@ def assessment_report(
     return report
 
 
-def _drawn(pictures: Pictures, progress: Callable[[int, int], None]) -> Pictures:
+def _drawn(pictures: Pictures, progress: Report) -> Pictures:
     drawn: Pictures = {}
     for name, one in pictures.items():
         progress(len(drawn), len(pictures))

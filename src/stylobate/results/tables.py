@@ -1,0 +1,102 @@
+"""Results as tables in pandas: one row per sample, run or curve, and one column per number."""
+
+from collections.abc import Hashable, Iterator, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import xarray as xr
+
+from stylobate.errors import ParameterError
+from stylobate.text import did_you_mean
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+# Dimensions of the components of one quantity.
+_COMPONENTS = ("axis", "direction", "part")
+
+
+def to_dataframe(data: xr.Dataset, over: str | Sequence[str] | None = None) -> "pd.DataFrame":
+    """Convert the Dataset of a run, an ensemble or a study to a table in pandas.
+
+    Parameters
+    ----------
+    data
+        The Dataset.
+    over
+        Dimensions whose combinations are the rows: by default those of `outcome`, one row per run, or else those of the
+        first variable.
+
+    Returns
+    -------
+    pandas.DataFrame
+        Its index has the coordinates of the rows. Each variable over all of `over` is a column; with components, or
+        another dimension that names its entries, a column per name, such as `tilt_x` and `tilt_y`. Codes such as those
+        of outcomes are categories with the names of the codes. Variables over other dimensions, such as the samples of
+        a history, are left out.
+
+    Raises
+    ------
+    ParameterError
+        If the Dataset lacks a dimension of `over`.
+
+    Examples
+    --------
+    >>> import stylobate as sb
+    >>> model = sb.Slender(sb.Column.dimensionless(slenderness=0.1), damping=0.1)
+    >>> motion = sb.Harmonic.circular(acceleration=0.15, angular_frequency=0.5)
+    >>> runs = sb.simulate_ensemble(model, motion, duration=50.0, parameters={"acceleration": [0.05, 0.15]})
+    >>> sb.results.to_dataframe(runs)[["acceleration", "outcome", "peak_tilt"]].round(3)
+         acceleration     outcome  peak_tilt
+    run
+    0            0.05     AT_REST       0.00
+    1            0.15  OVERTURNED       0.25
+    """
+    import pandas as pd  # noqa: PLC0415  slow to import
+
+    rows = _rows_of(data, over)
+    columns = dict[str, Any]()
+    for name, variable in data.data_vars.items():
+        if set(rows) <= set(variable.dims):
+            parts = _parts_of(str(name), variable.transpose(*rows, ...), rows)
+            columns |= {label: _coded(part) for label, part in parts}
+    for name, variable in data.coords.items():  # such as the intensity of each run
+        if name not in data.indexes and set(variable.dims) == set(rows):
+            columns[str(name)] = variable.transpose(*rows).to_numpy().ravel()
+    index = [data.indexes[dim] if dim in data.indexes else pd.RangeIndex(data.sizes[dim], name=dim) for dim in rows]
+    index = index or [pd.RangeIndex(1)]  # one run
+    return pd.DataFrame(columns, index=index[0] if len(index) == 1 else pd.MultiIndex.from_product(index))
+
+
+def _rows_of(data: xr.Dataset, over: str | Sequence[str] | None) -> tuple[Hashable, ...]:
+    if over is None:
+        first = data["outcome"] if "outcome" in data else next(iter(data.data_vars.values()))
+        return tuple(dim for dim in first.dims if dim not in _COMPONENTS)
+    dims = (over,) if isinstance(over, str) else tuple(over)
+    for dim in dims:
+        if dim not in data.sizes:
+            remedy = did_you_mean(dim, map(str, data.sizes)) or f"Its dimensions are {', '.join(map(str, data.sizes))}."
+            message = f"over: the Dataset has no such dimension (got {dim!r}). {remedy}"
+            raise ParameterError(message)
+    return dims
+
+
+def _parts_of(name: str, variable: xr.DataArray, rows: Sequence[Hashable]) -> Iterator[tuple[str, xr.DataArray]]:
+    """Yield a variable, or its parts along dimensions that name their entries, with their names."""
+    others = [dim for dim in variable.dims if dim not in rows]
+    if not others:
+        yield name, variable
+    elif others[0] in variable.coords and variable[others[0]].dtype.kind in "OUT":
+        for place, label in enumerate(variable[others[0]].to_numpy()):
+            yield from _parts_of(f"{name}_{label}", variable.isel({others[0]: place}, drop=True), rows)
+
+
+def _coded(variable: xr.DataArray) -> Any:
+    """Return the values of a variable, shape (rows,); codes as categories."""
+    values = variable.to_numpy().ravel()
+    if "flag_meanings" not in variable.attrs:
+        return values
+    import pandas as pd  # noqa: PLC0415
+
+    codes, names = np.atleast_1d(variable.attrs["flag_values"]), str(variable.attrs["flag_meanings"]).split()
+    return pd.Categorical.from_codes(np.searchsorted(codes, values).tolist(), categories=names)
