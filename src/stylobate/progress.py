@@ -211,7 +211,7 @@ class _InNotebook(_Drawn):
         self._page = io.StringIO()
         super().__init__(news, Console(file=self._page, width=_WIDTH, force_jupyter=False, color_system=None))
         self._shown = 0.0
-        self._handle = display({"text/plain": ""}, raw=True, display_id=True)
+        self._handle = display({"text/plain": ""}, raw=True, display_id=True)  # type: ignore[no-untyped-call, unused-ignore]
 
     def update(self, news: News) -> None:
         """Set the progress, and draw it again after a pause."""

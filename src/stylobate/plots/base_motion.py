@@ -23,9 +23,9 @@ COMPONENT_LOOKS: tuple[dict[str, Any], ...] = (
 """Looks of the components along x, y and z."""
 _NAMES = "xyz"
 _ROWS = {
-    "acceleration": (1.0, "acceleration\n[m/s²]"),
-    "velocity": (1.0, "velocity\n[m/s]"),
-    "displacement": (1e3, "displacement\n[mm]"),
+    "acceleration\n[m/s²]": (BaseMotion.acceleration, 1.0),
+    "velocity\n[m/s]": (BaseMotion.velocity, 1.0),
+    "displacement\n[mm]": (BaseMotion.displacement, 1e3),
 }
 _HEIGHT, _POINTS, _PERIODS, _SECONDS = 4.2, 4000, 4.0, 60.0
 # Periods of a response spectrum [s], and its damping.
@@ -57,13 +57,13 @@ def plot_motion(motion: BaseMotion) -> Figure:
         _draw_record(figure, motion, moving)
         return figure
     rows, beside = _arranged(figure, list(_ROWS), "path" if len(moving) > 1 else "")
-    for name, panel in rows.items():
-        factor, label = _ROWS[name]
-        _draw_row(panel, time, factor * getattr(motion, name)(time).T, moving)
+    for label, panel in rows.items():
+        derivative, factor = _ROWS[label]
+        _draw_row(panel, time, factor * derivative(motion, time).T, moving)
         panel.set_ylabel(label)
     if beside is not None:
         _draw_path(beside, 1e3 * motion.displacement(time).T, *moving[:2])
-        figure.legend(*rows["acceleration"].get_legend_handles_labels(), loc="outside upper left", ncols=3)
+        figure.legend(*next(iter(rows.values())).get_legend_handles_labels(), loc="outside upper left", ncols=3)
     return figure
 
 

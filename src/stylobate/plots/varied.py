@@ -3,6 +3,8 @@
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
+from stylobate.base_motions.declared import motion_quantities
+from stylobate.models.declared import column_quantities, model_quantities
 from stylobate.results import Response
 
 _MOST_NAMES = 2
@@ -17,14 +19,6 @@ _SILENT = (
     "samples",
     "atol",
 )
-_SYMBOLS = {
-    "damping": "η",
-    "slenderness": "c",
-    "friction_coefficient": "µ",
-    "angular_frequency": "Ω",
-    "tilt": "start tilt",
-    "scale": "scale",
-}
 
 
 def what_varies(runs: Sequence[Response]) -> list[str]:
@@ -62,8 +56,11 @@ def _written(name: str, value: Any) -> str:
     last = name.rpartition(".")[2]
     if last == "kind":
         return str(value).replace("_", " ")
-    label = _SYMBOLS.get(last, last.replace("_", " "))
+    declared = {**motion_quantities(), **column_quantities(), **model_quantities()}
+    quantity = declared.get(last)
+    label = quantity.symbol if quantity is not None and quantity.symbol else last.replace("_", " ")
     if isinstance(value, list | tuple):
         value = next((one for one in value if one), 0.0) if sum(map(bool, value)) <= 1 else [*value]
     number = f"{value:.4g}" if isinstance(value, int | float) and not isinstance(value, bool) else str(value)
-    return f"{label} = {number}" if len(label) == 1 else f"{label} {number}"
+    unit = "" if quantity is None or not quantity.unit else f" {quantity.unit}"
+    return f"{label} {'= ' if quantity is not None and quantity.symbol else ''}{number}{unit}"
