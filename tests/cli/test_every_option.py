@@ -1,5 +1,7 @@
 """An option that is given is used or refused, whatever the command: nothing is dropped without a word."""
 
+from collections.abc import Mapping
+from dataclasses import fields, is_dataclass
 from typing import get_args
 
 import pytest
@@ -106,6 +108,15 @@ MEMBERS = get_args(get_args(MotionConfig)[0])
 _OF_PRINTING = ("as_json",)
 
 
+def exactly(value):
+    """Return all numbers of a value; the text of an object has four digits of those that decide."""
+    if is_dataclass(value) and not isinstance(value, type):
+        return type(value).__name__, [(one.name, exactly(getattr(value, one.name))) for one in fields(value)]
+    if isinstance(value, Mapping):
+        return [(name, exactly(one)) for name, one in value.items()]
+    return [exactly(one) for one in value] if isinstance(value, list | tuple) else value
+
+
 class ComputedError(Exception):
     """What is to be computed, instead of computing it."""
 
@@ -145,7 +156,7 @@ def nothing_is_computed(monkeypatch, tmp_path):
         del progress
         if started is not None:
             started("an address")
-        raise ComputedError(repr((arguments, sorted(options.items()), opened, [repr(case) for case in cases])))
+        raise ComputedError(repr(exactly((arguments, sorted(options.items()), opened, cases))))
 
     cases, of = [], VerdictOfCase.of
 
