@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 
+import stylobate as sb
 from stylobate import errors
 from stylobate.errors import (
     LARGEST_SEED,
@@ -13,6 +14,8 @@ from stylobate.errors import (
     Outcome,
     ParameterError,
     StylobateError,
+    UnknownNameError,
+    UnlikelyInputWarning,
     UnsupportedError,
     require_finite,
     require_not_negative,
@@ -123,3 +126,74 @@ def test_counts_beyond_memory_are_refused_and_large_integers_keep_all_digits():
     assert str(caught.value) == (
         "samples: too large (got 2000000000). Give at most 10000000: each number takes memory."
     )
+
+
+NAMED = [
+    Outcome,
+    sb.results.VerdictWord,
+    sb.results.ClaimStatus,
+    sb.orbits.Kind,
+    sb.orbits.End,
+    sb.earthquakes.FitStatus,
+    sb.theory.BlockPhase,
+    sb.theory.FirstMotion,
+    sb.theory.SlidingRegime,
+    sb.conveying.ContactClass,
+    sb.conveying.RollingRegime,
+]
+
+
+@pytest.mark.parametrize("kind", NAMED)
+def test_what_is_found_equals_its_name_and_label_and_no_other_text(kind):
+    for one in kind:
+        assert one == one.name
+        assert one == one.label
+        assert one.name == one
+        assert one in (one.name, None)
+        assert not one != one.label  # noqa: SIM202  the other operator
+        for other in kind:
+            assert (one == other.name) is (one is other)
+            assert (one != other.label) is (one is not other)
+            assert (one == other) is (one is other)
+
+
+@pytest.mark.parametrize("kind", NAMED)
+def test_a_comparison_with_a_text_that_names_nothing_warns_and_suggests(kind):
+    member = next(iter(kind))
+    with pytest.warns(UnlikelyInputWarning, match=rf"^{kind.__name__}: .*did you mean {member.name}\?$") as caught:
+        assert not member == f"{member.name}_"  # noqa: SIM201  the other operator
+    assert caught[0].filename == __file__
+    with pytest.warns(UnlikelyInputWarning, match="use one of"):
+        assert member != "elephant"
+
+
+def test_outcomes_stay_codes():
+    assert Outcome.ROLLING == 2 == np.int8(2)
+    assert hash(Outcome.ROLLING) == hash(2)
+    assert Outcome.ROLLING != 3
+    assert Outcome.ROLLING != None  # noqa: E711  the operator
+    np.testing.assert_array_equal(np.arange(4) == Outcome.ROLLING, [False, False, True, False])
+    assert {2: "rolls"}[Outcome.ROLLING] == "rolls"
+
+
+def test_a_name_that_a_result_does_not_have_suggests_the_nearest():
+    run = sb.simulate(sb.Slender(sb.Column.dimensionless(slenderness=0.1)), tilt=(0.01, 0.0), duration=1.0)
+    cases = [
+        (run.thresholds, "no_retrun_tilt", "did you mean no_return_tilt?"),
+        (run.measures, "peaktilt", "did you mean peak_tilt?"),
+        (run.provenance["column"], "radus", "did you mean radius?"),
+        (run.measures, "colour", f"its names are {', '.join(run.measures)}"),
+    ]
+    for values, name, remedy in cases:
+        with pytest.raises(KeyError) as caught:
+            values[name]
+        assert isinstance(caught.value, UnknownNameError)
+        assert str(caught.value) == f"the result has no such name (got {name!r}); {remedy}"
+        assert values.get(name) is None
+
+
+def test_loaded_results_suggest_names_too(tmp_path):
+    run = sb.simulate(sb.Slender(sb.Column.dimensionless(slenderness=0.1)), tilt=(0.01, 0.0), duration=1.0)
+    loaded = sb.load(run.save(tmp_path / "run.nc"))
+    with pytest.raises(UnknownNameError, match=r"did you mean turns\?"):
+        loaded.measures["turn"]

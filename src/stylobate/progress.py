@@ -118,14 +118,15 @@ def _report(what: str, read: Callable[..., News], progress: object) -> Iterator[
         yield report_of(progress)
         return
     shown = (progress is None or progress is True) and not _running and _place()
-    report = _Bar(what, read) if shown else report_of(progress)
+    bar = _Bar(what, read) if shown else None
+    report = report_of(progress) if bar is None else bar
     _running.append(report)
     try:
         yield report
     finally:
         _running.pop()
-        if isinstance(report, _Bar):
-            report.close()
+        if bar is not None:
+            bar.close()
 
 
 def _place() -> str:
@@ -205,13 +206,13 @@ class _InNotebook(_Drawn):
     """A bar as text in the output of a cell, which is replaced; it needs no widgets."""
 
     def __init__(self, news: News) -> None:
-        from IPython.display import display  # noqa: PLC0415
         from rich.console import Console  # noqa: PLC0415
 
         self._page = io.StringIO()
         super().__init__(news, Console(file=self._page, width=_WIDTH, force_jupyter=False, color_system=None))
         self._shown = 0.0
-        self._handle = display({"text/plain": ""}, raw=True, display_id=True)  # type: ignore[no-untyped-call, unused-ignore]
+        display: Any = import_module("IPython.display").display
+        self._handle = display({"text/plain": ""}, raw=True, display_id=True)
 
     def update(self, news: News) -> None:
         """Set the progress, and draw it again after a pause."""

@@ -5,6 +5,7 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -60,7 +61,9 @@ def assess(options: Options) -> None:
             result = _loaded(source)
         else:
             result = _computed(setup, options["store"] or target / "store", options["threads"])
-        report = earthquakes.assessment_report(result, target)
+        lines = part_lines()
+        drawn = None if lines is None else partial(lines, "drawing figures")
+        report = earthquakes.assessment_report(result, target, progress=drawn)
     summary = earthquakes.assessment_tables(result)["summary"]
     if options["as_json"]:
         print_json({"summary": _rows(summary), "setting": result.setting, "report": str(report)})

@@ -71,6 +71,7 @@ def after_bifurcation(
     c, scale = orbit.model.column.slenderness, orbit.model.time_scale
     off = size * c * np.random.default_rng(seed_of(rng)).standard_normal((2, count, 2))
     counted: list[dict[str, int]] = []
+    stopped = False
     try:
         for index, value in enumerate(chosen):
             system = orbit.system.changed(**{name: float(value)})
@@ -89,6 +90,7 @@ def after_bifurcation(
     except KeyboardInterrupt:
         if not counted:
             raise
+        stopped = True
     names = sorted({name for counts in counted for name in counts})
     table = np.array([[counts.get(name, 0) for name in names] for counts in counted])
     found = xr.Dataset(
@@ -102,7 +104,7 @@ def after_bifurcation(
             "provenance": json.dumps(provenance_of_run(orbit.model, orbit.motion)),
         },
     )
-    if len(counted) < chosen.size:
+    if stopped:
         message = f"stopped after {len(counted)} of {plural(chosen.size, 'value')}, which `partial` has"
         raise Interrupted(message, found)
     return found

@@ -75,7 +75,7 @@ def averaging_map(
     shape = (chosen.size, frequencies.size)
     exact, averaged = (np.full(shape, _NONE, dtype=np.int8) for _ in range(2))
     error, swing = np.full(shape, np.nan), np.full(shape, np.nan)
-    done = 0
+    done, stopped = 0, False
     try:
         for row, value in enumerate(chosen):
             changed = with_parameters(model, motion, **{parameter: float(value)})
@@ -95,6 +95,7 @@ def averaging_map(
     except KeyboardInterrupt:
         if not done:
             raise
+        stopped = True
     dims = (parameter, "angular_frequency")
     states = {"long_name": "1 stable, 0 unstable, -1 no such rolling"}
     found = xr.Dataset(
@@ -115,7 +116,7 @@ def averaging_map(
             "provenance": json.dumps(provenance_of_run(model, motion)),
         },
     )
-    if done < chosen.size:
+    if stopped:
         message = f"stopped after {done} of {plural(chosen.size, 'value')}, which `partial` has"
         raise Interrupted(message, found)
     return found

@@ -147,7 +147,7 @@ def slow_sweep(
             break
         try:
             found = hold.followed(at[moving], periods[step][moving], state[0][moving], state[1][moving])
-        except Interrupted:
+        except KeyboardInterrupt:
             message = "interrupted; `partial` has the steps that were done"
             raise Interrupted(message, result()) from None
         for name, column in found.items():

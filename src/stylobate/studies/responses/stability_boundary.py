@@ -129,9 +129,9 @@ def stability_boundary(
         )
 
     for done, value in enumerate(chosen):
-        report_of(progress)(done, chosen.size)
-        at = with_parameters(model, motion, **{parameter: float(value)})
         try:
+            report_of(progress)(done, chosen.size)
+            at = with_parameters(model, motion, **{parameter: float(value)})
             branch = _rolling(*at, frequencies, sense)
             if isinstance(branch, NoOrbitError):
                 reason = branch
