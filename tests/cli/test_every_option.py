@@ -158,9 +158,6 @@ def nothing_is_computed(monkeypatch, tmp_path):
             started("an address")
         raise ComputedError(repr(exactly((arguments, sorted(options.items()), opened, cases))))
 
-    # What is to be computed is compared in all its digits.
-    monkeypatch.setattr("stylobate.quantities.four_digits", repr)
-    monkeypatch.setattr("stylobate.quantities._in_repr", lambda _: True)
     cases, of = [], VerdictOfCase.of
 
     def asked(*arguments):
