@@ -246,7 +246,7 @@ def is_declared(make: Callable[..., Any], *others: str) -> bool:
 
 @dataclass(frozen=True, slots=True)
 class Stated:
-    """The named constructor that made a value, and the arguments it was given."""
+    """The named constructor that made a value, and its arguments other than defaults."""
 
     constructor: str
     arguments: Mapping[str, Any]
@@ -264,7 +264,9 @@ def checked_arguments(make: Callable[_P, _T]) -> Callable[_P, _T]:
         checked: Any = {name: declared[name].checked(one) if name in declared else one for name, one in values.items()}
         made = make(*arguments, **checked)
         if hasattr(made, "stated"):
-            object.__setattr__(made, "stated", Stated(make.__name__, checked))
+            usual = {name: one.default for name, one in declared.items()}
+            stated = {name: value for name, value in checked.items() if value != usual.get(name)}
+            object.__setattr__(made, "stated", Stated(make.__name__, stated))
         return made
 
     return checking
