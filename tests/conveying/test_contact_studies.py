@@ -7,6 +7,7 @@ import pytest
 
 import stylobate as sb
 from stylobate.conveying import ContactClass
+from stylobate.results.summary import column_rows
 
 C = 0.1
 COLUMN = sb.Column.dimensionless(slenderness=C)
@@ -38,6 +39,31 @@ def test_counts_are_those_of_the_classes(found):
     assert found["count"].sum() == found["computed"] == found["outcome"].size
     assert found["count"].sel(class_name="slides") == (found["contact_class"] == ContactClass.SLIDES).sum()
     assert sb.plot(found).axes
+
+
+def test_a_part_that_hops_is_upright_or_rocks_and_a_flat_landing_is_marked():
+    pin = sb.Column.solid(radius=0.006, height=0.040, density=7850.0)
+    part = sb.Sliding(pin, damping=0.05, normal_restitution=0.1)
+    trough = sb.Harmonic.stroke(stroke=0.0006, frequency=50.0, angle=0.436)
+    over = {"friction_coefficient": [0.2, 0.5], "stroke": [0.0003, 0.0006]}
+    flat, askew = (sb.conveying.contact_map(part, trough, over=over, periods=30, tilt=(x, 0.0)) for x in (0.0, 1e-2))
+    names = [[ContactClass(code).name for code in row] for row in flat["contact_class"].values]
+    assert names[0] == ["SLIDES", "HOPS_UPRIGHT"]  # μ < c, throw number 0.64 and 1.28
+    assert set(names[1]) == {"HOPS_AND_ROCKS"}  # μ > c
+    np.testing.assert_array_equal(flat["lands_flat"], [[False, True], [False, False]])
+    assert (askew["contact_class"] != ContactClass.HOPS_UPRIGHT).all()
+    assert not askew["lands_flat"].any()
+    assert len(sb.plot(flat).axes) == 3  # classes, peak tilt and its scale
+
+
+def test_a_friction_coefficient_that_equals_the_slenderness_is_told():
+    squat = sb.Column.dimensionless(slenderness=0.3)
+    for over in ({"friction_coefficient": [0.2, 0.3]}, {"slenderness": [0.5, 0.4]}):
+        given = {**over, "acceleration": [0.1]}
+        with pytest.warns(sb.errors.UnlikelyInputWarning, match="friction coefficient equals the slenderness"):
+            sb.conveying.contact_map(sb.Sliding(squat, friction_coefficient=0.5), LINE, over=given, periods=2.0)
+    equal = sb.simulate(sb.Sliding(squat, friction_coefficient=0.3), LINE, duration=2.0)
+    assert any("equals the slenderness c = 0.3" in line for line in equal.warnings)
 
 
 def test_a_map_of_contacts_needs_a_contact_that_slips():
@@ -73,3 +99,11 @@ def test_bad_questions_are_told():
         sb.conveying.contact_map(
             model, LINE, over={"acceleration": [0.1], "friction_coefficient": [0.1]}, periods=2.0, least_share=1.5
         )
+
+
+@pytest.mark.parametrize(("friction", "line"), [(0.05, "slides above"), (0.2, "uplifts above")])
+def test_the_acceleration_in_a_summary_is_that_of_the_first_motion(friction, line):
+    model = sb.Sliding(COLUMN, friction_coefficient=friction)
+    (_, (name, value)) = column_rows(COLUMN, model.rest_capacity)
+    assert name == line
+    assert float(value.split()[0]) == pytest.approx(min(friction, C) * COLUMN.gravity, rel=1e-4)

@@ -2,11 +2,13 @@ from . import config
 from .contact_maps import ContactClass, contact_classes, contact_map
 from .figures.slipping_boundary import plot_slipping_boundary
 from .motion_onset import start_boundary
+from .posture import Posture, upright
 from .slip_limits import RollingRegime, slipping_boundary
 from .transport import drift
 
 __all__ = [
     "ContactClass",
+    "Posture",
     "RollingRegime",
     "config",
     "contact_classes",
@@ -15,4 +17,5 @@ __all__ = [
     "plot_slipping_boundary",
     "slipping_boundary",
     "start_boundary",
+    "upright",
 ]

@@ -1,12 +1,15 @@
-"""Configuration of a drift: shared case, and one or two quantities with their values."""
+"""Configurations of studies of conveyors: a drift, and the posture of a part."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any, Self
+
+from pydantic import Field
 
 from stylobate.config.axis import Axis
 from stylobate.config.description import Config, built
 from stylobate.config.many_runs import ManyRuns, common_values, name_of, refuse_design, with_numbers_that_vary
 from stylobate.config.simulation import Setup
+from stylobate.conveying.posture import KIND, PERIODS, PHASES, TILTS
 
 _PERIODS = 60.0
 """Default duration of a run in periods of its base motion."""
@@ -90,3 +93,79 @@ class DriftConfig(ManyRuns):
         for name in ("duration", "rules"):
             del options[name]
         return Setup(model, motion, {"over": over, "late": self.drift.late, **options})
+
+
+class Starts(Config):
+    """The initial tilts and phases of a part.
+
+    Parameters
+    ----------
+    tilts
+        Initial tilt angles [rad].
+    phases
+        Number of phases at which the vibration starts.
+    friction
+        Friction coefficients, each as probable; that of the model by default.
+    azimuth
+        Azimuth of the initial tilt [rad]; spread over all directions by default.
+    confidence
+        Confidence level of intervals.
+    """
+
+    tilts: tuple[float, ...] = TILTS
+    phases: int = PHASES
+    friction: tuple[float, ...] | None = None
+    azimuth: float | None = None
+    confidence: float = 0.9
+
+
+class UprightConfig(ManyRuns):
+    """Configuration of a posture: `column`, `model`, `motion`, options of all runs, and the table `upright`."""
+
+    upright: Starts = Field(default_factory=Starts)
+
+    @classmethod
+    def parse(cls, values: Mapping[str, Any]) -> Self:
+        """Validate these `values`."""
+        return super().parse({"periods": PERIODS, **values})
+
+    @classmethod
+    def of_saved(cls, provenance: Mapping[str, Any], axes: Mapping[str, Sequence[float]]) -> Self:
+        """Create the configuration that repeats a saved posture.
+
+        Parameters
+        ----------
+        provenance
+            Provenance of the posture.
+        axes
+            Not used.
+
+        Raises
+        ------
+        UnsupportedError
+            If descriptions do not support the model or base motion of the posture.
+        """
+        del axes
+        settings = dict(provenance[KIND])
+        values = common_values(provenance)
+        for name in ("tilt", "duration"):  # the table has them
+            values.pop(name, None)
+        return cls.parse({**values, "periods": settings.pop("periods"), "upright": settings})
+
+    def build(self) -> Setup:
+        """Build model and motion; the options are arguments of `stylobate.conveying.upright`.
+
+        Raises
+        ------
+        ConfigError
+            With one line per invalid part.
+        """
+        problems: list[str] = []
+        if self.duration is not None or self.periods is None:
+            problems.append("duration: runs last a number of periods. Set `periods` of the base motion instead.")
+        if self.tilt != (0.0, 0.0):
+            problems.append("tilt: runs start at the tilts of the table `upright`. Set `tilts` there instead.")
+        model, motion, options = self.common(problems)
+        for name in ("duration", "tilt"):
+            del options[name]
+        return Setup(model, motion, {**self.upright.model_dump(), **options})

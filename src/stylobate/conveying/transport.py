@@ -1,6 +1,6 @@
 """Mean transport velocity and mean rate of rotation of a column on a vibrating base."""
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from pathlib import Path
 from typing import Unpack
 
@@ -9,7 +9,7 @@ import numpy.typing as npt
 import xarray as xr
 
 from stylobate.base_motions import BASE_AT_REST, BaseMotion
-from stylobate.conveying.contact_maps import contact_classes
+from stylobate.conveying.contact_maps import contact_classes, lands_flat, remark_on_knife_edge
 from stylobate.engine.parameters import with_parameters
 from stylobate.errors import Outcome, ParameterError, UnsupportedError, require_whole
 from stylobate.models import Model
@@ -82,13 +82,7 @@ def drift(
     >>> found["mean_velocity"].sel(axis="x").values.round(3).tolist()    # down the slope
     [0.0, 0.388]
     """
-    if not model.switches:
-        message = f"model {model.name} assumes permanent contact without slip. A drift needs Sliding(column)."
-        raise UnsupportedError(message)
-    if not isinstance(motion, BaseMotion) or (motion.period is None and "angular_frequency" not in over):
-        got = "a base at rest" if motion in (None, BASE_AT_REST) else repr(motion)
-        message = f"a drift needs a periodic base motion, such as an oblique one; got {got}"
-        raise UnsupportedError(message)
+    require_conveyor(model, motion, "drift", varied=over)
     if not isinstance(over, Mapping) or not 1 <= len(over) <= _MOST_NAMES:
         message = f'over must name one or two parameters, such as "friction_coefficient"; got {over!r}'
         raise ParameterError(message)
@@ -97,6 +91,7 @@ def drift(
         message = f"periods must be at least one more than late, which is {late}; got {periods!r}"
         raise ParameterError(message)
     require_values("over", over)
+    remark_on_knife_edge("over", model, over)
     options["rules"] = OutcomeRules(periods=late)
     sweep = Sweep.grid(model, motion, over=over, periods=periods, **options)
 
@@ -104,6 +99,23 @@ def drift(
         return drift_of_runs(runs, model, motion)
 
     return labelled_sweep(sweep, label, store=store, executor=executor, resume=resume, progress=progress)
+
+
+def require_conveyor(model: Model, motion: BaseMotion, study: str, *, varied: Collection[str] = ()) -> None:
+    """Raise UnsupportedError unless the contact of the model changes and the base motion has a period."""
+    if not model.switches:
+        message = f"model {model.name} assumes permanent contact without slip. A {study} needs Sliding(column)."
+        raise UnsupportedError(message)
+    if not isinstance(motion, BaseMotion) or (motion.period is None and "angular_frequency" not in varied):
+        got = "a base at rest" if motion in (None, BASE_AT_REST) else repr(motion)
+        message = f"a {study} needs a periodic base motion, such as an oblique one; got {got}"
+        raise UnsupportedError(message)
+
+
+def throw_number_of(model: Model, motion: BaseMotion) -> float:
+    """Compute the throw number: the peak downward acceleration of the base over gravity along its normal."""
+    low, _ = motion.vertical_range(0.0)
+    return -low / (model.column.gravity * (1.0 + model.slope[2]))
 
 
 def drift_of_runs(runs: xr.Dataset, model: Model, motion: BaseMotion) -> xr.Dataset:
@@ -118,13 +130,14 @@ def drift_of_runs(runs: xr.Dataset, model: Model, motion: BaseMotion) -> xr.Data
         mean_twist_rate=turning,
         transport_speed=speed.assign_attrs(units="m s-1", long_name="mean transport speed"),
         contact_class=contact_classes(runs),
+        lands_flat=lands_flat(runs),
         throw_number=_throw_numbers(runs, model, motion),
         computed=((), int((runs["outcome"] != NOT_COMPUTED).sum()), {"units": "1", "long_name": "runs computed"}),
     ).assign_attrs(kind="drift")
 
 
 def _throw_numbers(runs: xr.Dataset, model: Model, motion: BaseMotion) -> xr.DataArray:
-    """Return the largest downward acceleration of each base over gravity along its normal."""
+    """Return the throw number of each run."""
     names = [str(dim) for dim in runs["outcome"].dims]
     values = np.empty(runs["outcome"].shape)
     for place in np.ndindex(*values.shape):
@@ -133,7 +146,5 @@ def _throw_numbers(runs: xr.Dataset, model: Model, motion: BaseMotion) -> xr.Dat
             for name, index in zip(names, place, strict=True)
             if name not in OF_A_RUN
         }
-        changed, moved = with_parameters(model, motion, **chosen)
-        low, _ = moved.vertical_range(0.0)
-        values[place] = -low / (changed.column.gravity * (1.0 + changed.slope[2]))
+        values[place] = throw_number_of(*with_parameters(model, motion, **chosen))
     return xr.DataArray(values, dims=names, attrs={"units": "1", "long_name": "throw number"})
