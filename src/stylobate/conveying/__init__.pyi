@@ -4,12 +4,13 @@ from .figures.slipping_boundary import plot_slipping_boundary
 from .motion_onset import start_boundary
 from .posture import Posture, upright
 from .slip_limits import RollingRegime, slipping_boundary
-from .transport import drift
+from .transport import Transport, drift
 
 __all__ = [
     "ContactClass",
     "Posture",
     "RollingRegime",
+    "Transport",
     "config",
     "contact_classes",
     "contact_map",

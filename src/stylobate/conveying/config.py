@@ -10,6 +10,7 @@ from stylobate.config.description import Config, built
 from stylobate.config.many_runs import ManyRuns, common_values, name_of, refuse_design, with_numbers_that_vary
 from stylobate.config.simulation import Setup
 from stylobate.conveying.posture import KIND, PERIODS, PHASES, TILTS
+from stylobate.conveying.transport import CONFIDENCE, MOST_PERIODS, TOLERANCE
 
 _PERIODS = 60.0
 """Default duration of a run in periods of its base motion."""
@@ -25,12 +26,21 @@ class Varied(Config):
     y
         Values of a second quantity.
     late
-        Number of last periods over which means are taken.
+        Number of last periods of the initial runs over which means are taken.
+    tolerance
+        Relative half-width of the interval of a speed.
+    most_periods
+        Maximum duration of a run in periods of its base motion.
+    confidence
+        Confidence level of the intervals.
     """
 
     x: Axis
     y: Axis | None = None
     late: int = 20
+    tolerance: float = TOLERANCE
+    most_periods: float = MOST_PERIODS
+    confidence: float = CONFIDENCE
 
 
 class DriftConfig(ManyRuns):
@@ -68,7 +78,8 @@ class DriftConfig(ManyRuns):
         values = common_values(provenance)
         late = int(dict(values.pop("rules", {})).get("periods", Varied.model_fields["late"].default))
         listed = ({"name": name, "values": list(values)} for name, values in axes.items())
-        return cls.parse({**values, "drift": {**dict(zip("xy", listed, strict=False)), "late": late}})
+        settings = {name: value for name, value in dict(provenance.get("drift", {})).items() if value is not None}
+        return cls.parse({**values, "drift": {**dict(zip("xy", listed, strict=False)), "late": late, **settings}})
 
     def build(self) -> Setup:
         """Build model and motion; the options are arguments of `stylobate.conveying.drift`.
@@ -92,7 +103,7 @@ class DriftConfig(ManyRuns):
         model, motion, options = self.common(problems)
         for name in ("duration", "rules"):
             del options[name]
-        return Setup(model, motion, {"over": over, "late": self.drift.late, **options})
+        return Setup(model, motion, {"over": over, **self.drift.model_dump(exclude={"x", "y"}), **options})
 
 
 class Starts(Config):
