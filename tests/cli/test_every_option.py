@@ -66,6 +66,7 @@ BASES = {
     "basin": [(*COLUMN, *DRIVEN, *STARTS, "--periods", "3"), (*COLUMN, *DRIVEN, *SAMPLE, "--periods", "3")],
     "drift": [words("--radius 0.02 --height 0.03 --density 7800 --x acceleration 2 3 2") + MOTIONS["oblique"]],
     "upright": [words("--radius 0.02 --height 0.03 --density 7800") + MOTIONS["oblique"]],
+    "feeder": [words("--radius 0.02 --height 0.03 --density 7800") + MOTIONS["oblique"]],
     "spectrum": [
         (*COLUMN, *PULSE, *SCALES),
         (*COLUMN, *PULSE, "--rocking", *words("--x size 1 2 3")),
@@ -87,6 +88,7 @@ COMPUTING = (
     *(
         "conveying.drift",
         "conveying.upright",
+        "conveying.sheet",
         "earthquakes.overturning_intervals",
         "earthquakes.rocking_spectrum",
         "earthquakes.FragilityStudy.runs",

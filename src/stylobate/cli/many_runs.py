@@ -152,7 +152,7 @@ def computed(
         After Ctrl-C before the first run is complete: there is nothing to write.
     """
     store, resume = _store(options), options["resume"]
-    executor = _executor(options["executor"], options["threads"])
+    executor = executor_of(options)
     options.refuse_unused()
     try:
         with runs_done(what) as progress:
@@ -208,7 +208,9 @@ def _store(options: Options) -> Path | None:
     raise ParameterError(message)
 
 
-def _executor(text: str | None, threads: int | None) -> "Threads | Dask":
+def executor_of(options: Options) -> "Threads | Dask":
+    """Return the executor that the options choose."""
+    text, threads = options["executor"], options["threads"]
     if text in (None, "threads"):
         return studies.Threads(threads)
     chosen = studies.executor_from(str(text))

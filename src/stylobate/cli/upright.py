@@ -20,15 +20,18 @@ if TYPE_CHECKING:
     import xarray as xr
 
 KIND = "upright"
-_STARTS = ("tilts", "phases", "friction", "azimuth", "confidence")
-
-
-@command(
+STARTS = (
     Option("tilts", "initial tilt angle [rad]; repeat it. 0, 1e-5, 1e-3 and 1e-2 by default", list[float]),
     Option("phases", "number of phases at which the vibration starts; 64 by default", int),
     Option("friction", "friction coefficient; repeat it for several, each as probable", list[float]),
     Option("azimuth", "azimuth of the initial tilt [rad]; spread over all directions by default"),
     Option("confidence", "confidence level of intervals; 0.9 by default"),
+)
+"""Options of the table `upright`."""
+
+
+@command(
+    *STARTS,
     argument="TOML description, or a saved result (.nc) to show or repeat",
     groups=(
         run_numbers(SharedByRuns).without("duration", "tilt"),
@@ -65,7 +68,7 @@ def upright(options: Options) -> None:
 def _prepared(saved: "xr.Dataset | None", options: Options) -> "tuple[Callable[..., xr.Dataset], config.Setup]":
     kind = conveying.config.UprightConfig
     values = study_values(saved, options, kind, {"model": {"kind": "sliding"}})
-    merge(values, KIND, options.pick(*_STARTS))
+    merge(values, KIND, options.pick(*(one.name for one in STARTS)))
     return conveying.upright, kind.parse(values).build()
 
 

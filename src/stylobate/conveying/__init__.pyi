@@ -1,5 +1,6 @@
 from . import config
 from .contact_maps import ContactClass, contact_classes, contact_map
+from .feeder import sheet, sheet_rows
 from .figures.slipping_boundary import plot_slipping_boundary
 from .motion_onset import start_boundary
 from .posture import Posture, upright
@@ -16,6 +17,8 @@ __all__ = [
     "contact_map",
     "drift",
     "plot_slipping_boundary",
+    "sheet",
+    "sheet_rows",
     "slipping_boundary",
     "start_boundary",
     "upright",

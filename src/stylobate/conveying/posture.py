@@ -126,8 +126,9 @@ def upright(
     Notes
     -----
     The verdict is "does not fall" if the interval of the share that falls lies below 5 %, "falls" if it lies above
-    95 %, else "may fall"; it is "stays upright" if the interval of the share upright lies above 95 %. The shares depend
-    on the tilts: choose those of your process. The intervals treat phases and azimuths as drawn at random.
+    95 %, else "may fall", or "undecided" if none of too few runs falls. It is "stays upright" if the interval of the
+    share upright lies above 95 %. The shares depend on the tilts: choose those of your process. The intervals treat
+    phases and azimuths as drawn at random.
 
     Examples
     --------
@@ -292,7 +293,8 @@ def _line(ends: Floats, counts: npt.NDArray[np.bool_], settings: dict[str, Any],
     if shares[Posture.UPRIGHT][1] >= 1.0 - CLEAR:
         word, first, verbs = "stays upright", Posture.UPRIGHT, {Posture.ROCKING: "rock", Posture.FALLEN: "fall"}
     else:
-        word = _FALLS[word_of(*shares[Posture.FALLEN][1:].tolist())]
+        share, low, high = shares[Posture.FALLEN].tolist()
+        word = _FALLS[word_of(low, high)] if share > 0.0 or high <= CLEAR else "undecided"
         first, verbs = Posture.FALLEN, {Posture.ROCKING: "rock", Posture.UPRIGHT: "stay upright"}
     share, low, high = shares[first]
     interval = f"{percent(settings['confidence'])} interval {percent(low).removesuffix(' %')} to {percent(high)}"
