@@ -388,14 +388,30 @@ def is_declared(make: Callable[..., Any], *others: str) -> bool:
     return is_dataclass(make) and _argument_names(make) <= {*parameters_of(make), *others}
 
 
+@dataclass(frozen=True, slots=True)
+class Stated:
+    """The named constructor that made a value, and its arguments other than defaults."""
+
+    constructor: str
+    arguments: Mapping[str, Any]
+
+
 def checked_arguments(make: Callable[_P, _T]) -> Callable[_P, _T]:
-    """Check and convert the declared arguments of a named constructor, as `check_declared` does; a decorator."""
+    """Check and convert the declared arguments of a named constructor, as `check_declared` does; a decorator.
+
+    A value with a field `stated` keeps the arguments there. Of constructors that call each other, the outermost counts.
+    """
 
     @wraps(make)
     def checking(*arguments: _P.args, **values: _P.kwargs) -> _T:
         declared = parameters_of(make)
         checked: Any = {name: declared[name].checked(one) if name in declared else one for name, one in values.items()}
-        return make(*arguments, **checked)
+        made = make(*arguments, **checked)
+        if hasattr(made, "stated"):
+            usual = {name: one.default for name, one in declared.items()}
+            stated = {name: value for name, value in checked.items() if value != usual.get(name)}
+            object.__setattr__(made, "stated", Stated(make.__name__, stated))
+        return made
 
     return checking
 

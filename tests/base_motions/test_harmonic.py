@@ -1,6 +1,8 @@
 """Harmonic motions: derivatives, bounds, and every named constructor against numbers worked out by hand."""
 
 import math
+import pickle
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -8,6 +10,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import stylobate as sb
+from stylobate.base_motions.varying import value_of, with_numbers
+from stylobate.config.motions import describe_motion
 from stylobate.errors import ParameterError
 
 amplitudes = st.floats(-5.0, 5.0)
@@ -204,6 +208,51 @@ def test_impossible_numbers_are_refused_by_name(make, options, name):
     with pytest.raises(ParameterError, match=rf"^{name}\b") as caught:
         make(**options)
     assert "got" in str(caught.value)
+
+
+STATED = [
+    sb.Harmonic.stroke(stroke=0.0012, frequency=50.0, angle=0.4, start_phase=0.3),
+    sb.Harmonic.orbit(diameter=0.02, rpm=300.0, sense=-1),
+    sb.Harmonic.oblique(acceleration=2.0, angular_frequency=30.0, angle=0.5),
+    sb.Harmonic.displacement_amplitude(amplitude=(1e-3, 0.0, 2e-3), phase=(0.0, 0.0, 0.7), angular_frequency=90.0),
+    sb.Harmonic.circular(acceleration=0.3, angular_frequency=2.0, ramp=1.0),
+    sb.Harmonic.elliptic(amplitude=(0.3, 0.2), phase=0.4, angular_frequency=2.0),
+    sb.Harmonic.vertical(acceleration=3.0, angular_frequency=2.0),
+]
+
+
+@pytest.mark.parametrize("motion", STATED, ids=lambda motion: motion.stated.constructor)
+def test_a_motion_keeps_the_numbers_of_its_constructor(motion):
+    for again in (
+        eval(repr(motion), {"Harmonic": sb.Harmonic}),  # noqa: S307
+        pickle.loads(pickle.dumps(motion)),  # noqa: S301
+        describe_motion(motion).build(),
+    ):
+        assert again == motion
+        assert repr(again) == repr(motion)
+    assert describe_motion(motion).kind == motion.stated.constructor
+    # Numbers of the components replace those of the constructor.
+    assert replace(motion, amplitude=(1.0, 2.0, 3.0)).stated is None
+
+
+def test_numbers_of_the_constructor_change_as_if_stated_anew():
+    stroke = sb.Harmonic.stroke(stroke=0.0012, frequency=50.0, angle=0.4)
+    other = sb.Harmonic.stroke(stroke=0.0005, frequency=30.0, angle=-0.2, start_phase=1.0)
+    changed = with_numbers(stroke, {"stroke": 0.0005, "frequency": 30.0, "angle": -0.2, "start_phase": 1.0})
+    assert changed == other
+    assert repr(changed) == repr(other)
+    assert [value_of(stroke, name) for name in ("stroke", "angle", "direction")] == [0.0012, 0.4, 0.0]
+
+
+def test_an_angular_frequency_keeps_the_acceleration_and_a_frequency_the_path():
+    stroke = sb.Harmonic.stroke(stroke=0.0012, frequency=50.0, angle=0.4)
+    faster = with_numbers(stroke, {"angular_frequency": 400.0})
+    assert faster.amplitude == stroke.amplitude
+    assert faster.stated is None
+    circle = sb.Harmonic.circular(acceleration=0.3, angular_frequency=2.0)
+    assert with_numbers(circle, {"angular_frequency": 3.0}).stated.arguments["angular_frequency"] == 3.0
+    doubled = with_numbers(stroke, {"frequency": 100.0})
+    assert doubled.peak_horizontal() == pytest.approx(4.0 * stroke.peak_horizontal(), rel=1e-15)
 
 
 def test_a_motion_is_a_value():

@@ -67,6 +67,8 @@ BASES = {
     ],
     "basin": [(*COLUMN, *DRIVEN, *STARTS, "--periods", "3"), (*COLUMN, *DRIVEN, *SAMPLE, "--periods", "3")],
     "drift": [words("--radius 0.02 --height 0.03 --density 7800 --x acceleration 2 3 2") + MOTIONS["oblique"]],
+    "upright": [words("--radius 0.02 --height 0.03 --density 7800") + MOTIONS["oblique"]],
+    "feeder": [words("--radius 0.02 --height 0.03 --density 7800") + MOTIONS["oblique"]],
     "spectrum": [
         (*COLUMN, *PULSE, *SCALES),
         (*COLUMN, *PULSE, "--rocking", *words("--x size 1 2 3")),
@@ -87,6 +89,8 @@ COMPUTING = (
     *("studies.stability_boundary", "studies.overturning_map", "conveying.contact_map", "studies.basins"),
     *(
         "conveying.drift",
+        "conveying.upright",
+        "conveying.sheet",
         "earthquakes.overturning_intervals",
         "earthquakes.rocking_spectrum",
         "earthquakes.FragilityStudy.runs",

@@ -164,6 +164,19 @@ def test_a_map_by_another_method_does_not_go_on_with_a_store(tmp_path, capsys):
     assert "method was 'dop853', is 'taylor'" in capsys.readouterr().err
 
 
+def test_stroke_and_angle_of_a_feeder_make_a_map(tmp_path, saved, capsys):
+    path = tmp_path / "map.nc"
+    pin = ["--radius", "0.006", "--height", "0.04", "--density", "7850", "--friction-coefficient", "0.2"]
+    feeder = ["--motion", "stroke", "--frequency", "50", "--periods", "5"]
+    plane = ["--x", "stroke", "0.0003", "0.0009", "2", "--y", "angle", "0.3", "0.5", "3"]
+    assert run(["map", *pin, "--model", "sliding", *feeder, *plane, "--output", str(path)]) == 0
+    assert "6 runs over stroke and angle" in capsys.readouterr().out
+    found = saved(path)
+    assert found["stroke"].attrs["units"] == "m"
+    motion = json.loads(found.attrs["provenance"])["motion"]
+    assert (motion["kind"], motion["frequency"]) == ("stroke", 50.0)
+
+
 def test_the_number_of_threads_changes_nothing(tmp_path, saved):
     for name, more in (("one.nc", ["--threads", "1"]), ("all.nc", ["--executor", "threads"])):
         assert run([*MAP, *more, "--output", str(tmp_path / name)]) == 0

@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 
 import stylobate as sb
-from stylobate.conveying import ContactClass
+from stylobate.conveying import ContactClass, Transport
+from stylobate.conveying.transport import half_width
+from stylobate.results.summary import column_rows
 
 C = 0.1
 COLUMN = sb.Column.dimensionless(slenderness=C)
@@ -38,6 +40,31 @@ def test_counts_are_those_of_the_classes(found):
     assert found["count"].sum() == found["computed"] == found["outcome"].size
     assert found["count"].sel(class_name="slides") == (found["contact_class"] == ContactClass.SLIDES).sum()
     assert sb.plot(found).axes
+
+
+def test_a_part_that_hops_is_upright_or_rocks_and_a_flat_landing_is_marked():
+    pin = sb.Column.solid(radius=0.006, height=0.040, density=7850.0)
+    part = sb.Sliding(pin, damping=0.05, normal_restitution=0.1)
+    trough = sb.Harmonic.stroke(stroke=0.0006, frequency=50.0, angle=0.436)
+    over = {"friction_coefficient": [0.2, 0.5], "stroke": [0.0003, 0.0006]}
+    flat, askew = (sb.conveying.contact_map(part, trough, over=over, periods=30, tilt=(x, 0.0)) for x in (0.0, 1e-2))
+    names = [[ContactClass(code).name for code in row] for row in flat["contact_class"].values]
+    assert names[0] == ["SLIDES", "HOPS_UPRIGHT"]  # μ < c, throw number 0.64 and 1.28
+    assert set(names[1]) == {"HOPS_AND_ROCKS"}  # μ > c
+    np.testing.assert_array_equal(flat["lands_flat"], [[False, True], [False, False]])
+    assert (askew["contact_class"] != ContactClass.HOPS_UPRIGHT).all()
+    assert not askew["lands_flat"].any()
+    assert len(sb.plot(flat).axes) == 3  # classes, peak tilt and its scale
+
+
+def test_a_friction_coefficient_that_equals_the_slenderness_is_told():
+    squat = sb.Column.dimensionless(slenderness=0.3)
+    for over in ({"friction_coefficient": [0.2, 0.3]}, {"slenderness": [0.5, 0.4]}):
+        given = {**over, "acceleration": [0.1]}
+        with pytest.warns(sb.errors.UnlikelyInputWarning, match="friction coefficient equals the slenderness"):
+            sb.conveying.contact_map(sb.Sliding(squat, friction_coefficient=0.5), LINE, over=given, periods=2.0)
+    equal = sb.simulate(sb.Sliding(squat, friction_coefficient=0.3), LINE, duration=2.0)
+    assert any("equals the slenderness c = 0.3" in line for line in equal.warnings)
 
 
 def test_a_map_of_contacts_needs_a_contact_that_slips():
@@ -73,3 +100,78 @@ def test_bad_questions_are_told():
         sb.conveying.contact_map(
             model, LINE, over={"acceleration": [0.1], "friction_coefficient": [0.1]}, periods=2.0, least_share=1.5
         )
+
+
+@pytest.mark.parametrize(("friction", "line"), [(0.05, "slides above"), (0.2, "uplifts above")])
+def test_the_acceleration_in_a_summary_is_that_of_the_first_motion(friction, line):
+    model = sb.Sliding(COLUMN, friction_coefficient=friction)
+    (_, (name, value)) = column_rows(COLUMN, model.rest_capacity)
+    assert name == line
+    assert float(value.split()[0]) == pytest.approx(min(friction, C) * COLUMN.gravity, rel=1e-4)
+
+
+PIN = sb.Column.solid(radius=0.006, height=0.040, density=7850.0)
+FEEDER = sb.Harmonic.stroke(stroke=0.0012, frequency=50.0, angle=0.436)
+
+
+def test_strobed_footprints_are_those_of_the_run():
+    part = sb.Sliding(PIN, friction_coefficient=0.2)
+    motion = sb.Harmonic.stroke(stroke=0.0003, frequency=50.0, angle=0.436, start_phase=1.0)
+    runs = sb.simulate_ensemble(part, motion, tilt=np.array([[0.0, 0.0], [0.01, 0.002]]), duration=0.1, strobes=4)
+    first = (-1.0 / (2.0 * math.pi) % 1.0) * motion.period
+    times = first + motion.period * np.arange(5)
+    for place, tilt in enumerate([(0.0, 0.0), (0.01, 0.002)]):
+        alone = sb.simulate(part, motion, tilt=tilt, duration=0.1).sample(times[-4:])
+        # Chaos enlarges the rounding of the two recordings, dense output and stop, over a few impacts.
+        np.testing.assert_allclose(runs["strobe_footprint"][place], alone["footprint"], atol=1e-9)
+        np.testing.assert_allclose(runs["strobe_twist"][place], alone["twist"], atol=1e-6)
+
+
+def test_the_interval_of_a_mean_covers_it_as_often_as_its_confidence_says():
+    # An autoregressive series of mean 0: means of long batches are nearly independent.
+    draws = np.random.default_rng(1).normal(size=(2000, 400))
+    series = draws.copy()
+    for k in range(1, series.shape[1]):
+        series[:, k] += 0.5 * series[:, k - 1]
+    covered = np.mean([abs(one.mean()) <= half_width(one, 0.9) for one in series])
+    assert covered == pytest.approx(0.92, abs=0.03)  # the correlation of ten means only widens the interval
+    assert half_width(np.ones(40), 0.9) == 0.0
+    assert math.isnan(half_width(np.ones(3), 0.9))
+    # A motion over two periods has equal batches.
+    assert half_width(np.tile([1.0, 3.0], 20), 0.9) == 0.0
+
+
+def test_a_chaotic_drift_is_repeated_until_its_speed_is_known_and_agrees_with_a_long_run():
+    part = sb.Sliding(PIN, friction_coefficient=0.2, normal_restitution=0.3)
+    over = {"start_phase": [0.0, 1.0]}
+    short = sb.conveying.drift(part, FEEDER, over=over, tolerance=None)
+    known = sb.conveying.drift(part, FEEDER, over=over, tolerance=0.03)
+    assert (short["periods_computed"] == pytest.approx(60.0)).all()
+    assert (known["periods_computed"] >= 120.0 - 1e-9).all()
+    assert (known["transport"] == Transport.KNOWN).all()
+    half = known["speed_high"] - known["transport_speed"]
+    assert (half <= 0.03 * known["transport_speed"]).all()
+    long = sb.conveying.drift(part, FEEDER, over={"start_phase": [0.5]}, periods=3000, late=2900, tolerance=None)
+    # Three half-widths of 90 % intervals are about five standard errors.
+    assert (np.abs(known["transport_speed"] - float(long["transport_speed"][0])) <= 3.0 * half).all()
+    assert "strobe_tilt" not in known
+
+
+def test_a_periodic_drift_is_known_at_once_with_its_bits():
+    part = sb.Sliding(PIN, friction_coefficient=0.2)
+    over = {"stroke": [0.0003, 0.0006]}
+    plain, refined = (sb.conveying.drift(part, FEEDER, over=over, tolerance=one) for one in (None, 0.02))
+    np.testing.assert_array_equal(plain["mean_velocity"], refined["mean_velocity"])
+    assert (refined["periods_computed"] == pytest.approx(60.0)).all()
+    assert (refined["transport"] == Transport.KNOWN).all()
+
+
+def test_beyond_the_friction_angle_a_part_accelerates_and_has_no_mean_velocity():
+    weak = sb.Harmonic.stroke(stroke=0.0003, frequency=50.0, angle=0.3)
+    steep = sb.Sliding(PIN, friction_coefficient=0.2, incline=0.22)  # tan 0.22 = 0.224
+    found = sb.conveying.drift(steep, weak, over={"friction_coefficient": [0.2, 0.25]}, periods=30)
+    assert [Transport(code).name for code in found["transport"].values] == ["ACCELERATES", "KNOWN"]
+    assert np.isnan(found["mean_velocity"][0]).all()
+    assert found["periods_computed"][0] == pytest.approx(30.0)
+    speed = sb.theory.mean_block_speed(1.0, 0.2, static_friction=0.2, incline=0.22)
+    assert np.isinf(speed)

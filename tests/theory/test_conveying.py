@@ -390,6 +390,21 @@ def ripples(case):
     return 10.0 / (1.0 - np.abs(np.roots([1.0, -trace, e**2])).max())
 
 
+@pytest.mark.parametrize("periods", [1, 2])
+def test_inelastic_hops_last_whole_periods_on_their_plateau_and_nowhere_else(periods):
+    # A flight of n periods that leaves where it lands has the speed nπ of its base, and is stable up to the second end.
+    first, last = (math.hypot(start, periods * math.pi) for start in (1.0, 2.0))
+    for normal in (first + 0.02, 0.5 * (first + last), last - 0.02):
+        cycle = block_cycle(0.0, normal, static_friction=0.3, cycles=3000)
+        assert cycle.period == periods
+        assert cycle.fraction[BlockPhase.FLIGHT] == pytest.approx(1.0, abs=1e-9)
+    below, above = (
+        block_cycle(0.0, normal, static_friction=0.3, cycles=3000) for normal in (first - 0.02, last + 0.02)
+    )
+    assert below.fraction[BlockPhase.FLIGHT] < 1.0 - 1e-4
+    assert above.period == 2 * periods
+
+
 @pytest.mark.parametrize("case", HOPPING)
 def test_hopping_from_rest_conveys_as_the_bouncing_ball_tells(case):
     cycle = cycle_of(case)

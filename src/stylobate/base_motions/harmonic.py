@@ -2,9 +2,9 @@
 
 import cmath
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from typing import Annotated, ClassVar, Self
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Annotated, Any, ClassVar, Self
 
 import numpy as np
 import numpy.typing as npt
@@ -25,7 +25,7 @@ from stylobate.base_motions.numbers import (
     StartPhase,
 )
 from stylobate.errors import ParameterError
-from stylobate.quantities import Quantity, checked_arguments, stating
+from stylobate.quantities import Quantity, Stated, checked_arguments, stating
 
 # Below this |z| the series of the integrals of exp is more accurate than their closed form.
 _SERIES_RADIUS = 0.5
@@ -37,7 +37,8 @@ class Harmonic(BaseMotion):
     """Harmonic base acceleration a_i cos(Ωt + start_phase + φ_i) along x, y and z, with an optional ramp.
 
     Named constructors specify it by acceleration (`circular`, `straight`, `elliptic`, `vertical`, `oblique`) or by the
-    path of the base (`displacement_amplitude`, `stroke`, `orbit`).
+    path of the base (`displacement_amplitude`, `stroke`, `orbit`). A motion keeps the numbers of its constructor:
+    descriptions state them, and maps and ensembles vary them, such as `stroke`, `frequency` and `angle`.
 
     Parameters
     ----------
@@ -51,6 +52,11 @@ class Harmonic(BaseMotion):
         Phase of the whole motion at t = 0 [rad]. With 0 a harmonic motion starts at its peak.
     ramp
         Time in which the amplitude grows from 0 to its full value as ½(1 − cos(πt/ramp)) [s]; 0 for none.
+
+    Attributes
+    ----------
+    stated
+        The named constructor with its arguments; None for a motion by amplitudes and phases.
 
     Notes
     -----
@@ -68,6 +74,8 @@ class Harmonic(BaseMotion):
     array([0.65, 0.  , 0.  ])
     >>> Harmonic.orbit(diameter=0.02, rpm=300.0).peak_horizontal()  # 0.01 m (10π rad/s)²
     9.869604401089358
+    >>> Harmonic.stroke(stroke=0.0012, frequency=50.0, angle=0.4)
+    Harmonic.stroke(stroke=0.0012, frequency=50.0, angle=0.4)
     """
 
     responds: ClassVar[bool] = True
@@ -81,6 +89,19 @@ class Harmonic(BaseMotion):
     angular_frequency: AngularFrequency
     start_phase: StartPhase = 0.0
     ramp: Ramp = 0.0
+    stated: Stated | None = field(default=None, init=False, compare=False)
+
+    def __repr__(self) -> str:
+        """Write the call that makes this motion."""
+        _, numbers = self.made_by()
+        name = "" if self.stated is None else f".{self.stated.constructor}"
+        return f"{type(self).__name__}{name}({', '.join(f'{key}={value!r}' for key, value in numbers.items())})"
+
+    def made_by(self) -> tuple[Callable[..., BaseMotion], Mapping[str, Any]]:
+        """Return the named constructor that made this motion, or else the class, with its arguments."""
+        if self.stated is None:
+            return BaseMotion.made_by(self)
+        return getattr(type(self), self.stated.constructor), self.stated.arguments
 
     @classmethod
     @checked_arguments

@@ -1,4 +1,7 @@
-"""Declared numbers of a base motion by name, which studies and ensembles vary, also in scaled and rotated copies."""
+"""Declared numbers of a base motion by name, which studies and ensembles vary, also in scaled and rotated copies.
+
+They are the numbers of its class, and those of the named constructor that made it (`stated`), such as the stroke.
+"""
 
 import math
 from collections.abc import Callable, Mapping
@@ -19,7 +22,8 @@ def numbers_of(motion: BaseMotion) -> Mapping[str, Parameter]:
     """Return the declared numbers of `motion`, of its original if it is a copy, and of its waveform, by name.
 
     A motion with a `frequency` [Hz] also has an `angular_frequency` [rad/s]. `Scaled`, `Rotated`, `Delayed` and
-    `Offset` have no numbers of their own, since they apply to every motion.
+    `Offset` have no numbers of their own, since they apply to every motion. A number of the class comes before one of
+    its constructor of the same name.
     """
     found = {name: one for part in _parts(motion) for name, one in _declared(part).items() if _is_number(one)}
     return {"angular_frequency": _FREQUENCY, **found} if "frequency" in found else found
@@ -28,13 +32,19 @@ def numbers_of(motion: BaseMotion) -> Mapping[str, Parameter]:
 def value_of(motion: BaseMotion, name: str) -> float:
     """Return the declared number of this `name`; NaN if the motion has none."""
     for part in _parts(motion):
-        if name in _declared(part):
+        declared = _declared(part)
+        if name in _stated(part):
+            return float(part.stated.arguments.get(name, declared[name].default))
+        if name in declared:
             return float(getattr(part, name))
     return 2.0 * math.pi * value_of(motion, "frequency") if name == "angular_frequency" else math.nan
 
 
 def with_numbers(motion: BaseMotion, values: Mapping[str, float]) -> BaseMotion:
     """Return `motion` with some of its declared numbers changed; the others, such as the acceleration, stay.
+
+    An `angular_frequency` keeps the acceleration of a motion that was stated by its path; its `frequency` or `rpm`
+    keeps the path.
 
     Raises
     ------
@@ -49,10 +59,15 @@ def with_numbers(motion: BaseMotion, values: Mapping[str, float]) -> BaseMotion:
             numbers = f"Its numbers are {', '.join(known)}." if known else "It has none."
             message = f"{name}: the base motion has no such number (got {motion!r}). {numbers}"
             raise UnsupportedError(message)
-    if "angular_frequency" in values and "frequency" in known:
+    if "angular_frequency" in values and "frequency" in known and "frequency" not in stated_numbers(motion):
         values = {**values, "frequency": values["angular_frequency"] / (2.0 * math.pi)}
     changed: BaseMotion = _changed(motion, values)
     return changed
+
+
+def stated_numbers(motion: BaseMotion) -> Mapping[str, Parameter]:
+    """Return the numbers of `motion` that only its named constructor has, such as the stroke, by name."""
+    return {name: one for part in _parts(motion) for name, one in _stated(part).items()}
 
 
 def frequency_of(motion: BaseMotion) -> float:
@@ -68,7 +83,20 @@ def is_pulse(motion: BaseMotion) -> bool:
 def _changed(part: Any, values: Mapping[str, float]) -> Any:
     changes = {name: values[name] for name in _declared(part) if name in values and _is_own(part)}
     inner = {name: _changed(getattr(part, name), values) for name in ("motion", "waveform") if hasattr(part, name)}
+    if changes and getattr(part, "stated", None) is not None:
+        return _restated(part, changes)
     return replace(part, **changes, **inner) if changes or inner else part
+
+
+def _restated(part: Any, changes: Mapping[str, float]) -> Any:
+    """Return a motion with other numbers, made by its named constructor if that gives the same motion."""
+    make = getattr(type(part), part.stated.constructor)
+    only_stated = {name: value for name, value in changes.items() if name in _stated(part)}
+    of_class = {name: value for name, value in changes.items() if name not in only_stated}
+    arguments = {**part.stated.arguments, **only_stated}
+    changed = replace(make(**arguments), **of_class)
+    again = make(**{**arguments, **{name: of_class[name] for name in of_class if name in parameters_of(make)}})
+    return again if again == changed else changed
 
 
 def _parts(motion: BaseMotion) -> tuple[Any, ...]:
@@ -80,7 +108,18 @@ def _parts(motion: BaseMotion) -> tuple[Any, ...]:
 
 def _declared(part: object) -> Mapping[str, Parameter]:
     make: Callable[..., Any] = type(part)
-    return parameters_of(make)
+    return {**parameters_of(make), **_stated(part)}
+
+
+def _stated(part: Any) -> Mapping[str, Parameter]:
+    """Return the numbers that the named constructor of an object has, and its class has not."""
+    stated = getattr(part, "stated", None)
+    if stated is None:
+        return {}
+    kind: Callable[..., Any] = type(part)
+    of_class = {name for name, one in parameters_of(kind).items() if _is_number(one)}
+    made_with = parameters_of(getattr(type(part), stated.constructor))
+    return {name: one for name, one in made_with.items() if _is_number(one) and name not in of_class}
 
 
 def _is_own(part: object) -> bool:

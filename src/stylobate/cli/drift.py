@@ -25,7 +25,10 @@ _ROWS, _FASTEST = 40, 12
 
 
 @command(
-    Option("late", "number of last periods over which means are taken; 20 by default", int),
+    Option("late", "number of last periods of the initial runs over which means are taken; 20 by default", int),
+    Option("tolerance", "relative half-width of the interval of a speed; 0.02 by default"),
+    Option("most_periods", "maximum duration of a run in periods; 2000 by default"),
+    Option("confidence", "confidence level of the intervals; 0.9 by default"),
     argument="TOML description, or a saved drift (.nc) or store (.zarr) to show or repeat",
     groups=(
         AXES,
@@ -41,8 +44,9 @@ def drift(options: Options) -> None:
     """Compute the mean transport velocity of a column on a vibrating base.
 
     One or two numbers of column, model, base motion or initial state vary: friction-coefficient, acceleration,
-    angular-frequency … The model is sliding. Each run lasts 60 periods by default, and means are over the last ones.
-    The result also holds the mean rate of rotation about the axis. Examples:
+    angular-frequency, stroke, angle … The model is sliding. Each run lasts 60 periods at first, and longer until the
+    interval of its mean velocity is narrow enough. A part that accelerates beyond the friction angle has no mean
+    velocity. The result also holds the mean rate of rotation about the axis. Examples:
 
     stylobate drift --radius 0.02 --height 0.03 --density 7800 --friction-coefficient 0.3 --motion oblique
     --angle 0.52 --angular-frequency 60 --x acceleration 2 30 29 --figure drift.png
@@ -69,7 +73,7 @@ def _prepared(saved: "xr.Dataset | None", options: Options) -> "tuple[Callable[.
             "drift.x is missing. State what varies: --x acceleration 2 30 29, or --x acceleration 9 9 1 for one run."
         )
         raise ParameterError(message)
-    merge(values, "drift", options.pick("late"))
+    merge(values, "drift", options.pick("late", "tolerance", "most_periods", "confidence"))
     setup = kind.parse(values).build()
     for place, name in zip("xy", setup.options["over"], strict=False):
         check_quantities(f"drift.{place}", setup.model, [name], setup.motion)
@@ -80,13 +84,14 @@ def _with_speeds(saved: "xr.Dataset", source: Path | None) -> "xr.Dataset":
     """Return a saved drift; add speeds and throw numbers to the runs of a store."""
     from stylobate.conveying.transport import drift_of_runs  # noqa: PLC0415
 
-    if "transport_speed" in saved:
+    if "speed_high" in saved:
         return saved
     if saved.attrs["kind"] not in ("sweep", "drift") or "mean_twist_rate" not in saved:
         message = f"{source}: no drift (got a {saved.attrs['kind']}). Show it with stylobate map."
         raise FileError(message)
     setup = conveying.config.DriftConfig.of_saved(provenance_of(saved), axes_of(saved)).build()
-    return drift_of_runs(saved, setup.model, setup.motion)
+    arguments = {name: value for name, value in setup.options.items() if name not in ("over", "late")}
+    return drift_of_runs(saved, setup.model, setup.motion, **arguments)
 
 
 def _summary(result: "xr.Dataset") -> dict[str, Any]:
@@ -103,11 +108,13 @@ def _rows(result: "xr.Dataset") -> list[dict[str, Any]]:
 
 def _row(one: "xr.Dataset", names: list[str], meanings: list[str]) -> dict[str, Any]:
     x, y = one["mean_velocity"].to_numpy()
-    numbers = ("transport_speed", "mean_twist_rate", "throw_number")
+    numbers = ("transport_speed", "speed_low", "speed_high", "periods_computed", "mean_twist_rate", "throw_number")
+    known = str(one["transport"].attrs["flag_meanings"]).split()
     return {
         **{name: float(one[name]) for name in names},
         "mean_velocity": [float(x), float(y)],
         **{name: float(one[name]) for name in numbers},
+        "transport": known[int(one["transport"])],
         "contact_class": meanings[int(one["contact_class"]) + 1],
     }
 
@@ -122,8 +129,24 @@ def _print(result: "xr.Dataset") -> None:
     print_table(
         title,
         [_cells(row, names) for row in rows],
-        (*(name.replace("_", " ") for name in names), "velocity x, y", "twist rate", "throw number", "contact class"),
+        (
+            *(name.replace("_", " ") for name in names),
+            "velocity x, y",
+            "speed",
+            "twist rate",
+            "throw number",
+            "contact class",
+        ),
     )
+
+
+def _speed(row: Mapping[str, Any]) -> str:
+    """Write the speed with the half-width of its interval, or the reason why there is none."""
+    if row["transport"] in ("ACCELERATES", "ENDED"):
+        return str(row["transport"]).lower()
+    half = row["speed_high"] - row["transport_speed"]
+    wide = " (unsettled)" if row["transport"] == "UNSETTLED" else ""
+    return f"{row['transport_speed']:.4g} ± {half:.2g} m/s{wide}"
 
 
 def _or_zero(speed: float) -> float:
@@ -132,9 +155,11 @@ def _or_zero(speed: float) -> float:
 
 def _cells(row: Mapping[str, Any], names: list[str]) -> list[str]:
     x, y = row["mean_velocity"]
+    moves = math.isfinite(row["transport_speed"])
     return [
         *(f"{row[name]:.6g}" for name in names),
-        f"{x:.4g}, {y:.4g} m/s",
+        f"{x:.4g}, {y:.4g} m/s" if moves else "none",
+        _speed(row),
         f"{row['mean_twist_rate']:.4g} rad/s",
         f"{row['throw_number']:.4g}",
         row["contact_class"].lower().replace("_", " "),

@@ -146,7 +146,7 @@ def computed(study: Callable[..., "xr.Dataset"], setup: "Setup", options: Option
         After Ctrl-C before the first run is complete: there is nothing to write.
     """
     store, resume = _store(options), options["resume"]
-    executor = _executor(options["executor"], options["threads"])
+    executor = executor_of(options)
     options.refuse_unused()
     try:
         result = study(setup.model, setup.motion, **setup.options, store=store, executor=executor, resume=resume)
@@ -193,7 +193,9 @@ def _store(options: Options) -> Path | None:
     raise ParameterError(message)
 
 
-def _executor(text: str | None, threads: int | None) -> "Threads | Dask":
+def executor_of(options: Options) -> "Threads | Dask":
+    """Return the executor that the options choose."""
+    text, threads = options["executor"], options["threads"]
     if text in (None, "threads"):
         return studies.Threads(threads)
     chosen = studies.executor_from(str(text))

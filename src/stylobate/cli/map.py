@@ -74,4 +74,6 @@ def _print(result: "xr.Dataset") -> None:
     title = number_of_runs(result, f" over {' and '.join(map(str, result['outcome'].dims))}")
     uncertain = int(result["uncertain"].sum())
     doubts = f"; {uncertain} numerically uncertain" if uncertain else ""
+    flat = int(result["lands_flat"].sum()) if "lands_flat" in result else 0
+    doubts += f"; {flat} land at a tilt of exactly 0, count them by `stylobate upright`" if flat else ""
     print_table(title + doubts, rows, ("outcome", "runs", "share"))

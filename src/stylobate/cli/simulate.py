@@ -95,4 +95,4 @@ def _rows(run: "Response", model: "Model", outcome: "Rows") -> "Rows":
     from stylobate.results.summary import column_rows, measure_rows, reason_rows  # noqa: PLC0415
 
     warnings = [("warning", warning) for warning in run.warnings]
-    return [*column_rows(model.column), *outcome, *reason_rows(run), *measure_rows(run), *warnings]
+    return [*column_rows(model.column, model.rest_capacity), *outcome, *reason_rows(run), *measure_rows(run), *warnings]

@@ -88,6 +88,9 @@ class ManyRuns(SharedByRuns, Case):
         return open_end and is_to_end(self.motion)
 
 
+# Values of numbers that vary, by unit.
+_STAND_INS = {"m": 1e-3}
+
 _SHARED = (*numbers_of(SharedByRuns), "demands", "recheck")
 
 
@@ -101,8 +104,9 @@ def with_numbers_that_vary(values: Mapping[str, Any], names: tuple[str, ...]) ->
     # If the motion has a path or a velocity, the acceleration depends on the frequency, which is then required.
     by_path = any(one.quantity.unit in ("m", "m/s") for one in declared.values())
     needed = [name for name in names if name in declared and declared[name].required]
-    # With an amplitude of 1 m/s² scaling to an acceleration is exact.
-    given = {name: 1.0 for name in needed if not (by_path and name == "angular_frequency")}
+    # With an amplitude of 1 m/s² scaling to an acceleration is exact; no base moves by 1 m.
+    needed = [name for name in needed if not (by_path and name == "angular_frequency")]
+    given = {name: _STAND_INS.get(declared[name].quantity.unit, 1.0) for name in needed}
     return {**values, "motion": {**given, **values["motion"]}}
 
 

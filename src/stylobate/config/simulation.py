@@ -128,7 +128,7 @@ def duration_with_tail(model: Model, motion: BaseMotion) -> float:
 
 
 OF_OTHER_COMMANDS = (
-    *("map", "basin", "spectrum", "fragility", "records", "hierarchy", "verdict", "periods"),
+    *("map", "basin", "drift", "upright", "spectrum", "fragility", "records", "hierarchy", "verdict", "periods"),
     *("method", "strobes", "confidence", "angular_frequency_range", "points", "end_converged"),
 )
 """Keys of a description that are not arguments of a single run."""

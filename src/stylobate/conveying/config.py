@@ -1,12 +1,16 @@
-"""Configuration of a drift: shared case, and one or two quantities with their values."""
+"""Configurations of studies of conveyors: a drift, and the posture of a part."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any, Self
+
+from pydantic import Field
 
 from stylobate.config.axis import Axis
 from stylobate.config.description import Config, built
 from stylobate.config.many_runs import ManyRuns, common_values, name_of, refuse_design, with_numbers_that_vary
 from stylobate.config.simulation import Setup
+from stylobate.conveying.posture import KIND, PERIODS, PHASES, TILTS
+from stylobate.conveying.transport import CONFIDENCE, MOST_PERIODS, TOLERANCE
 
 _PERIODS = 60.0
 """Default duration of a run in periods of its base motion."""
@@ -22,12 +26,21 @@ class Varied(Config):
     y
         Values of a second quantity.
     late
-        Number of last periods over which means are taken.
+        Number of last periods of the initial runs over which means are taken.
+    tolerance
+        Relative half-width of the interval of a speed.
+    most_periods
+        Maximum duration of a run in periods of its base motion.
+    confidence
+        Confidence level of the intervals.
     """
 
     x: Axis
     y: Axis | None = None
     late: int = 20
+    tolerance: float = TOLERANCE
+    most_periods: float = MOST_PERIODS
+    confidence: float = CONFIDENCE
 
 
 class DriftConfig(ManyRuns):
@@ -65,7 +78,8 @@ class DriftConfig(ManyRuns):
         values = common_values(provenance)
         late = int(dict(values.pop("rules", {})).get("periods", Varied.model_fields["late"].default))
         listed = ({"name": name, "values": list(values)} for name, values in axes.items())
-        return cls.parse({**values, "drift": {**dict(zip("xy", listed, strict=False)), "late": late}})
+        settings = {name: value for name, value in dict(provenance.get("drift", {})).items() if value is not None}
+        return cls.parse({**values, "drift": {**dict(zip("xy", listed, strict=False)), "late": late, **settings}})
 
     def build(self) -> Setup:
         """Build model and motion; the options are arguments of `stylobate.conveying.drift`.
@@ -89,4 +103,80 @@ class DriftConfig(ManyRuns):
         model, motion, options = self.common(problems)
         for name in ("duration", "rules"):
             del options[name]
-        return Setup(model, motion, {"over": over, "late": self.drift.late, **options})
+        return Setup(model, motion, {"over": over, **self.drift.model_dump(exclude={"x", "y"}), **options})
+
+
+class Starts(Config):
+    """The initial tilts and phases of a part.
+
+    Parameters
+    ----------
+    tilts
+        Initial tilt angles [rad].
+    phases
+        Number of phases at which the vibration starts.
+    friction
+        Friction coefficients, each as probable; that of the model by default.
+    azimuth
+        Azimuth of the initial tilt [rad]; spread over all directions by default.
+    confidence
+        Confidence level of intervals.
+    """
+
+    tilts: tuple[float, ...] = TILTS
+    phases: int = PHASES
+    friction: tuple[float, ...] | None = None
+    azimuth: float | None = None
+    confidence: float = 0.9
+
+
+class UprightConfig(ManyRuns):
+    """Configuration of a posture: `column`, `model`, `motion`, options of all runs, and the table `upright`."""
+
+    upright: Starts = Field(default_factory=Starts)
+
+    @classmethod
+    def parse(cls, values: Mapping[str, Any]) -> Self:
+        """Validate these `values`."""
+        return super().parse({"periods": PERIODS, **values})
+
+    @classmethod
+    def of_saved(cls, provenance: Mapping[str, Any], axes: Mapping[str, Sequence[float]]) -> Self:
+        """Create the configuration that repeats a saved posture.
+
+        Parameters
+        ----------
+        provenance
+            Provenance of the posture.
+        axes
+            Not used.
+
+        Raises
+        ------
+        UnsupportedError
+            If descriptions do not support the model or base motion of the posture.
+        """
+        del axes
+        settings = dict(provenance[KIND])
+        values = common_values(provenance)
+        for name in ("tilt", "duration"):  # the table has them
+            values.pop(name, None)
+        return cls.parse({**values, "periods": settings.pop("periods"), "upright": settings})
+
+    def build(self) -> Setup:
+        """Build model and motion; the options are arguments of `stylobate.conveying.upright`.
+
+        Raises
+        ------
+        ConfigError
+            With one line per invalid part.
+        """
+        problems: list[str] = []
+        if self.duration is not None or self.periods is None:
+            problems.append("duration: runs last a number of periods. Set `periods` of the base motion instead.")
+        if self.tilt != (0.0, 0.0):
+            problems.append("tilt: runs start at the tilts of the table `upright`. Set `tilts` there instead.")
+        model, motion, options = self.common(problems)
+        for name in ("duration", "tilt"):
+            del options[name]
+        return Setup(model, motion, {**self.upright.model_dump(), **options})

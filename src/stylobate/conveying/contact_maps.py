@@ -1,5 +1,6 @@
-"""Contact maps: regions of sticking, sliding, rocking, flight and overturning over two parameters."""
+"""Contact maps: regions of sticking, sliding, rocking, hopping and overturning over two parameters."""
 
+import warnings
 from collections.abc import Mapping
 from enum import IntEnum
 from pathlib import Path
@@ -10,8 +11,9 @@ import numpy.typing as npt
 import xarray as xr
 
 from stylobate.base_motions import BaseMotion
-from stylobate.errors import Named, Outcome, ParameterError, UnsupportedError
-from stylobate.models import Model
+from stylobate.engine.contact_measures import EQUAL
+from stylobate.errors import Named, Outcome, ParameterError, UnlikelyInputWarning, UnsupportedError
+from stylobate.models import Model, Sliding
 from stylobate.progress import Progress, shows_progress
 from stylobate.results.outcomes import NOT_COMPUTED, flag_attributes
 from stylobate.studies.checks import require_values
@@ -33,14 +35,21 @@ class ContactClass(Named, IntEnum):
     """The column rocked or rolled on its rim without slip."""
     SLIDES_AND_ROCKS = 3
     """The column rocked or rolled, and slipped on its rim or slid on its base."""
-    FLIES = 4
-    """The column left the plane."""
-    OVERTURNS = 5
-    FAILED = 6
+    HOPS_UPRIGHT = 4
+    """The column left the plane and landed on its base; it never tilted beyond 1e-4 rad."""
+    HOPS_AND_ROCKS = 5
+    """The column left the plane, and tilted."""
+    OVERTURNS = 6
+    FAILED = 7
 
 
-CONTACT_CLASSES = ("stays", "slides", "rocks or rolls", "slides and rocks", "flies", "overturns", "failed")
+CONTACT_CLASSES = (
+    *("stays", "slides", "rocks or rolls", "slides and rocks", "hops upright", "hops and rocks", "overturns", "failed"),
+)
 """Names of the classes, in the order of their codes."""
+
+# Maximum tilt of an upright column [rad].
+_UPRIGHT = 1e-4
 
 
 @shows_progress("contact map")
@@ -72,8 +81,10 @@ def contact_map(
     Returns
     -------
     xarray.Dataset
-        Of kind "contact map": the runs over the two names, with `contact_class` (see its `flag_meanings`) and all
-        variables of ensembles; over `class_name`, `count` and `share` of the computed runs; and `computed`.
+        Of kind "contact map": the runs over the two names, with `contact_class` (see its `flag_meanings`),
+        `lands_flat` and all variables of ensembles, such as `peak_tilt`; over `class_name`, `count` and `share` of the
+        computed runs; and `computed`. A run that `lands_flat` hops at a tilt of exactly 0: a small initial tilt can
+        change its class. Count with `upright`.
 
     Raises
     ------
@@ -92,6 +103,7 @@ def contact_map(
         message = f"least_share must lie between 0 and 1, got {least_share!r}"
         raise ParameterError(message)
     require_values("over", over)
+    remark_on_knife_edge("over", model, over)
     sweep = Sweep.grid(model, motion, over=over, duration=duration, periods=periods, **options)
 
     def label(runs: xr.Dataset) -> xr.Dataset:
@@ -107,6 +119,7 @@ def class_shares(runs: xr.Dataset, least_share: float = 1e-3) -> xr.Dataset:
     computed = int((classes != NOT_COMPUTED).sum())
     return runs.assign(
         contact_class=classes,
+        lands_flat=lands_flat(runs),
         count=("class_name", count, {"units": "1", "long_name": "runs of this class"}),
         share=("class_name", count / max(computed, 1), {"units": "1", "long_name": "share of the runs computed"}),
         computed=((), computed, {"units": "1", "long_name": "runs computed"}),
@@ -125,7 +138,8 @@ def contact_classes(runs: xr.Dataset, least_share: float = 1e-3) -> xr.DataArray
     known: list[tuple[Any, ContactClass]] = [
         (outcome == Outcome.FAILED, ContactClass.FAILED),
         (outcome == Outcome.OVERTURNED, ContactClass.OVERTURNS),
-        (took("flying"), ContactClass.FLIES),
+        (took("flying") & (rocks | (runs["peak_tilt"] > _UPRIGHT)), ContactClass.HOPS_AND_ROCKS),
+        (took("flying"), ContactClass.HOPS_UPRIGHT),
         (rocks & slides, ContactClass.SLIDES_AND_ROCKS),
         (rocks, ContactClass.ROCKS),
         (slides, ContactClass.SLIDES),
@@ -136,3 +150,30 @@ def contact_classes(runs: xr.Dataset, least_share: float = 1e-3) -> xr.DataArray
     classes = classes.where(outcome != NOT_COMPUTED, NOT_COMPUTED).astype(np.int8)
     meanings = ["NOT_COMPUTED", *(kind.name for kind in ContactClass)]
     return classes.assign_attrs(flag_attributes("contact of the column", meanings, first=NOT_COMPUTED))
+
+
+def lands_flat(runs: xr.Dataset) -> xr.DataArray:
+    """Return which runs hop and land at a tilt of exactly 0 over the last periods, or throughout if these are short.
+
+    Such a landing is exact in a computation only: it strikes the whole base at once, and no friction tips the column.
+    """
+    tilt = runs["mean_tilt"].fillna(runs["peak_tilt"])
+    hops = (runs["time_flying"] > 0.0) & (runs["outcome"] != Outcome.OVERTURNED)
+    return (hops & (tilt == 0.0)).assign_attrs(long_name="hops and lands at a tilt of exactly 0")
+
+
+def remark_on_knife_edge(where: str, model: Model, over: Mapping[str, npt.ArrayLike]) -> None:
+    """Warn if a friction coefficient equals the slenderness: rounding then decides between sliding and rocking."""
+    if not isinstance(model, Sliding) or {"radius", "mass_height"} & set(over):
+        return
+    varied = over.get("static_friction_coefficient", over.get("friction_coefficient"))
+    known = model.static_friction_coefficient is not None and "static_friction_coefficient" not in over
+    frictions = np.atleast_1d(np.asarray(model.numbers.static if known or varied is None else varied, dtype=float))
+    slender = np.atleast_1d(np.asarray(over.get("slenderness", model.column.slenderness), dtype=float))
+    equal = (np.abs(frictions[:, np.newaxis] - slender) <= EQUAL * slender).any(axis=1)
+    if equal.any():
+        message = (
+            f"{where}: a friction coefficient equals the slenderness c (got {float(frictions[equal][0]):g}). Sliding "
+            "and rocking begin together there, and rounding decides. Choose values below and above c."
+        )
+        warnings.warn(message, UnlikelyInputWarning, stacklevel=3)

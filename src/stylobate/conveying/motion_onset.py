@@ -85,7 +85,8 @@ def start_boundary(
     -----
     The smaller of μ and c determines the first motion. If μ < c, the column slides from rest, and |T| ≤ μN < cN holds
     for every base motion: the column never tips while it stays on the plane. If c < μ, the column rocks; its contact
-    demand grows during fall and spin, so it may slip on its rim.
+    demand grows during fall and spin, so it may slip on its rim. If μ = c exactly, both begin together; any real
+    difference decides, so compute values below and above.
 
     Examples
     --------

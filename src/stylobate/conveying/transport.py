@@ -1,28 +1,72 @@
-"""Mean transport velocity and mean rate of rotation of a column on a vibrating base."""
+"""Mean transport velocity of a column on a vibrating base with its interval, and mean rate of rotation."""
 
-from collections.abc import Mapping
+import json
+import math
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass
+from enum import IntEnum
 from pathlib import Path
-from typing import Unpack
+from typing import Any, Unpack
 
 import numpy as np
 import numpy.typing as npt
 import xarray as xr
+from scipy.special import stdtrit
 
 from stylobate.base_motions import BASE_AT_REST, BaseMotion
-from stylobate.conveying.contact_maps import contact_classes
+from stylobate.conveying.contact_maps import contact_classes, lands_flat, remark_on_knife_edge
 from stylobate.engine.parameters import with_parameters
-from stylobate.errors import Outcome, ParameterError, UnsupportedError, require_whole
+from stylobate.errors import (
+    Interrupted,
+    Named,
+    Outcome,
+    ParameterError,
+    UnsupportedError,
+    require_positive,
+    require_whole,
+)
 from stylobate.models import Model
 from stylobate.progress import Progress, shows_progress
 from stylobate.results import OutcomeRules
-from stylobate.results.outcomes import NOT_COMPUTED
+from stylobate.results.outcomes import NOT_COMPUTED, flag_attributes
 from stylobate.studies.checks import require_values
-from stylobate.studies.sweeps import Executor, Sweep
+from stylobate.studies.proportions import require_confidence
+from stylobate.studies.sweeps import Executor, Sweep, run_sweep
 from stylobate.studies.sweeps.labelled import labelled_sweep
 from stylobate.studies.sweeps.quantities import OF_A_RUN
 from stylobate.studies.sweeps.recipe import RunOptions
 
+Floats = npt.NDArray[np.float64]
+
 _MOST_NAMES = 2
+
+TOLERANCE, MOST_PERIODS, CONFIDENCE = 0.02, 2000.0, 0.9
+"""Defaults: relative half-width of the interval of a mean velocity, maximum duration in periods, confidence level."""
+
+# Number of batches of periods, each of equal length, and the least for an interval.
+_BATCHES, _LEAST_BATCHES = 10, 4
+# Speed below which the half-width is compared with this speed instead [peak velocities of the base].
+_SLOW = 0.01
+# Relative half-width of a motion that repeats.
+_EXACT = 1e-4
+# Fraction of the acceleration of free sliding down a slope from which a column accelerates.
+_ACCELERATES = 0.5
+_SAMPLES = 64
+
+
+class Transport(Named, IntEnum):
+    """What is known of the mean velocity of a run."""
+
+    KNOWN = 0
+    """The half-width of its interval is within the tolerance."""
+    UNSETTLED = 1
+    """The half-width is larger; `speed_low` and `speed_high` are its interval."""
+    STANDS = 2
+    """The column came to permanent rest; its velocity is 0."""
+    ACCELERATES = 3
+    """The column slides ever faster down a slope beyond the friction angle: no mean velocity exists."""
+    ENDED = 4
+    """The motion ended early, for example by overturning: no mean velocity exists."""
 
 
 @shows_progress("drift")
@@ -33,6 +77,9 @@ def drift(
     over: Mapping[str, npt.ArrayLike],
     periods: float = 60.0,
     late: int = 20,
+    tolerance: float | None = TOLERANCE,
+    most_periods: float = MOST_PERIODS,
+    confidence: float = CONFIDENCE,
     store: str | Path | None = None,
     executor: Executor | None = None,
     resume: bool = False,
@@ -41,7 +88,8 @@ def drift(
 ) -> xr.Dataset:
     """Compute the mean transport velocity of a column on a vibrating base, and its mean rate of rotation.
 
-    Both are means over a whole number of last periods of the base motion.
+    Both are means over a whole number of last periods of the base motion. A run whose mean velocity is not known to the
+    tolerance is repeated with twice the duration, and its mean is then over the second half.
 
     Parameters
     ----------
@@ -52,19 +100,26 @@ def drift(
     over
         One or two names with their values, as for `overturning_map`.
     periods
-        Duration of each run in periods of its base motion.
+        Initial duration of each run in periods of its base motion.
     late
-        Number of last periods over which the means are taken.
+        Number of last periods over which the means of a run of this duration are taken.
+    tolerance
+        Half-width of the interval of the speed, relative to the speed or, if larger, to a hundredth of the peak
+        velocity of the base. None leaves each run at its initial duration.
+    most_periods
+        Maximum duration in periods of the base motion.
+    confidence
+        Confidence level of the intervals.
     store, executor, resume, progress, **options
-        As for `overturning_map`; `late` sets the `rules`.
+        As for `overturning_map`; `late` sets the `rules`. A store holds the runs of the initial duration.
 
     Returns
     -------
     xarray.Dataset
-        Of kind "drift": the runs over the names, with `mean_velocity` (axis) and `transport_speed` [m/s],
+        Of kind "drift": the runs over the names, with `mean_velocity` (axis) and `transport_speed` [m/s], `speed_low`
+        and `speed_high`, the confidence interval of the speed [m/s], `transport` (a `Transport`), `periods_computed`,
         `mean_twist_rate` [rad/s], `contact_class`, `throw_number` and all variables of ensembles. Velocities are NaN if
-        the motion ended early, for example by overturning, and 0 if the column came to permanent rest. The mean
-        velocity of a column that accelerates down a slope depends on the number of periods.
+        the motion ended early or the column accelerates, and 0 if the column came to permanent rest.
 
     Raises
     ------
@@ -72,6 +127,12 @@ def drift(
         If `over` does not have one or two names, `periods` does not exceed `late`, or an argument is out of range.
     UnsupportedError
         If the model does not change between kinds of contact, or the base motion has no period.
+
+    Notes
+    -----
+    The interval is Student's for the means of ten batches of successive periods, along the mean velocity. A lag-one
+    correlation ρ > 0 of these means widens it by the factor √((1 + ρ)/(1 − ρ)). It is about one motion: other initial
+    conditions can reach another one, see `upright`.
 
     Examples
     --------
@@ -82,14 +143,10 @@ def drift(
     >>> found = sb.conveying.drift(sloping, shaking, over={"acceleration": [1.0, 3.0]}, periods=30, late=10)
     >>> found["mean_velocity"].sel(axis="x").values.round(3).tolist()    # down the slope
     [0.0, 0.388]
+    >>> [sb.conveying.Transport(code).name for code in found["transport"].values]
+    ['KNOWN', 'KNOWN']
     """
-    if not model.switches:
-        message = f"model {model.name} assumes permanent contact without slip. A drift needs Sliding(column)."
-        raise UnsupportedError(message)
-    if not isinstance(motion, BaseMotion) or (motion.period is None and "angular_frequency" not in over):
-        got = "a base at rest" if motion in (None, BASE_AT_REST) else repr(motion)
-        message = f"a drift needs a periodic base motion, such as an oblique one; got {got}"
-        raise UnsupportedError(message)
+    require_conveyor(model, motion, "drift", varied=over)
     if not isinstance(over, Mapping) or not 1 <= len(over) <= _MOST_NAMES:
         message = f'over must name one or two parameters, such as "friction_coefficient"; got {over!r}'
         raise ParameterError(message)
@@ -98,43 +155,247 @@ def drift(
         message = f"periods must be at least one more than late, which is {late}; got {periods!r}"
         raise ParameterError(message)
     require_values("over", over)
-    options["rules"] = OutcomeRules(periods=late)
-    sweep = Sweep.grid(model, motion, over=over, periods=periods, **options)
+    remark_on_knife_edge("over", model, over)
+    require_positive("most_periods", most_periods)
+    require_confidence(confidence)
+    settings: Any = {"tolerance": tolerance, "most_periods": most_periods, "confidence": confidence}
+    sweep = Sweep.grid(model, motion, over=over, periods=periods, **_with_window(options, late))
 
     def label(runs: xr.Dataset) -> xr.Dataset:
-        return drift_of_runs(runs, model, motion)
+        return drift_of_runs(
+            runs, model, motion, periods=periods, **settings, executor=executor, progress=progress, **options
+        )
 
     return labelled_sweep(sweep, label, store=store, executor=executor, resume=resume, progress=progress)
 
 
-def drift_of_runs(runs: xr.Dataset, model: Model, motion: BaseMotion) -> xr.Dataset:
-    """Convert `runs` of this `model` and `motion` to a drift: add speeds, classes and throw numbers."""
-    # A run at permanent rest ends before its last periods: its mean velocity is zero.
-    stands = (runs["outcome"] == Outcome.AT_REST) & runs["mean_twist_rate"].isnull()
-    velocity = runs["mean_velocity"].where(~stands, 0.0).assign_attrs(runs["mean_velocity"].attrs)
-    turning = runs["mean_twist_rate"].where(~stands, 0.0).assign_attrs(runs["mean_twist_rate"].attrs)
-    speed = (velocity**2).sum("axis", skipna=False) ** 0.5
-    return runs.assign(
-        mean_velocity=velocity,
-        mean_twist_rate=turning,
-        transport_speed=speed.assign_attrs(units="m s-1", long_name="mean transport speed"),
-        contact_class=contact_classes(runs),
-        throw_number=_throw_numbers(runs, model, motion),
-        computed=((), int((runs["outcome"] != NOT_COMPUTED).sum()), {"units": "1", "long_name": "runs computed"}),
-    ).assign_attrs(kind="drift")
+def drift_of_runs(
+    runs: xr.Dataset,
+    model: Model,
+    motion: BaseMotion,
+    *,
+    periods: float,
+    tolerance: float | None = TOLERANCE,
+    most_periods: float = MOST_PERIODS,
+    confidence: float = CONFIDENCE,
+    executor: Executor | None = None,
+    progress: Progress = None,
+    **options: Unpack[RunOptions],
+) -> xr.Dataset:
+    """Convert `runs` of the initial duration to a drift, and repeat those whose mean velocity is not known.
+
+    Parameters
+    ----------
+    runs
+        Runs of this model and motion, with stroboscopic samples of the last periods, such as those of a store.
+    model, motion, periods, tolerance, most_periods, confidence, executor, progress, **options
+        As for `drift`.
+    """
+    case = _Case(
+        model,
+        motion,
+        None if tolerance is None else require_positive("tolerance", tolerance),
+        require_positive("most_periods", most_periods),
+        require_confidence(confidence),
+        options,
+    )
+    return case.refined(case.labelled(runs), float(periods), executor, progress)
 
 
-def _throw_numbers(runs: xr.Dataset, model: Model, motion: BaseMotion) -> xr.DataArray:
-    """Return the largest downward acceleration of each base over gravity along its normal."""
-    names = [str(dim) for dim in runs["outcome"].dims]
-    values = np.empty(runs["outcome"].shape)
-    for place in np.ndindex(*values.shape):
-        chosen = {
-            name: float(runs[name].to_numpy()[index])
-            for name, index in zip(names, place, strict=True)
-            if name not in OF_A_RUN
-        }
-        changed, moved = with_parameters(model, motion, **chosen)
-        low, _ = moved.vertical_range(0.0)
-        values[place] = -low / (changed.column.gravity * (1.0 + changed.slope[2]))
-    return xr.DataArray(values, dims=names, attrs={"units": "1", "long_name": "throw number"})
+def require_conveyor(model: Model, motion: BaseMotion, study: str, *, varied: Collection[str] = ()) -> None:
+    """Raise UnsupportedError unless the contact of the model changes and the base motion has a period."""
+    if not model.switches:
+        message = f"model {model.name} assumes permanent contact without slip. A {study} needs Sliding(column)."
+        raise UnsupportedError(message)
+    if not isinstance(motion, BaseMotion) or (motion.period is None and "angular_frequency" not in varied):
+        got = "a base at rest" if motion in (None, BASE_AT_REST) else repr(motion)
+        message = f"a {study} needs a periodic base motion, such as an oblique one; got {got}"
+        raise UnsupportedError(message)
+
+
+def throw_number_of(model: Model, motion: BaseMotion) -> float:
+    """Compute the throw number: the peak downward acceleration of the base over gravity along its normal."""
+    low, _ = motion.vertical_range(0.0)
+    return -low / (model.column.gravity * (1.0 + model.slope[2]))
+
+
+def _with_window(options: RunOptions, late: int) -> RunOptions:
+    """Return the options of runs whose means are over so many last periods."""
+    return RunOptions(**{**options, "rules": OutcomeRules(periods=late), "strobes": late + 1})
+
+
+@dataclass(frozen=True, slots=True)
+class _Case:
+    """The arguments of a drift."""
+
+    model: Model
+    motion: BaseMotion
+    tolerance: float | None
+    most_periods: float
+    confidence: float
+    options: RunOptions
+
+    def labelled(self, runs: xr.Dataset) -> xr.Dataset:
+        """Add speeds, intervals, classes and throw numbers to the runs."""
+        # A run at permanent rest ends before its last periods: its mean velocity is zero.
+        stands = (runs["outcome"] == Outcome.AT_REST) & runs["mean_twist_rate"].isnull()
+        velocity = runs["mean_velocity"].where(~stands, 0.0).assign_attrs(runs["mean_velocity"].attrs)
+        turning = runs["mean_twist_rate"].where(~stands, 0.0).assign_attrs(runs["mean_twist_rate"].attrs)
+        numbers = self._numbers(runs)
+        half, transport = self._intervals(runs, velocity, numbers)
+        transport = np.where(stands.to_numpy(), Transport.STANDS, transport).astype(np.int8)
+        dims = runs["outcome"].dims
+        velocity = velocity.where(xr.DataArray(transport != Transport.ACCELERATES, dims=dims))
+        speed = (velocity**2).sum("axis", skipna=False) ** 0.5
+        half = np.where(transport == Transport.STANDS, 0.0, half)
+        level = f"{100.0 * self.confidence:g} % interval of the mean transport speed"
+        meanings = flag_attributes("what is known of the mean velocity", [kind.name for kind in Transport])
+        settings = {"tolerance": self.tolerance, "most_periods": self.most_periods, "confidence": self.confidence}
+        provenance = {**json.loads(runs.attrs["provenance"]), "drift": settings}
+        return (
+            runs.drop_vars([name for name in runs.data_vars if "strobe" in runs[name].dims])
+            .assign(
+                mean_velocity=velocity.assign_attrs(runs["mean_velocity"].attrs),
+                mean_twist_rate=turning,
+                transport_speed=speed.assign_attrs(units="m s-1", long_name="mean transport speed"),
+                speed_low=(speed - half).assign_attrs(units="m s-1", long_name=f"lower end of the {level}"),
+                speed_high=(speed + half).assign_attrs(units="m s-1", long_name=f"upper end of the {level}"),
+                transport=(dims, transport, meanings),
+                periods_computed=(
+                    dims,
+                    runs["end_time"].to_numpy() / numbers["period"],
+                    {"units": "1", "long_name": "periods of the base motion computed"},
+                ),
+                contact_class=contact_classes(runs),
+                lands_flat=lands_flat(runs),
+                throw_number=(dims, numbers["throw"], {"units": "1", "long_name": "throw number"}),
+                computed=(
+                    (),
+                    int((runs["outcome"] != NOT_COMPUTED).sum()),
+                    {"units": "1", "long_name": "runs computed"},
+                ),
+            )
+            .assign_attrs(kind="drift", provenance=json.dumps(provenance))
+        )
+
+    def refined(self, found: xr.Dataset, periods: float, executor: Executor | None, progress: Progress) -> xr.Dataset:
+        """Repeat runs whose mean velocity is not known with twice the duration, until it is known.
+
+        A short run can seem known before it leaves a transient: unless it repeats, its mean must agree with that of the
+        run of twice the duration.
+        """
+        names = [str(dim) for dim in found["outcome"].dims]
+        if self.tolerance is None:
+            return found
+        speed, half = _interval(found)
+        known = found["transport"].to_numpy() == Transport.KNOWN
+        again = (found["transport"].to_numpy() == Transport.UNSETTLED) | (known & (half > _EXACT * speed))
+        while again.any() and periods < self.most_periods:
+            places = np.nonzero(again)
+            periods = min(2.0 * periods, self.most_periods)
+            late = max(int(periods / 2.0), 1)
+            at = {name: found[name].to_numpy()[place] for name, place in zip(names, places, strict=True)}
+            sweep = Sweep.points(self.model, self.motion, at=at, periods=periods, **_with_window(self.options, late))
+            try:
+                longer = self.labelled(run_sweep(sweep, executor=executor, progress=progress))
+            except Interrupted as stop:
+                raise Interrupted(str(stop), found) from None
+            new_speed, new_half = _interval(longer)
+            agree = np.abs(new_speed - speed[places]) <= new_half + half[places]
+            code = longer["transport"].to_numpy()
+            code = np.where((code == Transport.KNOWN) & ~agree, Transport.UNSETTLED, code).astype(np.int8)
+            found = found.copy(deep=True)
+            for name, variable in longer.assign(transport=("run", code)).data_vars.items():
+                if variable.dims[:1] == ("run",):
+                    found[name].to_numpy()[places] = variable.to_numpy()
+            speed, half = _interval(found)
+            again = found["transport"].to_numpy() == Transport.UNSETTLED
+        return found
+
+    def _numbers(self, runs: xr.Dataset) -> dict[str, Floats]:
+        """Return numbers of the case of each run.
+
+        They are the throw number, the period [s], the peak velocity of the base [m/s], and the acceleration of free
+        sliding down the slope [m/s²], which is not positive within the friction angle.
+        """
+        names = [str(dim) for dim in runs["outcome"].dims]
+        varied = [name for name in runs.coords if name not in OF_A_RUN and set(runs[name].dims) <= set(names)]
+        shape = runs["outcome"].shape
+        found = {name: np.empty(shape) for name in ("throw", "period", "velocity", "sliding")}
+        values = {str(name): np.broadcast_to(_over(runs, str(name), names), shape) for name in varied if name != "run"}
+        for place in np.ndindex(*shape):
+            chosen = {name: float(value[place]) for name, value in values.items()}
+            model, motion = with_parameters(self.model, self.motion, **chosen)
+            own: Any = model
+            period = motion.period or math.nan
+            down = math.tan(own.incline) - own.friction_coefficient
+            found["throw"][place] = throw_number_of(model, motion)
+            found["period"][place] = period
+            found["velocity"][place] = np.linalg.norm(motion.velocity(np.linspace(0.0, period, _SAMPLES)), axis=1).max()
+            found["sliding"][place] = model.column.gravity * math.cos(own.incline) * down
+        return found
+
+    def _intervals(
+        self, runs: xr.Dataset, velocity: xr.DataArray, numbers: Mapping[str, Floats]
+    ) -> tuple[Floats, npt.NDArray[np.int8]]:
+        """Return the half-width of the interval of each speed [m/s], and its `Transport`."""
+        shape = runs["outcome"].shape
+        mean = velocity.transpose(..., "axis").to_numpy()
+        speed = np.hypot(mean[..., 0], mean[..., 1])
+        half, codes = np.full(shape, np.nan), np.full(shape, Transport.ENDED, dtype=np.int8)
+        moves = np.isfinite(speed)
+        codes[moves] = Transport.UNSETTLED
+        if "strobe_footprint" not in runs:
+            return half, codes
+        footprint = runs["strobe_footprint"].transpose(..., "strobe", "axis").to_numpy()
+        for place in zip(*np.nonzero(moves), strict=True):
+            along = mean[place] / speed[place] if speed[place] > 0.0 else np.array([1.0, 0.0])
+            path = footprint[place] @ along
+            means = np.diff(path[np.isfinite(path)]) / numbers["period"][place]
+            half[place] = half_width(means, self.confidence)
+            if _accelerates(means, numbers["period"][place], numbers["sliding"][place]):
+                codes[place] = Transport.ACCELERATES
+                continue
+            wanted = (self.tolerance or TOLERANCE) * max(speed[place], _SLOW * numbers["velocity"][place])
+            if half[place] <= wanted:
+                codes[place] = Transport.KNOWN
+        return half, codes
+
+
+def half_width(values: Floats, confidence: float) -> float:
+    """Return the half-width of the confidence interval of the mean of a stationary series; NaN if it is too short.
+
+    Student's interval for the means of batches of successive values (batch means), widened for their correlation.
+    """
+    batches = min(_BATCHES, values.size)
+    if batches < _LEAST_BATCHES:
+        return math.nan
+    size = values.size // batches
+    means = values[values.size - batches * size :].reshape(batches, size).mean(axis=1)
+    off = means - means.mean()
+    spread = float(off @ off)
+    if spread == 0.0:
+        return 0.0
+    correlation = min(max(float(off[1:] @ off[:-1]) / spread, 0.0), 0.9)
+    error = math.sqrt(spread / (batches * (batches - 1)) * (1.0 + correlation) / (1.0 - correlation))
+    return float(stdtrit(batches - 1, 0.5 * (1.0 + confidence))) * error
+
+
+def _interval(found: xr.Dataset) -> tuple[Floats, Floats]:
+    """Return the speeds of a drift, and the half-widths of their intervals [m/s]."""
+    speed = found["transport_speed"].to_numpy()
+    return speed, found["speed_high"].to_numpy() - speed
+
+
+def _accelerates(means: Floats, period: float, sliding: float) -> bool:
+    """Return whether the mean velocities of successive periods grow as those of a body that slides down freely."""
+    if sliding <= 0.0 or means.size < 2:  # noqa: PLR2004  two values for a slope
+        return False
+    slope = np.polyfit(np.arange(means.size) * period, means, 1)[0]
+    return bool(slope > _ACCELERATES * sliding)
+
+
+def _over(runs: xr.Dataset, name: str, names: list[str]) -> Floats:
+    """Return a coordinate of the runs, broadcast over their dimensions."""
+    array: Floats = runs[name].broadcast_like(runs["outcome"]).transpose(*names).to_numpy()
+    return array

@@ -11,12 +11,16 @@ from stylobate.compiler.over_rows import over_rows
 from stylobate.engine.ensembles.contacts import CONTACT_KINDS
 from stylobate.engine.forcing import Floats, Forcing
 from stylobate.engine.trajectory import Trajectory
+from stylobate.models import Model, Sliding
 from stylobate.models.sliding import Contact
 from stylobate.models.sliding.equations import JAM
 
 # Nodes and weights of Gauss's rule on [0, 1] for the lengths of paths in each step.
 _NODES, _WEIGHTS = (part / 2.0 for part in np.polynomial.legendre.leggauss(4))
 _NODES = _NODES + 0.5
+
+EQUAL = 1e-9
+"""Relative difference of friction coefficient and slenderness below which they count as equal."""
 
 
 def contact_measures(arrays: Mapping[str, Any], motion: BaseMotion, trajectory: Trajectory) -> dict[str, float]:
@@ -55,6 +59,31 @@ def contact_measures(arrays: Mapping[str, Any], motion: BaseMotion, trajectory: 
         "slips": float(arrays["slips"]),
         "least_painleve_denominator": least,
     }
+
+
+def contact_warnings(model: Model, measures: Mapping[str, float]) -> tuple[str, ...]:
+    """Return a line for each knife edge of a run: landings at a tilt of exactly 0, and a friction coefficient of c.
+
+    Parameters
+    ----------
+    model
+        Model of the run.
+    measures
+        Measures of the run.
+    """
+    warnings = []
+    if measures["time_flying"] > 0.0 and measures.get("mean_tilt_late", measures["peak_tilt"]) == 0.0:
+        warnings.append(
+            "it lands at a tilt of exactly 0, which no real part does: a small initial tilt can make it rock or "
+            "overturn; count runs by conveying.upright (stylobate upright)"
+        )
+    c = model.column.slenderness
+    if isinstance(model, Sliding) and abs(model.numbers.static - c) <= EQUAL * c:
+        warnings.append(
+            f"the friction coefficient equals the slenderness c = {c:.6g}: sliding and rocking begin together, and "
+            "rounding decides; compare values below and above c"
+        )
+    return tuple(warnings)
 
 
 def _paths(motion: BaseMotion, trajectory: Trajectory) -> tuple[float, float, float]:

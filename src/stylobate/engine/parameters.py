@@ -8,12 +8,16 @@ from stylobate.base_motions import BaseMotion, Harmonic
 from stylobate.base_motions.combined import BASE_AT_REST, Sum, Transformed
 from stylobate.base_motions.declared import motion_quantities
 from stylobate.base_motions.one_of import number_of, with_choice
-from stylobate.base_motions.varying import numbers_of, value_of, with_numbers
+from stylobate.base_motions.varying import numbers_of, stated_numbers, value_of, with_numbers
 from stylobate.column import Column
 from stylobate.errors import ParameterError, UnsupportedError, require_finite
 from stylobate.models import Model
 
 _T = TypeVar("_T")
+
+# Units of the numbers of a path: lengths and rates of turns.
+_RATES = ("Hz", "1/min")
+_OF_A_PATH = ("m", *_RATES)
 
 COLUMN_NAMES = (
     "radius",
@@ -77,6 +81,8 @@ def declared_names(motion: BaseMotion, values: Mapping[str, object]) -> dict[str
 
     Raises
     ------
+    ParameterError
+        If two names contradict each other, such as the stroke and the acceleration that follows from it.
     UnsupportedError
         If the motion has no such number.
     """
@@ -86,7 +92,25 @@ def declared_names(motion: BaseMotion, values: Mapping[str, object]) -> dict[str
         if own not in numbers_of(motion):
             message = f"{name}: the base motion has no such number {_own_numbers(motion)}"
             raise UnsupportedError(message)
+    _check_path(motion, values, names)
     return names
+
+
+def _check_path(motion: BaseMotion, values: Mapping[str, object], names: Mapping[str, str]) -> None:
+    """Raise ParameterError if a number of the path of `motion` varies together with what replaces the path."""
+    stated = stated_numbers(motion)
+    for name, own in names.items():
+        unit = stated[own].quantity.unit if own in stated else ""
+        if unit in _OF_A_PATH and "angular_frequency" in values:
+            remedy = next(one for one, declared in stated.items() if declared.quantity.unit in _RATES)
+            message = (
+                f"{name}: angular_frequency keeps the acceleration, not the path (got both). "
+                f"Vary {remedy} in place of angular_frequency."
+            )
+            raise ParameterError(message)
+        if unit == "m" and "acceleration" in values:
+            message = f"{name}: acceleration sets the amplitude too (got both). Leave one of them out."
+            raise ParameterError(message)
 
 
 def check_names(

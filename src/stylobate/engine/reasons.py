@@ -19,7 +19,7 @@ from stylobate.text import plural
 _STANDS = {True: "can neither tip nor move it", False: "cannot uplift it"}
 _UPRIGHT = {
     Outcome.SLID: "it stands upright, and its base face slides on the plane to the end",
-    Outcome.LIFTED_OFF: "it stays upright, and leaves the plane again and again",
+    Outcome.LIFTED_OFF: "it stays upright over the last periods, and leaves the plane again and again",
 }
 _UNPROVED = "its tilt reached π/2, which counts as overturned"
 _RELEASED = "it may still be uplifted: follow it longer"

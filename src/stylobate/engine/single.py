@@ -9,6 +9,7 @@ import numpy as np
 
 from stylobate.base_motions import BASE_AT_REST, BaseMotion
 from stylobate.config import provenance_of_run
+from stylobate.engine.contact_measures import contact_warnings
 from stylobate.engine.end_of_motion import duration_of
 from stylobate.engine.ensembles.options import Options
 from stylobate.engine.history import history
@@ -158,6 +159,7 @@ def simulate(
     announce(expected_steps(model, moved.highest_frequency * model.time_scale, duration / model.time_scale), max_steps)
     result = run_result(model, moved, options, Start(start_tilt, start_rate, duration, turning), functions)
     recorded = history(model, moved, result.trajectory, samples, friction_coefficient=friction_coefficient)
+    knife_edges = contact_warnings(model, result.measures) if model.switches else ()
     changes, doubts = result.repeated() if recheck else (False, ())
     return Response(
         outcome=result.outcome,
@@ -167,7 +169,7 @@ def simulate(
         planar=result.planar,
         data=recorded.data,
         events=result.events,
-        warnings=(*recorded.warnings, *doubts),
+        warnings=(*recorded.warnings, *doubts, *knife_edges),
         thresholds={"close_passage": CLOSE_PASSAGE, **result.thresholds, **asdict(options.rules)},
         measures={**result.measures, **recorded.measures},
         provenance=provenance_of_run(

@@ -28,7 +28,7 @@ def plain_run(run: Response, model: Model) -> dict[str, Any]:
         "events": [{"kind": event.kind, "time": event.time} for event in run.events],
         "measures": table(run.measures),
         "summary": [
-            *column_rows(model.column),
+            *column_rows(model.column, model.rest_capacity),
             *damping_rows(model.column, getattr(model, "damping", None)),
             *measure_rows(run),
         ],

@@ -108,7 +108,7 @@ def outcome_classes() -> tuple[MapClass, ...]:
 
 def contact_classes(found: xr.Dataset) -> tuple[MapClass, ...]:
     """Return the classes of a contact map, from standing to falling, and last the class of runs not computed."""
-    looks = (_AT_REST, _SLIDING, _ROCKING, Look(_BLUE), _FLYING, _OVERTURNED)
+    looks = (_AT_REST, _SLIDING, _ROCKING, Look(_BLUE), Look(_LILAC), _FLYING, _OVERTURNED)
     return (*classes_of(found["class_name"].to_numpy(), (*looks, OUTCOME_LOOKS[Outcome.FAILED])), UNFINISHED_CLASS)
 
 

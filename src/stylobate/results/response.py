@@ -100,7 +100,8 @@ class Response(ByContent):
         All inputs that repeat the run: version, column, model, base motion, initial state, tolerances.
     warnings
         A line for each contact demand that a real contact could not supply: tension (lift-off), or more friction than
-        a given friction coefficient.
+        a given friction coefficient. For models that can slip, a line for a knife edge: landings at a tilt of exactly
+        0, or a friction coefficient equal to the slenderness.
     """
 
     outcome: Outcome

@@ -14,11 +14,16 @@ Rows = list[tuple[str, str]]
 """Labels and their values."""
 
 
-def column_rows(column: "Column") -> Rows:
-    """Return the rows of the column: slenderness, frequency scale, mass and uplift acceleration."""
+def column_rows(column: "Column", capacity: float) -> Rows:
+    """Return the rows of the column: slenderness, frequency scale, mass, and the acceleration that uplifts or moves it.
+
+    `capacity` is the `rest_capacity` of the model. A column that slides first does not uplift at c g.
+    """
+    onset = "slides above" if capacity < column.slenderness else "uplifts above"
+    least = min(capacity, column.slenderness) * column.gravity
     return [
         ("column", f"c = {column.slenderness:.5g}, ω0 = {column.frequency_scale:.5g} rad/s, mass {column.mass:.6g} kg"),
-        ("uplifts above", f"{column.slenderness * column.gravity:.5g} m/s² of horizontal acceleration"),
+        (onset, f"{least:.5g} m/s² of horizontal acceleration"),
     ]
 
 

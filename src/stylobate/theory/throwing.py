@@ -66,8 +66,9 @@ def flight_throw_number(duration: Real) -> Values:
 
         Γ² = 1 + [(½x² + cos x − 1)/(x − sin x)]².
 
-    Exact. With e = 0 this is the only flight per period for Γ below √(1 + π²) = 3.297. With e > 0 it is the first
-    flight of a throw, if the bouncing after the last throw has ended.
+    Exact. With e = 0 this is the only flight per period for Γ below √(1 + π²) = 3.297. From there to √(4 + π²) = 3.724
+    each flight lasts exactly one period, since the block leaves where it lands; above, motions of more periods follow.
+    With e > 0 it is the first flight of a throw, if the bouncing after the last throw has ended.
 
     Examples
     --------

@@ -57,6 +57,44 @@ def test_harmonic_motions_move_runs_as_they_do_alone(runs_of, outcome_in, end_of
     expect_as_alone(runs_of(STONE, motion, 1, **START), outcome_in, end_of, ends_of)
 
 
+def test_runs_over_stroke_angle_and_frequency_are_those_of_motions_stated_so():
+    feeder = sb.Harmonic.stroke(stroke=0.001, frequency=50.0, angle=0.4)
+    pin = sb.Sliding(sb.Column.solid(radius=0.006, height=0.040, density=7850.0), friction_coefficient=0.2)
+    varied = {"stroke": [5e-4, 1.2e-3, 1.2e-3], "angle": [0.3, 0.4, 0.0], "frequency": [50.0, 40.0, 60.0]}
+    runs = sb.simulate_ensemble(pin, feeder.rotated(0.5), duration=0.2, parameters=varied)
+    for place in range(3):
+        motion = sb.Harmonic.stroke(**{name: values[place] for name, values in varied.items()}).rotated(0.5)
+        alone = sb.simulate(pin, motion, duration=0.2)
+        assert alone.outcome == runs["outcome"][place]
+        for axis in "xy":
+            moved = alone.measures[f"residual_displacement_{axis}"]
+            assert moved == runs["end_footprint"].sel(axis=axis).values[place]
+
+
+def test_a_frequency_that_varies_sets_the_length_of_its_period():
+    feeder = sb.Harmonic.stroke(stroke=0.001, frequency=50.0, angle=0.4)
+    pin = sb.Sliding(sb.Column.solid(radius=0.006, height=0.040, density=7850.0), friction_coefficient=0.2)
+    runs = sb.conveying.drift(pin, feeder, over={"frequency": [20.0, 40.0]}, periods=8.0, late=4, tolerance=None)
+    assert runs["end_time"].values == pytest.approx([8.0 / 20.0, 8.0 / 40.0], rel=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("values", "remedy"),
+    [
+        (
+            {"stroke": [1e-3], "angular_frequency": [300.0]},
+            "stroke: angular_frequency keeps the acceleration.*frequency",
+        ),
+        ({"frequency": [50.0], "angular_frequency": [300.0]}, "frequency: angular_frequency keeps the acceleration"),
+        ({"stroke": [1e-3], "acceleration": [3.0]}, "stroke: acceleration sets the amplitude too"),
+    ],
+)
+def test_numbers_that_replace_each_other_do_not_vary_together(values, remedy):
+    feeder = sb.Harmonic.stroke(stroke=0.001, frequency=50.0, angle=0.4)
+    with pytest.raises(ParameterError, match=remedy):
+        sb.simulate_ensemble(STONE, feeder, duration=0.1, parameters=values)
+
+
 # The end of the rise is met as a break: to the last bit the same number in the window and among the breaks.
 @settings(max_examples=15)
 @given(delays=st.lists(st.floats(-3.0, 5.0), min_size=1, max_size=20), ramp=st.floats(0.01, 4.0))

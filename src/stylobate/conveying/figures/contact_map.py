@@ -4,19 +4,21 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 from matplotlib.axes import Axes
+from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 
+from stylobate.conveying.contact_maps import ContactClass
 from stylobate.plots.cells import cell_edges
 from stylobate.plots.classes import contact_classes
 from stylobate.plots.kinds import figure_of
 from stylobate.plots.labels import axis_label
 from stylobate.plots.maps import draw_classes
-from stylobate.plots.result_figure import beside_or_below
+from stylobate.plots.result_figure import WIDTH, beside_or_below
 from stylobate.plots.style import BLACK, BLUE, GREY, VERMILION, new_figure, styled
 
 Floats = npt.NDArray[np.float64]
 
-_HEIGHT, _TALL, _LOW = 4.6, 5.4, 3.6
+_HEIGHT, _TALL, _LOW, _WIDE = 4.6, 5.4, 3.6, 10.0
 _PLANE = 2
 # Minimum mean twist rate of a column that counts as turning [rad/s].
 _STILL = 1e-9
@@ -25,12 +27,24 @@ _STILL = 1e-9
 @figure_of("contact map")
 @styled
 def plot_contact_map(found: xr.Dataset) -> Figure:
-    """Draw a contact map: the kinds of contact over two parameters."""
-    figure = new_figure(_HEIGHT)
-    axes = figure.subplots()
-    figure.legend(
-        handles=draw_classes(axes, found, found["contact_class"], contact_classes(found)), loc="outside right upper"
-    )
+    """Draw a contact map: the kinds of contact over two parameters, and the peak tilt if a column tilted."""
+    x, y = (str(dim) for dim in found["outcome"].dims)
+    ordered = found.sortby([x, y]).transpose(y, x, ...)
+    stands = (ordered["contact_class"] != ContactClass.OVERTURNS) & (ordered["peak_tilt"] > 0.0)
+    peak = np.ma.masked_invalid(ordered["peak_tilt"].where(stands).to_numpy())
+    figure = new_figure(_HEIGHT, width=_WIDE if peak.count() else WIDTH)
+    panels = figure.subplots(1, 2 if peak.count() else 1, sharex=True, sharey=True, squeeze=False)[0]
+    handles = draw_classes(panels[0], found, found["contact_class"], contact_classes(found))
+    if not peak.count():
+        figure.legend(handles=handles, loc="outside right upper")
+        return figure
+    figure.legend(handles=handles, loc="outside lower center", ncols=3)
+    look = {"cmap": "viridis", "norm": LogNorm(), "rasterized": True}
+    drawn = panels[1].pcolormesh(cell_edges(ordered[x]), cell_edges(ordered[y]), peak, **look)
+    panels[1].grid(visible=False)
+    panels[1].set_xlabel(axis_label(found[x]))
+    panels[1].set_title("white: never tilted, or overturned", fontsize=8.5)
+    figure.colorbar(drawn, ax=panels[1], label=axis_label(found["peak_tilt"]))
     return figure
 
 

@@ -176,6 +176,12 @@ class Batch:
         options = self.plan.options
         return self._notes(options.samples + options.strobes + int(self.table[0, Setup.LOOKS]), PAIRS)
 
+    @property
+    def places(self) -> Floats:
+        """Footprint and twist at the stroboscopic samples, shape (n, number, 3); NaN if missing."""
+        strobes = self.plan.options.strobes
+        return self._notes(int(self.table[0, Setup.NOTES]) - strobes, strobes)[..., :3]
+
     def _notes(self, before: int, count: int) -> Floats:
         first = self.plan.layout.breaks_at + self.motions.breaks.shape[1] + NOTE * before
         return self.table[:, first : first + NOTE * count].reshape(len(self.table), count, NOTE)
@@ -257,10 +263,12 @@ def _rest_energy_for_good(options: Options, models: ModelColumns, motions: Motio
 
 def _empty_table(plan: Plan, shape: Shape, count: int, breaks: int, looks: int) -> Floats:
     samples = plan.options.samples + plan.options.strobes
-    notes = shape.breaks_at + breaks
-    table = np.zeros((count, notes + NOTE * (samples + looks) + plan.traces * shape.trace_width))
+    notes, places = shape.breaks_at + breaks, plan.options.strobes if plan.model.switches else 0
+    number = samples + looks + places
+    table = np.zeros((count, notes + NOTE * number + plan.traces * shape.trace_width))
     table[:, notes : notes + NOTE * samples] = np.nan
-    table[:, Setup.NOTES] = samples + looks
+    table[:, notes + NOTE * (samples + looks) : notes + NOTE * number] = np.nan
+    table[:, Setup.NOTES] = number
     for column in (Log.FIRST_AZIMUTH, Log.LAST_AZIMUTH):
         table[:, LOG + column] = np.nan
     for column in (Log.MINIMUM_TILT, Log.CLOSEST_PASSAGE, Log.NORMAL):

@@ -2,7 +2,7 @@
 
 import cmath
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -74,28 +74,39 @@ class Terms:
 
     @classmethod
     def of(
-        cls, terms: tuple[Term, ...], values: Mapping[str, Floats], count: int, base_acceleration: Floats
+        cls,
+        terms: Sequence[tuple[Term, ...]],
+        which: npt.NDArray[np.intp],
+        values: Mapping[str, Floats],
+        base_acceleration: Floats,
     ) -> "Terms":
-        """Return `terms` for each of `count` runs, with the parameters of `values`, each of shape (count,), changed.
+        """Return the terms of each run, with the parameters of `values` changed.
 
-        `base_acceleration` is the peak horizontal acceleration of each run before the change [m/s²].
+        Parameters
+        ----------
+        terms
+            Terms of each of some motions, all of the same number.
+        which
+            Index of the motion of each run, shape (n,).
+        values
+            Parameters that change, each of shape (n,).
+        base_acceleration
+            Peak horizontal acceleration of each run before the change [m/s²].
         """
-        shape = (count, len(terms))
+        shape = (len(terms), len(terms[0]))
 
-        def spread(numbers: list[float]) -> Floats:
-            return np.broadcast_to(np.array(numbers, dtype=float), shape).copy()
+        def of_runs(get: Callable[[Term], float]) -> Floats:
+            numbers = [get(term) for motion in terms for term in motion]
+            return np.array(numbers, dtype=float).reshape(shape)[which]
 
-        frequency = spread([term.angular_frequency for term in terms])
-        amplitude = np.broadcast_to(
-            np.array([term.amplitude for term in terms], dtype=complex).reshape(len(terms), 3), (*shape, 3)
-        ).copy()
+        amplitudes = [term.amplitude for motion in terms for term in motion]
         made = cls(
-            frequency,
-            amplitude,
-            spread([term.start_phase for term in terms]),
-            spread([term.shift for term in terms]),
-            spread([term.onset for term in terms]),
-            spread([term.ramp for term in terms]),
+            of_runs(lambda term: term.angular_frequency),
+            np.array(amplitudes, dtype=complex).reshape(*shape, 3)[which],
+            of_runs(lambda term: term.start_phase),
+            of_runs(lambda term: term.shift),
+            of_runs(lambda term: term.onset),
+            of_runs(lambda term: term.ramp),
         )
         return made._with(values, base_acceleration)
 

@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from stylobate.base_motions import BaseMotion
 from stylobate.base_motions.one_of import members_of
-from stylobate.base_motions.varying import is_pulse, numbers_of
+from stylobate.base_motions.varying import is_pulse, numbers_of, stated_numbers
 from stylobate.engine.end_of_motion import remaining_acceleration
 from stylobate.engine.ensembles.harmonics import Term, Terms, factors, terms_of
 from stylobate.engine.ensembles.model_columns import ModelColumns
@@ -32,8 +32,9 @@ class MotionPlan:
 
     Each run has one of the motions `members`. If declared parameters of a tabulated motion vary, there is one member
     for each combination: `names` are these parameters, `levels` the increasing values of each, and `combinations` the
-    joint indices of the values of each member. `terms` is None for tabulated motions. `table` holds these one after
-    another; each begins at its index in `first` and has its number of pieces in `lengths`.
+    joint indices of the values of each member. The same holds if numbers of a named constructor vary, such as a
+    stroke. `terms` are those of each member, None for tabulated motions. `table` holds these one after another; each
+    begins at its index in `first` and has its number of pieces in `lengths`.
     """
 
     motion: BaseMotion
@@ -41,7 +42,7 @@ class MotionPlan:
     names: tuple[str, ...]
     levels: tuple[Floats, ...]
     combinations: npt.NDArray[np.intp]
-    terms: tuple[Term, ...] | None
+    terms: tuple[tuple[Term, ...], ...] | None
     table: Table | None
     first: npt.NDArray[np.intp]
     lengths: npt.NDArray[np.intp]
@@ -67,9 +68,11 @@ class MotionPlan:
                     numbers_of(motion)[own].quantity.checked(name, float(value))
         for number in np.unique(values["motion"]) if "motion" in values else ():
             changed_motion(motion, {"motion": float(number)})
-        is_plain = all(name == own for name, own in declared.items()) and not any(name in values for name in OFFSETS)
-        terms = terms_of(motion) if is_plain else None
-        names = () if terms is not None or not len(duration) else tuple(declared)
+        stated = tuple(name for name, own in declared.items() if own in stated_numbers(motion))
+        is_plain = all(name == own for name, own in declared.items() if name not in stated)
+        is_plain &= not any(name in values for name in OFFSETS)
+        harmonic = is_plain and terms_of(motion) is not None
+        names = () if not len(duration) else stated if harmonic else tuple(declared)
         if names and "motion" in values:
             names = ("motion", *names)
         levels, combinations = _combined([values[name] for name in names])
@@ -81,12 +84,14 @@ class MotionPlan:
             members = tuple(changed_motion(motion, change) for change in changes)
         scaled = "acceleration" in values
         base = np.array([peak_acceleration(member) if scaled else 1.0 for member in members])
+        terms = tuple(terms_of(member) or () for member in members) if harmonic else None
         vertical = any(bound != 0.0 for member in members for bound in member.vertical_range(0.0))
         nowhere = np.zeros(1, dtype=np.intp)
         varied = (names, levels, combinations)
         if terms is not None:
-            windowed = "delay" in values or any(term.ramp > 0.0 or term.onset > 0.0 for term in terms)
-            vertical = any(term.amplitude[2] != 0.0 for term in terms)
+            each_term = [term for one in terms for term in one]
+            windowed = "delay" in values or any(term.ramp > 0.0 or term.onset > 0.0 for term in each_term)
+            vertical = any(term.amplitude[2] != 0.0 for term in each_term)
             return cls(motion, members, *varied, terms, None, nowhere, nowhere, windowed, vertical, base)
         least_delay = values["delay"].min(initial=0.0) if "delay" in values else 0.0
         end = float(duration.max(initial=1e-300)) - float(least_delay)
@@ -108,7 +113,7 @@ class MotionPlan:
         """Return the kind of base motion for the kernels."""
         components = (*(("ah",) if planar else ("ax", "ay")), *(("az",) if self.vertical else ()))
         if self.terms is not None:
-            return Harmonics(len(self.terms), self.windowed, components)
+            return Harmonics(len(self.terms[0]), self.windowed, components)
         assert self.table is not None
         return Polynomials(self.table.degree, components)
 
@@ -161,7 +166,7 @@ class MotionColumns:
         offset = np.stack([values.get(name, np.zeros(count)) for name in OFFSETS], axis=-1)
         pushed = np.hypot(*offset.T) / models.gravity
         if plan.terms is not None:
-            terms = Terms.of(plan.terms, values, count, plan.base_acceleration[which])
+            terms = Terms.of(plan.terms, which, values, plan.base_acceleration[which])
             columns = terms.columns(models.time_scale, models.gravity, windowed=plan.windowed)
             breaks = terms.breaks() if plan.windowed else np.empty((count, 0))
             frequency, phase, forward, backward = _single_frequency(terms, plan.motion)

@@ -42,7 +42,17 @@ def _numbers(long_name: str, units: str, *dims: str) -> Quantity:
 
 
 _CONTACTS = (
-    *("end_footprint", "end_twist", "end_contact", "mean_velocity", "mean_twist_rate", "impacts", "slips"),
+    *(
+        "strobe_footprint",
+        "strobe_twist",
+        "end_footprint",
+        "end_twist",
+        "end_contact",
+        "mean_velocity",
+        "mean_twist_rate",
+        "impacts",
+        "slips",
+    ),
     *(f"time_{kind}" for kind in CONTACT_KINDS),
 )
 
@@ -92,6 +102,8 @@ QUANTITIES: Mapping[str, Quantity] = {
     "steps": Quantity(np.int32, (), {"long_name": "integration steps"}),
     "strobe_tilt": _numbers("tilt vector at phase zero of the base motion", "rad", "strobe", "axis"),
     "strobe_tilt_rate": _numbers("its rate at phase zero of the base motion", "rad s-1", "strobe", "axis"),
+    "strobe_footprint": _numbers("footprint at phase zero of the base motion", "m", "strobe", "axis"),
+    "strobe_twist": _numbers("angle of turn about the axis at phase zero of the base motion", "rad", "strobe"),
     "sample_time": _numbers("time", "s", "sample"),
     "sampled_tilt": _numbers("tilt vector", "rad", "sample", "axis"),
     "sampled_tilt_rate": _numbers("rate of the tilt vector", "rad s-1", "sample", "axis"),
@@ -198,6 +210,10 @@ def _all(batch: Batch) -> Arrays:
             arrays[names[1]] = notes[..., 2:4] / scale[:, np.newaxis, np.newaxis]
         if notes.shape[1] and not strobes:
             arrays["sample_time"] = notes[..., 4] * scale[:, np.newaxis]
+    if batch.plan.model.switches and batch.plan.options.strobes:
+        places = batch.places
+        arrays["strobe_footprint"] = places[..., :2] * batch.models.length[:, np.newaxis, np.newaxis]
+        arrays["strobe_twist"] = places[..., 2]
     reached = batch.converged
     return arrays if reached is None else arrays | _orbit_results(batch, arrays, reached)
 

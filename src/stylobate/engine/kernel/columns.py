@@ -67,7 +67,7 @@ class Setup(_FromZero):
     PAIR_SPACING = auto()
     """Mean number of periods from one pair to the next; 0 without pairs."""
     NOTES = auto()
-    """Number of samples, stroboscopic samples, looks and pairs in the row."""
+    """Number of samples, stroboscopic samples, looks and pairs in the row, and of places of stroboscopic samples."""
     TRACES = auto()
     """Number of trace entries for which the row has room, behind the samples; 0 if the run keeps no trace."""
     PASSAGE_TILT = auto()

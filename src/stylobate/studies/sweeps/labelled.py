@@ -34,6 +34,8 @@ def labelled_sweep(
         raise Interrupted(str(stop), label(stop.partial)) from None
     try:
         return label(runs)
+    except Interrupted:
+        raise
     except KeyboardInterrupt:
         message = "interrupted during the labelling; `partial` has all runs, without labels"
         raise Interrupted(message, runs) from None

@@ -9,6 +9,7 @@ import numpy as np
 
 from stylobate.base_motions import BaseMotion
 from stylobate.base_motions.one_of import members_of
+from stylobate.base_motions.varying import stated_numbers, with_numbers
 from stylobate.engine import KnownOrbit
 from stylobate.models import Model
 from stylobate.results import OutcomeRules
@@ -96,4 +97,9 @@ class Recipe:
             periods = np.array([member.period or math.nan for member in members_of(self.motion)])
             return np.asarray(self.periods * periods[values["motion"].astype(np.intp)])
         assert self.motion.period is not None  # a sweep refuses periods of a motion without one
+        stated = [name for name in values if name in stated_numbers(self.motion)]
+        if stated:  # such as a frequency [Hz]
+            rows, which = np.unique(np.stack([values[name] for name in stated], axis=1), axis=0, return_inverse=True)
+            changed = (with_numbers(self.motion, dict(zip(stated, row, strict=True))) for row in rows.tolist())
+            return self.periods * np.array([motion.period for motion in changed], dtype=float)[which.ravel()]
         return self.periods * self.motion.period

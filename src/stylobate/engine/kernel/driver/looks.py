@@ -3,7 +3,7 @@
 import math
 
 from stylobate.engine.elementary import length
-from stylobate.engine.kernel.bound import BREAKS_AT, PLANAR, R
+from stylobate.engine.kernel.bound import BREAKS_AT, PLANAR, SWITCHING, WINDOW_ENDS, R
 from stylobate.engine.kernel.columns import EARLIER, LAGS, NOTE, PAIRS, SLACK, Pair, pair_begins
 from stylobate.engine.kernel.driver.guards import record_window
 from stylobate.engine.kernel.driver.moving import azimuth_now
@@ -29,6 +29,20 @@ def record_lean(buf: Table, i: int, table: Table, index: int, last: float) -> No
     table[run, column + 2] = vx
     table[run, column + 3] = vy
     table[run, column + 4] = last
+
+
+def record_place(buf: Table, i: int, table: Table, strobe: int) -> None:
+    """Record the footprint and twist at a stroboscopic sample, for a model that changes between contacts.
+
+    These notes follow all others, one for each stroboscopic sample.
+    """
+    if SWITCHING:
+        run = int(buf[R.RUN, i])
+        column = note_column(buf, i, int(buf[R.NOTES, i] - buf[R.STROBES, i]) + strobe)
+        x, y, twist = WINDOW_ENDS
+        table[run, column] = buf[R.STATE + x, i]
+        table[run, column + 1] = buf[R.STATE + y, i]
+        table[run, column + 2] = buf[R.STATE + twist, i]
 
 
 def note_column(buf: Table, i: int, index: int) -> int:

@@ -5,7 +5,7 @@ import math
 from stylobate.engine.kernel.bound import BREAKS_AT, DEGREE, R
 from stylobate.engine.kernel.columns import SLACK, Status
 from stylobate.engine.kernel.driver.base_motion import continues_in_next_piece, set_leg
-from stylobate.engine.kernel.driver.looks import record_lean, set_look, set_pair, take_look, take_pair
+from stylobate.engine.kernel.driver.looks import record_lean, record_place, set_look, set_pair, take_look, take_pair
 from stylobate.engine.kernel.driver.moving import set_rates
 from stylobate.engine.kernel.driver.standing_loads import record_standing_loads
 from stylobate.engine.kernel.layout import Table
@@ -95,6 +95,7 @@ def meet_stop(buf: Table, i: int, table: Table, pieces: Table, t: float) -> int:
         set_sample(buf, i)
     while buf[R.STROBES_AT, i] <= t:
         record_lean(buf, i, table, int(buf[R.SAMPLES, i] + buf[R.NEXT_STROBE, i]), t)
+        record_place(buf, i, table, int(buf[R.NEXT_STROBE, i]))
         buf[R.NEXT_STROBE, i] += 1.0
         set_strobe(buf, i)
     if t >= buf[R.LIFTS_AT, i]:

@@ -67,7 +67,8 @@ const LOOKS: Readonly<Record<string, Look>> = {
   slides: look("#E5BE8F", level, DARK),
   "rocks or rolls": look(SKY),
   "slides and rocks": look(BLUE, falling),
-  flies: look(GREY, sparse),
+  "hops upright": look(GREY, sparse),
+  "hops and rocks": look(MAUVE, squared),
   overturns: look(NIGHT),
 };
 
