@@ -160,6 +160,7 @@ RESULTS: dict[str, Callable[[], Any]] = {
         over={"acceleration": np.linspace(2.0, 30.0, 20), "friction_coefficient": np.linspace(0.1, 0.6, 16)},
         periods=20.0,
     ),
+    "upright": lambda: sb.conveying.upright(PIN, FEEDER, phases=8, periods=20),
     "drift": lambda: sb.conveying.drift(
         PIN,
         sb.Harmonic.oblique(acceleration=10.0, angular_frequency=300.0, angle=0.5),

@@ -130,7 +130,7 @@ def _report(what: str, read: Callable[..., News], progress: object) -> Iterator[
 
 
 def _place() -> str:
-    """Return where a bar can be shown: "notebook", "terminal", or "" for nowhere."""
+    """Return the place for a bar: "notebook", "terminal", or "" for none."""
     started = sys.modules.get("multiprocessing.process")
     if _quiet or (started is not None and started.parent_process() is not None):
         return ""
