@@ -7,6 +7,8 @@ import pytest
 
 import stylobate as sb
 from stylobate.cli.main import run
+from stylobate.cli.verdict import VerdictOfCase
+from stylobate.config import Setup
 
 COLUMN = ["--radius", "0.3", "--height", "3", "--density", "2700", "--model", "wobbling", "--damping", "0.08"]
 PULSE = ["--motion", "one-sine", "--angular-frequency", "4", "--acceleration"]
@@ -43,6 +45,31 @@ def test_the_table_has_the_verdict_the_model_and_the_yardstick_of_its_damping(ca
     assert ("in this run alone; small variations leave it undecided" in rows["outcome"]) == undecided
 
 
+@pytest.mark.parametrize(
+    ("run_at", "verdict_at", "remark"),
+    [
+        (6.0, 1.0, "nearly all small variations do not overturn it"),
+        (1.0, 6.0, "nearly all small variations overturn it"),
+        (6.0, 2.35, "small variations leave it undecided"),
+        (6.0, 6.0, ""),
+        (1.0, 1.0, ""),
+    ],
+)
+def test_a_run_that_does_not_state_the_verdict_says_so_in_table_and_titles(run_at, verdict_at, remark):
+    case = VerdictOfCase(Setup(MODEL, pulse(run_at), {}), {}, "", None, None, None)
+    alone, found = sb.simulate(MODEL, pulse(run_at)), sb.verdict(MODEL, pulse(verdict_at), runs=60)
+    expected = f"{alone.outcome.label} in this run alone; {remark}" if remark else alone.outcome.label
+    assert dict(case.rows(alone, found))["outcome"] == expected
+    assert case.title(alone, found) == (expected if remark else None)
+
+
+def test_the_figure_of_an_undecided_run_is_titled_so(tmp_path, capsys):
+    page = tmp_path / "run.html"
+    assert run(["simulate", *COLUMN, *PULSE, "2.35", *FEW, "--figure", str(page)]) == 0
+    capsys.readouterr()
+    assert "in this run alone; small variations leave it undecided" in page.read_text(encoding="utf-8")
+
+
 def test_a_single_run_says_that_variations_were_not_tried(capsys):
     rows = rows_of(capsys, *PULSE, "6", "--single")
     assert "verdict" not in rows
@@ -51,7 +78,9 @@ def test_a_single_run_says_that_variations_were_not_tried(capsys):
 
 def test_json_has_the_verdict_or_null(capsys):
     assert run(["simulate", *COLUMN, *PULSE, "2.35", *FEW, "--json"]) == 0
-    told = json.loads(capsys.readouterr().out)["verdict"]
+    printed = json.loads(capsys.readouterr().out)
+    assert next(iter(printed)) == "verdict"
+    told = printed["verdict"]
     found = sb.verdict(MODEL, pulse(2.35), runs=60)
     assert told["word"] == found.word.value
     assert (told["share"], told["share_low"], told["share_high"]) == (found.share, *found.interval)

@@ -153,6 +153,30 @@ def test_runs_without_a_decision_count_on_both_sides():
     assert found.word is VerdictWord.UNDECIDED
 
 
+def test_a_run_that_may_overturn_later_is_undecided_at_every_tail():
+    strong = sb.Pulse.one_sine(acceleration=5.0, angular_frequency=6.0)
+    for tail in (0.0, 0.5):
+        cut = sb.verdict(MODEL, strong, runs=40, tail=tail)
+        moving = cut.data["outcome"].to_numpy() == sb.Outcome.STILL_MOVING
+        assert moving.any()
+        np.testing.assert_array_equal(cut.data["overturned"].to_numpy() < 0, moving)
+        assert cut.interval[1] == 1.0
+        assert cut.word is VerdictWord.UNDECIDED
+        assert f"{percent(float(moving.mean()))} are not decided" in str(cut)
+    assert sb.verdict(MODEL, strong, runs=60).word is VerdictWord.OVERTURNS
+
+
+def test_the_default_tail_is_lengthened_until_spinning_columns_are_decided():
+    quake, chosen = sb.sample_record("el centro 1940"), {"runs": 60, "seed": 1}
+    spinning = [sb.Rolling(COLUMN, damping=0.08)]
+    short = sb.verdict(spinning, quake, tail=20.0 / COLUMN.frequency_parameter, **chosen)
+    usual = sb.verdict(spinning, quake, **chosen)
+    moving = short.data["overturned"].to_numpy() < 0
+    assert moving.any()
+    assert (usual.data["overturned"].to_numpy() >= 0).all()
+    np.testing.assert_array_equal(usual.data["outcome"][~moving], short.data["outcome"][~moving])
+
+
 @pytest.mark.parametrize(
     ("model", "other"),
     [
@@ -194,6 +218,7 @@ def test_progress_is_reported_up_to_the_number_of_runs():
         ({"runs": 1}, "runs must be a whole number of at least 2, got 1"),
         ({"confidence": 90.0}, "confidence must lie between 0 and 1, got 90"),
         ({"seed": -1}, "seed must be"),
+        ({"tail": -50.0}, "tail must be zero or positive, got -50"),
         ({"tilt_limit": 0.1}, "tilt_limit"),
         ({"variations": {"lowpass": Choice((-3.0,))}, "motion": QUAKE}, "lowpass"),
     ],

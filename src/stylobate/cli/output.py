@@ -52,6 +52,7 @@ def deliver(
     save: Callable[[Any, Path], None],
     summary: Callable[[Any], Any],
     show: Callable[[Any], None],
+    label: str | None = None,
 ) -> None:
     """Write a result into the files that the options name, and print it.
 
@@ -67,11 +68,13 @@ def deliver(
         Function that returns plain values for JSON.
     show
         Function that prints a table.
+    label
+        Label of the result in its figure.
     """
     if options["output"] is not None:
         save(result, options["output"])
     if options["figure"] is not None:
-        save_plot(result, options["figure"])
+        save_plot(result, options["figure"], label)
     if options["as_json"]:
         print_json(summary(result))
     else:
@@ -141,8 +144,8 @@ def check_place(path: Path) -> None:
         raise FileError(message)
 
 
-def save_plot(result: Any, path: Path) -> None:
-    """Write the figure of `result` into the file `path`: a page if it ends in .html, else a picture.
+def save_plot(result: Any, path: Path, label: str | None = None) -> None:
+    """Write the figure of `result`, with its `label`, into `path`: a page if it ends in .html, else a picture.
 
     A page has the interactive figure of the result, or its picture if there is no interactive one.
 
@@ -153,15 +156,16 @@ def save_plot(result: Any, path: Path) -> None:
     """
     from stylobate import plots  # noqa: PLC0415  slow to import
 
+    labels = None if label is None else [label]
     if path.suffix.lower() != PAGE:
-        save_figure(plots.plot(result), path)
+        save_figure(plots.plot(result, labels=labels), path)
         return
     try:
-        text = plots.plot_interactive(result).to_html(include_plotlyjs=True)
+        text = plots.plot_interactive(result, labels=labels).to_html(include_plotlyjs=True)
     except ParameterError:
         from stylobate.plots.page import Picture, page  # noqa: PLC0415
 
-        text = page(path.stem, [Picture(plots.plot(result), path.stem)], [])
+        text = page(path.stem, [Picture(plots.plot(result, labels=labels), path.stem)], [])
     write_whole(path, text.encode())
 
 

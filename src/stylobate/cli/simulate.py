@@ -58,22 +58,23 @@ def simulate(options: Options) -> None:
         run,
         options,
         _save,
-        lambda run: {**_summary(run), **case.summary(verdict)},
+        lambda run: {**case.summary(verdict), **_summary(run)},
         lambda run: print_table("run", _rows(run, setup.model, case.rows(run, verdict))),
+        label=case.title(run, verdict),
     )
     case.deliver(verdict)
     if options["animation"] is not None:
-        _animate(run, options["animation"], options["speed"])
+        _animate(run, options["animation"], options["speed"], case.title(run, verdict))
 
 
 def _save(run: "Response", path: Path) -> None:
     run.save(path)
 
 
-def _animate(run: "Response", path: Path, speed: float | None) -> None:
+def _animate(run: "Response", path: Path, speed: float | None, title: str | None) -> None:
     from stylobate.plots import animate  # noqa: PLC0415  heavy, and for one option only
 
-    animate(run, path, speed=1.0 if speed is None else speed)
+    animate(run, path, speed=1.0 if speed is None else speed, title=title)
 
 
 def _summary(run: "Response") -> dict[str, Any]:

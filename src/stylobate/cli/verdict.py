@@ -12,7 +12,7 @@ from stylobate.cli.options import Options
 from stylobate.cli.output import NETCDF, check_writable, save_plot
 from stylobate.cli.saved import relocated
 from stylobate.config.run_numbers import Accuracy, Start
-from stylobate.errors import ParameterError
+from stylobate.errors import Outcome, ParameterError
 
 if TYPE_CHECKING:
     from stylobate.config import Setup
@@ -83,7 +83,7 @@ class VerdictOfCase:
         return earthquakes.verdict(self.setup.model, self.setup.motion, **self.arguments)
 
     def rows(self, run: "Response", verdict: "Verdict | None") -> "Rows":
-        """Return the rows of model, verdict and outcome; the outcome of an undecided case says so."""
+        """Return the rows of model, verdict and outcome, with a remark on a run that does not state the verdict."""
         from stylobate.results.summary import damping_rows, outcome_of  # noqa: PLC0415  as in `simulate`
 
         model = [("model", _model(self.setup.model))]
@@ -96,9 +96,12 @@ class VerdictOfCase:
         rows = [*model, ("verdict", str(verdict)), ("by contact law", f"{laws} overturn")]
         if verdict.deciding:
             rows.append(("decided most by", earthquakes.LABELS.get(verdict.deciding, verdict.deciding)))
-        undecided = verdict.word is results.VerdictWord.UNDECIDED
-        remark = " in this run alone; small variations leave it undecided" if undecided else ""
-        return [*rows, ("outcome", outcome_of(run) + remark)]
+        return [*rows, ("outcome", outcome_of(run) + _remark(run, verdict))]
+
+    def title(self, run: "Response", verdict: "Verdict | None") -> str | None:
+        """Return the title of figure and animation of a run that does not state the verdict; None if it does."""
+        remark = "" if verdict is None else _remark(run, verdict)
+        return f"{run.outcome.label}{remark}" if remark else None
 
     def summary(self, verdict: "Verdict | None") -> dict[str, Any]:
         """Return the verdict for JSON."""
@@ -115,6 +118,21 @@ class VerdictOfCase:
             verdict.save(self.output)
         if verdict is not None and self.figure is not None:
             save_plot(verdict, self.figure)
+
+
+def _remark(run: "Response", verdict: "Verdict") -> str:
+    """Return the remark on a run that does not state the verdict on its case; empty if it states the same."""
+    overturned = run.outcome is Outcome.OVERTURNED
+    match verdict.word:
+        case results.VerdictWord.UNDECIDED:
+            variations = "small variations leave it undecided"
+        case results.VerdictWord.STANDS if overturned:
+            variations = "nearly all small variations do not overturn it"
+        case results.VerdictWord.OVERTURNS if not overturned:
+            variations = "nearly all small variations overturn it"
+        case _:
+            return ""
+    return f" in this run alone; {variations}"
 
 
 def _why_not(model: "Model", *, single: bool, asked: bool) -> str:

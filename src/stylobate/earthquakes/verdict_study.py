@@ -1,7 +1,7 @@
 """The verdict on a case: runs under joint small variations, and the share of them that overturns the column."""
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, fields
 from functools import partial
 from typing import Any, Unpack, cast
@@ -29,7 +29,16 @@ from stylobate.earthquakes.variations import (
     shares_of,
 )
 from stylobate.engine.parameters import COLUMN_NAMES, model_names
-from stylobate.errors import LARGEST_SEED, MOST_RUNS, Interrupted, ParameterError, UnsupportedError, require_whole
+from stylobate.errors import (
+    LARGEST_SEED,
+    MOST_RUNS,
+    Interrupted,
+    Outcome,
+    ParameterError,
+    UnsupportedError,
+    require_not_negative,
+    require_whole,
+)
 from stylobate.models import Model, Rolling, Slender, SlenderRolling, Wobbling
 from stylobate.progress import Progress, Report, report_of, shows_progress
 from stylobate.results import OutcomeRules
@@ -57,6 +66,8 @@ _PARTS = 6
 # A variation that explains nothing exceeds its critical influence with this probability, over all variations.
 _BY_CHANCE = 0.01
 _KEPT = ("outcome", "peak_tilt", "uncertain")
+_LONGER = 8.0
+"""Factor of the default tail for the runs that still move at its end: 160/p."""
 
 
 @shows_progress("variations")
@@ -98,7 +109,7 @@ def verdict(
     confidence
         Confidence level of the intervals.
     tail
-        Free-vibration time after the motion [s]; by default 20/p.
+        Free-vibration time after the motion [s]; by default 20/p, and 160/p for runs that still move then.
     executor, progress
         As in `run_sweep`.
     **options
@@ -113,7 +124,8 @@ def verdict(
         * over `run`: `law` (index of the model), `overturned` (1, 0, −1 if undecided), `outcome`, `tilt_ratio` (peak
           tilt over α_c, infinite if overturned), `uncertain` (numerically), and over `variation` too `value`;
         * `share`, `share_low`, `share_high`: share of overturning with its interval (Wilson's; undecided runs count on
-          both sides); over `model`: `model_share`, `model_share_low`, `model_share_high`, `model_runs`;
+          both sides, also those that still move and may overturn later); over `model`: `model_share`,
+          `model_share_low`, `model_share_high`, `model_runs`;
         * over `variation`: `influence`, the fraction of the variance of the outcome that this variation explains alone
           (correlation ratio, corrected for chance, Kelley 1935), and over `part`, from its lowest to its highest values
           in equal numbers, `part_share`;
@@ -149,7 +161,7 @@ def verdict(
         runs=require_whole("runs", runs, least=2, most=MOST_RUNS),
         seed=require_whole("seed", seed, least=0, most=LARGEST_SEED),
         confidence=require_confidence(confidence),
-        tail=tail,
+        tail=None if tail is None else require_not_negative("tail", tail, "s"),
         options=options,
     )
     check_variations(case.models, case.variations)
@@ -281,9 +293,9 @@ class _Case:
             at = {"motion": member[chosen].astype(float), **self._quantities(model, own)}
             slenderness[chosen] = at.get("slenderness", np.full(chosen.size, model.column.slenderness))
             tolerance = float(group[1]) if group.size > 1 else 1.0
-            sweep = Sweep.points(model, OneOf(motions=members), at=at, **self._integrated(tolerance))
+            sweep = partial(Sweep.points, model, OneOf(motions=members), **self._integrated(tolerance))
             try:
-                runs = run_sweep(sweep, executor=executor, progress=partial(_within, progress, done, self.runs))
+                runs = self._followed(sweep, at, executor, partial(_within, progress, done, self.runs))
             except Interrupted as stop:
                 runs, stopped = stop.partial, str(stop)
             for name in _KEPT:
@@ -305,6 +317,32 @@ class _Case:
             message = f"stopped after {computed} of {plural(self.runs, 'variation')}; `partial` is the verdict so far"
             raise Interrupted(message, data)
         return data
+
+    def _followed(
+        self, sweep: Callable[..., Sweep], at: Mapping[str, Floats], executor: Executor | None, progress: Report
+    ) -> xr.Dataset:
+        """Compute runs; with the default tail, repeat those that still move with a longer one.
+
+        Raises
+        ------
+        Interrupted
+            On Ctrl-C, with the runs so far.
+        """
+        runs = run_sweep(sweep(at=at), executor=executor, progress=progress)
+        late = runs["outcome"].to_numpy() == Outcome.STILL_MOVING
+        if self.tail is not None or not late.any():
+            return runs
+        own = {name: array[late] for name, array in at.items()}
+        own["duration"] = self.motion.duration + _LONGER * (own["duration"] - self.motion.duration)
+        try:
+            longer = run_sweep(sweep(at=own), executor=executor, progress=False)
+        except Interrupted as stop:
+            raise Interrupted(str(stop), runs) from None
+        for name in _KEPT:
+            values = runs[name].to_numpy().copy()
+            values[late] = longer[name].to_numpy()
+            runs = runs.assign({name: runs[name].copy(data=values)})
+        return runs
 
     def _members(self, values: Mapping[str, Floats]) -> tuple[tuple[BaseMotion, ...], npt.NDArray[np.intp]]:
         """Return the filtered copies of the motion, and the index of that of each run."""
@@ -343,7 +381,7 @@ class _Case:
 
     def labelled(self, data: xr.Dataset) -> xr.Dataset:
         """Add shares, intervals and influences to the runs."""
-        state, law = np.maximum(overturned_or_not(data), -1).astype(np.int8), self.law
+        state, law = _states(data), self.law
         values = {**({CONTACT_LAW: law.astype(float)} if len(self.models) > 1 else {}), **self.values}
         parts = {name: _parts_of(array) for name, array in values.items()}
         influence = np.array([_influence(state, part) for part in parts.values()])
@@ -421,6 +459,15 @@ def _filtered(motion: BaseMotion, corner: float) -> BaseMotion:
     if not isinstance(motion, Record) or corner >= 0.5 / motion.step:
         return motion
     return motion.filtered(lowpass=corner)
+
+
+def _states(data: xr.Dataset) -> npt.NDArray[np.int8]:
+    """Return 1 for each run that overturned, 0 for each that cannot, −1 for each without a decision.
+
+    A run that still moves and may overturn later has none.
+    """
+    decided = np.maximum(overturned_or_not(data), -1)
+    return np.where(data["outcome"].to_numpy() == Outcome.STILL_MOVING, -1, decided).astype(np.int8)
 
 
 def _share(state: npt.NDArray[np.int8], confidence: float) -> tuple[float, float, float]:

@@ -126,7 +126,10 @@ def _of_runs(runs: Sequence[Response], names: Sequence[str]) -> "Figure":
     if not planar:
         figure.update_xaxes(title_text="tilt along x [rad]", row=1, col=2)
         figure.update_yaxes(title_text="tilt along y [rad]", scaleanchor=f"x{_PLANE}", row=1, col=2)
-    title = f"{runs[0].outcome.label}: {runs[0].reason}" if len(runs) == 1 else None
+    title = None
+    if len(runs) == 1:
+        outcome = runs[0].outcome.label
+        title = f"{names[0] if outcome in names[0] else outcome}: {runs[0].reason}"
     figure.update_layout(title=title, showlegend=len(runs) > 1)
     return figure
 

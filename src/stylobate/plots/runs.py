@@ -350,7 +350,7 @@ def _write(figure: Figure, runs: Sequence[Response], names: Sequence[str], lines
             figure.legend(handles=[Line2D([], [], label=n, **line) for n, line in zip(names, lines, strict=True)])
         return
     if len(runs) == 1:
-        name = names[0] if names[0] == runs[0].outcome.label else f"{names[0]}: {runs[0].outcome.label}"
+        name = names[0] if runs[0].outcome.label in names[0] else f"{names[0]}: {runs[0].outcome.label}"
         heading(figure, f"{name[:1].upper()}{name[1:]}: {runs[0].reason}")
         return
     entries = [

@@ -102,8 +102,10 @@ class Verdict(ByContent):
     def __str__(self) -> str:
         """Return the verdict in one line."""
         low, high = self.interval
+        unknown = float((self.data["overturned"] < 0).mean())
+        undecided = f", {percent(unknown)} are not decided" if unknown else ""
         return (
-            f"{self.word.value}: {percent(self.share)} of {self.runs} variations overturn the column "
+            f"{self.word.value}: {percent(self.share)} of {self.runs} variations overturn the column{undecided} "
             f"({percent(self.confidence)} interval {percent(low).removesuffix(' %')} to {percent(high)})"
         )
 

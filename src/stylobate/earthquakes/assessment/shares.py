@@ -96,7 +96,7 @@ def _over_the_levels(inputs: Inputs, column: str) -> dict[str, Spread | None]:
 def _as_dataset(found: list[Verdict], records: list[str]) -> xr.Dataset:
     shares = np.array([(one.share, *one.interval) for one in found])
     states = [one.data["overturned"].to_numpy() for one in found]
-    ratios = [one.data["tilt_ratio"].dropna("run").to_numpy() for one in found]
+    ratios = [one.data["tilt_ratio"].to_numpy()[state >= 0] for one, state in zip(found, states, strict=True)]
     law_shares = np.array([one.data["model_share"].to_numpy() for one in found])
     one = {"units": "1"}
     return xr.Dataset(

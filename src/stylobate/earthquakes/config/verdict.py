@@ -23,7 +23,8 @@ class VerdictConfig(Config):
     confidence
         Confidence level of intervals.
     tail
-        Free-vibration time after the motion [s]; 20/`column.frequency_parameter` by default.
+        Free-vibration time after the motion [s]; by default 20/`column.frequency_parameter`, and eight times as long
+        for runs that still move then.
     variations
         Distribution of each variation that is not to have its default, by its name: tables as for `spreads` of a
         fragility; false leaves the variation out.

@@ -147,8 +147,9 @@ def _verdict_text(assessment: Assessment) -> str:
         f"Each record was run at the scale factors {scales(assessment.setting['scales'])} and at every stated "
         "dissipation, with its vertical component and, if it has one, without it. The first table counts records, at "
         f"central dissipation unless its heading says otherwise. Each run continued for {followed} after its record; a "
-        "column that had not overturned by then counts as not overturned. A run that could not be completed, for "
-        "instance because it needed too many steps, is not decided."
+        "column that had not overturned by then counts as not overturned; under small variations it is not decided if "
+        "it still moves and may overturn later. A run that could not be completed, for instance because it needed too "
+        "many steps, is not decided."
     )
 
 
