@@ -116,26 +116,23 @@ sphinx_gallery_conf = {
 }
 # A name in a signature or a link that no page describes is an error, but for types that users never construct.
 nitpicky = True
-nitpick_ignore_regex = (
-    [
-        ("py:class", pattern)
-        for pattern in (
-            r"stylobate\.orbits\.(arclength|curves|shooting)\.\w+",  # inner values of branches and orbits
-            r"stylobate\.models\.(closed_form\.ClosedForm|sliding\.phases\.Numbers)",  # inner values of models
-            r"stylobate\.plots\.(animation\.drawing|figure|kinds|page|shape)\.\w+",  # parts of figures and reports
-            r"stylobate\.base_motions\.records\.origin\.RecordOrigin",  # kept for files
-            r"stylobate\.studies\.sweeps\.(computing|designs|executors)\.(Computed|Design|Task|Work)",  # given by sweeps
-            r"stylobate\.earthquakes\.config\.(fragility\.Fragility|hazard\.HazardPoints)",  # shown as tables of keys
-            r"starlette\.applications\.Starlette",  # has no inventory of names
-            r"(pd|pandas)\.DataFrame|plotly\.graph_objects\.Figure",  # neither have these here
-            r"Figure|matplotlib\.axes\._axes\.Axes",  # the inventory has matplotlib.axes.Axes
-            r"stylobate\.(quantities\.Stated|plots\.orbit\.Orbit)",  # inner values of motions and figures
-        )
-    ]
-    + [
-        ("py:obj", r"typing\.Annotated.*|over")  # declared numbers of properties
-    ]
-)
+nitpick_ignore_regex = [
+    ("py:class", pattern)
+    for pattern in (
+        r"stylobate\.orbits\.(arclength|curves|shooting)\.\w+",  # inner values of branches and orbits
+        r"stylobate\.models\.(closed_form\.ClosedForm|sliding\.phases\.Numbers)",  # inner values of models
+        r"stylobate\.plots\.(animation\.drawing|figure|kinds|page|shape)\.\w+",  # parts of figures and reports
+        r"stylobate\.base_motions\.records\.origin\.RecordOrigin",  # kept for files
+        r"stylobate\.studies\.sweeps\.(computing|designs|executors)\.(Computed|Design|Task|Work)",  # given by sweeps
+        r"stylobate\.earthquakes\.config\.(fragility\.Fragility|hazard\.HazardPoints)",  # shown as tables of keys
+        r"starlette\.applications\.Starlette",  # has no inventory of names
+        r"(pd|pandas)\.DataFrame|plotly\.graph_objects\.Figure",  # neither have these here
+        r"Figure|matplotlib\.axes\._axes\.Axes",  # the inventory has matplotlib.axes.Axes
+        r"stylobate\.(quantities\.Stated|plots\.orbit\.Orbit)",  # inner values of motions and figures
+    )
+]
+# Declared numbers of properties.
+nitpick_ignore_regex += [("py:obj", r"typing\.Annotated.*|over")]
 suppress_warnings = ["config.cache"]
 
 html_theme = "furo"
