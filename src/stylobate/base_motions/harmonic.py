@@ -32,7 +32,7 @@ _SERIES_RADIUS = 0.5
 _SERIES_TERMS = 18
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class Harmonic(BaseMotion):
     """Harmonic base acceleration a_i cos(Ωt + start_phase + φ_i) along x, y and z, with an optional ramp.
 
@@ -90,12 +90,6 @@ class Harmonic(BaseMotion):
     start_phase: StartPhase = 0.0
     ramp: Ramp = 0.0
     stated: Stated | None = field(default=None, init=False, compare=False)
-
-    def __repr__(self) -> str:
-        """Write the call that makes this motion."""
-        _, numbers = self.made_by()
-        name = "" if self.stated is None else f".{self.stated.constructor}"
-        return f"{type(self).__name__}{name}({', '.join(f'{key}={value!r}' for key, value in numbers.items())})"
 
     def made_by(self) -> tuple[Callable[..., BaseMotion], Mapping[str, Any]]:
         """Return the named constructor that made this motion, or else the class, with its arguments."""
