@@ -75,7 +75,7 @@ class Harmonic(BaseMotion):
     >>> Harmonic.orbit(diameter=0.02, rpm=300.0).peak_horizontal()  # 0.01 m (10π rad/s)²
     9.869604401089358
     >>> Harmonic.stroke(stroke=0.0012, frequency=50.0, angle=0.4)
-    Harmonic.stroke(stroke=0.0012, frequency=50.0, angle=0.4)
+    Harmonic.stroke(stroke=0.0012 m, frequency=50 Hz, angle=0.4 rad)
     """
 
     responds: ClassVar[bool] = True
