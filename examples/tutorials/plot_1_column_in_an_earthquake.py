@@ -113,9 +113,9 @@ print(f"peak of the horizontal vector: {quake.peak_horizontal():.2f} m/s²")
 # the column spin about its axis; step 9 compares the two.
 #
 # `damping` is the dimensionless damping parameter η. It states how quickly a rocking
-# column loses energy. It is seldom measured, so one value is not enough. This tutorial
-# uses 0.03, and step 8 varies it; :doc:`/how-to/choose-damping` has a recipe for your
-# own column.
+# column loses energy. It is seldom measured, so one value is not enough.
+# :doc:`/how-to/choose-damping` has a recipe, which for this column gives 0.05 to 0.21.
+# This tutorial uses less, 0.03, so that the case is a close one; step 8 varies it.
 model = sb.Wobbling(column, damping=0.03)
 
 # %%
@@ -198,7 +198,7 @@ sb.plot(verdict)
 # not the run.
 #
 # Which variation decides? The right panel ranks them. The damping is the least certain
-# number, so it varies by a factor of 1.5 up and down; a free-decay test narrows it.
+# number, so it varies from half to twice its value; a free-decay test narrows it.
 
 # %%
 # Step 9: does the contact law matter?

@@ -26,7 +26,7 @@ from stylobate.earthquakes.assessment.report.record_figures import spectra_figur
 from stylobate.earthquakes.assessment.report.record_tables import drifting
 from stylobate.earthquakes.assessment.report.sections import document_table, not_covered, report_sections
 from stylobate.earthquakes.assessment.report.summary import column_findings, summary_text, verdict_table
-from stylobate.earthquakes.assessment.report.wording import intervals, least_scale
+from stylobate.earthquakes.assessment.report.wording import at_most, intervals, least_scale
 from stylobate.earthquakes.assessment.summary import summary_of
 from stylobate.earthquakes.figures.interval_regions import UNDECIDED
 from stylobate.results import DesignSpectrum, ReportDetails
@@ -442,7 +442,7 @@ def test_the_history_shows_the_last_run_that_stands_and_the_first_that_overturns
     [
         (0.4, np.nan, 0, "No run for the margin needed more friction than stated."),
         (0.5, 2.5, 0, "needs more friction than stated is 2.5, above the smallest overturning scale: the column"),
-        (0.9, 0.8, 1, "is 0.8. In some case that is below the smallest overturning scale: the base would slip first"),
+        (0.9, 0.8, 1, "is 0.8. With some damping the base would slip at a scale below the smallest that overturns"),
         (np.nan, np.nan, 0, "The friction needed at other scales was not computed."),
     ],
 )
@@ -452,6 +452,16 @@ def test_friction_up_to_the_margin_is_stated(found, need, slipping, first, words
     counted = summary.assign({name: ("column", np.full(2, value)) for name, value in at.items()})
     changed = replace(found, data={**found.data, "summary": counted})
     assert words in dict(column_findings(changed, "stout").rows)["contact"]
+
+
+def test_the_friction_of_each_contact_law_is_stated_and_the_given_one_decides_the_class(found):
+    at = {"friction_to_margin": 0.5, "least_slipping": np.nan, "slips_first": 0, "least_slipping_other_law": 0.538}
+    counted = found.data["summary"].assign({name: ("column", np.full(2, value)) for name, value in at.items()})
+    contact = dict(column_findings(replace(found, data={**found.data, "summary": counted}), "stout").rows)["contact"]
+    assert "with slender needed a friction coefficient of up to 0.31" in contact
+    assert "No run for the margin needed more friction than stated. With the other contact law" in contact
+    assert "from scale 0.538 on" in contact
+    assert "the given law only" in contact
 
 
 def test_the_table_of_friction_up_to_the_margin_is_that_of_its_runs(found):
@@ -481,12 +491,13 @@ def test_few_records_are_told_in_the_words_of_the_fragility(page):
 def test_a_least_scale_that_stands_alone_is_marked(found):
     margins = found.data["margins"]
     assert float(margins["least_lasting"].min()) >= float(margins["least_overturning"].min())
-    assert "in an interval so narrow" not in dict(column_findings(found, "slim <1>").rows)["margin"]
+    assert "so narrow" not in dict(column_findings(found, "slim <1>").rows)["margin"]
     alone = margins.assign(least_lasting=1.25 * margins["least_overturning"])
     changed = replace(found, data={**found.data, "margins": alone})
     wider = float(alone["least_lasting"].sel(column="slim <1>", record="strong", case="central"))
     words = dict(column_findings(changed, "slim <1>").rows)["margin"]
-    assert f"in an interval so narrow that another scan might miss it; a wider interval begins at {wider:.4g}" in words
+    assert "in an overturning interval so narrow that another scan may not find it" in words
+    assert f"; the first wider interval begins at {wider:.4g}" in words
 
 
 def test_shares_are_tabulated_with_their_word_and_counts(found):
@@ -499,7 +510,7 @@ def test_shares_are_tabulated_with_their_word_and_counts(found):
         low, share, high = (100.0 * float(one[name]) for name in ("share_low", "share", "share_high"))
         assert cells["under small variations"] == one["word"].item()
         assert cells["share that overturns it"] == f"{share:.0f} %"  # of 20
-        assert cells["90 % interval"] == f"{low:.0f} % to {high:.0f} %"
+        assert cells["90 % sampling interval"] == f"{low:.0f} to {high:.0f} %"
         assert cells["not decided"] == "0 of 20"
         laws = [f"{name} {100.0 * float(value):.0f} %" for name, value in zip(LAWS, one["law_share"], strict=True)]
         assert cells["by contact law"] == ", ".join(laws)
@@ -552,7 +563,7 @@ def test_shares_are_drawn_with_their_intervals_and_those_of_near_scales_as_marks
     for place, line in enumerate(marks):
         np.testing.assert_allclose(line.get_xydata(), [(10.0 * place, 0.0), (0.0, 1.0)], atol=1e-12)
     labels = [text.get_text() for legend in figure.legends for text in legend.get_texts()]
-    assert labels == ["variations, 90 % interval", "variations, share", *(f"±10 %: {case}" for case in cases)]
+    assert labels == ["variations, 90 % sampling interval", "variations, share", *(f"±10 %: {case}" for case in cases)]
     assert [text.get_text() for text in axes.get_yticklabels()] == ["strong", "weak & quiet"]
     limits = sorted(line.get_xdata()[0] for line in axes.lines if line.get_linestyle() == "--")
     np.testing.assert_allclose(limits, [5.0, 95.0])
@@ -604,6 +615,26 @@ def test_margins_are_stated_as_upper_bounds(found):
     assert words.startswith("At central dissipation the smallest overturning scale is at most ")
     assert "Smallest overturning scale of all cases: at most " in verdict_table(found).rows[0][2]
     assert "read each margin as “at most”" in section(found, "Margins")[0]
+
+
+def test_bounds_are_rounded_up_in_every_table_and_sentence(found):
+    margins = found.data["margins"]
+    scales = margins["least_overturning"]
+    table = assessment_tables(found)["margin-intensities"]
+    for row in table.rows:
+        cells = dict(zip(table.header, row, strict=True))
+        exact = float(scales.sel(column=cells["column"], record=cells["record"], case=cells["case"]))
+        if not cells["smallest overturning scale, at most"].startswith("> "):
+            assert exact <= float(cells["smallest overturning scale, at most"]) * (1.0 + 1e-12) < exact * 1.002
+    assert [at_most(0.77251), at_most(0.7725), at_most(0.77251, 3), at_most(2.0)] == ["0.7726", "0.7725", "0.773", "2"]
+
+
+def test_a_record_without_a_vertical_component_is_not_said_to_have_one(found):
+    rows = assessment_tables(found)["runs"]
+    assert {dict(zip(rows.header, row, strict=True))["vertical"] for row in rows.rows} == {"none in the record"}
+    records = assessment_tables(found)["records"]
+    assert {dict(zip(records.header, row, strict=True))["PGA up [g]"] for row in records.rows} == {"none in the record"}
+    assert not any("vertical component included" in one.caption for one in report_pictures(found).values())
 
 
 def test_verdicts_name_the_records_that_overturned_it_near_by_and_with_the_other_law(found):

@@ -146,7 +146,8 @@ def test_records_are_counted_by_their_margins(assessment):
         )
         slides = [not math.isnan(value) for value in margins["standing_slip"].values.ravel()]
         assert bool(summary["slides_first"].sel(column=column)) == any(slides)
-        pairs = zip(margins["least_slipping"].values.ravel(), margins["least_overturning"].values.ravel(), strict=True)
+        own = margins.sel(case=[case for case in CASES if case not in OTHERS])
+        pairs = zip(own["least_slipping"].values.ravel(), own["least_overturning"].values.ravel(), strict=True)
         first = [slip < fall or math.isnan(fall) for slip, fall in pairs if not math.isnan(slip)]
         assert bool(summary["slips_first"].sel(column=column)) == any(first)
 
@@ -170,8 +171,12 @@ def test_extremes_are_those_of_the_stated_cases_and_the_first_record_is_named(as
         assert found["least_of_all"] == np.nanmin(least.values)
         name = str(summary["least_record"].sel(column=column).values)
         assert float(least.sel(case="central", record=name)) == found["least_overturning"]
-        assert float(summary["friction_to_margin"].sel(column=column)) == margins["friction_to_margin"].values.max()
-        assert float(summary["least_slipping"].sel(column=column)) == np.nanmin(margins["least_slipping"].values)
+        laws = {"": [case for case in CASES if case not in OTHERS], "_other_law": list(OTHERS)}
+        need = margins["friction_to_margin"].sel(case=laws[""])
+        assert float(summary["friction_to_margin"].sel(column=column)) == need.values.max()
+        for law, cases in laws.items():
+            least_slipping = np.nanmin(margins["least_slipping"].sel(case=cases).values)
+            assert float(summary[f"least_slipping{law}"].sel(column=column)) == least_slipping
     assert list(summary["governing"].values) == ["C", ""]
 
 
@@ -187,3 +192,9 @@ def test_a_column_that_nothing_overturns_has_no_least_record_and_a_slip_at_the_s
     assert list(summary["slips_first"].values) == [0, 0]
     margins["least_slipping"].loc[{"column": "stout", "case": "low", "record": "B"}] = 0.69
     assert list(summary_of(parts, ["A", "A"])["slips_first"].values) == [0, 1]
+    margins["least_slipping"].loc[{"column": "stout", "case": "low", "record": "B"}] = 0.71
+    margins["least_slipping"].loc[{"column": "stout", "case": OTHERS[0], "record": "B"}] = 0.3
+    summary = summary_of(parts, ["A", "A"])
+    assert list(summary["slips_first"].values) == [0, 0]
+    np.testing.assert_array_equal(summary["least_slipping_other_law"], [np.nan, 0.3])
+    assert float(summary["least_slipping"].sel(column="stout")) == 0.7

@@ -15,6 +15,8 @@ from stylobate.earthquakes.assessment.report.column_verdict import (
 )
 from stylobate.earthquakes.assessment.report.displacements import displacement, tilt_cells, tilt_words
 from stylobate.results import Assessment
+from stylobate.results.verdict import word_of
+from stylobate.studies.proportions import fraction_interval
 
 LEVELS, ACTS, RECORDS = ("low", "central", "high"), ("with", "without"), ("A", "B", "C")
 CASES = (*LEVELS, "central, no vertical", *(f"{level}, other contact law" for level in LEVELS))
@@ -95,6 +97,10 @@ def made(
         arrays = zip(("share", "open"), (np.array(counts[0]) / variations, np.array(counts[1])), strict=True)
         known = {"column": ["k"], "record": list(RECORDS), "scale": [1.0]}
         data["variations"] = xr.Dataset({name: (tuple(known), one.reshape(1, 3, 1)) for name, one in arrays}, known)
+        words = [
+            word_of(*fraction_interval(*one, variations, confidence=0.9)).value for one in zip(*counts, strict=True)
+        ]
+        data["variations"]["word"] = (tuple(known), np.reshape(words, (1, 3, 1)))
     if slid is not None:
         data["sliding"] = slid_by(slid)
     setting = {
@@ -214,7 +220,10 @@ def test_a_column_that_stood_in_every_run_survived_every_run():
         ),
         ({"decided": {("B", "high"): 0.4}}, "not every scale up to this one was decided (only up to 0.4)"),
         ({"decided": {("B", "high"): np.nan}}, "not every scale up to this one was decided"),
-        ({"uncertain": ["A"]}, "rounding or the rest threshold could alter the outcome under A"),
+        (
+            {"uncertain": ["A"], "variations": 20},
+            "rounding or the rest threshold could alter the outcome under A",
+        ),
         ({"need": [("A", 0.72)]}, "the base would slip under A (friction 0.72 needed)"),
         ({"variations": 0}, "small variations were not tried"),
         ({"contact": False}, "the friction needed was not computed"),
@@ -224,6 +233,13 @@ def test_whatever_leaves_a_survival_open_takes_it_out_of_the_class_of_survivals(
     found = column_verdict(made(**changed), "k", 1.0)
     assert found.verdict is VerdictClass.OPEN
     assert f"Reservations: {reservation}." in found.sentence
+
+
+def test_small_variations_settle_a_run_that_is_numerically_uncertain():
+    assert column_verdict(made(uncertain=["A"]), "k", 1.0).verdict is VerdictClass.SURVIVED
+    found = column_verdict(made(uncertain=["A", "B"], varied={"B": 12}), "k", 1.0)
+    assert found.verdict is VerdictClass.OPEN
+    assert "could alter the outcome under B" in found.sentence
 
 
 def test_a_column_that_slides_before_it_rocks_is_not_described_where_a_record_can_make_it_slide():

@@ -1,6 +1,7 @@
 """Verdicts: each variation is the run of the varied objects; shares repeat, cover the truth, and name what decides."""
 
 import math
+import re
 
 import numpy as np
 import pytest
@@ -10,7 +11,8 @@ from stylobate.earthquakes import Choice, LognormalSpread, LogUniformSpread, Nor
 from stylobate.earthquakes.variations import VARIATIONS
 from stylobate.earthquakes.verdict_study import contact_laws
 from stylobate.errors import ParameterError, UnsupportedError
-from stylobate.results.verdict import VerdictWord, percent, word_of
+from stylobate.results.verdict import VerdictWord, interval_text, percent, word_of
+from stylobate.studies.proportions import fraction_interval
 
 COLUMN = sb.Column.solid(radius=0.3, height=3.0, density=2700.0)
 MODEL = sb.Wobbling(COLUMN, damping=0.08)
@@ -140,9 +142,32 @@ def test_words_and_their_limits():
     assert [word_of(*one).value for one in ((0.0, 0.05), (0.0, 0.06), (0.94, 1.0), (0.95, 1.0), (0.0, 1.0))] == [
         *("stands", "undecided", "undecided", "overturns", "undecided")
     ]
-    assert [percent(share) for share in (0.0, 1.0 / 300.0, 0.076, 299.0 / 300.0, 1.0)] == [
-        *("0 %", "0.3 %", "8 %", "99.7 %", "100 %")
+    assert [percent(share) for share in (0.0, 3e-4, 1.0 / 300.0, 0.076, 299.0 / 300.0, 0.99996, 1.0)] == [
+        *("0 %", "0.03 %", "0.3 %", "8 %", "99.7 %", "99.996 %", "100 %")
     ]
+
+
+@pytest.mark.parametrize(("overturned", "runs"), [(9, 300), (10, 300), (11, 300), (290, 300), (291, 300), (38, 1000)])
+def test_an_interval_that_ends_near_a_limit_shows_on_which_side_and_the_rule(overturned, runs):
+    low, high = fraction_interval(overturned, 0, runs, confidence=0.9)
+    text = interval_text(float(low), float(high))
+    numbers = [float(one) for one in re.findall(r"[\d.]+", text)]
+    if "stands" in text:
+        assert (numbers[1] < 5.0) == (word_of(low, high) is VerdictWord.STANDS)
+    else:
+        assert "overturns" in text
+        assert (numbers[0] > 95.0) == (word_of(low, high) is VerdictWord.OVERTURNS)
+
+
+def test_the_dissipation_varies_from_half_to_twice_as_the_recipe_says():
+    values = VARIATIONS["dissipation"].draw(1.0, np.array([0.0, 0.5, 1.0]))
+    np.testing.assert_allclose(values, [0.5, 1.0, 2.0])
+
+
+def test_the_line_says_that_its_interval_is_of_the_sample():
+    found = sb.verdict(MODEL, PULSE, runs=10)
+    assert "(90 % sampling interval " in str(found)
+    assert "90 % sampling interval" in found._repr_html_()
 
 
 def test_runs_without_a_decision_count_on_both_sides():

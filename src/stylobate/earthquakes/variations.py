@@ -30,7 +30,7 @@ VARIATIONS: Mapping[str, Spread] = MappingProxyType(
         "start_y": NormalSpread(1e-4, least=_ANY),
         "size": LognormalSpread(0.01),
         "slenderness": LognormalSpread(0.01),
-        "dissipation": LogUniformSpread(1.0 / 1.5, 1.5),
+        "dissipation": LogUniformSpread(0.5, 2.0),
         "tolerance": Choice((1.0, 0.01)),
     }
 )
@@ -55,7 +55,8 @@ size
 slenderness
     Slenderness r/h: 1 %.
 dissipation
-    Factor of all dissipation parameters (of the loss, 1 − restitution, at impacts): 1.5 up and down.
+    Factor of all dissipation parameters (of the loss, 1 − restitution, at impacts): half to twice, the levels that an
+    assessment recommends.
 tolerance
     Factor of the tolerance of the integration.
 """

@@ -150,7 +150,7 @@ def verdict(
     >>> model = sb.Wobbling(sb.Column.solid(radius=0.2, height=2.0, density=2700.0), damping=0.1)
     >>> pulse = sb.Pulse.one_sine(acceleration=6.0, angular_frequency=4.0)
     >>> print(sb.verdict(model, pulse, runs=100))
-    overturns: 100 % of 100 variations overturn the column (90 % interval 97 to 100 %)
+    overturns: 100 % of 100 variations overturn the column (90 % sampling interval 97 to 100 %)
     """
     require_no_tilt_limit(options)
     named_records(motion)
@@ -386,7 +386,7 @@ class _Case:
         parts = {name: _parts_of(array) for name, array in values.items()}
         influence = np.array([_influence(state, part) for part in parts.values()])
         of_law = [state[law == place] for place in range(len(self.models))]
-        level = f"{100.0 * self.confidence:g} % interval"
+        level = f"{100.0 * self.confidence:g} % sampling interval"
         names = {"": "share of overturning", "_low": f"lower end of its {level}", "_high": f"upper end of its {level}"}
         shares = _share(state, self.confidence)
         law_shares = np.array([_share(one, self.confidence) for one in of_law]).T

@@ -106,7 +106,7 @@ class Verdict(ByContent):
         undecided = f", {percent(unknown)} are not decided" if unknown else ""
         return (
             f"{self.word.value}: {percent(self.share)} of {self.runs} variations overturn the column{undecided} "
-            f"({percent(self.confidence)} interval {percent(low).removesuffix(' %')} to {percent(high)})"
+            f"({percent(self.confidence)} sampling interval {interval_text(low, high)})"
         )
 
     def __repr__(self) -> str:
@@ -114,16 +114,15 @@ class Verdict(ByContent):
 
     def _repr_html_(self) -> str:
         """Render the card that notebooks show."""
-        low, high = map(percent, self.interval)
         rows = [
             Row("verdict", self.word.value),
             Row("share of overturning", f"{percent(self.share)} of {plural(self.runs, 'variation')}"),
-            Row(f"{percent(self.confidence)} interval", f"{low} to {high}"),
+            Row(f"{percent(self.confidence)} sampling interval", interval_text(*self.interval)),
             Row("decided most by", self.deciding.replace("_", " ") or "none distinguished from chance"),
         ]
         of_models = (self.data[f"model_share{end}"].to_numpy() for end in ("", "_low", "_high"))
         laws = [
-            Row(law, f"{percent(share)} ({percent(low)} to {percent(high)})")
+            Row(law, f"{percent(share)} ({_ends(low, high)})")
             for law, share, low, high in zip(self.share_by_model, *of_models, strict=True)
         ]
         return card("Verdict", [Section("", rows), Section("share by contact law, with interval", laws)])
@@ -160,19 +159,49 @@ class Verdict(ByContent):
         return cls(data)
 
 
-# Shares nearer to 0 or 1 than this have a decimal.
-_FEW = 0.01
+# Shares nearer to 0 or 1 than this have decimals; intervals that end nearer to a limit of the words have one or two.
+_FEW, _NEAR, _TOUCHING = 0.01, 0.015, 5e-4
 
 
 def percent(share: float) -> str:
-    """Format a share in percent, in whole numbers; near 0 and 1 with a decimal, because a few runs differ from none.
+    """Format a share in percent, in whole numbers; near 0 and 1 with decimals, because a few runs differ from none.
 
     NaN, the share of no runs, is a dash.
+
+    >>> percent(0.356), percent(1.0 / 300.0), percent(0.99996)
+    ('36 %', '0.3 %', '99.996 %')
     """
-    if math.isnan(share):
-        return "–"
-    few = 0.0 < min(share, 1.0 - share) < _FEW
-    return f"{100.0 * share:.1f} %" if few else f"{100.0 * share:.0f} %"
+    return "–" if math.isnan(share) else f"{_number(share, 0)} %"
+
+
+def interval_text(low: float, high: float) -> str:
+    """Format the interval of a share; if it ends near a limit of the words, with a decimal and the rule.
+
+    >>> interval_text(0.33, 0.38)
+    '33 to 38 %'
+    >>> interval_text(0.021, 0.052)
+    '2.1 to 5.2 %; stands if below 5 %'
+    """
+    gap_below, gap_above = abs(high - CLEAR), abs(low - (1.0 - CLEAR))
+    decimals = 2 if min(gap_below, gap_above) < _TOUCHING else 1
+    if gap_below < _NEAR:
+        return f"{_ends(low, high, decimals)}; stands if below {percent(CLEAR)}"
+    if gap_above < _NEAR:
+        return f"{_ends(low, high, decimals)}; overturns if above {percent(1.0 - CLEAR)}"
+    return _ends(low, high)
+
+
+def _ends(low: float, high: float, decimals: int = 0) -> str:
+    return f"{_number(low, decimals)} to {_number(high, decimals)} %"
+
+
+def _number(share: float, decimals: int) -> str:
+    """Return a share in percent with `decimals`, or as many as distinguish it from 0 and 100."""
+    rest = min(share, 1.0 - share)
+    if rest <= 0.0:
+        return f"{100.0 * share:.0f}"
+    few = math.ceil(-math.log10(100.0 * rest)) if rest < _FEW else 0
+    return f"{100.0 * share:.{max(decimals, few)}f}"
 
 
 def require_variations(count: int) -> int:

@@ -1,8 +1,10 @@
 """Summary of an assessment: numbers of records that overturned a column, or left the verdict open."""
 
 from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 import xarray as xr
 
 from stylobate.earthquakes.assessment.inputs import CENTRAL, OTHER_LAW
@@ -34,11 +36,12 @@ def summary_of(data: Mapping[str, xr.Dataset], governing: list[str]) -> xr.Datas
         `friction_by_record`.
 
         Over `column`: `governing`; `least_overturning`, the smallest overturning scale of the central case, NaN if
-        none, and its record `least_record`, empty if none; `least_of_all`, the smallest of all cases;
-        `friction_to_margin`, the largest of all cases; `least_slipping`, the smallest of all cases; `slips_first`,
-        whether in some case a record needs more than the stated friction below the smallest overturning scale;
-        `slides_first`, whether the stated friction is below r/h, so that the column slides before it rocks. Numbers of
-        records in the central case: `never_overturned`, `stands_again`, and `scan_undecided`, with undecided runs in
+        none, and its record `least_record`, empty if none; `least_of_all`, the smallest of all cases; of the cases with
+        the given contact law: `friction_to_margin`, the largest, `least_slipping`, the smallest, and `slips_first`,
+        whether in some case a record needs more than the stated friction below the smallest overturning scale; of the
+        cases with the other contact law `least_slipping_other_law`, the smallest, NaN if none; `slides_first`,
+        whether the stated friction is below r/h, so that the column slides before it rocks. Numbers of records in the
+        central case: `never_overturned`, `stands_again`, and `scan_undecided`, with undecided runs in
         the scan of the margin; `decided_to`, the largest scale up to which all runs of the central case were decided,
         NaN if the first scale was not.
     """
@@ -56,6 +59,7 @@ def summary_of(data: Mapping[str, xr.Dataset], governing: list[str]) -> xr.Datas
         "on_vertical": _differs(fallen.sel(dissipation=CENTRAL, drop=True), "vertical"),
     }
     others = margins["case"].str.endswith(OTHER_LAW)
+    own_law, other_law = margins.isel(case=~others), margins.isel(case=others)
     if bool(others.any()):
         law = _at_scales(margins, verdicts["scale"]).where(others, drop=True)
         counts["overturned_other_law"] = (law == 1).any("case").sum("record")
@@ -83,9 +87,10 @@ def summary_of(data: Mapping[str, xr.Dataset], governing: list[str]) -> xr.Datas
             "least_overturning": central_margins["least_overturning"].min("record"),
             "least_record": ("column", _least_records(central_margins)),
             "least_of_all": least.min(("record", "case")),
-            "friction_to_margin": margins["friction_to_margin"].max(("record", "case")),
-            "least_slipping": margins["least_slipping"].min(("record", "case")),
-            "slips_first": _slips_first(margins).any(("record", "case")).astype(np.int8),
+            "friction_to_margin": own_law["friction_to_margin"].max(("record", "case")),
+            "least_slipping": own_law["least_slipping"].min(("record", "case")),
+            "least_slipping_other_law": other_law["least_slipping"].reduce(_least, ("record", "case")),
+            "slips_first": _slips_first(own_law).any(("record", "case")).astype(np.int8),
             "slides_first": margins["standing_slip"].notnull().any(("record", "case")).astype(np.int8),
             "never_overturned": (central_margins["intervals"] == 0).sum("record"),
             "stands_again": (central_margins["stands_again"] > 0).sum("record"),
@@ -108,6 +113,12 @@ def _least_records(margins: xr.Dataset) -> list[str]:
     least = margins["least_overturning"].transpose("column", "record").to_numpy()
     names = margins["record"].to_numpy()
     return [str(names[np.nanargmin(row)]) if np.isfinite(row).any() else "" for row in least]
+
+
+def _least(values: npt.NDArray[np.float64], axis: tuple[int, ...]) -> Any:
+    """Return the minimum of the numbers, also of none; NaN without any."""
+    least = np.fmin.reduce(values, axis=axis, initial=np.inf)
+    return np.where(np.isinf(least), np.nan, least)
 
 
 def _slips_first(margins: xr.Dataset) -> xr.DataArray:

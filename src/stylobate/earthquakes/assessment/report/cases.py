@@ -9,6 +9,10 @@ from stylobate.earthquakes.assessment.inputs import OTHER_LAW
 from stylobate.earthquakes.assessment.report.wording import CENTRAL
 from stylobate.errors import Outcome
 from stylobate.results.assessment import Assessment
+from stylobate.results.verdict import VerdictWord
+
+NO_COMPONENT = "none in the record"
+"""Cell of a vertical component that a record does not have."""
 
 _ACTS = "with"
 _NO_VERTICAL = ", no vertical"
@@ -45,6 +49,8 @@ class Cases:
         Records with a small variation that was not decided.
     borderline
         Records with a run that is numerically uncertain: rounding or the rest threshold could alter its outcome.
+    settled
+        Records under which small variations decide that the column stands: the interval of their share lies below 5 %.
     slipping
         Records with a run that needed more than the stated friction, with the largest friction needed.
     """
@@ -61,6 +67,7 @@ class Cases:
     varied: dict[str, float]
     variations_open: tuple[str, ...]
     borderline: tuple[str, ...]
+    settled: tuple[str, ...]
     slipping: dict[str, float]
 
     @property
@@ -90,6 +97,7 @@ def cases_of(assessment: Assessment, column: str, scale: float) -> Cases:
         varied=_varied(assessment, column, scale),
         variations_open=_variations_open(assessment, column, scale),
         borderline=_where(_any(runs["uncertain"] > 0)),
+        settled=_settled(assessment, column, scale),
         slipping=_slipping(runs, float(assessment.setting["friction_coefficient"][column])),
     )
 
@@ -101,8 +109,12 @@ def case_name(level: str, vertical: str) -> str:
 
 def acts_in(assessment: Assessment, record: str, case: str) -> bool:
     """Return whether a case applies to a record: the case without vertical component needs a record with one."""
-    rises = float(assessment.data["records"]["peak_acceleration_z"].sel(record=record)) > 0.0
-    return rises or not case.endswith(_NO_VERTICAL)
+    return rises(assessment, record) or not case.endswith(_NO_VERTICAL)
+
+
+def rises(assessment: Assessment, record: str) -> bool:
+    """Return whether a record has a vertical component."""
+    return float(assessment.data["records"]["peak_acceleration_z"].sel(record=record)) > 0.0
 
 
 def _names(data: xr.Dataset | xr.DataArray) -> tuple[str, ...]:
@@ -160,6 +172,13 @@ def _variations_open(assessment: Assessment, column: str, scale: float) -> tuple
     if "variations" not in assessment.data:
         return ()
     return _where(assessment.data["variations"]["open"].sel(column=column, scale=scale) > 0)
+
+
+def _settled(assessment: Assessment, column: str, scale: float) -> tuple[str, ...]:
+    if "variations" not in assessment.data:
+        return ()
+    words = assessment.data["variations"]["word"].sel(column=column, scale=scale)
+    return _where(words == VerdictWord.STANDS.value)
 
 
 def _slipping(runs: xr.Dataset, stated: float) -> dict[str, float]:

@@ -12,6 +12,7 @@ from stylobate.earthquakes.assessment.report.wording import (
     OVERTURNED,
     STOOD,
     UNDECIDED,
+    at_most,
     listed,
     near_share,
     number,
@@ -117,7 +118,7 @@ def least_overturning_scale(assessment: Assessment, column: str) -> str:
     least, words = _least(assessment, column)
     decided, highest = largest_decided(assessment, column), float(assessment.setting["margin_scales"][1])
     if math.isnan(decided):
-        found = "No decided run overturned it" if math.isnan(least) else f"Overturned at scale {words}"
+        found = "No decided run overturned it" if math.isnan(least) else f"Overturned at scale {words} or below"
         return f"{found}; some run at the smallest scale was not decided."
     known = decided >= (highest if math.isnan(least) else least)
     open_scales = "" if known else f"; not every scale above {number(decided)} was decided"
@@ -135,7 +136,7 @@ def _least(assessment: Assessment, column: str) -> tuple[float, str]:
     level, _, rest = str(least["case"].to_numpy()[case]).partition(",")
     where = f"{level} dissipation{',' if rest else ''}{rest}"
     scale = float(least.min())
-    return scale, f"{number(scale)} ({least['record'].to_numpy()[record]}, {where})"
+    return scale, f"{at_most(scale)} ({least['record'].to_numpy()[record]}, {where})"
 
 
 def largest_decided(assessment: Assessment, column: str, record: str | None = None, case: str | None = None) -> float:
@@ -196,7 +197,9 @@ def _reservations(assessment: Assessment, column: str, scale: float, cases: Case
         ],
         "a small variation was not decided under {}": [one for one in cases.variations_open if one not in undecided],
         "some run was not decided under {}": cases.undecided_elsewhere,
-        "rounding or the rest threshold could alter the outcome under {}": cases.borderline,
+        "rounding or the rest threshold could alter the outcome under {}": [
+            name for name in cases.borderline if name not in cases.settled
+        ],
         f"the base would slip under {{}} (friction {need} needed)": tuple(cases.slipping),
     }
     holds = {

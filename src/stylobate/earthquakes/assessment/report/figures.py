@@ -173,7 +173,7 @@ def shares_figure(assessment: Assessment, column: str, scale: float) -> Figure:
     axes.barh(heights, high - low, 0.5, left=low, color=SKY, linewidth=0.0)
     axes.plot(share, heights, linestyle="none", marker="|", color=BLUE, markersize=9.0, markeredgewidth=2.0)
     handles: list[Patch | Line2D] = [
-        Patch(facecolor=SKY, label="variations, 90 % interval"),
+        Patch(facecolor=SKY, label="variations, 90 % sampling interval"),
         Line2D([], [], linestyle="none", marker="|", color=BLUE, markersize=9.0, label="variations, share"),
     ]
     for place, case in enumerate(band["case"].to_numpy()):

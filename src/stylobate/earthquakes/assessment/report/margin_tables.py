@@ -7,7 +7,7 @@ import xarray as xr
 from stylobate.earthquakes.assessment.report.cases import acts_in
 from stylobate.earthquakes.assessment.report.cells import cells
 from stylobate.earthquakes.assessment.report.displacements import tilt_cells
-from stylobate.earthquakes.assessment.report.wording import CENTRAL, degrees, intervals, least_scale, number
+from stylobate.earthquakes.assessment.report.wording import CENTRAL, at_most, degrees, intervals, least_scale, number
 from stylobate.plots.page import Table
 from stylobate.results.assessment import Assessment
 
@@ -35,7 +35,8 @@ def governing(assessment: Assessment) -> Table:
     """Tabulate the governing record of each column, and the peak tilt of each run that is drawn."""
     own, runs = assessment.data["summary"], assessment.data["histories"]
     header = (
-        *("column", "governing record", "smallest overturning scale", "smallest of all cases", "scale of the run"),
+        *("column", "governing record", "smallest overturning scale", "smallest of all cases, at most"),
+        "scale of the run",
         *("peak tilt / α_c", "tilt [°]", "displacement [mm]", "azimuth, from x to y", "time of peak [s]"),
     )
     rows = []
@@ -43,7 +44,7 @@ def governing(assessment: Assessment) -> Table:
         one, body = own.sel(column=column), assessment.data["columns"].sel(column=column)
         record = str(one["governing"].item())
         margins = assessment.data["margins"].sel(column=column, case=CENTRAL, record=record)
-        first = (str(column), record, least_scale(margins), number(float(one["least_of_all"]), 4))
+        first = (str(column), record, least_scale(margins), at_most(float(one["least_of_all"])))
         for scale, run in drawn_runs(runs.sel(column=column)):
             ratio = float(run["peak_tilt_ratio"])
             azimuth = degrees(float(run["azimuth"])) if ratio > 0.0 else "–"

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 from matplotlib.figure import Figure
 
+from stylobate.earthquakes.assessment.report.cases import rises
 from stylobate.earthquakes.assessment.report.displacements import SMALLEST_TILT
 from stylobate.earthquakes.assessment.report.figures import (
     contact_figure,
@@ -72,19 +73,21 @@ def _of_column(assessment: Assessment, column: str, called: str, place: int) -> 
             contact_figure(assessment, column),
             f"{called}: friction needed in each run. Dashed: the stated coefficient.",
         )
+    with_vertical = any(rises(assessment, str(name)) for name in assessment.data["records"]["record"].to_numpy())
+    vertical = " (vertical component included)" if with_vertical else ""
     for scale in assessment.setting["scales"]:
         if not _rocked(assessment, column, scale):
             continue
         found[f"tilts-{place}-scale-{scale:g}"] = Picture(
             tilts_figure(assessment, column, scale),
-            f"{called} at scale {scale:g}: peak tilts at each dissipation (vertical component included), and those of "
-            "the planar column if it was computed.",
+            f"{called} at scale {scale:g}: peak tilts at each dissipation{vertical}, and those of the planar column if "
+            "it was computed.",
         )
         if "variations" in assessment.data:
             found[f"variations-{place}-scale-{scale:g}"] = Picture(
                 shares_figure(assessment, column, scale),
-                f"{called} at scale {scale:g}: share of small variations that overturn it, with its 90 % interval "
-                "(bar), and share of the scales within 10 % that do so (marks, one for each case). Between the dashed "
+                f"{called} at scale {scale:g}: share of small variations that overturn it, with its 90 % sampling "
+                "interval (bar), and share of the scales within 10 % that do so (marks, one for each case). Between the dashed "
                 "limits the case is undecided.",
             )
     if "fragility" in assessment.data:

@@ -6,6 +6,7 @@ import re
 import numpy as np
 import xarray as xr
 
+from stylobate.earthquakes.assessment.report.cases import NO_COMPONENT, rises
 from stylobate.earthquakes.assessment.report.column_verdict import largest_decided
 from stylobate.earthquakes.assessment.report.wording import CENTRAL, in_g, number
 from stylobate.plots.page import Table
@@ -72,7 +73,8 @@ def intensities(assessment: Assessment) -> Table:
                 number(float(one["median_peak_acceleration"])),
                 number(float(one["median_peak_velocity"])),
                 in_g(spectral.get(name, math.nan)),
-                *(in_g(float(one[which])) for which in in_g_too),
+                *(in_g(float(one[which])) for which in in_g_too[:-1]),
+                in_g(float(one[in_g_too[-1]])) if rises(assessment, name) else NO_COMPONENT,
                 *(number(float(one[which])) for which in ("peak_velocity", "length", "step", "residual_velocity")),
                 "yes" if name in drifting(assessment) else "no",
             )
@@ -87,7 +89,16 @@ def margin_intensities(assessment: Assessment) -> Table:
     """
     period = _period(assessment)
     header = (
-        *("column", "record", "governs", "case", "smallest overturning scale", "definition", "PGA [g]", "PGA [m/s²]"),
+        *(
+            "column",
+            "record",
+            "governs",
+            "case",
+            "smallest overturning scale, at most",
+            "definition",
+            "PGA [g]",
+            "PGA [m/s²]",
+        ),
         *("PGV [m/s]", f"Sa({period:g} s) [g]", f"Sa({period:g} s) [m/s²]", "PGA, vector [g]"),
     )
     least = assessment.data["margins"]["least_overturning"]

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Iterator
 
-from stylobate.earthquakes.assessment.report.cases import acts_in, case_name, cases_of
+from stylobate.earthquakes.assessment.report.cases import NO_COMPONENT, acts_in, case_name, cases_of, rises
 from stylobate.earthquakes.assessment.report.cells import cells
 from stylobate.earthquakes.assessment.report.column_verdict import column_verdict
 from stylobate.earthquakes.assessment.report.displacements import TILT_HEADER, shown_point, tilt_cells
@@ -11,7 +11,7 @@ from stylobate.earthquakes.assessment.report.wording import CENTRAL, listed, nea
 from stylobate.earthquakes.variations import LABELS
 from stylobate.plots.page import Table
 from stylobate.results.assessment import Assessment
-from stylobate.results.verdict import percent
+from stylobate.results.verdict import interval_text, percent
 
 _ACTS = "with"
 _PLACES = ("column", "record", "scale")
@@ -23,7 +23,7 @@ def verdicts(assessment: Assessment) -> Table:
         *("column", "scale", "verdict", "overturned it (central dissipation)", "only at another dissipation"),
         *("only with the other contact law", "only without the vertical component"),
         *("overturned it within 10 % of the scale", "overturned it in some small variations"),
-        *("small variation not decided", "not decided", "more friction needed than stated"),
+        *("small variation not decided", "not decided", "more friction needed than stated, given contact law"),
     )
     rows = []
     for column, scale in _columns_and_scales(assessment):
@@ -71,7 +71,7 @@ def verdicts_by_record(assessment: Assessment) -> Table:
 
 def friction_by_record(assessment: Assessment) -> Table:
     """Tabulate the largest friction that the runs under each record needed."""
-    header, rows = (*_PLACES, "largest friction needed", "stated friction", "sufficient"), []
+    header, rows = (*_PLACES, "largest friction needed, given contact law", "stated friction", "sufficient"), []
     for where, one in cells(assessment.data["summary"], *_PLACES) if assessment.setting["contact"] else ():
         need, stated = float(one["friction_by_record"]), _stated_friction(assessment, where[0])
         rows.append((*where, number(need), number(stated), _enough(need, stated)))
@@ -101,7 +101,8 @@ def every_run(assessment: Assessment) -> Table:
         friction = (number(need), _enough(need, _stated_friction(assessment, column)))
         more = (number(float(one[name])) for name in ("pivoting_demand", "minimum_normal_force"))
         tilted = tilt_cells(float(one["tilt_ratio"]), assessment.data["columns"].sel(column=column))
-        state = ("yes" if acts == _ACTS else "no", verdict(float(one["overturned"])))
+        vertical = ("yes" if acts == _ACTS else "no") if rises(assessment, record) else NO_COMPONENT
+        state = (vertical, verdict(float(one["overturned"])))
         rows.append((*where[:-1], *state, *tilted, *friction, *more))
     return Table(header, rows)
 
@@ -125,19 +126,19 @@ def sliding(assessment: Assessment) -> Table:
 def small_variations(assessment: Assessment) -> Table:
     """Tabulate the share of small variations that overturn each column, and the word that follows from it."""
     header = (
-        *("column", "record", "scale", "under small variations", "share that overturns it", "90 % interval"),
+        *("column", "record", "scale", "under small variations", "share that overturns it", "90 % sampling interval"),
         *("by contact law", "decided most by", "not decided", "median tilt / α_c", "95 % of tilts / α_c below"),
     )
     if "variations" not in assessment.data:
         return Table(header, [])
     rows = []
     for where, one in cells(assessment.data["variations"], *_PLACES):
-        low, high = (percent(float(one[f"share_{end}"])) for end in ("low", "high"))
+        low, high = (float(one[f"share_{end}"]) for end in ("low", "high"))
         laws = zip(one["contact_law"].to_numpy(), one["law_share"].to_numpy(), strict=True)
         deciding = str(one["deciding"].item())
         rows.append(
             (
-                *(*where, str(one["word"].item()), percent(float(one["share"])), f"{low} to {high}"),
+                *(*where, str(one["word"].item()), percent(float(one["share"])), interval_text(low, high)),
                 ", ".join(f"{law} {percent(float(share))}" for law, share in laws),
                 LABELS.get(deciding, deciding) or "none alone",
                 f"{int(one['open'])} of {int(one['runs'])}",

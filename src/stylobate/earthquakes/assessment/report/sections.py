@@ -81,7 +81,7 @@ def report_sections(
         Section("References", [Table(("subject", "source"), REFERENCES)]),
         Section("Software", [_software(assessment)]),
         Section("Appendix: origin of the records", shown("record-provenance")),
-        Section("Appendix: every run", shown("runs")),
+        Section("Appendix: every run at the stated scales, with the given contact law", shown("runs")),
     ]
     return [section for section in found if section.content]
 
@@ -114,7 +114,8 @@ def _margin_text(assessment: Assessment) -> str:
     low, high, count = assessment.setting["margin_scales"]
     resolution = assessment.setting["resolution"]
     return (
-        f"Every record was run at {count} scale factors from {number(low)} to {number(high)}, and every change of the "
+        f"Every record was run at {count} scale factors from {number(low)} to {number(high)}, including 41 within 10 % of "
+        f"each stated one, and every change of the "
         f"outcome was located by bisection to {100.0 * assessment.setting['width']:g} %. The margin is the smallest "
         "scale factor found that overturned the column; below it 2000 scale factors over the range are run. Narrower "
         "intervals may lie below, so read each margin as “at most”. A case is a level of dissipation, the central one "
@@ -159,8 +160,11 @@ def _contact_text(assessment: Assessment) -> str:
     return (
         "The friction needed is the peak ratio of horizontal to normal force in a run, up to overturning if the "
         "column overturned. If it exceeds the stated coefficient, the base would slip, and the run no longer "
-        "describes the column. A normal force of zero would mean lift-off. The second table gives the friction needed "
-        "at the scale factors that were run for the margin."
+        "describes the column. A normal force of zero would mean lift-off. The first table and the classes of verdicts "
+        "hold for the given contact law. The second table gives the friction needed at the scale factors that were run "
+        "for the margin, with both contact laws. A column that passes close to the vertical rolls fast round its rim: "
+        "the friction that it needs there is that of a rigid rim in one point, and ∞ means that the contact would have "
+        "to pull. A real edge yields, so such a value does not show that the base slips."
     )
 
 

@@ -15,7 +15,7 @@ from stylobate.earthquakes.assessment.report.column_verdict import (
 )
 from stylobate.earthquakes.assessment.report.displacements import SMALLEST_TILT, tilt_words
 from stylobate.earthquakes.assessment.report.record_tables import margin_intensities
-from stylobate.earthquakes.assessment.report.wording import CENTRAL, number, records
+from stylobate.earthquakes.assessment.report.wording import CENTRAL, at_most, number, records
 from stylobate.plots.page import Table
 from stylobate.results.assessment import Assessment
 from stylobate.results.damping_yardstick import yardstick_text
@@ -70,7 +70,7 @@ def _tilt(assessment: Assessment, name: str, scale: float) -> str:
     most = ratios.isel(record=int(np.argmax(ratios.to_numpy())))
     if float(most) == 0.0:
         others = ratios.size < runs.sizes["record"]
-        return f"It did not rock{' under the other records' if others else ''}."
+        return "It did not rock under the records that did not overturn it." if others else "It did not rock."
     if float(most) < SMALLEST_TILT:
         return f"It hardly rocked: the peak tilt without overturning is below {SMALLEST_TILT:g} α_c."
     words = tilt_words(float(most), assessment.data["columns"].sel(column=name))
@@ -87,7 +87,7 @@ def _margin(assessment: Assessment, name: str, own: xr.Dataset) -> str:
         sentence = f"No scale factor from {number(low)} to {number(high)} overturned it at central dissipation."
     else:
         sentence = (
-            f"At central dissipation the smallest overturning scale is at most {number(least, 4)} ({record})"
+            f"At central dissipation the smallest overturning scale is at most {at_most(least)} ({record})"
             f"{_lasting(assessment, name, record)}. {_intensity(assessment, name, record)}"
         )
     if not math.isnan(least_of_all) and least_of_all != least:
@@ -108,8 +108,9 @@ def _intensity(assessment: Assessment, column: str, record: str) -> str:
     row = next(row for row in table.rows if tuple(row[:2]) == (column, record))
     cells = dict(zip(table.header, row, strict=True))
     spectral = next(name for name in table.header if name.startswith("Sa") and name.endswith("[g]"))
+    scale = cells["smallest overturning scale, at most"]
     return (
-        f"At scale {cells['smallest overturning scale']} PGA is {cells['PGA [g]']} g, PGV {cells['PGV [m/s]']} m/s and "
+        f"At scale {scale} PGA is {cells['PGA [g]']} g, PGV {cells['PGV [m/s]']} m/s and "
         f"{spectral.removesuffix(' [g]')} {cells[spectral]} g ({cells['definition']})."
     )
 
@@ -120,8 +121,8 @@ def _lasting(assessment: Assessment, column: str, record: str) -> str:
     least, lasting = float(margins["least_overturning"]), float(margins["least_lasting"])
     if lasting == least:
         return ""
-    alone = ", in an interval so narrow that another scan might miss it"
-    return alone if math.isnan(lasting) else f"{alone}; a wider interval begins at {number(lasting, 4)}"
+    alone = ", in an overturning interval so narrow that another scan may not find it"
+    return alone if math.isnan(lasting) else f"{alone}; the first wider interval begins at {number(lasting, 4)}"
 
 
 def _contact(assessment: Assessment, name: str, own: xr.Dataset) -> str:
@@ -129,21 +130,22 @@ def _contact(assessment: Assessment, name: str, own: xr.Dataset) -> str:
     if math.isnan(need):
         return ""
     stated = float(assessment.setting["friction_coefficient"][name])
+    law = str(assessment.setting["columns"][name]["model"].get("kind", "the given model"))
     if need <= stated:
         at_stated = (
-            f"The runs at {_stated_scales(assessment)} needed a friction coefficient of up to {number(need)}; the "
-            f"stated coefficient is {number(stated)}."
+            f"The runs at {_stated_scales(assessment)} with {law} needed a friction coefficient of up to "
+            f"{number(need)}; the stated coefficient is {number(stated)}."
         )
     else:
         at_stated = (
-            f"Some run needed a friction coefficient of {number(need)}, above the stated {number(stated)}: the base "
-            "would slip, which the run does not describe."
+            f"Some run with {law} needed a friction coefficient of {number(need)}, above the stated {number(stated)}: "
+            "the base would slip, which the run does not describe."
         )
-    return f"{at_stated} {_contact_to_margin(own)}"
+    return f"{at_stated} {_contact_to_margin(own)}{_contact_of_other_law(own)}"
 
 
 def _contact_to_margin(own: xr.Dataset) -> str:
-    """State the smallest scale that needs more friction than stated, relative to the margin."""
+    """State the smallest scale that needs more friction than stated with the given contact law."""
     need, slipping = (float(own[name]) for name in ("friction_to_margin", "least_slipping"))
     if math.isnan(need) and math.isnan(slipping):
         return "The friction needed at other scales was not computed."
@@ -154,10 +156,22 @@ def _contact_to_margin(own: xr.Dataset) -> str:
         return f"{sentence}: beyond it the base would slip, and these runs do not describe the column."
     if int(own["slips_first"]):
         return (
-            f"{sentence}. In some case that is below the smallest overturning scale: the base would slip first, and "
-            "these runs do not give the margin."
+            f"{sentence}. With some damping the base would slip at a scale below the smallest that overturns the "
+            "column, and these runs do not give the margin."
         )
     return f"{sentence}, above the smallest overturning scale: the column overturns before its base would slip."
+
+
+def _contact_of_other_law(own: xr.Dataset) -> str:
+    """State the smallest scale at which the other contact law needs more friction; empty if none does."""
+    slipping = float(own["least_slipping_other_law"])
+    if math.isnan(slipping):
+        return ""
+    return (
+        f" With the other contact law some run needs more from scale {number(slipping)} on. At close passages of the "
+        "vertical the friction needed is that of a rigid rim, which a real edge does not reach; therefore the class "
+        "of the verdict considers the given law only."
+    )
 
 
 def _damping(assessment: Assessment, name: str) -> str:

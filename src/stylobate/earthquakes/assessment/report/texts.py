@@ -45,12 +45,14 @@ VERDICT_CLASSES: tuple[tuple[str, str], ...] = (
     (
         "Survival NOT robust",
         "no record overturned it at any stated dissipation and contact law, but the vertical component, another scale "
-        "within 10 % or below, a small variation, an undecided run or too little friction leaves the verdict open",
+        "within 10 % or below, a small variation, an undecided run or too little friction (with the "
+        "given contact law) leaves the verdict open",
     ),
     (
         "Survived every run",
         "no record overturned it at any stated dissipation and contact law, at any scale tried within 10 %, or in any "
-        "small variation; all runs were decided, and the stated friction suffices",
+        "small variation; all runs were decided, and the stated friction suffices with the given contact law; a run "
+        "whose outcome rounding could alter counts only if small variations do not settle the case",
     ),
     (
         "Not described by these runs",

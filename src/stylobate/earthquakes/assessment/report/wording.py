@@ -13,6 +13,8 @@ from stylobate.results.verdict import percent
 CENTRAL = "central"
 OVERTURNED, STOOD, UNDECIDED = "overturned", "did not overturn", "not decided"
 _MOST_NAMES = 8
+# A relative difference of the size of rounding does not raise the last digit of an upper bound.
+_ROUNDING = 1e-12
 _OF_STATE = {1: OVERTURNED, 0: STOOD, -1: UNDECIDED}
 
 
@@ -28,6 +30,18 @@ def number(value: float, digits: int = 3) -> str:
     return f"{value:.{digits}g}"
 
 
+def at_most(value: float, digits: int = 4) -> str:
+    """Format an upper bound with `digits` significant digits, rounded up; a dash for NaN.
+
+    >>> at_most(0.77251), at_most(0.7725)
+    ('0.7726', '0.7725')
+    """
+    if not math.isfinite(value) or value <= 0.0:
+        return number(value, digits)
+    step = 10.0 ** (math.floor(math.log10(value)) + 1 - digits)
+    return number(math.ceil(value / step * (1.0 - _ROUNDING)) * step, digits)
+
+
 def tilt(value: float) -> str:
     """Format a peak tilt over α_c; infinity means overturned."""
     return OVERTURNED if math.isinf(value) else number(value)
@@ -41,10 +55,10 @@ def least_scale(margins: xr.Dataset) -> str:
         return f"none up to {number(float(margins['margin_scale'][-1]))}"
     found, below = float(margins["least_overturning"]), float(margins["largest_below"])
     if not math.isnan(below):
-        return f"at most {number(found, 4)} (not at {number(below, 4)})"
+        return f"at most {at_most(found)} (not at {number(below, 4)})"
     if bool(margins["undecided_below"][0]):
-        return f"at most {number(found, 4)} (not decided just below)"
-    return f"at most {number(found)}"
+        return f"at most {at_most(found)} (not decided just below)"
+    return f"at most {at_most(found)}"
 
 
 def intervals(margins: xr.Dataset) -> str:
