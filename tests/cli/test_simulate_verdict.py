@@ -70,6 +70,14 @@ def test_the_figure_of_an_undecided_run_is_titled_so(tmp_path, capsys):
     assert "in this run alone; small variations leave it undecided" in page.read_text(encoding="utf-8")
 
 
+def test_a_column_without_losses_has_the_warning_in_the_table(capsys):
+    lossless = [*COLUMN[:-2], "--damping", "0"]
+    assert run(["simulate", *lossless, *PULSE, "6", "--verdict-runs", "4"]) == 0
+    printed = capsys.readouterr()
+    assert "loses no energy while it rocks" in " ".join(printed.out.replace("│", " ").split())
+    assert "loses no energy" not in printed.err
+
+
 def test_a_single_run_says_that_variations_were_not_tried(capsys):
     rows = rows_of(capsys, *PULSE, "6", "--single")
     assert "verdict" not in rows

@@ -660,11 +660,24 @@ def test_damping_is_compared_with_what_impacts_lose_and_levels_on_one_side_are_f
     columns = found.data["columns"]
     values = columns["housner_damping"].sel(column="stout").values
     changed = columns.assign(damping_side=xr.full_like(columns["damping_side"], side, dtype=object))
-    words = dict(column_findings(replace(found, data={**found.data, "columns": changed}), "stout").rows)["damping"]
+    assessment = replace(found, data={**found.data, "columns": changed})
+    words = dict(column_findings(assessment, "stout").rows)["damping"]
     text = ", ".join(f"{value:.2g}" for value in values)
     assert words.startswith(f"Housner's impacts lose as much as η = {text} at a peak tilt of ¼, ½, ¾ α_c.")
-    flag = f" All stated levels lie {side} this yardstick: state why, or add a level near it."
+    flag = f" All stated levels of damping lie {side} Housner's: state why, or add a level near it."
     assert words.endswith(flag) is flagged
+    assert all(row[2].endswith(flag) is flagged for row in verdict_table(assessment).rows)
+
+
+def test_levels_of_damping_too_near_each_other_are_named_on_the_first_page(found):
+    def first_page(*levels):
+        own = dict(zip(("low", "central", "high"), ({"damping": one} for one in levels), strict=True))
+        setting = {**found.setting, "dissipation": dict.fromkeys(BODIES, own)}
+        return verdict_table(replace(found, setting=setting)).rows[0][2]
+
+    assert "levels of damping differ by a factor of 1.15 only" in first_page(0.10, 0.11, 0.115)
+    assert "differ by a factor" not in first_page(0.05, 0.1, 0.2)
+    assert "differ by a factor" not in first_page(0.0, 0.1, 0.2)
 
 
 def test_the_side_of_the_yardstick_is_that_of_the_levels(found):

@@ -10,7 +10,7 @@ import stylobate as sb
 from stylobate.earthquakes import Choice, LognormalSpread, LogUniformSpread, NormalSpread, UniformSpread
 from stylobate.earthquakes.variations import VARIATIONS
 from stylobate.earthquakes.verdict_study import contact_laws
-from stylobate.errors import ParameterError, UnsupportedError
+from stylobate.errors import ParameterError, UnlikelyInputWarning, UnsupportedError
 from stylobate.results.verdict import VerdictWord, interval_text, percent, word_of
 from stylobate.studies.proportions import fraction_interval
 
@@ -224,6 +224,24 @@ def test_a_model_of_another_class_is_used_alone():
     assert len(contact_laws(Own(COLUMN))) == 1
 
 
+def test_the_contact_law_can_be_left_out():
+    alone = sb.verdict(MODEL, PULSE, runs=10, variations={"contact_law": None})
+    assert alone.data.identical(sb.verdict([MODEL], PULSE, runs=10).data)
+
+
+def test_a_column_without_losses_warns_once_with_the_yardstick():
+    lossless = sb.Wobbling(COLUMN)
+    with pytest.warns(
+        UnlikelyInputWarning, match="loses no energy.*Housner's impacts lose as much as η = 0.12"
+    ) as seen:
+        sb.verdict(lossless, PULSE, runs=4)
+    assert len(seen) == 1
+    stated = sb.verdict(
+        lossless, PULSE, runs=4, variations={"damping": UniformSpread(0.05, 0.1)}
+    )  # warnings are errors
+    assert stated.runs == 4
+
+
 def test_progress_is_reported_up_to_the_number_of_runs():
     seen = []
     sb.verdict(MODEL, PULSE, runs=10, progress=lambda done, total: seen.append((done, total)))
@@ -236,8 +254,15 @@ def test_progress_is_reported_up_to_the_number_of_runs():
     [
         ({"models": sb.PlanarRocking(COLUMN)}, "models: must be three-dimensional models"),
         ({"models": []}, "models: must be at least one model"),
-        ({"motion": sb.Harmonic.straight(acceleration=1.0, angular_frequency=3.0)}, "records must end after t = 0"),
-        ({"variations": {"colour": NormalSpread(0.1)}}, "variations: colour is not known here"),
+        ({"motion": sb.Harmonic.straight(acceleration=1.0, angular_frequency=3.0)}, "motion: must end after t = 0"),
+        ({"variations": {"colour": NormalSpread(0.1)}}, "variations: colour is no variation of a wobbling column; use"),
+        ({"variations": {"dampng": NormalSpread(0.1)}}, "dampng is no variation .*; did you mean damping?"),
+        ({"variations": {"contact_law": NormalSpread(0.1)}}, "contact_law is no variation"),
+        ({"variations": {"restitution": UniformSpread(0.5, 1.5)}}, r"variations\['restitution'\]: .* between 0 and 1"),
+        ({"models": COLUMN}, "models: must be three-dimensional models"),
+        ({"motion": [PULSE]}, "motion: must be one base motion"),
+        ({"duration": 10.0}, r"duration: a verdict sets it for each variation \(got 10.0\). Pass tail="),
+        ({"varations": None}, "varations: is no argument of verdict .*; did you mean variations?"),
         ({"variations": {"scale": 1.02}}, r"variations\['scale'\]: must be a distribution or None \(got 1.02\)"),
         ({"variations": ["scale"]}, "variations: must map names to distributions"),
         ({"runs": 1}, "runs must be a whole number of at least 2, got 1"),

@@ -1,6 +1,7 @@
 """The verdict beside a single run of `stylobate simulate`: options, computation, rows and files."""
 
 import math
+import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass, fields, is_dataclass
 from pathlib import Path
@@ -12,7 +13,8 @@ from stylobate.cli.options import Options
 from stylobate.cli.output import NETCDF, check_writable, save_plot
 from stylobate.cli.saved import relocated
 from stylobate.config.run_numbers import Accuracy, Start
-from stylobate.errors import Outcome, ParameterError
+from stylobate.errors import Outcome, ParameterError, UnlikelyInputWarning
+from stylobate.text import four_digits
 
 if TYPE_CHECKING:
     from stylobate.config import Setup
@@ -80,10 +82,13 @@ class VerdictOfCase:
             return None
         if self.saved is not None:
             return earthquakes.repeat_verdict(self.saved)
-        return earthquakes.verdict(self.setup.model, self.setup.motion, **self.arguments)
+        with warnings.catch_warnings():
+            warnings.filterwarnings("ignore", message="damping: ", category=UnlikelyInputWarning)  # a row states it
+            return earthquakes.verdict(self.setup.model, self.setup.motion, **self.arguments)
 
     def rows(self, run: "Response", verdict: "Verdict | None") -> "Rows":
         """Return the rows of model, verdict and outcome, with a remark on a run that does not state the verdict."""
+        from stylobate.earthquakes.verdict_study import undamped  # noqa: PLC0415  as in `simulate`
         from stylobate.results.summary import damping_rows, outcome_of  # noqa: PLC0415  as in `simulate`
 
         model = [("model", _model(self.setup.model))]
@@ -94,6 +99,8 @@ class VerdictOfCase:
             return [*model, ("outcome", f"{outcome_of(run)} in this run; {self.why_not}")]
         laws = ", ".join(f"{name} {results.percent(share)}" for name, share in verdict.share_by_model.items())
         rows = [*model, ("verdict", str(verdict)), ("by contact law", f"{laws} overturn")]
+        if remark := undamped(self.setup.model, (self.arguments or {}).get("variations") or {}):
+            rows.append(("warning", remark))
         if verdict.deciding:
             rows.append(("decided most by", earthquakes.LABELS.get(verdict.deciding, verdict.deciding)))
         return [*rows, ("outcome", outcome_of(run) + _remark(run, verdict))]
@@ -162,7 +169,7 @@ def _model(model: "Model") -> str:
         return model.name
     stated = {one.name: (getattr(model, one.name), one.default) for one in fields(model) if one.name != "column"}
     named = [
-        f"{name.replace('_', ' ')} {value}"
+        f"{name.replace('_', ' ')} {four_digits(value) if isinstance(value, float) else value}"
         for name, (value, default) in stated.items()
         if name == "damping" or value != default
     ]

@@ -15,6 +15,7 @@ from stylobate.errors import ParameterError
 from stylobate.models import Model
 from stylobate.models.declared import dissipation_of
 from stylobate.studies.sweeps.quantities import Floats
+from stylobate.text import did_you_mean
 
 _ANY: Final = -math.inf
 
@@ -92,7 +93,6 @@ _NEUTRAL: Mapping[str, float] = {
     "start_y": 0.0,
     "dissipation": 1.0,
     "tolerance": 1.0,
-    "contact_law": 0.0,
 }
 
 
@@ -124,8 +124,8 @@ def check_variations(models: tuple[Model, ...], variations: Mapping[str, Spread]
     for name in variations:
         known = [{*_NEUTRAL, *COLUMN_NAMES, *model_names(model)} for model in models]
         if not any(name in some for some in known):
-            names = ", ".join((*VARIATIONS, *(one for one in model_names(models[0]) if one not in VARIATIONS)))
-            message = f"variations: {name} is not known here (got {models[0]!r}). Use names such as {names}."
+            remedy = did_you_mean(name, set().union(*known)) or f"use one of {', '.join((*VARIATIONS, 'damping'))} …"
+            message = f"variations: {name} is no variation of a {models[0].name} column; {remedy}"
             raise ParameterError(message)
 
 

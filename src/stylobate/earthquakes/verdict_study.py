@@ -1,6 +1,9 @@
 """The verdict on a case: runs under joint small variations, and the share of them that overturns the column."""
 
+import inspect
 import json
+import math
+import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, fields
 from functools import partial
@@ -17,7 +20,6 @@ from stylobate.earthquakes.config.spreads import described_spread
 from stylobate.earthquakes.config.verdict import VerdictConfig
 from stylobate.earthquakes.following import tail_of
 from stylobate.earthquakes.incremental import tilt_ratios
-from stylobate.earthquakes.named_records import named_records
 from stylobate.earthquakes.property_spreads import Spread
 from stylobate.earthquakes.variations import (
     CONTACT_LAW,
@@ -35,13 +37,17 @@ from stylobate.errors import (
     Interrupted,
     Outcome,
     ParameterError,
+    UnlikelyInputWarning,
     UnsupportedError,
     require_not_negative,
     require_whole,
 )
 from stylobate.models import Model, Rolling, Slender, SlenderRolling, Wobbling
+from stylobate.models.declared import dissipation_of
 from stylobate.progress import Progress, Report, report_of, shows_progress
+from stylobate.quantities import parameters_of
 from stylobate.results import OutcomeRules
+from stylobate.results.damping_yardstick import damping_yardstick, yardstick_text
 from stylobate.results.outcomes import NOT_COMPUTED
 from stylobate.results.verdict import KIND, Verdict
 from stylobate.studies.checks import require_no_tilt_limit
@@ -50,7 +56,7 @@ from stylobate.studies.proportions import fraction_interval, require_confidence
 from stylobate.studies.sweeps import Executor, Sweep, run_sweep
 from stylobate.studies.sweeps.quantities import Floats
 from stylobate.studies.sweeps.recipe import DEFAULTS, RunOptions
-from stylobate.text import plural
+from stylobate.text import did_you_mean, plural
 
 # A rim that carries no twisting moment, and one that keeps a column from turning about its axis.
 _OTHER_CONTACT_LAW: Mapping[type[Model], type[Model]] = {
@@ -99,8 +105,8 @@ def verdict(
         A base motion that ends, such as a record or a pulse.
     variations
         Changes to `VARIATIONS`: a distribution for a name there or for any parameter of column or model, such as
-        `{"damping": LogUniformSpread(0.03, 0.1)}`; None leaves a variation out. "dissipation" does not change
-        parameters that are stated here.
+        `{"damping": LogUniformSpread(0.03, 0.1)}`; None leaves a variation out, also "contact_law". "dissipation" does
+        not change parameters that are stated here.
     runs
         Number of variations.
     seed
@@ -139,6 +145,11 @@ def verdict(
     Interrupted
         On Ctrl-C; `partial` is the verdict on the runs so far, in which the others count as undecided.
 
+    Warns
+    -----
+    UnlikelyInputWarning
+        If the column loses no energy while it rocks.
+
     Notes
     -----
     A clock that runs fast by a factor f is computed by similarity: a column with lengths divided by f² under the record
@@ -153,9 +164,10 @@ def verdict(
     overturns: 100 % of 100 variations overturn the column (90 % sampling interval 97 to 100 %)
     """
     require_no_tilt_limit(options)
-    named_records(motion)
+    _check_motion(motion)
+    _check_options(options)
     case = _Case(
-        models=contact_laws(models),
+        models=contact_laws([models] if _one_law(variations) and isinstance(models, Model) else models),
         motion=motion,
         variations=chosen_variations(variations),
         runs=require_whole("runs", runs, least=2, most=MOST_RUNS),
@@ -165,10 +177,72 @@ def verdict(
         options=options,
     )
     check_variations(case.models, case.variations)
+    _check_values(case)
+    if remark := undamped(case.models[0], case.variations):
+        warnings.warn(remark, UnlikelyInputWarning, stacklevel=3)
     try:
         return Verdict(case.labelled(case.computed(executor, report_of(progress))))
     except Interrupted as stop:
         raise Interrupted(str(stop), Verdict(case.labelled(stop.partial))) from None
+
+
+def undamped(model: Model, variations: Mapping[str, Spread]) -> str:
+    """Return a warning if no variation of a model loses energy while it rocks, with Housner's damping; else empty."""
+    stated = [name for name in dissipation_of(type(model)) if name in variations]
+    if stated or scaled_dissipation(model, np.ones(1), {}) or not dissipation_of(type(model)):
+        return ""
+    yardstick = yardstick_text(damping_yardstick(model.column).values())
+    return (
+        "damping: the column loses no energy while it rocks, and the variation `dissipation` changes nothing (got 0). "
+        f"Housner's impacts lose as much as {yardstick}: pass damping=column.housner_damping() or a measured value"
+    )
+
+
+def _one_law(variations: object) -> bool:
+    """Return whether the variation between contact laws is left out."""
+    return isinstance(variations, Mapping) and variations.get(CONTACT_LAW, "") is None
+
+
+def _check_motion(motion: BaseMotion) -> None:
+    """Raise ParameterError unless the motion is one base motion that ends."""
+    if not isinstance(motion, BaseMotion):
+        message = f"motion: must be one base motion (got {motion!r}). Pass each record by itself."
+        raise ParameterError(message)
+    if not 0.0 < motion.duration < math.inf:
+        message = (
+            f"motion: must end after t = 0 (got {motion!r} with a duration of {motion.duration:g} s). Pass a record, a "
+            "pulse or a sine sweep."
+        )
+        raise ParameterError(message)
+
+
+def _check_options(options: Mapping[str, Any]) -> None:
+    """Raise ParameterError for an argument that a verdict does not have."""
+    known = [*inspect.signature(verdict).parameters, *RunOptions.__annotations__]
+    for name in options:
+        if name in ("duration", "periods"):
+            message = f"{name}: a verdict sets it for each variation (got {options[name]!r}). Pass tail= instead."
+            raise ParameterError(message)
+        if name not in RunOptions.__annotations__:
+            remedy = did_you_mean(name, known) or "remove it"
+            message = f"{name}: is no argument of verdict (got {options[name]!r}); {remedy}"
+            raise ParameterError(message)
+
+
+def _check_values(case: "_Case") -> None:
+    """Raise ParameterError if a distribution has values outside the range of its parameter."""
+    for model in case.models:
+        for name, spread in case.variations.items():
+            quantity = parameters_of(type(model)).get(name)
+            if quantity is None:
+                continue
+            values = drawn(name, spread, model, runs=case.runs, seed=case.seed)
+            for value in (float(values.min()), float(values.max())):
+                try:
+                    quantity.quantity.checked(name, value)
+                except ParameterError as error:
+                    message = f"variations[{name!r}]: {error}. Pass a distribution within this range."
+                    raise ParameterError(message) from None
 
 
 def repeat_verdict(saved: Verdict) -> Verdict:
@@ -215,7 +289,7 @@ def contact_laws(models: Model | Sequence[Model]) -> tuple[Model, ...]:
     ParameterError
         If there is no model, or one is not three-dimensional.
     """
-    given = (models,) if isinstance(models, Model) else tuple(models)
+    given = tuple(models) if isinstance(models, Sequence) else (models,)
     for model in given:
         if not isinstance(model, Model) or model.planar_only:
             message = f"models: must be three-dimensional models (got {model!r}). Use one such as Wobbling(column)."

@@ -87,8 +87,8 @@ def _of_column(assessment: Assessment, column: str, called: str, place: int) -> 
             found[f"variations-{place}-scale-{scale:g}"] = Picture(
                 shares_figure(assessment, column, scale),
                 f"{called} at scale {scale:g}: share of small variations that overturn it, with its 90 % sampling "
-                "interval (bar), and share of the scales within 10 % that do so (marks, one for each case). Between the dashed "
-                "limits the case is undecided.",
+                "interval (bar), and share of the scales within 10 % that do so (marks, one for each case). Between "
+                "the dashed limits the case is undecided.",
             )
     if "fragility" in assessment.data:
         found[f"fragility-{place}"] = Picture(_fragility(assessment, column), f"{called}: fragility.")

@@ -114,8 +114,8 @@ def _margin_text(assessment: Assessment) -> str:
     low, high, count = assessment.setting["margin_scales"]
     resolution = assessment.setting["resolution"]
     return (
-        f"Every record was run at {count} scale factors from {number(low)} to {number(high)}, including 41 within 10 % of "
-        f"each stated one, and every change of the "
+        f"Every record was run at {count} scale factors from {number(low)} to {number(high)}, including 41 within "
+        "10 % of each stated one, and every change of the "
         f"outcome was located by bisection to {100.0 * assessment.setting['width']:g} %. The margin is the smallest "
         "scale factor found that overturned the column; below it 2000 scale factors over the range are run. Narrower "
         "intervals may lie below, so read each margin as “at most”. A case is a level of dissipation, the central one "

@@ -20,6 +20,9 @@ from stylobate.plots.page import Table
 from stylobate.results.assessment import Assessment
 from stylobate.results.damping_yardstick import yardstick_text
 
+_APART = 2.0
+"""Smallest factor between the highest and the lowest level of damping that tests whether it decides."""
+
 
 def verdict_table(assessment: Assessment) -> Table:
     """Tabulate the verdict on each column in one line, at the scale nearest to 1."""
@@ -27,7 +30,8 @@ def verdict_table(assessment: Assessment) -> Table:
     for name in columns_of(assessment):
         found = column_verdict(assessment, name, recorded_scale(assessment))
         margin = f" {least_overturning_scale(assessment, name)}" if found.describes else ""
-        rows.append((name, found.verdict.value, f"{found.sentence[0].upper()}{found.sentence[1:]}{margin}"))
+        sentence = f"{found.sentence[0].upper()}{found.sentence[1:]}{margin}{_levels_remark(assessment, name)}"
+        rows.append((name, found.verdict.value, sentence))
     return Table(("column", "verdict", "in one line"), rows)
 
 
@@ -178,10 +182,22 @@ def _damping(assessment: Assessment, name: str) -> str:
     """State the damping that loses as much as Housner's impacts, and on which side of it the levels lie."""
     own = assessment.data["columns"].sel(column=name)
     sentence = f"Housner's impacts lose as much as {yardstick_text(own['housner_damping'].to_numpy())}."
-    side = str(own["damping_side"].item())
-    if side not in ("below", "above"):
-        return sentence
-    return f"{sentence} All stated levels lie {side} this yardstick: state why, or add a level near it."
+    return f"{sentence}{_levels_remark(assessment, name)}"
+
+
+def _levels_remark(assessment: Assessment, name: str) -> str:
+    """Remark on levels of damping on one side of Housner's, or too near each other to test anything; else empty."""
+    side = str(assessment.data["columns"]["damping_side"].sel(column=name).item())
+    remark = (
+        f" All stated levels of damping lie {side} Housner's: state why, or add a level near it."
+        if side in ("below", "above")
+        else ""
+    )
+    levels = [one["damping"] for one in assessment.setting["dissipation"][name].values() if "damping" in one]
+    if levels and 0.0 < min(levels) and max(levels) < _APART * min(levels):
+        factor = number(max(levels) / min(levels))
+        remark += f" The stated levels of damping differ by a factor of {factor} only; the recipe has half and twice."
+    return remark
 
 
 def _stated_scales(assessment: Assessment) -> str:
