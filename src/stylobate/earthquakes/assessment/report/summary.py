@@ -194,7 +194,7 @@ def _levels_remark(assessment: Assessment, name: str) -> str:
         else ""
     )
     levels = [one["damping"] for one in assessment.setting["dissipation"][name].values() if "damping" in one]
-    if levels and 0.0 < min(levels) and max(levels) < _APART * min(levels):
+    if levels and min(levels) > 0.0 and max(levels) < _APART * min(levels):
         factor = number(max(levels) / min(levels))
         remark += f" The stated levels of damping differ by a factor of {factor} only; the recipe has half and twice."
     return remark
