@@ -17,10 +17,14 @@
 Misuse raises an exception. A physical result, numerical failure included, is an `Outcome`.
 """
 
+import inspect
 import math
+import warnings
 from collections.abc import Sequence
 from enum import IntEnum
 from typing import Any, NamedTuple
+
+from stylobate.units import UnitError, in_unit
 
 SMALLEST, LARGEST = 1e-30, 1e15
 """Limits for the size of a number other than zero: numbers of columns are far inside, and no product overflows."""
@@ -175,9 +179,9 @@ class Outcome(IntEnum):
 
 def require_finite(name: str, value: float, unit: str = "") -> float:
     """Return `value` as a float, or raise ParameterError unless it is a finite real number."""
-    number = as_float(name, value)
+    number = as_float(name, value, unit)
     if not math.isfinite(number):
-        message = f"{name} must be finite, got {_quantity(value, unit)}"
+        message = f"{name} must be finite, got {_quantity(number, unit)}"
         raise ParameterError(message)
     require_size(name, number, unit)
     return number
@@ -185,9 +189,9 @@ def require_finite(name: str, value: float, unit: str = "") -> float:
 
 def require_positive(name: str, value: float, unit: str = "") -> float:
     """Return `value` as a float, or raise ParameterError unless it is finite and above zero."""
-    number = as_float(name, value)
+    number = as_float(name, value, unit)
     if not (math.isfinite(number) and number > 0.0):
-        message = f"{name} must be positive, got {_quantity(value, unit)}"
+        message = f"{name} must be positive, got {_quantity(number, unit)}"
         raise ParameterError(message)
     require_size(name, number, unit, zero=False)
     return number
@@ -195,9 +199,9 @@ def require_positive(name: str, value: float, unit: str = "") -> float:
 
 def require_not_negative(name: str, value: float, unit: str = "") -> float:
     """Return `value` as a float, or raise ParameterError unless it is finite and zero or above."""
-    number = as_float(name, value)
+    number = as_float(name, value, unit)
     if not (math.isfinite(number) and number >= 0.0):
-        message = f"{name} must be zero or positive, got {_quantity(value, unit)}"
+        message = f"{name} must be zero or positive, got {_quantity(number, unit)}"
         raise ParameterError(message)
     require_size(name, number, unit)
     return number
@@ -205,6 +209,7 @@ def require_not_negative(name: str, value: float, unit: str = "") -> float:
 
 def require_vector(name: str, value: Sequence[float], length: int, unit: str = "") -> tuple[float, ...]:
     """Return `value` as a tuple of `length` finite floats, or raise ParameterError."""
+    value = as_numbers(name, value, unit)
     try:
         numbers = () if isinstance(value, (str, bytes)) else tuple(value)
     except TypeError:
@@ -238,14 +243,42 @@ def require_size(name: str, number: float, unit: str = "", *, zero: bool = True)
     raise ParameterError(message)
 
 
-def as_float(name: str, value: Any) -> float:
-    """Return `value` as a float, or raise ParameterError unless it is a real number; NaN and infinities pass."""
+def as_float(name: str, value: Any, unit: str = "") -> float:
+    """Return `value` as a float, or raise ParameterError unless it is a real number; NaN and infinities pass.
+
+    A quantity of pint or astropy is converted to `unit`.
+    """
+    if type(value) is not float:
+        value = as_numbers(name, value, unit)
     try:
         # The sum rejects strings, even those that spell a number.
         return float(value + 0.0)
     except (TypeError, ValueError, OverflowError):
         message = f"{name} must be a real number, got {value!r}"
         raise ParameterError(message) from None
+
+
+def as_numbers(name: str, value: Any, unit: str = "") -> Any:
+    """Convert a quantity of pint or astropy, or a list of them, to numbers in `unit`; other values are unchanged.
+
+    Raises
+    ------
+    ParameterError
+        If the quantity has another dimension or an unknown unit.
+    """
+    try:
+        return in_unit(value, unit)
+    except UnitError as error:
+        message = f"{name} {error}"
+        raise ParameterError(message) from None
+
+
+def question(message: str) -> None:
+    """Issue an UnlikelyInputWarning at the line of the caller outside of this package."""
+    frame, level = inspect.currentframe(), 1
+    while frame is not None and frame.f_globals.get("__name__", "").partition(".")[0] == __package__:
+        frame, level = frame.f_back, level + 1
+    warnings.warn(message, UnlikelyInputWarning, stacklevel=level if frame else 1)
 
 
 def _quantity(value: float, unit: str) -> str:

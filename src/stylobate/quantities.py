@@ -16,13 +16,20 @@ from typing import Annotated, Any, Literal, ParamSpec, TypeVar, get_args, get_or
 import numpy as np
 import numpy.typing as npt
 
-from stylobate.errors import LARGEST, ParameterError, as_float, require_size, require_vector, require_whole
+from stylobate.errors import LARGEST, ParameterError, as_float, question, require_size, require_vector, require_whole
 from stylobate.kinds import new_of, place_of
+from stylobate.units import listed, meant
 
 _P = ParamSpec("_P")
 _T = TypeVar("_T")
 
 _CF_POWERS = str.maketrans({"²": "2", "³": "3"})
+
+QUARTER_TURN = math.pi / 2.0
+"""Bound of the angles that cannot reach it [rad]."""
+
+# Angles of several turns in whole steps of 5 are more likely degrees.
+_TURNS, _STEP = 15.0, 5.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
@@ -39,6 +46,8 @@ class Quantity:
         Meaning in a few words, as on an axis.
     ge, gt, le, lt
         Bounds: greater or equal, greater, less or equal, less.
+    unlikely_above
+        Magnitude above which a number is possible but more likely has another unit; None for no such limit.
     note
         Remedy, added to the bounds in a message.
     slider
@@ -62,6 +71,7 @@ class Quantity:
     gt: float | None = None
     le: float | None = None
     lt: float | None = None
+    unlikely_above: float | None = None
     note: str = ""
     slider: tuple[float, float] | None = None
     components: int = 1
@@ -86,7 +96,7 @@ class Quantity:
         if self.le is not None:
             return f"lie between {self.ge or 0.0:g} and {self.le:.6g}"
         if self.lt is not None:
-            return f"lie between {self.gt or 0.0:g} and {self.lt:g}"
+            return f"lie between {_bound(self.gt or 0.0)} and {_bound(self.lt)}"
         if self.gt is not None:
             return "be positive" if self.gt == 0.0 else f"be above {self.gt:g}"
         if self.ge is not None:
@@ -118,22 +128,48 @@ class Quantity:
         return inside & (array <= (LARGEST if self.le is None else self.le))
 
     def checked(self, name: str, value: Any) -> float:
-        """Check `value` and return it as a float.
+        """Check `value` and return it as a float; a quantity of pint or astropy is converted.
 
         Raises
         ------
         ParameterError
-            If the value is not a real number, is outside the bounds, or is too large to compute with.
+            If the value is not a real number, has a unit of another dimension, is outside the bounds, or is too large
+            to compute with.
+
+        Warns
+        -----
+        UnlikelyInputWarning
+            If the value was more likely meant in another unit.
         """
-        number = as_float(name, value)
+        number = as_float(name, value, self.unit)
+        if not self._allows(number):
+            raise ParameterError(self.refusal(name, number))
+        require_size(name, number, self.unit, zero=self.gt is None)
+        self.question(name, number)
+        return number
+
+    def refusal(self, name: str, number: float) -> str:
+        """Write the message for a number outside of the bounds."""
+        demand = f"{self.demand}, {self.note}" if self.note else self.demand
+        remedy = meant(number, self.unit, self._allows) if self.unit == "rad" and math.isfinite(number) else ""
+        return f"{name} must {demand}, got {number!r} {self.unit}".rstrip() + (f". {remedy}" if remedy else "")
+
+    def question(self, name: str, number: float) -> None:
+        """Issue an UnlikelyInputWarning for a number that was more likely meant in another unit."""
+        if self.unlikely_above is None:
+            unlikely = self.unit == "rad" and abs(number) >= _TURNS and number % _STEP == 0.0
+        else:
+            unlikely = abs(number) > self.unlikely_above
+        if unlikely:
+            highest = _TURNS if self.unlikely_above is None else self.unlikely_above
+            remedy = meant(number, self.unit, lambda value: abs(value) <= highest)
+            remedy = remedy or f"Check its unit, such as {listed(self.unit)}."
+            question(f"{name}: {number:.6g} {self.unit} is unlikely. {remedy}")
+
+    def _allows(self, number: float) -> bool:
         above = (self.ge is None or number >= self.ge) and (self.gt is None or number > self.gt)
         below = (self.le is None or number <= self.le) and (self.lt is None or number < self.lt)
-        if not (above and below and math.isfinite(number)):
-            demand = f"{self.demand}, {self.note}" if self.note else self.demand
-            message = f"{name} must {demand}, got {number!r} {self.unit}".rstrip()
-            raise ParameterError(message)
-        require_size(name, number, self.unit, zero=self.gt is None)
-        return number
+        return above and below and math.isfinite(number)
 
 
 @dataclass(frozen=True, slots=True)
@@ -178,7 +214,7 @@ class Parameter:
         quantity = self.quantity
         if self.choices:
             if value in self.choices:
-                return value
+                return self.choices[self.choices.index(value)]
             remedy = f": {quantity.text}" if quantity.choices else ""
             message = f"{self.name} must be {' or '.join(map(repr, self.choices))}, got {value!r}{remedy}"
             raise ParameterError(message)
@@ -281,6 +317,10 @@ def check_declared(made: Any) -> None:
     """
     for name, parameter in parameters_of(made.__class__).items():
         object.__setattr__(made, name, parameter.checked(getattr(made, name)))
+
+
+def _bound(number: float) -> str:
+    return f"{math.copysign(1.0, number):g}"[:-1] + "π/2" if abs(number) == QUARTER_TURN else f"{number:g}"
 
 
 def _member(kind: type[StrEnum], name: str, value: Any) -> StrEnum:
