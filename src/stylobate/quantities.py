@@ -30,6 +30,8 @@ QUARTER_TURN = math.pi / 2.0
 
 # Angles of several turns in whole steps of 5 are more likely degrees.
 _TURNS, _STEP = 15.0, 5.0
+# A refused angle below this [rad] was meant in rad.
+_FEWEST_DEGREES = 2.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
@@ -46,6 +48,8 @@ class Quantity:
         Meaning in a few words, as on an axis.
     ge, gt, le, lt
         Bounds: greater or equal, greater, less or equal, less.
+    whole
+        Whether only whole numbers are valid in studies.
     unlikely_above
         Magnitude above which a number is possible but more likely has another unit; None for no such limit.
     note
@@ -71,6 +75,7 @@ class Quantity:
     gt: float | None = None
     le: float | None = None
     lt: float | None = None
+    whole: bool = False
     unlikely_above: float | None = None
     note: str = ""
     slider: tuple[float, float] | None = None
@@ -93,15 +98,16 @@ class Quantity:
         if self.le is not None and self.gt is not None:
             above = "be positive" if self.gt == 0.0 else f"be above {self.gt:g}"
             return f"{above} and at most {self.le:.6g}"
-        if self.le is not None:
-            return f"lie between {self.ge or 0.0:g} and {self.le:.6g}"
-        if self.lt is not None:
-            return f"lie between {_bound(self.gt or 0.0)} and {_bound(self.lt)}"
+        high = self.lt if self.le is None else self.le
+        if high is not None:
+            return f"lie between {_bound(self.ge or self.gt or 0.0)} and {_bound(high)}"
         if self.gt is not None:
             return "be positive" if self.gt == 0.0 else f"be above {self.gt:g}"
-        if self.ge is not None:
-            return "be zero or positive" if self.ge == 0.0 else f"be {self.ge:g} or more"
-        return "be finite"
+        if self.whole:
+            return f"be a whole number from {self.ge or 0.0:g} on"
+        if self.ge:
+            return f"be {self.ge:g} or more"
+        return "be finite" if self.ge is None else "be zero or positive"
 
     @property
     def cf_units(self) -> str:
@@ -125,6 +131,8 @@ class Quantity:
             inside &= array > self.gt
         if self.lt is not None:
             inside &= array < self.lt
+        if self.whole:
+            inside &= array % 1.0 == 0.0
         return inside & (array <= (LARGEST if self.le is None else self.le))
 
     def checked(self, name: str, value: Any) -> float:
@@ -151,7 +159,7 @@ class Quantity:
     def refusal(self, name: str, number: float) -> str:
         """Write the message for a number outside of the bounds."""
         demand = f"{self.demand}, {self.note}" if self.note else self.demand
-        remedy = meant(number, self.unit, self._allows) if self.unit == "rad" and math.isfinite(number) else ""
+        remedy = degrees_meant(number, self._allows) if self.unit == "rad" else ""
         return f"{name} must {demand}, got {number!r} {self.unit}".rstrip() + (f". {remedy}" if remedy else "")
 
     def question(self, name: str, number: float) -> None:
@@ -317,6 +325,11 @@ def check_declared(made: Any) -> None:
     """
     for name, parameter in parameters_of(made.__class__).items():
         object.__setattr__(made, name, parameter.checked(getattr(made, name)))
+
+
+def degrees_meant(number: float, fits: Callable[[float], bool] = lambda angle: abs(angle) < QUARTER_TURN) -> str:
+    """Return a remedy for an angle [rad] that was meant in degrees; "" unless it `fits` then."""
+    return meant(number, "rad", fits) if _FEWEST_DEGREES <= abs(number) < math.inf else ""
 
 
 def _bound(number: float) -> str:

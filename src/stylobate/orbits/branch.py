@@ -11,8 +11,8 @@ import numpy as np
 import xarray as xr
 
 from stylobate.config import provenance_of_run
+from stylobate.config.parameter_quantities import attributes_of
 from stylobate.engine.flow.status import Status
-from stylobate.engine.parameter_quantities import attributes_of
 from stylobate.engine.parameters import present_value
 from stylobate.errors import NoOrbitError, ParameterError, require_finite
 from stylobate.orbits.arclength import Family, Floats, Point, on_family

@@ -12,9 +12,9 @@ import numpy.typing as npt
 import xarray as xr
 
 from stylobate.config import provenance_of_run
+from stylobate.config.parameter_quantities import attributes_of
 from stylobate.engine.flow.periodic import Numbers, PeriodicSystem
 from stylobate.engine.flow.status import Status
-from stylobate.engine.parameter_quantities import attributes_of
 from stylobate.engine.parameters import present_value
 from stylobate.errors import NoOrbitError, ParameterError, StylobateError
 from stylobate.orbits.arguments import control_of, enclosing, require_bifurcation, require_followed
