@@ -24,7 +24,7 @@ from collections.abc import Sequence
 from enum import IntEnum
 from typing import Any, NamedTuple
 
-from stylobate.units import UnitError, in_unit
+from stylobate import units
 
 SMALLEST, LARGEST = 1e-30, 1e15
 """Limits for the size of a number other than zero: numbers of columns are far inside, and no product overflows."""
@@ -267,8 +267,8 @@ def as_numbers(name: str, value: Any, unit: str = "") -> Any:
         If the quantity has another dimension or an unknown unit.
     """
     try:
-        return in_unit(value, unit)
-    except UnitError as error:
+        return units.in_unit(value, unit)
+    except units.UnitError as error:
         message = f"{name} {error}"
         raise ParameterError(message) from None
 

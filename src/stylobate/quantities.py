@@ -97,7 +97,7 @@ class Quantity:
         """The range in words, behind "must"."""
         if self.le is not None and self.gt is not None:
             above = "be positive" if self.gt == 0.0 else f"be above {self.gt:g}"
-            return f"{above} and at most {self.le:.6g}"
+            return f"{above} and at most {_bound(self.le)}"
         high = self.lt if self.le is None else self.le
         if high is not None:
             return f"lie between {_bound(self.ge or self.gt or 0.0)} and {_bound(high)}"
@@ -152,7 +152,7 @@ class Quantity:
         number = as_float(name, value, self.unit)
         if not self._allows(number):
             raise ParameterError(self.refusal(name, number))
-        require_size(name, number, self.unit, zero=self.gt is None)
+        require_size(name, number, self.unit, zero=self.gt is None or self.gt < 0.0)
         self.question(name, number)
         return number
 

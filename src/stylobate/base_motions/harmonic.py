@@ -205,8 +205,9 @@ class Harmonic(BaseMotion):
     ) -> Self:
         """Create a motion with the displacement d_i cos(Ωt + start_phase + φ_i), d = `amplitude` (x, y, z) [m]."""
         question_path("amplitude", max(map(abs, amplitude)), 1.0, angular_frequency)
-        shared = {"angular_frequency": angular_frequency, "start_phase": start_phase, "ramp": ramp}
-        return cls._along_path(*amplitude, phase=phase, **shared)
+        return cls._along_path(
+            *amplitude, phase=phase, angular_frequency=angular_frequency, start_phase=start_phase, ramp=ramp
+        )
 
     @classmethod
     def _along_path(cls, x: float, y: float, z: float, **rest: Any) -> Self:

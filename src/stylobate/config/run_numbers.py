@@ -34,7 +34,7 @@ FrictionCoefficient = Annotated[
 ]
 RelativeTolerance = Annotated[float, Quantity(text="relative tolerance", gt=0.0)]
 AbsoluteTolerance = Annotated[float, Quantity(unit="rad", text="absolute tolerance of the tilt", gt=0.0)]
-TiltLimit = Annotated[float, Quantity(unit="rad", text="tilt at which a run ends", gt=0.0, lt=QUARTER_TURN)]
+TiltLimit = Annotated[float, Quantity(unit="rad", text="tilt at which a run ends", gt=0.0, le=QUARTER_TURN)]
 RestEnergy = Annotated[float, Quantity(symbol="ε", text="energy below which a column can come to rest, in c²", ge=0.0)]
 MaxSteps = Annotated[
     int, Quantity(text="maximum number of integration steps", ge=1, le=MOST_STEPS.number, note=MOST_STEPS.reason)

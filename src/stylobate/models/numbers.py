@@ -50,7 +50,7 @@ NormalRestitution = Annotated[
     ),
 ]
 PassageTilt = Annotated[
-    float, Quantity(unit="rad", text="tilt below which the vertical is passed", ge=0.0, lt=QUARTER_TURN)
+    float, Quantity(unit="rad", text="tilt below which the vertical is passed", ge=0.0, le=QUARTER_TURN)
 ]
 FrictionCoefficient = Annotated[
     float,

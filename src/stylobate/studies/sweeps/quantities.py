@@ -67,7 +67,7 @@ def checked_values(where: str, name: str, values: npt.ArrayLike, own: Own = None
     if refused.any():
         raise ParameterError(quantity.refusal(argument, float(array[refused][0])))
     for value in (array.min(initial=1.0), array.max(initial=1.0)):
-        require_size(argument, float(value), quantity.unit, zero=quantity.gt is None)
+        require_size(argument, float(value), quantity.unit, zero=quantity.gt is None or quantity.gt < 0.0)
     if array.size:
         quantity.question(argument, float(array[np.argmax(np.abs(array))]))
     array.setflags(write=False)
