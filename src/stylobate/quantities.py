@@ -18,7 +18,7 @@ import numpy.typing as npt
 
 from stylobate.errors import LARGEST, ParameterError, as_float, question, require_size, require_vector, require_whole
 from stylobate.kinds import new_of, place_of
-from stylobate.units import listed, meant
+from stylobate.units import listed, meant, read_all
 
 _P = ParamSpec("_P")
 _T = TypeVar("_T")
@@ -91,6 +91,11 @@ class Quantity:
         return " ".join(
             part for part in (self.symbol, unit, self.demand.removeprefix("be ").removeprefix("lie ")) if part
         )
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: Callable[[Any], Any]) -> Mapping[str, Any]:
+        """Let fields of descriptions read numbers with a unit, such as "1.2 mm"; pydantic calls this."""
+        reading = {"type": "no-info", "function": lambda value: read_all(value, self.unit)}
+        return {"type": "function-before", "function": reading, "schema": handler(source)}
 
     @property
     def demand(self) -> str:

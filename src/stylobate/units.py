@@ -113,6 +113,20 @@ def split(text: str) -> tuple[str, str]:
     return (text, "") if found is None else (found[1], found[2] or "")
 
 
+def has_unit(value: Any) -> bool:
+    """Return whether a value is a number with a unit in text, or a list with such a text."""
+    if isinstance(value, (list, tuple)):
+        return any(map(has_unit, value))
+    return isinstance(value, str) and bool(split(value)[1])
+
+
+def read_all(value: Any, unit: str) -> Any:
+    """Read a text, or the texts of a list, that are numbers with a unit; other values are unchanged."""
+    if isinstance(value, (list, tuple)):
+        return [read_all(one, unit) for one in value]
+    return read(value, unit) if has_unit(value) else value
+
+
 def in_unit(value: Any, unit: str) -> Any:
     """Convert a quantity of pint or astropy, or a list of quantities, to numbers in the declared `unit`.
 
@@ -136,6 +150,11 @@ def in_unit(value: Any, unit: str) -> Any:
         message = f"must not be a labelled array with a unit. Convert it to plain numbers in {unit or 'no unit'}"
         raise UnitError(message)
     return value
+
+
+def is_angle(unit: str) -> bool:
+    """Return whether a unit is that of an angle or a share, and the same for every column."""
+    return getattr(_unit(unit), "powers", _NONE) in (_NONE, _ANGLE)
 
 
 def size_of(unit: str) -> Unit | None:

@@ -10,7 +10,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from stylobate.errors import ParameterError
-from stylobate.theory.arguments import BoolArray, ComplexArray, FloatArray, Real, not_negative, positive
+from stylobate.theory.arguments import (
+    BoolArray,
+    ComplexArray,
+    FloatArray,
+    Real,
+    not_negative,
+    not_negative_or_infinite,
+    positive,
+)
 from stylobate.theory.finite_tilt import no_deviation_grows
 from stylobate.theory.rolling import rolling_amplitudes
 from stylobate.theory.rotating_frame import rotating_frame_jacobian
@@ -208,14 +216,12 @@ def checked_numbers(
     if np.any(kappa >= 1.0):
         message = f"inertia_ratio = m h²/J0 must be below 1, got {np.max(kappa)!r}"
         raise ParameterError(message)
-    free = np.asarray(zeta, dtype=np.float64)
-    not_negative("zeta", np.where(np.isposinf(free), 0.0, free))
     arrays = (
         positive("nu", nu),
         not_negative("a0", a0),
         positive("c", c),
         not_negative("eta", eta),
-        free,
+        not_negative_or_infinite("zeta", zeta),
         kappa,
         positive("axial_ratio", axial),
     )

@@ -4,7 +4,16 @@ from collections.abc import Callable
 
 import numpy as np
 
-from stylobate.theory.arguments import BoolArray, ComplexArray, FloatArray, Real, finite, not_negative, positive
+from stylobate.theory.arguments import (
+    BoolArray,
+    ComplexArray,
+    FloatArray,
+    Real,
+    finite,
+    not_negative,
+    not_negative_or_infinite,
+    positive,
+)
 from stylobate.theory.finite_tilt import (
     FiniteTiltRolling,
     eigenvalues,
@@ -92,13 +101,11 @@ def full_rolling(
     [0.0015903 0.0074953] [3.1343 0.0346] [-0.08481 -0.39964] [False  True]
     """
     body = RigidBody.checked(c, inertia_ratio, axial_ratio)
-    free = np.asarray(zeta, dtype=np.float64)
-    not_negative("zeta", np.where(np.isposinf(free), 0.0, free))
     numbers = np.broadcast_arrays(
         positive("nu", nu),
         not_negative("a0", a0),
         not_negative("eta", eta),
-        free,
+        not_negative_or_infinite("zeta", zeta),
         finite("spin", spin),
         body.c,
         body.kappa,

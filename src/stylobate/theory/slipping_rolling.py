@@ -4,7 +4,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from stylobate.theory.arguments import BoolArray, ComplexArray, FloatArray, Real, finite, not_negative, positive
+from stylobate.theory.arguments import (
+    BoolArray,
+    ComplexArray,
+    FloatArray,
+    Real,
+    finite,
+    not_negative,
+    not_negative_or_infinite,
+    positive,
+)
 from stylobate.theory.finite_tilt import eigenvalues
 from stylobate.theory.rigid_body import Numbers, RigidBody
 from stylobate.theory.slipping_balance import Forced, solutions
@@ -164,14 +173,12 @@ def slipping_rolling(
     [0.0154 0.0456] [ 0.216 -0.118] [False  True]
     """
     body = RigidBody.checked(c, inertia_ratio, axial_ratio)
-    free = np.asarray(zeta, dtype=np.float64)
-    not_negative("zeta", np.where(np.isposinf(free), 0.0, free))
     numbers = np.broadcast_arrays(
         positive("nu", nu),
         not_negative("a0", a0),
         positive("mu", mu),
         not_negative("eta", eta),
-        free,
+        not_negative_or_infinite("zeta", zeta),
         not_negative("patch", patch) * body.c,
         finite("spin", spin),
         body.c,

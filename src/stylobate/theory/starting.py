@@ -18,6 +18,7 @@ import numpy as np
 import numpy.typing as npt
 
 from stylobate.errors import ParameterError
+from stylobate.quantities import degrees_meant
 from stylobate.theory.arguments import ComplexArray, FloatArray, Real, finite, not_negative, positive
 
 # Relative difference, a few roundings, below which lift-off and leaving the friction cone coincide.
@@ -199,7 +200,8 @@ def steepness(incline: Real) -> FloatArray:
     angle = finite("incline", incline)
     bad = angle[np.abs(angle) >= 0.5 * np.pi]
     if bad.size:
-        message = f"incline must lie between -π/2 and π/2 rad, got {float(bad[0])!r}: nothing stands on a wall"
+        worst = float(bad[0])
+        message = f"incline must lie between -π/2 and π/2, got {worst!r} rad. {degrees_meant(worst)}".rstrip()
         raise ParameterError(message)
     return angle
 
