@@ -113,6 +113,16 @@ def split(text: str) -> tuple[str, str]:
     return (text, "") if found is None else (found[1], found[2] or "")
 
 
+def is_number(text: str) -> bool:
+    """Return whether a text is a number, with or without a unit."""
+    number, _ = split(text)
+    try:
+        float(number)
+    except ValueError:
+        return False
+    return True
+
+
 def has_unit(value: Any) -> bool:
     """Return whether a value is a number with a unit in text, or a list with such a text."""
     if isinstance(value, (list, tuple)):

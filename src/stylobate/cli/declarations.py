@@ -11,10 +11,14 @@ import typer
 from stylobate.cli.own_classes import Chosen
 from stylobate.errors import FileError, ParameterError
 from stylobate.quantities import Parameter
-from stylobate.units import UnitError, read
+from stylobate.units import UnitError, is_number, read
 
 MAX_NAMED_KINDS = 3
 """Maximum number of kinds that a help text or a remedy lists."""
+
+
+_AXIS = tuple[str, str, str, int]
+"""Name, first, last and number of values, whose unit depends on the name."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,6 +101,9 @@ class Option:
         ParameterError
             If a text is no number, or its unit is unknown or has another dimension.
         """
+        if value is not None and self.type is _AXIS and not all(map(is_number, value[1:3])):
+            message = f"{self.written_flag} must be followed by {self.metavar}; one of them is not a number"
+            raise ParameterError(message)
         if value is None or not _numbers_in(self.type):
             return value
         return self._number(value) if self.type is float else tuple(map(self._number, value))
@@ -216,7 +223,6 @@ def readable(paths: list[Path] | None) -> list[Path] | None:
     return paths
 
 
-_AXIS = tuple[str, str, str, int]  # the unit of the numbers depends on the name
 AXES = Group.of(
     "Axes",
     Option("x", "values along x: name, first, last, number", _AXIS, metavar="NAME FROM TO NUMBER"),
