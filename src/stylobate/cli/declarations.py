@@ -101,12 +101,15 @@ class Option:
         ParameterError
             If a text is no number, or its unit is unknown or has another dimension.
         """
-        if value is not None and self.type is _AXIS and not all(map(is_number, value[1:3])):
-            message = f"{self.written_flag} must be followed by {self.metavar}; one of them is not a number"
+        if value is None or self.type is float:
+            return None if value is None else self._number(value)
+        count = _numbers_in(self.type)
+        texts = value if count else value[1:3] if self.type is _AXIS else ()
+        if not all(map(is_number, texts)):
+            wanted = f"{count} numbers" if count else self.metavar
+            message = f"{self.written_flag} must be followed by {wanted}; one of them is not a number"
             raise ParameterError(message)
-        if value is None or not _numbers_in(self.type):
-            return value
-        return self._number(value) if self.type is float else tuple(map(self._number, value))
+        return tuple(map(self._number, value)) if count else value
 
     def _number(self, text: Any) -> Any:
         if text in self.words or not isinstance(text, str):
