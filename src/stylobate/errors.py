@@ -17,9 +17,7 @@
 Misuse raises an exception. A physical result, numerical failure included, is an `Outcome`.
 """
 
-import inspect
 import math
-import warnings
 from collections.abc import Sequence
 from enum import IntEnum
 from typing import Any, NamedTuple
@@ -271,14 +269,6 @@ def as_numbers(name: str, value: Any, unit: str = "") -> Any:
     except units.UnitError as error:
         message = f"{name} {error}"
         raise ParameterError(message) from None
-
-
-def question(message: str) -> None:
-    """Issue an UnlikelyInputWarning at the line of the caller outside of this package."""
-    frame, level = inspect.currentframe(), 1
-    while frame is not None and frame.f_globals.get("__name__", "").partition(".")[0] == __package__:
-        frame, level = frame.f_back, level + 1
-    warnings.warn(message, UnlikelyInputWarning, stacklevel=level if frame else 1)
 
 
 def _quantity(value: float, unit: str) -> str:

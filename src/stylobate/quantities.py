@@ -6,6 +6,7 @@ Checks, bounds in studies, units and names in Datasets, and the controls of the 
 
 import inspect
 import math
+import warnings
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, is_dataclass
 from enum import StrEnum
@@ -16,7 +17,15 @@ from typing import Annotated, Any, Literal, ParamSpec, TypeVar, get_args, get_or
 import numpy as np
 import numpy.typing as npt
 
-from stylobate.errors import LARGEST, ParameterError, as_float, question, require_size, require_vector, require_whole
+from stylobate.errors import (
+    LARGEST,
+    ParameterError,
+    UnlikelyInputWarning,
+    as_float,
+    require_size,
+    require_vector,
+    require_whole,
+)
 from stylobate.kinds import new_of, place_of
 from stylobate.units import listed, meant, read_all
 
@@ -177,7 +186,7 @@ class Quantity:
             highest = _TURNS if self.unlikely_above is None else self.unlikely_above
             remedy = meant(number, self.unit, lambda value: abs(value) <= highest)
             remedy = remedy or f"Check its unit, such as {listed(self.unit)}."
-            question(f"{name}: {number:.6g} {self.unit} is unlikely. {remedy}")
+            question_input(f"{name}: {number:.6g} {self.unit} is unlikely. {remedy}")
 
     def _allows(self, number: float) -> bool:
         above = (self.ge is None or number >= self.ge) and (self.gt is None or number > self.gt)
@@ -330,6 +339,19 @@ def check_declared(made: Any) -> None:
     """
     for name, parameter in parameters_of(made.__class__).items():
         object.__setattr__(made, name, parameter.checked(getattr(made, name)))
+
+
+def question_input(message: str) -> None:
+    """Issue an UnlikelyInputWarning at the line outside of this package that states a number.
+
+    A number that a named constructor passes on to another one is not questioned again.
+    """
+    frame, level, checks = inspect.currentframe(), 1, 0
+    while frame is not None and frame.f_globals.get("__name__", "").partition(".")[0] == __package__:
+        checks += frame.f_code.co_name in ("checking", "check_declared")  # one for each constructor
+        frame, level = frame.f_back, level + 1
+    if checks <= 1:
+        warnings.warn(message, UnlikelyInputWarning, stacklevel=level if frame else 1)
 
 
 def degrees_meant(number: float, fits: Callable[[float], bool] = lambda angle: abs(angle) < QUARTER_TURN) -> str:

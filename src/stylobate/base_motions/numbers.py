@@ -4,8 +4,7 @@ import math
 from collections.abc import Sequence
 from typing import Annotated
 
-from stylobate.errors import question
-from stylobate.quantities import QUARTER_TURN, Quantity
+from stylobate.quantities import QUARTER_TURN, Quantity, question_input
 from stylobate.units import listed, meant
 
 # Beyond the machines that exist: 1000 g, 100 kHz.
@@ -94,6 +93,6 @@ def question_path(name: str, length: float, share: float, angular_frequency: flo
     if acceleration > _MOST_ACCELERATION:
         remedy = meant(length, "m", lambda other: acceleration * other / length <= _MOST_ACCELERATION)
         remedy = remedy or f"Check its unit, such as {listed('m')}, and that of the frequency."
-        question(
+        question_input(
             f"{name}: {length:.6g} m is unlikely, with an acceleration of {acceleration / 9.80665:.0f} g. {remedy}"
         )
