@@ -2,6 +2,7 @@
 
 import dataclasses
 import math
+from functools import partial
 
 import pytest
 from hypothesis import given
@@ -103,15 +104,35 @@ def test_gravity_changes_the_frequency_and_nothing_of_the_shape():
 
 
 SOLID = {"radius": 0.5, "height": 10.0, "density": 2700.0}
+MISSING = ("density", None)  # a solid column can have a mass instead
 GIVEN = {"radius": 0.5, "mass_height": 5.0, "mass": 1e3, "transverse_inertia": 8e3, "axial_inertia": 125.0}
 
 
 @pytest.mark.parametrize("value", [0.0, -0.5, math.nan, math.inf, "wide", None, 1j])
 @pytest.mark.parametrize("name", ["radius", "height", "density", "gravity"])
 def test_an_impossible_number_is_refused_with_its_name_and_value(name, value):
-    with pytest.raises(ParameterError, match=f"^{name} must be") as caught:
-        sb.Column.solid(**{**SOLID, name: value})
-    assert repr(value) in str(caught.value)
+    makers = [partial(sb.Column.frustum, top_radius=0.4), *([sb.Column.solid] if (name, value) != MISSING else [])]
+    for make in makers:
+        with pytest.raises(ParameterError, match=f"^{name} must be") as caught:
+            make(**{**SOLID, name: value})
+        assert repr(value) in str(caught.value)
+
+
+@given(radius=lengths, height=lengths, mass=st.floats(1e-4, 1e6))
+def test_a_solid_cylinder_of_a_mass_is_that_of_its_density(radius, height, mass):
+    by_mass = sb.Column.solid(radius=radius, height=height, mass=mass)
+    by_density = sb.Column.solid(radius=radius, height=height, density=mass / (math.pi * radius**2 * height))
+    assert by_mass.mass == mass
+    assert numbers(by_mass) == pytest.approx(numbers(by_density), rel=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("stated", "got"), [({}, "neither"), ({"density": 884.0, "mass": 0.5}, "884.0 kg/m³ and 0.5 kg")]
+)
+def test_a_solid_cylinder_has_either_a_density_or_a_mass(stated, got):
+    with pytest.raises(ParameterError) as caught:
+        sb.Column.solid(radius=0.03, height=0.2, **stated)
+    assert str(caught.value) == f"density or mass: a solid column needs one of them (got {got}). State one."
 
 
 @pytest.mark.parametrize("name", [*GIVEN, "height", "gravity"])

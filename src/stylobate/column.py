@@ -8,7 +8,7 @@ from typing import Annotated, Self
 import numpy as np
 
 from stylobate.errors import ParameterError, as_float, require_positive
-from stylobate.quantities import Declared, Quantity
+from stylobate.quantities import Declared, Quantity, checked_arguments
 
 STANDARD_GRAVITY = 9.80665
 """Standard gravity [m/s²]."""
@@ -19,8 +19,10 @@ _POINTS = 24
 # Relative slack for bounds that an exact body meets with equality (a hoop, a rod) and rounding may miss.
 _ROUNDING = 1e-12
 
-Radius = Annotated[float, Quantity(symbol="r", unit="m", text="radius of the base", gt=0.0)]
-Height = Annotated[float, Quantity(symbol="H", unit="m", text="height of the body", gt=0.0)]
+# Beyond the towers and tanks that exist; the tower of Pisa has a radius of 7.8 m and a height of 57 m.
+Radius = Annotated[float, Quantity(symbol="r", unit="m", text="radius of the base", gt=0.0, unlikely_above=25.0)]
+Height = Annotated[float, Quantity(symbol="H", unit="m", text="height of the body", gt=0.0, unlikely_above=150.0)]
+Mass = Annotated[float, Quantity(symbol="m", unit="kg", text="mass", gt=0.0)]
 Density = Annotated[float, Quantity(symbol="ρ", unit="kg/m³", text="density", gt=0.0)]
 Gravity = Annotated[
     float, Quantity(symbol="g", unit="m/s²", text="acceleration of gravity", gt=0.0, slider=(0.5, 15.0))
@@ -70,7 +72,7 @@ class Column(Declared):
 
     radius: Radius
     mass_height: MassHeight
-    mass: Annotated[float, Quantity(symbol="m", unit="kg", text="mass", gt=0.0)]
+    mass: Mass
     transverse_inertia: Annotated[
         float,
         Quantity(
@@ -94,11 +96,35 @@ class Column(Declared):
             self._check_height(self.height)
 
     @classmethod
-    def solid(cls, *, radius: Radius, height: Height, density: Density, gravity: Gravity = STANDARD_GRAVITY) -> Self:
-        """Describe a solid cylinder by `radius` [m], `height` [m] and `density` [kg/m³]."""
-        return cls.frustum(radius=radius, top_radius=radius, height=height, density=density, gravity=gravity)
+    @checked_arguments
+    def solid(
+        cls,
+        *,
+        radius: Radius,
+        height: Height,
+        density: Density | None = None,
+        mass: Mass | None = None,
+        gravity: Gravity = STANDARD_GRAVITY,
+    ) -> Self:
+        """Describe a solid cylinder by `radius` [m], `height` [m], and either `density` [kg/m³] or `mass` [kg].
+
+        Raises
+        ------
+        ParameterError
+            If both density and mass are given, or neither.
+        """
+        if (density is None) == (mass is None):
+            got = "neither" if density is None else f"{density!r} kg/m³ and {mass!r} kg"
+            message = f"density or mass: a solid column needs one of them (got {got}). State one."
+            raise ParameterError(message)
+        if density is None:
+            assert mass is not None
+            density = mass / (math.pi * radius**2 * height)
+        column = cls.frustum(radius=radius, top_radius=radius, height=height, density=density, gravity=gravity)
+        return column if mass is None else replace(column, mass=mass)
 
     @classmethod
+    @checked_arguments
     def hollow(
         cls,
         *,
@@ -112,10 +138,6 @@ class Column(Declared):
 
         The tube tips over its outer rim, as a solid cylinder does.
         """
-        radius = require_positive("radius", radius, "m")
-        inner_radius = require_positive("inner_radius", inner_radius, "m")
-        height = require_positive("height", height, "m")
-        density = require_positive("density", density, "kg/m³")
         if inner_radius >= radius:
             message = f"inner_radius must be below radius = {radius!r} m, got {inner_radius!r} m"
             raise ParameterError(message)
@@ -132,6 +154,7 @@ class Column(Declared):
         )
 
     @classmethod
+    @checked_arguments
     def frustum(
         cls,
         *,
@@ -142,10 +165,7 @@ class Column(Declared):
         gravity: Gravity = STANDARD_GRAVITY,
     ) -> Self:
         """Describe a solid frustum of a cone by base `radius`, `top_radius`, `height` [m] and `density` [kg/m³]."""
-        a = require_positive("radius", radius, "m")
-        b = require_positive("top_radius", top_radius, "m")
-        height = require_positive("height", height, "m")
-        density = require_positive("density", density, "kg/m³")
+        a, b = radius, top_radius
         # Moments of the cross-section: ∫ R² zⁿ dz and ∫ R⁴ dz with R linear from a to b, z in heights.
         area = (a * a + a * b + b * b) / 3.0
         first = (a * a + 2.0 * a * b + 3.0 * b * b) / 12.0

@@ -24,6 +24,7 @@ from collections.abc import Sequence
 from enum import IntEnum
 from typing import Any, NamedTuple
 
+from stylobate import units
 from stylobate.text import did_you_mean
 
 SMALLEST, LARGEST = 1e-30, 1e15
@@ -218,9 +219,9 @@ class Outcome(Named, IntEnum):
 
 def require_finite(name: str, value: float, unit: str = "") -> float:
     """Return `value` as a float, or raise ParameterError unless it is a finite real number."""
-    number = as_float(name, value)
+    number = as_float(name, value, unit)
     if not math.isfinite(number):
-        message = f"{name} must be finite, got {_quantity(value, unit)}"
+        message = f"{name} must be finite, got {_quantity(number, unit)}"
         raise ParameterError(message)
     require_size(name, number, unit)
     return number
@@ -228,9 +229,9 @@ def require_finite(name: str, value: float, unit: str = "") -> float:
 
 def require_positive(name: str, value: float, unit: str = "") -> float:
     """Return `value` as a float, or raise ParameterError unless it is finite and above zero."""
-    number = as_float(name, value)
+    number = as_float(name, value, unit)
     if not (math.isfinite(number) and number > 0.0):
-        message = f"{name} must be positive, got {_quantity(value, unit)}"
+        message = f"{name} must be positive, got {_quantity(number, unit)}"
         raise ParameterError(message)
     require_size(name, number, unit, zero=False)
     return number
@@ -238,9 +239,9 @@ def require_positive(name: str, value: float, unit: str = "") -> float:
 
 def require_not_negative(name: str, value: float, unit: str = "") -> float:
     """Return `value` as a float, or raise ParameterError unless it is finite and zero or above."""
-    number = as_float(name, value)
+    number = as_float(name, value, unit)
     if not (math.isfinite(number) and number >= 0.0):
-        message = f"{name} must be zero or positive, got {_quantity(value, unit)}"
+        message = f"{name} must be zero or positive, got {_quantity(number, unit)}"
         raise ParameterError(message)
     require_size(name, number, unit)
     return number
@@ -248,6 +249,7 @@ def require_not_negative(name: str, value: float, unit: str = "") -> float:
 
 def require_vector(name: str, value: Sequence[float], length: int, unit: str = "") -> tuple[float, ...]:
     """Return `value` as a tuple of `length` finite floats, or raise ParameterError."""
+    value = as_numbers(name, value, unit)
     try:
         numbers = () if isinstance(value, (str, bytes)) else tuple(value)
     except TypeError:
@@ -281,13 +283,33 @@ def require_size(name: str, number: float, unit: str = "", *, zero: bool = True)
     raise ParameterError(message)
 
 
-def as_float(name: str, value: Any) -> float:
-    """Return `value` as a float, or raise ParameterError unless it is a real number; NaN and infinities pass."""
+def as_float(name: str, value: Any, unit: str = "") -> float:
+    """Return `value` as a float, or raise ParameterError unless it is a real number; NaN and infinities pass.
+
+    A quantity of pint or astropy is converted to `unit`.
+    """
+    if type(value) is not float:
+        value = as_numbers(name, value, unit)
     try:
         # The sum rejects strings, even those that spell a number.
         return float(value + 0.0)
     except (TypeError, ValueError, OverflowError):
         message = f"{name} must be a real number, got {value!r}"
+        raise ParameterError(message) from None
+
+
+def as_numbers(name: str, value: Any, unit: str = "") -> Any:
+    """Convert a quantity of pint or astropy, or a list of them, to numbers in `unit`; other values are unchanged.
+
+    Raises
+    ------
+    ParameterError
+        If the quantity has another dimension or an unknown unit.
+    """
+    try:
+        return units.in_unit(value, unit)
+    except units.UnitError as error:
+        message = f"{name} {error}"
         raise ParameterError(message) from None
 
 

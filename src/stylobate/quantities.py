@@ -7,6 +7,7 @@ from the properties of a class.
 
 import inspect
 import math
+import warnings
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, fields, is_dataclass
 from enum import Enum, StrEnum
@@ -18,9 +19,18 @@ import numpy as np
 import numpy.typing as npt
 
 from stylobate.cards import Row, Section, card
-from stylobate.errors import LARGEST, ParameterError, as_float, require_size, require_vector, require_whole
+from stylobate.errors import (
+    LARGEST,
+    ParameterError,
+    UnlikelyInputWarning,
+    as_float,
+    require_size,
+    require_vector,
+    require_whole,
+)
 from stylobate.kinds import new_of, place_of
 from stylobate.text import four_digits
+from stylobate.units import listed, meant, read_all
 
 _P = ParamSpec("_P")
 _T = TypeVar("_T")
@@ -29,6 +39,14 @@ _T = TypeVar("_T")
 _SHOWN = 3
 
 _CF_POWERS = str.maketrans({"²": "2", "³": "3"})
+
+QUARTER_TURN = math.pi / 2.0
+"""Bound of the angles that cannot reach it [rad]."""
+
+# Angles of several turns in whole steps of 5 are more likely degrees.
+_TURNS, _STEP = 15.0, 5.0
+# A refused angle below this [rad] was meant in rad.
+_FEWEST_DEGREES = 2.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
@@ -45,6 +63,10 @@ class Quantity:
         Meaning in a few words, as on an axis.
     ge, gt, le, lt
         Bounds: greater or equal, greater, less or equal, less.
+    whole
+        Whether only whole numbers are valid in studies.
+    unlikely_above
+        Magnitude above which a number is possible but more likely has another unit; None for no such limit.
     note
         Remedy, added to the bounds in a message.
     slider
@@ -70,6 +92,8 @@ class Quantity:
     gt: float | None = None
     le: float | None = None
     lt: float | None = None
+    whole: bool = False
+    unlikely_above: float | None = None
     note: str = ""
     slider: tuple[float, float] | None = None
     components: int = 1
@@ -86,21 +110,27 @@ class Quantity:
             part for part in (self.symbol, unit, self.demand.removeprefix("be ").removeprefix("lie ")) if part
         )
 
+    def __get_pydantic_core_schema__(self, source: Any, handler: Callable[[Any], Any]) -> Mapping[str, Any]:
+        """Let fields of descriptions read numbers with a unit, such as "1.2 mm"; pydantic calls this."""
+        reading = {"type": "no-info", "function": lambda value: read_all(value, self.unit)}
+        return {"type": "function-before", "function": reading, "schema": handler(source)}
+
     @property
     def demand(self) -> str:
         """The range in words, behind "must"."""
         if self.le is not None and self.gt is not None:
             above = "be positive" if self.gt == 0.0 else f"be above {self.gt:g}"
-            return f"{above} and at most {self.le:.6g}"
-        if self.le is not None:
-            return f"lie between {self.ge or 0.0:g} and {self.le:.6g}"
-        if self.lt is not None:
-            return f"lie between {self.gt or 0.0:g} and {self.lt:g}"
+            return f"{above} and at most {_bound(self.le)}"
+        high = self.lt if self.le is None else self.le
+        if high is not None:
+            return f"lie between {_bound(self.ge or self.gt or 0.0)} and {_bound(high)}"
         if self.gt is not None:
             return "be positive" if self.gt == 0.0 else f"be above {self.gt:g}"
-        if self.ge is not None:
-            return "be zero or positive" if self.ge == 0.0 else f"be {self.ge:g} or more"
-        return "be finite"
+        if self.whole:
+            return f"be a whole number from {self.ge or 0.0:g} on"
+        if self.ge:
+            return f"be {self.ge:g} or more"
+        return "be finite" if self.ge is None else "be zero or positive"
 
     @property
     def cf_units(self) -> str:
@@ -128,25 +158,53 @@ class Quantity:
             inside &= array > self.gt
         if self.lt is not None:
             inside &= array < self.lt
+        if self.whole:
+            inside &= array % 1.0 == 0.0
         return inside & (array <= (LARGEST if self.le is None else self.le))
 
     def checked(self, name: str, value: Any) -> float:
-        """Check `value` and return it as a float.
+        """Check `value` and return it as a float; a quantity of pint or astropy is converted.
 
         Raises
         ------
         ParameterError
-            If the value is not a real number, is outside the bounds, or is too large to compute with.
+            If the value is not a real number, has a unit of another dimension, is outside the bounds, or is too large
+            to compute with.
+
+        Warns
+        -----
+        UnlikelyInputWarning
+            If the value was more likely meant in another unit.
         """
-        number = as_float(name, value)
+        number = as_float(name, value, self.unit)
+        if not self._allows(number):
+            raise ParameterError(self.refusal(name, number))
+        require_size(name, number, self.unit, zero=self.gt is None or self.gt < 0.0)
+        self.question(name, number)
+        return number
+
+    def refusal(self, name: str, number: float) -> str:
+        """Write the message for a number outside of the bounds."""
+        demand = f"{self.demand}, {self.note}" if self.note else self.demand
+        remedy = degrees_meant(number, self._allows) if self.unit == "rad" else ""
+        return f"{name} must {demand}, got {number!r} {self.unit}".rstrip() + (f". {remedy}" if remedy else "")
+
+    def question(self, name: str, number: float) -> None:
+        """Issue an UnlikelyInputWarning for a number that was more likely meant in another unit."""
+        if self.unlikely_above is None:
+            unlikely = self.unit == "rad" and abs(number) >= _TURNS and number % _STEP == 0.0
+        else:
+            unlikely = abs(number) > self.unlikely_above
+        if unlikely:
+            highest = _TURNS if self.unlikely_above is None else self.unlikely_above
+            remedy = meant(number, self.unit, lambda value: abs(value) <= highest)
+            remedy = remedy or f"Check its unit, such as {listed(self.unit)}."
+            question_input(f"{name}: {number:.6g} {self.unit} is unlikely. {remedy}")
+
+    def _allows(self, number: float) -> bool:
         above = (self.ge is None or number >= self.ge) and (self.gt is None or number > self.gt)
         below = (self.le is None or number <= self.le) and (self.lt is None or number < self.lt)
-        if not (above and below and math.isfinite(number)):
-            demand = f"{self.demand}, {self.note}" if self.note else self.demand
-            message = f"{name} must {demand}, got {number!r} {self.unit}".rstrip()
-            raise ParameterError(message)
-        require_size(name, number, self.unit, zero=self.gt is None)
-        return number
+        return above and below and math.isfinite(number)
 
 
 @dataclass(frozen=True, slots=True)
@@ -191,7 +249,7 @@ class Parameter:
         quantity = self.quantity
         if self.choices:
             if value in self.choices:
-                return value
+                return self.choices[self.choices.index(value)]
             remedy = f": {quantity.text}" if quantity.choices else ""
             message = f"{self.name} must be {' or '.join(map(repr, self.choices))}, got {value!r}{remedy}"
             raise ParameterError(message)
@@ -441,6 +499,28 @@ def check_declared(made: Any) -> None:
     """
     for name, parameter in parameters_of(made.__class__).items():
         object.__setattr__(made, name, parameter.checked(getattr(made, name)))
+
+
+def question_input(message: str) -> None:
+    """Issue an UnlikelyInputWarning at the line outside of this package that states a number.
+
+    A number that a named constructor passes on to another one is not questioned again.
+    """
+    frame, level, checks = inspect.currentframe(), 1, 0
+    while frame is not None and frame.f_globals.get("__name__", "").partition(".")[0] == __package__:
+        checks += frame.f_code.co_name in ("checking", "check_declared")  # one for each constructor
+        frame, level = frame.f_back, level + 1
+    if checks <= 1:
+        warnings.warn(message, UnlikelyInputWarning, stacklevel=level if frame else 1)
+
+
+def degrees_meant(number: float, fits: Callable[[float], bool] = lambda angle: abs(angle) < QUARTER_TURN) -> str:
+    """Return a remedy for an angle [rad] that was meant in degrees; "" unless it `fits` then."""
+    return meant(number, "rad", fits) if _FEWEST_DEGREES <= abs(number) < math.inf else ""
+
+
+def _bound(number: float) -> str:
+    return f"{math.copysign(1.0, number):g}"[:-1] + "π/2" if abs(number) == QUARTER_TURN else f"{number:g}"
 
 
 def _member(kind: type[StrEnum], name: str, value: Any) -> StrEnum:

@@ -115,7 +115,7 @@ def test_simulate_animates_the_run_it_prints(tmp_path, capsys):
             ["map", *COLUMN, "--x", "damping", "0.1", "0.2", "2.5"],
             ["--x must be followed by NAME FROM TO NUMBER; NUMBER must be a whole number"],
         ),
-        (["simulate", *COLUMN, "--damping", "housnr"], ["'--damping': must be a number or housner (got 'housnr')"]),
+        (["simulate", *COLUMN, "--damping", "housnr"], ["--damping must be a number or housner, got 'housnr'"]),
         (["simulate", *COLUMN, "--duration", "-2"], ["duration must be positive, got -2.0 s"]),
         (
             ["simulate", "--slenderness", "-1", *MOTION[:2], "--acceleration", "nan", *MOTION[4:], "--duration", "1"],

@@ -221,7 +221,7 @@ def test_dask_workers_compute_the_same(tmp_path):
         ([*MAP, "--x-spacing", "cubic"], ["map.x.spacing: input should be 'linear' or 'log', got 'cubic'"]),
         (
             [*MAP, "--x", "angular-frequency", "0", "6", "3"],
-            ["map.x['angular_frequency'] must be positive, got 0.0 rad s-1"],
+            ["map.x['angular_frequency'] must be positive, got 0.0 rad/s"],
         ),
         ([*MAP, "--method", "rk4"], ["method: input should be 'dop853' or 'taylor', got 'rk4'"]),
         ([*MAP, "--resume"], ["--resume: the store to continue is missing. Add --output NAME.zarr."]),

@@ -188,7 +188,7 @@ CIRCULAR = {"kind": "circular", "acceleration": 1.0, "angular_frequency": 1.0}
         ({"tilt": 0.1}, ["tilt"]),
         ({"max_steps": 1.5}, ["max_steps"]),
         ({"column": 3}, ["column"]),
-        ({"column": {}}, ["column.density", "column.height", "column.radius"]),
+        ({"column": {}}, ["column.height", "column.radius"]),
         ({"column": {"shape": "cube"}}, ["column.shape"]),
         ({"column": {"shape": "solid", "radius": 0.5, "hight": 3.0, "density": "x"}}, None),
         ({"model": {"damping": "x"}}, ["model.damping"]),

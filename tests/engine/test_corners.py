@@ -182,7 +182,7 @@ def test_a_motion_that_breaks_its_promises_is_told(motion, told):
 
 
 def test_degrees_are_refused():
-    with pytest.raises(ParameterError, match="rad, not degrees"):
+    with pytest.raises(ParameterError, match=r"got 5\.0 rad\. For 5 deg give 0\.08727 rad\."):
         sb.simulate(MODEL, tilt=(5.0, 0.0), duration=1.0)
 
 

@@ -32,7 +32,7 @@ NOT_REPEATING = straight(0.04, 2.0) + straight(0.04, 2.0 * math.sqrt(2.0), 1.6) 
     [
         (MODEL, straight(0.05, 2.0), 1e15),
         (MODEL, sb.Harmonic.circular(acceleration=0.05, angular_frequency=20.0), 1e15),
-        (MODEL, straight(0.05, 1e10), 10.0),
+        (MODEL, straight(0.05, 5e5), 2e5),
         (sb.Slender(COLUMN, damping=1e9), straight(0.2, 2.0), 10.0),
         (sb.SlenderRolling(COLUMN, damping=0.1, spin_damping=1e9), straight(0.2, 2.0), 10.0),
     ],

@@ -319,6 +319,14 @@ def test_what_a_packed_record_costs_does_not_grow_with_what_it_holds(tmp_path):
     assert cost(100_000_000) < 10.0 * cost(2_000_000) + 0.05  # fifty times as much
 
 
+@pytest.mark.parametrize(("name", "text"), [("duration", "1000 h"), ("tilt", ["2 deg", 0.0])])
+def test_numbers_with_a_unit_pass_no_limit(client, name, text):
+    answer = client.post("/api/simulate", json={"column": {"slenderness": 0.1}, "duration": 1.0, name: text})
+    assert answer.status_code == 422
+    assert "the laboratory takes numbers in SI units" in answer.text
+
+
+@pytest.mark.filterwarnings("ignore::stylobate.errors.UnlikelyInputWarning")
 def test_numbers_beyond_those_of_the_machine_are_told(client):
     column = {"shape": "given", "radius": 1e15, "mass_height": 1e15, "mass": 1e15}
     inertia = {"transverse_inertia": 1e-30, "axial_inertia": 1e-30}

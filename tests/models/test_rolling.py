@@ -407,7 +407,7 @@ def test_it_can_be_described_and_saved_with_its_spin_and_place(tmp_path):
         ({"rolling_resistance": -0.1}, "rolling_resistance must be zero or positive, got -0.1"),
         ({"restitution": 1.1}, "restitution must lie between 0 and 1, 1 for no loss, got 1.1"),
         ({"restitution": -0.1}, "restitution must lie between 0 and 1, 1 for no loss, got -0.1"),
-        ({"passage_tilt": -0.1}, "passage_tilt must be zero or positive, got -0.1"),
+        ({"passage_tilt": -0.1}, "passage_tilt must lie between 0 and π/2, got -0.1"),
         ({"column": 3.0}, "column must be a Column"),
     ],
 )

@@ -31,7 +31,7 @@ def refused(match, call):
         ("damping", -0.1, "damping must be zero or positive"),
         ("spin_damping", -0.1, "spin_damping must be zero or positive"),
         ("rolling_resistance", -0.1, "rolling_resistance must be zero or positive"),
-        ("passage_tilt", -0.1, "passage_tilt must be zero or positive"),
+        ("passage_tilt", -0.1, "passage_tilt must lie between 0 and π/2"),
         ("incline", -0.1, "incline must lie between 0 and 1.57"),
         ("incline", math.pi / 2.0, "incline must lie between 0 and 1.57"),
         ("incline", math.nan, "incline must lie between 0 and 1.57"),

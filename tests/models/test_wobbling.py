@@ -283,7 +283,7 @@ def test_it_can_be_described_and_saved(tmp_path):
         ({"damping": -1.0}, "damping must be zero or positive, got -1.0"),
         ({"rolling_resistance": math.inf}, "rolling_resistance must be zero or positive, got inf"),
         ({"restitution": 1.1}, "restitution must lie between 0 and 1, 1 for no loss, got 1.1"),
-        ({"passage_tilt": math.nan}, "passage_tilt must be zero or positive, got nan"),
+        ({"passage_tilt": math.nan}, "passage_tilt must lie between 0 and π/2, got nan"),
         ({"column": None}, "column must be a Column"),
     ],
 )

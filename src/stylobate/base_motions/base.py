@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from stylobate.base_motions.numbers import Duration, HighestFrequency, PeakHorizontal, Period
-from stylobate.errors import ParameterError
+from stylobate.errors import ParameterError, as_numbers
 from stylobate.quantities import Declared
 
 DISPLACEMENT, VELOCITY, ACCELERATION = range(3)
@@ -112,12 +112,12 @@ class MotionContract(Declared, ABC):
 
     def acceleration(self, time: npt.ArrayLike) -> npt.NDArray[np.float64]:
         """Return the base acceleration at `time` [s], shape (..., 3) [m/s²]."""
-        return np.stack(self.derivative(time, ACCELERATION), axis=-1)
+        return np.stack(self.derivative(as_numbers("time", time, "s"), ACCELERATION), axis=-1)
 
     def velocity(self, time: npt.ArrayLike) -> npt.NDArray[np.float64]:
         """Return the base velocity at `time` [s], shape (..., 3) [m/s]."""
-        return np.stack(self.derivative(time, VELOCITY), axis=-1)
+        return np.stack(self.derivative(as_numbers("time", time, "s"), VELOCITY), axis=-1)
 
     def displacement(self, time: npt.ArrayLike) -> npt.NDArray[np.float64]:
         """Return the base displacement at `time` [s], shape (..., 3) [m]."""
-        return np.stack(self.derivative(time, DISPLACEMENT), axis=-1)
+        return np.stack(self.derivative(as_numbers("time", time, "s"), DISPLACEMENT), axis=-1)

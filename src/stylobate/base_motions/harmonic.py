@@ -21,10 +21,11 @@ from stylobate.base_motions.numbers import (
     Phases,
     Ramp,
     Rise,
+    RiseOfPath,
     Sense,
     StartPhase,
+    question_path,
 )
-from stylobate.errors import ParameterError
 from stylobate.quantities import Quantity, Stated, checked_arguments, stating
 
 # Below this |z| the series of the integrals of exp is more accurate than their closed form.
@@ -195,9 +196,6 @@ class Harmonic(BaseMotion):
         As in all studies `acceleration` is the horizontal amplitude [m/s²]; the vertical amplitude is tan(angle) times
         as large.
         """
-        if not abs(angle) < math.pi / 2.0:
-            message = f"angle must lie between -pi/2 and pi/2 rad, got {angle!r}; see Harmonic.vertical"
-            raise ParameterError(message)
         return cls(
             amplitude=(
                 acceleration * math.cos(direction),
@@ -221,15 +219,15 @@ class Harmonic(BaseMotion):
         ramp: Ramp = 0.0,
     ) -> Self:
         """Create a motion with the displacement d_i cos(Ωt + start_phase + φ_i), d = `amplitude` (x, y, z) [m]."""
-        square = angular_frequency**2
-        x, y, z = (-square * number for number in amplitude)
-        return cls(
-            amplitude=(x, y, z),
-            phase=(phase[0], phase[1], phase[2]),
-            angular_frequency=angular_frequency,
-            start_phase=start_phase,
-            ramp=ramp,
+        question_path("amplitude", max(map(abs, amplitude)), 1.0, angular_frequency)
+        return cls._along_path(
+            *amplitude, phase=phase, angular_frequency=angular_frequency, start_phase=start_phase, ramp=ramp
         )
+
+    @classmethod
+    def _along_path(cls, x: float, y: float, z: float, **rest: Any) -> Self:
+        square = rest["angular_frequency"] ** 2
+        return cls(amplitude=(-square * x, -square * y, -square * z), **rest)
 
     @classmethod
     @checked_arguments
@@ -238,7 +236,7 @@ class Harmonic(BaseMotion):
         *,
         stroke: Annotated[float, Quantity(unit="m", text="stroke from peak to peak", gt=0.0)],
         frequency: Frequency,
-        angle: Rise = 0.0,
+        angle: RiseOfPath = 0.0,
         direction: Direction = 0.0,
         start_phase: StartPhase = 0.0,
         ramp: Ramp = 0.0,
@@ -250,8 +248,11 @@ class Harmonic(BaseMotion):
         """
         half = stroke / 2.0
         horizontal = half * math.cos(angle)
-        return cls.displacement_amplitude(
-            amplitude=(horizontal * math.cos(direction), horizontal * math.sin(direction), half * math.sin(angle)),
+        question_path("stroke", stroke, 0.5, 2.0 * math.pi * frequency)
+        return cls._along_path(
+            horizontal * math.cos(direction),
+            horizontal * math.sin(direction),
+            half * math.sin(angle),
             angular_frequency=2.0 * math.pi * frequency,
             start_phase=start_phase,
             ramp=ramp,
@@ -270,8 +271,11 @@ class Harmonic(BaseMotion):
     ) -> Self:
         """Create a circular motion from the path `diameter` [m] and turns per minute, as of an orbital shaker."""
         radius = diameter / 2.0
-        return cls.displacement_amplitude(
-            amplitude=(radius, radius, 0.0),
+        question_path("diameter", diameter, 0.5, 2.0 * math.pi * rpm / 60.0)
+        return cls._along_path(
+            radius,
+            radius,
+            0.0,
             phase=(0.0, -sense * math.pi / 2.0, 0.0),
             angular_frequency=2.0 * math.pi * rpm / 60.0,
             start_phase=start_phase,

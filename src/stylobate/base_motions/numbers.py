@@ -1,15 +1,28 @@
 """Declared parameters of base motions: symbols, units and ranges."""
 
+import math
 from collections.abc import Sequence
 from typing import Annotated
 
-from stylobate.quantities import Quantity
+from stylobate.quantities import QUARTER_TURN, Quantity, question_input
+from stylobate.units import listed, meant
+
+# Beyond the machines that exist: 1000 g, 100 kHz.
+_MOST_ACCELERATION, _MOST_FREQUENCY = 1e4, 1e5
 
 _SHORT = "since a pulse is short: use Harmonic for steady shaking"
 
-Acceleration = Annotated[float, Quantity(symbol="a", unit="m/s²", text="amplitude of the acceleration")]
-AngularFrequency = Annotated[float, Quantity(symbol="Ω", unit="rad/s", text="angular frequency", gt=0.0)]
-Frequency = Annotated[float, Quantity(symbol="f", unit="Hz", text="frequency", gt=0.0)]
+Acceleration = Annotated[
+    float,
+    Quantity(symbol="a", unit="m/s²", text="amplitude of the acceleration", unlikely_above=_MOST_ACCELERATION),
+]
+AngularFrequency = Annotated[
+    float,
+    Quantity(
+        symbol="Ω", unit="rad/s", text="angular frequency", gt=0.0, unlikely_above=2.0 * math.pi * _MOST_FREQUENCY
+    ),
+]
+Frequency = Annotated[float, Quantity(symbol="f", unit="Hz", text="frequency", gt=0.0, unlikely_above=_MOST_FREQUENCY)]
 Velocity = Annotated[float, Quantity(symbol="v", unit="m/s", text="amplitude of the velocity")]
 Phase = Annotated[float, Quantity(unit="rad", text="phase", slider=(-3.142, 3.142))]
 StartPhase = Annotated[float, Quantity(unit="rad", text="phase at the start", slider=(0.0, 6.283))]
@@ -17,7 +30,21 @@ Ramp = Annotated[float, Quantity(unit="s", text="time of growth to the full ampl
 Direction = Annotated[
     float, Quantity(unit="rad", text="direction in the plane, from x towards y", slider=(-3.142, 3.142))
 ]
-Rise = Annotated[float, Quantity(unit="rad", text="rise above the horizontal", slider=(-1.5, 1.5))]
+Rise = Annotated[
+    float,
+    Quantity(
+        unit="rad",
+        text="rise above the horizontal",
+        gt=-QUARTER_TURN,
+        lt=QUARTER_TURN,
+        note="see Harmonic.vertical",
+        slider=(-1.5, 1.5),
+    ),
+]
+RiseOfPath = Annotated[
+    float,
+    Quantity(unit="rad", text="rise above the horizontal", ge=-QUARTER_TURN, le=QUARTER_TURN, slider=(-1.5, 1.5)),
+]
 Sense = Annotated[int, Quantity(text="+1 anticlockwise, −1 clockwise", choices=(1, -1))]
 Start = Annotated[float, Quantity(unit="s", text="start of the motion", ge=0.0)]
 VerticalRatio = Annotated[float, Quantity(text="vertical acceleration over the horizontal one", slider=(-1.0, 1.0))]
@@ -30,7 +57,15 @@ Bell = Annotated[float, Quantity(text="oscillations under the bell", gt=1.0, le=
 Amplitudes = Annotated[Sequence[float], Quantity(unit="m", text="amplitudes along the axes", components=3)]
 Displacement = Annotated[float, Quantity(unit="m", text="amplitude of the displacement")]
 Frequencies = Annotated[
-    tuple[float, float], Quantity(symbol="f", unit="Hz", text="first and last frequency", gt=0.0, components=2)
+    tuple[float, float],
+    Quantity(
+        symbol="f",
+        unit="Hz",
+        text="first and last frequency",
+        gt=0.0,
+        unlikely_above=_MOST_FREQUENCY,
+        components=2,
+    ),
 ]
 Length = Annotated[float, Quantity(unit="s", text="length", gt=0.0)]
 Factor = Annotated[float, Quantity(text="factor of the horizontal components")]
@@ -48,3 +83,24 @@ Period = Annotated[float, Quantity(symbol="T", unit="s", text="period of the ste
 HighestFrequency = Annotated[
     float, Quantity(unit="rad/s", text="highest angular frequency in the acceleration", in_repr=False)
 ]
+
+
+def question_path(name: str, length: float, share: float, angular_frequency: float) -> None:
+    """Issue an UnlikelyInputWarning for a path of which no machine has the acceleration.
+
+    Parameters
+    ----------
+    name, length
+        Argument with the length of the path [m].
+    share
+        Amplitude of the displacement over this length.
+    angular_frequency
+        Ω [rad/s].
+    """
+    acceleration = share * length * angular_frequency**2
+    if acceleration > _MOST_ACCELERATION:
+        remedy = meant(length, "m", lambda other: acceleration * other / length <= _MOST_ACCELERATION)
+        remedy = remedy or f"Check its unit, such as {listed('m')}, and that of the frequency."
+        question_input(
+            f"{name}: {length:.6g} m is unlikely, with an acceleration of {acceleration / 9.80665:.0f} g. {remedy}"
+        )

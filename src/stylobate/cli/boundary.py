@@ -1,5 +1,6 @@
 """`stylobate boundary`: stability boundary of steady rolling over the frequency and a second parameter."""
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -22,7 +23,9 @@ _ROWS = 9
 
 
 @command(
-    Option("bounds", "lowest and highest value of the second parameter, SI; required", tuple[float, float]),
+    Option(
+        "bounds", "lowest and highest value of the second parameter; required", tuple[str, str], metavar="NUMBER NUMBER"
+    ),
     Option(
         "parameter",
         "second parameter: acceleration (by default), amplitude-y, damping, slenderness",
@@ -47,6 +50,8 @@ def boundary(options: Options) -> None:
     stylobate boundary --slenderness 0.1 --damping 0.1 --motion straight --acceleration 0.1
     --angular-frequency-range 0.5 6 --bounds 0.02 0.4 --figure boundary.png
     """
+    from stylobate.config.parameter_quantities import quantity_of  # noqa: PLC0415  heavy imports wait
+
     check_writable(options["figure"], options["output"])
     if options["bounds"] is None:
         name = options["parameter"]
@@ -54,9 +59,12 @@ def boundary(options: Options) -> None:
         raise ParameterError(message)
     values = overlay(read_source(options["source"]), options, config.ResponseConfig.model_fields)
     setup = config.ResponseConfig.parse(values).build()
+    parameter = options["parameter"].replace("-", "_")
+    # The unit of the bounds is that of the parameter.
+    bounds = replace(options.declared["bounds"], type=tuple[float, float], unit=quantity_of(parameter).unit)
     arguments = {
-        "parameter": options["parameter"].replace("-", "_"),
-        "bounds": options["bounds"],
+        "parameter": parameter,
+        "bounds": bounds.read(options["bounds"]),
         "angular_frequency": setup.options["range"],
         "values": options["at"] or None,
     }

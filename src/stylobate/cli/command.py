@@ -14,6 +14,7 @@ from stylobate.cli.declarations import Group, Option, as_kind, written
 from stylobate.cli.options import Options
 from stylobate.cli.own_classes import Chosen
 from stylobate.cli.parts import PARTS, joined
+from stylobate.units import has_unit
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -59,8 +60,10 @@ class Command:
         chosen = self._chosen(arguments)
         declared = self.options(chosen)
 
-        def called(context: typer.Context, **values: Any) -> None:
-            self.function(Options.of(context, name, values, declared, chosen))
+        def called(context: typer.Context, **texts: Any) -> None:
+            values = {one: declared[one].read(text) if one in declared else text for one, text in texts.items()}
+            stated = {one: text for one, text in texts.items() if has_unit(text)}
+            self.function(Options.of(context, name, values, declared, chosen, stated))
 
         context = inspect.Parameter("context", inspect.Parameter.POSITIONAL_OR_KEYWORD, annotation=typer.Context)
         argument = [] if self.argument is None else [self.argument.as_parameter()]

@@ -3,18 +3,22 @@
 import inspect
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import KW_ONLY, dataclass, replace
-from functools import partial
 from pathlib import Path
 from typing import Annotated, Any, get_args, get_origin
 
 import typer
 
 from stylobate.cli.own_classes import Chosen
-from stylobate.errors import FileError
+from stylobate.errors import FileError, ParameterError
 from stylobate.quantities import Parameter
+from stylobate.units import UnitError, is_number, read
 
 MAX_NAMED_KINDS = 3
 """Maximum number of kinds that a help text or a remedy lists."""
+
+
+_AXIS = tuple[str, str, str, int]
+"""Name, first, last and number of values, whose unit depends on the name."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,6 +39,8 @@ class Option:
         The table of a configuration, such as "motion", and the name in this table; empty for other options.
     kinds
         The kinds of this part that have the number, as in files.
+    unit
+        Unit of a number, which may have a suffix of the same dimension on the command line; added to the help text.
     words
         Words that the option accepts in place of a number.
     """
@@ -53,40 +59,73 @@ class Option:
     part: str = ""
     number: str = ""
     kinds: tuple[str, ...] = ()
+    unit: str = ""
     words: tuple[str, ...] = ()
 
+    @property
+    def written_flag(self) -> str:
+        """The option as on a command line."""
+        return self.flag or f"--{written(self.name)}"
+
+    @property
+    def help(self) -> str:
+        """The text with the unit."""
+        head, semicolon, rest = self.text.partition(";")
+        return f"{head} [{self.unit}]{semicolon}{rest}" if self.unit else self.text
+
     def as_parameter(self) -> inspect.Parameter:
-        """Make the parameter of a function from which typer reads this option."""
-        flags = (self.flag or f"--{written(self.name)}",)
+        """Make the parameter of a function from which typer reads this option; numbers remain texts."""
+        kind, numbers = self.type, _numbers_in(self.type)
+        if numbers:
+            kind = str if kind is float else tuple[(str,) * numbers]  # type: ignore[misc]
         declared = typer.Option(
-            *flags,
-            help=self.text,
+            self.written_flag,
+            help=self.help,
             rich_help_panel=self.panel,
             show_default=False,
-            metavar=self.metavar or _several(self.type),
-            parser=partial(_number_or_word, words=self.words) if self.words else None,
+            metavar=self.metavar or " ".join(["NUMBER"] * numbers) or None,
             min=self.minimum,
             callback=self.callback,
             hidden=self.hidden,
         )
-        annotation = self.type if self.default is not None else self.type | None
+        annotation = kind if self.default is not None else kind | None
         return inspect.Parameter(
             self.name, inspect.Parameter.KEYWORD_ONLY, default=self.default, annotation=Annotated[annotation, declared]
         )
 
+    def read(self, value: Any) -> Any:
+        """Convert the texts of numbers to numbers in the declared unit; other values are unchanged.
 
-def _number_or_word(text: str, words: tuple[str, ...]) -> Any:
-    """Read a number or one of the words."""
-    try:
-        return text if text in words else float(text)
-    except ValueError:
-        message = f"must be a number or {listed(words)} (got {text!r})."
-        raise typer.BadParameter(message) from None
+        Raises
+        ------
+        ParameterError
+            If a text is no number, or its unit is unknown or has another dimension.
+        """
+        if value is None or self.type is float:
+            return None if value is None else self._number(value)
+        count = _numbers_in(self.type)
+        texts = value if count else value[1:3] if self.type is _AXIS else ()
+        if not all(map(is_number, texts)):
+            wanted = f"{count} numbers" if count else self.metavar
+            message = f"{self.written_flag} must be followed by {wanted}; one of them is not a number"
+            raise ParameterError(message)
+        return tuple(map(self._number, value)) if count else value
+
+    def _number(self, text: Any) -> Any:
+        if text in self.words or not isinstance(text, str):
+            return text
+        try:
+            return read(text, self.unit)
+        except UnitError as error:
+            problem = f"must be a number or {listed(self.words)}, got {text!r}" if self.words else str(error)
+            message = f"{self.written_flag} {problem}"
+            raise ParameterError(message) from None
 
 
-def _several(kind: Any) -> str | None:
-    """Return the metavar of an option that takes several values; None for other options."""
-    return " ".join(["NUMBER"] * len(get_args(kind))) if get_origin(kind) is tuple else None
+def _numbers_in(kind: Any) -> int:
+    """Count the numbers that an option takes, all in its unit; 0 for an option that takes other values too."""
+    parts = get_args(kind) if get_origin(kind) is tuple else (kind,)
+    return len(parts) if set(parts) == {float} else 0
 
 
 @dataclass(frozen=True, slots=True)
@@ -123,7 +162,8 @@ def run_numbers(group: type) -> Group:
         from stylobate.config.run_numbers import numbers_of  # noqa: PLC0415  heavy imports wait
 
         for name, parameter in numbers_of(group).items():
-            yield Option(name, text_of(parameter), type_of(parameter), panel="Run")
+            unit = parameter.quantity.unit
+            yield Option(name, text_of(parameter), type_of(parameter), panel="Run", unit=unit)
 
     return Group(made)
 
@@ -138,10 +178,9 @@ def type_of(parameter: Parameter) -> Any:
 
 
 def text_of(parameter: Parameter, kinds: Sequence[str] = ()) -> str:
-    """Describe an option from its declaration: text, unit, choices, default, and the `kinds` that have it."""
+    """Describe an option from its declaration: text, choices, default, and the `kinds` that have it."""
     quantity, default = parameter.quantity, parameter.default
-    unit = quantity.unit and f"[{quantity.unit}]"
-    text = " ".join(part for part in (quantity.text, quantity.symbol, unit) if part)
+    text = " ".join(part for part in (quantity.text, quantity.symbol) if part)
     words = [written(choice) for choice in parameter.choices if isinstance(choice, str)]
     if words:
         text += f": {listed(words)}"
@@ -187,7 +226,6 @@ def readable(paths: list[Path] | None) -> list[Path] | None:
     return paths
 
 
-_AXIS = tuple[str, float, float, int]
 AXES = Group.of(
     "Axes",
     Option("x", "values along x: name, first, last, number", _AXIS, metavar="NAME FROM TO NUMBER"),
@@ -196,7 +234,7 @@ AXES = Group.of(
     Option("y_spacing", "linear (by default) or log", str),
 )
 UNITS = Option("units", "unit of files that do not state it: g, m/s2 or cm/s2", str)
-STEP = Option("step", "time step of files that do not state it [s]")
+STEP = Option("step", "time step of files that do not state it", unit="s")
 EARLY_END = Group.of(
     "Run",
     Option("end_converged", "end a run early once it has converged to steady rolling; circular motion only", bool),
@@ -221,8 +259,8 @@ _RECORD_OPTIONS: Mapping[str, Option] = {
     "units": UNITS,
     "step": STEP,
     "scale": Option("scale", "factor of a record"),
-    "rotation": Option("rotation", "rotation of a record about the vertical [rad]"),
-    "tail": Option("tail", "free vibration time after a record [s]"),
+    "rotation": Option("rotation", "rotation of a record about the vertical", unit="rad"),
+    "tail": Option("tail", "free vibration time after a record", unit="s"),
 }
 RECORD = Group.of(
     "Record",

@@ -56,7 +56,7 @@ _FRAGILITY = Group.of(
         str,
     ),
     Option("vertical", "whether vertical components act: on (by default), off or both", str),
-    Option("free_tail", "free vibration time after a record [s]; 20/p by default"),
+    Option("free_tail", "free vibration time after a record; 20/p by default", unit="s"),
     Option(
         "spread", "uncertain property and its lognormal dispersion; repeat it", list[str], metavar="NAME=DISPERSION"
     ),
@@ -85,7 +85,7 @@ _FRAGILITY = Group.of(
         str,
         metavar="NUMBER|LON,LAT",
     ),
-    Option("years", "period of the stated probability [a]; 50 by default"),
+    Option("years", "period of the stated probability; 50 by default", unit="a"),
 )
 _RUNS_FIGURE = Group.of("Output", Option("runs_figure", "draw the runs into this file", Path))
 

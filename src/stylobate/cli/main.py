@@ -7,6 +7,7 @@ import sys
 import textwrap
 import warnings
 from collections.abc import Sequence
+from functools import partial
 from typing import Any
 
 from stylobate.cli.commands import COMMANDS
@@ -38,14 +39,17 @@ def run(arguments: Sequence[str]) -> int:
     """Run one command and return its exit status."""
     with warnings.catch_warnings():
         warnings.simplefilter("always", UnlikelyInputWarning)
-        warnings.showwarning = _show_warning
+        warnings.showwarning = partial(_show_warning, set())
         with log_lines():
             return _run(arguments)
 
 
-def _show_warning(message: Warning | str, *rest: Any, **more: Any) -> None:
+def _show_warning(shown: set[str], message: Warning | str, *rest: Any, **more: Any) -> None:
     del rest, more
-    print(f"stylobate: warning: {message}", file=sys.stderr)
+    line = f"stylobate: warning: {message}"
+    if line not in shown:  # a number is checked in each constructor that it passes
+        shown.add(line)
+        print(line, file=sys.stderr)
 
 
 def _run(arguments: Sequence[str]) -> int:

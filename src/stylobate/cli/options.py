@@ -32,6 +32,8 @@ class Options(Mapping[str, Any]):
         The declarations of all options, by name.
     chosen
         The kinds that the command line and its file choose.
+    with_units
+        The texts of the options that were stated with a unit, by name.
     """
 
     command: str
@@ -39,6 +41,7 @@ class Options(Mapping[str, Any]):
     flags: Mapping[str, str]
     declared: Mapping[str, Option] = field(default_factory=dict)
     chosen: Chosen = field(default_factory=Chosen)
+    with_units: Mapping[str, Any] = field(default_factory=dict)
     _used: set[str] = field(default_factory=lambda: set(_USED_BY_ALL))
 
     @classmethod
@@ -49,6 +52,7 @@ class Options(Mapping[str, Any]):
         values: Mapping[str, Any],
         declared: Mapping[str, Option],
         chosen: Chosen,
+        with_units: Mapping[str, Any],
     ) -> Self:
         """Join the `values` that a command is called with and the flags on the command line."""
         flags = {
@@ -56,7 +60,7 @@ class Options(Mapping[str, Any]):
             for option in context.command.params
             if getattr(context.get_parameter_source(str(option.name)), "name", "") == "COMMANDLINE"
         }
-        return cls(command, values, flags, declared, chosen)
+        return cls(command, values, flags, declared, chosen, with_units)
 
     def __getitem__(self, name: str) -> Any:
         """Return the value of an option and mark the option as used."""
@@ -78,8 +82,11 @@ class Options(Mapping[str, Any]):
         return [one for one in declared if self.by_name.get(one.name) is not None]
 
     def pick(self, *names: str) -> dict[str, Any]:
-        """Return the values of the options of these names, without options that have no value."""
-        return {name: self[name] for name in names if self.by_name.get(name) is not None}
+        """Return the values of the options of these names for a configuration, without options that have no value.
+
+        A number with a unit stays the text that it is: configurations read such texts too.
+        """
+        return {name: self.with_units.get(name, self[name]) for name in names if self.by_name.get(name) is not None}
 
     def use(self, *names: str) -> None:
         """Mark the options of these names as used."""

@@ -96,7 +96,7 @@ def _numbers(
         if option.number == part.tag or (option.kinds == ("record",) and kind in (None, "record")):
             continue
         if kind is None or kind in option.kinds or not known:
-            value = options[name]
+            value = options.pick(name)[name]
             numbers[option.number] = value.replace("-", "_") if option.type is str else value
             names.append(name)
         elif name not in fields:

@@ -126,6 +126,7 @@ def _option(
         part=part.table,
         number=number,
         kinds=tuple(having),
+        unit=parameter.quantity.unit,
         words=tuple(parameter.quantity.by_word),
     )
 

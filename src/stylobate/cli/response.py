@@ -20,7 +20,9 @@ if TYPE_CHECKING:
 
 _ROWS = 17
 
-FREQUENCY_RANGE = Option("angular_frequency_range", "lowest and highest angular frequency [rad/s]", tuple[float, float])
+FREQUENCY_RANGE = Option(
+    "angular_frequency_range", "lowest and highest angular frequency", tuple[float, float], unit="rad/s"
+)
 
 
 @command(

@@ -30,7 +30,7 @@ _SPECTRUM = Group.of(
     SCALES_SPACING,
     Option("rocking", "peak tilts and tilt rates instead", bool),
     Option("width", "relative width to which the ends of intervals are located; 0.001 by default"),
-    Option("free_tail", "free vibration time after the base motion [s]; 40/p by default"),
+    Option("free_tail", "free vibration time after the base motion; 40/p by default", unit="s"),
 )
 
 # Longer tables show only the cases that overturn first, or rock most.

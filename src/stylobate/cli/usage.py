@@ -29,8 +29,7 @@ def usage_error(error: Exception, program: Any) -> str:
     wanted = f"{count} numbers" if set(names.split()) <= {"NUMBER"} else names
     if "requires" in message:
         return f"{option.opts[0]} must be followed by {wanted}; got fewer"
-    wrong = f"{wanted.split()[-1]} must be a whole number" if "integer" in message else "one of them is not a number"
-    return f"{option.opts[0]} must be followed by {wanted}; {wrong}"
+    return f"{option.opts[0]} must be followed by {wanted}; {wanted.split()[-1]} must be a whole number"
 
 
 def _named(error: Exception, program: Any) -> Any:

@@ -4,10 +4,12 @@ from typing import Any, Literal
 
 import numpy as np
 import numpy.typing as npt
-from pydantic import Field, field_validator
+from pydantic import Field, ValidationInfo, field_validator
 
 from stylobate.config.description import Config
+from stylobate.config.parameter_quantities import quantity_of
 from stylobate.errors import ParameterError, require_finite, require_positive, require_whole
+from stylobate.units import read_all
 
 
 class Axis(Config):
@@ -35,6 +37,12 @@ class Axis(Config):
     number: int | None = None
     spacing: Literal["linear", "log"] = "linear"
     listed: tuple[float, ...] | None = Field(default=None, alias="values")
+
+    @field_validator("first", "last", "listed", mode="before")
+    @classmethod
+    def _read_units(cls, value: Any, info: ValidationInfo) -> Any:
+        """Read values with a unit, such as "5 deg", in the unit of the quantity of this name."""
+        return read_all(value, quantity_of(info.data.get("name", "")).unit)
 
     @field_validator("name")
     @classmethod

@@ -8,9 +8,11 @@ from pydantic import Field, field_validator
 from stylobate.config.axis import Axis
 from stylobate.config.description import Config, built
 from stylobate.config.many_runs import ManyRuns, common_values, refuse_design
+from stylobate.config.parameter_quantities import quantity_of
 from stylobate.config.run_numbers import Stroboscopic
 from stylobate.config.simulation import Setup
 from stylobate.errors import LARGEST_SEED, MOST_RUNS, require_whole
+from stylobate.units import read_all
 
 
 class Starts(Config):
@@ -38,6 +40,14 @@ class Starts(Config):
     @classmethod
     def _written_as_in_python(cls, over: dict[str, tuple[float, float]]) -> dict[str, tuple[float, float]]:
         return {name.replace("-", "_"): bounds for name, bounds in over.items()}
+
+    @field_validator("over", mode="before")
+    @classmethod
+    def _read_units(cls, over: Any) -> Any:
+        """Read bounds with a unit, such as "5 deg"."""
+        if not isinstance(over, Mapping):
+            return over
+        return {name: read_all(one, quantity_of(str(name).replace("-", "_")).unit) for name, one in over.items()}
 
     def arguments(self, problems: list[str]) -> dict[str, Any]:
         """Make the arguments of `stylobate.studies.basins`; add a line to `problems` for each mistake."""

@@ -40,6 +40,11 @@ def implied_shape(names: Iterable[str]) -> str | None:
     return None
 
 
+def is_dimensionless(described: Any) -> bool:
+    """Return whether plain values describe a column with m = g = ω0 = 1."""
+    return isinstance(described, Mapping) and _with_shape(described)["shape"] == "dimensionless"
+
+
 def _with_shape(described: Any) -> Any:
     """Add the shape that the numbers imply to the values of a column without one; solid by default."""
     return {"shape": implied_shape(described) or "solid", **described} if isinstance(described, Mapping) else described

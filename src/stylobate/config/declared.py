@@ -71,10 +71,9 @@ def _under(kind: str, error: ValidationError) -> ValidationError:
 
 
 def _type_of(parameter: Parameter) -> Any:
-    count = parameter.quantity.components
-    if count > 1:
-        return tuple[(float,) * count]  # type: ignore[misc]
-    return number_or_word(parameter.quantity) if parameter.quantity.by_word else parameter.annotation
+    quantity = parameter.quantity
+    kind = tuple[(float,) * quantity.components] if quantity.components > 1 else parameter.annotation  # type: ignore[misc]
+    return Annotated[number_or_word(quantity) if quantity.by_word else kind, quantity]
 
 
 def number_or_word(quantity: Quantity) -> Any:

@@ -2,15 +2,23 @@
 
 import re
 from collections.abc import Callable, Mapping
-from typing import Any, ClassVar, Self, TypeVar
+from typing import Annotated, Any, ClassVar, Self, TypeVar
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 
 from stylobate.config.suggestions import with_suggestions
 from stylobate.errors import ConfigError, ParameterError
+from stylobate.quantities import Quantity
 from stylobate.text import did_you_mean
+from stylobate.units import UnitError
 
 _T = TypeVar("_T")
+
+Seconds = Annotated[float, Quantity(unit="s")]
+Radians = Annotated[float, Quantity(unit="rad")]
+Hertz = Annotated[float, Quantity(unit="Hz")]
+MetresPerSquareSecond = Annotated[float, Quantity(unit="m/s²")]
+"""Numbers that a description states in SI units, or as text with a unit, such as "5 ms"."""
 
 # Fields whose value, or each element of whose list, is one of several descriptions, told apart by a tag.
 _UNION_FIELDS = ("column", "model", "motion")
@@ -77,7 +85,7 @@ def _line(problem: Any) -> str:
         case "union_tag_not_found":
             return f"{name}.{tag} is missing"
         case "value_error":
-            return str(context["error"])
+            return f"{name} {context['error']}" if isinstance(context["error"], UnitError) else str(context["error"])
     return f"{name}: {problem['msg'][0].lower()}{problem['msg'][1:]}, got {given!r}"
 
 

@@ -14,6 +14,7 @@ from stylobate.config.motions import AT_REST, MotionConfig
 from stylobate.config.run_numbers import OneRun, problems_of_the_numbers
 from stylobate.config.simulation import (
     OF_OTHER_COMMANDS,
+    OneColumn,
     Setup,
     SimulationConfig,
     built_parts,
@@ -62,7 +63,7 @@ class HierarchyOptions(Config):
     reference: str = "rolling"
 
 
-class _HierarchyCase(Config):
+class _HierarchyCase(OneColumn):
     column: ColumnConfig
     model: HierarchyDissipation = HierarchyDissipation()
     motion: MotionConfig = AT_REST

@@ -6,7 +6,7 @@ from typing import Annotated, Literal, cast
 from pydantic import Field
 
 from stylobate.base_motions import Record
-from stylobate.config.description import Config
+from stylobate.config.description import Config, Hertz, MetresPerSquareSecond, Radians, Seconds
 
 
 class _Step(Config):
@@ -28,21 +28,21 @@ class ScaledToStep(_Step):
     """Scale to the peak horizontal acceleration `peak` [m/s²]."""
 
     method: Literal["scaled_to"]
-    peak: float
+    peak: MetresPerSquareSecond
 
 
 class RotatedStep(_Step):
     """Rotate by `angle` [rad] about the vertical, anticlockwise seen from above."""
 
     method: Literal["rotated"] = "rotated"
-    angle: float
+    angle: Radians
 
 
 class DelayedStep(_Step):
     """Delay by `delay` [s]."""
 
     method: Literal["delayed"] = "delayed"
-    delay: float
+    delay: Seconds
 
 
 class InvertedStep(_Step):
@@ -55,38 +55,38 @@ class TrimmedStep(_Step):
     """Keep the samples from `begin` to `end` [s]."""
 
     method: Literal["trimmed"] = "trimmed"
-    begin: float | None = None
-    end: float | None = None
+    begin: Seconds | None = None
+    end: Seconds | None = None
 
 
 class PaddedStep(_Step):
     """Add zeros `before` and `after` [s]."""
 
     method: Literal["padded"] = "padded"
-    before: float = 0.0
-    after: float = 0.0
+    before: Seconds = 0.0
+    after: Seconds = 0.0
 
 
 class TailStep(_Step):
     """Add a tail of zeros of this `length` [s]."""
 
     method: Literal["with_tail"] = "with_tail"
-    length: float
+    length: Seconds
 
 
 class ResampledStep(_Step):
     """Resample to another time `step` [s]."""
 
     method: Literal["resampled"] = "resampled"
-    step: float
+    step: Seconds
 
 
 class FilteredStep(_Step):
     """Apply a Butterworth filter with corners `highpass` and `lowpass` [Hz]."""
 
     method: Literal["filtered"] = "filtered"
-    highpass: float | None = None
-    lowpass: float | None = None
+    highpass: Hertz | None = None
+    lowpass: Hertz | None = None
     order: int = 4
     causal: bool = False
 

@@ -14,7 +14,7 @@ from stylobate.base_motions.records.events import Event, find_events
 from stylobate.base_motions.records.grouping import join_event, reader, remark_on_missing_components
 from stylobate.base_motions.records.origin import RecordOrigin
 from stylobate.base_motions.records.sources import RecordSource
-from stylobate.config.description import Config
+from stylobate.config.description import Config, Radians, Seconds
 from stylobate.config.record_steps import (
     AnyStep,
     RecordStep,
@@ -53,7 +53,7 @@ class Reading(Config):
     """
 
     units: str | None = None
-    step: float | None = None
+    step: Seconds | None = None
     columns: dict[str, str] | None = None
     lengths: Literal["trim", "pad"] = "trim"
     steps: Literal["refuse", "resample"] = "refuse"
@@ -108,8 +108,8 @@ class RecordMotion(Reading):
     directions: dict[str, float | str] | tuple[float | str, ...] = ()
     axis: Literal["x", "y", "z"] | None = None
     scale: float | None = None
-    rotation: float | None = None
-    tail: float | None = None
+    rotation: Radians | None = None
+    tail: Seconds | None = None
     file_sha256: dict[str, str] = Field(default_factory=dict)
 
     @property

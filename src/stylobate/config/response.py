@@ -3,19 +3,19 @@
 import math
 from collections.abc import Mapping
 from functools import partial
-from typing import Any, Self
+from typing import Annotated, Any, Self
 
 from stylobate.base_motions.declared import kinds_by_acceleration
 from stylobate.config.columns import ColumnConfig
-from stylobate.config.description import Config, built
+from stylobate.config.description import built
 from stylobate.config.models import STEADY_MODEL, SteadyModelConfig, described_model
 from stylobate.config.motions import MotionConfig, made_by
-from stylobate.config.simulation import OF_OTHER_COMMANDS, Setup, SimulationConfig, built_parts
+from stylobate.config.simulation import OF_OTHER_COMMANDS, OneColumn, Setup, SimulationConfig, built_parts
 from stylobate.errors import ConfigError, require_positive, require_whole
-from stylobate.quantities import states
+from stylobate.quantities import Quantity, states
 
 
-class SteadyCase(Config):
+class SteadyCase(OneColumn):
     """The case of steady rolling, whose closed forms are those of the slender model: `column`, `model`, `motion`."""
 
     column: ColumnConfig
@@ -38,7 +38,7 @@ class ResponseConfig(SteadyCase):
         Number of frequencies.
     """
 
-    angular_frequency_range: tuple[float, float]
+    angular_frequency_range: Annotated[tuple[float, float], Quantity(unit="rad/s", components=2)]
     points: int = 400
 
     @classmethod

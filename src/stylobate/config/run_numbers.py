@@ -4,10 +4,13 @@ from collections.abc import Mapping
 from functools import cache
 from typing import Annotated, Any, Literal, get_type_hints
 
-from stylobate.errors import MOST_NUMBERS, MOST_STEPS, Most, ParameterError, require_vector, require_whole
-from stylobate.quantities import Parameter, Quantity, parameter_of
+from stylobate.errors import MOST_NUMBERS, MOST_STEPS, Most, ParameterError, require_whole
+from stylobate.quantities import QUARTER_TURN, Parameter, Quantity, parameter_of
 
-Tilt = Annotated[tuple[float, float], Quantity(unit="rad", text="initial tilt vector", components=2)]
+Tilt = Annotated[
+    tuple[float, float],
+    Quantity(unit="rad", text="initial tilt vector", gt=-QUARTER_TURN, lt=QUARTER_TURN, components=2),
+]
 TiltRate = Annotated[tuple[float, float], Quantity(unit="rad/s", text="initial rate of the tilt vector", components=2)]
 Spin = Annotated[float, Quantity(unit="rad/s", text="initial angular velocity about the axis")]
 Twist = Annotated[float, Quantity(unit="rad", text="initial angle of rotation about the axis")]
@@ -31,7 +34,7 @@ FrictionCoefficient = Annotated[
 ]
 RelativeTolerance = Annotated[float, Quantity(text="relative tolerance", gt=0.0)]
 AbsoluteTolerance = Annotated[float, Quantity(unit="rad", text="absolute tolerance of the tilt", gt=0.0)]
-TiltLimit = Annotated[float, Quantity(unit="rad", text="tilt at which a run ends", gt=0.0)]
+TiltLimit = Annotated[float, Quantity(unit="rad", text="tilt at which a run ends", gt=0.0, le=QUARTER_TURN)]
 RestEnergy = Annotated[float, Quantity(symbol="ε", text="energy below which a column can come to rest, in c²", ge=0.0)]
 MaxSteps = Annotated[
     int, Quantity(text="maximum number of integration steps", ge=1, le=MOST_STEPS.number, note=MOST_STEPS.reason)
@@ -122,9 +125,7 @@ def problems_of_the_numbers(values: object) -> list[str]:
 
 def _check(parameter: Parameter, value: Any) -> None:
     name, quantity = parameter.name, parameter.quantity
-    if quantity.components > 1:
-        require_vector(name, value, quantity.components, quantity.unit)
-    elif parameter.whole:
+    if parameter.whole:
         most = MOST_NUMBERS if quantity.le is None else Most(int(quantity.le), quantity.note)
         require_whole(name, value, least=int(quantity.ge or 0), most=most)
     else:

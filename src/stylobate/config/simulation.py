@@ -1,17 +1,17 @@
 """Describe one run: from TOML, from the command line, or from a saved result."""
 
 import tomllib
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields
 from functools import cache
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any, Self
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from stylobate.base_motions import BaseMotion, Record
-from stylobate.config.columns import ANY_COLUMN, ColumnConfig, describe_column
+from stylobate.config.columns import ANY_COLUMN, ColumnConfig, describe_column, is_dimensionless
 from stylobate.config.description import Config, built
 from stylobate.config.file_values import DEEPEST, check_file_values
 from stylobate.config.models import DEFAULT_MODEL, ModelConfig, describe_model, described_model
@@ -28,6 +28,7 @@ from stylobate.kinds import with_places
 from stylobate.models import Model
 from stylobate.quantities import exact_repr
 from stylobate.results import OutcomeRules
+from stylobate.units import has_unit, is_angle, split
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,12 +40,41 @@ class Setup:
     options: dict[str, Any]
 
 
-class Case(Config):
+class OneColumn(Config):
+    """The case of one column: without units if it is dimensionless."""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _refuse_units(cls, values: Any) -> Any:
+        """Refuse units, except of angles, in the case of a dimensionless column: its numbers have other ones."""
+        if isinstance(values, Mapping) and is_dimensionless(values.get("column")):
+            for place, text in _texts_with_units(values):
+                message = f"{place}: the numbers of a dimensionless column have no unit (got {text!r}). {_SCALED}"
+                raise ValueError(message)
+        return values
+
+
+_SCALED = "Give accelerations in g, times in 1/ω0 and frequencies in ω0, as plain numbers."
+
+
+class Case(OneColumn):
     """The case of a run: `column`, `model` and `motion`."""
 
     column: ColumnConfig
     model: ModelConfig = described_model(DEFAULT_MODEL)
     motion: MotionConfig = AT_REST
+
+
+def _texts_with_units(values: Any, place: str = "") -> Iterator[tuple[str, str]]:
+    """Yield each text with a unit other than that of an angle or a share, at any depth, with its place."""
+    if isinstance(values, Mapping):
+        for name, one in values.items():
+            yield from _texts_with_units(one, f"{place}.{name}" if place else str(name))
+    elif isinstance(values, (list, tuple)):
+        for one in values:
+            yield from _texts_with_units(one, place)
+    elif has_unit(values) and not is_angle(split(values)[1]):
+        yield place, values
 
 
 class SimulationConfig(SingleRun, Case):

@@ -134,7 +134,7 @@ def start_boundary(
 
 def _values(name: str, given: npt.ArrayLike) -> Floats:
     """Return the values of a parameter, one or more, or raise ParameterError."""
-    values = checked_values(name, name, np.atleast_1d(np.asarray(given)))
+    values = checked_values(name, name, given, scalar=True)
     if not values.size:
         message = f"{name} must have at least one value, got none"
         raise ParameterError(message)

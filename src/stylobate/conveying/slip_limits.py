@@ -13,7 +13,7 @@ import xarray as xr
 from stylobate import theory
 from stylobate.base_motions import BaseMotion, Harmonic
 from stylobate.config import provenance_of_run
-from stylobate.engine.parameter_quantities import attributes_of
+from stylobate.config.parameter_quantities import attributes_of
 from stylobate.errors import Named, ParameterError, UnsupportedError
 from stylobate.models import Model
 from stylobate.models.closed_form import ClosedForm, RollingLaw
@@ -249,7 +249,7 @@ def _is_circle(motion: Harmonic) -> bool:
 
 
 def _rising_frictions(given: npt.ArrayLike) -> Floats:
-    values = checked_values("friction_coefficient", "friction_coefficient", np.atleast_1d(np.asarray(given)))
+    values = checked_values("friction_coefficient", "friction_coefficient", given, scalar=True)
     if not values.size or np.any(np.diff(values) <= 0.0):
         message = f"friction_coefficient must be one or more rising numbers, got {given!r}"
         raise ParameterError(message)

@@ -11,14 +11,14 @@ import xarray as xr
 
 from stylobate.base_motions import BaseMotion, OneOf
 from stylobate.base_motions.records import HorizontalComponent
+from stylobate.config.parameter_quantities import attributes_of, quantity_of
 from stylobate.earthquakes.crossing import crossed, unfolded
 from stylobate.earthquakes.following import tail_of
 from stylobate.earthquakes.fragility import limit_states
 from stylobate.earthquakes.intensities import Intensity, IntensityMeasure, SpectralAcceleration
 from stylobate.earthquakes.named_records import Records, named_records
-from stylobate.engine.parameter_quantities import attributes_of
 from stylobate.engine.parameters import changed_model
-from stylobate.errors import Outcome, ParameterError, require_finite
+from stylobate.errors import Outcome, ParameterError, as_numbers, require_finite
 from stylobate.models import Model
 from stylobate.progress import Progress, shows_progress
 from stylobate.results.outcomes import NOT_COMPUTED
@@ -181,7 +181,7 @@ class Plan:
         """Check the arguments of `incremental_dynamic_analysis`; raise ParameterError for an invalid one."""
         named = named_records(records)
         factors = positive_values("scales", scales)
-        angles = checked_values("rotations", "rotation", np.atleast_1d(np.asarray(rotations)))
+        angles = checked_values("rotations", "rotation", rotations, scalar=True)
         chosen = _choices(vertical)
         samples = _samples(parameters)
         one = {
@@ -310,7 +310,7 @@ def without_vertical(motion: BaseMotion) -> BaseMotion:
 
 def positive_values(name: str, values: npt.ArrayLike) -> Floats:
     """Check for at least one positive number; return an array, or raise ParameterError."""
-    array = checked_values(name, "scale", np.atleast_1d(np.asarray(values)))
+    array = checked_values(name, "scale", values, scalar=True)
     bad = array[~(array > 0.0)]
     if bad.size or not array.size:
         got = repr(float(bad[0])) if bad.size else "none"
@@ -332,7 +332,7 @@ def _samples(parameters: Mapping[str, npt.ArrayLike] | None) -> dict[str, Floats
     if parameters is not None and not isinstance(parameters, Mapping):
         message = f'parameters must map names to values, such as {{"damping": […]}}, got {parameters!r}'
         raise ParameterError(message)
-    given = dict(parameters or {})
+    given = {name: as_numbers(name, value, quantity_of(name).unit) for name, value in (parameters or {}).items()}
     for name in given:
         if name in _SET_BY_ARGUMENTS:
             message = f"parameters cannot name {name}: use the argument {_SET_BY_ARGUMENTS[name]}"
@@ -344,5 +344,5 @@ def _samples(parameters: Mapping[str, npt.ArrayLike] | None) -> dict[str, Floats
         message = f"parameters must have equal numbers of values, one for each property sample, got {sizes}"
         raise ParameterError(message)
     count = next(iter(sizes.values()), 1)
-    same = {name: np.full(count, require_finite(name, value)) for name, value in given.items() if name not in several}  # type: ignore[arg-type]
+    same = {name: np.full(count, require_finite(name, value)) for name, value in given.items() if name not in several}
     return {name: {**several, **same}[name] for name in given}

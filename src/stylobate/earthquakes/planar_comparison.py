@@ -109,7 +109,7 @@ def planar_bias(
             f"model must be three-dimensional to compare with a planar one (got {model!r}). Use one such as Wobbling."
         )
         raise UnsupportedError(message)
-    angles = checked_values("directions", "rotation", np.atleast_1d(np.asarray(directions)))
+    angles = checked_values("directions", "rotation", directions, scalar=True)
     if not angles.size:
         message = "directions must hold at least one angle, got none"
         raise ParameterError(message)

@@ -11,7 +11,6 @@ import xarray as xr
 
 from stylobate.base_motions import BASE_AT_REST, BaseMotion
 from stylobate.base_motions.one_of import members_of
-from stylobate.base_motions.varying import numbers_of
 from stylobate.column import Column
 from stylobate.config import provenance_of_run
 from stylobate.engine.ensembles.batch import Batch, Plan
@@ -24,9 +23,17 @@ from stylobate.engine.ensembles.summaries import QUANTITIES, Arrays, empty, fall
 from stylobate.engine.known_orbits import KnownOrbits, as_orbits
 from stylobate.engine.motion_checks import check_motion
 from stylobate.engine.pace import announce, expected_steps
-from stylobate.engine.parameters import changed_model, check_names, split
+from stylobate.engine.parameters import changed_model, check_names, in_declared_units, own_numbers, split
 from stylobate.engine.starts import require_nouns
-from stylobate.errors import MOST_THREADS, Interrupted, Outcome, ParameterError, UnsupportedError, require_whole
+from stylobate.errors import (
+    MOST_THREADS,
+    Interrupted,
+    Outcome,
+    ParameterError,
+    UnsupportedError,
+    as_numbers,
+    require_whole,
+)
 from stylobate.models import Model
 from stylobate.models.consistency import check_once
 from stylobate.progress import Progress, Report, report_of, shows_progress, silent
@@ -149,6 +156,10 @@ def simulate_ensemble(
     moved = BASE_AT_REST if motion is None else motion
     changes = _named(parameters)
     check_names(model, moved, changes)
+    own = own_numbers(model, moved)
+    changes = in_declared_units(changes, own)
+    tilt, tilt_rate = as_numbers("tilt", tilt, "rad"), as_numbers("tilt_rate", tilt_rate, "rad/s")
+    spin, duration = as_numbers("spin", spin, "rad/s"), as_numbers("duration", duration, "s")
     options = Options.checked(
         method=method,
         rtol=rtol,
@@ -187,8 +198,7 @@ def simulate_ensemble(
     plan = Plan(model, MotionPlan.of(moved, split(model, runs.values)[1], runs.duration), options, orbits=len(orbits))
 
     def result() -> xr.Dataset:
-        declared = {**parameters_of(Column), **parameters_of(type(model)), **numbers_of(moved)}
-        return _dataset(runs, arrays, _provenance(model, moved, options, same), declared)
+        return _dataset(runs, arrays, _provenance(model, moved, options, same), {**parameters_of(Column), **own})
 
     if _followed(plan, runs, arrays, threads, report_of(progress)) and _rechecked(plan, runs, arrays, threads):
         return result()

@@ -12,7 +12,7 @@ from stylobate.base_motions import BaseMotion
 from stylobate.engine.demands import Demands
 from stylobate.engine.forcing import Floats, Forcing
 from stylobate.engine.trajectory import Trajectory
-from stylobate.errors import ParameterError
+from stylobate.errors import ParameterError, as_numbers
 from stylobate.models import Model
 from stylobate.results.samples import Labelled, Samples
 
@@ -47,7 +47,7 @@ def history(
     usual = default_count(model, motion, trajectory.end)
 
     def sampler(time: npt.ArrayLike) -> "xr.Dataset":
-        t = np.atleast_1d(np.asarray(time, dtype=float))
+        t = np.atleast_1d(np.asarray(as_numbers("time", time, "s"), dtype=float))
         if t.size and not (t.min() >= 0.0 and t.max() <= end * (1.0 + 1e-12)):
             message = f"time must lie within the run, 0 to {end!r} s, got {t.min()!r} to {t.max()!r} s"
             raise ParameterError(message)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from stylobate.errors import ParameterError
+from stylobate.errors import ParameterError, as_numbers
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -128,6 +128,7 @@ def as_orbits(given: KnownOrbits | None) -> tuple[KnownOrbit, ...]:
 
 
 def _numbers(name: str, value: Any) -> Floats:
+    value = as_numbers(f"known_orbits: {name}", value)
     try:
         return np.asarray(value, dtype=float)
     except (TypeError, ValueError):

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Mapping
 from dataclasses import fields, is_dataclass, replace
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from stylobate.base_motions import BaseMotion, Harmonic
 from stylobate.base_motions.combined import BASE_AT_REST, Sum, Transformed
@@ -10,8 +10,10 @@ from stylobate.base_motions.declared import motion_quantities
 from stylobate.base_motions.one_of import number_of, with_choice
 from stylobate.base_motions.varying import numbers_of, stated_numbers, value_of, with_numbers
 from stylobate.column import Column
-from stylobate.errors import ParameterError, UnsupportedError, require_finite
+from stylobate.config.parameter_quantities import quantity_of
+from stylobate.errors import ParameterError, UnsupportedError, as_numbers, require_finite
 from stylobate.models import Model
+from stylobate.quantities import Parameter, parameters_of
 
 _T = TypeVar("_T")
 
@@ -74,6 +76,17 @@ def split(model: Model, values: Mapping[str, _T]) -> tuple[dict[str, _T], dict[s
     own = {*COLUMN_NAMES, *model_names(model)} - {*MOTION_NAMES, *ELLIPSE_NAMES}
     of_model = {name: value for name, value in values.items() if name in own}
     return of_model, {name: value for name, value in values.items() if name not in own}
+
+
+def own_numbers(model: object, motion: object) -> Mapping[str, Parameter]:
+    """Return the declared numbers of a model and a base motion, by name; none of an object that is neither."""
+    of_model = parameters_of(type(model)) if isinstance(model, Model) else {}
+    return {**of_model, **(numbers_of(motion) if isinstance(motion, BaseMotion) else {})}
+
+
+def in_declared_units(values: Mapping[str, Any], own: Mapping[str, Parameter]) -> dict[str, Any]:
+    """Convert quantities of pint or astropy among the `values`, by name; raise ParameterError for a wrong dimension."""
+    return {name: as_numbers(name, value, quantity_of(name, own).unit) for name, value in values.items()}
 
 
 def declared_names(motion: BaseMotion, values: Mapping[str, object]) -> dict[str, str]:
@@ -186,6 +199,7 @@ def with_parameters(model: Model, motion: BaseMotion, /, **values: float) -> tup
     (0.2, 3.0)
     """
     check_names(model, motion, values, where="with_parameters", ellipse=True)
+    values = in_declared_units(values, own_numbers(model, motion))
     of_model, of_motion = split(model, values)
     return changed_model(model, of_model), changed_motion(motion, of_motion)
 

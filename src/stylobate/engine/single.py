@@ -1,6 +1,5 @@
 """Integration of one run: `simulate`."""
 
-import math
 from collections.abc import Callable, Sequence
 from dataclasses import asdict
 from typing import Any
@@ -16,7 +15,7 @@ from stylobate.engine.history import history
 from stylobate.engine.motion_checks import check_motion
 from stylobate.engine.pace import announce, expected_steps
 from stylobate.engine.run_result import run_result
-from stylobate.engine.starts import Start, Turning, require_nouns, require_plane
+from stylobate.engine.starts import Start, Turning, require_below_level, require_nouns, require_plane
 from stylobate.engine.thresholds import is_rest, without_dust
 from stylobate.engine.tolerances import CLOSE_PASSAGE
 from stylobate.engine.user_events import EventFunction, checked_events
@@ -126,11 +125,10 @@ def simulate(
     """
     require_nouns(model, motion, rules)
     moved = BASE_AT_REST if motion is None else motion
-    x, y = without_dust(np.array(_pair("tilt", tilt, "rad"))).tolist()
+    leaning = without_dust(np.array(_pair("tilt", tilt, "rad")))
+    require_below_level(leaning)
+    x, y = leaning.tolist()
     start_tilt = (x, y)
-    if math.hypot(*start_tilt) >= math.pi / 2.0:
-        message = f"tilt must be below π/2 rad in length (angles are in rad, not degrees), got {start_tilt!r}"
-        raise ParameterError(message)
     start_rate = _pair("tilt_rate", tilt_rate, "rad/s")
     at_rest = bool(is_rest(np.array(start_tilt), np.array(start_rate), model.column.slenderness, model.time_scale))
     turning = Turning.checked(model, spin, twist, position, velocity, clearance, standing=at_rest)

@@ -13,6 +13,7 @@ from stylobate.engine.motion_checks import check_kinds
 from stylobate.errors import ParameterError, UnsupportedError, require_finite, require_not_negative, require_vector
 from stylobate.models import Model
 from stylobate.models.consistency import check_once
+from stylobate.quantities import QUARTER_TURN, degrees_meant
 from stylobate.results import OutcomeRules
 
 Floats = npt.NDArray[np.float64]
@@ -108,6 +109,14 @@ class Start:
     tilt_rate: tuple[float, float]
     duration: float
     turning: Turning = Turning()
+
+
+def require_below_level(tilt: Floats) -> None:
+    """Raise ParameterError if an initial tilt vector, shape (…, 2) [rad], is as long as π/2."""
+    largest = float(np.hypot(tilt[..., 0], tilt[..., 1]).max(initial=0.0))
+    if largest >= QUARTER_TURN:
+        message = f"tilt must be below π/2 in length, got {largest!r} rad. {degrees_meant(largest)}"
+        raise ParameterError(message.rstrip())
 
 
 def refuse_spin(model: Model, spin: float, *, standing: bool) -> None:

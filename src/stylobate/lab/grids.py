@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from stylobate import config, conveying, studies
-from stylobate.engine.parameter_quantities import attributes_of
+from stylobate.config.parameter_quantities import attributes_of
 from stylobate.errors import Outcome, ParameterError
 from stylobate.lab.case_axes import case_map, case_numbers, units_of
 from stylobate.lab.json_values import number, numbers

@@ -9,6 +9,7 @@ from stylobate.base_motions.records.samples import sample_record
 from stylobate.errors import LARGEST, SMALLEST, ParameterError
 from stylobate.lab.limits import Limits
 from stylobate.lab.uploads import Uploads
+from stylobate.units import size_of, split
 
 LEAST, MOST = SMALLEST, LARGEST
 """Minimum and maximum size of numbers other than zero."""
@@ -53,17 +54,22 @@ def problems_of_size(body: Mapping[str, Any], uploads: Uploads, limits: Limits) 
 
 
 def beyond_size(values: Mapping[str, Any]) -> list[str]:
-    """Return one line for each of the first numbers, at any depth, whose size is unreasonable."""
-    beyond = (
-        f"{name} must be zero or between {LEAST:g} and {MOST:g} in size, got {value!r}"
-        for name, value in _numbers(values)
-        if not (value == 0.0 or LEAST <= abs(value) <= MOST or math.isnan(value))  # NaN is refused later
-    )
-    return list(islice(beyond, _SHOWN))
+    """Return one line for each of the first numbers, at any depth, whose size is unreasonable or that has a unit."""
+    return list(islice(filter(None, (_problem(name, value) for name, value in _values(values))), _SHOWN))
 
 
-def _numbers(body: Mapping[str, Any]) -> Iterator[tuple[str, float]]:
-    """Yield all numbers with their names, at any depth."""
+def _problem(name: str, value: object) -> str:
+    unit = split(value)[1] if isinstance(value, str) else ""
+    if unit and size_of(unit) is not None:
+        return f"{name}: the laboratory takes numbers in SI units (got {value!r}). Leave out the unit."
+    number = number_of(value)
+    if number == 0.0 or LEAST <= abs(number) <= MOST or math.isnan(number):  # NaN is refused later
+        return ""
+    return f"{name} must be zero or between {LEAST:g} and {MOST:g} in size, got {number!r}"
+
+
+def _values(body: Mapping[str, Any]) -> Iterator[tuple[str, object]]:
+    """Yield all values that are no tables and lists with their names, at any depth."""
     waiting: list[tuple[str, object]] = [("", body)]
     while waiting:
         name, value = waiting.pop()
@@ -72,7 +78,7 @@ def _numbers(body: Mapping[str, Any]) -> Iterator[tuple[str, float]]:
         elif isinstance(value, list):
             waiting += [(f"{name}.{place}", one) for place, one in enumerate(value)]
         else:
-            yield name, number_of(value)
+            yield name, value
 
 
 def _shown(key: object) -> str:

@@ -3,7 +3,7 @@
 from typing import Annotated
 
 from stylobate.column import Column
-from stylobate.quantities import Quantity
+from stylobate.quantities import QUARTER_TURN, Quantity
 
 # Coulomb friction above this is not resolved; use a model without slip.
 _MOST_FRICTION = 1e8
@@ -49,7 +49,9 @@ NormalRestitution = Annotated[
         lossless=1.0,
     ),
 ]
-PassageTilt = Annotated[float, Quantity(unit="rad", text="tilt below which the vertical is passed", ge=0.0)]
+PassageTilt = Annotated[
+    float, Quantity(unit="rad", text="tilt below which the vertical is passed", ge=0.0, le=QUARTER_TURN)
+]
 FrictionCoefficient = Annotated[
     float,
     Quantity(

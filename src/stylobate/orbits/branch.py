@@ -12,8 +12,8 @@ import xarray as xr
 
 from stylobate.cards import Row, Section, card
 from stylobate.config import provenance_of_run
+from stylobate.config.parameter_quantities import attributes_of, quantity_of
 from stylobate.engine.flow.status import Status
-from stylobate.engine.parameter_quantities import attributes_of, quantity_of
 from stylobate.engine.parameters import present_value
 from stylobate.equality import ByContent
 from stylobate.errors import Interrupted, NoOrbitError, ParameterError, require_finite
@@ -183,7 +183,7 @@ class Branch(ByContent):
     def _repr_html_(self) -> str:
         """Render the card that notebooks show."""
         stable = sum(is_stable(point.multipliers) for point in self.path)
-        unit = unit_in_text(quantity_of(self.parameter).units)
+        unit = unit_in_text(quantity_of(self.parameter).unit)
         rows = [
             Row(self.parameter.replace("_", " "), f"{range_of(point.value for point in self.path)} {unit}"),
             Row("orbits", f"{len(self.path)}, {stable} of them stable"),

@@ -13,9 +13,9 @@ import xarray as xr
 
 from stylobate.cards import Row, Section, card
 from stylobate.config import provenance_of_run
+from stylobate.config.parameter_quantities import attributes_of, quantity_of
 from stylobate.engine.flow.periodic import Numbers, PeriodicSystem
 from stylobate.engine.flow.status import Status
-from stylobate.engine.parameter_quantities import attributes_of, quantity_of
 from stylobate.engine.parameters import present_value
 from stylobate.equality import ByContent
 from stylobate.errors import Interrupted, NoOrbitError, ParameterError, StylobateError
@@ -163,7 +163,7 @@ class BifurcationCurve(ByContent):
         rows = [
             Row("kind", self.kind.value),
             *(
-                Row(name.replace("_", " "), f"{values} {unit_in_text(quantity_of(name).units)}")
+                Row(name.replace("_", " "), f"{values} {unit_in_text(quantity_of(name).unit)}")
                 for name, values in self._ranges().items()
             ),
             Row("points", str(len(self.path))),

@@ -11,7 +11,7 @@ from stylobate.base_motions import BaseMotion
 from stylobate.engine.flow.periodic import PeriodicSystem, plane_of, require_periodic
 from stylobate.engine.flow.status import Status
 from stylobate.engine.forcing import common_line
-from stylobate.errors import NoOrbitError, ParameterError, require_positive, require_whole
+from stylobate.errors import NoOrbitError, ParameterError, as_numbers, require_positive, require_whole
 from stylobate.models import Model
 from stylobate.orbits.arguments import require_subject
 from stylobate.orbits.opening import require_sense, rolling_by_theory
@@ -278,6 +278,7 @@ def _ranges(system: PeriodicSystem, over: Mapping[str, Sequence[float]] | None) 
 
 
 def _checked(guess: npt.ArrayLike, model: Model) -> Floats:
+    guess = as_numbers("guess", guess)
     try:
         lean = np.asarray(guess, dtype=float)
     except (TypeError, ValueError):

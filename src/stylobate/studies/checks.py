@@ -9,7 +9,7 @@ from stylobate.column import Column
 from stylobate.errors import ParameterError, UnlikelyInputWarning
 from stylobate.models import Model
 from stylobate.quantities import parameters_of
-from stylobate.studies.sweeps.quantities import STARTS, Floats, check_quantities, checked_values
+from stylobate.studies.sweeps.quantities import STARTS, Floats, Own, check_quantities, checked_values
 
 SYSTEM_STARTS = (*STARTS, "start_phase")
 """Quantities that can differ between runs of one column under one base motion."""
@@ -26,10 +26,10 @@ def require_starts(where: str, over: Mapping[str, object]) -> None:
             raise ParameterError(message)
 
 
-def require_values(where: str, over: Mapping[str, npt.ArrayLike]) -> None:
+def require_values(where: str, over: Mapping[str, npt.ArrayLike], own: Own = None) -> None:
     """Raise ParameterError if a name in `over` has no values: a study needs at least one run."""
     for name, values in over.items():
-        _require_some(where, name, checked_values(where, name, values))
+        _require_some(where, name, checked_values(where, name, values, own))
 
 
 def one_parameter(model: Model, along: Mapping[str, npt.ArrayLike], over: Mapping[str, object]) -> tuple[str, Floats]:

@@ -6,17 +6,13 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
-from stylobate.errors import ParameterError, require_positive, require_size
-from stylobate.models.declared import model_quantities
-from stylobate.quantities import Quantity
-
-# Parameters of the motion; parameters of models have their own bounds.
-_OF_MOTIONS = {"acceleration": Quantity(ge=0.0)}
+from stylobate.config.parameter_quantities import quantity_of
+from stylobate.errors import ParameterError, as_numbers, require_positive, require_size
 
 
 def require_frequencies(ends: Sequence[float]) -> tuple[float, float]:
     """Return the lowest and highest frequency [rad/s]; raise ParameterError unless positive and increasing."""
-    low, high = _two("angular_frequency", ends, "rad/s")
+    low, high = _two("angular_frequency", as_numbers("angular_frequency", ends, "rad/s"), "rad/s")
     if not 0.0 < low < high < math.inf:
         message = f"angular_frequency must rise from above zero, got {low!r} to {high!r} rad/s"
         raise ParameterError(message)
@@ -27,7 +23,7 @@ def require_frequencies(ends: Sequence[float]) -> tuple[float, float]:
 
 def require_bounds(ends: Sequence[float], parameter: str) -> tuple[float, float]:
     """Return the lowest and highest value of a parameter; raise ParameterError unless they are valid and increasing."""
-    low, high = _two("bounds", ends, parameter)
+    low, high = _two("bounds", as_numbers("bounds", ends, quantity_of(parameter).unit), parameter)
     if not -math.inf < low < high < math.inf:
         message = f"bounds must rise from one number to another, got {low!r} to {high!r}"
         raise ParameterError(message)
@@ -39,7 +35,7 @@ def require_bounds(ends: Sequence[float], parameter: str) -> tuple[float, float]
 
 def require_values(values: Sequence[float], parameter: str) -> npt.NDArray[np.float64]:
     """Return the values of a parameter as an array; raise ParameterError unless the parameter can have these values."""
-    found = _numbers("values", values)
+    found = _numbers("values", values, quantity_of(parameter).unit)
     if found.size == 0:
         message = f"values must hold a value of {parameter} at least, got {values!r}"
         raise ParameterError(message)
@@ -48,16 +44,16 @@ def require_values(values: Sequence[float], parameter: str) -> npt.NDArray[np.fl
 
 
 def _require_inside(name: str, values: Sequence[float] | npt.NDArray[np.float64], parameter: str) -> None:
-    known = model_quantities().get(parameter) or _OF_MOTIONS.get(parameter)
-    outside = [float(value) for value in values if known is not None and not known.accepts(value)]
-    if known is not None and outside:
+    known = quantity_of(parameter)
+    outside = [float(value) for value in values if not known.accepts(value)]
+    if outside:
         message = f"{name}: values of {parameter} must {known.demand} (got {outside[0]!r}). Leave them out."
         raise ParameterError(message)
 
 
 def require_rising_frequencies(frequencies: Sequence[float]) -> npt.NDArray[np.float64]:
     """Return frequencies [rad/s] as an array; raise ParameterError unless two or more, positive and increasing."""
-    found = _numbers("angular_frequency", frequencies)
+    found = _numbers("angular_frequency", frequencies, "rad/s")
     if found.size < _LEAST or found[0] <= 0.0 or np.any(np.diff(found) <= 0.0):
         message = (
             f"angular_frequency must be two or more frequencies that rise from above zero [rad/s], got {frequencies!r}"
@@ -69,7 +65,8 @@ def require_rising_frequencies(frequencies: Sequence[float]) -> npt.NDArray[np.f
 _LEAST = 2
 
 
-def _numbers(name: str, values: Sequence[float]) -> npt.NDArray[np.float64]:
+def _numbers(name: str, values: Sequence[float], unit: str) -> npt.NDArray[np.float64]:
+    values = as_numbers(name, values, unit)
     try:
         found = np.asarray(values, dtype=float)
     except (TypeError, ValueError):

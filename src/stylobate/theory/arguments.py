@@ -8,7 +8,7 @@ from typing import Any, ParamSpec, TypeAlias, TypeVar
 import numpy as np
 import numpy.typing as npt
 
-from stylobate.errors import ParameterError, require_finite, require_not_negative, require_positive
+from stylobate.errors import ParameterError, as_numbers, require_finite, require_not_negative, require_positive
 
 _P = ParamSpec("_P")
 _T = TypeVar("_T")
@@ -72,7 +72,15 @@ def _plain(value: Any) -> Any:
     return value
 
 
+def not_negative_or_infinite(name: str, value: Real) -> FloatArray:
+    """Return `value` as an array of floats, or raise ParameterError at its first entry that is below zero or NaN."""
+    array = _floats(name, value)
+    not_negative(name, np.where(np.isposinf(array), 0.0, array))
+    return array
+
+
 def _floats(name: str, value: Real) -> FloatArray:
+    value = as_numbers(name, value, "1")  # a quantity must be a pure number or an angle
     try:
         array = np.asarray(value)
         if array.dtype.kind in "iuf":

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from stylobate.errors import ParameterError
+from stylobate.quantities import degrees_meant
 from stylobate.theory.arguments import BoolArray, ComplexArray, FloatArray, Real, Values, finite, plain_results
 from stylobate.theory.rigid_body import Numbers, RigidBody
 
@@ -157,7 +158,8 @@ def _inclined(tilt: Real) -> FloatArray:
     array = finite("tilt", tilt)
     bad = array[(array <= 0.0) | (array >= 0.5 * np.pi)]
     if bad.size:
-        message = f"tilt must lie between 0 and π/2, got {float(bad[0])!r} rad"
+        worst = float(bad[0])
+        message = f"tilt must lie between 0 and π/2, got {worst!r} rad. {degrees_meant(worst)}".rstrip()
         raise ParameterError(message)
     return array
 

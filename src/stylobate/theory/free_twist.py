@@ -18,6 +18,7 @@ from stylobate.theory.arguments import (
     Truths,
     Values,
     not_negative,
+    not_negative_or_infinite,
     plain_results,
     positive,
 )
@@ -219,14 +220,12 @@ def checked_numbers(
     if np.any(kappa >= 1.0):
         message = f"inertia_ratio = m h²/J0 must be below 1, got {np.max(kappa)!r}"
         raise ParameterError(message)
-    free = np.asarray(zeta, dtype=np.float64)
-    not_negative("zeta", np.where(np.isposinf(free), 0.0, free))
     arrays = (
         positive("nu", nu),
         not_negative("a0", a0),
         positive("c", c),
         not_negative("eta", eta),
-        free,
+        not_negative_or_infinite("zeta", zeta),
         kappa,
         positive("axial_ratio", axial),
     )

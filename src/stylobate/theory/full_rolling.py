@@ -11,6 +11,7 @@ from stylobate.theory.arguments import (
     Real,
     finite,
     not_negative,
+    not_negative_or_infinite,
     plain_results,
     positive,
 )
@@ -102,13 +103,11 @@ def full_rolling(
     [0.0015903 0.0074953] [3.1343 0.0346] [-0.08481 -0.39964] [False  True]
     """
     body = RigidBody.checked(c, inertia_ratio, axial_ratio)
-    free = np.asarray(zeta, dtype=np.float64)
-    not_negative("zeta", np.where(np.isposinf(free), 0.0, free))
     numbers = np.broadcast_arrays(
         positive("nu", nu),
         not_negative("a0", a0),
         not_negative("eta", eta),
-        free,
+        not_negative_or_infinite("zeta", zeta),
         finite("spin", spin),
         body.c,
         body.kappa,

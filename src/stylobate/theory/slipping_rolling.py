@@ -11,6 +11,7 @@ from stylobate.theory.arguments import (
     Real,
     finite,
     not_negative,
+    not_negative_or_infinite,
     plain_results,
     positive,
 )
@@ -174,14 +175,12 @@ def slipping_rolling(
     [0.0154 0.0456] [ 0.216 -0.118] [False  True]
     """
     body = RigidBody.checked(c, inertia_ratio, axial_ratio)
-    free = np.asarray(zeta, dtype=np.float64)
-    not_negative("zeta", np.where(np.isposinf(free), 0.0, free))
     numbers = np.broadcast_arrays(
         positive("nu", nu),
         not_negative("a0", a0),
         positive("mu", mu),
         not_negative("eta", eta),
-        free,
+        not_negative_or_infinite("zeta", zeta),
         not_negative("patch", patch) * body.c,
         finite("spin", spin),
         body.c,

@@ -18,6 +18,7 @@ import numpy as np
 import numpy.typing as npt
 
 from stylobate.errors import Named, ParameterError
+from stylobate.quantities import degrees_meant
 from stylobate.theory.arguments import (
     ComplexArray,
     FloatArray,
@@ -210,7 +211,8 @@ def steepness(incline: Real) -> FloatArray:
     angle = finite("incline", incline)
     bad = angle[np.abs(angle) >= 0.5 * np.pi]
     if bad.size:
-        message = f"incline must lie between -π/2 and π/2 rad, got {float(bad[0])!r}: nothing stands on a wall"
+        worst = float(bad[0])
+        message = f"incline must lie between -π/2 and π/2, got {worst!r} rad. {degrees_meant(worst)}".rstrip()
         raise ParameterError(message)
     return angle
 

@@ -127,7 +127,7 @@ def test_no_runs_are_an_empty_dataset_of_the_right_shape(shape):
         ({"tilt": [(0.01, math.nan)]}, "tilt must be finite"),
         ({"tilt_rate": (math.inf, 0.0)}, "tilt_rate must be finite"),
         ({"tilt_rate": (0.0, 0.0, 0.0)}, r"tilt_rate must have shape \(2,\) or \(n, 2\)"),
-        ({"tilt": (5.0, 0.0)}, "rad, not degrees"),
+        ({"tilt": (5.0, 0.0)}, r"got 5\.0 rad\. For 5 deg give 0\.08727 rad\."),
         ({"duration": [1.0, math.nan]}, "duration must be finite"),
         ({"duration": math.inf}, "duration must be finite"),
         ({"duration": [1.0, 0.0]}, "duration must be positive, got 0.0"),

@@ -13,7 +13,7 @@ from stylobate.base_motions.combined import BaseMotion
 from stylobate.base_motions.records.knots import corners, integrals, largest_from_each, mean_frequency
 from stylobate.base_motions.records.origin import RecordOrigin
 from stylobate.cards import Row, Section
-from stylobate.errors import ParameterError, require_finite, require_not_negative, require_positive
+from stylobate.errors import ParameterError, as_numbers, require_finite, require_not_negative, require_positive
 from stylobate.text import four_digits
 
 Floats = npt.NDArray[np.float64]
@@ -115,7 +115,7 @@ class Record(BaseMotion):
             If none is given, or their lengths differ.
         """
         given = {
-            name: np.asarray(values, dtype=float)
+            name: np.asarray(as_numbers(name, values, "m/s²"), dtype=float)
             for name, values in zip(AXES, (x, y, z), strict=True)
             if values is not None
         }
@@ -264,8 +264,9 @@ class Record(BaseMotion):
     def scaled(self, factor: float, *, vertical: float | None = None) -> "Record":  # type: ignore[override]
         """Scale this record by `factor`; the vertical component by `vertical`, if given."""
         factor = require_finite("factor", factor)
+        vertical = None if vertical is None else require_finite("vertical", vertical)
         origin = self._then("scaled", factor=factor, vertical=vertical)
-        vertical = factor if vertical is None else require_finite("vertical", vertical)
+        vertical = factor if vertical is None else vertical
         note = f"scaled by {factor!r}" + (f", vertical by {vertical!r}" if vertical != factor else "")
         return self.changed(note, samples=self.samples * [factor, factor, vertical], origin=origin)
 
@@ -310,9 +311,10 @@ class Record(BaseMotion):
         ParameterError
             If fewer than two samples lie between.
         """
+        begin = None if begin is None else require_finite("begin", begin, "s")
+        end = None if end is None else require_finite("end", end, "s")
         origin = self._then("trimmed", begin=begin, end=end)
-        begin = self.start if begin is None else require_finite("begin", begin, "s")
-        end = self.end if end is None else require_finite("end", end, "s")
+        begin, end = self.start if begin is None else begin, self.end if end is None else end
         slack = _KNOT_SLACK * self.step
         kept = (self.times >= begin - slack) & (self.times <= end + slack)
         if np.count_nonzero(kept) < 2:  # noqa: PLR2004  a step has two ends
@@ -322,7 +324,8 @@ class Record(BaseMotion):
 
     def padded(self, *, before: float = 0.0, after: float = 0.0) -> "Record":
         """Add `before` and `after` [s] of zeros to this record, rounded up to whole steps."""
-        counts = [self._steps("before", before), self._steps("after", after)]
+        before, after = require_not_negative("before", before, "s"), require_not_negative("after", after, "s")
+        counts = [self._steps(before), self._steps(after)]
         samples = np.pad(self.samples, (counts, (0, 0)))
         note = f"padded with {counts[0]} zeros before and {counts[1]} after"
         return self.changed(note, samples=samples, origin=self._then("padded", before=before, after=after))
@@ -332,22 +335,23 @@ class Record(BaseMotion):
 
         Run to the `duration` of the result: survival is known after the tail, not at the last original sample.
         """
-        count = self._steps("length", length)
+        length = require_not_negative("length", length, "s")
+        count = self._steps(length)
         samples = np.pad(self.samples, ((0, count), (0, 0)))
         return self.changed(f"tail of {count} zeros", samples=samples, origin=self._then("with_tail", length=length))
 
-    def _steps(self, name: str, length: float) -> int:
-        return math.ceil(require_not_negative(name, length, "s") / self.step - _KNOT_SLACK)
+    def _steps(self, length: float) -> int:
+        return math.ceil(length / self.step - _KNOT_SLACK)
 
     def resampled(self, step: float) -> "Record":
         """Resample this record to another `step` [s], band-limited (see `records.resampling`)."""
         from stylobate.base_motions.records.resampling import resampled  # noqa: PLC0415  imports SciPy
 
+        step = require_positive("step", step, "s")
         samples, note = resampled(self.samples, self.step, step)
         if not note:
             return self
-        origin = self._then("resampled", step=float(step))
-        return self.changed(note, samples=samples, step=float(step), origin=origin)
+        return self.changed(note, samples=samples, step=step, origin=self._then("resampled", step=step))
 
     def filtered(
         self, *, highpass: float | None = None, lowpass: float | None = None, order: int = 4, causal: bool = False
@@ -355,6 +359,8 @@ class Record(BaseMotion):
         """Filter this record by a Butterworth filter with corners in Hz (see `records.filtering`)."""
         from stylobate.base_motions.records.filtering import filtered  # noqa: PLC0415
 
+        highpass = None if highpass is None else require_positive("highpass", highpass, "Hz")
+        lowpass = None if lowpass is None else require_positive("lowpass", lowpass, "Hz")
         arguments: dict[str, Any] = {"highpass": highpass, "lowpass": lowpass, "order": order, "causal": causal}
         samples, note = filtered(self.samples, self.step, **arguments)
         return self.changed(note, samples=samples, origin=self._then("filtered", **arguments))
@@ -376,6 +382,7 @@ class Record(BaseMotion):
 
 
 def _checked(samples: npt.ArrayLike) -> Floats:
+    samples = as_numbers("samples", samples, "m/s²")
     try:
         array = np.array(samples, dtype=float)
     except (TypeError, ValueError):

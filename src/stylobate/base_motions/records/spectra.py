@@ -10,7 +10,7 @@ import xarray as xr
 from stylobate.base_motions.records.horizontal_components import over_directions
 from stylobate.base_motions.records.oscillator import free_vibration, oscillator_response
 from stylobate.base_motions.records.record import AXES, Floats, Record
-from stylobate.errors import ParameterError, require_not_negative, require_positive
+from stylobate.errors import ParameterError, as_numbers, require_not_negative, require_positive
 
 # Minimum number of values per period of the response, and after interpolation by cubics.
 _PER_PERIOD, _DENSELY = 20, 200
@@ -60,7 +60,8 @@ def response_spectra(record: Record, periods: npt.ArrayLike, *, damping: float =
     if damping >= 1.0:
         message = f"damping must be below 1, got {damping!r}"
         raise ParameterError(message)
-    natural = np.array([require_positive(f"periods[{i}]", period, "s") for i, period in enumerate(np.ravel(periods))])
+    given = np.ravel(as_numbers("periods", periods, "s"))
+    natural = np.array([require_positive(f"periods[{i}]", period, "s") for i, period in enumerate(given)])
     shown = list(record.axes)
     moving = record.samples[:, [AXES.index(axis) for axis in shown]]
     turns = "x" in shown and "y" in shown

@@ -15,7 +15,7 @@ from stylobate.base_motions import Record
 from stylobate.config.axis import Axis
 from stylobate.config.columns import ColumnConfig
 from stylobate.config.declared import number_or_word
-from stylobate.config.description import Config, built
+from stylobate.config.description import Config, Seconds, built
 from stylobate.config.levels import LEVELS, is_by_level, problems_of_the_levels
 from stylobate.config.models import DEFAULT_MODEL, ModelConfig, described_model
 from stylobate.config.record_collection import RecordsConfig
@@ -150,7 +150,7 @@ class AssessConfig(Config):
         default_factory=lambda: Axis.parse({**_MARGIN, "name": "scale"})
     )
     width: float = 5e-3
-    tail: float | None = None
+    tail: Seconds | None = None
     contact_laws: bool = True
     variations: int = 200
     seed: int = 0
@@ -167,7 +167,7 @@ class AssessConfig(Config):
     date: dt.date | None = None
     about_records: dict[str, str] = Field(default_factory=dict)
     design_spectrum: DesignSpectrumConfig | None = None
-    spectral_period: float = 1.0
+    spectral_period: Seconds = 1.0
 
     @classmethod
     def parse(cls, values: Mapping[str, Any]) -> Self:

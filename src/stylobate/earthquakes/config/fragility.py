@@ -8,7 +8,7 @@ from pydantic import BeforeValidator, Field
 from pydantic_core import PydanticCustomError
 
 from stylobate.base_motions import Record
-from stylobate.config.description import Config, built
+from stylobate.config.description import Config, Radians, Seconds, built
 from stylobate.config.many_runs import ManyRuns
 from stylobate.config.record_collection import RecordsConfig
 from stylobate.earthquakes.config.hazard import Hazard, HazardPoints
@@ -38,7 +38,7 @@ class Spectral(Config):
         Damping ratio of the oscillator.
     """
 
-    period: float
+    period: Seconds
     damping: float = 0.05
 
 
@@ -89,9 +89,9 @@ class Fragility(Config):
     scales: Scales
     intensity: Annotated[str | Spectral, BeforeValidator(_as_intensity)] = "peak ground acceleration"
     component: str = "RotD50"
-    rotations: tuple[float, ...] = (0.0,)
+    rotations: tuple[Radians, ...] = (0.0,)
     vertical: tuple[bool, ...] = (True,)
-    tail: float | None = None
+    tail: Seconds | None = None
     samples: int = 0
     spreads: dict[str, AnySpread] = Field(default_factory=dict)
     seed: int = 0

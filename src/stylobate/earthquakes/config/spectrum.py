@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any, Literal, Self
 
 from stylobate.config.axis import Axis
-from stylobate.config.description import Config, built
+from stylobate.config.description import Config, Seconds, built
 from stylobate.config.many_runs import ManyRuns, common_values, name_of, with_numbers_that_vary
 from stylobate.config.simulation import Setup
 
@@ -42,7 +42,7 @@ class Spectrum(Config):
     rocking: bool = False
     width: float | None = None
     fine_scales: int | None = None
-    tail: float | None = None
+    tail: Seconds | None = None
 
 
 class SpectrumConfig(ManyRuns):

@@ -5,7 +5,7 @@ from typing import Any, Literal
 
 from pydantic import Field
 
-from stylobate.config.description import Config, built
+from stylobate.config.description import Config, Seconds, built
 from stylobate.earthquakes.config.spreads import AnySpread
 from stylobate.errors import LARGEST_SEED, MOST_RUNS, ConfigError, require_not_negative, require_whole
 from stylobate.studies.proportions import require_confidence
@@ -33,7 +33,7 @@ class VerdictConfig(Config):
     runs: int = 300
     seed: int = 0
     confidence: float = 0.9
-    tail: float | None = None
+    tail: Seconds | None = None
     variations: dict[str, AnySpread | Literal[False]] = Field(default_factory=dict)
 
     @classmethod

@@ -12,8 +12,8 @@ import xarray as xr
 from stylobate.base_motions import BaseMotion
 from stylobate.base_motions.one_of import members_of
 from stylobate.base_motions.varying import frequency_of
-from stylobate.engine.parameter_quantities import attributes_of
-from stylobate.engine.parameters import with_parameters
+from stylobate.config.parameter_quantities import attributes_of
+from stylobate.engine.parameters import own_numbers, with_parameters
 from stylobate.errors import ParameterError, require_positive
 from stylobate.models import Model
 from stylobate.studies.checks import remark_on_lengths, require_values
@@ -81,7 +81,8 @@ class Cases:
             message = f"motion must be a base motion such as Pulse.one_sine(...), got {motion!r}"
             raise ParameterError(message)
         over = _checked_names(model, motion, {} if over is None else over, scaled=scaled)
-        axes = {name: checked_values("over", name, values) for name, values in over.items()}
+        own = own_numbers(model, motion)
+        axes = {name: checked_values("over", name, values, own) for name, values in over.items()}
         meshes = np.meshgrid(*axes.values(), indexing="ij") if axes else []
         values = {name: mesh.ravel() for name, mesh in zip(axes, meshes, strict=True)}
         return cls(model, motion, axes, values, _numbers(model, motion, values))

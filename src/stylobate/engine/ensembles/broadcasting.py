@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from stylobate.engine.known_orbits import KnownOrbit, OrbitsOfRuns
-from stylobate.engine.starts import Start, Turning
+from stylobate.engine.starts import Start, Turning, require_below_level
 from stylobate.engine.thresholds import without_dust
 from stylobate.errors import ParameterError, require_size
 
@@ -20,7 +20,6 @@ Floats = npt.NDArray[np.float64]
 ArrayLike: TypeAlias = "npt.ArrayLike | xr.DataArray"
 
 RUN, AXIS = "run", "axis"
-_TILT_LIMIT = math.pi / 2.0
 _MASS_NAMES = ("mass", "transverse_inertia", "axial_inertia")
 
 
@@ -200,10 +199,7 @@ def _check(flat: Mapping[str, Floats]) -> None:
             message = f"{name} must be finite, got {float(array[broken][0])!r}{where}"
             raise ParameterError(message)
         require_size(name, float(np.abs(array).max(initial=0.0)), "kg" if name in _MASS_NAMES else "")
-    tilts = np.hypot(*flat["tilt"].T)
-    if tilts.size and tilts.max() >= _TILT_LIMIT:
-        message = f"tilt must be below π/2 rad in length (angles are in rad, not degrees), got {float(tilts.max())!r}"
-        raise ParameterError(message)
+    require_below_level(flat["tilt"])
     if np.any(flat["duration"] <= 0.0):
         message = f"duration must be positive, got {float(flat['duration'].min())!r} s"
         raise ParameterError(message)

@@ -2,14 +2,9 @@
 
 from dataclasses import dataclass
 
+from stylobate.config.run_numbers import Accuracy, numbers_of
 from stylobate.engine.tolerances import OVERTURNED_TILT, RTOL_RANGE
-from stylobate.errors import (
-    MOST_STEPS,
-    ParameterError,
-    require_not_negative,
-    require_positive,
-    require_whole,
-)
+from stylobate.errors import MOST_STEPS, ParameterError, require_positive, require_whole
 from stylobate.results import OutcomeRules
 
 METHODS = ("dop853", "taylor")
@@ -58,7 +53,7 @@ class Options:
         if method not in METHODS:
             message = f"method must be one of {', '.join(map(repr, METHODS))}, got {method!r}"
             raise ParameterError(message)
-        low, high = RTOL_RANGE
+        declared, (low, high) = numbers_of(Accuracy), RTOL_RANGE
         rtol = require_positive("rtol", rtol)
         if not low <= rtol <= high:
             message = f"rtol must lie between {low!r} and {high!r}, got {rtol!r}"
@@ -69,9 +64,9 @@ class Options:
         return cls(
             method=method,
             rtol=rtol,
-            atol=None if atol is None else require_positive("atol", atol, "rad"),
-            tilt_limit=None if tilt_limit is None else require_positive("tilt_limit", tilt_limit, "rad"),
-            rest_energy=None if rest_energy is None else require_not_negative("rest_energy", rest_energy),
+            atol=declared["atol"].checked(atol),
+            tilt_limit=declared["tilt_limit"].checked(tilt_limit),
+            rest_energy=declared["rest_energy"].checked(rest_energy),
             max_steps=require_whole("max_steps", max_steps, least=1, most=MOST_STEPS),
             samples=0 if samples is None else require_whole("samples", samples, least=2),
             strobes=require_whole("strobes", strobes, least=0),

@@ -12,7 +12,7 @@ import xarray as xr
 from stylobate.base_motions import BASE_AT_REST, BaseMotion
 from stylobate.column import Column
 from stylobate.config import provenance_of_run
-from stylobate.errors import ParameterError, require_finite, require_positive, require_vector, require_whole
+from stylobate.errors import ParameterError, as_numbers, require_finite, require_positive, require_vector, require_whole
 from stylobate.models import Rolling
 from stylobate.models.declared import dissipation_of
 from stylobate.models.model import require_column
@@ -171,7 +171,7 @@ def _case(
 
 
 def _slendernesses(given: npt.ArrayLike) -> Floats:
-    values = np.atleast_1d(np.asarray(given, dtype=float))
+    values = np.atleast_1d(np.asarray(as_numbers("slenderness", given), dtype=float))
     if values.ndim != 1 or not values.size or not np.all(np.isfinite(values) & (values > 0.0)):
         message = f"slenderness must be a list of positive numbers, got {given!r}"
         raise ParameterError(message)

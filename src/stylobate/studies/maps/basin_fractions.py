@@ -10,8 +10,8 @@ import numpy.typing as npt
 import xarray as xr
 
 from stylobate.base_motions import BASE_AT_REST, BaseMotion
+from stylobate.config.parameter_quantities import attributes_of
 from stylobate.engine import with_parameters
-from stylobate.engine.parameter_quantities import attributes_of
 from stylobate.errors import MOST_RUNS, require_whole
 from stylobate.models import Model
 from stylobate.progress import Progress, shows_progress

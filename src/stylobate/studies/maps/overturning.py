@@ -9,6 +9,7 @@ import numpy.typing as npt
 import xarray as xr
 
 from stylobate.base_motions import BaseMotion
+from stylobate.engine.parameters import own_numbers
 from stylobate.errors import Outcome, ParameterError
 from stylobate.models import Model
 from stylobate.progress import Progress, shows_progress
@@ -78,7 +79,7 @@ def overturning_map(
     if not isinstance(over, Mapping) or len(over) != _PLANE:
         message = f'over must name two parameters, such as "angular_frequency" and "acceleration"; got {over!r}'
         raise ParameterError(message)
-    require_values("over", over)
+    require_values("over", over, own_numbers(model, motion))
     sweep = Sweep.grid(model, motion, over=over, duration=duration, periods=periods, **options)
     return labelled_sweep(sweep, outcome_shares, store=store, executor=executor, resume=resume, progress=progress)
 

@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
+from stylobate.config.parameter_quantities import quantity_of
 from stylobate.errors import Outcome, ParameterError, require_finite
 from stylobate.models import Model
 from stylobate.results.outcomes import NOT_COMPUTED
@@ -142,7 +143,7 @@ def _increasing(name: str, values: npt.ArrayLike) -> Floats:
 
 
 def _within(name: str, value: float, axis: Floats) -> float:
-    value = require_finite(f"reference[{name!r}]", value)
+    value = require_finite(f"reference[{name!r}]", value, quantity_of(name).unit)
     if not axis[0] <= value <= axis[-1]:
         message = f"reference[{name!r}] must lie within the grid, {axis[0]:g} to {axis[-1]:g}; got {value!r}"
         raise ParameterError(message)

@@ -11,7 +11,7 @@ import numpy.typing as npt
 import xarray as xr
 
 from stylobate.base_motions import BaseMotion
-from stylobate.engine.parameter_quantities import attributes_of
+from stylobate.config.parameter_quantities import attributes_of
 from stylobate.errors import MOST_RUNS, Outcome, ParameterError, require_whole
 from stylobate.models import Model
 from stylobate.progress import Progress, shows_progress

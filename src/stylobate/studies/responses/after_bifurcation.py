@@ -7,9 +7,9 @@ import numpy as np
 import xarray as xr
 
 from stylobate.config import provenance_of_run
+from stylobate.config.parameter_quantities import attributes_of, quantity_of
 from stylobate.engine import simulate_ensemble
-from stylobate.engine.parameter_quantities import attributes_of
-from stylobate.errors import Interrupted, ParameterError, require_positive, require_whole
+from stylobate.errors import Interrupted, ParameterError, as_numbers, require_positive, require_whole
 from stylobate.orbits import Bifurcation
 from stylobate.orbits.arguments import require_bifurcation
 from stylobate.progress import Progress, report_of, shows_progress
@@ -62,6 +62,7 @@ def after_bifurcation(
         On Ctrl-C; `partial` has the values that were done.
     """
     require_bifurcation(bifurcation)
+    values = as_numbers("values", values, quantity_of(bifurcation.point.family.name).unit)
     chosen = np.asarray(values, dtype=float)
     if chosen.ndim != 1 or chosen.size == 0 or not np.all(np.isfinite(chosen)):
         message = f"values must be a list of numbers, got {values!r}"

@@ -10,8 +10,8 @@ import xarray as xr
 
 from stylobate.base_motions import BaseMotion
 from stylobate.config import provenance_of_run
+from stylobate.config.parameter_quantities import attributes_of
 from stylobate.engine import with_parameters
-from stylobate.engine.parameter_quantities import attributes_of
 from stylobate.errors import Interrupted, NoOrbitError
 from stylobate.models import Model
 from stylobate.orbits import Branch, continue_branch

@@ -11,7 +11,7 @@ from stylobate.base_motions import BaseMotion
 from stylobate.config import provenance_of_run
 from stylobate.engine.flow.periodic import PeriodicSystem, plane_of
 from stylobate.engine.flow.status import Status
-from stylobate.errors import Interrupted, ParameterError, require_positive, require_vector, require_whole
+from stylobate.errors import Interrupted, ParameterError, as_numbers, require_positive, require_vector, require_whole
 from stylobate.models import Model
 from stylobate.orbits.arguments import require_subject
 from stylobate.progress import Progress, report_of, shows_progress
@@ -110,7 +110,8 @@ def lyapunov_exponents(
     periods = require_whole("periods", periods, least=blocks)
     skip = require_whole("skip", skip, least=0)
     start = [
-        require_vector(name, np.ravel(value).tolist(), 2) for name, value in (("tilt", tilt), ("tilt_rate", tilt_rate))
+        require_vector(name, np.ravel(as_numbers(name, value, unit)).tolist(), 2, unit)
+        for name, value, unit in (("tilt", tilt, "rad"), ("tilt_rate", tilt_rate, "rad/s"))
     ]
     frame = _start(model, motion, start[0], start[1], count, require_positive("rtol", rtol))
     skipped, growths, stopped = 0, list[Floats](), False

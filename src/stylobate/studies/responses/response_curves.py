@@ -10,7 +10,7 @@ import xarray as xr
 from stylobate import theory
 from stylobate.base_motions import BaseMotion, as_harmonic
 from stylobate.config import provenance_of_run
-from stylobate.errors import ParameterError, UnsupportedError
+from stylobate.errors import ParameterError, UnsupportedError, as_numbers
 from stylobate.models import Model
 from stylobate.models.closed_form import RollingLaw
 from stylobate.orbits.steady import rolling_form_of
@@ -118,6 +118,7 @@ def _damping(model: Model) -> float:
 
 
 def _frequencies(angular_frequency: npt.ArrayLike) -> npt.NDArray[np.float64]:
+    angular_frequency = as_numbers("angular_frequency", angular_frequency, "rad/s")
     frequency = np.atleast_1d(np.asarray(angular_frequency, dtype=float))
     if frequency.ndim != 1 or not np.all(np.isfinite(frequency) & (frequency > 0.0)):
         message = f"angular_frequency must be a list of positive numbers [rad/s], got {angular_frequency!r}"

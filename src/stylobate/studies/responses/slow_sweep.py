@@ -11,9 +11,9 @@ import xarray as xr
 
 from stylobate.base_motions import BaseMotion
 from stylobate.config import provenance_of_run
+from stylobate.config.parameter_quantities import attributes_of, quantity_of
 from stylobate.engine import simulate_ensemble, with_parameters
-from stylobate.engine.parameter_quantities import attributes_of
-from stylobate.errors import Interrupted, Outcome, ParameterError, UnsupportedError, require_whole
+from stylobate.errors import Interrupted, Outcome, ParameterError, UnsupportedError, as_numbers, require_whole
 from stylobate.models import Model
 from stylobate.orbits.arguments import require_subject
 from stylobate.progress import Progress, report_of, shows_progress
@@ -225,12 +225,12 @@ def _together(
     parameter: str, values: npt.ArrayLike, tilt: npt.ArrayLike, tilt_rate: npt.ArrayLike
 ) -> tuple[Floats, tuple[Floats, Floats]]:
     """Return values, shape (n, m), and tilt and rate, shape (m, 2), of the sweeps."""
-    steps = _array("values", values)
+    steps = _array("values", values, quantity_of(parameter).unit)
     if steps.ndim not in (1, _PLANE) or not steps.size:
         message = f"values must have the shape (n,), or (n, m) for m sweeps, and not be empty; got {steps.shape}"
         raise ParameterError(message)
     steps = checked_values("values", parameter, steps.ravel()).reshape(len(steps), -1)
-    vectors = [_array("tilt", tilt), _array("tilt_rate", tilt_rate)]
+    vectors = [_array("tilt", tilt, "rad"), _array("tilt_rate", tilt_rate, "rad/s")]
     for name, vector in zip(("tilt", "tilt_rate"), vectors, strict=True):
         if vector.ndim not in (1, _PLANE) or vector.shape[-1] != _AXES:
             message = f"{name} must have the shape (2,), or (m, 2) for m sweeps; got {vector.shape}"
@@ -244,7 +244,8 @@ def _together(
     return np.broadcast_to(steps, (len(steps), many)).copy(), (first, second)
 
 
-def _array(name: str, values: npt.ArrayLike) -> Floats:
+def _array(name: str, values: npt.ArrayLike, unit: str) -> Floats:
+    values = as_numbers(name, values, unit)
     try:
         return np.asarray(values, dtype=float)
     except (TypeError, ValueError):

@@ -8,9 +8,9 @@ import xarray as xr
 
 from stylobate.base_motions import BaseMotion
 from stylobate.config import provenance_of_run
+from stylobate.config.parameter_quantities import attributes_of, quantity_of
 from stylobate.engine import with_parameters
-from stylobate.engine.parameter_quantities import attributes_of
-from stylobate.errors import Interrupted, NoOrbitError, ParameterError, UnsupportedError, require_positive
+from stylobate.errors import Interrupted, NoOrbitError, ParameterError, UnsupportedError, as_numbers, require_positive
 from stylobate.models import Model
 from stylobate.orbits import (
     Bifurcation,
@@ -106,6 +106,7 @@ def stability_boundary(
     low, high = require_bounds(bounds, parameter)
     frequencies = require_frequencies(angular_frequency)
     _require_damping(model, parameter, low)
+    values = as_numbers("values", values, quantity_of(parameter).unit)
     chosen = np.linspace(low, high, 5) if values is None else np.asarray(values, dtype=float)
     if chosen.size == 0 or not np.all((chosen >= low) & (chosen <= high)):
         message = f"values must lie between the bounds {(low, high)!r}, got {values!r}"

@@ -11,7 +11,7 @@ import numpy.typing as npt
 from stylobate.engine.memory import require_memory
 from stylobate.errors import MOST_RUNS, ParameterError, require_whole
 from stylobate.results.random_numbers import Rng, seed_of
-from stylobate.studies.sweeps.quantities import Floats, checked_values
+from stylobate.studies.sweeps.quantities import Floats, Own, checked_values
 
 # Size of groups of random points, each with its own stream, so that the points do not depend on the blocks.
 _GROUP = 4096
@@ -60,10 +60,10 @@ class Grid:
     argument: str = field(default="over", init=False)
 
     @classmethod
-    def of(cls, over: Mapping[str, npt.ArrayLike]) -> "Grid":
+    def of(cls, over: Mapping[str, npt.ArrayLike], own: Own = None) -> "Grid":
         """Return the grid `over` these values."""
         _require_names("over", over)
-        return cls({name: checked_values("over", name, values) for name, values in over.items()})
+        return cls({name: checked_values("over", name, values, own) for name, values in over.items()})
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -109,10 +109,10 @@ class Box:
     argument: str = field(default="over", init=False)
 
     @classmethod
-    def of(cls, over: Mapping[str, Sequence[float]], count: int, rng: Rng) -> "Box":
+    def of(cls, over: Mapping[str, Sequence[float]], count: int, rng: Rng, own: Own = None) -> "Box":
         """Return random points in the box `over` these bounds; a generator provides one number as the seed."""
         _require_names("over", over)
-        bounds = {name: _bounds(name, pair) for name, pair in over.items()}
+        bounds = {name: _bounds(name, pair, own) for name, pair in over.items()}
         number = require_whole("count", count, least=0, most=MOST_RUNS)
         require_memory(_BYTES_OF_A_START * number, number, "Draw fewer")
         return cls(bounds, number, seed_of(rng))
@@ -171,7 +171,7 @@ class Points:
     argument: str = field(default="at", init=False)
 
     @classmethod
-    def of(cls, at: Mapping[str, npt.ArrayLike]) -> "Points":
+    def of(cls, at: Mapping[str, npt.ArrayLike], own: Own = None) -> "Points":
         """Return the points `at` these values.
 
         Raises
@@ -180,7 +180,7 @@ class Points:
             If the arrays have different lengths.
         """
         _require_names("at", at)
-        columns = {name: checked_values("at", name, values) for name, values in at.items()}
+        columns = {name: checked_values("at", name, values, own) for name, values in at.items()}
         (first, length), *others = [(name, values.size) for name, values in columns.items()]
         for name, size in others:
             if size != length:
@@ -240,8 +240,8 @@ def _require_names(where: str, given: object) -> None:
         raise ParameterError(message)
 
 
-def _bounds(name: str, pair: Sequence[float]) -> tuple[float, float]:
-    values = checked_values("over", name, pair)
+def _bounds(name: str, pair: Sequence[float], own: Own) -> tuple[float, float]:
+    values = checked_values("over", name, pair, own)
     if values.size != 2 or not values[0] <= values[1]:  # noqa: PLR2004
         message = f"over[{name!r}] must be a lower and an upper bound, got {pair!r}"
         raise ParameterError(message)

@@ -1,17 +1,20 @@
 """Quantities that a sweep can vary: names, units and accepted numbers."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
+from typing import TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
 from stylobate.base_motions import BaseMotion
-from stylobate.engine.parameter_quantities import quantity_of
+from stylobate.config.parameter_quantities import quantity_of
 from stylobate.engine.parameters import check_names
-from stylobate.errors import ParameterError, require_size
+from stylobate.errors import ParameterError, as_numbers, require_size
 from stylobate.models import Model
+from stylobate.quantities import Parameter
 
 Floats = npt.NDArray[np.float64]
+Own: TypeAlias = Mapping[str, Parameter] | None
 
 STARTS = ("tilt_x", "tilt_y", "tilt_rate_x", "tilt_rate_y")
 """Components of the initial conditions."""
@@ -25,7 +28,7 @@ def check_quantities(where: str, model: Model, names: Iterable[str], motion: Bas
     check_names(model, motion, names, where=where, others=OF_A_RUN)
 
 
-def checked_values(where: str, name: str, values: npt.ArrayLike) -> Floats:
+def checked_values(where: str, name: str, values: npt.ArrayLike, own: Own = None, *, scalar: bool = False) -> Floats:
     """Return `values` of the quantity `name` as an array, shape (n,).
 
     Parameters
@@ -33,30 +36,39 @@ def checked_values(where: str, name: str, values: npt.ArrayLike) -> Floats:
     where
         The argument with names and values; or, such as scales, with the values alone.
     name, values
-        The quantity and its values.
+        The quantity and its values, which may be quantities of pint or astropy.
+    own
+        Declared numbers of the model and base motion at hand.
+    scalar
+        Whether a single number is a list of one.
 
     Raises
     ------
     ParameterError
         If the values are not a list of numbers, or the quantity does not accept one of them.
+
+    Warns
+    -----
+    UnlikelyInputWarning
+        If the largest value was more likely meant in another unit.
     """
     argument = where if where in (name, f"{name}s") else f"{where}[{name!r}]"
+    quantity = quantity_of(name, own)
+    values = as_numbers(argument, values, quantity.unit)
     try:
-        array = np.array(values, dtype=np.float64)  # a copy: a sweep is immutable
+        array = np.array(values, dtype=np.float64, ndmin=int(scalar))  # a copy: a sweep is immutable
     except (TypeError, ValueError):
         message = f"{argument} must be a list of numbers, got {values!r}"
         raise ParameterError(message) from None
     if array.ndim != 1:
         message = f"{argument} must be a list of numbers, got an array of shape {array.shape}"
         raise ParameterError(message)
-    quantity = quantity_of(name)
     refused = ~quantity.accepts(array)
     if refused.any():
-        unit = f" {quantity.units}" if quantity.units not in ("", "1") else ""
-        message = f"{argument} must {quantity.demand}, got {float(array[refused][0])!r}{unit}"
-        raise ParameterError(message)
-    unit = "" if quantity.units == "1" else quantity.units
+        raise ParameterError(quantity.refusal(argument, float(array[refused][0])))
     for value in (array.min(initial=1.0), array.max(initial=1.0)):
-        require_size(argument, float(value), unit, zero=quantity.demand != "be positive")
+        require_size(argument, float(value), quantity.unit, zero=quantity.gt is None or quantity.gt < 0.0)
+    if array.size:
+        quantity.question(argument, float(array[np.argmax(np.abs(array))]))
     array.setflags(write=False)
     return array

@@ -20,7 +20,7 @@ import lazy_loader
 import numpy as np
 import xarray as xr
 
-from stylobate.engine.parameter_quantities import attributes_of
+from stylobate.config.parameter_quantities import attributes_of
 from stylobate.errors import FileError
 from stylobate.files import written_aside
 from stylobate.results.storage import require_this_version

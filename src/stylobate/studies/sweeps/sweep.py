@@ -10,6 +10,7 @@ import numpy.typing as npt
 from stylobate.base_motions import BASE_AT_REST, BaseMotion
 from stylobate.base_motions.varying import is_pulse
 from stylobate.config import provenance_of_run
+from stylobate.engine.parameters import own_numbers
 from stylobate.errors import ParameterError, require_positive, require_vector
 from stylobate.kinds import names_code
 from stylobate.models import Model
@@ -103,7 +104,14 @@ class Sweep:
         **options: Unpack[RunOptions],
     ) -> Self:
         """Return a sweep over every combination of these values; its result has the dimensions of `over`, in order."""
-        return cls._of(Grid.of(over), model, motion, duration=duration, periods=periods, options=options)
+        return cls._of(
+            Grid.of(over, own_numbers(model, motion)),
+            model,
+            motion,
+            duration=duration,
+            periods=periods,
+            options=options,
+        )
 
     @classmethod
     def random(
@@ -124,7 +132,14 @@ class Sweep:
         first runs of a longer sweep are those of a shorter one. From a generator one number is drawn and kept as the
         seed, so that a store can be resumed.
         """
-        return cls._of(Box.of(over, count, rng), model, motion, duration=duration, periods=periods, options=options)
+        return cls._of(
+            Box.of(over, count, rng, own_numbers(model, motion)),
+            model,
+            motion,
+            duration=duration,
+            periods=periods,
+            options=options,
+        )
 
     @classmethod
     def points(
@@ -138,7 +153,14 @@ class Sweep:
         **options: Unpack[RunOptions],
     ) -> Self:
         """Return a sweep of runs at these values, arrays of one length."""
-        return cls._of(Points.of(at), model, motion, duration=duration, periods=periods, options=options)
+        return cls._of(
+            Points.of(at, own_numbers(model, motion)),
+            model,
+            motion,
+            duration=duration,
+            periods=periods,
+            options=options,
+        )
 
     @classmethod
     def _of(cls, design: Design, model: Model, motion: BaseMotion | None, **length_and_options: Any) -> Self:

@@ -94,6 +94,8 @@ export type Begun = {
 export type ColumnNumbers = {
   /** radius of the base [m] */
   readonly radius: number;
+  /** mass [kg] */
+  readonly mass: number;
   /** acceleration of gravity [m/s²] */
   readonly gravity: number;
   /** slenderness r/h */
@@ -104,8 +106,6 @@ export type ColumnNumbers = {
   readonly axial_ratio: number;
   /** height of the centre of mass [m] */
   readonly mass_height: number;
-  /** mass [kg] */
-  readonly mass: number;
   /** moment of inertia about a horizontal axis through the centre of mass [kg m²] */
   readonly transverse_inertia: number;
   /** moment of inertia about the axis [kg m²] */
