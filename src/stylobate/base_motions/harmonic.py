@@ -23,6 +23,7 @@ from stylobate.base_motions.numbers import (
     Rise,
     Sense,
     StartPhase,
+    Stroke,
 )
 from stylobate.errors import ParameterError
 from stylobate.quantities import Quantity, Stated, checked_arguments, stating
@@ -242,7 +243,7 @@ class Harmonic(BaseMotion):
     def stroke(
         cls,
         *,
-        stroke: Annotated[float, Quantity(unit="m", text="stroke from peak to peak", gt=0.0)],
+        stroke: Stroke,
         frequency: Frequency,
         angle: Rise = 0.0,
         direction: Direction = 0.0,

@@ -17,6 +17,7 @@ Ramp = Annotated[float, Quantity(unit="s", text="time of growth to the full ampl
 Direction = Annotated[
     float, Quantity(unit="rad", text="direction in the plane, from x towards y", slider=(-3.142, 3.142))
 ]
+Stroke = Annotated[float, Quantity(unit="m", text="stroke from peak to peak", gt=0.0)]
 Rise = Annotated[float, Quantity(unit="rad", text="rise above the horizontal", slider=(-1.5, 1.5))]
 Sense = Annotated[int, Quantity(text="+1 anticlockwise, −1 clockwise", choices=(1, -1))]
 Start = Annotated[float, Quantity(unit="s", text="start of the motion", ge=0.0)]
