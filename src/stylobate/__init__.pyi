@@ -12,7 +12,7 @@ from . import (
     studies,
     theory,
 )
-from .base_motions import BaseMotion, Harmonic, OneOf, Pulse, Record, SineSweep, records
+from .base_motions import BaseMotion, Harmonic, MachineRun, OneOf, Pulse, Record, SineSweep, records
 from .base_motions.records import read_record, read_records, sample_record
 from .column import Column
 from .earthquakes import verdict
@@ -35,6 +35,7 @@ __all__ = [
     "Harmonic",
     "Interrupted",
     "KnownOrbit",
+    "MachineRun",
     "Model",
     "OneOf",
     "Outcome",

@@ -44,6 +44,7 @@ MOTIONS = {
     "sinusoidal": words("--motion sinusoidal --acceleration 0.1 --angular-frequency 2 --cycles 2"),
     "type-a": words("--motion type-a --pulse-velocity 0.1 --angular-frequency 2"),
     "gabor": words("--motion gabor --pulse-velocity 0.1 --frequency 2 --oscillations 3"),
+    "machine": words("--motion machine-run --stroke 0.01 --frequency 2 --run-up 1 --run-down 2"),
     "sweep": words("--motion linear-sweep --acceleration 0.1 --frequencies 1 2 --length 4"),
     "long sweep": words("--motion logarithmic-sweep --displacement 0.1 --frequencies 1 2 --length 4"),
     "record": RECORD,

@@ -2,6 +2,7 @@
 
 from stylobate.base_motions.combined import BASE_AT_REST, BaseMotion, Delayed, Offset, Rotated, Scaled, Sum
 from stylobate.base_motions.harmonic import Harmonic, as_harmonic
+from stylobate.base_motions.machine_run import MachineRun
 from stylobate.base_motions.one_of import OneOf
 from stylobate.base_motions.pulses.pulse import Pulse
 from stylobate.base_motions.records.record import Record
@@ -12,6 +13,7 @@ __all__ = [
     "BaseMotion",
     "Delayed",
     "Harmonic",
+    "MachineRun",
     "Offset",
     "OneOf",
     "Pulse",

@@ -40,6 +40,7 @@ MOTIONS = Kinds(
         "mavroeidis_papageorgiou": f"{_PULSE}.mavroeidis_papageorgiou",
         "linear_sweep": f"{_SWEEP}.linear",
         "logarithmic_sweep": f"{_SWEEP}.logarithmic",
+        "machine_run": "stylobate.base_motions.machine_run:MachineRun",
         "record": "stylobate.base_motions.records.record:Record",
         "one_of": "stylobate.base_motions.one_of:OneOf",
         "sum": "stylobate.base_motions.combined:Sum",

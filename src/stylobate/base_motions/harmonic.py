@@ -24,6 +24,7 @@ from stylobate.base_motions.numbers import (
     RiseOfPath,
     Sense,
     StartPhase,
+    Stroke,
     question_path,
 )
 from stylobate.quantities import Quantity, Stated, checked_arguments, stating
@@ -234,7 +235,7 @@ class Harmonic(BaseMotion):
     def stroke(
         cls,
         *,
-        stroke: Annotated[float, Quantity(unit="m", text="stroke from peak to peak", gt=0.0)],
+        stroke: Stroke,
         frequency: Frequency,
         angle: RiseOfPath = 0.0,
         direction: Direction = 0.0,

@@ -30,6 +30,7 @@ Ramp = Annotated[float, Quantity(unit="s", text="time of growth to the full ampl
 Direction = Annotated[
     float, Quantity(unit="rad", text="direction in the plane, from x towards y", slider=(-3.142, 3.142))
 ]
+Stroke = Annotated[float, Quantity(unit="m", text="stroke from peak to peak", gt=0.0)]
 Rise = Annotated[
     float,
     Quantity(
