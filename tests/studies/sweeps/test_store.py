@@ -83,7 +83,10 @@ def changed(**changes):
         (changed(options={"method": "taylor"}), "method was 'dop853', is 'taylor'"),
         (changed(options={"rules": sb.OutcomeRules(periods=4)}), "rules.periods was 10, is 4"),
         (changed(model=replace(MODEL, damping=0.2)), "model.damping was 0.1, is 0.2"),
-        (changed(motion=replace(MOTION, angular_frequency=2.0)), "motion.angular_frequency was 1.0, is 2.0"),
+        (
+            changed(motion=sb.Harmonic.circular(acceleration=0.15, angular_frequency=2.0)),
+            "motion.angular_frequency was 1.0, is 2.0",
+        ),
         (
             Sweep.points(MODEL, MOTION, at={"tilt_x": [0.01, 0.03]}, duration=10.0),
             "tilt_x was 2 values from 0.01 to 0.02, is 2 values from 0.01 to 0.03",
