@@ -120,6 +120,7 @@ figure = sb.plot(onset)
 axes = figure.axes[0]
 axes.axvline(pin.slenderness, color="black", linewidth=1)
 axes.text(pin.slenderness + 0.01, 0.2, "the pin")
+figure
 
 # %%
 # On a smooth trough, μ = 0.2, the pin slides. On a rubber lining with μ = 0.4 it would
@@ -286,6 +287,7 @@ figure = sb.plot(contact)
 for axes in figure.axes[:2]:
     axes.axhline(pin.slenderness, color="black", linestyle="--", linewidth=1)
 axes.text(3.0, pin.slenderness + 0.01, "μ = c", backgroundcolor="white")
+figure
 
 # %%
 # The part rocks in most cells, on both sides of the dashed line μ = c, and it overturns

@@ -31,7 +31,9 @@ COMMANDS = {
     "basin": Entry("basin", "basin", "Compute basins of attraction over initial conditions, and their fractions."),
     "drift": Entry("drift", "drift", "Compute the mean transport velocity of a column on a vibrating base."),
     "upright": Entry("upright", "upright", "Decide whether a part on a vibrating base stays upright, rocks or falls."),
-    "feeder": Entry("feeder", "feeder", "Compute the sheet of a feeder: hops, speed, steepest track and posture of a part."),
+    "feeder": Entry(
+        "feeder", "feeder", "Compute the sheet of a feeder: hops, speed, steepest track and posture of a part."
+    ),
     "records": Entry("records", "records", "List ground-motion records, their components and their intensities."),
     "assess": Entry("assess", "assess", "Assess whether columns survive records, and how robust the answer is."),
     "spectrum": Entry("spectrum", "spectrum", "Compute overturning intervals of the amplitude, or rocking spectra."),

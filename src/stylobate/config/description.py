@@ -27,6 +27,7 @@ _UNION_TABLES = ("columns",)
 # Explanation of a missing part, added to its message.
 _WANTED = {
     "duration": ": length of a run [s], such as 60; optional only under a base motion that ends",
+    "motion.kind": ': the kind of base motion, such as "stroke" or "circular"; on the command line --motion stroke',
     "motion.velocity": ": velocity of the pulse [m/s]; on the command line --pulse-velocity",
 }
 
@@ -83,7 +84,7 @@ def _line(problem: Any) -> str:
         case "union_tag_invalid":
             return f"{name}.{tag} must be one of {context['expected_tags']}, got {context['tag']!r}{_meant(context)}"
         case "union_tag_not_found":
-            return f"{name}.{tag} is missing"
+            return f"{name}.{tag} is missing{_WANTED.get(f'{name}.{tag}', '')}"
         case "value_error":
             return f"{name} {context['error']}" if isinstance(context["error"], UnitError) else str(context["error"])
     return f"{name}: {problem['msg'][0].lower()}{problem['msg'][1:]}, got {given!r}"
