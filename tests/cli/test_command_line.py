@@ -159,7 +159,7 @@ def test_simulate_animates_the_run_it_prints(tmp_path, capsys):
         ),
         (
             ["response", *COLUMN, *MOTION[:4], "--angular-frequency-range", "1", "3", "--figure", "x.bmp"],
-            ["cannot draw into x.bmp: --figure must end with .png, .pdf or .svg"],
+            ["cannot draw into x.bmp: --figure must end with .png, .pdf, .svg or .html"],
         ),
         (
             ["response", "--exact", *COLUMN, *WEAK, "--angular-frequency-range", "1", "2"],

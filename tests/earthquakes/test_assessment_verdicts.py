@@ -264,7 +264,7 @@ def test_a_column_that_slides_before_it_rocks_is_not_described_where_a_record_ca
         (
             2.0,
             np.nan,
-            "Overturned at scale 2 (B, low dissipation); some run at the smallest scale was not decided.",
+            "Overturned at scale 2 (B, low dissipation) or below; some run at the smallest scale was not decided.",
         ),
         (np.nan, 3.0, "No scale up to 3 overturned it in any case; not every scale above 3 was decided."),
         (

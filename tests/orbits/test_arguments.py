@@ -118,7 +118,7 @@ def test_model_and_motion_are_what_they_are_called(find, model, motion, words):
 
 def test_a_motion_that_begins_late_is_not_periodic_from_the_start():
     ramped = sb.Harmonic(amplitude=(0.1, 0.0, 0.0), angular_frequency=2.0, ramp=1.0)
-    for motion, words in ((LINE.delayed(1.0), "delay=1 s"), (ramped, "ramp=1.0")):
+    for motion, words in ((LINE.delayed(1.0), "delay=1 s"), (ramped, "ramp=1 s")):
         with pytest.raises(UnsupportedError, match=f"without ramp or delay.*{words}") as told:
             periodic_orbit(MODEL, motion)
         assert one_line(told)

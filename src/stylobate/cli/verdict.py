@@ -88,7 +88,6 @@ class VerdictOfCase:
 
     def rows(self, run: "Response", verdict: "Verdict | None") -> "Rows":
         """Return the rows of model, verdict and outcome, with a remark on a run that does not state the verdict."""
-        from stylobate.earthquakes.verdict_study import undamped  # noqa: PLC0415  as in `simulate`
         from stylobate.results.summary import damping_rows, outcome_of  # noqa: PLC0415  as in `simulate`
 
         model = [("model", _model(self.setup.model))]
@@ -97,6 +96,8 @@ class VerdictOfCase:
         model += damping_rows(self.setup.model.column, None)
         if verdict is None:
             return [*model, ("outcome", f"{outcome_of(run)} in this run; {self.why_not}")]
+        from stylobate.earthquakes.verdict_study import undamped  # noqa: PLC0415  as in `simulate`
+
         laws = ", ".join(f"{name} {results.percent(share)}" for name, share in verdict.share_by_model.items())
         rows = [*model, ("verdict", str(verdict)), ("by contact law", f"{laws} overturn")]
         if remark := undamped(self.setup.model, (self.arguments or {}).get("variations") or {}):

@@ -1,5 +1,6 @@
 """Initial conditions of runs: spin, twist, position, velocity and clearance, and their checks."""
 
+import reprlib
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -153,11 +154,11 @@ def out_of_plane(model: Model, tilt: Sequence[float], tilt_rate: Sequence[float]
 def require_nouns(model: Model, motion: BaseMotion | None, rules: OutcomeRules | None) -> None:
     """Raise ParameterError if an argument has the wrong type."""
     if not isinstance(model, Model):
-        message = f"model must be a model such as Slender(column), got {model!r}"
+        message = f"model must be a model such as Slender(column), got {reprlib.repr(model)}"
         raise ParameterError(message)
     check_once(model)
     if motion is not None and not isinstance(motion, BaseMotion):
-        message = f"motion must be a base motion such as Harmonic.circular(...) or None, got {motion!r}"
+        message = f"motion must be a base motion such as Harmonic.circular(...) or None, got {reprlib.repr(motion)}"
         raise ParameterError(message)
     if motion is not None:
         check_kinds(motion)

@@ -65,7 +65,10 @@ def checked_values(where: str, name: str, values: npt.ArrayLike, own: Own = None
         raise ParameterError(message)
     refused = ~quantity.accepts(array)
     if refused.any():
-        raise ParameterError(quantity.refusal(argument, float(array[refused][0])))
+        number = float(array[refused][0])
+        if np.isfinite(number):
+            require_size(argument, number, quantity.unit)
+        raise ParameterError(quantity.refusal(argument, number))
     for value in (array.min(initial=1.0), array.max(initial=1.0)):
         require_size(argument, float(value), quantity.unit, zero=quantity.gt is None or quantity.gt < 0.0)
     if array.size:

@@ -8,7 +8,7 @@ import xarray as xr
 
 from stylobate.earthquakes.assessment.report.cases import NO_COMPONENT, rises
 from stylobate.earthquakes.assessment.report.column_verdict import largest_decided
-from stylobate.earthquakes.assessment.report.wording import CENTRAL, in_g, number
+from stylobate.earthquakes.assessment.report.wording import CENTRAL, at_most, in_g, number
 from stylobate.plots.page import Table
 from stylobate.results.assessment import Assessment
 
@@ -126,7 +126,8 @@ def _at_scale(assessment: Assessment, record: str, scale: float, highest: float)
     spectral = scale * _spectral(assessment).get(record, math.nan)
     vector = scale * float(own["peak_acceleration"])
     shown = (in_g(peak), number(peak), number(velocity), in_g(spectral), number(spectral), in_g(vector))
-    return (f"{above}{number(scale, 4)}", str(own["definition"].item()), *(f"{above}{value}" for value in shown))
+    stated = f"{above}{number(scale, 4)}" if above else at_most(scale)
+    return (stated, str(own["definition"].item()), *(f"{above}{value}" for value in shown))
 
 
 def spectra(assessment: Assessment) -> Table:
