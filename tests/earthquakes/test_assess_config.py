@@ -66,10 +66,6 @@ def test_the_levels_of_a_column_are_its_own_or_those_of_all():
         ),
         ({"columns": {"tank": {**COLUMN, "radius": "x"}}}, ["columns.tank.radius:"]),
         ({"columns": {"tank": {"radius": 1.0}}}, ["columns.tank.height is missing"]),
-        (
-            {"columns": {"tank": {"radius": 1.0, "height": 3.0}}},
-            ["columns.tank: density or mass: a solid column needs"],
-        ),
         ({"records": {"source": "x", "unit": "g"}}, ["records.unit is not known here"]),
         ({"columns": None}, ["columns is missing"]),
         (
