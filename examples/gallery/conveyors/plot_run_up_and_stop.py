@@ -16,12 +16,12 @@ part = sb.Sliding(bottle, friction_coefficient=0.25, damping=0.05)
 machine = sb.MachineRun(
     stroke=0.0024,  # m, from peak to peak at 25 Hz
     frequency=25.0,  # Hz
-    angle=0.436,  # rad
+    angle=0.436,  # rad, 25°
     run_up=6.0,  # s
     steady=1.0,
     run_down=8.0,
     resonance=5.0,  # Hz
-    resonance_damping=0.3,
+    resonance_damping=0.1,
 )
 run = sb.simulate(part, machine, tilt=(0.01, 0.0))
 print(run)
