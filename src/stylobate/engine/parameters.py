@@ -155,7 +155,8 @@ def check_names(
     known = tuple(dict.fromkeys((*known, *motion_names(model, motion))))
     for name in names:
         if name not in known:
-            message = f"{where}: {name} is not known here; known are {', '.join(known)}"
+            remedy = did_you_mean(name, known) or f"known are {', '.join(known)}"
+            message = f"{where}: {name} is not known here; {remedy}"
             raise ParameterError(message)
     for name, changed in _CONTRADICTING.items():
         for other in changed:
