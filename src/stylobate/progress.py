@@ -15,7 +15,7 @@ from functools import wraps
 from importlib import import_module
 from typing import TYPE_CHECKING, Any, NamedTuple, ParamSpec, TypeVar
 
-from stylobate.errors import ParameterError
+from stylobate.errors import ParameterError, refuse_unknown_arguments
 from stylobate.text import four_digits
 
 if TYPE_CHECKING:
@@ -83,6 +83,7 @@ def shows_progress(what: str, read: Callable[..., News] = counted) -> Callable[[
     def decorated(function: Callable[_P, _T]) -> Callable[_P, _T]:
         @wraps(function)
         def reporting(*arguments: _P.args, **named: _P.kwargs) -> _T:
+            refuse_unknown_arguments(function, named)
             with _report(what, read, named.get("progress")) as report:
                 named["progress"] = report
                 return function(*arguments, **named)

@@ -14,6 +14,7 @@ from stylobate.config.parameter_quantities import quantity_of
 from stylobate.errors import ParameterError, UnsupportedError, as_numbers, require_finite
 from stylobate.models import Model
 from stylobate.quantities import Parameter, parameters_of
+from stylobate.text import did_you_mean
 
 _T = TypeVar("_T")
 

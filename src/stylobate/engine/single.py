@@ -19,11 +19,12 @@ from stylobate.engine.starts import Start, Turning, require_below_level, require
 from stylobate.engine.thresholds import is_rest, without_dust
 from stylobate.engine.tolerances import CLOSE_PASSAGE
 from stylobate.engine.user_events import EventFunction, checked_events
-from stylobate.errors import ParameterError, require_positive, require_vector, require_whole
+from stylobate.errors import ParameterError, require_positive, require_vector, require_whole, suggests_arguments
 from stylobate.models import Model
 from stylobate.results import OutcomeRules, Response
 
 
+@suggests_arguments
 def simulate(
     model: Model,
     motion: BaseMotion | None = None,

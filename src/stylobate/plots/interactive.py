@@ -15,7 +15,7 @@ from matplotlib.colors import to_hex, to_rgb
 from stylobate.errors import ParameterError, UnsupportedError
 from stylobate.plots.classes import Look, MapClass, attractor_classes, contact_classes, outcome_classes
 from stylobate.plots.contact_strip import COLOURS, ContactHistory
-from stylobate.plots.kinds import HasPoints
+from stylobate.plots.kinds import HasPoints, check_sequence
 from stylobate.plots.labels import axis_label, in_own_units, unit_label
 from stylobate.plots.runs import EVENT_NAMES, along_line, colours_of, in_print, is_along_a_line, length_unit, panels_of
 from stylobate.plots.style import BLACK, GREY, PALETTE
@@ -80,7 +80,10 @@ def plot_interactive(
     except ImportError:
         message = "interactive figures need Plotly. Install it by: pip install stylobate[interactive]"
         raise UnsupportedError(message) from None
-    results: Sequence[Any] = result if isinstance(result, Sequence) else [result]
+    results: Sequence[Any] = [result]
+    if isinstance(result, Sequence) and not isinstance(result, str):
+        check_sequence(result)
+        results = result
     shown = [in_own_units(one) for one in results]
     if shown and all(isinstance(one, Response) for one in shown):
         figure = _of_runs(shown, list(labels or what_varies(shown)))
