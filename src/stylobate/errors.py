@@ -117,7 +117,8 @@ class Interrupted(KeyboardInterrupt):
     Attributes
     ----------
     partial
-        The result so far, an xarray.Dataset; runs that were not computed have outcome −1 and NaN.
+        The result so far, an xarray.Dataset; runs that were not computed have outcome −1 and NaN. None if Ctrl-C came
+        before the first result, during imports or compilation.
     """
 
     def __init__(self, message: str, partial: Any) -> None:

@@ -8,6 +8,7 @@ from pydantic import Field
 from stylobate.base_motions import BaseMotion
 from stylobate.config.description import built
 from stylobate.config.motions import is_to_end, made_by
+from stylobate.config.parameter_quantities import known_names
 from stylobate.config.run_numbers import SharedByRuns, SingleRun, numbers_of, problems_of_the_numbers
 from stylobate.config.simulation import (
     OF_OTHER_COMMANDS,
@@ -17,7 +18,6 @@ from stylobate.config.simulation import (
     duration_with_tail,
     refuse_own_classes,
 )
-from stylobate.config.parameter_quantities import known_names
 from stylobate.errors import ConfigError, ParameterError
 from stylobate.kinds import with_places
 from stylobate.models import Model
@@ -111,7 +111,9 @@ def with_numbers_that_vary(values: Mapping[str, Any], names: tuple[str, ...]) ->
     declared = parameters_of(make)
     missing = [name for name, one in declared.items() if one.required and name not in motion and name not in names]
     if missing and not _has_own_class(values.get("model")):
-        problems = [_unknown(name, missing) for name in names if name and name not in known_names() and name not in declared]
+        problems = [
+            _unknown(name, missing) for name in names if name and name not in known_names() and name not in declared
+        ]
         if problems:
             raise ConfigError(problems)
     # If the motion has a path or a velocity, the acceleration depends on the frequency, which is then required.
