@@ -105,7 +105,7 @@ def conveyed():
 
 def test_a_run_that_slides_has_the_panels_of_the_static_figure_with_units(conveyed):
     figure = sb.plots.plot_interactive(conveyed)
-    panels = {axis.title.text for axis in figure.select_yaxes()}
+    panels = {str(axis.title.text).replace("<br>", " ") for axis in figure.select_yaxes()}
     static = {axes.get_ylabel().replace("\n", " ") for axes in sb.plot(conveyed).axes}
     for name in ("travel [mm]", "clearance [mm]", "twist [turns]", "base acceleration [m/s²]"):
         assert name in panels

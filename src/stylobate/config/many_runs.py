@@ -105,8 +105,7 @@ def with_numbers_that_vary(values: Mapping[str, Any], names: tuple[str, ...]) ->
         If a required number of the motion is missing, and a name that varies is unknown: it may be misspelt.
     """
     motion = values.get("motion")
-    make = made_by(motion.get("kind")) if isinstance(motion, Mapping) else None
-    if make is None:
+    if not isinstance(motion, Mapping) or (make := made_by(motion.get("kind"))) is None:
         return dict(values)
     declared = parameters_of(make)
     missing = [name for name, one in declared.items() if one.required and name not in motion and name not in names]

@@ -343,6 +343,8 @@ def _ellipse(motion: Harmonic) -> Mapping[str, float]:
 
 def _own_numbers(motion: BaseMotion) -> str:
     if motion == BASE_AT_REST:
-        return "(got a base at rest). Give a base motion, such as a circular one."
+        return (
+            "(got a base at rest). Give a base motion, such as a circular one; on the command line --motion circular."
+        )
     names = ", ".join(numbers_of(motion))
     return f"(got {motion!r}). {f'Its numbers are {names}.' if names else 'It has none.'}"

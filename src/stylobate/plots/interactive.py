@@ -21,6 +21,7 @@ from stylobate.plots.runs import EVENT_NAMES, along_line, colours_of, in_print, 
 from stylobate.plots.style import BLACK, GREY, PALETTE
 from stylobate.plots.varied import what_varies
 from stylobate.results import Response, Verdict
+from stylobate.results.verdict import CONTACT_LAW, LABELS
 
 if TYPE_CHECKING:
     from plotly.graph_objects import Figure
@@ -332,8 +333,6 @@ def _of_branches(branches: Sequence[xr.Dataset], labels: Sequence[str] | None) -
 def _of_verdict(verdict: Verdict) -> "Figure":
     """Draw the peak tilt of each variation over one varied number, which a menu chooses."""
     from plotly.graph_objects import Figure  # noqa: PLC0415
-
-    from stylobate.earthquakes.variations import CONTACT_LAW, LABELS  # noqa: PLC0415  they import the figures
 
     data = verdict.data.sortby(-verdict.data["influence"])
     names = [str(name) for name in data["variation"].to_numpy()]
