@@ -49,8 +49,7 @@ def fit(figure: Figure, panels: Sequence[Axes], drawn: Iterable[Artist], smalles
         if isinstance(one, Text) and float(one.get_fontsize()) < smallest:
             one.set_fontsize(smallest)
     for axes in panels:
-        for axis in (axes.xaxis, axes.yaxis):
-            _in_millimetres(axis)
+        _in_millimetres(axes)
     for text in figure.texts if len(panels) == len(figure.axes) else ():
         _wrap(text, figure.bbox.width - text.get_window_extent().x0)
     _lay_out(figure)
@@ -138,12 +137,15 @@ def _length(text: Text) -> float:
     return float(box.height if text.get_rotation() == 90.0 else box.width)  # noqa: PLR2004  degrees
 
 
-def _in_millimetres(axis: Axis) -> None:
-    """Write short lengths in mm: the numbers of the axis and its unit."""
-    words = axis.label.get_text()
-    if words.endswith("[m]") and np.abs(axis.get_view_interval()).max() < _SHORT:
+def _in_millimetres(axes: Axes) -> None:
+    """Write short lengths in mm: the numbers of an axis and its unit; axes of one scale have one unit."""
+    lengths = [axis for axis in (axes.xaxis, axes.yaxis) if axis.label.get_text().endswith("[m]")]
+    short = [axis for axis in lengths if np.abs(axis.get_view_interval()).max() < _SHORT]
+    if axes.get_aspect() != "auto" and short != lengths:
+        return
+    for axis in short:
         axis.set_major_formatter(FuncFormatter(lambda value, _: f"{1e3 * value:.6g}".replace("-", "−")))
-        axis.label.set_text(f"{words.removesuffix('[m]')}[mm]")
+        axis.label.set_text(f"{axis.label.get_text().removesuffix('[m]')}[mm]")
 
 
 def _thin_out(axis: Axis) -> None:
