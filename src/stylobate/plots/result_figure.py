@@ -13,6 +13,7 @@ from typing import Any, Literal, cast
 import numpy as np
 from matplotlib import rc_context, rcParams, rcParamsDefault
 from matplotlib.axes import Axes
+from matplotlib.colorbar import Colorbar
 from matplotlib.figure import Figure
 from matplotlib.legend import Legend
 from matplotlib.transforms import ScaledTranslation
@@ -286,6 +287,10 @@ class InAxes(ResultFigure):
         for text in legend.get_texts():
             text.set_text(text.get_text().partition("\n")[0])
         return legend
+
+    def colorbar(self, *args: Any, **options: Any) -> Colorbar:
+        """Add a colour bar to the caller's figure."""
+        return self.finished().colorbar(*args, **options)
 
     def make_place(self) -> None:
         """Move a legend that covers what the axes show below them, if the caller's figure makes room for it."""

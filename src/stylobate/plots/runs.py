@@ -141,10 +141,16 @@ def _arranged(panels: Mapping[str, Any], time: str) -> tuple[Figure, dict[str, A
         lowest = _BESIDE_PATH if len(columns) > 1 else _ALONE
         figure.set_figheight(max(font_ratio(), _LEAST) * max(_height(columns), lowest))
     axes: dict[str, Axes] = {}
-    grid = figure.add_gridspec(1, len(columns), width_ratios=(1.25, 1.0)[: len(columns)])
+    whole = figure.add_gridspec(1, len(columns), width_ratios=(1.25, 1.0)[: len(columns)])
+    if len(columns) > 1 and len(columns[1]) == 1:  # in one grid, the upper edges of the panels align
+        whole = figure.add_gridspec(len(columns[0]), 2, width_ratios=(1.25, 1.0), height_ratios=[*columns[0].values()])
     for place, column in enumerate(columns):
-        rows = grid[place].subgridspec(len(column), 1, height_ratios=list(column.values()))
-        axes |= {name: figure.add_subplot(rows[row]) for row, name in enumerate(column)}
+        if whole.nrows > 1:
+            places = [whole[row, 0] for row in range(len(column))] if place == 0 else [whole[:, 1]]
+        else:
+            rows = whole[place].subgridspec(len(column), 1, height_ratios=[*column.values()])
+            places = [rows[row] for row in range(len(column))]
+        axes |= {name: figure.add_subplot(spot) for name, spot in zip(column, places, strict=True)}
         along = [axes[name] for name in column if name != "path"]
         for one in along:
             if one is not axes[next(iter(axes))]:
