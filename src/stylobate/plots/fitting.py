@@ -2,6 +2,7 @@
 
 import re
 import textwrap
+import warnings
 from collections.abc import Iterable, Sequence
 from itertools import pairwise
 from typing import Any
@@ -20,7 +21,7 @@ from matplotlib.transforms import Bbox
 # A title may reach this far over its panel [widths], a label of an axis this far.
 _TITLE, _LABEL = 1.12, 1.04
 # Minimum number of characters in a line, and distance between numbers of an axis [pixels].
-_CHARACTERS, _APART = 9, 4.0
+_CHARACTERS, _APART = 9, 6.0
 _MOST_TICKS = 6
 # Lengths below this are written in mm [m].
 _SHORT = 0.1
@@ -33,8 +34,8 @@ _BETWEEN = 8
 _TYPESET = re.compile(r"\$[^$]*\$")
 
 
-def fit(figure: Figure, panels: Sequence[Axes], drawn: Iterable[Artist], smallest: float) -> None:
-    """Break long titles and labels, thin out ticks that collide, and enlarge texts below a font size.
+def fit_words(figure: Figure, panels: Sequence[Axes], drawn: Iterable[Artist], smallest: float) -> None:
+    """Break long titles and labels, write short lengths in mm, and enlarge texts below a font size.
 
     Parameters
     ----------
@@ -56,7 +57,13 @@ def fit(figure: Figure, panels: Sequence[Axes], drawn: Iterable[Artist], smalles
     for axes in panels:
         _fit_words(axes)
     _lay_out(figure)
+
+
+def thin_out_ticks(figure: Figure, panels: Sequence[Axes]) -> None:
+    """Reduce the number of ticks until their numbers do not overlap."""
+    _lay_out(figure)
     for axes in panels:
+        axes.apply_aspect()
         for axis in (axes.xaxis, axes.yaxis):
             _thin_out(axis)
 
@@ -87,7 +94,9 @@ def is_filled(axes: Axes) -> bool:
 def _lay_out(figure: Figure) -> None:
     engine = figure.get_layout_engine()
     if engine is not None:
-        engine.execute(figure)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", UserWarning)  # a layout without room is reported when the figure is drawn
+            engine.execute(figure)
 
 
 def _crosses(box: Bbox, axes: Axes) -> bool:
@@ -153,7 +162,7 @@ def _thin_out(axis: Axis) -> None:
     if not isinstance(locator := axis.get_major_locator(), MaxNLocator | LogLocator):
         return
     coarser: list[MaxNLocator | LogLocator] = [
-        MaxNLocator(most, steps=[1, 2, 2.5, 5, 10]) for most in range(_MOST_TICKS, 0, -1)
+        MaxNLocator(most, steps=[1, 2, 2.5, 4, 5, 10], min_n_ticks=min(most, 2)) for most in range(_MOST_TICKS, 0, -1)
     ]
     if isinstance(locator, LogLocator):
         low, high = np.log10(np.abs(axis.get_view_interval()))

@@ -38,6 +38,8 @@ _POINTS = 72.0
 _FONT, _FONT_OF_A_COLUMN, _COLUMN = 9.5, 8.0, 4.5
 # Above this width [inches], as on a slide, everything grows with the figure.
 _SLIDE = 8.5
+# A legend stands below given axes if it takes less than this part of their height, else beside them.
+_BELOW = 0.4
 # Settings with which files keep their texts as texts, unless the user changed them.
 _SAVED = {"pdf.fonttype": 42, "ps.fonttype": 42, "svg.fonttype": "none"}
 
@@ -293,19 +295,21 @@ class InAxes(ResultFigure):
         return self.finished().colorbar(*args, **options)
 
     def make_place(self) -> None:
-        """Move a legend that covers what the axes show below them, if the caller's figure makes room for it."""
+        """Move a legend that covers what the axes show below or beside them, if the caller's figure makes room."""
         axes, figure = self._axes_of_caller, self.finished()
         legend = axes.get_legend()
         if legend is None or figure.get_layout_engine() is None or not (has_no_place(legend, axes) or is_filled(axes)):
             return
-        panel, numbers = axes.get_window_extent(), axes.xaxis.get_tightbbox()
-        foot = 0.0 if numbers is None else (numbers.y0 - panel.y0) / figure.dpi
-        below = axes.transAxes + ScaledTranslation(0.0, foot, figure.dpi_scale_trans)
-        columns = max(1, int(panel.width // legend.get_window_extent().width))
+        panel, numbers, box = axes.get_window_extent(), axes.xaxis.get_tightbbox(), legend.get_window_extent()
+        columns = max(1, int(panel.width // box.width))
         handles, names = entries_of(legend, axes)
+        place: dict[str, Any] = {"bbox_to_anchor": (1.0, 1.0)}
+        if box.height / columns < _BELOW * panel.height:
+            foot = 0.0 if numbers is None else (numbers.y0 - panel.y0) / figure.dpi
+            below = axes.transAxes + ScaledTranslation(0.0, foot, figure.dpi_scale_trans)
+            place = {"bbox_to_anchor": (0.0, 0.0), "bbox_transform": below, "ncols": columns, "borderaxespad": 0.2}
         size = legend.get_texts()[0].get_fontsize()
-        place: dict[str, Any] = {"loc": "upper left", "bbox_to_anchor": (0.0, 0.0), "bbox_transform": below}
-        axes.legend(handles, names, ncols=columns, fontsize=size, frameon=False, borderaxespad=0.2, **place)
+        axes.legend(handles, names, loc="upper left", fontsize=size, frameon=False, **place)
 
     def finished(self) -> Figure:
         """Return the caller's figure."""

@@ -22,7 +22,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.text import Annotation, Text
 
-from stylobate.plots.fitting import fit
+from stylobate.plots.fitting import fit_words, thin_out_ticks
 from stylobate.plots.labels import in_own_units, with_literal_names
 from stylobate.plots.result_figure import WIDTH, InAxes, ResultFigure, asked_for, enlarged, usual_font
 
@@ -92,9 +92,10 @@ def styled(draw: Callable[P, Figure]) -> Callable[P, Figure]:
                 page = figure.finished() if isinstance(figure, InAxes) else figure
                 panels = page.axes if caller is None else [caller]
                 new = [one for one in (page if caller is None else caller).findobj() if one not in present]
-                fit(page, panels, new, smallest)
+                fit_words(page, panels, new, smallest)
                 if isinstance(figure, ResultFigure):
                     figure.make_place()
+                thin_out_ticks(page, panels)
         finally:
             _DRAWING.reset(token)
         new = [one for one in (page if caller is None else caller).findobj() if one not in present]

@@ -46,6 +46,8 @@ def plot_fragility(found: xr.Dataset) -> Figure:
         handles.append(_interval_mark(found))
     axes.set(xscale="log", ylim=(-0.02, 1.02), ylabel="probability of reaching the limit state")
     axes.set_xlabel(axis_label(found["curve_intensity"]))
+    if not np.isfinite(axes.get_xlim()).all():  # no run is decided
+        axes.set_xlim(0.1, 10.0)
     _plain_ticks(axes)
     axes.set_title("\n".join(_title_lines(found)))
     figure.legend(handles=handles, loc="outside right upper")
