@@ -43,7 +43,7 @@ def plot_contact_map(found: xr.Dataset) -> Figure:
     drawn = panels[1].pcolormesh(cell_edges(ordered[x]), cell_edges(ordered[y]), peak, **look)
     panels[1].grid(visible=False)
     panels[1].set_xlabel(axis_label(found[x]))
-    panels[1].set_title("white: never tilted, or overturned", fontsize=8.5)
+    panels[1].set_title("white: never tilted, or overturned", fontsize="small")
     figure.colorbar(drawn, ax=panels[1], label=axis_label(found["peak_tilt"]))
     return figure
 
