@@ -21,10 +21,10 @@ if TYPE_CHECKING:
 
 KIND = "upright"
 STARTS = (
-    Option("tilts", "initial tilt angle [rad]; repeat it. 0, 1e-5, 1e-3 and 1e-2 by default", list[float]),
+    Option("tilts", "initial tilt angle; repeat it. 0, 1e-5, 1e-3 and 1e-2 by default", list[float], unit="rad"),
     Option("phases", "number of phases at which the vibration starts; 64 by default", int),
     Option("friction", "friction coefficient; repeat it for several, each as probable", list[float]),
-    Option("azimuth", "azimuth of the initial tilt [rad]; spread over all directions by default"),
+    Option("azimuth", "azimuth of the initial tilt; spread over all directions by default", unit="rad"),
     Option("confidence", "confidence level of intervals; 0.9 by default"),
 )
 """Options of the table `upright`."""

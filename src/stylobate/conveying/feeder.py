@@ -13,9 +13,10 @@ import xarray as xr
 from stylobate.base_motions import BaseMotion, Harmonic, as_harmonic
 from stylobate.conveying.posture import PERIODS, PHASES, TILTS, Posture, upright
 from stylobate.conveying.transport import PERIODIC, TOLERANCE, Transport, drift, named, throw_number_of
-from stylobate.errors import UnsupportedError
+from stylobate.errors import UnsupportedError, require_positive
 from stylobate.models import Model, Sliding
 from stylobate.progress import Progress, shows_progress
+from stylobate.studies.proportions import require_confidence
 from stylobate.studies.sweeps import Executor
 from stylobate.studies.sweeps.quantities import checked_values
 from stylobate.studies.sweeps.recipe import RunOptions
@@ -124,9 +125,9 @@ def sheet(
     if harmonic is None:
         message = f"motion: a feeder sheet needs a harmonic base motion (got {named(motion)}). {PERIODIC}"
         raise UnsupportedError(message)
-    frictions = checked_values(
-        "friction", "friction_coefficient", np.atleast_1d(model.friction_coefficient if friction is None else friction)
-    )
+    given = model.friction_coefficient if friction is None else friction
+    frictions = checked_values("friction", "friction_coefficient", given, scalar=True)
+    tolerance, confidence = require_positive("tolerance", tolerance), require_confidence(confidence)
     shared: Any = {"executor": executor, "progress": progress, **options}
     starts: Any = {"tilts": tilts, "phases": phases, "azimuth": azimuth, "periods": periods, "confidence": confidence}
     postures = [upright(model, motion, friction=float(mu), **starts, **shared) for mu in frictions]
