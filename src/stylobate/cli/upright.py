@@ -7,7 +7,7 @@ from stylobate.cli.command import command
 from stylobate.cli.declarations import COMPUTING, OUTPUT_OR_STORE, Option, run_numbers
 from stylobate.cli.many_runs import finish, run_study, study_values
 from stylobate.cli.options import Options
-from stylobate.cli.output import print_table
+from stylobate.cli.output import DEGREES, print_table
 from stylobate.cli.overlay import merge
 from stylobate.cli.parts import COLUMN, MOTION_WITHOUT_RECORDS, SLIDING
 from stylobate.cli.saved import open_study, study_summary
@@ -96,7 +96,7 @@ def _by_tilt(result: "xr.Dataset") -> list[tuple[float, float, dict[str, float]]
 
 def _print(result: "xr.Dataset") -> None:
     rows = [
-        [f"{mu:.4g}", f"{tilt:.4g} rad", *(percent(share) for share in shares.values())]
+        [f"{mu:.4g}", f"{DEGREES.factor * tilt:.4g}°", *(percent(share) for share in shares.values())]
         for mu, tilt, shares in _by_tilt(result)
     ]
     header = ("friction coefficient", "initial tilt", *map(str, result["posture_name"].to_numpy()))

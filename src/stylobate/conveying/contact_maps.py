@@ -28,6 +28,7 @@ from stylobate.studies.checks import require_values
 from stylobate.studies.sweeps import Executor, Sweep
 from stylobate.studies.sweeps.labelled import labelled_sweep
 from stylobate.studies.sweeps.recipe import RunOptions
+from stylobate.text import plural
 
 _PLANE = 2
 
@@ -178,6 +179,19 @@ def stays_in_a_plane(runs: xr.Dataset) -> xr.DataArray:
     """
     tilts = runs["peak_tilt"] > 0.0
     return (runs["planar"].astype(bool) & tilts).assign_attrs(long_name="tilts and moves in exactly one vertical plane")
+
+
+def knife_edge_remarks(runs: xr.Dataset) -> list[str]:
+    """Return a remark with the number of runs that land exactly flat, and one with those that stay in one plane."""
+    flat, planar = int(lands_flat(runs).sum()), int(stays_in_a_plane(runs).sum())
+    return [
+        *(
+            [f"{plural(flat, 'run')} landed at a tilt of exactly 0: pass a tilt, and count with `upright`"]
+            if flat
+            else []
+        ),
+        *([f"{plural(planar, 'run')} stayed in exactly one vertical plane: pass a tilt out of it"] if planar else []),
+    ]
 
 
 def remark_on_knife_edge(where: str, model: Model, over: Mapping[str, npt.ArrayLike]) -> None:

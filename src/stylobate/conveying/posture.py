@@ -342,4 +342,4 @@ _FALLS = {VerdictWord.STANDS: "does not fall", VerdictWord.OVERTURNS: "falls", V
 
 def _between(values: Sequence[float]) -> str:
     """Write the range of increasing values, such as "0 to 0.01"."""
-    return " to ".join(dict.fromkeys(f"{value:g}" for value in (values[0], values[-1])))
+    return " to ".join(dict.fromkeys(f"{value:.4g}" for value in (values[0], values[-1])))

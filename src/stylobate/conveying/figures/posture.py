@@ -5,7 +5,9 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from stylobate.conveying.feeder import KIND as SHEET
 from stylobate.conveying.posture import KIND, Posture
+from stylobate.errors import ParameterError
 from stylobate.plots.cells import fill_options
 from stylobate.plots.classes import KIND_LOOKS
 from stylobate.plots.kinds import figure_of
@@ -29,6 +31,16 @@ def plot_posture(found: xr.Dataset) -> Figure:
     _draw_peaks(peaks, found)
     figure.suptitle(str(found.attrs["verdict"]).partition(";")[0], fontsize=9.5, x=0.01, ha="left")
     return figure
+
+
+@figure_of(SHEET)
+def refuse_sheet(found: xr.Dataset) -> Figure:
+    """Raise ParameterError: a feeder sheet is a table."""
+    message = (
+        f"result: a feeder sheet is a table (got {found.attrs['kind']!r}). Print it by conveying.sheet_rows, or plot "
+        "the postures of conveying.upright or the speeds of conveying.drift."
+    )
+    raise ParameterError(message)
 
 
 def _draw_shares(axes: Axes, found: xr.Dataset) -> None:
