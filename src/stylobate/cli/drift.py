@@ -48,8 +48,8 @@ def drift(options: Options) -> None:
     interval of its mean velocity is narrow enough. A part that accelerates beyond the friction angle has no mean
     velocity. The result also holds the mean rate of rotation about the axis. Examples:
 
-    stylobate drift --radius 0.02 --height 0.03 --density 7800 --friction-coefficient 0.3 --motion oblique
-    --angle 0.52 --angular-frequency 60 --x acceleration 2 30 29 --figure drift.png
+    stylobate drift --radius 20mm --height 30mm --density 7800 --friction-coefficient 0.3 --motion stroke
+    --frequency 50Hz --angle 30deg --x stroke 0.1mm 1.2mm 23 --tilt 0 0.1deg --figure drift.png
 
     stylobate drift drift.toml --y friction-coefficient 0.1 0.5 9 --output drift.zarr
     """

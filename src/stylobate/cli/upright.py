@@ -48,10 +48,10 @@ def upright(options: Options) -> None:
     The runs differ in initial tilt, in the direction of this tilt and in the phase of the vibration. The shares leave
     out parts that start exactly flat and hop: they always land flat. Examples:
 
-    stylobate upright --radius 0.006 --height 0.04 --density 7850 --friction-coefficient 0.2 --motion stroke
-    --stroke 0.001 --frequency 50 --angle 0.436 --figure upright.png
+    stylobate upright --radius 6mm --height 40mm --density 7850 --friction-coefficient 0.2 --motion stroke
+    --stroke 1mm --frequency 50Hz --angle 25deg --figure upright.png
 
-    stylobate upright upright.toml --tilts 0.001 --tilts 0.01 --friction 0.2 --friction 0.3 --output upright.nc
+    stylobate upright upright.toml --tilts 0.05deg --tilts 0.5deg --friction 0.2 --friction 0.3 --output upright.nc
     """
     source = options["source"]
     stores = f"the store of a posture. Pass its description with --output {source} --resume to show it."
