@@ -190,7 +190,7 @@ def upright(
         "confidence": confidence,
     }
     # The last periods of the mean tilt follow at least one period.
-    least = options.get("rules", OutcomeRules()).periods + 1
+    least = (options.get("rules") or OutcomeRules()).periods + 1
 
     def label(runs: xr.Dataset) -> xr.Dataset:
         posture = _postures(runs, model.column.slenderness, periods * _period_of(motion))
@@ -326,7 +326,7 @@ def _line(ends: Floats, counts: npt.NDArray[np.bool_], settings: dict[str, Any],
 def _remarks(
     runs: xr.Dataset, posture: npt.NDArray[np.int8], counts: npt.NDArray[np.bool_], periods: float, least: int
 ) -> str:
-    """Return what the verdict adds about runs that are too short, and about motion exactly in one plane."""
+    """Return remarks on runs that are too short, and on motion exactly in one plane."""
     undecided = counts & (posture == NOT_COMPUTED)
     short = undecided.any() and periods < least
     remedy = (
