@@ -40,7 +40,7 @@ def checked_values(where: str, name: str, values: npt.ArrayLike, own: Own = None
     own
         Declared numbers of the model and base motion at hand.
     scalar
-        Whether a single number is a list of one.
+        Whether the argument is the values alone, and a single number a list of one.
 
     Raises
     ------
@@ -52,7 +52,7 @@ def checked_values(where: str, name: str, values: npt.ArrayLike, own: Own = None
     UnlikelyInputWarning
         If the largest value was more likely meant in another unit.
     """
-    argument = where if where in (name, f"{name}s") else f"{where}[{name!r}]"
+    argument = where if scalar or where in (name, f"{name}s") else f"{where}[{name!r}]"
     quantity = quantity_of(name, own)
     values = as_numbers(argument, values, quantity.unit)
     try:
