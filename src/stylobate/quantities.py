@@ -189,8 +189,6 @@ class Quantity:
 
     def refusal(self, name: str, number: float) -> str:
         """Write the message for a number outside of the bounds."""
-        if not math.isfinite(number):
-            return f"{name} must be finite, got {number!r} {self.unit}".rstrip()
         demand = f"{self.demand}, {self.note}" if self.note else self.demand
         remedy = degrees_meant(number, self._allows) if self.unit == "rad" else ""
         return f"{name} must {demand}, got {number!r} {self.unit}".rstrip() + (f". {remedy}" if remedy else "")

@@ -9,7 +9,7 @@ import numpy.typing as npt
 from stylobate.base_motions import BaseMotion
 from stylobate.config.parameter_quantities import quantity_of
 from stylobate.engine.parameters import check_names
-from stylobate.errors import ParameterError, as_numbers, require_size
+from stylobate.errors import ParameterError, as_numbers, require_finite, require_size
 from stylobate.models import Model
 from stylobate.quantities import Parameter
 
@@ -65,9 +65,8 @@ def checked_values(where: str, name: str, values: npt.ArrayLike, own: Own = None
         raise ParameterError(message)
     refused = ~quantity.accepts(array)
     if refused.any():
-        number = float(array[refused][0])
-        if np.isfinite(number):
-            require_size(argument, number, quantity.unit)
+        number = require_finite(argument, float(array[refused][0]), quantity.unit)
+        require_size(argument, number, quantity.unit)
         raise ParameterError(quantity.refusal(argument, number))
     for value in (array.min(initial=1.0), array.max(initial=1.0)):
         require_size(argument, float(value), quantity.unit, zero=quantity.gt is None or quantity.gt < 0.0)
