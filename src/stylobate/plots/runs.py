@@ -330,7 +330,8 @@ def _mark_events(axes: Axes, run: Response) -> None:
     """Name the first and the last event above the panel, where they cover no curve."""
     # The first and the last only: a run may uplift and come to rest in every period.
     events = [event for event in run.events if not event.repeats]
-    named = [event for event in dict.fromkeys((*events[:1], *events[-1:])) if event.kind in EVENT_NAMES]
+    ends = {event.kind: event for event in (*events[-1:], *events[:1])}  # of one kind, the first
+    named = sorted((one for one in ends.values() if one.kind in EVENT_NAMES), key=lambda one: one.time)
     end = float(run.data["time"][-1])
     for place, event in enumerate(named):
         late = event.time > _LATE * end
@@ -355,7 +356,7 @@ def _finish(axes: Mapping[str, Axes], runs: Sequence[Response], *, planar: bool)
     limits = sorted({float(run.data.attrs["slenderness"]) for run in runs})
     peak = max(float(run.data["amplitude"].max()) for run in runs)
     if "tilt" in axes:
-        _finish_tilt(axes["tilt"], limits, peak, planar=planar)
+        _finish_tilt(axes["tilt"], runs, limits, peak, planar=planar)
     labels = {
         "azimuth": "azimuth $\\beta$\n[turns]",
         "travel": f"travel\n[{length_unit(data)}]",
@@ -386,24 +387,25 @@ def _finish(axes: Mapping[str, Axes], runs: Sequence[Response], *, planar: bool)
         path.legend(handles=ends, loc="best", fontsize="small", handlelength=1.0, borderaxespad=0.0)
 
 
-def _finish_tilt(axes: Axes, limits: Sequence[float], peak: float, *, planar: bool) -> None:
+def _finish_tilt(axes: Axes, runs: Sequence[Response], limits: Sequence[float], peak: float, *, planar: bool) -> None:
     axes.set_ylabel("tilt [rad]" if planar else r"tilt $\theta$ [rad]")
     axes.margins(y=0.15)
     # A limit far above the tilts would press them to the bottom.
     shown = [c for c in limits if peak > c / 8.0 or peak == 0.0]
-    _draw_limits(axes, r"\theta = c", {c: c for c in shown}, signed=planar)
+    fallen = any(abs(float(run.data["amplitude"][-1])) > run.data.attrs["slenderness"] / 2.0 for run in runs)
+    _draw_limits(axes, r"\theta = c", {c: c for c in shown}, signed=planar, right=not fallen)
     if not planar:
         axes.set_ylim(bottom=0.0)
 
 
-def _draw_limits(axes: Axes, symbol: str, limits: Mapping[float, float], *, signed: bool) -> None:
+def _draw_limits(axes: Axes, symbol: str, limits: Mapping[float, float], *, signed: bool, right: bool = True) -> None:
     """Draw a dashed line at each of the `limits`, with its symbol; with the slenderness if there are several."""
-    look: dict[str, Any] = {"ha": "left", "va": "bottom", "fontsize": "small", "color": GREY}
+    look: dict[str, Any] = {"ha": "right" if right else "left", "va": "bottom", "fontsize": "small", "color": GREY}
     for level, c in limits.items():
         for sign in (1.0, -1.0) if signed else (1.0,):
             axes.axhline(sign * level, **_LIMIT)
         name = f"${symbol}$" if len(limits) == 1 else f"${symbol}$, $c$ = {c:.3g}"
-        axes.annotate(name, (0.01, level), xycoords=("axes fraction", "data"), **look)
+        axes.annotate(name, (0.99 if right else 0.01, level), xycoords=("axes fraction", "data"), **look)
 
 
 def length_unit(data: xr.Dataset) -> str:
