@@ -3,9 +3,9 @@
 import pytest
 
 from stylobate import config, conveying, earthquakes
-from stylobate.config.run_numbers import OneRun, SharedByRuns, SingleRun, Stroboscopic, numbers_of
 from stylobate.errors import ConfigError
 from stylobate.quantities import parameter_of
+from stylobate.run_arguments import OneRun, SharedByRuns, SingleRun, Stroboscopic, numbers_of
 
 CONFIGS = [
     (config.SimulationConfig, SingleRun),

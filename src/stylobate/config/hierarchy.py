@@ -11,7 +11,7 @@ from stylobate.config.declared import number_or_word
 from stylobate.config.description import Config, built
 from stylobate.config.models import DEFAULT_MODEL, default_values, described_model
 from stylobate.config.motions import AT_REST, MotionConfig
-from stylobate.config.run_numbers import OneRun, problems_of_the_numbers
+from stylobate.config.run_numbers import fields_of, problems_of_the_numbers
 from stylobate.config.simulation import (
     OF_OTHER_COMMANDS,
     OneColumn,
@@ -24,6 +24,7 @@ from stylobate.config.simulation import (
 )
 from stylobate.errors import ConfigError, require_positive
 from stylobate.models.declared import MODELS, dissipation_of
+from stylobate.run_arguments import OneRun
 
 # The most general model declares the dissipation parameters of all other models.
 _MOST_GENERAL = "rolling"
@@ -69,7 +70,7 @@ class _HierarchyCase(OneColumn):
     motion: MotionConfig = AT_REST
 
 
-class HierarchyConfig(OneRun, _HierarchyCase):
+class HierarchyConfig(fields_of(OneRun, "duration"), _HierarchyCase):  # type: ignore[misc]
     """A case of the model hierarchy: `column`, damping under `model`, `motion`, numbers of a run, and `hierarchy`."""
 
     rules: dict[str, float] = Field(default_factory=dict)

@@ -8,7 +8,7 @@ from pydantic import Field
 from stylobate.base_motions import BaseMotion
 from stylobate.config.description import built
 from stylobate.config.motions import is_to_end, made_by
-from stylobate.config.run_numbers import SharedByRuns, SingleRun, numbers_of, problems_of_the_numbers
+from stylobate.config.run_numbers import fields_of, problems_of_the_numbers
 from stylobate.config.simulation import (
     OF_OTHER_COMMANDS,
     Case,
@@ -22,9 +22,10 @@ from stylobate.kinds import with_places
 from stylobate.models import Model
 from stylobate.quantities import parameters_of
 from stylobate.results import OutcomeRules
+from stylobate.run_arguments import SharedByRuns, SingleRun, numbers_of
 
 
-class ManyRuns(SharedByRuns, Case):
+class ManyRuns(fields_of(SharedByRuns), Case):  # type: ignore[misc]
     """The case that all runs share, with the argument names of `simulate_ensemble`.
 
     Parameters

@@ -17,7 +17,7 @@ from stylobate.config.file_values import DEEPEST, check_file_values
 from stylobate.config.models import DEFAULT_MODEL, ModelConfig, describe_model, described_model
 from stylobate.config.motions import AT_REST, MotionConfig, describe_motion, is_to_end
 from stylobate.config.records import RecordMotion, anchored
-from stylobate.config.run_numbers import SingleRun, problems_of_the_numbers
+from stylobate.config.run_numbers import fields_of, problems_of_the_numbers
 from stylobate.errors import (
     ConfigError,
     FileError,
@@ -28,6 +28,7 @@ from stylobate.kinds import with_places
 from stylobate.models import Model
 from stylobate.quantities import exact_repr
 from stylobate.results import OutcomeRules
+from stylobate.run_arguments import SingleRun
 from stylobate.units import has_unit, is_angle, split
 
 
@@ -77,7 +78,7 @@ def _texts_with_units(values: Any, place: str = "") -> Iterator[tuple[str, str]]
         yield place, values
 
 
-class SimulationConfig(SingleRun, Case):
+class SimulationConfig(fields_of(SingleRun, "duration"), Case):  # type: ignore[misc]
     """A run: `column`, `model`, `motion` and the arguments of `simulate`, with the same names.
 
     Under a record, a pulse or a sine sweep the duration is optional. The default is the duration of the motion and a

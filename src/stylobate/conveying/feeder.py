@@ -16,9 +16,9 @@ from stylobate.conveying.transport import TOLERANCE, Transport, drift, throw_num
 from stylobate.errors import UnsupportedError
 from stylobate.models import Model, Sliding
 from stylobate.progress import Progress, shows_progress
+from stylobate.run_arguments import RunOptions
 from stylobate.studies.sweeps import Executor
 from stylobate.studies.sweeps.quantities import checked_values
-from stylobate.studies.sweeps.recipe import RunOptions
 from stylobate.text import plural
 from stylobate.theory import BlockPhase, block_cycle, mean_block_speed
 

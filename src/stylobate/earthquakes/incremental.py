@@ -22,12 +22,12 @@ from stylobate.errors import Outcome, ParameterError, as_numbers, require_finite
 from stylobate.models import Model
 from stylobate.progress import Progress, shows_progress
 from stylobate.results.outcomes import NOT_COMPUTED
+from stylobate.run_arguments import RunOptions
 from stylobate.studies.checks import remark_on_lengths, require_no_tilt_limit
 from stylobate.studies.maps.safe_distance import UNRESOLVED
 from stylobate.studies.sweeps import Executor, Sweep
 from stylobate.studies.sweeps.labelled import labelled_sweep
 from stylobate.studies.sweeps.quantities import Floats, checked_values
-from stylobate.studies.sweeps.recipe import RunOptions
 
 _SET_BY_ARGUMENTS = {
     "motion": "records",

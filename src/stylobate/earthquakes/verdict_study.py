@@ -50,12 +50,12 @@ from stylobate.results import OutcomeRules
 from stylobate.results.damping_yardstick import damping_yardstick, yardstick_text
 from stylobate.results.outcomes import NOT_COMPUTED
 from stylobate.results.verdict import KIND, Verdict
+from stylobate.run_arguments import RunOptions, defaults_of
 from stylobate.studies.checks import require_no_tilt_limit
 from stylobate.studies.maps.uncertainty_exponent import overturned_or_not
 from stylobate.studies.proportions import fraction_interval, require_confidence
 from stylobate.studies.sweeps import Executor, Sweep, run_sweep
 from stylobate.studies.sweeps.quantities import Floats
-from stylobate.studies.sweeps.recipe import DEFAULTS, RunOptions
 from stylobate.text import did_you_mean, plural
 
 # A rim that carries no twisting moment, and one that keeps a column from turning about its axis.
@@ -434,7 +434,7 @@ class _Case:
         clock = values.get("clock", np.ones(count))
         size = own.pop("size", np.ones(count)) / clock**2
         tail = tail_of(model.column) * np.sqrt(size) if self.tail is None else self.tail / clock
-        tilt = self.options.get("tilt", DEFAULTS["tilt"])
+        tilt = {**defaults_of(RunOptions), **self.options}["tilt"]
         alpha, gravity = np.arctan(own.get("slenderness", model.column.slenderness)), model.column.gravity
         return {
             **own,
@@ -446,9 +446,8 @@ class _Case:
         }
 
     def _integrated(self, tolerance: float) -> RunOptions:
-        chosen = cast(
-            "dict[str, Any]", {**self.options, "rtol": tolerance * self.options.get("rtol", DEFAULTS["rtol"])}
-        )
+        chosen = {**defaults_of(RunOptions), **self.options}
+        chosen["rtol"] *= tolerance
         if chosen.get("atol") is not None:
             chosen["atol"] = tolerance * chosen["atol"]
         return cast("RunOptions", chosen)

@@ -37,9 +37,9 @@ from stylobate.results.assessment import Assessment
 from stylobate.results.few_records import FEW_RECORDS
 from stylobate.results.report_details import ReportDetails
 from stylobate.results.verdict import require_variations
+from stylobate.run_arguments import RunOptions
 from stylobate.studies.checks import require_no_tilt_limit
 from stylobate.studies.sweeps import Executor
-from stylobate.studies.sweeps.recipe import RunOptions
 
 # Packages whose versions can change the last digits of the results.
 _PACKAGES = ("stylobate", "numpy", "scipy", "llvmlite", "xarray")

@@ -17,9 +17,9 @@ from stylobate.earthquakes.verdict_study import has_other_contact_law, with_othe
 from stylobate.engine.parameters import changed_model, model_names
 from stylobate.errors import ParameterError, require_not_negative, require_positive
 from stylobate.models import Model
+from stylobate.run_arguments import RunOptions
 from stylobate.studies.sweeps.fingerprint import identity_of
 from stylobate.studies.sweeps.quantities import Floats
-from stylobate.studies.sweeps.recipe import RunOptions
 
 CENTRAL = "central"
 NO_VERTICAL = "central, no vertical"

@@ -11,7 +11,6 @@ import numpy.typing as npt
 from stylobate.engine.doubt import FALLEN, in_doubt
 from stylobate.engine.ensembles.batch import Batch
 from stylobate.engine.ensembles.contacts import CONTACT_KINDS, contact_arrays
-from stylobate.engine.ensembles.options import Options
 from stylobate.engine.ensembles.orbit_columns import OrbitReached
 from stylobate.engine.ensembles.outcomes import late_periods, outcomes
 from stylobate.engine.kernel.columns import STATE, Log, Setup, Status
@@ -22,6 +21,7 @@ from stylobate.errors import Outcome
 from stylobate.models import Model
 from stylobate.models.contact import LEAST_FORCE
 from stylobate.results.outcomes import NOT_COMPUTED, NUMERICALLY_UNCERTAIN, outcome_attributes
+from stylobate.run_arguments import Options
 
 Floats = npt.NDArray[np.float64]
 Arrays = dict[str, npt.NDArray[Any]]
@@ -115,8 +115,8 @@ _DEMANDS = ("peak_friction_demand", "peak_pivoting_demand", "minimum_normal_forc
 
 def empty(model: Model, options: Options, count: int) -> Arrays:
     """Return arrays for the results of `count` runs, filled with the values for runs that are not computed."""
-    sizes = {"axis": 2, "strobe": options.strobes, "sample": options.samples}
-    left_out = {*(() if options.demands else _DEMANDS), *(("end_spin",) if model.spin_state is None else ())}
+    sizes = {"axis": 2, "strobe": options["strobes"], "sample": options["samples"] or 0}
+    left_out = {*(() if options["demands"] else _DEMANDS), *(("end_spin",) if model.spin_state is None else ())}
     left_out |= {*(() if model.switches else _CONTACTS)}
     shapes = {
         name: tuple(sizes[dim] for dim in quantity.dims)
@@ -192,7 +192,7 @@ def _all(batch: Batch) -> Arrays:
         "uplifts": batch.log(Log.RELEASES),
         "steps": batch.log(Log.STEPS),
     }
-    if batch.plan.options.demands:
+    if batch.plan.options["demands"]:
         arrays |= _demands(batch)
     if batch.plan.model.switches:
         arrays |= contact_arrays(batch, late.span)
@@ -210,7 +210,7 @@ def _all(batch: Batch) -> Arrays:
             arrays[names[1]] = notes[..., 2:4] / scale[:, np.newaxis, np.newaxis]
         if notes.shape[1] and not strobes:
             arrays["sample_time"] = notes[..., 4] * scale[:, np.newaxis]
-    if batch.plan.model.switches and batch.plan.options.strobes:
+    if batch.plan.model.switches and batch.plan.options["strobes"]:
         places = batch.places
         arrays["strobe_footprint"] = places[..., :2] * batch.models.length[:, np.newaxis, np.newaxis]
         arrays["strobe_twist"] = places[..., 2]

@@ -18,13 +18,14 @@ from stylobate.models.declared import dissipation_of
 from stylobate.models.model import require_column
 from stylobate.results import Response
 from stylobate.results.outcomes import outcome_attributes
-from stylobate.studies.hierarchy.models import Case, HierarchyArguments, RunArguments
+from stylobate.run_arguments import Accuracy
+from stylobate.studies.hierarchy.models import Case, HierarchyArguments
 from stylobate.studies.hierarchy.runs import Course, Floats, largest_distance
 
 # Number of times at which models are compared, unless the user requests histories of another length.
 _TIMES = 2001
 
-_OF_SIMULATE = tuple(RunArguments.__annotations__)
+_OF_SIMULATE = tuple(Accuracy.__annotations__)
 
 
 def model_hierarchy(

@@ -17,6 +17,7 @@ from stylobate.models import Model
 from stylobate.progress import Progress, shows_progress
 from stylobate.results.outcomes import NOT_COMPUTED
 from stylobate.results.random_numbers import Rng
+from stylobate.run_arguments import RunOptions
 from stylobate.studies.checks import SYSTEM_STARTS, one_parameter, require_starts
 from stylobate.studies.maps.attractor_continuation import Branches, follow_branches
 from stylobate.studies.maps.attractor_search import NOT_SETTLED, REMEDY, Found, find_attractors
@@ -27,7 +28,6 @@ from stylobate.studies.proportions import fraction_interval, require_confidence
 from stylobate.studies.sweeps import Executor, Sweep
 from stylobate.studies.sweeps.designs import Box, whole
 from stylobate.studies.sweeps.labelled import labelled_sweep
-from stylobate.studies.sweeps.recipe import RunOptions
 
 
 @shows_progress("basin fractions")
