@@ -13,7 +13,8 @@ from typing import Annotated, Any, Literal, ParamSpec, TypedDict, TypeVar, cast,
 
 from stylobate.errors import MOST_STEPS, ParameterError
 from stylobate.quantities import QUARTER_TURN, Parameter, Quantity, parameter_of
-from stylobate.results import KnownOrbits, OutcomeRules
+from stylobate.results import OutcomeRules
+from stylobate.results.known_orbits import KnownOrbits
 from stylobate.text import did_you_mean
 
 _P = ParamSpec("_P")
@@ -230,7 +231,7 @@ class OfEnsemble(Options, total=False):
     known_orbits: Annotated[
         KnownOrbits | None,
         Argument(
-            None,
+            (),
             "Stable periodic orbits to which runs may converge, each a `KnownOrbit`. A run ends early, as ROLLING or "
             "ROCKING, if its distance from such an orbit falls as the multiplier of the orbit requires; the run would "
             'then repeat at its full duration. Planar runs are not compared with orbits. See "Converged runs" on the '
@@ -381,3 +382,6 @@ def _described(group: Any) -> str:
     """Write the arguments of a group as lines of a docstring; an argument without a meaning of its own is left out."""
     said = ((one.name, wrap(one.says, 112)) for one in arguments_of(group).values() if one.says)
     return "".join(f"    {name}\n" + "".join(f"        {line}\n" for line in lines) for name, lines in said)
+
+
+RunOptions.__doc__ = f"{RunOptions.__doc__}\n\n    Parameters\n    ----------\n{_described(RunOptions)}"

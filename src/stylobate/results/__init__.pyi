@@ -1,6 +1,6 @@
 from .assessment import Assessment
 from .findings import ClaimStatus, Finding, PaperCheck, Section
-from .known_orbits import KnownOrbit, KnownOrbits
+from .known_orbits import KnownOrbit
 from .report_details import DesignSpectrum, ReportDetails
 from .response import Event, Response
 from .rules import OutcomeRules
@@ -15,7 +15,6 @@ __all__ = [
     "Event",
     "Finding",
     "KnownOrbit",
-    "KnownOrbits",
     "OutcomeRules",
     "PaperCheck",
     "ReportDetails",

@@ -11,6 +11,7 @@ from stylobate.base_motions import BaseMotion
 from stylobate.base_motions.one_of import members_of
 from stylobate.base_motions.varying import stated_numbers, with_numbers
 from stylobate.models import Model
+from stylobate.results.known_orbits import as_orbits
 from stylobate.run_arguments import RunOptions
 from stylobate.studies.known_rolling import known_rolling
 from stylobate.studies.sweeps.quantities import OF_A_RUN, Floats
@@ -38,7 +39,7 @@ class Recipe:
         own = {name: array for name, array in values.items() if name not in OF_A_RUN}
         if chosen.pop("end_converged") and count > 0:
             rolling = known_rolling(self.model, self.motion, own, count)
-            chosen["known_orbits"] = (*chosen["known_orbits"], rolling)
+            chosen["known_orbits"] = (*as_orbits(chosen["known_orbits"]), rolling)
         return {**chosen, "duration": self._durations(values), "parameters": own}
 
     def _durations(self, values: Mapping[str, Floats]) -> Floats | float:
