@@ -34,6 +34,29 @@ def test_every_exception_is_a_stylobate_error_and_bad_input_a_value_error():
     assert not issubclass(FileError, ValueError)
 
 
+@pytest.mark.parametrize(
+    ("make", "question"),
+    [
+        (lambda: sb.Column.solid(radius=0.1, hight=1.0, density=1.0), "'hight'; did you mean height?"),
+        (lambda: sb.Harmonic.circular(aceleration=1.0, angular_frequency=1.0), "did you mean acceleration?"),
+        (lambda: sb.simulate(None, tlit=(0.1, 0.0)), r"^simulate\(\) got an unexpected keyword argument 'tlit'"),
+        (lambda: sb.simulate_ensemble(None, parametres={}), "did you mean parameters?"),
+    ],
+)
+def test_an_unknown_argument_is_a_type_error_with_a_suggestion(make, question):
+    with pytest.raises(TypeError, match=question.replace("?", r"\?")):
+        make()
+
+
+def test_an_unknown_public_name_has_a_suggestion():
+    with pytest.raises(AttributeError, match=r"has no attribute 'Wobling'; did you mean Wobbling\?$"):
+        _ = sb.Wobling
+    with pytest.raises(AttributeError, match=r"has no attribute 'nothing_like_it'$"):
+        _ = sb.nothing_like_it
+    with pytest.raises(ParameterError, match=r"did you mean el centro 1940\?$"):
+        sb.sample_record("elcentro")
+
+
 def test_a_description_error_has_one_line_for_each_problem():
     error = ConfigError(["column.radius is missing", "duration is missing"])
     assert error.problems == ("column.radius is missing", "duration is missing")

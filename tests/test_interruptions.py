@@ -34,6 +34,20 @@ def stopped(study, *arguments, after, **named):
     return caught.value.partial
 
 
+def test_ctrl_c_before_the_first_result_is_an_interruption_without_partial_result(monkeypatch):
+    def interrupted(*_, **__):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("stylobate.engine.ensemble.broadcast", interrupted)
+    for study in (
+        lambda: sb.simulate_ensemble(SLENDER, CIRCLE, duration=1.0),
+        lambda: sb.studies.overturning_map(SLENDER, CIRCLE, over={"tilt_x": [0.0], "tilt_y": [0.0]}, periods=2.0),
+    ):
+        with pytest.raises(Interrupted, match=r"nothing is kept|after 0") as caught:
+            study()
+        assert caught.value.partial is None or not (caught.value.partial["outcome"] >= 0).any()
+
+
 @pytest.fixture(scope="module")
 def branch():
     orbit = sb.orbits.periodic_orbit(SLENDER, CIRCLE)
@@ -118,9 +132,7 @@ def test_a_verdict_is_kept_and_counts_the_other_variations_as_undecided():
 
 def test_ctrl_c_before_the_first_result_has_no_partial_result_and_at_the_end_the_whole():
     arguments = {"bounds": (0.05, 0.08), "angular_frequency": (1.0, 3.0), "values": [0.065]}
-    with pytest.raises(KeyboardInterrupt) as caught:
-        sb.studies.stability_boundary(SLENDER, CIRCLE, **arguments, progress=StopAfter(1))
-    assert not isinstance(caught.value, Interrupted)
+    assert stopped(sb.studies.stability_boundary, SLENDER, CIRCLE, **arguments, after=1) is None
     arguments = {"values": [0.05], "angular_frequency": [2.0, 3.0]}
     partial = stopped(sb.studies.averaging_map, SLENDER, CIRCLE, **arguments, after=1)
     xr.testing.assert_identical(partial, sb.studies.averaging_map(SLENDER, CIRCLE, **arguments))

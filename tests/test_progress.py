@@ -124,6 +124,19 @@ def test_a_bar_is_due_also_before_the_first_report(look):
     assert look.seen[-1] == News("work", "", 0, None)
 
 
+def test_a_bar_appears_on_a_terminal_while_nothing_is_reported(look):
+    @shows_progress("work")
+    def work(*, progress=None):
+        del progress
+        end = time.monotonic() + 10.0
+        while not look.opened and time.monotonic() < end:
+            time.sleep(0.01)
+        assert look.opened
+
+    work()
+    assert look.closed == 1
+
+
 def test_other_threads_show_no_bar_and_call_a_function(look):
     told = []
     one = threading.Thread(target=sb.simulate_ensemble, args=(MODEL, LINE), kwargs=RUNS)

@@ -59,7 +59,7 @@ def test_dir_lists_the_public_names():
 
 
 def test_an_unknown_name_is_an_attribute_error():
-    with pytest.raises(AttributeError, match="No stylobate attribute colum"):
+    with pytest.raises(AttributeError, match=r"no attribute 'colum'; did you mean Column\?"):
         stylobate.colum  # noqa: B018
 
 

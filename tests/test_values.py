@@ -285,6 +285,29 @@ def test_the_card_of_a_run_has_outcome_reason_thresholds_and_whether_it_is_uncer
     assert card["no return tilt"][-1] == f"{four_digits(run().thresholds['no_return_tilt'])} rad"
 
 
+def test_thresholds_are_folded_and_an_infinite_one_is_none():
+    html = run()._repr_html_()
+    shown, folded = html.split("<details>")
+    assert "no return tilt" not in shown
+    assert "no return tilt" in folded
+    assert {"outcome", "because", "peak tilt", "events"} <= {row[0] for row in Cells(shown).rows}
+    assert "inf" not in " ".join(row[-1] for row in Cells(html).rows).split()
+
+
+def test_cards_of_a_bifurcation_a_hazard_curve_and_a_known_orbit_have_names_and_units():
+    (hopf,) = (one for one in branch().bifurcations if one.kind == "Neimark-Sacker")
+    assert card_of(hopf)["angular frequency"][-1] == "1.397 rad/s"
+    assert card_of(hopf)["loss of stability"][-1] == "supercritical"
+    curve = sb.earthquakes.HazardCurve(intensity=[1.0, 4.0], rate=[1e-2, 1e-4], units="m s-2", quantity="PGA")
+    assert card_of(curve)["PGA"][-1] == "1 to 4 m/s²"
+    assert card_of(curve)["annual rate of exceedance"][-1] == "0.01 to 0.0001 1/a"
+    known = sb.KnownOrbit(
+        tilt=(0.1, 0.0), tilt_rate=(0.0, 0.2), multiplier=0.5, turns=1.0, mean_tilt=np.array([0.1, 0.2, 0.3])
+    )
+    assert card_of(known)["tilt rate"][-1] == "0, 0.2 rad/s"
+    assert card_of(known)["mean tilt"][-1] == "array of shape (3,) rad"
+
+
 def test_the_card_of_a_verdict_has_share_interval_and_the_share_of_each_contact_law():
     card, found = card_of(verdict()), verdict()
     assert card["verdict"][-1] == found.word.value

@@ -23,4 +23,9 @@ def __getattr__(name: str) -> Any:
         from importlib.metadata import version  # noqa: PLC0415
 
         return version("stylobate")
+    if name not in __all__:
+        from stylobate.text import did_you_mean  # noqa: PLC0415
+
+        message = f"module {__name__!r} has no attribute {name!r}; {did_you_mean(name, __all__)}".rstrip("; ")
+        raise AttributeError(message)
     return _import_name(name)

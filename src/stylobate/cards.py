@@ -31,10 +31,18 @@ class Section(NamedTuple):
     rows: Sequence[Row]
 
 
-def card(title: str, sections: Iterable[Section]) -> str:
-    """Render a title and sections of rows as a table in HTML; sections without rows are left out."""
+def card(title: str, sections: Iterable[Section], folded: Section | None = None) -> str:
+    """Render a title and sections of rows as a table in HTML; sections without rows are left out.
+
+    A `folded` section stands below the table; a click on its heading shows its rows.
+    """
     body = "".join(map(_section, (one for one in sections if one.rows)))
-    return f'<table style="{_CARD}"><caption style="{_TITLE}">{escape(title)}</caption>{body}</table>'
+    table = f'<table style="{_CARD}"><caption style="{_TITLE}">{escape(title)}</caption>{body}</table>'
+    if folded is None or not folded.rows:
+        return table
+    rows = _section(folded._replace(heading=""))
+    summary = f'<summary style="{_PALE}">{escape(folded.heading)}</summary>'
+    return f'{table}<details>{summary}<table style="{_CARD}">{rows}</table></details>'
 
 
 def _section(section: Section) -> str:

@@ -18,14 +18,19 @@
 Misuse raises an exception. A physical result, numerical failure included, is an `Outcome`.
 """
 
+import inspect
 import math
 import warnings
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Sequence
 from enum import IntEnum
-from typing import Any, NamedTuple
+from functools import cache, wraps
+from typing import Any, NamedTuple, ParamSpec, TypeVar
 
 from stylobate import units
 from stylobate.text import did_you_mean
+
+_P = ParamSpec("_P")
+_T = TypeVar("_T")
 
 SMALLEST, LARGEST = 1e-30, 1e15
 """Limits for the size of a number other than zero: numbers of columns are far inside, and no product overflows."""
@@ -112,7 +117,8 @@ class Interrupted(KeyboardInterrupt):
     Attributes
     ----------
     partial
-        The result so far, an xarray.Dataset; runs that were not computed have outcome −1 and NaN.
+        The result so far, an xarray.Dataset; runs that were not computed have outcome −1 and NaN. None if Ctrl-C came
+        before the first result, during imports or compilation.
     """
 
     def __init__(self, message: str, partial: Any) -> None:
@@ -215,6 +221,35 @@ class Outcome(Named, IntEnum):
 
     def __format__(self, spec: str) -> str:
         return format(self.label, spec)
+
+
+def refuse_unknown_arguments(function: Callable[..., Any], names: Iterable[str]) -> None:
+    """Raise TypeError, with a suggestion, if the function has no keyword argument of one of these names."""
+    known = _argument_names(function)
+    for name in names:
+        if known and name not in known:
+            question = did_you_mean(name, known)
+            message = f"{function.__qualname__}() got an unexpected keyword argument {name!r}; {question}".rstrip("; ")
+            raise TypeError(message)
+
+
+def suggests_arguments(function: Callable[_P, _T]) -> Callable[_P, _T]:
+    """Suggest the most similar argument for an unknown one; a decorator."""
+
+    @wraps(function)
+    def suggesting(*arguments: _P.args, **named: _P.kwargs) -> _T:
+        refuse_unknown_arguments(function, named)
+        return function(*arguments, **named)
+
+    return suggesting
+
+
+@cache
+def _argument_names(function: Callable[..., Any]) -> frozenset[str]:
+    """Return the names of the arguments; empty if any name is accepted."""
+    arguments = inspect.signature(function).parameters
+    accepts_any = any(one.kind is one.VAR_KEYWORD for one in arguments.values())
+    return frozenset(() if accepts_any else arguments)
 
 
 def require_finite(name: str, value: float, unit: str = "") -> float:

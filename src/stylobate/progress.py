@@ -15,7 +15,7 @@ from functools import wraps
 from importlib import import_module
 from typing import TYPE_CHECKING, Any, NamedTuple, ParamSpec, TypeVar
 
-from stylobate.errors import ParameterError
+from stylobate.errors import Interrupted, ParameterError, refuse_unknown_arguments
 from stylobate.text import four_digits
 
 if TYPE_CHECKING:
@@ -83,6 +83,7 @@ def shows_progress(what: str, read: Callable[..., News] = counted) -> Callable[[
     def decorated(function: Callable[_P, _T]) -> Callable[_P, _T]:
         @wraps(function)
         def reporting(*arguments: _P.args, **named: _P.kwargs) -> _T:
+            refuse_unknown_arguments(function, named)
             with _report(what, read, named.get("progress")) as report:
                 named["progress"] = report
                 return function(*arguments, **named)
@@ -120,9 +121,15 @@ def _report(what: str, read: Callable[..., News], progress: object) -> Iterator[
     shown = (progress is None or progress is True) and not _running and _place()
     bar = _Bar(what, read) if shown else None
     report = report_of(progress) if bar is None else bar
+    outermost = not _running
     _running.append(report)
     try:
         yield report
+    except KeyboardInterrupt as stop:
+        if isinstance(stop, Interrupted) or not outermost:
+            raise
+        message = f"{what}: interrupted, and nothing is kept; `partial` is None"
+        raise Interrupted(message, None) from stop
     finally:
         _running.pop()
         if bar is not None:
@@ -141,12 +148,20 @@ def _place() -> str:
 
 
 class _Bar:
-    """A bar that appears when it is due; rich, which draws it, is imported then."""
+    """A bar that appears when it is due; rich, which draws it, is imported then.
+
+    On a terminal a timer draws it, since imports and compilation before the first run report nothing.
+    """
 
     def __init__(self, what: str, read: Callable[..., News]) -> None:
         self._what, self._read, self._begun = what, read, time.monotonic()
         self._news = News("", "", 0, None)
         self._drawn: _Drawn | None = None
+        self._lock, self._closed = threading.RLock(), False
+        self._timer = threading.Timer(DUE, self.beat)
+        self._timer.daemon = True
+        if _place() == "terminal":
+            self._timer.start()
 
     def __call__(self, *news: Any) -> None:
         self._news = self._read(*news)
@@ -154,6 +169,11 @@ class _Bar:
 
     def beat(self) -> None:
         """Draw the bar if it is due."""
+        with self._lock:
+            if not self._closed:
+                self._draw()
+
+    def _draw(self) -> None:
         news = self._news._replace(what=self._news.what or self._what)
         if self._drawn is None and time.monotonic() - self._begun >= DUE:
             # In a thread, because an import that Ctrl-C interrupts may leave modules half imported.
@@ -166,8 +186,11 @@ class _Bar:
 
     def close(self) -> None:
         """Remove the bar."""
-        if self._drawn is not None:
-            self._drawn.close()
+        self._timer.cancel()
+        with self._lock:
+            self._closed = True
+            if self._drawn is not None:
+                self._drawn.close()
 
 
 class _Drawn:

@@ -26,6 +26,7 @@ from stylobate.errors import (
     ParameterError,
     UnlikelyInputWarning,
     as_float,
+    refuse_unknown_arguments,
     require_size,
     require_vector,
     require_whole,
@@ -467,6 +468,7 @@ def checked_arguments(make: Callable[_P, _T]) -> Callable[_P, _T]:
 
     @wraps(make)
     def checking(*arguments: _P.args, **values: _P.kwargs) -> _T:
+        refuse_unknown_arguments(make, values)
         declared = parameters_of(make)
         checked: Any = {name: declared[name].checked(one) if name in declared else one for name, one in values.items()}
         made = make(*arguments, **checked)

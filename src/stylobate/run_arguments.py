@@ -11,11 +11,10 @@ from functools import cache, wraps
 from textwrap import wrap
 from typing import Annotated, Any, Literal, ParamSpec, TypedDict, TypeVar, cast, get_args, get_type_hints
 
-from stylobate.errors import MOST_STEPS, ParameterError
+from stylobate.errors import MOST_STEPS, ParameterError, refuse_unknown_arguments
 from stylobate.quantities import QUARTER_TURN, Parameter, Quantity, parameter_of
 from stylobate.results import OutcomeRules
 from stylobate.results.known_orbits import KnownOrbits
-from stylobate.text import did_you_mean
 
 _P = ParamSpec("_P")
 _T = TypeVar("_T")
@@ -352,12 +351,10 @@ def takes(group: Any) -> Callable[[Callable[_P, _T]], Callable[_P, _T]]:
     def decorated(function: Callable[_P, _T]) -> Callable[_P, _T]:
         defaults, signature = defaults_of(group), inspect.signature(function)
         own = {name: one for name, one in signature.parameters.items() if one.kind is not one.VAR_KEYWORD}
-        known = {*own, *defaults}
 
         @wraps(function)
         def call(*arguments: _P.args, **named: _P.kwargs) -> _T:
-            if not named.keys() <= known:
-                raise TypeError(_unknown(function.__name__, min(named.keys() - known), known))
+            refuse_unknown_arguments(call, named)
             return function(*arguments, **{**defaults, **named})
 
         keyword = inspect.Parameter.KEYWORD_ONLY
@@ -371,11 +368,6 @@ def takes(group: Any) -> Callable[[Callable[_P, _T]], Callable[_P, _T]]:
         return call
 
     return decorated
-
-
-def _unknown(function: str, name: str, known: set[str]) -> str:
-    question = did_you_mean(name, known)
-    return f"{function}() got an unexpected keyword argument {name!r}{question and f'; {question}'}"
 
 
 def _described(group: Any) -> str:

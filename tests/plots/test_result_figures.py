@@ -81,6 +81,14 @@ def test_a_size_that_is_none_is_refused(run, size):
         sb.plot(run, size=size)
 
 
+@pytest.mark.parametrize("draw", [sb.plot, sb.plots.plot_interactive])
+def test_what_cannot_be_drawn_in_a_sequence_is_named(run, draw):
+    with pytest.raises(ParameterError, match=r"^result: nothing is in it \(got \[\]\)\. Pass one run"):
+        draw([])
+    with pytest.raises(ParameterError, match=r"^result\[1\]: .*\(got int\)\. Remove it"):
+        draw([run, 3])
+
+
 def test_a_result_of_one_panel_is_drawn_in_the_axes_of_the_caller(run, line):
     figure, axes = plt.subplots(1, 3)
     try:
@@ -91,7 +99,7 @@ def test_a_result_of_one_panel_is_drawn_in_the_axes_of_the_caller(run, line):
         assert axes[1].get_legend() is not None
         assert len(figure.axes) == 3
         curves = sb.studies.response_curves(sb.Slender(STONE), CIRCLE, angular_frequency=[3.0, 4.0])
-        with pytest.raises(ParameterError, match="several panels"):
+        with pytest.raises(ParameterError, match=r"several panels.*Leave axes out and pass size; runs, ensembles"):
             sb.plot(curves, axes=axes[0])
         with pytest.raises(ParameterError, match="axes must be Matplotlib's Axes, got ndarray"):
             sb.plot(run, axes=axes)

@@ -84,3 +84,36 @@ def test_a_dimension_that_is_missing_suggests_the_nearest():
     runs = sb.earthquakes.incremental_dynamic_analysis(MODEL, PULSES, scales=SCALES)
     with pytest.raises(ParameterError, match=r"^over: .*\(got 'records'\)\. did you mean record\?"):
         to_dataframe(runs, over="records")
+
+
+def test_tables_state_the_units_of_columns_and_index():
+    run = sb.simulate(MODEL, CIRCLE, duration=4.0)
+    units = run.to_dataframe().attrs["units"]
+    assert units["time"] == "s"
+    assert units["tilt_x"] == run.data["tilt"].attrs["units"]
+    record = sb.sample_record()
+    table = record.to_dataframe()
+    np.testing.assert_array_equal(table.to_numpy(), record.samples)
+    np.testing.assert_array_equal(table.index, record.times)
+    assert table.attrs["units"] == {"time": "s", "x": "m s-2", "y": "m s-2", "z": "m s-2"}
+
+
+def test_an_orbit_is_a_table_over_one_period_and_a_branch_has_a_row_per_orbit():
+    circle = sb.Harmonic.circular(acceleration=0.8, angular_frequency=3.0)
+    column = sb.Column.solid(radius=0.35, height=5.2, density=2700.0)
+    model = sb.Slender(column, damping=0.1)
+    orbit = sb.orbits.periodic_orbit(model, circle)
+    table = orbit.to_dataframe()
+    step = orbit.period / len(table)
+    np.testing.assert_allclose(np.diff(table.index), step)
+    assert tuple(table[["tilt_x", "tilt_y"]].iloc[0]) == pytest.approx(tuple(orbit.tilt))
+    # Central differences of the tilts are the rates, up to the square of the step.
+    tilt, rate = table["tilt_x"].to_numpy(), table["tilt_rate_x"].to_numpy()
+    slope = (np.roll(tilt, -1) - np.roll(tilt, 1)) / (2.0 * step)
+    bound = np.abs(np.gradient(np.gradient(rate, step), step)).max() * step**2
+    assert np.abs(slope - rate).max() <= bound
+    branch = sb.orbits.continue_branch(orbit, "angular_frequency", bounds=(2.9, 3.1))
+    rows = branch.to_dataframe()
+    assert len(rows) == len(branch.path)
+    np.testing.assert_array_equal(rows["angular_frequency"], [point.value for point in branch.path])
+    assert rows.attrs["units"]["mean_tilt"] == "rad"

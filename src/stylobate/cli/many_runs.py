@@ -151,7 +151,7 @@ def computed(study: Callable[..., "xr.Dataset"], setup: "Setup", options: Option
     try:
         result = study(setup.model, setup.motion, **setup.options, store=store, executor=executor, resume=resume)
     except Interrupted as stop:
-        if store is None and not (stop.partial["outcome"] >= 0).any():
+        if stop.partial is None or (store is None and not (stop.partial["outcome"] >= 0).any()):
             print("stylobate: no run is complete, and nothing is written", file=sys.stderr)
             raise typer.Exit(INTERRUPTED) from None
         return stop.partial, False

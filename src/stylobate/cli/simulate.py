@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 @command(
     Option("animation", "animate the run into this file (.gif, .mp4, .html)", Path),
-    Option("speed", "seconds of the run per second of the animation; 1 by default"),
+    Option("speed", "seconds of the run per second of the animation; by default 1, or more for a long run"),
     *VERDICT_OPTIONS,
     argument="TOML description, or a saved run or verdict (.nc) to repeat",
     groups=(run_numbers(SingleRun), COLUMN, MODEL, MOTION, RECORD, OUTPUT),
@@ -74,7 +74,7 @@ def _save(run: "Response", path: Path) -> None:
 def _animate(run: "Response", path: Path, speed: float | None, title: str | None) -> None:
     from stylobate.plots import animate  # noqa: PLC0415  heavy, and for one option only
 
-    animate(run, path, speed=1.0 if speed is None else speed, title=title)
+    animate(run, path, speed=speed, title=title)
 
 
 def _summary(run: "Response") -> dict[str, Any]:

@@ -8,6 +8,7 @@ from pydantic import Field
 from stylobate.base_motions import BaseMotion
 from stylobate.config.description import built
 from stylobate.config.motions import is_to_end, made_by
+from stylobate.config.parameter_quantities import known_names
 from stylobate.config.run_numbers import fields_of, problems_of_the_numbers
 from stylobate.config.simulation import (
     OF_OTHER_COMMANDS,
@@ -17,12 +18,13 @@ from stylobate.config.simulation import (
     duration_with_tail,
     refuse_own_classes,
 )
-from stylobate.errors import ParameterError
+from stylobate.errors import ConfigError, ParameterError
 from stylobate.kinds import with_places
 from stylobate.models import Model
 from stylobate.quantities import parameters_of
 from stylobate.results import OutcomeRules
 from stylobate.run_arguments import SharedByRuns, SingleRun, numbers_of
+from stylobate.text import did_you_mean
 
 
 class ManyRuns(fields_of(SharedByRuns), Case):  # type: ignore[misc]
@@ -96,12 +98,24 @@ _SHARED = (*numbers_of(SharedByRuns), "demands", "recheck")
 
 
 def with_numbers_that_vary(values: Mapping[str, Any], names: tuple[str, ...]) -> dict[str, Any]:
-    """Return `values` with a number for each missing required number of the motion that varies over the runs."""
+    """Return `values` with a number for each missing required number of the motion that varies over the runs.
+
+    Raises
+    ------
+    ConfigError
+        If a required number of the motion is missing, and a name that varies is unknown: it may be misspelt.
+    """
     motion = values.get("motion")
-    make = made_by(motion.get("kind")) if isinstance(motion, Mapping) else None
-    if make is None:
+    if not isinstance(motion, Mapping) or (make := made_by(motion.get("kind"))) is None:
         return dict(values)
     declared = parameters_of(make)
+    missing = [name for name, one in declared.items() if one.required and name not in motion and name not in names]
+    if missing and not _has_own_class(values.get("model")):
+        problems = [
+            _unknown(name, missing) for name in names if name and name not in known_names() and name not in declared
+        ]
+        if problems:
+            raise ConfigError(problems)
     # If the motion has a path or a velocity, the acceleration depends on the frequency, which is then required.
     by_path = any(one.quantity.unit in ("m", "m/s") for one in declared.values())
     needed = [name for name in names if name in declared and declared[name].required]
@@ -109,6 +123,16 @@ def with_numbers_that_vary(values: Mapping[str, Any], names: tuple[str, ...]) ->
     needed = [name for name in needed if not (by_path and name == "angular_frequency")]
     given = {name: _STAND_INS.get(declared[name].quantity.unit, 1.0) for name in needed}
     return {**values, "motion": {**given, **values["motion"]}}
+
+
+def _has_own_class(model: object) -> bool:
+    return isinstance(model, Mapping) and ":" in str(model.get("kind"))
+
+
+def _unknown(name: str, missing: Sequence[str]) -> str:
+    """Return the line on an unknown name in place of a number of the motion that is `missing`."""
+    remedy = did_you_mean(name, known_names()) or f"the base motion needs {' and '.join(missing)}"
+    return f"{name} is not known here; {remedy}"
 
 
 def common_values(provenance: Mapping[str, Any]) -> dict[str, Any]:

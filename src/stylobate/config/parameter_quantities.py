@@ -62,6 +62,11 @@ def quantity_of(name: str, own: Mapping[str, Parameter] | None = None) -> Quanti
     return _QUANTITIES.get(name, _ANY) if declared is None else declared.quantity
 
 
+def known_names() -> frozenset[str]:
+    """Return the names of all quantities that a study can vary, of any model and base motion of the package."""
+    return frozenset(_QUANTITIES)
+
+
 def attributes_of(name: str) -> dict[str, str]:
     """Return the attributes of a coordinate that holds the quantity `name`."""
     known = _QUANTITIES.get(name)

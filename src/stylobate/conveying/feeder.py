@@ -12,7 +12,7 @@ import xarray as xr
 
 from stylobate.base_motions import BaseMotion, Harmonic, as_harmonic
 from stylobate.conveying.posture import PERIODS, PHASES, TILTS, Posture, upright
-from stylobate.conveying.transport import TOLERANCE, Transport, drift, throw_number_of
+from stylobate.conveying.transport import PERIODIC, TOLERANCE, Transport, drift, named, throw_number_of
 from stylobate.errors import UnsupportedError
 from stylobate.models import Model, Sliding
 from stylobate.progress import Progress, shows_progress
@@ -117,9 +117,12 @@ def sheet(
     19.5 mm/s, 0.44 of a period
     """
     harmonic = as_harmonic(motion)
-    if not isinstance(model, Sliding) or harmonic is None:
-        got = repr(motion) if isinstance(model, Sliding) else f"model {getattr(model, 'name', model)!s}"
-        message = f"a feeder sheet needs Sliding(column) on a harmonic base motion, such as Harmonic.stroke; got {got}"
+    if not isinstance(model, Sliding):
+        got = getattr(model, "name", model)
+        message = f"model: a feeder sheet needs a part that can slide (got {got!s}). Pass Sliding(column)."
+        raise UnsupportedError(message)
+    if harmonic is None:
+        message = f"motion: a feeder sheet needs a harmonic base motion (got {named(motion)}). {PERIODIC}"
         raise UnsupportedError(message)
     frictions = checked_values(
         "friction", "friction_coefficient", np.atleast_1d(model.friction_coefficient if friction is None else friction)

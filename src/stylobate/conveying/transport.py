@@ -208,9 +208,17 @@ def require_conveyor(model: Model, motion: BaseMotion, study: str, *, varied: Co
         message = f"model {model.name} assumes permanent contact without slip. A {study} needs Sliding(column)."
         raise UnsupportedError(message)
     if not isinstance(motion, BaseMotion) or (motion.period is None and "angular_frequency" not in varied):
-        got = "a base at rest" if motion in (None, BASE_AT_REST) else repr(motion)
-        message = f"a {study} needs a periodic base motion, such as an oblique one; got {got}"
+        message = f"motion: a {study} needs a periodic base motion (got {named(motion)}). {PERIODIC}"
         raise UnsupportedError(message)
+
+
+PERIODIC = "Pass one such as Harmonic.stroke; on the command line --motion stroke."
+"""Remedy without a periodic base motion."""
+
+
+def named(motion: object) -> str:
+    """Return a base motion in a message."""
+    return "a base at rest" if motion in (None, BASE_AT_REST) else repr(motion)
 
 
 def throw_number_of(model: Model, motion: BaseMotion) -> float:

@@ -14,6 +14,7 @@ from stylobate.engine.parameters import COLUMN_NAMES, model_names, present_value
 from stylobate.errors import ParameterError
 from stylobate.models import Model
 from stylobate.models.declared import dissipation_of
+from stylobate.results import verdict
 from stylobate.studies.sweeps.quantities import Floats
 from stylobate.text import did_you_mean
 
@@ -62,23 +63,7 @@ tolerance
     Factor of the tolerance of the integration.
 """
 
-CONTACT_LAW = "contact_law"
-"""Name of the variation between models."""
-
-LABELS: Mapping[str, str] = MappingProxyType(
-    {
-        CONTACT_LAW: "contact law",
-        "scale": "scale of the record",
-        "clock": "clock of the record",
-        "lowpass": "low-pass of the record",
-        "rotation": "direction of the record",
-        "slope_x": "slope of the base along x",
-        "slope_y": "slope of the base along y",
-        "start_x": "disturbance along x",
-        "start_y": "disturbance along y",
-        "tolerance": "tolerance",
-    }
-)
+LABELS = verdict.LABELS
 """Names of variations in figures and sentences; another variation has the name of its parameter."""
 
 # Value of a variation that is not a parameter of column or model, before it is varied.

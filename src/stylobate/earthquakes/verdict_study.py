@@ -22,7 +22,6 @@ from stylobate.earthquakes.following import tail_of
 from stylobate.earthquakes.incremental import tilt_ratios
 from stylobate.earthquakes.property_spreads import Spread
 from stylobate.earthquakes.variations import (
-    CONTACT_LAW,
     VARIATIONS,
     check_variations,
     chosen_variations,
@@ -49,7 +48,7 @@ from stylobate.quantities import parameters_of
 from stylobate.results import OutcomeRules
 from stylobate.results.damping_yardstick import damping_yardstick, yardstick_text
 from stylobate.results.outcomes import NOT_COMPUTED
-from stylobate.results.verdict import KIND, Verdict
+from stylobate.results.verdict import CONTACT_LAW, KIND, Verdict
 from stylobate.run_arguments import RunOptions, defaults_of
 from stylobate.studies.checks import require_no_tilt_limit
 from stylobate.studies.maps.uncertainty_exponent import overturned_or_not

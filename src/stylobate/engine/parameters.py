@@ -14,6 +14,7 @@ from stylobate.config.parameter_quantities import quantity_of
 from stylobate.errors import ParameterError, UnsupportedError, as_numbers, require_finite
 from stylobate.models import Model
 from stylobate.quantities import Parameter, parameters_of
+from stylobate.text import did_you_mean
 
 _T = TypeVar("_T")
 
@@ -155,7 +156,8 @@ def check_names(
     known = tuple(dict.fromkeys((*known, *motion_names(model, motion))))
     for name in names:
         if name not in known:
-            message = f"{where}: {name} is not known here; known are {', '.join(known)}"
+            remedy = did_you_mean(name, known) or f"known are {', '.join(known)}"
+            message = f"{where}: {name} is not known here; {remedy}"
             raise ParameterError(message)
     for name, changed in _CONTRADICTING.items():
         for other in changed:
@@ -341,6 +343,8 @@ def _ellipse(motion: Harmonic) -> Mapping[str, float]:
 
 def _own_numbers(motion: BaseMotion) -> str:
     if motion == BASE_AT_REST:
-        return "(got a base at rest). Give a base motion, such as a circular one."
+        return (
+            "(got a base at rest). Give a base motion, such as a circular one; on the command line --motion circular."
+        )
     names = ", ".join(numbers_of(motion))
     return f"(got {motion!r}). {f'Its numbers are {names}.' if names else 'It has none.'}"

@@ -7,6 +7,8 @@ from enum import Enum
 import numpy as np
 from scipy.optimize import brentq
 
+from stylobate.cards import Row, Section, card
+from stylobate.config.parameter_quantities import quantity_of
 from stylobate.engine.flow.status import Status
 from stylobate.equality import ByContent
 from stylobate.errors import Named
@@ -19,8 +21,9 @@ from stylobate.orbits.normal_forms import (
     neimark_sacker_coefficient,
     period_doubling_coefficient,
 )
-from stylobate.orbits.orbit import PeriodicOrbit
+from stylobate.orbits.orbit import PeriodicOrbit, system_sections
 from stylobate.orbits.shooting import shots
+from stylobate.text import four_digits, unit_in_text
 
 # Accuracy of the location along the family, in its units; for the parameter, times the width of its bounds.
 _LOCATED = 1e-13
@@ -87,6 +90,20 @@ class Bifurcation(ByContent):
         """Describe the bifurcation in one line."""
         how = {True: ", supercritical", False: ", subcritical", None: ""}[self.supercritical]
         return f"Bifurcation({self.kind.value} at {self.point.family.name} = {self.parameter:.10g}{how})"
+
+    def _repr_html_(self) -> str:
+        """Render the card that notebooks show."""
+        name = self.point.family.name
+        unit = unit_in_text(quantity_of(name).unit)
+        how = {True: "supercritical", False: "subcritical", None: "not decided"}[self.supercritical]
+        rows = [
+            Row("kind", self.kind.value),
+            Row(name.replace("_", " "), f"{four_digits(self.parameter)} {unit}".rstrip()),
+            Row("loss of stability", how),
+            Row("critical multiplier", f"{self.multiplier:.4g}"),
+            Row("orbit", repr(self.orbit)),
+        ]
+        return card("Bifurcation", [Section("", rows), *system_sections(self.orbit.system)])
 
 
 def between(first: Point, second: Point, sense: Floats) -> tuple[Bifurcation, ...]:

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 import xarray as xr
@@ -26,7 +27,11 @@ from stylobate.orbits.saving import BRANCH, SUPERCRITICAL, file_attributes, writ
 from stylobate.orbits.shooting import WHY_LOST, arcs_of
 from stylobate.orbits.tracing import End, StepControl, Stretch, trace
 from stylobate.progress import Progress, at_value, report_of, shows_progress
+from stylobate.results.tables import to_dataframe
 from stylobate.text import four_digits, plural, unit_in_text
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 
 @dataclass(frozen=True, eq=False)
@@ -129,6 +134,10 @@ class Branch(ByContent):
                 "provenance": json.dumps(provenance_of_run(first.model, first.motion)),
             },
         )
+
+    def to_dataframe(self) -> "pd.DataFrame":
+        """Convert the points to a table in pandas, with one row per orbit; see `results.to_dataframe`."""
+        return to_dataframe(self.points)
 
     def save(self, path: str | Path) -> Path:
         """Write the branch to a netCDF file at `path`; `stylobate.load` reads it."""

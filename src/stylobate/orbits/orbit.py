@@ -5,6 +5,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
@@ -19,7 +20,11 @@ from stylobate.models import Model
 from stylobate.orbits.multipliers import is_stable
 from stylobate.orbits.saving import ORBIT, file_attributes, write
 from stylobate.orbits.shooting import Shots
+from stylobate.results.tables import to_dataframe
 from stylobate.text import four_digits, plural
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 Floats = npt.NDArray[np.float64]
 Complexes = npt.NDArray[np.complex128]
@@ -196,6 +201,17 @@ class PeriodicOrbit(ByContent):
     def _same(self, image: Floats) -> bool:
         size = np.abs(self.path).max(axis=1, keepdims=True)
         return bool(np.all(np.abs(self.path - image) <= _SAME * np.where(size > 0.0, size, 1.0)))
+
+    def to_dataframe(self) -> "pd.DataFrame":
+        """Convert the orbit to a table in pandas: tilt vector and its rate at equal steps of time over the period."""
+        count = self.path.shape[1]
+        time = ("time", self.period * np.arange(count) / count, {"units": "s"})
+        tilt, rate = self.path[:2].T, self.path[2:].T / self.model.time_scale
+        data = {
+            "tilt": (("time", "axis"), tilt, {"units": "rad"}),
+            "tilt_rate": (("time", "axis"), rate, {"units": "rad s-1"}),
+        }
+        return to_dataframe(xr.Dataset(data, coords={"time": time, "axis": ["x", "y"]}))
 
     def save(self, path: str | Path) -> Path:
         """Write the orbit to a netCDF file at `path`; `stylobate.load` reads it."""

@@ -15,7 +15,7 @@ from stylobate.plots.base_motion import plot_motion
 from stylobate.plots.bifurcation_curves import plot_bifurcation_curves
 from stylobate.plots.branches import plot_branches
 from stylobate.plots.column_sketch import plot_column
-from stylobate.plots.kinds import HasPoints, figure_for
+from stylobate.plots.kinds import HasPoints, check_sequence, figure_for
 from stylobate.plots.orbit import Orbit, plot_orbit
 from stylobate.plots.result_figure import drawing
 from stylobate.plots.runs import plot_runs
@@ -81,7 +81,10 @@ def _drawn(result: Any, labels: Sequence[str] | None) -> Figure:
             return draw_one(result)
     if isinstance(result, Verdict):
         result = result.data
-    results: Sequence[object] = result if isinstance(result, Sequence) else [result]
+    results: Sequence[object] = [result]
+    if isinstance(result, Sequence) and not isinstance(result, str):
+        check_sequence(result)
+        results = result
     runs = [one for one in results if isinstance(one, Response)]
     if results and len(runs) == len(results):
         return plot_runs(runs, labels)

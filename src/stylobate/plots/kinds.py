@@ -1,13 +1,16 @@
 """Registry of figures: the function that draws each kind of result."""
 
 import pkgutil
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import cache
 from importlib import import_module
 from typing import Protocol, TypeAlias, TypeVar, runtime_checkable
 
 import xarray as xr
 from matplotlib.figure import Figure
+
+from stylobate.errors import ParameterError
+from stylobate.results import Response
 
 Draw: TypeAlias = Callable[[xr.Dataset], Figure]
 _Draw = TypeVar("_Draw", bound=Draw)
@@ -25,6 +28,21 @@ class HasPoints(Protocol):
     @property
     def points(self) -> xr.Dataset:
         """Its points as data."""
+
+
+def check_sequence(results: Sequence[object]) -> None:
+    """Raise ParameterError unless there are results, and all are runs, or all have points."""
+    if not results:
+        message = f"result: nothing is in it (got {results!r}). Pass one run, branch or curve, or several of a kind."
+        raise ParameterError(message)
+    kind = next((kind for kind in (Response, HasPoints) if isinstance(results[0], kind)), None)
+    for place, one in enumerate(results):
+        if kind is None or not isinstance(one, kind):
+            message = (
+                f"result[{place}]: only runs, or only branches or curves, are drawn together (got "
+                f"{type(one).__name__}). Remove it, or draw it alone."
+            )
+            raise ParameterError(message)
 
 
 def figure_of(*kinds: str) -> Callable[[_Draw], _Draw]:

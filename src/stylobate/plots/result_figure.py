@@ -262,5 +262,8 @@ class InAxes(ResultFigure):
         return figure
 
     def _refuse(self) -> None:
-        message = "axes: this figure has several panels (got one Axes). Leave axes out, or set size"
+        message = (
+            "axes: this figure has several panels (got one Axes). Leave axes out and pass size; runs, "
+            "ensembles, overturning maps and branches are drawn in axes"
+        )
         raise ParameterError(message)

@@ -19,7 +19,7 @@ from stylobate.plots.style import BLACK, DASHES, GREY, PALETTE, new_figure, styl
 from stylobate.plots.varied import what_varies
 from stylobate.results import Response
 
-_EVENT_NAMES = {
+EVENT_NAMES = {
     "uplift": "uplift",
     "rest": "at rest",
     "overturned": "overturned",
@@ -27,6 +27,7 @@ _EVENT_NAMES = {
     "lifted": "lifted off",
     "failed": "failed",
 }
+"""Names of events in figures."""
 # Heights of the panels, of a row of kinds of contact, and of the margin about the rows [inches].
 _HEIGHTS = {"tilt": 1.75, "azimuth": 1.45, "travel": 1.45, "clearance": 1.0, "twist": 1.0, "base": 1.55, "path": 3.0}
 _ROW, _GAP = 0.19, 0.3
@@ -65,7 +66,7 @@ def plot_runs(runs: Sequence[Response], labels: Sequence[str] | None = None) -> 
     """
     names = list(labels or what_varies(runs))
     planar = all(run.planar for run in runs)
-    panels = _panels(runs, planar=planar)
+    panels = panels_of(runs, planar=planar)
     figure, axes = _arranged(panels)
     lines = _looks(runs)
     draw = _DRAWN | {"tilt": _draw_signed_tilt if planar else _draw_tilt}
@@ -85,7 +86,7 @@ def plot_runs(runs: Sequence[Response], labels: Sequence[str] | None = None) -> 
     return figure
 
 
-def _panels(runs: Sequence[Response], *, planar: bool) -> dict[str, Any]:
+def panels_of(runs: Sequence[Response], *, planar: bool) -> dict[str, Any]:
     """Return the names of the panels that show something, in their order, with the contact history."""
     tilted = any(float(run.data["amplitude"].max()) > 0.0 for run in runs)
     found: dict[str, Any] = dict.fromkeys(["tilt"] if tilted else [])
@@ -185,7 +186,7 @@ def _draw_azimuth(axes: Axes, run: Response, line: dict[str, Any]) -> None:
 
 
 def _draw_travel(axes: Axes, run: Response, line: dict[str, Any]) -> None:
-    travel = _in_print(run.data["footprint"])
+    travel = in_print(run.data["footprint"])
     moving = [along for along in (0, 1) if np.abs(travel[:, along]).max() > _ROUNDING * np.abs(travel).max()]
     for along in moving:
         draw_history(axes, run.data["time"], travel[:, along], linewidth=(1.1, 0.7)[along], **line)
@@ -196,7 +197,7 @@ def _draw_travel(axes: Axes, run: Response, line: dict[str, Any]) -> None:
 
 
 def _draw_clearance(axes: Axes, run: Response, line: dict[str, Any]) -> None:
-    draw_history(axes, run.data["time"], _in_print(run.data["clearance"]), linewidth=1.0, **line)
+    draw_history(axes, run.data["time"], in_print(run.data["clearance"]), linewidth=1.0, **line)
 
 
 def _draw_twist(axes: Axes, run: Response, line: dict[str, Any]) -> None:
@@ -207,7 +208,7 @@ def _draw_base(axes: Axes, run: Response, line: dict[str, Any]) -> None:
     """Draw the horizontal acceleration of the base, with its sign if it has one direction; dotted the vertical one."""
     acceleration = run.data["base_acceleration"].to_numpy()
     plane = acceleration[:, :2]
-    horizontal = along_line(plane) if _is_along_a_line(plane) else np.hypot(*plane.T)
+    horizontal = along_line(plane) if is_along_a_line(plane) else np.hypot(*plane.T)
     # Later runs below, so that weaker ones stay visible.
     below = 2.0 - 0.01 * len(axes.lines)
     filled = False
@@ -239,12 +240,12 @@ _DRAWN = {
 }
 
 
-def _in_print(quantity: xr.DataArray) -> Floats:
+def in_print(quantity: xr.DataArray) -> Floats:
     """Return lengths in mm, or in the units of a dimensionless column."""
     return np.asarray(quantity.to_numpy() * (1e3 if unit_label(quantity) == "m" else 1.0))
 
 
-def _is_along_a_line(vectors: Floats) -> bool:
+def is_along_a_line(vectors: Floats) -> bool:
     """Whether plane `vectors` have a common line."""
     x, y = vectors[np.argmax(np.hypot(*vectors.T))]
     return bool(np.abs(vectors @ (-y, x)).max() <= _ROUNDING * (x * x + y * y))
@@ -265,11 +266,11 @@ def _mark_events(axes: Axes, run: Response, *, planar: bool) -> None:
     events = [event for event in run.events if not event.repeats]
     tilt = along_line(run.data["tilt"].to_numpy()) if planar else run.data["amplitude"].to_numpy()
     for event in dict.fromkeys((*events[:1], *events[-1:])):
-        if event.kind not in _EVENT_NAMES:
+        if event.kind not in EVENT_NAMES:
             continue
         height = float(np.interp(event.time, run.data["time"], tilt))
         axes.annotate(
-            _EVENT_NAMES[event.kind],
+            EVENT_NAMES[event.kind],
             (event.time, height),
             xytext=(0, 10),
             textcoords="offset points",
@@ -289,8 +290,8 @@ def _finish(axes: Mapping[str, Axes], runs: Sequence[Response], *, planar: bool)
         _finish_tilt(axes["tilt"], limits, peak, planar=planar)
     labels = {
         "azimuth": "azimuth $\\beta$\n[turns]",
-        "travel": f"travel\n[{_length_unit(data)}]",
-        "clearance": f"clearance\n[{_length_unit(data)}]",
+        "travel": f"travel\n[{length_unit(data)}]",
+        "clearance": f"clearance\n[{length_unit(data)}]",
         "twist": "twist\n[turns]",
         "base": _base_label(data["base_acceleration"]),
     }
@@ -298,7 +299,7 @@ def _finish(axes: Mapping[str, Axes], runs: Sequence[Response], *, planar: bool)
         if name in axes:
             axes[name].set_ylabel(text)
     if "base" in axes:
-        signed = all(_is_along_a_line(run.data["base_acceleration"].to_numpy()[:, :2]) for run in runs)
+        signed = all(is_along_a_line(run.data["base_acceleration"].to_numpy()[:, :2]) for run in runs)
         for level in {float(run.data.attrs["uplift_acceleration"]) for run in runs}:
             for sign in (1.0, -1.0) if signed else (1.0,):
                 axes["base"].axhline(sign * level, **_LIMIT)
@@ -333,7 +334,8 @@ def _finish_tilt(axes: Axes, limits: Sequence[float], peak: float, *, planar: bo
         axes.set_ylim(bottom=0.0)
 
 
-def _length_unit(data: xr.Dataset) -> str:
+def length_unit(data: xr.Dataset) -> str:
+    """Return the unit of lengths in print: mm, or that of a dimensionless column."""
     unit = unit_label(data["base_displacement"])
     return "mm" if unit == "m" else unit
 

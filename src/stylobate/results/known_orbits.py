@@ -7,7 +7,9 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
+from stylobate.cards import Row, Section, card
 from stylobate.errors import ParameterError, as_numbers
+from stylobate.text import four_digits
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -17,6 +19,10 @@ ArrayLike: TypeAlias = "npt.ArrayLike | xr.DataArray"
 
 MOST_ORBITS = 16
 """Maximum number of known orbits of an ensemble."""
+
+# Units in cards, and the most numbers that a card lists: a vector.
+_UNITS = {"tilt": "rad", "tilt_rate": "rad/s", "spin": "rad/s", "mean_tilt": "rad"}
+_MOST_SHOWN = 2
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -66,6 +72,17 @@ class KnownOrbit:
     def numbers(self) -> Mapping[str, ArrayLike]:
         """Return the numbers of the orbit by name."""
         return {name: getattr(self, name) for name in self.__slots__}
+
+    def _repr_html_(self) -> str:
+        """Render the card that notebooks show."""
+        shapes = {name: np.shape(value) for name, value in self.numbers().items()}
+        per_run = {name: f"array of shape {shape}" for name, shape in shapes.items() if np.prod(shape) > _MOST_SHOWN}
+        values = {name: ", ".join(map(four_digits, np.ravel(one))) for name, one in self.numbers().items()}
+        rows = [
+            Row(name.replace("_", " "), f"{(values | per_run)[name]} {_UNITS.get(name, '')}".rstrip())
+            for name in self.__slots__
+        ]
+        return card("Known orbit", [Section("", rows)])
 
     def plain(self) -> dict[str, Any]:
         """Return the numbers of the orbit as plain values, without labels."""

@@ -22,7 +22,8 @@ def outcome_label(code: int) -> str:
 
 def outcome_attributes() -> dict[str, Any]:
     """Return the attributes of a variable that holds outcomes."""
-    return flag_attributes("outcome", ["NOT_COMPUTED", *(outcome.name for outcome in Outcome)], first=NOT_COMPUTED)
+    flags = flag_attributes("outcome", ["NOT_COMPUTED", *(outcome.name for outcome in Outcome)], first=NOT_COMPUTED)
+    return flags | {"comment": "compare with a member, outcome == stylobate.Outcome.OVERTURNED, never with a text"}
 
 
 def flag_attributes(

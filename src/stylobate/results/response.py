@@ -188,5 +188,6 @@ class Response(ByContent):
         flags = [(name, "yes" if getattr(self, name) else "no") for name in ("uncertain", "planar")]
         rows = [("outcome", outcome_of(self)), *reason_rows(self), *flags]
         warnings = [("", warning) for warning in self.warnings]
-        named = {"": rows, "measures": measure_rows(self), "thresholds": threshold_rows(self), "warnings": warnings}
-        return card("Response", (Section(heading, [Row(*row) for row in rows]) for heading, rows in named.items()))
+        named = {"": rows, "measures": measure_rows(self), "warnings": warnings, "thresholds": threshold_rows(self)}
+        *shown, folded = (Section(heading, [Row(*row) for row in rows]) for heading, rows in named.items())
+        return card("Response", shown, folded)

@@ -50,8 +50,13 @@ def measure_rows(run: Any) -> Rows:
 
 def threshold_rows(run: Any) -> Rows:
     """Return the rows of the thresholds that decided the outcome of `run`."""
-    texts = {name: f"{four_digits(value)} {_UNITS.get(name, '')}".rstrip() for name, value in run.thresholds.items()}
-    return [(name.replace("_", " "), text) for name, text in texts.items()]
+    return [
+        (
+            name.replace("_", " "),
+            "none" if math.isinf(value) else f"{four_digits(value)} {_UNITS.get(name, '')}".rstrip(),
+        )
+        for name, value in run.thresholds.items()
+    ]
 
 
 def _motion_rows(run: Any) -> Rows:

@@ -33,7 +33,7 @@ def to_dataframe(data: xr.Dataset, over: str | Sequence[str] | None = None) -> "
         Its index has the coordinates of the rows. Each variable over all of `over` is a column; with components, or
         another dimension that names its entries, a column per name, such as `tilt_x` and `tilt_y`. Codes such as those
         of outcomes are categories with the names of the codes. Variables over other dimensions, such as the samples of
-        a history, are left out.
+        a history, are left out. `attrs["units"]` has the units of columns and index by name.
 
     Raises
     ------
@@ -56,16 +56,21 @@ def to_dataframe(data: xr.Dataset, over: str | Sequence[str] | None = None) -> "
 
     rows = _rows_of(data, over)
     columns = dict[str, Any]()
+    units = {str(name): str(one.attrs["units"]) for name, one in data.coords.items() if "units" in one.attrs}
     for name, variable in data.data_vars.items():
         if set(rows) <= set(variable.dims):
-            parts = _parts_of(str(name), variable.transpose(*rows, ...), rows)
+            parts = list(_parts_of(str(name), variable.transpose(*rows, ...), rows))
             columns |= {label: _coded(part) for label, part in parts}
+            units |= {label: str(part.attrs["units"]) for label, part in parts if "units" in part.attrs}
     for name, variable in data.coords.items():  # such as the intensity of each run
         if name not in data.indexes and set(variable.dims) == set(rows):
             columns[str(name)] = variable.transpose(*rows).to_numpy().ravel()
     index = [data.indexes[dim] if dim in data.indexes else pd.RangeIndex(data.sizes[dim], name=dim) for dim in rows]
     index = index or [pd.RangeIndex(1)]  # one run
-    return pd.DataFrame(columns, index=index[0] if len(index) == 1 else pd.MultiIndex.from_product(index))
+    table = pd.DataFrame(columns, index=index[0] if len(index) == 1 else pd.MultiIndex.from_product(index))
+    known = {*columns, *table.index.names}
+    table.attrs["units"] = {name: unit for name, unit in units.items() if name in known}
+    return table
 
 
 def _rows_of(data: xr.Dataset, over: str | Sequence[str] | None) -> tuple[Hashable, ...]:

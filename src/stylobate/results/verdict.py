@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import Enum
 from pathlib import Path
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Self
 
 from stylobate.cards import Row, Section, card
@@ -20,6 +21,26 @@ if TYPE_CHECKING:
 
 KIND = "verdict"
 """Value of the attribute `kind` of the data of a verdict."""
+
+
+CONTACT_LAW = "contact_law"
+"""Name of the variation between models."""
+
+LABELS: Mapping[str, str] = MappingProxyType(
+    {
+        CONTACT_LAW: "contact law",
+        "scale": "scale of the record",
+        "clock": "clock of the record",
+        "lowpass": "low-pass of the record",
+        "rotation": "direction of the record",
+        "slope_x": "slope of the base along x",
+        "slope_y": "slope of the base along y",
+        "start_x": "disturbance along x",
+        "start_y": "disturbance along y",
+        "tolerance": "tolerance",
+    }
+)
+"""Names of variations in figures and sentences; another variation has the name of its parameter."""
 
 
 class VerdictWord(Named, Enum):
@@ -118,7 +139,10 @@ class Verdict(ByContent):
             Row("verdict", self.word.value),
             Row("share of overturning", f"{percent(self.share)} of {plural(self.runs, 'variation')}"),
             Row(f"{percent(self.confidence)} sampling interval", interval_text(*self.interval)),
-            Row("decided most by", self.deciding.replace("_", " ") or "none distinguished from chance"),
+            Row(
+                "decided most by",
+                LABELS.get(self.deciding, self.deciding.replace("_", " ")) or "none distinguished from chance",
+            ),
         ]
         of_models = (self.data[f"model_share{end}"].to_numpy() for end in ("", "_low", "_high"))
         laws = [

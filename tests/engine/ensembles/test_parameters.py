@@ -121,6 +121,7 @@ def test_no_runs_are_an_empty_dataset_of_the_right_shape(shape):
         ({"parameters": {"damping": [0.1, 0.2, 0.3]}, "duration": [1.0, 2.0]}, "damping must have 2 values along run"),
         ({"parameters": {"damping": [0.1, 0.2]}, "tilt": np.zeros((3, 2))}, "damping must have 3 values along run"),
         ({"parameters": {"colour": 1.0}}, "colour is not known here; known are radius"),
+        ({"parameters": {"scal": 1.0}}, r"^parameters: scal is not known here; did you mean scale\?$"),
         ({"parameters": {"damping": [0.1, math.nan]}}, "damping must be finite, got nan in run 1"),
         ({"parameters": {"delay": math.inf}}, "delay must be finite, got inf"),
         ({"parameters": {"acceleration": [math.nan]}}, "acceleration must be finite"),

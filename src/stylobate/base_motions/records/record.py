@@ -3,7 +3,7 @@
 import hashlib
 import math
 from dataclasses import dataclass, field, replace
-from typing import Any, ClassVar, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
 import numpy.typing as npt
@@ -15,6 +15,9 @@ from stylobate.base_motions.records.origin import RecordOrigin
 from stylobate.cards import Row, Section
 from stylobate.errors import ParameterError, as_numbers, require_finite, require_not_negative, require_positive
 from stylobate.text import four_digits
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 Floats = npt.NDArray[np.float64]
 
@@ -152,6 +155,14 @@ class Record(BaseMotion):
         """SHA-256 of samples, step and start, in hexadecimal digits."""
         numbers = np.array([self.step, self.start]).tobytes()
         return hashlib.sha256(self.samples.tobytes() + numbers).hexdigest()
+
+    def to_dataframe(self) -> "pd.DataFrame":
+        """Convert the record to a table in pandas: accelerations x, y, z [m/s²] over `time` [s]."""
+        import pandas as pd  # noqa: PLC0415  slow to import
+
+        table = pd.DataFrame(self.samples, columns=list(AXES), index=pd.Index(self.times, name="time"))
+        table.attrs["units"] = {"time": "s", **dict.fromkeys(AXES, "m s-2")}
+        return table
 
     def __eq__(self, other: object) -> bool:
         return self.digest == other.digest if isinstance(other, Record) else NotImplemented

@@ -8,6 +8,7 @@ from stylobate.base_motions.records.grouping import read_records
 from stylobate.base_motions.records.origin import RecordOrigin
 from stylobate.base_motions.records.record import Record
 from stylobate.errors import ParameterError
+from stylobate.text import did_you_mean
 
 _FILES = ("elcentro_1940_NS.dat.gz", "elcentro_1940_EW.dat.gz", "elcentro_1940_UP.dat.gz")
 _SOURCE = (
@@ -54,7 +55,9 @@ def sample_record(name: str = "el centro 1940") -> Record:
     """
     key = " ".join(name.lower().split()) if isinstance(name, str) else name
     if key not in sample_names():
+        question = did_you_mean(str(key), sample_names())
         message = f"name must be one of {', '.join(map(repr, sample_names()))}, got {name!r}"
+        message += f"; {question}" if question else ""
         raise ParameterError(message)
     return _read(key)
 

@@ -8,11 +8,10 @@ from matplotlib.axes import Axes
 from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.figure import Figure
 
-from stylobate.earthquakes.variations import CONTACT_LAW, LABELS
 from stylobate.plots.kinds import figure_of
 from stylobate.plots.result_figure import heading
 from stylobate.plots.style import AS_DRAWN, BLUE, DASHES, GREY, ORANGE, VERMILION, new_figure, styled
-from stylobate.results.verdict import KIND, Verdict, percent
+from stylobate.results.verdict import CONTACT_LAW, KIND, LABELS, Verdict, percent
 
 _SHARES = LinearSegmentedColormap.from_list("share", [BLUE, "#f4f4f4", VERMILION])
 _LAWS = (BLUE, ORANGE)

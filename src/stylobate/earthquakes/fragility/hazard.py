@@ -7,8 +7,10 @@ import numpy as np
 import numpy.typing as npt
 
 from stylobate.base_motions.records import HorizontalComponent
+from stylobate.cards import Row, Section, card
 from stylobate.earthquakes.fragility.observations import Floats
 from stylobate.errors import ParameterError, require_positive
+from stylobate.text import four_digits, unit_in_text
 
 _LEAST = 2
 
@@ -113,6 +115,18 @@ class HazardCurve:
         # Tuples are independent of later changes of the arrays.
         object.__setattr__(self, "intensity", tuple(x.tolist()))
         object.__setattr__(self, "rate", tuple(rate.tolist()))
+
+    def _repr_html_(self) -> str:
+        """Render the card that notebooks show."""
+        x, rate = np.asarray(self.intensity), np.asarray(self.rate)
+        unit = unit_in_text(self.units)
+        rows = [
+            Row(self.quantity, f"{four_digits(x[0])} to {four_digits(x[-1])} {unit}".rstrip()),
+            Row("annual rate of exceedance", f"{four_digits(rate[0])} to {four_digits(rate[-1])} 1/a"),
+            Row("points", str(x.size)),
+        ]
+        rows += [Row(name, str(getattr(self, name))) for name in ("component", "origin") if getattr(self, name)]
+        return card("Hazard curve", [Section("", rows)])
 
     @property
     def log_intensity(self) -> Floats:

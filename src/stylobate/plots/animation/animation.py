@@ -2,6 +2,7 @@
 
 import base64
 import math
+import sys
 import warnings
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -133,7 +134,7 @@ def animate(
     *,
     size: Sequence[int] = (640, 480),
     frames_per_second: float = 25.0,
-    speed: float = 1.0,
+    speed: float | None = None,
     title: str | None = None,
     azimuth: float = -68.0,
     elevation: float = 20.0,
@@ -157,7 +158,8 @@ def animate(
     frames_per_second
         Frames per second, at most 50.
     speed
-        Seconds of the run per second of the animation. At most 1500 frames are drawn: long runs need a larger speed.
+        Seconds of the run per second of the animation; by default 1 or, for a run that would need more than 1500
+        frames, the next of 2, 5, 10, 20, … that suffices.
     title
         A line in the frames, or the heading of a web page; by default the outcome.
     azimuth, elevation
@@ -171,7 +173,8 @@ def animate(
     Raises
     ------
     ParameterError
-        If an argument is out of range, or the suffix of `path` is not one of these.
+        If an argument is out of range, the suffix of `path` is not one of these, or a stated speed needs more than
+        1500 frames.
     UnsupportedError
         If an MP4 is asked for without the extra `video`, or a page without its viewer.
     FileError
@@ -194,10 +197,11 @@ def animate(
     if rate > _FASTEST:
         message = f"frames_per_second must be at most {_FASTEST:g}, got {rate!r}"
         raise ParameterError(message)
-    pace = require_positive("speed", speed)
-    look = Look(size=_size(size), view=_view(azimuth, elevation), title=title, pace=pace)
     history = DrawnMotion.of(run, title=title)
-    _require_few(float(history.time[-1]), rate, pace)
+    end = float(history.time[-1])
+    pace = max(1.0, _fitting_speed(end, rate)) if speed is None else require_positive("speed", speed)
+    look = Look(size=_size(size), view=_view(azimuth, elevation), title=title, pace=pace)
+    _require_few(end, rate, pace)
     _remark_on_few(run, rate / pace)
     motion = DrawnMotion.of(run, frames_per_second=rate / pace, title=title, most=_MOST)
     animation = Animation(motion=motion, history=history, look=look, frames_per_second=rate)
@@ -248,13 +252,17 @@ def _view(azimuth: float, elevation: float) -> View:
     return View(math.radians(around), math.radians(above))
 
 
+def _fitting_speed(end: float, rate: float) -> float:
+    """Return the least of …, 0.5, 1, 2, 5, 10, … at which a run up to the time `end` has few enough frames."""
+    least = max(end * rate / (_MOST - 1), sys.float_info.min)
+    power = 10.0 ** math.floor(math.log10(least))
+    return next(step * power for step in (1.0, 2.0, 5.0, 10.0) if step * power >= least)
+
+
 def _require_few(end: float, rate: float, pace: float) -> None:
     if end * rate / pace > _MOST - 1:
-        least = end * rate / (_MOST - 1)
-        # Rounded up, so that the value in the message is accepted.
-        power = 10.0 ** (math.floor(math.log10(least)) - 2)
         message = (
-            f"speed must be at least {math.ceil(least / power) * power:.3g} to show {end:.6g} s in {_MOST} frames at "
-            f"{rate:g} per second, got {pace!r}"
+            f"speed: {end:.6g} s at {rate:g} frames per second need more than {_MOST} frames (got {pace!r}). "
+            f"Pass speed={_fitting_speed(end, rate):g}."
         )
         raise ParameterError(message)

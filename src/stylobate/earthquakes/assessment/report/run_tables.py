@@ -8,10 +8,9 @@ from stylobate.earthquakes.assessment.report.cells import cells
 from stylobate.earthquakes.assessment.report.column_verdict import column_verdict
 from stylobate.earthquakes.assessment.report.displacements import TILT_HEADER, shown_point, tilt_cells
 from stylobate.earthquakes.assessment.report.wording import CENTRAL, listed, near_share, number, tilt, verdict
-from stylobate.earthquakes.variations import LABELS
 from stylobate.plots.page import Table
 from stylobate.results.assessment import Assessment
-from stylobate.results.verdict import interval_text, percent
+from stylobate.results.verdict import LABELS, interval_text, percent
 
 _ACTS = "with"
 _PLACES = ("column", "record", "scale")
