@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from scipy.integrate import quad
 
 import stylobate as sb
-from stylobate.errors import ParameterError
+from stylobate.errors import ParameterError, UnlikelyInputWarning
 
 lengths = st.floats(0.05, 20.0)
 
@@ -118,12 +118,28 @@ def test_an_impossible_number_is_refused_with_its_name_and_value(name, value):
         assert repr(value) in str(caught.value)
 
 
+@pytest.mark.filterwarnings("ignore::stylobate.errors.UnlikelyInputWarning")
 @given(radius=lengths, height=lengths, mass=st.floats(1e-4, 1e6))
 def test_a_solid_cylinder_of_a_mass_is_that_of_its_density(radius, height, mass):
     by_mass = sb.Column.solid(radius=radius, height=height, mass=mass)
     by_density = sb.Column.solid(radius=radius, height=height, density=mass / (math.pi * radius**2 * height))
     assert by_mass.mass == mass
     assert numbers(by_mass) == pytest.approx(numbers(by_density), rel=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("stated", "remedy"),
+    [
+        ({"density": 0.884}, "density: 0.884 kg/m³ is unlikely. For 0.884 g/cm³ give 884 kg/m³."),
+        ({"density": 7.85e6}, "density: 7.85e.06 kg/m³ is unlikely. Check its unit"),
+        ({"mass": 500.0}, "mass: 500 kg is unlikely, with a density of 8.842e.05 kg/m³. Check its unit"),
+        ({"mass": 5e-4}, "mass: 0.0005 kg is unlikely"),
+    ],
+)
+def test_a_density_that_no_material_has_is_questioned(stated, remedy):
+    with pytest.warns(UnlikelyInputWarning, match=f"^{remedy}") as caught:
+        sb.Column.solid(radius=0.03, height=0.2, **stated)
+    assert len(caught) == 1
 
 
 @pytest.mark.parametrize(

@@ -160,7 +160,9 @@ def test_numbers_and_arrays_without_units_are_returned_as_they_are():
 
 
 def test_pint_is_recognised_without_being_imported():
-    code = "import stylobate as sb, sys; sb.Column.solid(radius=1, height=5, density=2); print('pint' in sys.modules)"
+    code = (
+        "import stylobate as sb, sys; sb.Column.solid(radius=1, height=5, density=2000); print('pint' in sys.modules)"
+    )
     found = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert found.stdout.strip() == "False"
 

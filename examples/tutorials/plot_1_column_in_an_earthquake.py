@@ -208,7 +208,7 @@ sb.plot(verdict)
 # :class:`stylobate.Wobbling` excludes this spin, :class:`stylobate.Rolling` allows it.
 # Half of the variations used each of the two. Report both shares:
 for law, share in verdict.share_by_model.items():
-    print(f"{law}: {100.0 * share:.0f} % of the variations overturn the column")
+    print(f"{law}: {100.0 * share:.0f} % of the variations overturn")
 
 # %%
 # Step 10: a larger column of the same shape

@@ -8,7 +8,7 @@ from typing import Annotated, Self
 import numpy as np
 
 from stylobate.errors import ParameterError, as_float, require_positive
-from stylobate.quantities import Declared, Quantity, checked_arguments
+from stylobate.quantities import Declared, Quantity, checked_arguments, question_input
 
 STANDARD_GRAVITY = 9.80665
 """Standard gravity [m/s²]."""
@@ -19,11 +19,17 @@ _POINTS = 24
 # Relative slack for bounds that an exact body meets with equality (a hoop, a rod) and rounding may miss.
 _ROUNDING = 1e-12
 
+_LIGHTEST, _DENSEST = 10.0, 25_000.0
+
 # Beyond the towers and tanks that exist; the tower of Pisa has a radius of 7.8 m and a height of 57 m.
 Radius = Annotated[float, Quantity(symbol="r", unit="m", text="radius of the base", gt=0.0, unlikely_above=25.0)]
 Height = Annotated[float, Quantity(symbol="H", unit="m", text="height of the body", gt=0.0, unlikely_above=150.0)]
 Mass = Annotated[float, Quantity(symbol="m", unit="kg", text="mass", gt=0.0)]
-Density = Annotated[float, Quantity(symbol="ρ", unit="kg/m³", text="density", gt=0.0)]
+# From light foam to osmium.
+Density = Annotated[
+    float,
+    Quantity(symbol="ρ", unit="kg/m³", text="density", gt=0.0, unlikely_above=_DENSEST, unlikely_below=_LIGHTEST),
+]
 Gravity = Annotated[
     float, Quantity(symbol="g", unit="m/s²", text="acceleration of gravity", gt=0.0, slider=(0.5, 15.0))
 ]
@@ -120,6 +126,11 @@ class Column(Declared):
         if density is None:
             assert mass is not None
             density = mass / (math.pi * radius**2 * height)
+            if not _LIGHTEST <= density <= _DENSEST:
+                question_input(
+                    f"mass: {mass:.6g} kg is unlikely, with a density of {density:.4g} kg/m³. "
+                    "Check its unit, such as g, kg or t, and those of radius and height."
+                )
         column = cls.frustum(radius=radius, top_radius=radius, height=height, density=density, gravity=gravity)
         return column if mass is None else replace(column, mass=mass)
 

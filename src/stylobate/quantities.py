@@ -70,6 +70,8 @@ class Quantity:
         Whether only whole numbers are valid in studies.
     unlikely_above
         Magnitude above which a number is possible but more likely has another unit; None for no such limit.
+    unlikely_below
+        Magnitude below which a number is possible but more likely has another unit; None for no such limit.
     note
         Remedy, added to the bounds in a message.
     slider
@@ -97,6 +99,7 @@ class Quantity:
     lt: float | None = None
     whole: bool = False
     unlikely_above: float | None = None
+    unlikely_below: float | None = None
     note: str = ""
     slider: tuple[float, float] | None = None
     components: int = 1
@@ -188,8 +191,6 @@ class Quantity:
 
     def refusal(self, name: str, number: float) -> str:
         """Write the message for a number outside of the bounds."""
-        if not math.isfinite(number):
-            return f"{name} must be finite, got {number!r} {self.unit}".rstrip()
         demand = f"{self.demand}, {self.note}" if self.note else self.demand
         remedy = degrees_meant(number, self._allows) if self.unit == "rad" else ""
         return f"{name} must {demand}, got {number!r} {self.unit}".rstrip() + (f". {remedy}" if remedy else "")
@@ -199,10 +200,10 @@ class Quantity:
         if self.unlikely_above is None:
             unlikely = self.unit == "rad" and abs(number) >= _TURNS and number % _STEP == 0.0
         else:
-            unlikely = abs(number) > self.unlikely_above
+            unlikely = not (self.unlikely_below or 0.0) <= abs(number) <= self.unlikely_above
         if unlikely:
-            highest = _TURNS if self.unlikely_above is None else self.unlikely_above
-            remedy = meant(number, self.unit, lambda value: abs(value) <= highest)
+            lowest, highest = self.unlikely_below or 0.0, _TURNS if self.unlikely_above is None else self.unlikely_above
+            remedy = meant(number, self.unit, lambda value: lowest <= abs(value) <= highest)
             remedy = remedy or f"Check its unit, such as {listed(self.unit)}."
             question_input(f"{name}: {number:.6g} {self.unit} is unlikely. {remedy}")
 

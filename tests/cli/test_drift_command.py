@@ -34,8 +34,44 @@ def test_it_finds_saves_and_shows_what_the_study_finds(tmp_path, capsys, saved, 
     assert told["drifts"][0]["contact_class"] == "STAYS"
     assert told["drifts"][-1]["contact_class"] == "SLIDES"
     assert run(["drift", str(path), "--figure", str(drawn)]) == 0
-    assert "m/s" in capsys.readouterr().out
+    shown = capsys.readouterr().out
+    assert "speed [m/s]" in shown
+    assert "twist rate [°/s]" in shown
     assert drawn.read_bytes().startswith(b"\x89PNG")
+
+
+FEEDER = [
+    "--radius",
+    "30mm",
+    "--height",
+    "0.2",
+    "--density",
+    "884",
+    "--friction-coefficient",
+    "0.2",
+    "--motion",
+    "stroke",
+]
+FEEDER += ["--frequency", "50", "--angle", "25deg", "--periods", "8", "--late", "4", "--most-periods", "8"]
+
+
+def test_small_lengths_and_angles_are_in_millimetres_and_degrees_and_knife_edges_are_counted(capsys):
+    assert run(["drift", *FEEDER, "--x", "stroke", "0.2mm", "1.2mm", "2", "--y", "angle", "20deg", "25deg", "2"]) == 0
+    shown = capsys.readouterr().out
+    for heading in ("stroke [mm]", "angle [°]", "[mm/s]"):
+        assert heading in shown
+    assert "│ 1.2         │ 25" in shown
+    assert "2 runs landed at a tilt of exactly 0" in shown
+    assert "vertical plane" not in shown
+    assert run(["drift", *FEEDER, "--x", "stroke", "1mm", "1.2mm", "2", "--tilt", "0.01", "0"]) == 0
+    shown = capsys.readouterr().out
+    assert "2 runs stayed in exactly one vertical plane" in shown
+    assert "exactly 0" not in shown
+
+
+def test_a_stroke_in_metres_is_questioned_once(capsys):
+    assert run(["drift", *FEEDER, "--x", "stroke", "1", "1.2", "3"]) == 0
+    assert capsys.readouterr().err.count("is unlikely") == 1
 
 
 def test_a_store_is_shown_as_a_drift_and_repeated_with_other_numbers(tmp_path, capsys, saved, found):
@@ -62,6 +98,11 @@ def test_a_store_is_shown_as_a_drift_and_repeated_with_other_numbers(tmp_path, c
         ),
         (["--y", "acceleration", "1", "2", "2"], "drift.x and drift.y must differ, got 'acceleration' in both"),
         (["--y", "tilt-z", "1", "2", "2"], "drift.y"),
+        (
+            ["--y", "tilt-z", "1mm", "2mm", "2"],
+            "tilt_z is not known here, so its unit cannot be converted; did you mean",
+        ),
+        (["--diameter", "60mm"], "A column has --radius, half of its diameter."),
     ],
 )
 def test_bad_questions_are_told_in_one_line(arguments, line, capsys):

@@ -37,15 +37,55 @@ def test_the_hop_is_that_of_a_bouncing_mass(found):
     assert int(found["hop_periods"]) == 1
 
 
+def _stroke(throw):
+    return 2.0 * throw * PIN.gravity / ((2.0 * math.pi * FREQUENCY) ** 2 * math.sin(ANGLE))
+
+
+_END, _SECOND_END = (_stroke(math.sqrt(4.0 + (n * math.pi) ** 2) * (1.0 - 1e-4)) for n in (1, 2))
+
+
 @pytest.mark.parametrize(
     ("stroke", "hops", "periods"),
-    [(0.0003, 0.0, 1), (0.0016, 1.0, 1), (0.00165, 1.0, 1), (0.0030, 2.0, 2)],  # 0.64, plateaus, 6.38
+    # 0.64, plateaus, 6.38, and the last ten-thousandth of both plateaus
+    [(0.0003, 0.0, 1), (0.0016, 1.0, 1), (0.00165, 1.0, 1), (0.0030, 2.0, 2), (_END, 1.0, 1), (_SECOND_END, 2.0, 2)],
 )
 def test_hops_are_locked_to_whole_periods_on_their_plateaus(stroke, hops, periods):
     motion = sb.Harmonic.stroke(stroke=stroke, frequency=FREQUENCY, angle=ANGLE)
     one = sheet(PART, motion, **STARTS, max_steps=1_000_000)
     assert float(one["hop_number"]) == pytest.approx(hops, abs=1e-6)
     assert int(one["hop_periods"]) == periods
+
+
+@pytest.mark.parametrize("throw", [3.35, 3.6, 6.40, 6.50, 9.50, 9.55])
+def test_hops_on_plateaus_are_those_of_a_block_that_settles(throw):
+    motion = sb.Harmonic.stroke(stroke=_stroke(throw), frequency=FREQUENCY, angle=ANGLE)
+    one = sheet(PART, motion, tilts=[1e-3], phases=1, periods=11)
+    cycle = sb.theory.block_cycle(0.0, throw, static_friction=1e3, cycles=10_000)
+    assert int(one["hop_periods"]) == cycle.period == round(throw / math.pi)
+    # The block leaves where it lands, so its flights add up to whole periods.
+    assert cycle.fraction[sb.theory.BlockPhase.FLIGHT] == pytest.approx(1.0, abs=1e-12)
+    assert float(one["hop_number"]) == cycle.period
+
+
+def test_a_part_that_stays_upright_on_a_level_track_can_fall_on_the_steepest_one():
+    bottle = sb.Column.solid(radius=0.03, height=0.2, density=884.0)
+    motion = sb.Harmonic.stroke(stroke=0.0012, frequency=50.0, angle=ANGLE, direction=2.0)
+    found = sheet(sb.Sliding(bottle, friction_coefficient=0.28), motion, tilts=[1e-3], phases=16)
+    slope = float(found["steepest_incline"][0])
+    track = sb.Sliding(bottle, friction_coefficient=0.28, incline=slope, incline_direction=2.0 - math.pi)
+    alone = upright(track, motion, tilts=[1e-3], phases=16)
+    assert str(found["steepest_verdict"][0].item()).partition(";")[0] == alone.attrs["verdict"].partition(";")[0]
+    assert float(found["share"].sel(posture_name="fallen")[0]) == 0.0
+    assert float(alone["share"].sel(posture_name="fallen")) > 0.5
+
+
+def test_the_table_states_a_horizontal_vibration_and_the_default_friction():
+    level = sheet(sb.Sliding(PIN), sb.Harmonic.stroke(stroke=STROKE, frequency=FREQUENCY), tilts=[0.0], phases=1)
+    rows = dict(sheet_rows(level))
+    assert rows["vibration angle"] == ["0.0° (horizontal)"]
+    assert rows["friction"] == ["0.5 (the default)"]
+    with pytest.raises(sb.errors.ParameterError, match="a feeder sheet is a table"):
+        sb.plot(level)
 
 
 def test_speeds_are_those_of_a_block(found):
@@ -81,7 +121,8 @@ def test_a_vibration_about_a_circle_has_no_steepest_track():
     )
     one = sheet(PART, circle, **STARTS)
     assert np.isnan(one["steepest_incline"]).all()
-    assert "not known" in dict(sheet_rows(one))["steepest track"]
+    rows = dict(sheet_rows(one))
+    assert rows["steepest track of a part that stays upright"] == rows["posture on that track"] == ["not known"]
 
 
 def test_it_needs_a_harmonic_motion_and_a_contact_that_slips():

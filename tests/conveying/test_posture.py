@@ -103,6 +103,71 @@ def test_it_is_saved_loaded_and_drawn(found, tmp_path):
     assert len(sb.plot(again).axes) == 2
 
 
+def test_runs_without_a_mean_tilt_are_undecided_unless_they_rest():
+    """The last ten periods follow at least one: runs of ten periods are too short, runs of eleven are not."""
+    short, long = (upright(PART, STRONG, tilts=[1e-2], phases=8, periods=periods) for periods in (10, 11))
+    undecided = short["posture"].values == -1
+    assert undecided.any()
+    assert (undecided | (short["posture"].values == Posture.FALLEN)).all()
+    assert (short["share_high"] - short["share_low"] >= undecided.mean()).all()
+    assert "are undecided" in short.attrs["verdict"]
+    assert "increase periods to 11 or more" in short.attrs["verdict"]
+    assert (long["posture"] >= 0).all()
+    assert "undecided" not in long.attrs["verdict"]
+    still = sb.Harmonic.stroke(stroke=1e-5, frequency=50.0, angle=0.4)
+    resting = upright(PART, still, tilts=[0.0], phases=4, periods=3)
+    assert (resting["outcome"] == sb.Outcome.AT_REST).all()
+    assert (resting["posture"] == Posture.UPRIGHT).all()
+
+
+def test_a_tilt_in_the_plane_of_vibration_is_marked_and_a_tilt_beside_it_is_not():
+    arguments = {"tilts": [1e-2], "phases": 4, "periods": 20}
+    within, beside = (upright(PART, STRONG, azimuth=azimuth, **arguments) for azimuth in (math.pi, 1e-6))
+    assert within["planar"].values.all()
+    assert not beside["planar"].values.any()
+    assert "exactly in one vertical plane" in within.attrs["verdict"]
+    assert "vertical plane" not in beside.attrs["verdict"]
+    flat = upright(PART, WEAK, tilts=[0.0], phases=4, periods=20)
+    assert "vertical plane" not in flat.attrs["verdict"]
+
+
+def test_angles_of_an_initial_tilt_have_units_in_python_in_a_file_and_in_the_shell(tmp_path, capsys):
+    unit = pytest.importorskip("pint").UnitRegistry()
+    plain = {"tilts": np.radians([0.1, 0.5]), "azimuth": math.radians(30.0), "friction": [0.28], "confidence": 0.8}
+    arguments = {"phases": 2, "periods": 12}
+    wanted = upright(PART, STRONG, **plain, **arguments)
+    given = {"tilts": [0.1, 0.5] * unit.degree, "azimuth": 30 * unit.degree}
+    given |= {"friction": [28] * unit.percent, "confidence": 80 * unit.percent}
+    found = upright(PART, STRONG, **given, **arguments)
+    np.testing.assert_allclose(found["tilt"], wanted["tilt"], rtol=1e-15)
+    np.testing.assert_allclose(found["azimuth"], wanted["azimuth"], rtol=1e-15)
+    assert found.attrs["verdict"] == wanted.attrs["verdict"]
+    part = ["--radius", "6mm", "--height", "40mm", "--density", "7850", "--friction-coefficient", "0.2"]
+    part += ["--damping", "0.05", "--normal-restitution", "0.1", "--motion", "stroke", "--stroke", "1mm"]
+    part += ["--frequency", "50", "--angle", "25deg", "--periods", "12", "--phases", "2", "--json"]
+    starts = [
+        "--tilts",
+        "0.1deg",
+        "--tilts",
+        "0.5deg",
+        "--azimuth",
+        "30deg",
+        "--friction",
+        "28%",
+        "--confidence",
+        "80%",
+    ]
+    assert run(["upright", *part, *starts]) == 0
+    assert json.loads(capsys.readouterr().out)["verdict"] == wanted.attrs["verdict"]
+    described = tmp_path / "starts.toml"
+    described.write_text(
+        '[upright]\ntilts = ["0.1 deg", "0.5 deg"]\nazimuth = "30 deg"\nfriction = ["28 %"]\nconfidence = "80 %"\n',
+        encoding="utf-8",
+    )
+    assert run(["upright", str(described), *part]) == 0
+    assert json.loads(capsys.readouterr().out)["verdict"] == wanted.attrs["verdict"]
+
+
 def planar_counts(tilts, phases, periods, steps):
     """Return the numbers of fallen runs of each tilt along the vibration: of the package, and of the block."""
     undamped = sb.Sliding(PIN, friction_coefficient=0.2, normal_restitution=0.1)
@@ -139,6 +204,8 @@ def test_a_block_by_time_stepping_falls_as_often_at_each_tilt():
     [
         ({"tilts": [-0.1]}, "tilts: must be one or more angles from 0"),
         ({"tilts": []}, "tilts: must be one or more angles from 0"),
+        ({"tilts": [5.0]}, "^tilts must lie between .* For 5 deg give 0.08727 rad"),
+        ({"friction": [-1.0]}, "^friction must lie between"),
         ({"phases": 0}, "phases"),
         ({"friction": []}, "friction: must be at least one number"),
         ({"confidence": 1.0}, "confidence must lie between 0 and 1"),

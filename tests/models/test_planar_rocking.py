@@ -56,7 +56,7 @@ def test_the_restitution_is_housners_unless_another_is_given():
     assert solid.impact_restitution == pytest.approx(0.942168674699, abs=1e-12)
     assert BLOCK.impact_restitution == pytest.approx(float(sb.theory.block_restitution(0.2)), rel=1e-14)
     assert sb.PlanarRocking(SOLID, restitution=0.8).impact_restitution == 0.8
-    assert sb.PlanarRocking.block(width=0.3, height=1.5, density=1.0, restitution=0.7).impact_restitution == 0.7
+    assert sb.PlanarRocking.block(width=0.3, height=1.5, density=1000.0, restitution=0.7).impact_restitution == 0.7
 
 
 def test_a_body_too_flat_to_rock_back_stays_down():
@@ -182,7 +182,7 @@ def test_it_can_be_described_and_saved(tmp_path):
         (lambda: sb.PlanarRocking(None), "column must be a Column"),
         (lambda: sb.PlanarRocking(SOLID, damping=-1.0), "damping must be zero or positive, got -1.0"),
         (lambda: sb.PlanarRocking(SOLID, restitution=1.5), "restitution must lie between 0 and 1, 1 for no loss, got"),
-        (lambda: sb.PlanarRocking.block(width=0.0, height=1.0, density=1.0), "width must be positive, got 0.0 m"),
+        (lambda: sb.PlanarRocking.block(width=0.0, height=1.0, density=1000.0), "width must be positive, got 0.0 m"),
         (lambda: sb.PlanarRocking.block(width=1.0, height=1.0, density=-1.0), "density must be positive, got -1.0 kg"),
     ],
 )

@@ -2,6 +2,7 @@
 
 import importlib.util
 import sys
+from itertools import pairwise
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -292,3 +293,211 @@ def test_the_sheet_of_figures_has_every_kind():
     spec.loader.exec_module(sheet)
     figure_for("ensemble")
     assert set(_FIGURES) - {"sweep"} <= set(sheet.RESULTS)  # a sweep is drawn as an ensemble
+
+
+QUAKE = sb.sample_record()
+
+
+@pytest.fixture(scope="module")
+def slid():
+    """A run with all panels: it tilts, slides and turns about its axis, on a base that moves along three axes."""
+    return sb.simulate(sb.Sliding(STONE, friction_coefficient=0.2, damping=0.05), QUAKE)
+
+
+def boxes(figure, chosen):
+    figure.draw_without_rendering()
+    return [one.get_window_extent() for one in chosen if one.get_text() and one.get_visible()]
+
+
+def overlap(first, second, tolerance=1.0):
+    across = min(first.x1, second.x1) - max(first.x0, second.x0)
+    along = min(first.y1, second.y1) - max(first.y0, second.y0)
+    return across > tolerance and along > tolerance
+
+
+@pytest.mark.parametrize("size", [3.5, 7.2, (13.3, 7.5), (3.5, 4.0), (7.2, 3.0)])
+def test_titles_labels_and_numbers_of_a_run_do_not_overlap(slid, size):
+    figure = sb.plot(slid, size=size)
+    figure.draw_without_rendering()
+    words = [figure._suptitle]
+    for axes in figure.axes:
+        words += [axes.xaxis.label, axes.yaxis.label, axes.title, axes._left_title, *axes.texts]
+        for axis in (axes.xaxis, axes.yaxis):
+            low, high = sorted(axis.get_view_interval())
+            words += [tick.label1 for tick in axis.get_major_ticks() if low <= tick.get_loc() <= high]
+    found = [box for box in boxes(figure, words) if box.width > 0.0]
+    for place, first in enumerate(found):
+        assert not any(overlap(first, second) for second in found[:place]), first
+        assert first.x0 >= -1.0
+        assert first.x1 <= figure.bbox.x1 + 1.0
+
+
+def test_a_low_figure_of_a_run_has_the_most_important_panels_or_is_refused(slid):
+    low = sb.plot(slid, size=(3.5, 2.5))
+    assert [axes.get_ylabel().splitlines()[0] for axes in low.axes] == [r"tilt $\theta$ [rad]", "base"]
+    assert len(sb.plot(slid, size=(3.5, 12.0)).axes) == len(sb.plot(slid).axes)
+    with pytest.raises(ParameterError, match=r"must be (.*) inches high or more, got 0\.8") as refused:
+        sb.plot(slid, size=(3.5, 0.8))
+    least = float(str(refused.value).split("must be ")[1].split()[0])
+    assert len(sb.plot(slid, size=(3.5, least + 0.01)).axes) == 1
+
+
+def test_titles_break_within_the_figure_and_grow_with_the_font(slid):
+    part = sb.Sliding(sb.Column.solid(radius=0.03, height=0.2, density=884.0), friction_coefficient=0.25)
+    feeder = sb.Harmonic.stroke(stroke=0.0012, frequency=50.0, angle=0.44)
+    posture = sb.conveying.upright(part, feeder, phases=2, periods=5)
+    for size, font in ((3.5, 8.0), (7.2, 9.5), (13.3, 9.5 * 13.3 / 7.2)):
+        figure = sb.plot(posture, size=size)
+        (box,) = boxes(figure, [figure._suptitle])
+        assert box.x1 <= figure.bbox.x1
+        assert figure._suptitle.get_fontsize() == pytest.approx(font)
+
+
+@pytest.mark.parametrize("size", [3.5, 7.2, (13.3, 7.5)])
+def test_the_numbers_of_an_orbit_do_not_overlap(size):
+    model = sb.Slender(sb.Column.dimensionless(slenderness=0.1), damping=0.1)
+    orbit = sb.orbits.periodic_orbit(model, sb.Harmonic.straight(acceleration=0.13, angular_frequency=1.6))
+    figure = sb.plot(orbit, size=size)
+    for axes in figure.axes:
+        figure.draw_without_rendering()
+        low, high = sorted(axes.get_xlim())
+        shown = [tick.label1 for tick in axes.xaxis.get_major_ticks() if low <= tick.get_loc() <= high]
+        found = boxes(figure, shown)
+        assert not any(overlap(a, b) for a, b in pairwise(found))
+    path = figure.axes[1].get_window_extent()
+    assert path.width > 0.2 * figure.bbox.width
+
+
+def test_no_text_is_smaller_than_6_points_or_than_the_font_of_the_user(run):
+    for context, least in (({}, 6.0), ({"font.size": 5.0}, 5.0)):
+        with plt.rc_context(context):
+            figure = sb.plot(run, size=3.5)
+        assert min(text.get_fontsize() for text in texts(figure)) >= least
+
+
+def test_a_legend_covers_neither_a_map_nor_curves_of_given_axes():
+    x, y = np.linspace(0.0, 1.0, 40), np.linspace(0.0, 1.0, 40)
+    codes = np.where(x[:, np.newaxis] + 0.0 * y < 0.5, int(sb.Outcome.AT_REST), int(sb.Outcome.OVERTURNED))
+    found = xr.Dataset({"outcome": (("x", "y"), codes)}, {"x": x, "y": y}, {"kind": "ensemble"})
+    for layout in ("constrained", None):
+        figure, axes = plt.subplots(1, 2, figsize=(7.2, 3.0), layout=layout)
+        try:
+            axes[0].plot([0.0, 1.0], color="black")
+            sb.plot(found, axes=axes[1])
+            figure.draw_without_rendering()
+            legend, label = axes[1].get_legend(), axes[1].xaxis.label
+            assert {text.get_text().split("  ")[0] for text in legend.get_texts()} == {"at rest", "overturned"}
+            if layout:
+                assert legend.get_window_extent().y1 <= label.get_window_extent().y0 + 1.0
+                assert legend.get_window_extent().y0 >= 0.0
+            else:
+                assert legend.get_frame_on()
+                assert legend.get_frame().get_alpha() >= 0.9
+        finally:
+            plt.close(figure)
+
+
+def test_axes_of_a_dark_page_have_light_lines_and_the_others_stay(run):
+    with plt.style.context("dark_background"):
+        figure, (other, mine) = plt.subplots(1, 2)
+        try:
+            kept = other.plot([0.0, 1.0], color="#111111")[0]
+            sb.plot([run, run], axes=mine, labels=["a", "b"])
+            assert kept.get_color() == "#111111"
+            assert luminance(mine.yaxis.label.get_color()) > 0.4
+            assert all(luminance(text.get_color()) > 0.4 for text in mine.get_legend().get_texts())
+        finally:
+            plt.close(figure)
+
+
+def test_names_of_events_stand_above_the_curves(slid):
+    tilt = sb.plot(slid).axes[0]
+    named = {text.get_text(): text for text in tilt.texts}
+    assert {"uplift", "overturned"} <= set(named)
+    tilt.get_figure().draw_without_rendering()
+    for name in ("uplift", "overturned"):
+        assert named[name].get_bbox_patch() is None
+        assert named[name].get_window_extent().y0 >= tilt.get_window_extent().y1
+
+
+def test_several_slendernesses_label_each_limit():
+    runs = [
+        sb.simulate(sb.Wobbling(STONE.with_slenderness(c), damping=0.05), tilt=(0.05, 0.0), duration=2.0)
+        for c in (0.1, 0.15)
+    ]
+    words = [text.get_text() for text in sb.plot(runs).axes[0].texts]
+    assert [word.partition("$c$ = ")[2] for word in words] == ["0.1", "0.15"]
+
+
+def test_changes_of_a_motion_name_runs():
+    def names(motions):
+        return what_varies([sb.simulate(MODEL, one, duration=1.0) for one in motions])
+
+    assert names([QUAKE.scaled(0.5), QUAKE]) == ["0.5 × El Centro 1940", "El Centro 1940"]
+    assert names([QUAKE.rotated(0.3), QUAKE.rotated(0.7)]) == ["rotated by 0.3 rad", "rotated by 0.7 rad"]
+    assert names([CIRCLE.scaled(2.0), CIRCLE.scaled(3.0)]) == ["2 × circular", "3 × circular"]
+    assert names([CIRCLE.scaled(2.0, vertical=1.0), CIRCLE]) == ["2 × circular, vertical 1 ×", "circular"]
+    own = sb.Record(samples=QUAKE.samples[:200], step=QUAKE.step, name="own")
+    assert names([own.scaled(0.5), own.scaled(0.6)]) == ["scaled by 0.5", "scaled by 0.6"]
+
+
+def test_a_duration_that_follows_from_other_inputs_is_not_named_and_units_are():
+    tall = [sb.Wobbling(STONE.with_slenderness(c), damping=0.05) for c in (0.1, 0.12)]
+    runs = [sb.simulate(model, QUAKE.scaled(0.3)) for model in tall]
+    assert runs[0].provenance["duration"] != runs[1].provenance["duration"]
+    assert what_varies(runs) == ["c = 0.1", "c = 0.12"]
+    tilted = [sb.simulate(MODEL, tilt=(tilt, 0.0), duration=1.0) for tilt in (0.03, 0.04)]
+    assert what_varies(tilted) == ["tilt 0.03 rad", "tilt 0.04 rad"]
+    longer = [sb.simulate(MODEL, tilt=(0.03, 0.0), duration=duration) for duration in (1.0, 2.0)]
+    assert what_varies(longer) == ["duration 1 s", "duration 2 s"]
+
+
+def test_labels_keep_their_letters_and_are_checked(run):
+    assert sb.plot([run], labels=["c = 0.1"]).get_suptitle().startswith("c = 0.1: ")
+    with pytest.raises(ParameterError, match="labels must have one name for each of 2 results, got 1"):
+        sb.plot([run, run], labels=["a"])
+    with pytest.raises(ParameterError, match="labels must have one name for each of 1 result, got 'ab'"):
+        sb.plot(run, labels="ab")
+    with pytest.raises(ParameterError, match="labels name runs, branches or curves"):
+        sb.plot(STONE, labels=["a"])
+    figure, axes = plt.subplots()
+    try:
+        sb.plot(run, labels=["mine"], axes=axes)
+        assert [text.get_text() for text in axes.get_legend().get_texts()] == ["mine"]
+    finally:
+        plt.close(figure)
+
+
+def test_files_keep_their_texts_unless_the_user_decides_otherwise(run, tmp_path):
+    figure = sb.plot(run)
+    figure.savefig(tmp_path / "run.svg")
+    assert ">time [s]<" in (tmp_path / "run.svg").read_text()
+    figure.savefig(tmp_path / "run.pdf")
+    assert b"/Type3" not in (tmp_path / "run.pdf").read_bytes().replace(b" ", b"")
+    with plt.rc_context({"svg.fonttype": "none", "svg.hashsalt": "a", "pdf.fonttype": 42}):
+        assert plt.rcParams["svg.fonttype"] == "none"
+        figure.savefig(tmp_path / "own.svg")
+    assert plt.rcParams["svg.fonttype"] == plt.rcParamsDefault["svg.fonttype"]
+
+
+def test_short_lengths_are_in_millimetres():
+    part = sb.Sliding(sb.Column.solid(radius=0.03, height=0.2, density=884.0), friction_coefficient=0.25)
+    feeder = sb.Harmonic.stroke(stroke=0.0012, frequency=50.0, angle=0.44)
+    found = sb.conveying.drift(part, feeder, over={"stroke": np.linspace(2e-4, 1.2e-3, 3)}, periods=10, late=5)
+    axes = sb.plot(found).axes[-1]
+    axes.get_figure().draw_without_rendering()
+    assert axes.get_xlabel().endswith("[mm]")
+    for tick in axes.xaxis.get_major_ticks():
+        assert float(tick.label1.get_text().replace("−", "-")) == pytest.approx(1e3 * tick.get_loc(), abs=1e-9)
+
+
+def test_a_steady_roll_is_a_line_and_the_acceleration_lies_within_its_panel():
+    model = sb.Slender(sb.Column.dimensionless(slenderness=0.1), damping=0.1)
+    circle = sb.Harmonic.circular(acceleration=0.065, angular_frequency=1.8)
+    rolling = sb.simulate(model, circle, duration=600.0, **sb.studies.steady_start(model, circle))
+    figure = sb.plot(rolling)
+    tilt, base = figure.axes[0], figure.axes[2]
+    assert not tilt.collections
+    assert tilt.lines[0].get_xdata().size == rolling.data.sizes["time"]
+    low, high = base.get_ylim()
+    assert 0.1 < (0.065 - low) / (high - low) < 0.9

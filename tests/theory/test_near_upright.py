@@ -14,12 +14,12 @@ from stylobate.errors import ParameterError
 
 @pytest.mark.parametrize(("c", "degrees"), [(0.1, 180.6724805), (0.2, 182.660)])
 def test_a_solid_cylinder_turns_by_what_is_known(c, degrees):
-    ratio = Column.solid(radius=c, height=2.0, density=1.0).inertia_ratio
+    ratio = Column.solid(radius=c, height=2.0, density=1000.0).inertia_ratio
     assert math.degrees(theory.angle_of_turn(c, inertia_ratio=ratio)) == pytest.approx(degrees, abs=5e-4)
 
 
 def test_a_disk_turns_by_root_five_half_turns():
-    ratio = Column.solid(radius=20.0, height=4e-5, density=1.0).inertia_ratio
+    ratio = Column.solid(radius=20.0, height=4e-5, density=1000.0).inertia_ratio
     assert float(theory.angle_of_turn(1e6, inertia_ratio=ratio)) == pytest.approx(math.sqrt(5.0) * math.pi, rel=1e-10)
 
 

@@ -23,7 +23,7 @@ machine = sb.MachineRun(
     resonance=5.0,  # Hz
     resonance_damping=0.1,
 )
-run = sb.simulate(part, machine, tilt=(0.01, 0.0))
+run = sb.simulate(part, machine, tilt=(0.0, 0.01))
 print(run)
 
 time = np.linspace(0.0, machine.duration, 20001)

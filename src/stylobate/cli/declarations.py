@@ -19,6 +19,7 @@ MAX_NAMED_KINDS = 3
 
 _AXIS = tuple[str, str, str, int]
 """Name, first, last and number of values, whose unit depends on the name."""
+_NUMBERS = list[float]
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,14 +77,16 @@ class Option:
     def as_parameter(self) -> inspect.Parameter:
         """Make the parameter of a function from which typer reads this option; numbers remain texts."""
         kind, numbers = self.type, _numbers_in(self.type)
-        if numbers:
+        if kind == _NUMBERS:
+            kind = list[str]
+        elif numbers:
             kind = str if kind is float else tuple[(str,) * numbers]  # type: ignore[misc]
         declared = typer.Option(
             self.written_flag,
             help=self.help,
             rich_help_panel=self.panel,
             show_default=False,
-            metavar=self.metavar or " ".join(["NUMBER"] * numbers) or None,
+            metavar=self.metavar or " ".join(["NUMBER"] * (numbers or self.type == _NUMBERS)) or None,
             min=self.minimum,
             callback=self.callback,
             hidden=self.hidden,
@@ -103,6 +106,8 @@ class Option:
         """
         if value is None or self.type is float:
             return None if value is None else self._number(value)
+        if self.type == _NUMBERS:
+            return [self._number(one) for one in value]
         count = _numbers_in(self.type)
         texts = value if count else value[1:3] if self.type is _AXIS else ()
         if not all(map(is_number, texts)):

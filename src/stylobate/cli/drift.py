@@ -10,7 +10,7 @@ from stylobate.cli.command import command
 from stylobate.cli.declarations import AXES, COMPUTING, OUTPUT_OR_STORE, Option, run_numbers
 from stylobate.cli.many_runs import finish, run_study, study_values
 from stylobate.cli.options import Options
-from stylobate.cli.output import print_table
+from stylobate.cli.output import DEGREES, Practical, practical, print_table
 from stylobate.cli.overlay import merge, with_axes
 from stylobate.cli.parts import COLUMN, MOTION_WITHOUT_RECORDS, SLIDING
 from stylobate.cli.saved import axes_of, number_of_runs, open_saved, provenance_of, study_summary
@@ -48,8 +48,8 @@ def drift(options: Options) -> None:
     interval of its mean velocity is narrow enough. A part that accelerates beyond the friction angle has no mean
     velocity. The result also holds the mean rate of rotation about the axis. Examples:
 
-    stylobate drift --radius 0.02 --height 0.03 --density 7800 --friction-coefficient 0.3 --motion oblique
-    --angle 0.52 --angular-frequency 60 --x acceleration 2 30 29 --figure drift.png
+    stylobate drift --radius 20mm --height 30mm --density 7800 --friction-coefficient 0.3 --motion stroke
+    --frequency 50Hz --angle 30deg --x stroke 0.1mm 1.2mm 23 --tilt 0 0.1deg --figure drift.png
 
     stylobate drift drift.toml --y friction-coefficient 0.1 0.5 9 --output drift.zarr
     """
@@ -120,47 +120,52 @@ def _row(one: "xr.Dataset", names: list[str], meanings: list[str]) -> dict[str, 
 
 
 def _print(result: "xr.Dataset") -> None:
+    from stylobate.conveying.contact_maps import knife_edge_remarks  # noqa: PLC0415
+
     rows = _rows(result)
     names = [str(dim) for dim in result["outcome"].dims]
     title = number_of_runs(result, f" over {' and '.join(names)}")
     if len(rows) > _ROWS:
         rows = sorted(rows, key=lambda row: -_or_zero(row["transport_speed"]))[:_FASTEST]
         title += f"; the {_FASTEST} fastest are shown, --json shows all"
+    axes = {name: practical([row[name] for row in rows], str(result[name].attrs.get("units", "1"))) for name in names}
+    pace = practical([row["transport_speed"] for row in rows], "m s-1")
+    twist = Practical(DEGREES.factor, "°/s")
     print_table(
-        title,
-        [_cells(row, names) for row in rows],
+        "; ".join([title, *knife_edge_remarks(result)]),
+        [_cells(row, axes, pace, twist) for row in rows],
         (
-            *(name.replace("_", " ") for name in names),
-            "velocity x, y",
-            "speed",
-            "twist rate",
+            *(f"{name.replace('_', ' ')} {one.bracketed}".rstrip() for name, one in axes.items()),
+            f"velocity x, y {pace.bracketed}",
+            f"speed {pace.bracketed}",
+            f"twist rate {twist.bracketed}",
             "throw number",
             "contact class",
         ),
     )
 
 
-def _speed(row: Mapping[str, Any]) -> str:
+def _speed(row: Mapping[str, Any], unit: Practical) -> str:
     """Write the speed with the half-width of its interval, or the reason why there is none."""
     if row["transport"] in ("ACCELERATES", "ENDED"):
         return str(row["transport"]).lower()
     half = row["speed_high"] - row["transport_speed"]
     wide = " (unsettled)" if row["transport"] == "UNSETTLED" else ""
-    return f"{row['transport_speed']:.4g} ± {half:.2g} m/s{wide}"
+    return f"{unit.factor * row['transport_speed']:.4g} ± {unit.factor * half:.2g}{wide}"
 
 
 def _or_zero(speed: float) -> float:
     return speed if math.isfinite(speed) else 0.0
 
 
-def _cells(row: Mapping[str, Any], names: list[str]) -> list[str]:
-    x, y = row["mean_velocity"]
+def _cells(row: Mapping[str, Any], axes: Mapping[str, Practical], pace: Practical, twist: Practical) -> list[str]:
+    x, y = (pace.factor * one for one in row["mean_velocity"])
     moves = math.isfinite(row["transport_speed"])
     return [
-        *(f"{row[name]:.6g}" for name in names),
-        f"{x:.4g}, {y:.4g} m/s" if moves else "none",
-        _speed(row),
-        f"{row['mean_twist_rate']:.4g} rad/s",
+        *(f"{unit.factor * row[name]:.6g}" for name, unit in axes.items()),
+        f"{x:.4g}, {y:.4g}" if moves else "none",
+        _speed(row, pace),
+        f"{twist.factor * row['mean_twist_rate']:.4g}",
         f"{row['throw_number']:.4g}",
         row["contact_class"].lower().replace("_", " "),
     ]

@@ -38,11 +38,11 @@ def feeder(options: Options) -> None:
     """Compute the sheet of a feeder: hops, speed, steepest track and posture of a part.
 
     The sheet has the machine number K, the throw number, the longest hop, the speed with its interval from a flat start
-    and from tilted ones, the steepest track that conveys upwards, the critical friction coefficient, and the shares of
-    parts that stay upright, rock and fall. Examples:
+    and from tilted ones, the critical friction coefficient, the shares of parts that stay upright, rock and fall, and
+    the steepest track that conveys a part upwards that stays upright, with its posture there. Examples:
 
-    stylobate feeder --radius 0.03 --height 0.2 --density 884 --friction-coefficient 0.2 --motion stroke
-    --stroke 0.0012 --frequency 50 --angle 0.436 --output sheet.csv
+    stylobate feeder --radius 30mm --height 200mm --density 884 --friction-coefficient 0.2 --motion stroke
+    --stroke 1.2mm --frequency 50Hz --angle 25deg --output sheet.csv
 
     stylobate feeder feeder.toml --friction 0.2 --friction 0.3 --json
     """

@@ -70,10 +70,12 @@ def _shares(result: "xr.Dataset") -> list[tuple[str, int, float]]:
 
 
 def _print(result: "xr.Dataset") -> None:
+    from stylobate.conveying.contact_maps import knife_edge_remarks  # noqa: PLC0415  as in _counted
+
     rows = [(name, str(count), f"{100.0 * share:.2f} %") for name, count, share in _shares(result) if count]
     title = number_of_runs(result, f" over {' and '.join(map(str, result['outcome'].dims))}")
     uncertain = int(result["uncertain"].sum())
-    doubts = f"; {uncertain} numerically uncertain" if uncertain else ""
-    flat = int(result["lands_flat"].sum()) if "lands_flat" in result else 0
-    doubts += f"; {flat} land at a tilt of exactly 0, count them by `stylobate upright`" if flat else ""
-    print_table(title + doubts, rows, ("outcome", "runs", "share"))
+    remarks = [f"{uncertain} numerically uncertain: rounding could alter them"] if uncertain else []
+    if result.attrs["kind"] == "contact map":
+        remarks = [f"{one}, count outcomes with `upright`" for one in remarks] + knife_edge_remarks(result)
+    print_table("; ".join([title, *remarks]), rows, ("outcome", "runs", "share"))

@@ -116,6 +116,8 @@ class Options(Mapping[str, Any]):
         chooser = next((one for one in self.declared.values() if one.part == option.part and one.number in _TAGS), None)
         offered = [one for one in option.kinds if chooser and one in chooser.kinds][:MAX_NAMED_KINDS]
         remedy = f"Remove it, or choose --{written(chooser.name)} {listed(offered)}." if chooser and offered else ""
+        if option.number == "diameter" and "radius" in self.declared:
+            remedy = f"{remedy.removesuffix('.')}. A column has --radius, half of its diameter.".lstrip(". ")
         return self.refusal(option.name, f"{noun} {written(kind)!r} does not use it", remedy or "Remove it.")
 
 

@@ -4,14 +4,15 @@ import json
 import math
 import os
 import sys
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from importlib.util import find_spec
 from io import BytesIO
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from stylobate.errors import FileError, ParameterError, require_positive
 from stylobate.files import write_whole
+from stylobate.text import unit_in_text
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -44,6 +45,39 @@ def print_table(title: str, rows: Sequence[Sequence[str]], header: Sequence[str]
     console.print(table)
     if header is not None:
         console.print(title, soft_wrap=True)
+
+
+class Practical(NamedTuple):
+    """A unit of a column of a table: its name, and the factor of numbers in SI units."""
+
+    factor: float
+    name: str
+
+    @property
+    def bracketed(self) -> str:
+        """The unit in brackets; empty without unit."""
+        return f"[{self.name}]" if self.name else ""
+
+
+DEGREES = Practical(180.0 / math.pi, "°")
+
+
+def practical(values: Iterable[float], units: str) -> Practical:
+    """Choose the unit of a table: millimetres if all lengths or speeds are below one metre, and degrees.
+
+    Parameters
+    ----------
+    values
+        The numbers in SI units; those that are not finite do not count.
+    units
+        Their units as in netCDF files, such as "m s-1".
+    """
+    unit = unit_in_text(units)
+    if unit == "rad":
+        return DEGREES
+    if unit in ("m", "m/s") and max((abs(one) for one in values if math.isfinite(one)), default=0.0) < 1.0:
+        return Practical(1000.0, f"m{unit}")
+    return Practical(1.0, unit)
 
 
 def deliver(

@@ -7,7 +7,7 @@ from stylobate.cli.command import command
 from stylobate.cli.declarations import COMPUTING, OUTPUT_OR_STORE, Option, run_numbers
 from stylobate.cli.many_runs import finish, run_study, study_values
 from stylobate.cli.options import Options
-from stylobate.cli.output import print_table
+from stylobate.cli.output import DEGREES, print_table
 from stylobate.cli.overlay import merge
 from stylobate.cli.parts import COLUMN, MOTION_WITHOUT_RECORDS, SLIDING
 from stylobate.cli.saved import open_study, study_summary
@@ -21,10 +21,10 @@ if TYPE_CHECKING:
 
 KIND = "upright"
 STARTS = (
-    Option("tilts", "initial tilt angle [rad]; repeat it. 0, 1e-5, 1e-3 and 1e-2 by default", list[float]),
+    Option("tilts", "initial tilt angle; repeat it. 0, 1e-5, 1e-3 and 1e-2 by default", list[float], unit="rad"),
     Option("phases", "number of phases at which the vibration starts; 64 by default", int),
     Option("friction", "friction coefficient; repeat it for several, each as probable", list[float]),
-    Option("azimuth", "azimuth of the initial tilt [rad]; spread over all directions by default"),
+    Option("azimuth", "azimuth of the initial tilt; spread over all directions by default", unit="rad"),
     Option("confidence", "confidence level of intervals; 0.9 by default"),
 )
 """Options of the table `upright`."""
@@ -48,10 +48,10 @@ def upright(options: Options) -> None:
     The runs differ in initial tilt, in the direction of this tilt and in the phase of the vibration. The shares leave
     out parts that start exactly flat and hop: they always land flat. Examples:
 
-    stylobate upright --radius 0.006 --height 0.04 --density 7850 --friction-coefficient 0.2 --motion stroke
-    --stroke 0.001 --frequency 50 --angle 0.436 --figure upright.png
+    stylobate upright --radius 6mm --height 40mm --density 7850 --friction-coefficient 0.2 --motion stroke
+    --stroke 1mm --frequency 50Hz --angle 25deg --figure upright.png
 
-    stylobate upright upright.toml --tilts 0.001 --tilts 0.01 --friction 0.2 --friction 0.3 --output upright.nc
+    stylobate upright upright.toml --tilts 0.05deg --tilts 0.5deg --friction 0.2 --friction 0.3 --output upright.nc
     """
     source = options["source"]
     stores = f"the store of a posture. Pass its description with --output {source} --resume to show it."
@@ -96,7 +96,7 @@ def _by_tilt(result: "xr.Dataset") -> list[tuple[float, float, dict[str, float]]
 
 def _print(result: "xr.Dataset") -> None:
     rows = [
-        [f"{mu:.4g}", f"{tilt:.4g} rad", *(percent(share) for share in shares.values())]
+        [f"{mu:.4g}", f"{DEGREES.factor * tilt:.4g}°", *(percent(share) for share in shares.values())]
         for mu, tilt, shares in _by_tilt(result)
     ]
     header = ("friction coefficient", "initial tilt", *map(str, result["posture_name"].to_numpy()))

@@ -1,15 +1,17 @@
 """Describe the values of one quantity: evenly spaced, or listed."""
 
+from collections.abc import Mapping
 from typing import Any, Literal
 
 import numpy as np
 import numpy.typing as npt
-from pydantic import Field, ValidationInfo, field_validator
+from pydantic import Field, ValidationInfo, field_validator, model_validator
 
 from stylobate.config.description import Config
-from stylobate.config.parameter_quantities import quantity_of
+from stylobate.config.parameter_quantities import known_names, quantity_of
 from stylobate.errors import ParameterError, require_finite, require_positive, require_whole
-from stylobate.units import read_all
+from stylobate.text import did_you_mean
+from stylobate.units import has_unit, read_all
 
 
 class Axis(Config):
@@ -37,6 +39,16 @@ class Axis(Config):
     number: int | None = None
     spacing: Literal["linear", "log"] = "linear"
     listed: tuple[float, ...] | None = Field(default=None, alias="values")
+
+    @model_validator(mode="before")
+    @classmethod
+    def _know_the_quantity(cls, values: Any) -> Any:
+        """Refuse values with a unit of an unknown quantity, which has no unit to convert them to."""
+        name = str(values.get("name", "")).replace("-", "_") if isinstance(values, Mapping) else ""
+        if name and name not in known_names() and any(map(has_unit, values.values())):
+            message = f"{name} is not known here, so its unit cannot be converted; {_remedy(name)}"
+            raise ValueError(message)
+        return values
 
     @field_validator("first", "last", "listed", mode="before")
     @classmethod
@@ -79,6 +91,10 @@ class Axis(Config):
         if self.spacing == "log":
             return np.geomspace(require_positive("from", first), require_positive("to", last), number)
         return np.linspace(require_finite("from", first), require_finite("to", last), number)
+
+
+def _remedy(name: str) -> str:
+    return did_you_mean(name, known_names()) or "use a name of the column, model, base motion or start"
 
 
 def _known(value: Any) -> Any:

@@ -14,6 +14,7 @@ from stylobate.units import UnitError
 
 _T = TypeVar("_T")
 
+Number = Annotated[float, Quantity()]
 Seconds = Annotated[float, Quantity(unit="s")]
 Radians = Annotated[float, Quantity(unit="rad")]
 Hertz = Annotated[float, Quantity(unit="Hz")]

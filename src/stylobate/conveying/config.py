@@ -6,7 +6,7 @@ from typing import Any, Self
 from pydantic import Field
 
 from stylobate.config.axis import Axis
-from stylobate.config.description import Config, built
+from stylobate.config.description import Config, Number, Radians, built
 from stylobate.config.many_runs import ManyRuns, common_values, name_of, refuse_design, with_numbers_that_vary
 from stylobate.config.simulation import Setup
 from stylobate.conveying.posture import KIND, PERIODS, PHASES, TILTS
@@ -38,9 +38,9 @@ class Varied(Config):
     x: Axis
     y: Axis | None = None
     late: int = 20
-    tolerance: float = TOLERANCE
-    most_periods: float = MOST_PERIODS
-    confidence: float = CONFIDENCE
+    tolerance: Number = TOLERANCE
+    most_periods: Number = MOST_PERIODS
+    confidence: Number = CONFIDENCE
 
 
 class DriftConfig(ManyRuns):
@@ -123,11 +123,11 @@ class Starts(Config):
         Confidence level of intervals.
     """
 
-    tilts: tuple[float, ...] = TILTS
+    tilts: tuple[Radians, ...] = TILTS
     phases: int = PHASES
-    friction: tuple[float, ...] | None = None
-    azimuth: float | None = None
-    confidence: float = 0.9
+    friction: tuple[Number, ...] | None = None
+    azimuth: Radians | None = None
+    confidence: Number = 0.9
 
 
 class UprightConfig(ManyRuns):

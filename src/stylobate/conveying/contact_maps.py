@@ -12,7 +12,15 @@ import xarray as xr
 
 from stylobate.base_motions import BaseMotion
 from stylobate.engine.contact_measures import EQUAL
-from stylobate.errors import Named, Outcome, ParameterError, UnlikelyInputWarning, UnsupportedError
+from stylobate.errors import (
+    Named,
+    Outcome,
+    ParameterError,
+    UnlikelyInputWarning,
+    UnsupportedError,
+    as_float,
+    as_numbers,
+)
 from stylobate.models import Model, Sliding
 from stylobate.progress import Progress, shows_progress
 from stylobate.results.outcomes import NOT_COMPUTED, flag_attributes
@@ -20,6 +28,7 @@ from stylobate.run_arguments import RunOptions
 from stylobate.studies.checks import require_values
 from stylobate.studies.sweeps import Executor, Sweep
 from stylobate.studies.sweeps.labelled import labelled_sweep
+from stylobate.text import plural
 
 _PLANE = 2
 
@@ -99,6 +108,7 @@ def contact_map(
     if not isinstance(over, Mapping) or len(over) != _PLANE:
         message = f'over must name two parameters, such as "friction_coefficient" and "acceleration"; got {over!r}'
         raise ParameterError(message)
+    least_share = as_float("least_share", least_share)
     if not 0.0 <= least_share < 1.0:
         message = f"least_share must lie between 0 and 1, got {least_share!r}"
         raise ParameterError(message)
@@ -162,14 +172,39 @@ def lands_flat(runs: xr.Dataset) -> xr.DataArray:
     return (hops & (tilt == 0.0)).assign_attrs(long_name="hops and lands at a tilt of exactly 0")
 
 
+def stays_in_a_plane(runs: xr.Dataset) -> xr.DataArray:
+    """Return which runs tilt and move in exactly one vertical plane, as from a tilt in the plane of vibration.
+
+    Such a motion is exact in a computation only: a part a millionth of a radian beside the plane can move otherwise.
+    """
+    tilts = runs["peak_tilt"] > 0.0
+    return (runs["planar"].astype(bool) & tilts).assign_attrs(long_name="tilts and moves in exactly one vertical plane")
+
+
+def knife_edge_remarks(runs: xr.Dataset) -> list[str]:
+    """Return a remark with the number of runs that land exactly flat, and one with those that stay in one plane."""
+    flat, planar = int(lands_flat(runs).sum()), int(stays_in_a_plane(runs).sum())
+    return [
+        *(
+            [f"{plural(flat, 'run')} landed at a tilt of exactly 0: pass a tilt, and count with `upright`"]
+            if flat
+            else []
+        ),
+        *([f"{plural(planar, 'run')} stayed in exactly one vertical plane: pass a tilt out of it"] if planar else []),
+    ]
+
+
 def remark_on_knife_edge(where: str, model: Model, over: Mapping[str, npt.ArrayLike]) -> None:
     """Warn if a friction coefficient equals the slenderness: rounding then decides between sliding and rocking."""
     if not isinstance(model, Sliding) or {"radius", "mass_height"} & set(over):
         return
     varied = over.get("static_friction_coefficient", over.get("friction_coefficient"))
     known = model.static_friction_coefficient is not None and "static_friction_coefficient" not in over
-    frictions = np.atleast_1d(np.asarray(model.numbers.static if known or varied is None else varied, dtype=float))
-    slender = np.atleast_1d(np.asarray(over.get("slenderness", model.column.slenderness), dtype=float))
+    ratios = (
+        model.numbers.static if known or varied is None else varied,
+        over.get("slenderness", model.column.slenderness),
+    )
+    frictions, slender = (np.atleast_1d(np.asarray(as_numbers(where, one), dtype=float)) for one in ratios)
     equal = (np.abs(frictions[:, np.newaxis] - slender) <= EQUAL * slender).any(axis=1)
     if equal.any():
         message = (

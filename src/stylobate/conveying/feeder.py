@@ -13,10 +13,12 @@ import xarray as xr
 from stylobate.base_motions import BaseMotion, Harmonic, as_harmonic
 from stylobate.conveying.posture import PERIODS, PHASES, TILTS, Posture, upright
 from stylobate.conveying.transport import PERIODIC, TOLERANCE, Transport, drift, named, throw_number_of
-from stylobate.errors import UnsupportedError
+from stylobate.errors import UnsupportedError, require_positive
 from stylobate.models import Model, Sliding
 from stylobate.progress import Progress, shows_progress
+from stylobate.quantities import parameters_of
 from stylobate.run_arguments import RunOptions
+from stylobate.studies.proportions import require_confidence
 from stylobate.studies.sweeps import Executor
 from stylobate.studies.sweeps.quantities import checked_values
 from stylobate.text import plural
@@ -31,6 +33,8 @@ KIND = "feeder sheet"
 _COVERED = (0.05, 0.95)
 # Bisections of the angle of a track, and periods of each computed motion.
 _HALVINGS, _CYCLES = 11, 100
+# Periods within which hops must repeat.
+_MOST_HOPS = 3000
 _STRAIGHT, _SAMPLES = 1e-9, 721
 _TURN = 2.0 * math.pi
 
@@ -79,13 +83,14 @@ def sheet(
 
         * `machine_number` K, the peak acceleration along the path over gravity; `throw_number` Γ; `hop_number`, the
           longest flight of an upright part over the period, `flight_time` [s] and `hop_periods`, the number of periods
-          after which its hops repeat, 0 if they do not; `critical_friction`, the slenderness r/h.
+          after which its hops repeat, 0 if they do not within 3000; `critical_friction`, the slenderness r/h;
+          `vibration_angle`, the angle of the path to the track, or atan of the ratio of the amplitudes [rad].
         * Over `friction`: `speed`, `speed_low` and `speed_high` of a part that starts flat [m/s], `transport` (a
           `Transport`) and `direction`, the azimuth of its velocity [rad]; `tilted_speed_low` and `tilted_speed_high`,
           which cover nine tenths of the speeds of the tilted parts that do not fall [m/s]; `steepest_incline`, the
-          steepest track that a part which stays upright climbs in the direction of transport [rad]; over `posture_name`
-          too `share`, `share_low` and `share_high` of the tilted parts that stay upright, rock and fall.
-          `verdict` is the posture in one line.
+          steepest track that a part which stays upright climbs in the direction of transport [rad], and
+          `steepest_verdict`, the posture on that track in one line; over `posture_name` too `share`, `share_low` and
+          `share_high` of the tilted parts that stay upright, rock and fall. `verdict` is the posture in one line.
 
     Raises
     ------
@@ -102,7 +107,7 @@ def sheet(
     -----
     Hop number and steepest track are those of a block that stays upright, see `theory.block_cycle`. The track is found
     by bisection up to the friction angle, which no steady motion uphill exceeds; it is NaN if the vibration is not in
-    one vertical plane.
+    one vertical plane. A part that tilts can fall on it: read `steepest_verdict`.
 
     Examples
     --------
@@ -124,9 +129,9 @@ def sheet(
     if harmonic is None:
         message = f"motion: a feeder sheet needs a harmonic base motion (got {named(motion)}). {PERIODIC}"
         raise UnsupportedError(message)
-    frictions = checked_values(
-        "friction", "friction_coefficient", np.atleast_1d(model.friction_coefficient if friction is None else friction)
-    )
+    given = model.friction_coefficient if friction is None else friction
+    frictions = checked_values("friction", "friction_coefficient", given, scalar=True)
+    tolerance, confidence = require_positive("tolerance", tolerance), require_confidence(confidence)
     shared: Any = {"executor": executor, "progress": progress, **options}
     starts: Any = {"tilts": tilts, "phases": phases, "azimuth": azimuth, "periods": periods, "confidence": confidence}
     postures = [upright(model, motion, friction=float(mu), **starts, **shared) for mu in frictions]
@@ -135,9 +140,13 @@ def sheet(
     )
     mean = moved["mean_velocity"].transpose(..., "axis").to_numpy()
     tilted = np.array([_tilted_speeds(posture) for posture in postures])
-    steepest = np.array(
-        [_steepest_incline(replace(model, friction_coefficient=float(mu)), harmonic) for mu in frictions]
-    )
+    steepest, sloping = np.empty(frictions.size), list[str]()
+    for place, mu in enumerate(frictions.tolist()):
+        steepest[place], down = _steepest_track(replace(model, friction_coefficient=mu), harmonic)
+        known = math.isfinite(steepest[place])
+        track = replace(model, incline=float(steepest[place]), incline_direction=down) if known else model
+        posture = upright(track, motion, friction=mu, **starts, **shared) if known else None
+        sloping.append("" if posture is None else str(posture.attrs["verdict"]))
     hop, repeats = _hops(model, harmonic)
     peak = float(np.linalg.norm(motion.acceleration(np.linspace(0.0, harmonic.period, _SAMPLES)), axis=1).max())
     scalars = {
@@ -145,8 +154,9 @@ def sheet(
         "throw_number": (throw_number_of(model, motion), "1", "throw number Γ"),
         "hop_number": (hop, "1", "longest flight of an upright part over the period"),
         "flight_time": (hop * harmonic.period, "s", "longest flight of an upright part"),
-        "hop_periods": (repeats, "1", "periods after which the hops repeat, 0 if they do not"),
+        "hop_periods": (repeats, "1", "periods after which the hops repeat, 0 for none found"),
         "critical_friction": (model.column.slenderness, "1", "critical friction coefficient r/h"),
+        "vibration_angle": (_angle_of(harmonic), "rad", "angle of the vibration to the track"),
     }
     by_friction = {
         "speed": (moved["transport_speed"].to_numpy(), "m s-1", "mean transport speed from a flat start"),
@@ -172,6 +182,7 @@ def sheet(
                 for name in ("share", "share_low", "share_high")
             },
             "verdict": ("friction", [one.attrs["verdict"] for one in postures]),
+            "steepest_verdict": ("friction", sloping),
         },
         coords={
             "friction": ("friction", frictions, _about("1", "friction coefficient")),
@@ -185,19 +196,21 @@ def sheet_rows(found: xr.Dataset) -> list[tuple[str, list[str]]]:
     """Return the rows of a sheet, in mm/s, ms and degrees: a label, and the value of each friction coefficient."""
     one = {name: float(found[name]) for name in ("machine_number", "throw_number", "hop_number", "flight_time")}
     every, repeats = found.sizes["friction"], int(found["hop_periods"])
-    again = plural(repeats, "period") if repeats else "no number of periods"
-    hop = f"{one['hop_number']:.3g} of a period, {1000.0 * one['flight_time']:.3g} ms; repeats after {again}"
+    again = f"repeats after {plural(repeats, 'period')}" if repeats else f"no repetition found in {_MOST_HOPS} periods"
+    hop = f"{one['hop_number']:.3g} of a period, {1000.0 * one['flight_time']:.3g} ms; {again}"
     cases = [found.isel(friction=place) for place in range(every)]
     return [
+        ("vibration angle", [_angle(float(found["vibration_angle"]))] * every),
         ("machine number K", [f"{one['machine_number']:.3g}"] * every),
         ("throw number Γ", [f"{one['throw_number']:.3g}"] * every),
         ("longest hop", [hop if one["hop_number"] > 0.0 else "none"] * every),
         ("critical friction r/h", [f"{float(found['critical_friction']):.3g}"] * every),
-        ("friction", [f"{float(case['friction']):.3g}" for case in cases]),
+        ("friction", [_friction(float(case["friction"])) for case in cases]),
         ("speed from a flat start", [_speed(case) for case in cases]),
         ("speed from tilted starts", [_range(case) for case in cases]),
-        ("steepest track", [_angle(float(case["steepest_incline"])) for case in cases]),
         ("posture", [str(case["verdict"].item()) for case in cases]),
+        ("steepest track of a part that stays upright", [_angle(float(case["steepest_incline"])) for case in cases]),
+        ("posture on that track", [str(case["steepest_verdict"].item()) or "not known" for case in cases]),
     ]
 
 
@@ -217,11 +230,24 @@ def _speed(case: xr.Dataset) -> str:
 
 def _range(case: xr.Dataset) -> str:
     low, high = (1000.0 * float(case[f"tilted_speed_{end}"]) for end in ("low", "high"))
-    return "none stands" if math.isnan(low) else f"{low:.1f} to {high:.1f} mm/s"
+    none = "none stands" if float(case["share"].sel(posture_name="fallen")) == 1.0 else "not known"
+    return none if math.isnan(low) else f"{low:.1f} to {high:.1f} mm/s"
 
 
 def _angle(angle: float) -> str:
-    return "not known" if math.isnan(angle) else f"{math.degrees(angle):.1f}°"
+    return (
+        "not known" if math.isnan(angle) else f"{math.degrees(angle):.1f}°" + (" (horizontal)" if angle == 0.0 else "")
+    )
+
+
+def _friction(value: float) -> str:
+    usual = parameters_of(Sliding)["friction_coefficient"].default
+    return f"{value:.3g}" + (" (the default)" if value == usual else "")
+
+
+def _angle_of(motion: Harmonic) -> float:
+    x, y, z = map(abs, motion.amplitude)
+    return math.atan2(z, math.hypot(x, y))
 
 
 def _tilted_speeds(posture: xr.Dataset) -> tuple[float, float]:
@@ -234,9 +260,13 @@ def _tilted_speeds(posture: xr.Dataset) -> tuple[float, float]:
 
 def _hops(part: Sliding, motion: Harmonic) -> tuple[float, int]:
     """Return the longest flight over the period and the number of periods of a cycle, of a part that stays upright."""
-    gravity, incline = part.column.gravity, part.incline
+    gravity, incline, restitution = part.column.gravity, part.incline, part.normal_restitution
     normal = abs(motion.amplitude[2]) / gravity
-    cycle = block_cycle(0.0, normal, static_friction=1e3, normal_restitution=part.normal_restitution, incline=incline)
+    whole = _whole_periods(normal / math.cos(incline)) if restitution == 0.0 else 0
+    if whole:
+        return float(whole), whole
+    bodies: Any = {"static_friction": 1e3, "normal_restitution": restitution, "incline": incline}
+    cycle = block_cycle(0.0, normal, **bodies, cycles=_MOST_HOPS)
     flights, current = [0.0], 0.0
     segments = cycle.segments
     ends = [one.phase is BlockPhase.FLIGHT for one in (segments[-1], segments[0])]
@@ -249,12 +279,24 @@ def _hops(part: Sliding, motion: Harmonic) -> tuple[float, int]:
     return max(flights) / _TURN, cycle.period
 
 
-def _steepest_incline(part: Sliding, motion: Harmonic) -> float:
-    """Return the steepest track that a part which stays upright climbs [rad]; NaN if the path is not in one plane."""
+def _whole_periods(throw: float) -> int:
+    """Return n if each hop with inelastic landings lasts n whole periods, else 0: 1 + (nπ)² ≤ Γ² ≤ 4 + (nπ)².
+
+    Near the upper end the hops approach this motion so slowly that no computed number of them shows it.
+    """
+    whole = int(math.sqrt(max(throw * throw - 1.0, 0.0)) / math.pi)
+    return whole if throw * throw <= 4.0 + (whole * math.pi) ** 2 else 0
+
+
+def _steepest_track(part: Sliding, motion: Harmonic) -> tuple[float, float]:
+    """Return the steepest track that a part which stays upright climbs, and the azimuth of its way down [rad].
+
+    The track is NaN if the path is not in one plane.
+    """
     x, y, z = (np.asarray(a * np.exp(1j * phase)) for a, phase in zip(motion.amplitude, motion.phase, strict=True))
     size = math.hypot(abs(x), abs(y))
     if size == 0.0 or abs((x.conjugate() * y).imag) > _STRAIGHT * size**2:
-        return math.nan
+        return math.nan, 0.0
     along = x if abs(x) >= abs(y) else y
     gravity = part.column.gravity
     numbers = part.numbers
@@ -272,10 +314,11 @@ def _steepest_incline(part: Sliding, motion: Harmonic) -> float:
 
     level = float(mean_block_speed(*shaken, **given))
     sense = math.copysign(1.0, level)
+    down = math.atan2(*(-sense * float((one * along.conjugate()).real) for one in (y, x)))
     low, high = 0.0, math.atan(numbers.kinetic)
     if level == 0.0 or not climbs(sense, low):
-        return 0.0
+        return 0.0, down
     for _ in range(_HALVINGS):
         middle = 0.5 * (low + high)
         low, high = (middle, high) if climbs(sense, middle) else (low, middle)
-    return low
+    return low, down

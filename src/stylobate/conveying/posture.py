@@ -13,11 +13,12 @@ import xarray as xr
 
 from stylobate.base_motions import BaseMotion
 from stylobate.base_motions.varying import numbers_of, value_of
-from stylobate.conveying.contact_maps import lands_flat, remark_on_knife_edge
+from stylobate.conveying.contact_maps import lands_flat, remark_on_knife_edge, stays_in_a_plane
 from stylobate.conveying.transport import require_conveyor, throw_number_of
 from stylobate.errors import MOST_RUNS, Named, Outcome, ParameterError, require_finite, require_positive, require_whole
 from stylobate.models import Model
 from stylobate.progress import Progress, shows_progress
+from stylobate.results import OutcomeRules
 from stylobate.results.outcomes import NOT_COMPUTED, flag_attributes
 from stylobate.results.verdict import CLEAR, VerdictWord, percent, word_of
 from stylobate.run_arguments import RunOptions
@@ -40,6 +41,8 @@ PHASES, PERIODS = 64, 100.0
 
 # Mean tilt over the last periods above which a part rocks [units of c].
 _ROCKS = 1e-3
+# Relative differences of durations and sums of shares below this are rounding.
+_ROUNDING = 1e-9
 # Tilt at the end beyond which a part falls [tipping angles].
 _FALLS_BEYOND = 2.0
 _GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)
@@ -93,8 +96,10 @@ def upright(
         Friction coefficient, or several, each as probable; that of the model by default.
     azimuth
         Azimuth of the initial tilt [rad]; by default the azimuths are spread over all directions, one for each phase.
+        A tilt exactly in the plane of vibration keeps the part in this plane, which no real part does.
     periods
-        Duration of each run in periods of the base motion.
+        Duration of each run in periods of the base motion, at least one more than those of the mean tilt, `periods` of
+        the `rules` (10). Shorter runs are undecided.
     confidence
         Confidence level of the intervals.
     store, executor, resume, progress
@@ -127,9 +132,9 @@ def upright(
     Notes
     -----
     The verdict is "does not fall" if the interval of the share that falls lies below 5 %, "falls" if it lies above
-    95 %, else "may fall", or "undecided" if none of too few runs falls. It is "stays upright" if the interval of the
-    share upright lies above 95 %. The shares depend on the tilts: choose those of your process. The intervals treat
-    phases and azimuths as drawn at random.
+    95 %, else "may fall", or "undecided" if no run falls and too few are decided. It is "stays upright" if the interval
+    of the share upright lies above 95 %. The shares depend on the tilts: choose those of your process. The intervals
+    treat phases and azimuths as drawn at random.
 
     Examples
     --------
@@ -149,20 +154,16 @@ def upright(
     confidence = require_confidence(confidence)
     lengths = _tilts(tilts)
     count = require_whole("phases", phases, least=1, most=MOST_RUNS)
-    frictions = (
-        None if friction is None else checked_values("friction", "friction_coefficient", np.atleast_1d(friction))
-    )
+    periods = require_positive("periods", periods)
+    azimuth = None if azimuth is None else require_finite("azimuth", azimuth, "rad")
+    frictions = None if friction is None else checked_values("friction", "friction_coefficient", friction, scalar=True)
     if frictions is not None and not frictions.size:
         message = f"friction: must be at least one number (got {friction!r}). Leave it out for that of the model."
         raise ParameterError(message)
     remark_on_knife_edge("friction", model, {} if frictions is None else {"friction_coefficient": frictions})
     turns = np.arange(count, dtype=float)
     angles = 2.0 * math.pi * turns / count
-    ways = (
-        2.0 * math.pi * (turns * _GOLDEN % 1.0)
-        if azimuth is None
-        else np.full(count, require_finite("azimuth", azimuth))
-    )
+    ways = 2.0 * math.pi * (turns * _GOLDEN % 1.0) if azimuth is None else np.full(count, azimuth)
     grid = np.meshgrid(np.zeros(1) if frictions is None else frictions, lengths, turns, indexing="ij")
     mu, tilt = (np.asarray(array, dtype=float).ravel() for array in grid[:2])
     turn = grid[2].ravel().astype(np.intp)
@@ -172,7 +173,7 @@ def upright(
         **_delayed(motion, angles[turn]),
         **({} if frictions is None else {"friction_coefficient": mu}),
     }
-    sweep = Sweep.points(model, motion, at=at, periods=require_positive("periods", periods), **options)
+    sweep = Sweep.points(model, motion, at=at, periods=periods, **options)
     own: Any = model
     given = {
         "friction_coefficient": np.full(mu.size, own.friction_coefficient) if frictions is None else mu,
@@ -185,22 +186,23 @@ def upright(
         "phases": count,
         "friction": None if frictions is None else frictions.tolist(),
         "azimuth": azimuth,
-        "periods": float(periods),
+        "periods": periods,
         "confidence": confidence,
     }
+    # The last periods of the mean tilt follow at least one period.
+    least = (options.get("rules") or OutcomeRules()).periods + 1
 
     def label(runs: xr.Dataset) -> xr.Dataset:
-        return _labelled(runs, model.column.slenderness, throw_number_of(model, motion), given, settings)
+        posture = _postures(runs, model.column.slenderness, periods * _period_of(motion))
+        return _labelled(runs, posture, throw_number_of(model, motion), given, settings, least)
 
     return labelled_sweep(sweep, label, store=store, executor=executor, resume=resume, progress=progress)
 
 
 def _tilts(given: npt.ArrayLike) -> Floats:
-    values = np.unique(checked_values("tilts", "tilt_x", np.atleast_1d(np.asarray(given, dtype=float))))
-    if not values.size or values[0] < 0.0 or values[-1] >= math.pi / 2.0:
-        message = (
-            f"tilts: must be one or more angles from 0 to below π/2 rad (got {given!r}). Convert degrees to radians."
-        )
+    values = np.unique(checked_values("tilts", "tilt_x", given, scalar=True))
+    if not values.size or values[0] < 0.0:
+        message = f"tilts: must be one or more angles from 0 to below π/2 rad (got {given!r}). Give their magnitudes."
         raise ParameterError(message)
     return values
 
@@ -209,15 +211,27 @@ def _delayed(motion: BaseMotion, phase: Floats) -> dict[str, Floats]:
     """Return the quantity that makes a periodic motion start at each phase [rad] of its period."""
     if "start_phase" in numbers_of(motion):
         return {"start_phase": value_of(motion, "start_phase") + phase}
+    return {"delay": -phase / (2.0 * math.pi) * _period_of(motion)}
+
+
+def _period_of(motion: BaseMotion) -> float:
     assert motion.period is not None
-    return {"delay": -phase / (2.0 * math.pi) * motion.period}
+    return motion.period
 
 
 def _labelled(
-    runs: xr.Dataset, slenderness: float, throw: float, given: dict[str, Floats], settings: dict[str, Any]
+    runs: xr.Dataset,
+    posture: npt.NDArray[np.int8],
+    throw: float,
+    given: dict[str, Floats],
+    settings: dict[str, Any],
+    least: int,
 ) -> xr.Dataset:
-    """Add postures, shares and the verdict to the runs, whose coordinates are `given`."""
-    posture, flat = _postures(runs, slenderness), lands_flat(runs).to_numpy()
+    """Add postures, shares and the verdict to the runs, whose coordinates are `given`.
+
+    Runs of fewer periods than `least` have no mean tilt.
+    """
+    flat = lands_flat(runs).to_numpy()
     counts = ~(flat & (given["initial_tilt"] == 0.0))
     about = {"units": "1"}
     ends = np.array([_share(posture[counts], kind, settings["confidence"]) for kind in Posture])
@@ -253,19 +267,22 @@ def _labelled(
         kind=KIND,
         throw_number=throw,
         confidence=settings["confidence"],
-        verdict=_line(ends, counts, settings, throw),
+        verdict=_line(ends, counts, settings, throw) + _remarks(runs, posture, counts, settings["periods"], least),
         provenance=json.dumps(provenance),
     )
 
 
-def _postures(runs: xr.Dataset, slenderness: float) -> npt.NDArray[np.int8]:
-    """Return the `Posture` of each run; −1 for runs that failed or are not computed."""
-    outcome = runs["outcome"].to_numpy()
-    mean = np.nan_to_num(runs["mean_tilt"].to_numpy())
+def _postures(runs: xr.Dataset, slenderness: float, duration: float) -> npt.NDArray[np.int8]:
+    """Return the `Posture` of each run; −1 for runs that failed, are too short for a mean tilt, or are not computed."""
+    outcome, mean = runs["outcome"].to_numpy(), runs["mean_tilt"].to_numpy()
+    # A run that ends early at rest has no mean tilt, and rests for good.
+    rests = (outcome == Outcome.AT_REST) & (runs["end_time"].to_numpy() < (1.0 - _ROUNDING) * duration)
+    stands = rests | (runs["peak_tilt"].to_numpy() == 0.0)
     falls = np.hypot(*runs["end_tilt"].transpose("axis", ...).to_numpy()) > _FALLS_BEYOND * math.atan(slenderness)
     chosen = np.where(mean > _ROCKS * slenderness, Posture.ROCKING, Posture.UPRIGHT)
     chosen = np.where(falls | (outcome == Outcome.OVERTURNED), Posture.FALLEN, chosen)
-    return np.where(np.isin(outcome, (Outcome.FAILED, NOT_COMPUTED)), NOT_COMPUTED, chosen).astype(np.int8)
+    unknown = (np.isnan(mean) & ~stands & (chosen != Posture.FALLEN)) | np.isin(outcome, (Outcome.FAILED, NOT_COMPUTED))
+    return np.where(unknown, NOT_COMPUTED, chosen).astype(np.int8)
 
 
 def _shares(posture: npt.NDArray[np.int8]) -> list[float]:
@@ -301,7 +318,23 @@ def _line(ends: Floats, counts: npt.NDArray[np.bool_], settings: dict[str, Any],
     interval = f"{percent(settings['confidence'])} interval {percent(low).removesuffix(' %')} to {percent(high)}"
     does = "stay upright" if first is Posture.UPRIGHT else "fall"
     others = ", ".join(f"{percent(shares[kind][0])} {verb}" for kind, verb in verbs.items())
+    unknown = 1.0 - float(ends[:, 0].sum())
+    others += f", {percent(unknown)} are undecided" if unknown > _ROUNDING else ""
     return f"{word}: {percent(share)} of {int(counts.sum())} runs {does} ({interval}), {others}; {over}{left_out}"
+
+
+def _remarks(
+    runs: xr.Dataset, posture: npt.NDArray[np.int8], counts: npt.NDArray[np.bool_], periods: float, least: int
+) -> str:
+    """Return remarks on runs that are too short, and on motion exactly in one plane."""
+    undecided = counts & (posture == NOT_COMPUTED)
+    short = undecided.any() and periods < least
+    remedy = (
+        f"; increase periods to {least} or more: a posture follows from the last {least - 1} of them" if short else ""
+    )
+    planar = stays_in_a_plane(runs).to_numpy()[counts]
+    aside = "; all of them move exactly in one vertical plane, which no real part does: vary the azimuth"
+    return remedy + (aside if planar.size and planar.all() else "")
 
 
 _FALLS = {VerdictWord.STANDS: "does not fall", VerdictWord.OVERTURNS: "falls", VerdictWord.UNDECIDED: "may fall"}
@@ -309,4 +342,4 @@ _FALLS = {VerdictWord.STANDS: "does not fall", VerdictWord.OVERTURNS: "falls", V
 
 def _between(values: Sequence[float]) -> str:
     """Write the range of increasing values, such as "0 to 0.01"."""
-    return " to ".join(dict.fromkeys(f"{value:g}" for value in (values[0], values[-1])))
+    return " to ".join(dict.fromkeys(f"{value:.4g}" for value in (values[0], values[-1])))

@@ -151,14 +151,17 @@ def drift(
         message = f'over must name one or two parameters, such as "friction_coefficient"; got {over!r}'
         raise ParameterError(message)
     late = require_whole("late", late, least=1)
+    periods = require_positive("periods", periods)
     if not periods >= late + 1:
         message = f"periods must be at least one more than late, which is {late}; got {periods!r}"
         raise ParameterError(message)
     require_values("over", over)
     remark_on_knife_edge("over", model, over)
-    require_positive("most_periods", most_periods)
-    require_confidence(confidence)
-    settings: Any = {"tolerance": tolerance, "most_periods": most_periods, "confidence": confidence}
+    settings: Any = {
+        "tolerance": None if tolerance is None else require_positive("tolerance", tolerance),
+        "most_periods": require_positive("most_periods", most_periods),
+        "confidence": require_confidence(confidence),
+    }
     sweep = Sweep.grid(model, motion, over=over, periods=periods, **_with_window(options, late))
 
     def label(runs: xr.Dataset) -> xr.Dataset:

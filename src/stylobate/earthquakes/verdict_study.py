@@ -160,7 +160,7 @@ def verdict(
     >>> model = sb.Wobbling(sb.Column.solid(radius=0.2, height=2.0, density=2700.0), damping=0.1)
     >>> pulse = sb.Pulse.one_sine(acceleration=6.0, angular_frequency=4.0)
     >>> print(sb.verdict(model, pulse, runs=100))
-    overturns: 100 % of 100 variations overturn the column (90 % sampling interval 97 to 100 %)
+    overturns: 100 % of 100 variations overturn (90 % sampling interval 97 to 100 %)
     """
     require_no_tilt_limit(options)
     _check_motion(motion)

@@ -63,7 +63,9 @@ def _failure(model: Model, followed: Followed) -> str:
         case Status.UNSEEN:
             return unseen(most)
         case Status.ENDLESS:
-            return f"its contact changes without end ({model.guard_names[followed.last_guard]})"
+            planar = followed.log(Log.THREE_DIMENSIONAL) == 0.0
+            remedy = "; it moves in exactly one vertical plane: pass a tilt out of it" if planar else ""
+            return f"its contact changes without end ({model.guard_names[followed.last_guard]}){remedy}"
         case status:
             return ENDINGS[status].reason
 

@@ -108,10 +108,16 @@ def _name_areas(axes: Axes, x_edges: Floats, y_edges: Floats, places: Integers, 
         row, column = np.unravel_index(int(np.argmax(room)), room.shape)
         if room[row, column] < _ROOM:
             continue
-        red, green, blue = to_rgb(one.look.colour)
-        ink = "#ffffff" if 0.3 * red + 0.6 * green + 0.1 * blue < _DARK else "#222222"
         middle = x_edges[column - 1 : column + 1].mean(), y_edges[row - 1 : row + 1].mean()
-        axes.annotate(one.name, middle, ha="center", va="center", fontsize="small", color=ink, gid=AS_DRAWN)
+        axes.annotate(
+            one.name, middle, ha="center", va="center", fontsize="small", color=ink_on(one.look.colour), gid=AS_DRAWN
+        )
+
+
+def ink_on(colour: Any) -> str:
+    """Return the colour of text on a ground of this colour: white on dark, nearly black on light."""
+    red, green, blue = to_rgb(colour)
+    return "#ffffff" if 0.3 * red + 0.6 * green + 0.1 * blue < _DARK else "#222222"
 
 
 def set_scale(axes: Axes, name: Literal["x", "y"], values: npt.ArrayLike) -> None:

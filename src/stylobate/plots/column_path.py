@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 import xarray as xr
+from matplotlib import rcParams
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle, Polygon
@@ -15,6 +16,7 @@ from stylobate.errors import ParameterError
 from stylobate.plots.axonometry import Cylinder, View
 from stylobate.plots.labels import axis_label, unit_label
 from stylobate.plots.pose import Floats
+from stylobate.plots.result_figure import ResultFigure, font_ratio
 from stylobate.plots.shape import Shape
 from stylobate.plots.style import BLACK, BLUE, GREY, SKY, VERMILION, new_figure, styled
 from stylobate.results import Response
@@ -26,8 +28,11 @@ _TICKS = 3
 # Number of samples of a path; maximum number of parts of a step in which the contact point turns by more than this
 # angle [rad].
 _SAMPLES, _PARTS, _TURN = 1500, 64, 0.06
-# Maximum distance between samples that a contact that can change moves without a jump [base radii].
-_LEAP = 0.5
+# Maximum distance between samples that the contact point moves without a jump [base radii]; in a loaded run.
+_LEAP, _LEAP_OF_SAMPLES = 0.5, 1.0
+# Parts of the figure's width and height that the column in three dimensions takes, and minimum distance between
+# numbers of the ground [font sizes].
+_PART, _APART = 0.42, 3.0
 
 
 @styled
@@ -73,14 +78,15 @@ def plot_column_path(
     space, plan = figure.subplots(1, 2, width_ratios=(1.0, 1.15))
     low, high = _extent(data, radius)
     unit = unit_label(run.data["contact_point"])
-    _draw_ground(space, view, low, high, unit)
-    _draw_paths_in_space(space, view, data, radius)
+    _draw_ground(space, view, low, high, unit, _font_size(figure, view, low, high, height))
+    leap = (_LEAP if run.sampler is not None else _LEAP_OF_SAMPLES) * radius
+    _draw_paths_in_space(space, view, data, leap)
     for index, one in enumerate(columns):
         _draw_column(space, view, one, full=index == len(columns) - 1)
     _draw_height(space, view, low, high, height, f"{height:.3g} {unit}")
     space.set_aspect("equal")
     space.axis("off")
-    _draw_plan(plan, data, drawn, radius, low, high, " s" if unit_label(run.data["time"]) == "s" else "")
+    _draw_plan(plan, data, drawn, radius, leap, low, high, " s" if unit_label(run.data["time"]) == "s" else "")
     _name_plan(plan, run)
     figure.legend(*plan.get_legend_handles_labels(), loc="outside lower center", ncols=4)
     return figure
@@ -131,8 +137,16 @@ def _on_ground(points: Floats) -> Floats:
     return np.concatenate([points, np.zeros((*points.shape[:-1], 1))], axis=-1)
 
 
-def _draw_ground(axes: Axes, view: View, low: Floats, high: Floats, unit: str) -> None:
-    """Draw the base as a board with a grid, numbered along its near edges."""
+def _font_size(figure: Figure, view: View, low: Floats, high: Floats, height: float) -> float:
+    """Return an estimate of the font size in the units of the projection."""
+    corners = np.array([[x, y, z] for x in (low[0], high[0]) for y in (low[1], high[1]) for z in (0.0, height)])
+    narrow = isinstance(figure, ResultFigure) and figure.narrow
+    inches = figure.get_size_inches() * ((2.0 * _PART, _PART) if narrow else (_PART, 2.0 * _PART))
+    return float(rcParams["font.size"] / 72.0 * np.max(np.ptp(view.project(corners), axis=0) / inches))
+
+
+def _draw_ground(axes: Axes, view: View, low: Floats, high: Floats, unit: str, font: float) -> None:
+    """Draw the base as a board with a grid, numbered along its near edges where the numbers have room."""
     corners = np.array([[low[0], low[1]], [high[0], low[1]], [high[0], high[1]], [low[0], high[1]]])
     board = view.project(_on_ground(corners))
     axes.add_patch(Polygon(board, facecolor="#f4f4f4", edgecolor=GREY, linewidth=0.8))
@@ -142,19 +156,23 @@ def _draw_ground(axes: Axes, view: View, low: Floats, high: Floats, unit: str) -
         ends = np.zeros((2, 2))
         ends[:, across] = low[across], high[across]
         near = int(np.argmin([view.project(_on_ground(_moved(corner, along, low, high)))[1] for corner in ends]))
-        for value in MaxNLocator(_TICKS, steps=[1, 2, 5, 10]).tick_values(low[along], high[along]):
-            if low[along] <= value <= high[along]:
-                ends[:, along] = value
-                line = view.project(_on_ground(ends))
-                axes.plot(*line.T, color="#dddddd", linewidth=0.6)
-                _label(axes, line[near], line[1 - near], f"{value:g}".replace("-", "−"), 7.5)
+        ticks = MaxNLocator(_TICKS, steps=[1, 2, 5, 10]).tick_values(low[along], high[along])
+        shown = ticks[(ticks >= low[along]) & (ticks <= high[along])]
+        direction = view.project(np.eye(3)[along])
+        numbered = float(np.hypot(*direction)) * (ticks[1] - ticks[0]) > _APART * font
+        for value in shown:
+            ends[:, along] = value
+            line = view.project(_on_ground(ends))
+            axes.plot(*line.T, color="#dddddd", linewidth=0.6)
+            if numbered:
+                _label(axes, line[near], line[1 - near], f"{value:g}".replace("-", "−"))
         middle = _moved(ends[near], along, low, high)
         edge = view.project(_on_ground(middle))
         outwards = edge - centre
         axes.annotate(
-            f"${name}$ [{unit}]",
+            f"${name}$ [{unit}]" if numbered else f"${name}$",
             (float(edge[0]), float(edge[1])),
-            xytext=tuple(26.0 * outwards / np.hypot(*outwards)),
+            xytext=tuple((26.0 if numbered else 9.0) * font_ratio() * outwards / np.hypot(*outwards)),
             textcoords="offset points",
             ha="center",
             va="center",
@@ -169,9 +187,9 @@ def _moved(corner: Floats, along: int, low: Floats, high: Floats) -> Floats:
     return moved
 
 
-def _label(axes: Axes, at: Floats, other: Floats, text: str, size: float) -> None:
+def _label(axes: Axes, at: Floats, other: Floats, text: str) -> None:
     """Write a text beside the end `at` of a line, away from its `other` end."""
-    outwards = 9.0 * (at - other) / np.hypot(*(at - other))
+    outwards = 9.0 * font_ratio() * (at - other) / np.hypot(*(at - other))
     axes.annotate(
         text,
         (float(at[0]), float(at[1])),
@@ -179,21 +197,22 @@ def _label(axes: Axes, at: Floats, other: Floats, text: str, size: float) -> Non
         textcoords="offset points",
         ha="center",
         va="center",
-        fontsize=size,
+        fontsize="x-small",
     )
 
 
-def _contact_path(data: xr.Dataset, radius: float) -> Floats:
-    """Return the path of the contact point, with a gap at each jump: after a face impact the contact is elsewhere."""
+def _contact_path(data: xr.Dataset, leap: float) -> Floats:
+    """Return the path of the contact point, with a gap at each jump of more than `leap` [m].
+
+    After a face impact, and where the column rocks through the vertical, the contact is elsewhere.
+    """
     path = data["contact_point"].to_numpy()
-    if "contact" not in data:
-        return path
-    leaps = np.flatnonzero(np.hypot(*np.diff(path, axis=0).T) > _LEAP * radius)
+    leaps = np.flatnonzero(np.hypot(*np.diff(path, axis=0).T) > leap)
     return np.insert(path, leaps + 1, np.nan, axis=0)
 
 
-def _draw_paths_in_space(axes: Axes, view: View, data: xr.Dataset, radius: float) -> None:
-    axes.plot(*view.project(_on_ground(_contact_path(data, radius))).T, color=VERMILION, linewidth=1.0)
+def _draw_paths_in_space(axes: Axes, view: View, data: xr.Dataset, leap: float) -> None:
+    axes.plot(*view.project(_on_ground(_contact_path(data, leap))).T, color=VERMILION, linewidth=1.0)
     centres = _footprint(data)
     if np.ptp(centres) > 0.0:
         axes.plot(*view.project(_on_ground(centres)).T, color=BLUE, linewidth=1.0)
@@ -222,14 +241,21 @@ def _draw_height(axes: Axes, view: View, low: Floats, high: Floats, height: floa
 
 
 def _draw_plan(
-    axes: Axes, data: xr.Dataset, drawn: npt.NDArray[Any], radius: float, low: Floats, high: Floats, seconds: str
+    axes: Axes,
+    data: xr.Dataset,
+    drawn: npt.NDArray[Any],
+    radius: float,
+    leap: float,
+    low: Floats,
+    high: Floats,
+    seconds: str,
 ) -> None:
     contact, centres = data["contact_point"].to_numpy(), _footprint(data)
     circles: dict[str, Any] = {"fill": False, "edgecolor": GREY, "linewidth": 0.7}
     for at in drawn[:-1]:
         axes.add_patch(Circle(tuple(centres[at]), radius, linestyle=(0, (4, 2)), **circles))
     axes.add_patch(Circle(tuple(centres[drawn[-1]]), radius, **{**circles, "edgecolor": BLACK}))
-    axes.plot(*_contact_path(data, radius).T, color=VERMILION, linewidth=1.1, label="contact point")
+    axes.plot(*_contact_path(data, leap).T, color=VERMILION, linewidth=1.1, label="contact point")
     if np.ptp(centres) > 0.0:
         axes.plot(*centres.T, color=BLUE, linewidth=1.1, label="centre of the footprint")
     mark: dict[str, Any] = {"linestyle": "none", "markersize": 5, "color": BLACK}

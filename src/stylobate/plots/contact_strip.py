@@ -63,4 +63,3 @@ def draw_contact(axes: Axes, history: ContactHistory) -> None:
     axes.grid(visible=False, axis="y")
     axes.set_axisbelow(True)
     axes.tick_params(axis="y", length=0)
-    axes.tick_params(axis="x", labelbottom=False)

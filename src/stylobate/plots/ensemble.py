@@ -6,6 +6,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
 
 from stylobate.errors import Outcome, ParameterError
 from stylobate.plots.cells import percent, set_scale
@@ -20,9 +21,12 @@ _HEIGHT = 3.4
 _PLANE, _PAIR = 2, 2
 # Marks of the outcomes in the order of a legend, so that they are told apart without colour; sizes [points].
 _MARKS = "os^Dv<>ph*XP8d"
-_SIZES, _MANY = (4.5, 3.0), 300
-# Height above the highest tilt at which overturned runs are drawn, of that tilt.
-_ABOVE = 1.12
+_SIZES, _MANY, _LARGER = (4.5, 3.0), 300, 1.7
+# Room above the highest peak tilt.
+_ROOM = 1.06
+# Runs that overturned are arrows at this height of the panel, just above it.
+_ABOVE = 1.04
+_ARROW = r"$\uparrow$"
 
 
 @figure_of("ensemble", "sweep")
@@ -30,9 +34,9 @@ _ABOVE = 1.12
 def plot_ensemble(runs: xr.Dataset) -> Figure:
     """Draw runs over one dimension as points, over two as a map of their outcomes.
 
-    Over one dimension the peak tilt of each run stands over the number that varies; runs that overturned stand at the
-    upper edge. Two numbers that vary together along one dimension span a plane, in which each run is a point. Colour
-    and mark show the outcome; the legend states its share.
+    Over one dimension the peak tilt of each run stands over the number that varies. Runs that overturned have no peak
+    tilt: they are arrows above the panel. Two numbers that vary together along one dimension span a plane, in which
+    each run is a point. Colour and mark show the outcome; the legend states its share.
 
     Raises
     ------
@@ -52,33 +56,36 @@ def plot_ensemble(runs: xr.Dataset) -> Figure:
     axes = figure.subplots()
     if dim not in varied and len(varied) == _PAIR:
         x, y = (runs[name] for name in varied)
-        overturned = y
     else:
         named = dim if dim in varied else varied[0] if len(varied) == 1 else None
         number = xr.DataArray(np.arange(runs.sizes[dim]), dims=dim, attrs={"long_name": "run"})
         x, y = number if named is None else runs[named], runs["peak_tilt"]
-        stands = runs["outcome"].isin([int(Outcome.OVERTURNED), NOT_COMPUTED])
-        highest = float(y.where(~stands).max())
-        y = y.where(~stands)
-        overturned = xr.full_like(y, _ABOVE * highest if np.isfinite(highest) and highest > 0.0 else 1.0)
-    _draw_points(axes, runs, x, y, overturned)
+        y = y.where(~runs["outcome"].isin([int(Outcome.OVERTURNED), NOT_COMPUTED]))
+    _draw_points(axes, runs, x, y)
     if y.name == "peak_tilt":
-        axes.set_ylim(bottom=0.0)
+        highest = float(y.max())
+        axes.set_ylim(0.0, _ROOM * highest if np.isfinite(highest) and highest > 0.0 else 1.0)
     set_scale(axes, "x", np.unique(x.to_numpy()))
+    if x.name is None:
+        axes.xaxis.set_major_locator(MaxNLocator(integer=True))
     axes.set(xlabel=axis_label(x), ylabel=axis_label(y))
     figure.legend(loc="outside right upper")
     return figure
 
 
-def _draw_points(axes: Axes, runs: xr.Dataset, x: xr.DataArray, y: xr.DataArray, overturned: xr.DataArray) -> None:
+def _draw_points(axes: Axes, runs: xr.Dataset, x: xr.DataArray, y: xr.DataArray) -> None:
     codes = runs["outcome"].to_numpy()
     size = _SIZES[codes.size > _MANY]
     for place, one in enumerate(outcome_classes()[:-1]):
         inside = codes == one.code
         if not inside.any():
             continue
-        height = overturned if one.code == Outcome.OVERTURNED else y
+        height = y.to_numpy()[inside]
         look: dict[str, Any] = {"marker": _MARKS[place % len(_MARKS)], "markerfacecolor": one.look.colour}
         look |= {"markeredgecolor": BLACK, "markeredgewidth": 0.4, "linestyle": "none", "markersize": size}
+        if one.code == Outcome.OVERTURNED and y.name == "peak_tilt":
+            height = np.full(height.shape, _ABOVE)
+            look |= {"marker": _ARROW, "markerfacecolor": BLACK, "markersize": _LARGER * size}
+            look |= {"transform": axes.get_xaxis_transform()}
         label = f"{one.name}  {percent(int(inside.sum()), codes.size)}"
-        axes.plot(x.to_numpy()[inside], height.to_numpy()[inside], label=label, clip_on=False, zorder=3.0, **look)
+        axes.plot(x.to_numpy()[inside], height, label=label, clip_on=False, zorder=3.0, **look)

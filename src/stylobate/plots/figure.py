@@ -20,6 +20,7 @@ from stylobate.plots.orbit import Orbit, plot_orbit
 from stylobate.plots.result_figure import drawing
 from stylobate.plots.runs import plot_runs
 from stylobate.results import Assessment, Response, Verdict
+from stylobate.text import plural
 
 # Functions that draw several results of a kind in one figure.
 _COMPARED = {"branch": plot_branches, "bifurcation curve": plot_bifurcation_curves}
@@ -51,8 +52,7 @@ def plot(
         periodic orbit, one or several branches of orbits or curves of bifurcations, or the Dataset of an ensemble or a
         study. Runs over one dimension are drawn as points, over two as a map, finished or not.
     labels
-        A name for each of several runs, branches or curves; by default what varies between the runs, or the kinds of
-        the curves.
+        A name for each run, branch or curve; by default what varies between the runs, or the kinds of the curves.
     size
         Width of the figure, or width and height [inches]; by default 7.2 inches with a height that suits the content.
         A figure of 3.5 inches, a column of a journal, has its panels and legends below each other.
@@ -68,11 +68,26 @@ def plot(
     Raises
     ------
     ParameterError
-        If no figure is registered for results of this kind (see `stylobate.plots.figure_of`), or axes are given for a
-        figure of several panels.
+        If no figure is registered for results of this kind (see `stylobate.plots.figure_of`), axes are given for a
+        figure of several panels, the height cannot hold the tilt of a run, or there is not one label for each result.
     """
+    if labels is not None:
+        _check_labels(result, labels)
     with drawing(size, axes):
         return _drawn(result, labels)
+
+
+def _check_labels(result: Any, labels: Sequence[str]) -> None:
+    results = result if isinstance(result, Sequence) else [result]
+    if not all(isinstance(one, Response | HasPoints) for one in results):
+        message = f"labels name runs, branches or curves (got {type(result).__name__}). Leave labels out"
+        raise ParameterError(message)
+    if isinstance(labels, str) or len(labels) != len(results):
+        got = repr(labels) if isinstance(labels, str) else len(labels)
+        message = (
+            f"labels must have one name for each of {plural(len(results), 'result')}, got {got}. Pass a list of them"
+        )
+        raise ParameterError(message)
 
 
 def _drawn(result: Any, labels: Sequence[str] | None) -> Figure:

@@ -9,10 +9,10 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 
 from stylobate.plots.pose import Floats
-from stylobate.plots.result_figure import InAxes, heading
+from stylobate.plots.result_figure import InAxes, ResultFigure, heading
 from stylobate.plots.style import BLACK, BLUE, GREY, STABLE_WIDTH, VERMILION, new_figure, styled
 
-_HEIGHT, _ROOM = 2.9, 1.12
+_HEIGHT, _NARROW, _ROOM = 2.9, 3.6, 1.12
 
 
 @runtime_checkable
@@ -47,8 +47,7 @@ def plot_orbit(orbit: Orbit) -> Figure:
     x, y = (np.append(one, one[0]) for one in orbit.path[:2])
     line: dict[str, Any] = {"color": BLUE if orbit.stable else VERMILION}
     line |= {"linewidth": 0.7 * STABLE_WIDTH} if orbit.stable else {"linestyle": "--", "linewidth": 1.2}
-    alone = isinstance(figure, InAxes)
-    tilt, path, circle = (figure.subplots(), None, None) if alone else figure.subplots(1, 3)
+    tilt, path, circle = _panels(figure)
     tilt.plot(phase, np.hypot(x, y), **line)
     tilt.set(xlabel="time [base periods]", ylabel=r"tilt $\theta$ [rad]", ylim=(0.0, _ROOM * np.hypot(x, y).max()))
     if path is None or circle is None:
@@ -64,6 +63,19 @@ def plot_orbit(orbit: Orbit) -> Figure:
     length = "the period of the base motion" if orbit.periods == 1 else f"{orbit.periods} periods of the base motion"
     heading(figure, f"Periodic orbit, {kind}, {length}")
     return figure
+
+
+def _panels(figure: Figure) -> tuple[Axes, Axes | None, Axes | None]:
+    """Return the panels of tilt, path and multipliers: beside each other; in a narrow figure the tilt above."""
+    if isinstance(figure, InAxes):
+        return figure.subplots(), None, None
+    assert isinstance(figure, ResultFigure)
+    if not figure.narrow:
+        panels = figure.subplots(1, 3, width_ratios=(1.0, 1.1, 1.1))
+        return panels[0], panels[1], panels[2]
+    figure.grow(_NARROW - figure.get_figheight())
+    named = figure.subplot_mosaic([["tilt", "tilt"], ["path", "circle"]], height_ratios=(1.0, 1.25))
+    return named["tilt"], named["path"], named["circle"]
 
 
 def _draw_multipliers(axes: Axes, multipliers: npt.NDArray[np.complexfloating]) -> None:

@@ -2,23 +2,24 @@
 
 import math
 import sys
-import textwrap
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass
 from io import BytesIO
-from typing import Any, Literal
+from typing import Any, Literal, cast
 
 import numpy as np
-from matplotlib import rcParams
+from matplotlib import rc_context, rcParams, rcParamsDefault
 from matplotlib.axes import Axes
+from matplotlib.colorbar import Colorbar
 from matplotlib.figure import Figure
 from matplotlib.legend import Legend
-from matplotlib.text import Text
+from matplotlib.transforms import ScaledTranslation
 
 from stylobate.errors import ParameterError
+from stylobate.plots.fitting import entries_of, has_no_place, is_filled
 
 WIDTH = 7.2
 """Width of a figure that spans a page [inches]."""
@@ -33,8 +34,14 @@ _SCREEN = 96.0
 # space about it [inches]; height of a line, of the font size.
 _CHARACTER, _MARK, _LINE = 0.52, 0.5, 1.5
 _POINTS = 72.0
-# Part of its place that a panel keeps beside labels and legends.
-_PANEL = 0.9
+# Font size [points] of a figure that spans a page, and of one in a column of a journal, which is at most this wide.
+_FONT, _FONT_OF_A_COLUMN, _COLUMN = 9.5, 8.0, 4.5
+# Above this width [inches], as on a slide, everything grows with the figure.
+_SLIDE = 8.5
+# A legend stands below given axes if it takes less than this part of their height, else beside them.
+_BELOW = 0.4
+# Settings with which files keep their texts as texts, unless the user changed them.
+_SAVED = {"pdf.fonttype": 42, "ps.fonttype": 42, "svg.fonttype": "none"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,30 +91,35 @@ def drawing(size: float | tuple[float, float] | None = None, axes: Axes | None =
         _ASKED.reset(token)
 
 
+def enlarged() -> float:
+    """Return the factor by which fonts and lines of the figure grow: more than 1 on a slide."""
+    width = _width()
+    return width / WIDTH if width > _SLIDE else 1.0
+
+
+def usual_font() -> float:
+    """Return the font size of a figure of the width asked for [points]."""
+    return _FONT_OF_A_COLUMN if _width() <= _COLUMN else _FONT * enlarged()
+
+
+def font_ratio() -> float:
+    """Return the font size in use over that of a page: heights of panels suit it."""
+    return float(rcParams["font.size"]) / _FONT
+
+
+def _width() -> float:
+    size = asked_for().size
+    return WIDTH if size is None else size[0]
+
+
 def heading(figure: Figure, text: str) -> None:
-    """Write `text` above all panels, in lines that fit the width."""
-    characters = figure.get_figwidth() * _POINTS / (_CHARACTER * rcParams["font.size"])
-    figure.suptitle("\n".join(textwrap.wrap(text, int(characters))), x=0.01, ha="left", fontsize="medium")
+    """Write `text` above all panels; lines that do not fit the width are broken."""
+    figure.suptitle(text, x=0.01, ha="left", fontsize="medium")
 
 
 def beside_or_below(figure: Figure) -> Literal["right", "bottom"]:
     """Return the place of a colour bar: below the panel in a narrow figure."""
     return "bottom" if isinstance(figure, ResultFigure) and figure.narrow else "right"
-
-
-def fit_texts(figure: Figure) -> None:
-    """Break titles and labels of axes that are longer than their panel."""
-    width, height = figure.get_size_inches() * _POINTS / _CHARACTER
-    for axes in figure.axes:
-        extent = axes.get_position()
-        across, along = _PANEL * extent.width * width, _PANEL * extent.height * height
-        title = axes.get_title(loc="left")
-        titles = [(one, 1.15 * across) for one in axes.findobj(Text) if title and one.get_text() == title]
-        for text, room in (*titles, (axes.xaxis.label, across), (axes.yaxis.label, along)):
-            characters = max(12, int(room / text.get_fontsize()))
-            lines = text.get_text().splitlines()
-            if any(len(line) > characters for line in lines):
-                text.set_text("\n".join(part for line in lines for part in textwrap.wrap(line, characters)))
 
 
 def _checked(size: Any) -> tuple[float, float | None]:
@@ -134,7 +146,7 @@ class ResultFigure(Figure):
 
     def __init__(self, width: float, height: float, *, fixed: bool = False) -> None:
         super().__init__(figsize=(width, height), layout="constrained")
-        self._fixed = fixed
+        self.fixed = fixed
 
     @property
     def narrow(self) -> bool:
@@ -143,8 +155,15 @@ class ResultFigure(Figure):
 
     def grow(self, by: float) -> None:
         """Add this height [inches] unless the caller asked for a height."""
-        if not self._fixed:
+        if not self.fixed:
             self.set_figheight(self.get_figheight() + by)
+
+    def savefig(self, *args: Any, **options: Any) -> None:
+        """Save the figure as `Figure.savefig` does; texts in PDF and SVG stay texts unless the user set otherwise."""
+        theirs, factory = cast("dict[Any, Any]", rcParams), cast("dict[Any, Any]", rcParamsDefault)
+        kept: Any = {name: value for name, value in _SAVED.items() if theirs[name] == factory[name]}
+        with rc_context(kept):
+            super().savefig(*args, **options)
 
     def _repr_png_(self) -> tuple[bytes, dict[str, int]]:
         buffer = BytesIO()
@@ -171,6 +190,17 @@ class ResultFigure(Figure):
         manager = kind.new_manager(self, number)  # pragma: no cover  needs a display
         manager.show()  # pragma: no cover
         type(manager).start_main_loop()  # pragma: no cover
+
+    def make_place(self) -> None:
+        """Move legends that cover what their panels show below all panels."""
+        for axes in self.axes:
+            legend = axes.get_legend()
+            if legend is None or not has_no_place(legend, axes):
+                continue
+            handles, names = entries_of(legend, axes)
+            size = legend.get_texts()[0].get_fontsize()
+            legend.remove()
+            self.legend(handles, names, loc="outside lower left", ncols=3, fontsize=size)
 
     def subplots(self, nrows: int = 1, ncols: int = 1, **options: Any) -> Any:
         """Return panels as `Figure.subplots` does; in a narrow figure those of one row stand below each other."""
@@ -211,11 +241,12 @@ class ResultFigure(Figure):
         asked = asked_for()
         if asked.axes is not None:
             return InAxes(asked.axes)
+        taller = max(1.0, float(rcParams["font.size"]) / usual_font())
         if asked.size is None:
-            return cls(width, height)
+            return cls(width, taller * height)
         wide, tall = asked.size
         ratio = wide / width
-        suits = max(_LEAST, height * (ratio if ratio >= 1.0 else 1.0 - _SHRINKS * (1.0 - ratio)))
+        suits = taller * max(_LEAST, height * (ratio if ratio >= 1.0 else 1.0 - _SHRINKS * (1.0 - ratio)))
         return cls(wide, suits if tall is None else tall, fixed=tall is not None)
 
 
@@ -251,9 +282,34 @@ class InAxes(ResultFigure):
         self._refuse()
 
     def legend(self, *args: Any, **options: Any) -> Legend:
-        """Add the legend within the axes, where there is room."""
+        """Add the legend within the axes, in a frame; entries have one line, the first of their labels."""
         kept = {name: value for name, value in options.items() if name in ("handles", "labels", "title", "fontsize")}
-        return self._axes_of_caller.legend(*args, **kept)
+        look: dict[str, Any] = {"frameon": True, "framealpha": 0.9, "edgecolor": "#cccccc", "handlelength": 1.6}
+        legend = self._axes_of_caller.legend(*args, **look | kept)
+        for text in legend.get_texts():
+            text.set_text(text.get_text().partition("\n")[0])
+        return legend
+
+    def colorbar(self, *args: Any, **options: Any) -> Colorbar:
+        """Add a colour bar to the caller's figure."""
+        return self.finished().colorbar(*args, **options)
+
+    def make_place(self) -> None:
+        """Move a legend that covers what the axes show below or beside them, if the caller's figure makes room."""
+        axes, figure = self._axes_of_caller, self.finished()
+        legend = axes.get_legend()
+        if legend is None or figure.get_layout_engine() is None or not (has_no_place(legend, axes) or is_filled(axes)):
+            return
+        panel, numbers, box = axes.get_window_extent(), axes.xaxis.get_tightbbox(), legend.get_window_extent()
+        columns = max(1, int(panel.width // box.width))
+        handles, names = entries_of(legend, axes)
+        place: dict[str, Any] = {"bbox_to_anchor": (1.0, 1.0)}
+        if box.height / columns < _BELOW * panel.height:
+            foot = 0.0 if numbers is None else (numbers.y0 - panel.y0) / figure.dpi
+            below = axes.transAxes + ScaledTranslation(0.0, foot, figure.dpi_scale_trans)
+            place = {"bbox_to_anchor": (0.0, 0.0), "bbox_transform": below, "ncols": columns, "borderaxespad": 0.2}
+        size = legend.get_texts()[0].get_fontsize()
+        axes.legend(handles, names, loc="upper left", fontsize=size, frameon=False, **place)
 
     def finished(self) -> Figure:
         """Return the caller's figure."""

@@ -5,16 +5,17 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from matplotlib import colormaps
+from matplotlib import colormaps, rcParams
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Circle
 
+from stylobate.errors import ParameterError
 from stylobate.plots.contact_strip import ContactHistory, draw_contact
 from stylobate.plots.labels import axis_label, unit_label
 from stylobate.plots.pose import Floats
-from stylobate.plots.result_figure import InAxes, ResultFigure, heading
+from stylobate.plots.result_figure import InAxes, ResultFigure, font_ratio, heading
 from stylobate.plots.style import BLACK, DASHES, GREY, PALETTE, new_figure, styled
 from stylobate.plots.varied import what_varies
 from stylobate.results import Response
@@ -27,20 +28,27 @@ EVENT_NAMES = {
     "lifted": "lifted off",
     "failed": "failed",
 }
-"""Names of events in figures."""
 # Heights of the panels, of a row of kinds of contact, and of the margin about the rows [inches].
-_HEIGHTS = {"tilt": 1.75, "azimuth": 1.45, "travel": 1.45, "clearance": 1.0, "twist": 1.0, "base": 1.55, "path": 3.0}
+_HEIGHTS = {"tilt": 1.75, "azimuth": 1.45, "travel": 1.45, "clearance": 1.0, "twist": 1.0, "base": 1.7, "path": 3.0}
 _ROW, _GAP = 0.19, 0.3
-# Minimum height of all panels against time, if the path of the tilt vector stands beside them [inches].
-_BESIDE_PATH = 3.9
-# The name of an event later than this fraction of the run is written to its left.
-_LATE = 0.8
+# Panels in the order in which a figure of a given height leaves them out, and the part of its height a panel needs.
+_LEFT_OUT, _NEEDED = ("twist", "clearance", "azimuth", "contact", "path", "travel", "base"), 0.55
+# Height of the title and the label of the time [inches].
+_MARGIN = 0.45
+# Minimum height of all panels, alone or beside the path of the tilt vector [inches]. Panels stand below the path only
+# if that lowers the figure by this factor.
+_ALONE, _BESIDE_PATH, _LOWER = 2.4, 3.9, 0.85
+# Panels have this part of their height at least.
+_LEAST = 0.84
+# The name of an event later than this fraction of the run is written to its left; a name needs this fraction.
+_LATE, _BESIDE = 0.8, 0.25
 # Tolerance for rounding: a direction with no more than this fraction along x is the direction of y.
 _ALONG_Y = 1e-9
 # Movements within this of the largest are rounding; movements below this fraction of the radius are not drawn.
 _ROUNDING, _SMALL = 1e-9, 1e-3
-# A line with more turning points than this looks like a solid block: its extremes in so many intervals are drawn.
-_TURNS, _INTERVALS = 150, 240
+# A line with more turning points than this looks like a solid block: its extremes in so many intervals are drawn. A
+# line that varies by less than this fraction is drawn as it is.
+_TURNS, _INTERVALS, _FLAT = 150, 240, 0.02
 # Margin about the orbit.
 _ROOM = 1.08
 _LIMIT: dict[str, Any] = {"color": GREY, "linewidth": 0.9, "linestyle": (0, (4, 2))}
@@ -55,7 +63,7 @@ def plot_runs(runs: Sequence[Response], labels: Sequence[str] | None = None) -> 
     beside them the path of the tilt vector. Dashed lines show the tilt c, beyond which the column falls on a base at
     rest, and the acceleration c g at which it uplifts. For one run of a model that changes its contact, a strip shows
     the contact history. A curve that would be a solid block is drawn between its extremes. In given axes only the tilt
-    is drawn.
+    is drawn; a figure of a given height that cannot hold all panels has the most important, the tilt first.
 
     Parameters
     ----------
@@ -63,11 +71,16 @@ def plot_runs(runs: Sequence[Response], labels: Sequence[str] | None = None) -> 
         The runs, at least one.
     labels
         A name for each; by default the values that differ between the runs.
+
+    Raises
+    ------
+    ParameterError
+        If the height asked for cannot hold the tilt.
     """
     names = list(labels or what_varies(runs))
     planar = all(run.planar for run in runs)
     panels = panels_of(runs, planar=planar)
-    figure, axes = _arranged(panels)
+    figure, axes = _arranged(panels, axis_label(runs[0].data["time"]))
     lines = _looks(runs)
     draw = _DRAWN | {"tilt": _draw_signed_tilt if planar else _draw_tilt}
     for run, line in zip(runs, lines, strict=True):
@@ -81,7 +94,7 @@ def plot_runs(runs: Sequence[Response], labels: Sequence[str] | None = None) -> 
         if "contact" in axes and (history := panels.get("contact")) is not None:
             draw_contact(axes["contact"], history)
         if "tilt" in axes:
-            _mark_events(axes["tilt"], runs[0], planar=planar)
+            _mark_events(axes["tilt"], runs[0])
     _write(figure, runs, names, lines)
     return figure
 
@@ -109,33 +122,84 @@ def _moves(run: Response, name: str) -> bool:
     return float(np.abs(data[moved]).max()) > _SMALL * (1.0 if name == "twist" else radius)
 
 
-def _arranged(panels: Mapping[str, Any]) -> tuple[Figure, dict[str, Axes]]:
-    """Return a figure and its panels by name: those against time below each other, the path beside or below them."""
+def _arranged(panels: Mapping[str, Any], time: str) -> tuple[Figure, dict[str, Axes]]:
+    """Return a figure and its panels by name: those against `time` below each other, the path beside or below them."""
     heights = {name: _HEIGHTS.get(name, 0.0) for name in panels}
     if panels.get("contact") is not None:
         heights["contact"] = _GAP + _ROW * len(panels["contact"].shown)
-    along = [name for name in heights if name != "path"]
-    total = sum(heights[name] for name in along)
-    beside = "path" in heights
-    figure = new_figure(max(total, _BESIDE_PATH if beside else 2.4))
+    figure = new_figure(_ALONE)
     if isinstance(figure, InAxes):
-        return figure, {"tilt": figure.subplots()}
+        tilt = figure.subplots()
+        tilt.set_xlabel(time)
+        return figure, {"tilt": tilt}
     assert isinstance(figure, ResultFigure)
-    if beside and figure.narrow:
-        figure.grow(heights["path"])
-        rows: list[Any] = [[name] for name in [*along, "path"]]
-        options: dict[str, Any] = {"height_ratios": [heights[name] for name in [*along, "path"]]}
+    beside = not figure.narrow
+    if figure.fixed:
+        columns = _that_fit(heights, figure.get_figheight(), beside=beside)
     else:
-        rows = [[name, "path"] if beside else [name] for name in along]
-        options = {"height_ratios": [heights[name] for name in along]}
-        options |= {"width_ratios": (1.25, 1.0)} if beside else {}
-    axes = figure.subplot_mosaic(rows, **options)
-    for name in along:
-        if name != along[0]:
-            axes[name].sharex(axes[along[0]])
-        if name != along[-1]:
-            axes[name].tick_params(axis="x", labelbottom=False)
+        columns = _columns(heights, beside=beside)
+        lowest = _BESIDE_PATH if len(columns) > 1 else _ALONE
+        figure.set_figheight(max(font_ratio(), _LEAST) * max(_height(columns), lowest))
+    axes: dict[str, Axes] = {}
+    whole = figure.add_gridspec(1, len(columns), width_ratios=(1.25, 1.0)[: len(columns)])
+    if len(columns) > 1 and len(columns[1]) == 1:  # in one grid, the upper edges of the panels align
+        whole = figure.add_gridspec(len(columns[0]), 2, width_ratios=(1.25, 1.0), height_ratios=[*columns[0].values()])
+    for place, column in enumerate(columns):
+        if whole.nrows > 1:
+            places = [whole[row, 0] for row in range(len(column))] if place == 0 else [whole[:, 1]]
+        else:
+            rows = whole[place].subgridspec(len(column), 1, height_ratios=[*column.values()])
+            places = [rows[row] for row in range(len(column))]
+        axes |= {name: figure.add_subplot(spot) for name, spot in zip(column, places, strict=True)}
+        along = [axes[name] for name in column if name != "path"]
+        for one in along:
+            if one is not axes[next(iter(axes))]:
+                one.sharex(axes[next(iter(axes))])
+            one.tick_params(axis="x", labelbottom=one is along[-1])
+        if along:
+            along[-1].set_xlabel(time)
     return figure, axes
+
+
+def _columns(heights: Mapping[str, float], *, beside: bool) -> list[dict[str, float]]:
+    """Return the heights of the panels in each column: with the path `beside`, the last may stand below it."""
+    along, path = {**heights}, {"path": heights.get("path", 0.0)}
+    if "path" not in along:
+        return [along]
+    del along["path"]
+    if not beside:
+        return [along | path]
+    names = list(along)
+    ways = [
+        [{name: along[name] for name in names[:count]}, path | {name: along[name] for name in names[count:]}]
+        for count in range(len(names), 0, -1)
+    ]
+    lowest = min(ways, key=_height)
+    return lowest if _height(lowest) < _LOWER * _height(ways[0]) else ways[0]
+
+
+def _height(columns: Sequence[Mapping[str, float]]) -> float:
+    return max(sum(column.values()) for column in columns)
+
+
+def _that_fit(heights: Mapping[str, float], height: float, *, beside: bool) -> list[dict[str, float]]:
+    """Return the columns of the most important panels that a figure of this `height` can hold.
+
+    Raises
+    ------
+    ParameterError
+        If it cannot hold the most important one.
+    """
+    kept = {**heights}
+    for name in ("", *_LEFT_OUT):
+        if len(kept) > 1:
+            kept.pop(name, None)
+        columns = _columns(kept, beside=beside)
+        needed = font_ratio() * (_MARGIN + _NEEDED * _height(columns))
+        if needed <= height:
+            return columns
+    message = f"size: a figure of a run must be {needed:.2f} inches high or more, got {height:g}. Give the width only"
+    raise ParameterError(message)
 
 
 def _looks(runs: Sequence[Response]) -> list[dict[str, Any]]:
@@ -162,7 +226,7 @@ def draw_history(axes: Axes, time: Any, values: Floats, **line: Any) -> bool:
     """Draw `values` against time; if the line would be a solid block, fill between its extremes and return True."""
     time = np.asarray(time, dtype=float)
     turns = np.count_nonzero(np.diff(np.sign(np.diff(values))) != 0.0)
-    if turns <= _TURNS:
+    if turns <= _TURNS or np.ptp(values) < _FLAT * np.abs(values).max():
         axes.plot(time, values, **line)
         return False
     edges = np.linspace(time[0], time[-1], _INTERVALS + 1)
@@ -188,12 +252,13 @@ def _draw_azimuth(axes: Axes, run: Response, line: dict[str, Any]) -> None:
 def _draw_travel(axes: Axes, run: Response, line: dict[str, Any]) -> None:
     travel = in_print(run.data["footprint"])
     moving = [along for along in (0, 1) if np.abs(travel[:, along]).max() > _ROUNDING * np.abs(travel).max()]
+    higher = int(np.argmax(travel[-1]))
     for along in moving:
         draw_history(axes, run.data["time"], travel[:, along], linewidth=(1.1, 0.7)[along], **line)
         if moving != [0]:
             end = float(run.data["time"][-1]), float(travel[-1, along])
-            look: dict[str, Any] = {"textcoords": "offset points", "va": "center", "fontsize": "small"}
-            axes.annotate("xy"[along], end, xytext=(4, 0), **look)
+            look: dict[str, Any] = {"textcoords": "offset points", "fontsize": "small"}
+            axes.annotate("xy"[along], end, xytext=(4, 0), va="bottom" if along == higher else "top", **look)
 
 
 def _draw_clearance(axes: Axes, run: Response, line: dict[str, Any]) -> None:
@@ -261,23 +326,26 @@ def along_line(vectors: Floats) -> Floats:
     return np.asarray(vectors @ (x, y) / (length if positive else -length))
 
 
-def _mark_events(axes: Axes, run: Response, *, planar: bool) -> None:
+def _mark_events(axes: Axes, run: Response) -> None:
+    """Name the first and the last event above the panel, where they cover no curve."""
     # The first and the last only: a run may uplift and come to rest in every period.
     events = [event for event in run.events if not event.repeats]
-    tilt = along_line(run.data["tilt"].to_numpy()) if planar else run.data["amplitude"].to_numpy()
-    for event in dict.fromkeys((*events[:1], *events[-1:])):
-        if event.kind not in EVENT_NAMES:
-            continue
-        height = float(np.interp(event.time, run.data["time"], tilt))
+    named = [event for event in dict.fromkeys((*events[:1], *events[-1:])) if event.kind in EVENT_NAMES]
+    end = float(run.data["time"][-1])
+    for place, event in enumerate(named):
+        late = event.time > _LATE * end
+        # A name beside another one stands above it.
+        crowded = place > 0 and event.time - named[0].time < (2.0 if late else 1.0) * _BESIDE * end
+        axes.axvline(event.time, color=BLACK, linewidth=0.6, linestyle=DASHES[3])
         axes.annotate(
             EVENT_NAMES[event.kind],
-            (event.time, height),
-            xytext=(0, 10),
+            (event.time, 1.0),
+            xycoords=("data", "axes fraction"),
+            xytext=(0, 2.0 + 1.2 * rcParams["font.size"] * crowded),
             textcoords="offset points",
-            ha="right" if event.time > _LATE * run.data["time"][-1] else "left",
+            ha="right" if late else "left",
+            va="bottom",
             fontsize="small",
-            bbox={"facecolor": "white", "alpha": 0.75, "linewidth": 0.0, "pad": 0.5},
-            arrowprops={"arrowstyle": "-|>", "color": BLACK, "linewidth": 0.6, "mutation_scale": 7},
         )
 
 
@@ -300,9 +368,10 @@ def _finish(axes: Mapping[str, Axes], runs: Sequence[Response], *, planar: bool)
             axes[name].set_ylabel(text)
     if "base" in axes:
         signed = all(is_along_a_line(run.data["base_acceleration"].to_numpy()[:, :2]) for run in runs)
-        for level in {float(run.data.attrs["uplift_acceleration"]) for run in runs}:
-            for sign in (1.0, -1.0) if signed else (1.0,):
-                axes["base"].axhline(sign * level, **_LIMIT)
+        levels = sorted({float(run.data.attrs["uplift_acceleration"]) for run in runs})
+        _draw_limits(axes["base"], r"c\,g", dict(zip(levels, limits, strict=len(levels) == len(limits))), signed=signed)
+        if not signed and not any(bool((run.data["base_acceleration"][:, 2] != 0.0).any()) for run in runs):
+            axes["base"].set_ylim(bottom=0.0)
     if (path := axes.get("path")) is not None:
         for c in limits:
             path.add_patch(Circle((0.0, 0.0), c, fill=False, **_LIMIT))
@@ -314,9 +383,7 @@ def _finish(axes: Mapping[str, Axes], runs: Sequence[Response], *, planar: bool)
         mark: dict[str, Any] = {"linestyle": "none", "color": BLACK, "markersize": 4}
         ends = [Line2D([], [], marker="o", markerfacecolor="white", label="start", **mark)]
         ends += [Line2D([], [], marker="s", label="end", **mark)]
-        path.legend(handles=ends, loc="upper right", fontsize="x-small", handlelength=1.0, borderaxespad=0.0)
-    last = [name for name in axes if name != "path"][-1]
-    axes[last].set_xlabel(axis_label(data["time"]))
+        path.legend(handles=ends, loc="best", fontsize="small", handlelength=1.0, borderaxespad=0.0)
 
 
 def _finish_tilt(axes: Axes, limits: Sequence[float], peak: float, *, planar: bool) -> None:
@@ -324,14 +391,19 @@ def _finish_tilt(axes: Axes, limits: Sequence[float], peak: float, *, planar: bo
     axes.margins(y=0.15)
     # A limit far above the tilts would press them to the bottom.
     shown = [c for c in limits if peak > c / 8.0 or peak == 0.0]
-    for c in shown:
-        for sign in (1.0, -1.0) if planar else (1.0,):
-            axes.axhline(sign * c, **_LIMIT)
-    if shown:
-        look: dict[str, Any] = {"ha": "left", "va": "bottom", "fontsize": "small", "color": GREY}
-        axes.annotate(r"$\theta = c$", (0.01, max(shown)), xycoords=("axes fraction", "data"), **look)
+    _draw_limits(axes, r"\theta = c", {c: c for c in shown}, signed=planar)
     if not planar:
         axes.set_ylim(bottom=0.0)
+
+
+def _draw_limits(axes: Axes, symbol: str, limits: Mapping[float, float], *, signed: bool) -> None:
+    """Draw a dashed line at each of the `limits`, with its symbol; with the slenderness if there are several."""
+    look: dict[str, Any] = {"ha": "left", "va": "bottom", "fontsize": "small", "color": GREY}
+    for level, c in limits.items():
+        for sign in (1.0, -1.0) if signed else (1.0,):
+            axes.axhline(sign * level, **_LIMIT)
+        name = f"${symbol}$" if len(limits) == 1 else f"${symbol}$, $c$ = {c:.3g}"
+        axes.annotate(name, (0.01, level), xycoords=("axes fraction", "data"), **look)
 
 
 def length_unit(data: xr.Dataset) -> str:
@@ -348,12 +420,13 @@ def _base_label(quantity: xr.DataArray) -> str:
 def _write(figure: Figure, runs: Sequence[Response], names: Sequence[str], lines: Sequence[dict[str, Any]]) -> None:
     """Write outcome and reason above one run, and a key to several below them."""
     if isinstance(figure, InAxes):
-        if len(runs) > 1:
+        if len(runs) > 1 or names != what_varies(runs):
             figure.legend(handles=[Line2D([], [], label=n, **line) for n, line in zip(names, lines, strict=True)])
         return
     if len(runs) == 1:
-        name = names[0] if runs[0].outcome.label in names[0] else f"{names[0]}: {runs[0].outcome.label}"
-        heading(figure, f"{name[:1].upper()}{name[1:]}: {runs[0].reason}")
+        label = runs[0].outcome.label
+        name = f"{names[0][:1].upper()}{names[0][1:]}" if names[0].startswith(label) else names[0]
+        heading(figure, f"{name if label in name.lower() else f'{name}: {label}'}: {runs[0].reason}")
         return
     entries = [
         Line2D([], [], label=name if run.outcome.label in name else f"{name}: {run.outcome.label}", **line)

@@ -4,8 +4,9 @@ Figures are drawn for white paper. `styled` then gives their neutral colours (bl
 style, so that a dark style has light lines on a dark ground. The colours of the palette keep their meaning.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from contextvars import ContextVar
 from functools import wraps
 from typing import Any, ParamSpec
 
@@ -13,6 +14,7 @@ import numpy as np
 import xarray as xr
 from matplotlib import rc_context, rcParams, rcParamsDefault
 from matplotlib.artist import Artist
+from matplotlib.axes import Axes
 from matplotlib.collections import Collection
 from matplotlib.colors import ListedColormap, to_rgba, to_rgba_array
 from matplotlib.figure import Figure
@@ -20,8 +22,9 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.text import Annotation, Text
 
+from stylobate.plots.fitting import fit_words, thin_out_ticks
 from stylobate.plots.labels import in_own_units, with_literal_names
-from stylobate.plots.result_figure import WIDTH, InAxes, ResultFigure, asked_for, fit_texts
+from stylobate.plots.result_figure import WIDTH, InAxes, ResultFigure, asked_for, enlarged, usual_font
 
 # Okabe and Ito's palette ("Color Universal Design", 2008) without its yellow; the lightness alternates.
 PALETTE = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#000000")
@@ -33,10 +36,8 @@ DASHES = ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)), (0, (1, 3)))
 
 STABLE_WIDTH, UNSTABLE_WIDTH = 2.8, 0.9
 
-# Font size [points] of a figure that spans a page, and of one in a column of a journal, which is at most this wide.
-_FONT, _FONT_OF_A_COLUMN, _COLUMN = 9.5, 8.0, 4.5
-# Above this width [inches], as on a slide, everything grows with the figure.
-_SLIDE = 8.5
+# Smallest size of text [points] unless the user's own font is smaller.
+_SMALLEST = 6.0
 
 AS_DRAWN = "as drawn"
 """Gid of texts and patches that keep their colours in dark styles: what is written on a coloured ground."""
@@ -66,6 +67,7 @@ _DIM, _LIGHTER = 0.5, 0.3
 _CLASSES = 32
 
 P = ParamSpec("P")
+_DRAWING: ContextVar[bool] = ContextVar("_DRAWING", default=False)
 
 
 def styled(draw: Callable[P, Figure]) -> Callable[P, Figure]:
@@ -76,17 +78,29 @@ def styled(draw: Callable[P, Figure]) -> Callable[P, Figure]:
 
     @wraps(draw)
     def drawn(*args: P.args, **kwargs: P.kwargs) -> Figure:
-        with _settings():
-            results: Any = [in_own_units(one) for one in args]
-            shown: Any = [with_literal_names(one) if isinstance(one, xr.Dataset) else one for one in results]
-            figure = draw(*shown, **kwargs)
-        scale = _width() / WIDTH if _width() > _SLIDE else 1.0
-        if isinstance(figure, InAxes):
-            return figure.finished()
-        if _width() < WIDTH:
-            fit_texts(figure)
-        _restyle(figure, scale)
-        return figure
+        if _DRAWING.get():  # a part of another figure
+            return draw(*args, **kwargs)
+        caller = asked_for().axes
+        present = set() if caller is None else {*caller.findobj()}
+        token = _DRAWING.set(True)
+        try:
+            with _settings():
+                results: Any = [in_own_units(one) for one in args]
+                shown: Any = [with_literal_names(one) if isinstance(one, xr.Dataset) else one for one in results]
+                figure = draw(*shown, **kwargs)
+                smallest = min(_SMALLEST, float(rcParams["font.size"]))
+                page = figure.finished() if isinstance(figure, InAxes) else figure
+                panels = page.axes if caller is None else [caller]
+                new = [one for one in (page if caller is None else caller).findobj() if one not in present]
+                fit_words(page, panels, new, smallest)
+                if isinstance(figure, ResultFigure):
+                    figure.make_place()
+                thin_out_ticks(page, panels)
+        finally:
+            _DRAWING.reset(token)
+        new = [one for one in (page if caller is None else caller).findobj() if one not in present]
+        _restyle(page, panels, new, 1.0 if caller is not None else enlarged())
+        return page
 
     return drawn
 
@@ -99,17 +113,10 @@ def new_figure(height: float, *, width: float = WIDTH) -> Figure:
     return ResultFigure.asked_for(height, width)
 
 
-def _width() -> float:
-    size = asked_for().size
-    return WIDTH if size is None else size[0]
-
-
 @contextmanager
 def _settings() -> Iterator[None]:
     """Draw for white paper with our settings, except for those that the user changed."""
-    width = _width()
-    font = _FONT_OF_A_COLUMN if width <= _COLUMN else _FONT * max(1.0, width / WIDTH if width > _SLIDE else 1.0)
-    ours = {"font.size": font, **_SETTINGS}
+    ours = {"font.size": usual_font(), **_SETTINGS}
     theirs: dict[Any, Any] = dict(rcParams)
     factory: dict[Any, Any] = dict(rcParamsDefault)
     settings = {name: value for name, value in ours.items() if theirs[name] == factory[name]}
@@ -118,8 +125,8 @@ def _settings() -> Iterator[None]:
         yield
 
 
-def _restyle(figure: Figure, scale: float) -> None:
-    """Give the neutral colours of a figure those of the user's style, and enlarge its lines and marks."""
+def _restyle(figure: Figure, panels: Sequence[Axes], drawn: Sequence[Artist], scale: float) -> None:
+    """Give the neutral colours of what was drawn those of the user's style, and enlarge its lines and marks."""
     ink, paper = (np.array(to_rgba(rcParams[name])[:3]) for name in ("text.color", "axes.facecolor"))
     dark = not (np.all(ink == 0.0) and np.all(paper == 1.0))
     if not dark and scale == 1.0:
@@ -133,23 +140,24 @@ def _restyle(figure: Figure, scale: float) -> None:
         found[:, :3] = np.where(neutral, ink + level * (paper - ink), np.where(level < _DIM, lighter, found[:, :3]))
         return found
 
-    for artist in figure.findobj():
+    for artist in drawn:
         if dark and artist.get_gid() != AS_DRAWN:
             _recolour(artist, themed)
         _enlarge(artist, scale)
-    for axes in figure.axes:
+    for axes in panels:
         if dark:
             tick = dict.fromkeys(("color", "labelcolor"), rcParams["xtick.color"])
             axes.tick_params(which="both", **tick, grid_color=themed(_SETTINGS["grid.color"])[0])
-    if dark:
+    if dark and isinstance(figure, ResultFigure):
         figure.patch.set_facecolor(rcParams["figure.facecolor"])
 
 
 def _recolour(artist: Artist, themed: Callable[[Any], Any]) -> None:
     match artist:
         case Line2D():
-            artist.set(color=themed(artist.get_color())[0], markerfacecolor=themed(artist.get_markerfacecolor())[0])
-            artist.set_markeredgecolor(themed(artist.get_markeredgecolor())[0])
+            colours = (artist.get_color(), artist.get_markerfacecolor(), artist.get_markeredgecolor())
+            line, face, edge = (themed(one)[0] for one in colours)
+            artist.set(color=line, markerfacecolor=face, markeredgecolor=edge)
         case Text():
             artist.set_color(themed(artist.get_color())[0])
             for patch in (artist.get_bbox_patch(), artist.arrow_patch if isinstance(artist, Annotation) else None):

@@ -179,7 +179,9 @@ class Response(ByContent):
         return replace(self, data=self.data.copy(deep=True))  # with the dense output, which nothing changes
 
     def __repr__(self) -> str:
-        return f"Response({self.outcome.name} at {four_digits(self.decided_at)} s: {self.reason})"
+        more = f" (and {len(self.warnings) - 1} more)" if len(self.warnings) > 1 else ""
+        warning = f"; warning: {self.warnings[0]}{more}" if self.warnings else ""
+        return f"Response({self.outcome.name} at {four_digits(self.decided_at)} s: {self.reason}{warning})"
 
     def _repr_html_(self) -> str:
         """Render the card that notebooks show."""

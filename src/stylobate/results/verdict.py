@@ -126,7 +126,7 @@ class Verdict(ByContent):
         unknown = float((self.data["overturned"] < 0).mean())
         undecided = f", {percent(unknown)} are not decided" if unknown else ""
         return (
-            f"{self.word.value}: {percent(self.share)} of {self.runs} variations overturn the column{undecided} "
+            f"{self.word.value}: {percent(self.share)} of {self.runs} variations overturn{undecided} "
             f"({percent(self.confidence)} sampling interval {interval_text(low, high)})"
         )
 

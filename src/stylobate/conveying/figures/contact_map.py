@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 
-from stylobate.conveying.contact_maps import ContactClass
+from stylobate.conveying.contact_maps import ContactClass, knife_edge_remarks
 from stylobate.plots.cells import cell_edges
 from stylobate.plots.classes import contact_classes
 from stylobate.plots.kinds import figure_of
@@ -35,6 +35,7 @@ def plot_contact_map(found: xr.Dataset) -> Figure:
     figure = new_figure(_HEIGHT, width=_WIDE if peak.count() else WIDTH)
     panels = figure.subplots(1, 2 if peak.count() else 1, sharex=True, sharey=True, squeeze=False)[0]
     handles = draw_classes(panels[0], found, found["contact_class"], contact_classes(found))
+    panels[0].set_title("\n".join(knife_edge_remarks(found)), loc="left", fontsize="small")
     if not peak.count():
         figure.legend(handles=handles, loc="outside right upper")
         return figure
@@ -43,7 +44,7 @@ def plot_contact_map(found: xr.Dataset) -> Figure:
     drawn = panels[1].pcolormesh(cell_edges(ordered[x]), cell_edges(ordered[y]), peak, **look)
     panels[1].grid(visible=False)
     panels[1].set_xlabel(axis_label(found[x]))
-    panels[1].set_title("white: never tilted, or overturned", fontsize=8.5)
+    panels[1].set_title("white: never tilted, or overturned", fontsize="small")
     figure.colorbar(drawn, ax=panels[1], label=axis_label(found["peak_tilt"]))
     return figure
 
@@ -70,6 +71,7 @@ def plot_drift(found: xr.Dataset) -> Figure:
         panels[1].plot(x, turning, color=BLACK, marker=".")
         panels[1].set_ylabel(axis_label(found["mean_twist_rate"], "mean twist rate"))
     panels[-1].set_xlabel(axis_label(found[name]))
+    panels[0].set_title("\n".join(knife_edge_remarks(found)), loc="left", fontsize="small")
     thrown = _where_thrown(x, ordered["throw_number"].to_numpy())
     for axes in panels:
         axes.axhline(0.0, color=BLACK, linewidth=0.5)
@@ -121,11 +123,13 @@ def _draw_speed(figure: Figure, axes: Axes, found: xr.Dataset) -> None:
         location=beside_or_below(figure),
         label=axis_label(found["transport_speed"], "mean transport speed"),
     )
+    titles = knife_edge_remarks(found)
     throw = ordered["throw_number"].to_numpy()
     if throw.min() < 1.0 < throw.max():
         axes.contour(ordered[x], ordered[y], throw, levels=[1.0], colors="white", linestyles=":")
-        axes.set_title("dotted: throw number 1", fontsize="small")
+        titles.append("dotted: throw number 1")
     if speed.mask.any():
-        axes.set_title("hatched: motion ends before the last period", loc="right", fontsize="small")
+        titles.append("hatched: motion ends before the last period")
+    axes.set_title("\n".join(titles), loc="left", fontsize="small")
     axes.set_xlabel(axis_label(found[x]))
     axes.set_ylabel(axis_label(found[y]))

@@ -4,11 +4,15 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import FormatStrFormatter, LogLocator, NullFormatter
 
+from stylobate.conveying.feeder import KIND as SHEET
 from stylobate.conveying.posture import KIND, Posture
+from stylobate.errors import ParameterError
 from stylobate.plots.cells import fill_options
 from stylobate.plots.classes import KIND_LOOKS
 from stylobate.plots.kinds import figure_of
+from stylobate.plots.result_figure import heading
 from stylobate.plots.style import BLUE, VERMILION, new_figure, styled
 
 _LOOKS = {
@@ -17,6 +21,8 @@ _LOOKS = {
     Posture.FALLEN: KIND_LOOKS["overturned"],
 }
 _HEIGHT, _TURN = 3.8, 2.0 * np.pi
+# A logarithmic axis whose ends have less than this ratio has plain numbers, also between powers of ten.
+_FEW = 50.0
 
 
 @figure_of(KIND)
@@ -27,8 +33,18 @@ def plot_posture(found: xr.Dataset) -> Figure:
     shares, peaks = figure.subplots(1, 2)
     _draw_shares(shares, found)
     _draw_peaks(peaks, found)
-    figure.suptitle(str(found.attrs["verdict"]).partition(";")[0], fontsize=9.5, x=0.01, ha="left")
+    heading(figure, str(found.attrs["verdict"]).partition(";")[0])
     return figure
+
+
+@figure_of(SHEET)
+def refuse_sheet(found: xr.Dataset) -> Figure:
+    """Raise ParameterError: a feeder sheet is a table."""
+    message = (
+        f"result: a feeder sheet is a table (got {found.attrs['kind']!r}). Print it by conveying.sheet_rows, or plot "
+        "the postures of conveying.upright or the speeds of conveying.drift."
+    )
+    raise ParameterError(message)
 
 
 def _draw_shares(axes: Axes, found: xr.Dataset) -> None:
@@ -56,4 +72,9 @@ def _draw_peaks(axes: Axes, found: xr.Dataset) -> None:
     axes.set(xlabel="phase at the start [turns]", ylabel="peak tilt [rad]")
     if shown.any():
         axes.set_yscale("log")
+        axes.yaxis.set_minor_formatter(NullFormatter())
+        low, high = axes.get_ylim()
+        if high / low < _FEW:
+            axes.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+            axes.yaxis.set_major_formatter(FormatStrFormatter("%g"))
     axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2)

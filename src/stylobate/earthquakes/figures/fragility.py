@@ -44,6 +44,8 @@ def plot_fragility(found: xr.Dataset) -> Figure:
     handles = [_draw_state(axes, found.isel(limit_state=place), place) for place in range(found.sizes["limit_state"])]
     if "stripe_share" in found:
         handles.append(_interval_mark(found))
+    if not np.isfinite(axes.dataLim.minposx):  # no run is decided: without data, an axis has no logarithm
+        axes.set_xlim(0.1, 10.0)
     axes.set(xscale="log", ylim=(-0.02, 1.02), ylabel="probability of reaching the limit state")
     axes.set_xlabel(axis_label(found["curve_intensity"]))
     _plain_ticks(axes)

@@ -8,6 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.figure import Figure
 
+from stylobate.plots.cells import ink_on
 from stylobate.plots.kinds import figure_of
 from stylobate.plots.result_figure import heading
 from stylobate.plots.style import AS_DRAWN, BLUE, DASHES, GREY, ORANGE, VERMILION, new_figure, styled
@@ -55,7 +56,7 @@ def _draw_tilts(axes: Axes, found: xr.Dataset) -> None:
     axes.axvline(1.0, color=GREY, linewidth=0.8, linestyle=DASHES[1])
     ticks = [0.0, 0.25, 0.5, 0.75, 1.0, _FALLEN_AT + 0.5 * _FALLEN_WIDTH]
     axes.set_xticks(ticks, ["0", "0.25", "0.5", "0.75", "1", "over-\nturned"])
-    axes.set(xlabel="peak tilt / α_c", xlim=(0.0, 1.46))
+    axes.set(xlabel=r"peak tilt / $\alpha_c$", xlim=(0.0, 1.46))
     axes.set_ylabel("variations" + (f" ({unknown} not decided)" if unknown else ""))
     axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.06), borderaxespad=0.0)
 
@@ -74,7 +75,9 @@ def _draw_shares(axes: Axes, found: xr.Dataset) -> None:
         laws = found["model"].to_numpy() if names[row] == CONTACT_LAW else np.full(cells.size, "")
         for start, cell, law in zip(starts, cells, laws, strict=True):
             label = f"{law} {100.0 * cell:.0f}".strip()
-            axes.text(start + 0.5 * width, row, label, ha="center", va="center", fontsize="x-small", gid=AS_DRAWN)
+            ink = ink_on(_SHARES(cell))
+            look = {"ha": "center", "va": "center", "fontsize": "x-small", "color": ink, "gid": AS_DRAWN}
+            axes.text(start + 0.5 * width, row, label, **look)
         axes.text(1.02, row, percent(float(found["influence"][place])), va="center", fontsize="small")
     axes.set_yticks(np.arange(len(names)), [LABELS.get(name, name.replace("_", " ")) for name in names])
     axes.set(xlim=(0.0, 1.0), ylim=(len(names) - 0.5, -0.5), xticks=[0.08, 0.92])

@@ -9,7 +9,7 @@ import numpy.typing as npt
 from stylobate.base_motions import BaseMotion
 from stylobate.config.parameter_quantities import quantity_of
 from stylobate.engine.parameters import check_names
-from stylobate.errors import ParameterError, as_numbers, require_size
+from stylobate.errors import ParameterError, as_numbers, require_finite, require_size
 from stylobate.models import Model
 from stylobate.quantities import Parameter
 
@@ -40,7 +40,7 @@ def checked_values(where: str, name: str, values: npt.ArrayLike, own: Own = None
     own
         Declared numbers of the model and base motion at hand.
     scalar
-        Whether a single number is a list of one.
+        Whether the argument is the values alone, and a single number a list of one.
 
     Raises
     ------
@@ -52,7 +52,7 @@ def checked_values(where: str, name: str, values: npt.ArrayLike, own: Own = None
     UnlikelyInputWarning
         If the largest value was more likely meant in another unit.
     """
-    argument = where if where in (name, f"{name}s") else f"{where}[{name!r}]"
+    argument = where if scalar or where in (name, f"{name}s") else f"{where}[{name!r}]"
     quantity = quantity_of(name, own)
     values = as_numbers(argument, values, quantity.unit)
     try:
@@ -65,9 +65,8 @@ def checked_values(where: str, name: str, values: npt.ArrayLike, own: Own = None
         raise ParameterError(message)
     refused = ~quantity.accepts(array)
     if refused.any():
-        number = float(array[refused][0])
-        if np.isfinite(number):
-            require_size(argument, number, quantity.unit)
+        number = require_finite(argument, float(array[refused][0]), quantity.unit)
+        require_size(argument, number, quantity.unit)
         raise ParameterError(quantity.refusal(argument, number))
     for value in (array.min(initial=1.0), array.max(initial=1.0)):
         require_size(argument, float(value), quantity.unit, zero=quantity.gt is None or quantity.gt < 0.0)
