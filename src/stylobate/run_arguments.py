@@ -23,6 +23,15 @@ RTOL_RANGE = (1e-13, 1e-2)
 """Range of relative tolerances: the rounding of a step, and the largest one with two digits."""
 
 
+FREE_TAIL = 20.0
+"""Default free-vibration time in 1/`column.frequency_parameter`; deviations grow by up to e²⁰ meanwhile."""
+
+
+def duration_with_tail(motion_duration: float, frequency_parameter: float) -> float:
+    """Compute the default duration of a run under a base motion that ends [s]: the motion and a tail of 20/p."""
+    return motion_duration + FREE_TAIL / frequency_parameter
+
+
 @dataclass(frozen=True, slots=True)
 class Argument:
     """Default of an argument, and its meaning in sentences; without a default the argument is required."""

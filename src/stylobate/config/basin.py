@@ -8,10 +8,10 @@ from pydantic import Field, field_validator
 from stylobate.config.axis import Axis
 from stylobate.config.description import Config, built
 from stylobate.config.many_runs import ManyRuns, common_values, refuse_design
-from stylobate.config.parameter_quantities import quantity_of
 from stylobate.config.run_numbers import fields_of
 from stylobate.config.simulation import Setup
 from stylobate.errors import LARGEST_SEED, MOST_RUNS, require_whole
+from stylobate.parameter_quantities import quantity_of
 from stylobate.run_arguments import Stroboscopic
 from stylobate.units import read_all
 

@@ -19,12 +19,11 @@ from stylobate.config.simulation import (
     SimulationConfig,
     built_parts,
     built_rules,
-    duration_with_tail,
     with_default_duration,
 )
 from stylobate.errors import ConfigError, require_positive
 from stylobate.models.declared import MODELS, dissipation_of
-from stylobate.run_arguments import OneRun
+from stylobate.run_arguments import OneRun, duration_with_tail
 
 # The most general model declares the dissipation parameters of all other models.
 _MOST_GENERAL = "rolling"
@@ -115,6 +114,6 @@ class HierarchyConfig(fields_of(OneRun, "duration"), _HierarchyCase):  # type: i
         dissipation = {name: getattr(model, name) for name in dissipation}
         options = self.model_dump(exclude={"column", "model", "motion", "hierarchy"})
         if self.duration is None:
-            options["duration"] = duration_with_tail(model, motion)
+            options["duration"] = duration_with_tail(motion.duration, model.column.frequency_parameter)
         compared = {"slenderness": self.hierarchy.slenderness or None, "reference": self.hierarchy.reference}
         return Setup(model, motion, options | compared | dissipation | {"rules": rules})

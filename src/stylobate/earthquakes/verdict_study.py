@@ -15,7 +15,7 @@ import xarray as xr
 from scipy.special import fdtrc
 
 from stylobate.base_motions import BaseMotion, OneOf, Record
-from stylobate.config import config_of, provenance_of_run
+from stylobate.config import config_of
 from stylobate.earthquakes.config.spreads import described_spread
 from stylobate.earthquakes.config.verdict import VerdictConfig
 from stylobate.earthquakes.following import tail_of
@@ -44,6 +44,7 @@ from stylobate.errors import (
 from stylobate.models import Model, Rolling, Slender, SlenderRolling, Wobbling
 from stylobate.models.declared import dissipation_of
 from stylobate.progress import Progress, Report, report_of, shows_progress
+from stylobate.provenance import provenance_of_run
 from stylobate.quantities import parameters_of
 from stylobate.results import OutcomeRules
 from stylobate.results.damping_yardstick import damping_yardstick, yardstick_text

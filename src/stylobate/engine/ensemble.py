@@ -12,13 +12,13 @@ import xarray as xr
 from stylobate.base_motions import BASE_AT_REST, BaseMotion
 from stylobate.base_motions.one_of import members_of
 from stylobate.column import Column
-from stylobate.config import provenance_of_run
 from stylobate.engine.ensembles.batch import Batch, Plan
 from stylobate.engine.ensembles.broadcasting import AXIS, ArrayLike, Runs, broadcast
 from stylobate.engine.ensembles.harmonics import terms_of
 from stylobate.engine.ensembles.motion_columns import MotionPlan
 from stylobate.engine.ensembles.pool import Halt, parts_of, run_parts, usual_threads
-from stylobate.engine.ensembles.summaries import QUANTITIES, Arrays, empty, fallen, summarize_into
+from stylobate.engine.ensembles.summaries import fallen, summarize_into
+from stylobate.engine.ensembles.variables import QUANTITIES, Arrays, empty
 from stylobate.engine.motion_checks import check_motion
 from stylobate.engine.pace import announce, expected_steps
 from stylobate.engine.parameters import changed_model, check_names, in_declared_units, own_numbers, split
@@ -35,6 +35,7 @@ from stylobate.errors import (
 from stylobate.models import Model
 from stylobate.models.consistency import check_once
 from stylobate.progress import Progress, Report, report_of, shows_progress, silent
+from stylobate.provenance import provenance_of_run
 from stylobate.quantities import Parameter, parameters_of
 from stylobate.results import OutcomeRules
 from stylobate.results.known_orbits import as_orbits

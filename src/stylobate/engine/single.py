@@ -7,7 +7,6 @@ from typing import Any, Unpack
 import numpy as np
 
 from stylobate.base_motions import BASE_AT_REST, BaseMotion
-from stylobate.config import provenance_of_run
 from stylobate.engine.contact_measures import contact_warnings
 from stylobate.engine.end_of_motion import duration_of
 from stylobate.engine.history import history
@@ -20,6 +19,7 @@ from stylobate.engine.tolerances import CLOSE_PASSAGE
 from stylobate.engine.user_events import EventFunction, checked_events
 from stylobate.errors import ParameterError, require_vector
 from stylobate.models import Model
+from stylobate.provenance import provenance_of_run
 from stylobate.results import OutcomeRules, Response
 from stylobate.run_arguments import Accuracy, SingleRun, arguments_of, checked_options, takes
 

@@ -5,8 +5,8 @@ from dataclasses import asdict
 from typing import Any
 
 from stylobate.base_motions import BaseMotion
-from stylobate.config import provenance_of_run
 from stylobate.models import Model
+from stylobate.provenance import provenance_of_run
 from stylobate.results import OutcomeRules
 from stylobate.run_arguments import RunOptions, defaults_of
 

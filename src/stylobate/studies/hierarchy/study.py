@@ -11,11 +11,11 @@ import xarray as xr
 
 from stylobate.base_motions import BASE_AT_REST, BaseMotion
 from stylobate.column import Column
-from stylobate.config import provenance_of_run
 from stylobate.errors import ParameterError, as_numbers, require_finite, require_positive, require_vector, require_whole
 from stylobate.models import Rolling
 from stylobate.models.declared import dissipation_of
 from stylobate.models.model import require_column
+from stylobate.provenance import provenance_of_run
 from stylobate.results import Response
 from stylobate.results.outcomes import outcome_attributes
 from stylobate.run_arguments import Accuracy

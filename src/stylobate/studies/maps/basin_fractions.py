@@ -10,10 +10,10 @@ import numpy.typing as npt
 import xarray as xr
 
 from stylobate.base_motions import BASE_AT_REST, BaseMotion
-from stylobate.config.parameter_quantities import attributes_of
 from stylobate.engine import with_parameters
 from stylobate.errors import MOST_RUNS, require_whole
 from stylobate.models import Model
+from stylobate.parameter_quantities import attributes_of
 from stylobate.progress import Progress, shows_progress
 from stylobate.results.outcomes import NOT_COMPUTED
 from stylobate.results.random_numbers import Rng

@@ -11,9 +11,9 @@ import numpy.typing as npt
 import xarray as xr
 
 from stylobate.base_motions import BaseMotion
-from stylobate.config.parameter_quantities import attributes_of
 from stylobate.errors import MOST_RUNS, Outcome, ParameterError, require_whole
 from stylobate.models import Model
+from stylobate.parameter_quantities import attributes_of
 from stylobate.progress import Progress, shows_progress
 from stylobate.results.outcomes import NOT_COMPUTED
 from stylobate.results.random_numbers import Rng

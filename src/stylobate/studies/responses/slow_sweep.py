@@ -10,13 +10,13 @@ import numpy.typing as npt
 import xarray as xr
 
 from stylobate.base_motions import BaseMotion
-from stylobate.config import provenance_of_run
-from stylobate.config.parameter_quantities import attributes_of, quantity_of
 from stylobate.engine import simulate_ensemble, with_parameters
 from stylobate.errors import Interrupted, Outcome, ParameterError, UnsupportedError, as_numbers, require_whole
 from stylobate.models import Model
 from stylobate.orbits.arguments import require_subject
+from stylobate.parameter_quantities import attributes_of, quantity_of
 from stylobate.progress import Progress, report_of, shows_progress
+from stylobate.provenance import provenance_of_run
 from stylobate.results import OutcomeRules
 from stylobate.results.outcomes import NOT_COMPUTED, outcome_attributes
 from stylobate.run_arguments import Accuracy, defaults_of

@@ -9,11 +9,11 @@ import numpy.typing as npt
 
 from stylobate.base_motions import BASE_AT_REST, BaseMotion
 from stylobate.base_motions.varying import is_pulse
-from stylobate.config import provenance_of_run
 from stylobate.engine.parameters import own_numbers
 from stylobate.errors import ParameterError, require_positive, require_vector
 from stylobate.kinds import names_code
 from stylobate.models import Model
+from stylobate.provenance import provenance_of_run
 from stylobate.results import OutcomeRules
 from stylobate.results.random_numbers import Rng
 from stylobate.run_arguments import RunOptions, defaults_of
