@@ -10,8 +10,8 @@ import pytest
 import stylobate
 from stylobate.base_motions.declared import MOTIONS, motion_quantities
 from stylobate.column import SHAPES
-from stylobate.config.run_numbers import run_numbers
 from stylobate.models.declared import MODELS, column_quantities, model_quantities
+from stylobate.run_arguments import run_numbers
 
 ROOT = Path(stylobate.__file__).parent
 NUMBERS = {

@@ -19,11 +19,11 @@ from stylobate.base_motions.declared import MOTIONS
 from stylobate.base_motions.records import Record
 from stylobate.cli.main import run as run_command
 from stylobate.column import SHAPES
-from stylobate.config.parameter_quantities import _QUANTITIES as VARIED
-from stylobate.config.run_numbers import run_numbers
 from stylobate.errors import ParameterError, UnlikelyInputWarning, as_float
 from stylobate.models.declared import MODELS
+from stylobate.parameter_quantities import _QUANTITIES as VARIED
 from stylobate.quantities import QUARTER_TURN, Quantity, parameters_of
+from stylobate.run_arguments import run_numbers
 
 Q = pint.UnitRegistry().Quantity
 

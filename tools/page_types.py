@@ -11,7 +11,6 @@ from typing import Any
 
 from stylobate.base_motions import Harmonic
 from stylobate.base_motions.declared import MOTIONS, kinds_by_acceleration, kinds_with_response
-from stylobate.config.run_numbers import Start, numbers_of, run_numbers
 from stylobate.lab.limits import Limits
 from stylobate.lab.schema import schema
 from stylobate.lab.schema.curves import CURVES
@@ -20,6 +19,7 @@ from stylobate.lab.schema.options import CATALOGUE
 from stylobate.lab.schema.runs import RUNS
 from stylobate.models.declared import MODELS
 from stylobate.quantities import parameters_of
+from stylobate.run_arguments import Start, numbers_of, run_numbers
 
 FOLDER = Path(__file__).parents[1] / "src/stylobate/lab/web/src/page/server"
 _HEAD = "/** Types of the server's answers, written by tools/page_types.py from its OpenAPI document. Do not edit. */\n"

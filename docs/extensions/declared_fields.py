@@ -12,10 +12,10 @@ from pydantic import BaseModel
 from pydantic_core import PydanticUndefined
 
 from stylobate.column import SHAPES
-from stylobate.config.run_numbers import run_numbers
 from stylobate.kinds import loaded
 from stylobate.models.declared import MODELS
 from stylobate.quantities import Parameter, parameters_of
+from stylobate.run_arguments import run_numbers
 
 PARTS: Mapping[str, Callable[[], Mapping[str, Callable[..., Any]]]] = {
     "column": lambda: SHAPES,

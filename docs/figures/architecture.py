@@ -23,7 +23,10 @@ DUTIES = {
     "orbits": "exact periodic orbits, continuation, bifurcations",
     "engine": "integration: runs, ensembles",
     "theory": "closed forms",
-    "config": "files and provenance to objects and back",
+    "config": "files and provenance to objects",
+    "provenance": "objects to plain values",
+    "parameter_quantities": "what studies vary",
+    "run_arguments": "the arguments of a run, each declared once",
     "models": "equations of motion",
     "base_motions": "acceleration of the base, records",
     "results": "what computations return; saving and loading",
@@ -31,13 +34,14 @@ DUTIES = {
     "quantities": "the declaration of a number: symbol, unit, bounds",
     "compiler": "plain Python functions of numbers to machine code",
     "kinds": "names of classes in files",
-    "files": "files written whole, with checksums",
+    "files": "files written whole",
     "processes": "worker processes",
     "equality": "equality by content",
     "progress": "bars of long computations",
     "errors": "exceptions, checks, outcomes",
     "text": "plurals, digits, similar names",
     "cards": "objects in notebooks",
+    "units": "1.2 mm, 25°",
 }
 
 

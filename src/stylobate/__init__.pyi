@@ -16,12 +16,12 @@ from .base_motions import BaseMotion, Harmonic, MachineRun, OneOf, Pulse, Record
 from .base_motions.records import read_record, read_records, sample_record
 from .column import Column
 from .earthquakes import verdict
-from .engine import EventFunction, KnownOrbit, simulate, simulate_ensemble, with_parameters
+from .engine import EventFunction, simulate, simulate_ensemble, with_parameters
 from .errors import Interrupted, Outcome
 from .models import Contact, Model, PlanarRocking, Rolling, Slender, SlenderRolling, Sliding, Wobbling
 from .plots import animate, plot
 from .quantities import Quantity
-from .results import Event, OutcomeRules, Response
+from .results import Event, KnownOrbit, OutcomeRules, Response
 from .studies import load
 
 __version__: str

@@ -21,6 +21,8 @@ import numpy.typing as npt
 from stylobate.cards import Row, Section, card
 from stylobate.errors import (
     LARGEST,
+    MOST_NUMBERS,
+    Most,
     ParameterError,
     UnlikelyInputWarning,
     as_float,
@@ -260,8 +262,9 @@ class Parameter:
         if quantity.components > 1:
             numbers = require_vector(self.name, value, quantity.components, quantity.unit)
             return tuple(quantity.checked(f"{self.name}[{i}]", number) for i, number in enumerate(numbers))
-        if self.annotation is int and quantity.ge is not None:
-            return require_whole(self.name, value, least=int(quantity.ge))
+        if self.whole and quantity.ge is not None:
+            most = MOST_NUMBERS if quantity.le is None else Most(int(quantity.le), quantity.note)
+            return require_whole(self.name, value, least=int(quantity.ge), most=most)
         if isinstance(self.annotation, type) and issubclass(self.annotation, StrEnum):
             return _member(self.annotation, self.name, value)
         return quantity.checked(self.name, value)

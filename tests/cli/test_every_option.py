@@ -189,8 +189,9 @@ def outcome(arguments, capsys):
     return "", lines
 
 
-# A number, a whole number, and a word that no option knows.
-VALUES = ("0.375", "7", "nonsense")
+# A number, a whole number, a tolerance, and a word that no option knows.
+VALUES = ("0.375", "7", "0.00375", "nonsense")
+OTHERS = ("valid integer", "must be a whole number", "must lie between 1e-13 and 0.01")
 
 
 def with_option(arguments, option, capsys):
@@ -198,7 +199,7 @@ def with_option(arguments, option, capsys):
     for value in [[]] if option.is_flag else [[one] * option.nargs for one in VALUES]:
         more = ["0.1", "0.2"] if option.name == "over" else []
         found = outcome([*arguments, option.opts[0], *value, *more], capsys)
-        if not any("valid integer" in line or "must be a whole number" in line for line in found[1]):
+        if not any(other in line for other in OTHERS for line in found[1]):
             return found
     return found
 

@@ -10,9 +10,10 @@ import pytest
 import stylobate as sb
 from stylobate.base_motions import BASE_AT_REST, Sum
 from stylobate.base_motions.pulses import Waveform
-from stylobate.config import HierarchyConfig, SimulationConfig, config_of, provenance_of_run, read_config
+from stylobate.config import HierarchyConfig, SimulationConfig, config_of, read_config
 from stylobate.errors import ConfigError, FileError, UnsupportedError
 from stylobate.models.declared import MODELS as KINDS
+from stylobate.provenance import provenance_of_run
 
 H, P, SineSweep = sb.Harmonic, sb.Pulse, sb.SineSweep
 STONE = '[column]\nshape = "solid"\nradius = 0.5\nheight = 10.0\ndensity = 2700.0\n'

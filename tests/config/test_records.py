@@ -13,11 +13,11 @@ from stylobate.config import (
     RecordsConfig,
     SimulationConfig,
     config_of,
-    provenance_of_run,
     read_config,
 )
 from stylobate.config.motions import describe_motion
 from stylobate.errors import ConfigError, FileError, ParameterError, UnlikelyInputWarning, UnsupportedError
+from stylobate.provenance import provenance_of_run
 
 MODEL = sb.Slender(sb.Column.solid(radius=0.3, height=3.0, density=2700.0), damping=0.05)
 COLUMN = '[column]\nshape = "solid"\nradius = 0.3\nheight = 3.0\ndensity = 2700.0\n'

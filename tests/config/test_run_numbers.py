@@ -3,9 +3,9 @@
 import pytest
 
 from stylobate import config, conveying, earthquakes
-from stylobate.config.run_numbers import OneRun, SharedByRuns, SingleRun, Stroboscopic, numbers_of
 from stylobate.errors import ConfigError
 from stylobate.quantities import parameter_of
+from stylobate.run_arguments import OneRun, SharedByRuns, SingleRun, Stroboscopic, numbers_of
 
 CONFIGS = [
     (config.SimulationConfig, SingleRun),
@@ -33,7 +33,7 @@ def test_a_configuration_has_the_declared_numbers_of_its_runs(kind, group):
     ("name", "value", "line"),
     [
         ("tilt", [0.0, float("nan")], "tilt[1] must be finite, got nan rad"),
-        ("rtol", 0.0, "rtol must be positive, got 0.0"),
+        ("rtol", 0.0, "rtol must lie between 1e-13 and 0.01, got 0.0"),
         ("clearance", -1.0, "clearance must be zero or positive, got -1.0 m"),
         ("max_steps", 0, "max_steps must be a whole number of at least 1, got 0"),
         (

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import stylobate as sb
-from stylobate.config.simulation import FREE_TAIL
 from stylobate.errors import Outcome, ParameterError
+from stylobate.run_arguments import FREE_TAIL
 
 COLUMN = sb.Column.solid(radius=0.3, height=3.0, density=2700.0)
 P = COLUMN.frequency_parameter

@@ -9,7 +9,8 @@ import xarray as xr
 import stylobate as sb
 from stylobate.errors import ParameterError
 from stylobate.models.declared import dissipation_of
-from stylobate.studies.hierarchy.models import Case, HierarchyArguments, RunArguments
+from stylobate.run_arguments import Accuracy
+from stylobate.studies.hierarchy.models import Case, HierarchyArguments
 
 COLUMN = sb.Column.dimensionless(slenderness=0.1)
 CIRCLE = sb.Harmonic.circular(acceleration=0.065, angular_frequency=1.8)
@@ -170,7 +171,7 @@ def test_each_level_takes_the_dissipation_that_it_declares():
 
 
 def test_the_shared_dissipation_is_that_which_the_levels_declare():
-    shared = set(HierarchyArguments.__annotations__) - set(RunArguments.__annotations__)
+    shared = set(HierarchyArguments.__annotations__) - set(Accuracy.__annotations__)
     assert shared == set(dissipation_of(sb.Rolling))
     assert shared >= {
         name

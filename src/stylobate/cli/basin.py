@@ -14,8 +14,8 @@ from stylobate.cli.overlay import with_axes
 from stylobate.cli.parts import COLUMN, MODEL_WITHOUT_SLIDING, MOTION
 from stylobate.cli.saved import axes_of, number_of_runs, open_saved, provenance_of, study_summary
 from stylobate.cli.usage import named_range
-from stylobate.config.run_numbers import SharedByRuns, Stroboscopic
 from stylobate.errors import FileError
+from stylobate.run_arguments import SharedByRuns, Stroboscopic
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -50,7 +50,7 @@ def boundary(options: Options) -> None:
     stylobate boundary --slenderness 0.1 --damping 0.1 --motion straight --acceleration 0.1
     --angular-frequency-range 0.5 6 --bounds 0.02 0.4 --figure boundary.png
     """
-    from stylobate.config.parameter_quantities import quantity_of  # noqa: PLC0415  heavy imports wait
+    from stylobate.parameter_quantities import quantity_of  # noqa: PLC0415  heavy imports wait
 
     check_writable(options["figure"], options["output"])
     if options["bounds"] is None:

@@ -161,10 +161,10 @@ class Group:
 
 
 def run_numbers(group: type) -> Group:
-    """Make the options of the declared numbers of a run, such as `stylobate.config.run_numbers.SingleRun`."""
+    """Make the options of the declared numbers of a run, such as `stylobate.run_arguments.SingleRun`."""
 
     def made(_: Chosen) -> Iterable[Option]:
-        from stylobate.config.run_numbers import numbers_of  # noqa: PLC0415  heavy imports wait
+        from stylobate.run_arguments import numbers_of  # noqa: PLC0415  heavy imports wait
 
         for name, parameter in numbers_of(group).items():
             unit = parameter.quantity.unit

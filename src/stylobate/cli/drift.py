@@ -14,8 +14,8 @@ from stylobate.cli.output import DEGREES, Practical, practical, print_table
 from stylobate.cli.overlay import merge, with_axes
 from stylobate.cli.parts import COLUMN, MOTION_WITHOUT_RECORDS, SLIDING
 from stylobate.cli.saved import axes_of, number_of_runs, open_saved, provenance_of, study_summary
-from stylobate.config.run_numbers import SharedByRuns
 from stylobate.errors import FileError, ParameterError
+from stylobate.run_arguments import SharedByRuns
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -12,9 +12,9 @@ from stylobate.cli.output import NETCDF, check_place, print_json, print_table
 from stylobate.cli.overlay import merge
 from stylobate.cli.parts import COLUMN, MOTION_WITHOUT_RECORDS, SLIDING
 from stylobate.cli.upright import STARTS
-from stylobate.config.run_numbers import SharedByRuns
 from stylobate.errors import FileError, ParameterError
 from stylobate.files import csv_text, write_whole
+from stylobate.run_arguments import SharedByRuns
 
 if TYPE_CHECKING:
     import xarray as xr

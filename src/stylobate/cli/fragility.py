@@ -27,8 +27,8 @@ from stylobate.cli.parts import COLUMN, MODEL
 from stylobate.cli.saved import open_study
 from stylobate.cli.source import read_source
 from stylobate.cli.spectrum import SCALES, SCALES_SPACING
-from stylobate.config.run_numbers import SharedByRuns
 from stylobate.errors import FileError, ParameterError
+from stylobate.run_arguments import SharedByRuns
 
 if TYPE_CHECKING:
     import xarray as xr

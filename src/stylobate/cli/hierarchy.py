@@ -15,8 +15,8 @@ from stylobate.cli.own_classes import Chosen
 from stylobate.cli.parts import COLUMN, MODEL, MOTION_WITHOUT_RECORDS
 from stylobate.cli.response import plain_curves, save_curves
 from stylobate.cli.source import read_source
-from stylobate.config.run_numbers import OneRun
 from stylobate.errors import ParameterError
+from stylobate.run_arguments import OneRun
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -11,7 +11,7 @@ from stylobate.cli.output import print_table
 from stylobate.cli.overlay import with_axes
 from stylobate.cli.parts import COLUMN, MODEL, MOTION
 from stylobate.cli.saved import number_of_runs, open_saved, study_summary
-from stylobate.config.run_numbers import SharedByRuns
+from stylobate.run_arguments import SharedByRuns
 
 if TYPE_CHECKING:
     from collections.abc import Callable

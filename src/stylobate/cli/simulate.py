@@ -12,7 +12,7 @@ from stylobate.cli.overlay import overlay
 from stylobate.cli.parts import COLUMN, MODEL, MOTION
 from stylobate.cli.source import read_source
 from stylobate.cli.verdict import VERDICT_OPTIONS, VerdictOfCase
-from stylobate.config.run_numbers import SingleRun
+from stylobate.run_arguments import SingleRun
 
 if TYPE_CHECKING:
     from stylobate.models import Model

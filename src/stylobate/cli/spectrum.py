@@ -14,7 +14,7 @@ from stylobate.cli.output import print_table
 from stylobate.cli.overlay import axis_values, spacing, with_axes
 from stylobate.cli.parts import COLUMN, MODEL, MOTION
 from stylobate.cli.saved import model_named, open_study, provenance_of
-from stylobate.config.run_numbers import SharedByRuns
+from stylobate.run_arguments import SharedByRuns
 from stylobate.text import plural
 
 if TYPE_CHECKING:

@@ -11,8 +11,8 @@ from stylobate.cli.output import DEGREES, print_table
 from stylobate.cli.overlay import merge
 from stylobate.cli.parts import COLUMN, MOTION_WITHOUT_RECORDS, SLIDING
 from stylobate.cli.saved import open_study, study_summary
-from stylobate.config.run_numbers import SharedByRuns
 from stylobate.results import percent
+from stylobate.run_arguments import SharedByRuns
 
 if TYPE_CHECKING:
     from collections.abc import Callable

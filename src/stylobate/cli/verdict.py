@@ -12,8 +12,8 @@ from stylobate.cli.declarations import Option
 from stylobate.cli.options import Options
 from stylobate.cli.output import NETCDF, check_writable, save_plot
 from stylobate.cli.saved import relocated
-from stylobate.config.run_numbers import Accuracy, Start
 from stylobate.errors import Outcome, ParameterError, UnlikelyInputWarning
+from stylobate.run_arguments import Accuracy, Start
 from stylobate.text import four_digits
 
 if TYPE_CHECKING:

@@ -5,7 +5,7 @@ from .record_collection import EventConfig, RecordsConfig
 from .record_files import relocated
 from .records import RecordMotion
 from .response import ResponseConfig
-from .simulation import Setup, SimulationConfig, config_of, provenance_of_run, read_config
+from .simulation import Setup, SimulationConfig, config_of, read_config
 from .snippets import as_python, as_toml
 
 __all__ = [
@@ -21,7 +21,6 @@ __all__ = [
     "as_python",
     "as_toml",
     "config_of",
-    "provenance_of_run",
     "read_config",
     "relocated",
 ]

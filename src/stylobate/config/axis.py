@@ -8,8 +8,8 @@ import numpy.typing as npt
 from pydantic import Field, ValidationInfo, field_validator, model_validator
 
 from stylobate.config.description import Config
-from stylobate.config.parameter_quantities import known_names, quantity_of
 from stylobate.errors import ParameterError, require_finite, require_positive, require_whole
+from stylobate.parameter_quantities import known_names, quantity_of
 from stylobate.text import did_you_mean
 from stylobate.units import has_unit, read_all
 

@@ -8,10 +8,11 @@ from pydantic import Field, field_validator
 from stylobate.config.axis import Axis
 from stylobate.config.description import Config, built
 from stylobate.config.many_runs import ManyRuns, common_values, refuse_design
-from stylobate.config.parameter_quantities import quantity_of
-from stylobate.config.run_numbers import Stroboscopic
+from stylobate.config.run_numbers import fields_of
 from stylobate.config.simulation import Setup
 from stylobate.errors import LARGEST_SEED, MOST_RUNS, require_whole
+from stylobate.parameter_quantities import quantity_of
+from stylobate.run_arguments import Stroboscopic
 from stylobate.units import read_all
 
 
@@ -77,7 +78,7 @@ def _problems_of_the_grid(axes: Mapping[str, Axis], over: Mapping[str, object]) 
     return missing or [f"basin.x and basin.y must differ, got {axes['x'].name!r} in both"]
 
 
-class BasinConfig(Stroboscopic, ManyRuns):
+class BasinConfig(fields_of(Stroboscopic), ManyRuns):  # type: ignore[misc]
     """Basins of attraction: `column`, `model`, `motion`, numbers of all runs, and the table `basin`."""
 
     basin: Starts = Starts()

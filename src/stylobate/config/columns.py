@@ -25,11 +25,6 @@ class DescribedColumn(Config):
 _BY_SHAPE = configs_of(DescribedColumn, "shape", SHAPES)
 
 
-def describe_column(column: Column) -> DescribedColumn:
-    """Return the description of `column` by its mass and inertia."""
-    return _BY_SHAPE["given"](shape="given", **{name: getattr(column, name) for name in parameters_of(Column)})
-
-
 def implied_shape(names: Iterable[str]) -> str | None:
     """Return the shape to which one of these `names` belongs exclusively, or None."""
     given = set(names)

@@ -11,7 +11,7 @@ from stylobate.config.declared import number_or_word
 from stylobate.config.description import Config, built
 from stylobate.config.models import DEFAULT_MODEL, default_values, described_model
 from stylobate.config.motions import AT_REST, MotionConfig
-from stylobate.config.run_numbers import OneRun, problems_of_the_numbers
+from stylobate.config.run_numbers import fields_of, problems_of_the_numbers
 from stylobate.config.simulation import (
     OF_OTHER_COMMANDS,
     OneColumn,
@@ -19,11 +19,11 @@ from stylobate.config.simulation import (
     SimulationConfig,
     built_parts,
     built_rules,
-    duration_with_tail,
     with_default_duration,
 )
 from stylobate.errors import ConfigError, require_positive
 from stylobate.models.declared import MODELS, dissipation_of
+from stylobate.run_arguments import OneRun, duration_with_tail
 
 # The most general model declares the dissipation parameters of all other models.
 _MOST_GENERAL = "rolling"
@@ -69,7 +69,7 @@ class _HierarchyCase(OneColumn):
     motion: MotionConfig = AT_REST
 
 
-class HierarchyConfig(OneRun, _HierarchyCase):
+class HierarchyConfig(fields_of(OneRun, "duration"), _HierarchyCase):  # type: ignore[misc]
     """A case of the model hierarchy: `column`, damping under `model`, `motion`, numbers of a run, and `hierarchy`."""
 
     rules: dict[str, float] = Field(default_factory=dict)
@@ -114,6 +114,6 @@ class HierarchyConfig(OneRun, _HierarchyCase):
         dissipation = {name: getattr(model, name) for name in dissipation}
         options = self.model_dump(exclude={"column", "model", "motion", "hierarchy"})
         if self.duration is None:
-            options["duration"] = duration_with_tail(model, motion)
+            options["duration"] = duration_with_tail(motion.duration, model.column.frequency_parameter)
         compared = {"slenderness": self.hierarchy.slenderness or None, "reference": self.hierarchy.reference}
         return Setup(model, motion, options | compared | dissipation | {"rules": rules})

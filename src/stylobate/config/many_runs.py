@@ -8,25 +8,25 @@ from pydantic import Field
 from stylobate.base_motions import BaseMotion
 from stylobate.config.description import built
 from stylobate.config.motions import is_to_end, made_by
-from stylobate.config.parameter_quantities import known_names
-from stylobate.config.run_numbers import SharedByRuns, SingleRun, numbers_of, problems_of_the_numbers
+from stylobate.config.run_numbers import fields_of, problems_of_the_numbers
 from stylobate.config.simulation import (
     OF_OTHER_COMMANDS,
     Case,
     built_parts,
     built_rules,
-    duration_with_tail,
     refuse_own_classes,
 )
 from stylobate.errors import ConfigError, ParameterError
 from stylobate.kinds import with_places
 from stylobate.models import Model
+from stylobate.parameter_quantities import known_names
 from stylobate.quantities import parameters_of
 from stylobate.results import OutcomeRules
+from stylobate.run_arguments import SharedByRuns, SingleRun, duration_with_tail, numbers_of
 from stylobate.text import did_you_mean
 
 
-class ManyRuns(SharedByRuns, Case):
+class ManyRuns(fields_of(SharedByRuns), Case):  # type: ignore[misc]
     """The case that all runs share, with the argument names of `simulate_ensemble`.
 
     Parameters
@@ -68,7 +68,7 @@ class ManyRuns(SharedByRuns, Case):
         model, motion = built_parts(self.column, self.model, self.motion, problems)
         options = {name: getattr(self, name) for name in _SHARED} | {"rules": rules or OutcomeRules()}
         if self._lasts_as_its_motion(varying):
-            options["duration"] = duration_with_tail(model, motion)
+            options["duration"] = duration_with_tail(motion.duration, model.column.frequency_parameter)
         return model, motion, options
 
     def problems_of_the_length(self, names: tuple[str, ...]) -> list[str]:

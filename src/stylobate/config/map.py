@@ -7,7 +7,8 @@ from stylobate.base_motions.varying import is_pulse, with_numbers
 from stylobate.config.axis import Axis
 from stylobate.config.description import Config, built
 from stylobate.config.many_runs import ManyRuns, common_values, name_of, refuse_design, with_numbers_that_vary
-from stylobate.config.simulation import Setup, duration_with_tail
+from stylobate.config.simulation import Setup
+from stylobate.run_arguments import duration_with_tail
 
 
 class Plane(Config):
@@ -76,8 +77,7 @@ class MapConfig(ManyRuns):
         frequencies = over.get("angular_frequency")
         if frequencies is not None and self.duration is None and self.periods is None and is_pulse(motion):
             # Each run lasts to the end of its pulse; the pulse of the lowest frequency is the longest.
-            options["duration"] = duration_with_tail(
-                model, with_numbers(motion, {"angular_frequency": float(frequencies.min())})
-            )
+            longest = with_numbers(motion, {"angular_frequency": float(frequencies.min())})
+            options["duration"] = duration_with_tail(longest.duration, model.column.frequency_parameter)
         early = {"end_converged": True} if self.end_converged else {}
         return Setup(model, motion, {"over": over, **options, **early})

@@ -9,11 +9,10 @@ from pydantic import BeforeValidator
 from stylobate.column import Column
 from stylobate.config.declared import config_of_kind, configs_of, one_of
 from stylobate.config.description import Config
-from stylobate.errors import UnsupportedError
 from stylobate.kinds import Place
 from stylobate.models import Model
 from stylobate.models.declared import MODELS
-from stylobate.quantities import is_declared, parameters_of
+from stylobate.quantities import parameters_of
 
 
 class DescribedModel(Config):
@@ -71,20 +70,3 @@ def described_model(kind: str, **values: Any) -> DescribedModel:
 def default_values(kind: str) -> dict[str, Any]:
     """Return the default values of a description of this `kind`; empty if there is no such kind."""
     return described_model(kind).model_dump() if kind in MODELS else {}
-
-
-def describe_model(model: Model) -> Config:
-    """Return the description of `model` without its column.
-
-    Raises
-    ------
-    UnsupportedError
-        If the model is of a class that cannot be loaded from its place, or has numbers that are not declared.
-    """
-    make = type(model)
-    kind = MODELS.name_of(make)
-    if kind and is_declared(make, "column"):
-        config = _BY_KIND.get(kind) or config_of_kind(DescribedModel, "kind", kind, make)
-        return config(**{"kind": kind, **{name: getattr(model, name) for name in parameters_of(make)}})
-    message = f"a model of class {type(model).__name__} has no description; results keep its repr only"
-    raise UnsupportedError(message)

@@ -9,9 +9,9 @@ from stylobate.base_motions.declared import MOTIONS
 from stylobate.config.declared import config_of_kind, one_of
 from stylobate.config.description import Config
 from stylobate.config.records import RecordMotion
-from stylobate.errors import UnsupportedError
 from stylobate.kinds import Place, with_places
-from stylobate.quantities import is_declared, states
+from stylobate.provenance import values_of_motion
+from stylobate.quantities import states
 
 
 class DescribedMotion(Config):
@@ -101,40 +101,8 @@ def made_by(kind: object) -> Callable[..., Any] | None:
 
 
 def describe_motion(motion: BaseMotion) -> Config:
-    """Return the description of `motion`.
-
-    Raises
-    ------
-    UnsupportedError
-        If the motion is of a class that cannot be loaded from its place, has numbers that are not declared, or is a
-        record that was made from samples.
-    """
-    if isinstance(motion, Record):
-        return _described_record(motion)
-    own = "made_by" not in vars(type(motion))  # a subclass is another motion
-    make, arguments = BaseMotion.made_by(motion) if own else motion.made_by()
-    kind = MOTIONS.name_of(make)
-    if own and is_declared(make, "motion") and hasattr(motion, "motion"):
-        arguments = {"motion": motion.motion, **arguments}
-    if not kind or (kind not in MOTIONS and not is_declared(make, *arguments)):
-        message = f"a motion of class {type(motion).__name__} has no description; results keep its repr only"
-        raise UnsupportedError(message)
-    config = _BY_KIND.get(kind) or _config(kind, make)
-    return config.parse({"kind": kind, **{name: _described(value) for name, value in arguments.items()}})
-
-
-def _described_record(record: Record) -> Config:
-    if record.origin is None:
-        message = f"the record {record.name!r} was not read from files; results keep its repr only"
-        raise UnsupportedError(message)
-    origin = record.origin
-    return RecordMotion.parse({"kind": "record", **origin.reading, "processing": list(origin.processing)})
-
-
-def _described(value: Any) -> Any:
-    """Return the plain values of one or several motions; other values are unchanged."""
-    if isinstance(value, BaseMotion):
-        return with_places(describe_motion(value).values())
-    if isinstance(value, tuple) and value and isinstance(value[0], BaseMotion):
-        return [_described(one) for one in value]
-    return value
+    """Return the description of `motion`; raise UnsupportedError if there is none."""
+    values = with_places(values_of_motion(motion))
+    kind = values["kind"]
+    config = _BY_KIND[kind] if kind in _BY_KIND else _of_own(kind)
+    return config.parse({**values, "kind": str(kind)})

@@ -1,23 +1,21 @@
 """Describe one run: from TOML, from the command line, or from a saved result."""
 
 import tomllib
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields
-from functools import cache
-from importlib.metadata import version
 from pathlib import Path
 from typing import Any, Self
 
 from pydantic import Field, model_validator
 
-from stylobate.base_motions import BaseMotion, Record
-from stylobate.config.columns import ANY_COLUMN, ColumnConfig, describe_column, is_dimensionless
+from stylobate.base_motions import BaseMotion
+from stylobate.config.columns import ANY_COLUMN, ColumnConfig, is_dimensionless
 from stylobate.config.description import Config, built
 from stylobate.config.file_values import DEEPEST, check_file_values
-from stylobate.config.models import DEFAULT_MODEL, ModelConfig, describe_model, described_model
-from stylobate.config.motions import AT_REST, MotionConfig, describe_motion, is_to_end
+from stylobate.config.models import DEFAULT_MODEL, ModelConfig, described_model
+from stylobate.config.motions import AT_REST, MotionConfig, is_to_end
 from stylobate.config.records import RecordMotion, anchored
-from stylobate.config.run_numbers import SingleRun, problems_of_the_numbers
+from stylobate.config.run_numbers import fields_of, problems_of_the_numbers
 from stylobate.errors import (
     ConfigError,
     FileError,
@@ -26,8 +24,8 @@ from stylobate.errors import (
 )
 from stylobate.kinds import with_places
 from stylobate.models import Model
-from stylobate.quantities import exact_repr
 from stylobate.results import OutcomeRules
+from stylobate.run_arguments import SingleRun, duration_with_tail
 from stylobate.units import has_unit, is_angle, split
 
 
@@ -77,7 +75,7 @@ def _texts_with_units(values: Any, place: str = "") -> Iterator[tuple[str, str]]
         yield place, values
 
 
-class SimulationConfig(SingleRun, Case):
+class SimulationConfig(fields_of(SingleRun, "duration"), Case):  # type: ignore[misc]
     """A run: `column`, `model`, `motion` and the arguments of `simulate`, with the same names.
 
     Under a record, a pulse or a sine sweep the duration is optional. The default is the duration of the motion and a
@@ -115,7 +113,7 @@ class SimulationConfig(SingleRun, Case):
         model, motion = built_parts(self.column, self.model, self.motion, problems)
         options = self.model_dump(exclude={"column", "model", "motion"}) | {"rules": rules}
         if self.duration is None:
-            options["duration"] = duration_with_tail(model, motion)
+            options["duration"] = duration_with_tail(motion.duration, model.column.frequency_parameter)
         return Setup(model, motion, options)
 
 
@@ -140,21 +138,12 @@ def built_parts(
     return modelled, moved
 
 
-FREE_TAIL = 20.0
-"""Default free-vibration time in 1/`column.frequency_parameter`; deviations grow by up to e²⁰ meanwhile."""
-
-
 def with_default_duration(values: Mapping[str, Any]) -> dict[str, Any]:
     """Return `values` with `duration` None if it is missing and the motion ends; without `duration` otherwise."""
     if values.get("duration") is not None:
         return dict(values)
     others = {name: value for name, value in values.items() if name != "duration"}
     return others | ({"duration": None} if is_to_end(values.get("motion")) else {})
-
-
-def duration_with_tail(model: Model, motion: BaseMotion) -> float:
-    """Compute the default duration of a run [s]: the motion and a tail of 20/`column.frequency_parameter`."""
-    return motion.duration + FREE_TAIL / model.column.frequency_parameter
 
 
 OF_OTHER_COMMANDS = (
@@ -201,22 +190,6 @@ def built_rules(rules: Mapping[str, Any]) -> OutcomeRules:
     return OutcomeRules(**rules)
 
 
-def provenance_of_run(model: Model, motion: BaseMotion, **options: Any) -> dict[str, Any]:
-    """Return the provenance of a run as plain values: the values of `SimulationConfig` and the version."""
-    return {
-        "version": _version(),
-        "column": describe_column(model.column).values(),
-        "model": _described(lambda: describe_model(model), model),
-        "motion": _described(lambda: describe_motion(motion), motion),
-        **{name: list(value) if isinstance(value, tuple) else value for name, value in options.items()},
-    }
-
-
-@cache
-def _version() -> str:
-    return version("stylobate")
-
-
 def config_of(provenance: Mapping[str, Any]) -> SimulationConfig:
     """Make the description that repeats a run from its `provenance`.
 
@@ -241,17 +214,3 @@ def refuse_own_classes(provenance: Mapping[str, Any]) -> None:
                 raise UnsupportedError(message)
             message = f"the run used a {name} of its own, of which only the repr is kept: {provenance[name]['repr']}"
             raise UnsupportedError(message)
-
-
-def _described(describe: Callable[[], Config], thing: object) -> dict[str, Any]:
-    try:
-        return describe().values()
-    except UnsupportedError:
-        return {"kind": "other", "repr": exact_repr(thing), **_identity_of_record(thing)}
-
-
-def _identity_of_record(thing: object) -> dict[str, Any]:
-    """Return name, digest and processing of a record that was made from samples."""
-    if not isinstance(thing, Record):
-        return {}
-    return {"record": thing.name, "digest": thing.digest, "processing": list(thing.provenance)}

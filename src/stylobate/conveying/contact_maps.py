@@ -24,10 +24,10 @@ from stylobate.errors import (
 from stylobate.models import Model, Sliding
 from stylobate.progress import Progress, shows_progress
 from stylobate.results.outcomes import NOT_COMPUTED, flag_attributes
+from stylobate.run_arguments import RunOptions
 from stylobate.studies.checks import require_values
 from stylobate.studies.sweeps import Executor, Sweep
 from stylobate.studies.sweeps.labelled import labelled_sweep
-from stylobate.studies.sweeps.recipe import RunOptions
 from stylobate.text import plural
 
 _PLANE = 2

@@ -17,10 +17,10 @@ from stylobate.errors import UnsupportedError, require_positive
 from stylobate.models import Model, Sliding
 from stylobate.progress import Progress, shows_progress
 from stylobate.quantities import parameters_of
+from stylobate.run_arguments import RunOptions
 from stylobate.studies.proportions import require_confidence
 from stylobate.studies.sweeps import Executor
 from stylobate.studies.sweeps.quantities import checked_values
-from stylobate.studies.sweeps.recipe import RunOptions
 from stylobate.text import plural
 from stylobate.theory import BlockPhase, block_cycle, mean_block_speed
 

@@ -7,9 +7,9 @@ import numpy.typing as npt
 import xarray as xr
 
 from stylobate.base_motions import BASE_AT_REST
-from stylobate.config import provenance_of_run
 from stylobate.errors import ParameterError, UnsupportedError, require_finite
 from stylobate.models import Model, Sliding
+from stylobate.provenance import provenance_of_run
 from stylobate.results.outcomes import flag_attributes
 from stylobate.studies.sweeps.quantities import checked_values
 from stylobate.theory import FirstMotion, start_of_motion

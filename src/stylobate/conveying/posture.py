@@ -21,12 +21,12 @@ from stylobate.progress import Progress, shows_progress
 from stylobate.results import OutcomeRules
 from stylobate.results.outcomes import NOT_COMPUTED, flag_attributes
 from stylobate.results.verdict import CLEAR, VerdictWord, percent, word_of
+from stylobate.run_arguments import RunOptions
 from stylobate.studies.checks import require_no_tilt_limit
 from stylobate.studies.proportions import fraction_interval, require_confidence
 from stylobate.studies.sweeps import Executor, Sweep
 from stylobate.studies.sweeps.labelled import labelled_sweep
 from stylobate.studies.sweeps.quantities import checked_values
-from stylobate.studies.sweeps.recipe import RunOptions
 
 Floats = npt.NDArray[np.float64]
 

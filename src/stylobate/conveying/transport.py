@@ -29,12 +29,12 @@ from stylobate.models import Model
 from stylobate.progress import Progress, shows_progress
 from stylobate.results import OutcomeRules
 from stylobate.results.outcomes import NOT_COMPUTED, flag_attributes
+from stylobate.run_arguments import RunOptions
 from stylobate.studies.checks import require_values
 from stylobate.studies.proportions import require_confidence
 from stylobate.studies.sweeps import Executor, Sweep, run_sweep
 from stylobate.studies.sweeps.labelled import labelled_sweep
 from stylobate.studies.sweeps.quantities import OF_A_RUN
-from stylobate.studies.sweeps.recipe import RunOptions
 
 Floats = npt.NDArray[np.float64]
 

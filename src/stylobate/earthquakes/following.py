@@ -1,8 +1,8 @@
 """The free-vibration time after a record, in which the outcome is decided."""
 
 from stylobate.column import Column
-from stylobate.config.simulation import FREE_TAIL
 from stylobate.errors import require_not_negative
+from stylobate.run_arguments import FREE_TAIL
 
 
 def tail_of(column: Column, tail: float | None = None) -> float:

@@ -21,8 +21,8 @@ from stylobate.earthquakes.site_hazard import site_hazard
 from stylobate.models import Model
 from stylobate.progress import Progress, shows_progress
 from stylobate.results.damping_yardstick import damping_yardstick
+from stylobate.run_arguments import RunOptions
 from stylobate.studies.sweeps import Executor
-from stylobate.studies.sweeps.recipe import RunOptions
 
 _OVERTURNING = "overturning"
 _LEAST = 2

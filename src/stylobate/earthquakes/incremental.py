@@ -11,7 +11,6 @@ import xarray as xr
 
 from stylobate.base_motions import BaseMotion, OneOf
 from stylobate.base_motions.records import HorizontalComponent
-from stylobate.config.parameter_quantities import attributes_of, quantity_of
 from stylobate.earthquakes.crossing import crossed, unfolded
 from stylobate.earthquakes.following import tail_of
 from stylobate.earthquakes.fragility import limit_states
@@ -20,14 +19,15 @@ from stylobate.earthquakes.named_records import Records, named_records
 from stylobate.engine.parameters import changed_model
 from stylobate.errors import Outcome, ParameterError, as_numbers, require_finite
 from stylobate.models import Model
+from stylobate.parameter_quantities import attributes_of, quantity_of
 from stylobate.progress import Progress, shows_progress
 from stylobate.results.outcomes import NOT_COMPUTED
+from stylobate.run_arguments import RunOptions
 from stylobate.studies.checks import remark_on_lengths, require_no_tilt_limit
 from stylobate.studies.maps.safe_distance import UNRESOLVED
 from stylobate.studies.sweeps import Executor, Sweep
 from stylobate.studies.sweeps.labelled import labelled_sweep
 from stylobate.studies.sweeps.quantities import Floats, checked_values
-from stylobate.studies.sweeps.recipe import RunOptions
 
 _SET_BY_ARGUMENTS = {
     "motion": "records",

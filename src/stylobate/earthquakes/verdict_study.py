@@ -15,7 +15,7 @@ import xarray as xr
 from scipy.special import fdtrc
 
 from stylobate.base_motions import BaseMotion, OneOf, Record
-from stylobate.config import config_of, provenance_of_run
+from stylobate.config import config_of
 from stylobate.earthquakes.config.spreads import described_spread
 from stylobate.earthquakes.config.verdict import VerdictConfig
 from stylobate.earthquakes.following import tail_of
@@ -44,17 +44,18 @@ from stylobate.errors import (
 from stylobate.models import Model, Rolling, Slender, SlenderRolling, Wobbling
 from stylobate.models.declared import dissipation_of
 from stylobate.progress import Progress, Report, report_of, shows_progress
+from stylobate.provenance import provenance_of_run
 from stylobate.quantities import parameters_of
 from stylobate.results import OutcomeRules
 from stylobate.results.damping_yardstick import damping_yardstick, yardstick_text
 from stylobate.results.outcomes import NOT_COMPUTED
 from stylobate.results.verdict import CONTACT_LAW, KIND, Verdict
+from stylobate.run_arguments import RunOptions, defaults_of
 from stylobate.studies.checks import require_no_tilt_limit
 from stylobate.studies.maps.uncertainty_exponent import overturned_or_not
 from stylobate.studies.proportions import fraction_interval, require_confidence
 from stylobate.studies.sweeps import Executor, Sweep, run_sweep
 from stylobate.studies.sweeps.quantities import Floats
-from stylobate.studies.sweeps.recipe import DEFAULTS, RunOptions
 from stylobate.text import did_you_mean, plural
 
 # A rim that carries no twisting moment, and one that keeps a column from turning about its axis.
@@ -433,7 +434,7 @@ class _Case:
         clock = values.get("clock", np.ones(count))
         size = own.pop("size", np.ones(count)) / clock**2
         tail = tail_of(model.column) * np.sqrt(size) if self.tail is None else self.tail / clock
-        tilt = self.options.get("tilt", DEFAULTS["tilt"])
+        tilt = {**defaults_of(RunOptions), **self.options}["tilt"]
         alpha, gravity = np.arctan(own.get("slenderness", model.column.slenderness)), model.column.gravity
         return {
             **own,
@@ -445,9 +446,8 @@ class _Case:
         }
 
     def _integrated(self, tolerance: float) -> RunOptions:
-        chosen = cast(
-            "dict[str, Any]", {**self.options, "rtol": tolerance * self.options.get("rtol", DEFAULTS["rtol"])}
-        )
+        chosen = {**defaults_of(RunOptions), **self.options}
+        chosen["rtol"] *= tolerance
         if chosen.get("atol") is not None:
             chosen["atol"] = tolerance * chosen["atol"]
         return cast("RunOptions", chosen)

@@ -8,7 +8,7 @@ import numpy as np
 
 from stylobate.base_motions import BaseMotion
 from stylobate.compiler.over_rows import over_rows
-from stylobate.engine.ensembles.contacts import CONTACT_KINDS
+from stylobate.engine.ensembles.variables import CONTACT_KINDS
 from stylobate.engine.forcing import Floats, Forcing
 from stylobate.engine.trajectory import Trajectory
 from stylobate.models import Model, Sliding

@@ -13,8 +13,8 @@ long harmonic shaking it changed outcomes of columns that overturned late or wer
 import numpy as np
 import numpy.typing as npt
 
-from stylobate.engine.tolerances import RTOL_RANGE
 from stylobate.errors import Outcome
+from stylobate.run_arguments import RTOL_RANGE
 
 FINER_REST = 0.01
 """Factor of the rest energy when a run is repeated."""

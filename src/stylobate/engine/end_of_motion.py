@@ -6,13 +6,13 @@ import numpy as np
 import numpy.typing as npt
 
 from stylobate.base_motions import BaseMotion
-from stylobate.config.simulation import duration_with_tail
 from stylobate.engine.forcing import Floats
 from stylobate.engine.kernel.columns import SLACK
 from stylobate.engine.trajectory import Trajectory
 from stylobate.errors import Outcome, ParameterError, require_positive
 from stylobate.models import Model
 from stylobate.models.inheritance import belongs_to_equations
+from stylobate.run_arguments import duration_with_tail
 
 
 def duration_of(duration: float | None, model: Model, motion: BaseMotion) -> float:
@@ -29,7 +29,7 @@ def duration_of(duration: float | None, model: Model, motion: BaseMotion) -> flo
         what = "a base at rest" if motion.duration == 0.0 else "a base motion that never ends"
         message = f"duration must be given, in s, with {what}, such as duration=60.0; got None"
         raise ParameterError(message)
-    return duration_with_tail(model, motion)
+    return duration_with_tail(motion.duration, model.column.frequency_parameter)
 
 
 def survival(model: Model, motion: BaseMotion, trajectory: Trajectory) -> tuple[Outcome, str]:

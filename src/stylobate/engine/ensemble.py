@@ -3,7 +3,7 @@
 import json
 from collections.abc import Mapping
 from dataclasses import asdict
-from typing import Any
+from typing import Any, Unpack
 
 import numpy as np
 import numpy.typing as npt
@@ -12,15 +12,13 @@ import xarray as xr
 from stylobate.base_motions import BASE_AT_REST, BaseMotion
 from stylobate.base_motions.one_of import members_of
 from stylobate.column import Column
-from stylobate.config import provenance_of_run
 from stylobate.engine.ensembles.batch import Batch, Plan
 from stylobate.engine.ensembles.broadcasting import AXIS, ArrayLike, Runs, broadcast
 from stylobate.engine.ensembles.harmonics import terms_of
 from stylobate.engine.ensembles.motion_columns import MotionPlan
-from stylobate.engine.ensembles.options import Options
 from stylobate.engine.ensembles.pool import Halt, parts_of, run_parts, usual_threads
-from stylobate.engine.ensembles.summaries import QUANTITIES, Arrays, empty, fallen, summarize_into
-from stylobate.engine.known_orbits import KnownOrbits, as_orbits
+from stylobate.engine.ensembles.summaries import fallen, summarize_into
+from stylobate.engine.ensembles.variables import QUANTITIES, Arrays, empty
 from stylobate.engine.motion_checks import check_motion
 from stylobate.engine.pace import announce, expected_steps
 from stylobate.engine.parameters import changed_model, check_names, in_declared_units, own_numbers, split
@@ -37,12 +35,16 @@ from stylobate.errors import (
 from stylobate.models import Model
 from stylobate.models.consistency import check_once
 from stylobate.progress import Progress, Report, report_of, shows_progress, silent
+from stylobate.provenance import provenance_of_run
 from stylobate.quantities import Parameter, parameters_of
 from stylobate.results import OutcomeRules
+from stylobate.results.known_orbits import as_orbits
 from stylobate.results.outcomes import NOT_COMPUTED
+from stylobate.run_arguments import OfEnsemble, Options, checked_options, takes
 
 
 @shows_progress("runs")
+@takes(OfEnsemble)
 def simulate_ensemble(
     model: Model,
     motion: BaseMotion | None = None,
@@ -52,20 +54,9 @@ def simulate_ensemble(
     spin: ArrayLike = 0.0,
     duration: ArrayLike,
     parameters: Mapping[str, ArrayLike] | None = None,
-    method: str = "dop853",
-    rtol: float = 1e-8,
-    atol: float | None = None,
-    tilt_limit: float | None = None,
-    rest_energy: float | None = None,
-    max_steps: int = 200_000,
-    samples: int | None = None,
-    strobes: int = 0,
-    rules: OutcomeRules | None = None,
-    demands: bool = False,
-    recheck: bool = False,
-    known_orbits: KnownOrbits | None = None,
     threads: int | None = None,
     progress: Progress = None,
+    **run: Unpack[OfEnsemble],
 ) -> xr.Dataset:
     """Integrate many columns, each from its initial state until its outcome is decided.
 
@@ -89,26 +80,7 @@ def simulate_ensemble(
     parameters
         Numbers of column, model and motion that differ between the runs, by name; shapes as for `duration`. The names
         are those of `with_parameters`. All arrays are broadcast together by the names of their dimensions.
-    method
-        Integration of three-dimensional motion: "dop853" as in `simulate`, or "taylor", Taylor series of order 16.
-        Columns in steady rolling take less than half of the steps with "taylor". Runs that pass near the vertical, as
-        in most maps, are faster with "dop853".
-    rtol, atol, tilt_limit, rest_energy, max_steps, rules
-        As in `simulate`; the same for all runs.
-    samples
-        Number of samples of each history, at equal times over the run; no histories by default.
-    strobes
-        Number of stroboscopic samples kept, the last ones: states at which the base motion has phase zero
-        (Ωt + start_phase a whole number of turns), one per period.
-    demands
-        Whether to compute the contact demand too; steps then take about a quarter longer.
-    recheck
-        Whether to repeat runs in doubt as `simulate` does, and to mark runs with another outcome as `uncertain`. One in
-        six runs under earthquakes is in doubt; in three dimensions the repetition takes about as long as all runs.
-    known_orbits
-        Stable periodic orbits to which runs may converge, each a `KnownOrbit`. A run ends early, as ROLLING or ROCKING,
-        if its distance from such an orbit falls as the multiplier of the orbit requires; the run would then repeat at
-        its full duration. Planar runs are not compared with orbits. See "Converged runs" on the page on ensembles.
+    **run
     threads
         Number of threads; all cores by default.
     progress
@@ -152,7 +124,7 @@ def simulate_ensemble(
     >>> [sb.Outcome(code).name for code in runs["outcome"].values]
     ['AT_REST', 'OVERTURNED']
     """
-    require_nouns(model, motion, rules)
+    require_nouns(model, motion)
     moved = BASE_AT_REST if motion is None else motion
     changes = _named(parameters)
     check_names(model, moved, changes)
@@ -160,25 +132,14 @@ def simulate_ensemble(
     changes = in_declared_units(changes, own)
     tilt, tilt_rate = as_numbers("tilt", tilt, "rad"), as_numbers("tilt_rate", tilt_rate, "rad/s")
     spin, duration = as_numbers("spin", spin, "rad/s"), as_numbers("duration", duration, "s")
-    options = Options.checked(
-        method=method,
-        rtol=rtol,
-        atol=atol,
-        tilt_limit=tilt_limit,
-        rest_energy=rest_energy,
-        max_steps=max_steps,
-        samples=samples,
-        strobes=strobes,
-        rules=rules,
-        demands=demands,
-        recheck=recheck,
-    )
-    if demands and model.contact is None:
+    options = checked_options(run)
+    if options["demands"] and model.contact is None:
         message = f"model {model.name} has no forces of its contact. Give it `contact`, or leave out demands."
         raise UnsupportedError(message)
-    orbits = as_orbits(known_orbits)
-    if model.switches and (demands or orbits or options.method != "dop853"):
-        asked = "demands" if demands else "known_orbits" if orbits else f"method {options.method!r}"
+    orbits = as_orbits(run["known_orbits"])
+    if model.switches and (options["demands"] or orbits or options["method"] != "dop853"):
+        other = "known_orbits" if orbits else f"method {options['method']!r}"
+        asked = "demands" if options["demands"] else other
         message = f"model {model.name} changes between kinds of contact: leave out {asked}"
         raise UnsupportedError(message)
     threads = usual_threads() if threads is None else require_whole("threads", threads, least=1, most=MOST_THREADS)
@@ -186,7 +147,7 @@ def simulate_ensemble(
     if len(runs):
         frequency = moved.highest_frequency * model.time_scale
         longest = float(runs.duration.max()) / model.time_scale
-        announce(expected_steps(model, frequency, longest), options.max_steps)
+        announce(expected_steps(model, frequency, longest), options["max_steps"])
     _check_own_model(model, runs)
     arrays = empty(model, options, len(runs))
     # The coordinates hold the arguments that differ between the runs.
@@ -239,7 +200,7 @@ def _followed(plan: Plan, runs: Runs, arrays: Arrays, threads: int, progress: Re
 
 def _rechecked(plan: Plan, runs: Runs, arrays: Arrays, threads: int) -> bool:
     """Repeat the runs in doubt and mark those whose outcome changes; return False after Ctrl-C."""
-    if not plan.options.recheck:
+    if not plan.options["recheck"]:
         return True
     places = np.flatnonzero(arrays["in_doubt"])
     if not places.size:
@@ -256,7 +217,7 @@ def _rechecked(plan: Plan, runs: Runs, arrays: Arrays, threads: int) -> bool:
 def _provenance(model: Model, motion: BaseMotion, options: Options, same: Mapping[str, Any]) -> dict[str, Any]:
     starts = {name: same[name] for name in ("tilt", "tilt_rate", "spin", "duration") if name in same}
     parameters = {name: value for name, value in same.items() if name not in starts}
-    kept = asdict(options) | {"samples": options.samples or None, **starts, "parameters": parameters}
+    kept = {**options, "rules": asdict(options["rules"] or OutcomeRules()), **starts, "parameters": parameters}
     return provenance_of_run(model, motion, **kept)
 
 

@@ -10,9 +10,10 @@ from stylobate.base_motions.declared import motion_quantities
 from stylobate.base_motions.one_of import number_of, with_choice
 from stylobate.base_motions.varying import numbers_of, stated_numbers, value_of, with_numbers
 from stylobate.column import Column
-from stylobate.config.parameter_quantities import quantity_of
+from stylobate.engine.ensembles.variables import QUANTITIES
 from stylobate.errors import ParameterError, UnsupportedError, as_numbers, require_finite
 from stylobate.models import Model
+from stylobate.parameter_quantities import quantity_of
 from stylobate.quantities import Parameter, parameters_of
 from stylobate.text import did_you_mean
 
@@ -65,8 +66,6 @@ def motion_names(model: Model, motion: BaseMotion | None) -> tuple[str, ...]:
 
     The prefix "motion." marks a name that the column, the model, a change of the motion or a result also has.
     """
-    from stylobate.engine.ensembles.summaries import QUANTITIES  # noqa: PLC0415  the two modules need each other
-
     taken = {*COLUMN_NAMES, *model_names(model), "motion", "acceleration", *_CHANGES, *QUANTITIES}
     names = motion_quantities() if motion is None else numbers_of(motion)
     return tuple(_OWN + name if name in taken else name for name in names)

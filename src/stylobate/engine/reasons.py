@@ -51,12 +51,12 @@ def _at_its_end(model: Model, motion: BaseMotion, followed: Followed, outcome: O
     if outcome in (Outcome.STILL_MOVING, Outcome.SURVIVED) and math.isfinite(motion.duration):
         return survival(model, motion, followed.trajectory)[1]
     ground = Ground(int(grounds_of(followed.batch, followed.late)[0]))
-    return reason_on(ground, followed.late.evidence, followed.batch.plan.options.rules, motion.period or 0.0)
+    return reason_on(ground, followed.late.evidence, followed.batch.plan.rules, motion.period or 0.0)
 
 
 def _failure(model: Model, followed: Followed) -> str:
     """Return the reason of a failed integration."""
-    most = int(followed.batch.plan.options.max_steps)
+    most = int(followed.batch.plan.options["max_steps"])
     match followed.status:
         case Status.STEP_LIMIT:
             return step_limit(most)
@@ -105,7 +105,7 @@ def late_measures(followed: Followed) -> dict[str, float]:
         "minimum_tilt_late": float(late.minimum_tilt[0]),
         "peak_tilt_late": _peak_tilt(followed),
     }
-    if late.evidence is not None and late.evidence.held[0] >= steady_periods(followed.batch.plan.options.rules):
+    if late.evidence is not None and late.evidence.held[0] >= steady_periods(followed.batch.plan.rules):
         change, lag = late.evidence.change, late.evidence.lag
         measures["modulation_change"] = abs(math.expm1(float(change.slope[0] * change.window[0])))
         measures["rolling_rate_error"] = abs(float(lag.slope[0]))
@@ -117,6 +117,6 @@ _SAMPLES = 64
 
 
 def _peak_tilt(followed: Followed) -> float:
-    trajectory, periods = followed.trajectory, followed.batch.plan.options.rules.periods
+    trajectory, periods = followed.trajectory, followed.batch.plan.rules.periods
     tau = np.linspace(trajectory.end - float(followed.late.span[0]), trajectory.end, periods * _SAMPLES + 1)
     return float(np.hypot(*trajectory.model.tilt(trajectory.states(tau))).max())

@@ -12,18 +12,19 @@ from stylobate.engine.doubt import FALLEN, FIRST_DIGIT, MANY_PASSAGES, UNSETTLED
 from stylobate.engine.ensembles.batch import Batch, Plan
 from stylobate.engine.ensembles.broadcasting import Runs, one_run
 from stylobate.engine.ensembles.motion_columns import MotionPlan
-from stylobate.engine.ensembles.options import Options
 from stylobate.engine.ensembles.summaries import summaries
 from stylobate.engine.followed import Followed
 from stylobate.engine.kernel.columns import Log, Setup
 from stylobate.engine.pace import LOG, report
 from stylobate.engine.reasons import bounds_of, late_measures, reason_of
 from stylobate.engine.starts import Start
+from stylobate.engine.tolerances import OVERTURNED_TILT
 from stylobate.engine.trajectory import Trajectory
 from stylobate.engine.user_events import EventFunction, own_events
 from stylobate.errors import Outcome, UnsupportedError
 from stylobate.models import Model
 from stylobate.results import Event
+from stylobate.run_arguments import Options
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -63,7 +64,7 @@ def run_result(
     plan = Plan(model, MotionPlan.of(motion, {}, run.duration), options)
 
     def paused(steps: float, time: float) -> None:
-        report(int(steps), options.max_steps, time, start.duration)
+        report(int(steps), options["max_steps"], time, start.duration)
 
     try:
         followed = Followed.of(plan, run, paused)
@@ -98,7 +99,7 @@ def run_result(
             "rest_energy": float(followed.batch.rest_energy[0]),
             "rest_energy_for_good": float(table[Setup.REST_ENERGY_FOR_GOOD]),
             "tilt_limit": float(table[Setup.TILT_LIMIT]),
-            "overturned_tilt": options.overturned_tilt,
+            "overturned_tilt": OVERTURNED_TILT,
         },
         measures={
             "peak_tilt": float(arrays["peak_tilt"]),
@@ -141,7 +142,7 @@ def _repeated(plan: Plan, run: Runs, outcome: Outcome, peak: float) -> tuple[boo
         return False, ()
     passage = float(batch.table[0, Setup.PASSAGE_TILT])
     finer = f"passage_tilt {passage:.2g}, " if passage > 0.0 and not batch.planar[0] else ""
-    settings = f"with {finer}rest_energy {float(batch.rest_energy[0]):.2g} and rtol {again.options.rtol:.2g} it is"
+    settings = f"with {finer}rest_energy {float(batch.rest_energy[0]):.2g} and rtol {again.options['rtol']:.2g} it is"
     changed = (other in FALLEN) != (outcome in FALLEN)
     if changed:
         return True, (f"the outcome depends on the settings of the integration: {settings} {other.name}",)

@@ -1,8 +1,8 @@
 """Initial conditions of runs: spin, twist, position, velocity and clearance, and their checks."""
 
 import reprlib
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, fields
 from typing import Any
 
 import numpy as np
@@ -11,11 +11,11 @@ import numpy.typing as npt
 from stylobate.base_motions import BaseMotion
 from stylobate.engine.forcing import common_line
 from stylobate.engine.motion_checks import check_kinds
-from stylobate.errors import ParameterError, UnsupportedError, require_finite, require_not_negative, require_vector
+from stylobate.errors import ParameterError, UnsupportedError
 from stylobate.models import Model
 from stylobate.models.consistency import check_once
 from stylobate.quantities import QUARTER_TURN, degrees_meant
-from stylobate.results import OutcomeRules
+from stylobate.run_arguments import SingleRun, arguments_of
 
 Floats = npt.NDArray[np.float64]
 
@@ -31,17 +31,7 @@ class Turning:
     clearance: float = 0.0
 
     @classmethod
-    def checked(
-        cls,
-        model: Model,
-        spin: float,
-        twist: float,
-        position: Sequence[float],
-        velocity: Sequence[float],
-        clearance: float,
-        *,
-        standing: bool,
-    ) -> "Turning":
+    def checked(cls, model: Model, run: Mapping[str, Any], *, standing: bool) -> "Turning":
         """Check and return the initial conditions; `standing` means zero tilt and zero tilt rate.
 
         Raises
@@ -49,10 +39,9 @@ class Turning:
         ParameterError
             If a value is not finite, or `model` does not support it.
         """
-        spin, twist = require_finite("spin", spin, "rad/s"), require_finite("twist", twist, "rad")
-        x, y = require_vector("position", position, 2, "m")
-        vx, vy, vz = require_vector("velocity", velocity, 3, "m/s")
-        clearance = require_not_negative("clearance", clearance, "m")
+        declared = arguments_of(SingleRun)
+        spin, twist, position, velocity, clearance = (declared[one.name].checked(run[one.name]) for one in fields(cls))
+        (x, y), (vx, vy, vz) = position, velocity
         refuse_spin(model, spin, standing=standing)
         if not model.carried_names and not model.switches and (twist or x or y):
             name, value = ("twist", twist) if twist else ("position", (x, y))
@@ -151,7 +140,7 @@ def out_of_plane(model: Model, tilt: Sequence[float], tilt_rate: Sequence[float]
     return ParameterError(message)
 
 
-def require_nouns(model: Model, motion: BaseMotion | None, rules: OutcomeRules | None) -> None:
+def require_nouns(model: Model, motion: BaseMotion | None) -> None:
     """Raise ParameterError if an argument has the wrong type."""
     if not isinstance(model, Model):
         message = f"model must be a model such as Slender(column), got {reprlib.repr(model)}"
@@ -162,9 +151,6 @@ def require_nouns(model: Model, motion: BaseMotion | None, rules: OutcomeRules |
         raise ParameterError(message)
     if motion is not None:
         check_kinds(motion)
-    if rules is not None and not isinstance(rules, OutcomeRules):
-        message = f"rules must be OutcomeRules(...) or None, got {rules!r}"
-        raise ParameterError(message)
 
 
 def cannot_depart(model: Model) -> UnsupportedError:

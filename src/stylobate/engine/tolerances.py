@@ -5,8 +5,6 @@ import math
 OVERTURNED_TILT = math.pi / 2.0
 """Tilt that counts as overturned if no rigorous criterion exists [rad]."""
 
-RTOL_RANGE = (1e-13, 1e-2)
-"""Valid relative tolerances."""
 ATOL_SHARE = 0.01
 """Default absolute tolerance, as a fraction of rtol × c."""
 

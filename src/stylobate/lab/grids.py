@@ -9,12 +9,12 @@ import numpy as np
 import xarray as xr
 
 from stylobate import config, conveying, studies
-from stylobate.config.parameter_quantities import attributes_of
 from stylobate.errors import Outcome, ParameterError
 from stylobate.lab.case_axes import case_map, case_numbers, units_of
 from stylobate.lab.json_values import number, numbers
 from stylobate.lab.messages import Emit, Found, Progress
 from stylobate.lab.progressive_executor import Cells, Refining
+from stylobate.parameter_quantities import attributes_of
 
 
 def overturning_plane(values: Mapping[str, Any], emit: Emit) -> dict[str, Any]:

@@ -8,11 +8,11 @@ import numpy as np
 from stylobate import orbits, studies
 from stylobate.base_motions import Harmonic
 from stylobate.config.response import SteadyCase
-from stylobate.config.run_numbers import Start, numbers_of
 from stylobate.config.simulation import built_parts
 from stylobate.errors import NoOrbitError, ParameterError, UnsupportedError
 from stylobate.lab.json_values import numbers
 from stylobate.models import Model
+from stylobate.run_arguments import Start, numbers_of
 from stylobate.theory.averaging import circular_components
 
 _NO_CIRCLE = 1e-12

@@ -8,7 +8,6 @@ import numpy as np
 from scipy.optimize import brentq
 
 from stylobate.cards import Row, Section, card
-from stylobate.config.parameter_quantities import quantity_of
 from stylobate.engine.flow.status import Status
 from stylobate.equality import ByContent
 from stylobate.errors import Named
@@ -23,6 +22,7 @@ from stylobate.orbits.normal_forms import (
 )
 from stylobate.orbits.orbit import PeriodicOrbit, system_sections
 from stylobate.orbits.shooting import shots
+from stylobate.parameter_quantities import quantity_of
 from stylobate.text import four_digits, unit_in_text
 
 # Accuracy of the location along the family, in its units; for the parameter, times the width of its bounds.

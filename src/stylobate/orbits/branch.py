@@ -12,8 +12,6 @@ import numpy as np
 import xarray as xr
 
 from stylobate.cards import Row, Section, card
-from stylobate.config import provenance_of_run
-from stylobate.config.parameter_quantities import attributes_of, quantity_of
 from stylobate.engine.flow.status import Status
 from stylobate.engine.parameters import present_value
 from stylobate.equality import ByContent
@@ -26,7 +24,9 @@ from stylobate.orbits.orbit import PeriodicOrbit, range_of, system_sections
 from stylobate.orbits.saving import BRANCH, SUPERCRITICAL, file_attributes, write
 from stylobate.orbits.shooting import WHY_LOST, arcs_of
 from stylobate.orbits.tracing import End, StepControl, Stretch, trace
+from stylobate.parameter_quantities import attributes_of, quantity_of
 from stylobate.progress import Progress, at_value, report_of, shows_progress
+from stylobate.provenance import provenance_of_run
 from stylobate.results.tables import to_dataframe
 from stylobate.text import four_digits, plural, unit_in_text
 

@@ -12,8 +12,6 @@ import numpy.typing as npt
 import xarray as xr
 
 from stylobate.cards import Row, Section, card
-from stylobate.config import provenance_of_run
-from stylobate.config.parameter_quantities import attributes_of, quantity_of
 from stylobate.engine.flow.periodic import Numbers, PeriodicSystem
 from stylobate.engine.flow.status import Status
 from stylobate.engine.parameters import present_value
@@ -26,7 +24,9 @@ from stylobate.orbits.orbit import range_of, system_sections
 from stylobate.orbits.saving import CURVE, file_attributes, write
 from stylobate.orbits.shooting import Shots, shots
 from stylobate.orbits.tracing import ASTRAY, End, StepControl
+from stylobate.parameter_quantities import attributes_of, quantity_of
 from stylobate.progress import Progress, Report, at_value, report_of, shows_progress
+from stylobate.provenance import provenance_of_run
 from stylobate.text import plural, unit_in_text
 
 _log = logging.getLogger("stylobate")

@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from stylobate.config import provenance_of_run
 from stylobate.engine.flow.periodic import PeriodicSystem
 from stylobate.errors import FileError, ParameterError, UnsupportedError
+from stylobate.provenance import provenance_of_run
 from stylobate.results.storage import write_netcdf
 
 ORBIT, BRANCH, CURVE = "stylobate orbit 1", "stylobate branch 1", "stylobate bifurcation curve 1"

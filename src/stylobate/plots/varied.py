@@ -6,10 +6,10 @@ from pathlib import Path
 from typing import Any
 
 from stylobate.base_motions.declared import motion_quantities
-from stylobate.config.run_numbers import run_numbers
 from stylobate.models.declared import column_quantities, model_quantities
 from stylobate.quantities import Quantity
 from stylobate.results import Response
+from stylobate.run_arguments import run_numbers
 
 _MOST_NAMES = 2
 # Inputs that follow from changes of a motion.

@@ -1,5 +1,6 @@
 from .assessment import Assessment
 from .findings import ClaimStatus, Finding, PaperCheck, Section
+from .known_orbits import KnownOrbit
 from .report_details import DesignSpectrum, ReportDetails
 from .response import Event, Response
 from .rules import OutcomeRules
@@ -13,6 +14,7 @@ __all__ = [
     "DesignSpectrum",
     "Event",
     "Finding",
+    "KnownOrbit",
     "OutcomeRules",
     "PaperCheck",
     "ReportDetails",

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
-from stylobate.config.parameter_quantities import quantity_of
 from stylobate.errors import ParameterError, as_numbers, require_positive, require_size
+from stylobate.parameter_quantities import quantity_of
 
 
 def require_frequencies(ends: Sequence[float]) -> tuple[float, float]:

@@ -7,9 +7,9 @@ import stylobate as sb
 from stylobate.engine import radau
 from stylobate.engine.ensembles.batch import Plan
 from stylobate.engine.ensembles.motion_columns import MotionPlan
-from stylobate.engine.ensembles.options import Options
 from stylobate.engine.kernel.kernels import kernel_of
 from stylobate.engine.kernel.linear_equations import NewtonRoom
+from stylobate.run_arguments import checked_options
 
 RTOL = 1e-13
 
@@ -20,10 +20,7 @@ class Linear:
     def __init__(self, monkeypatch, matrix):
         model = sb.Sliding(sb.Column.solid(radius=0.5, height=3.0, density=2700.0))
         motion = sb.Harmonic.circular(acceleration=0.6, angular_frequency=2.2)
-        options = Options.checked(
-            method="dop853", rtol=RTOL, atol=None, tilt_limit=None, rest_energy=None, max_steps=1000, samples=None,
-            strobes=0, rules=None, demands=False, recheck=False,
-        )  # fmt: skip
+        options = checked_options({"rtol": RTOL, "max_steps": 1000})
         kernel = kernel_of(sb.Sliding, Plan(model, MotionPlan.of(motion, {}, np.ones(1)), options).shape(planar=False))
         self.module, self.rows = kernel.compiled.module, kernel.shape.rows()
         self.order = order = kernel.shape.order

@@ -12,9 +12,7 @@ import numpy.typing as npt
 import xarray as xr
 
 from stylobate.base_motions import Record
-from stylobate.config import provenance_of_run
 from stylobate.config.levels import Dissipation
-from stylobate.config.simulation import FREE_TAIL
 from stylobate.earthquakes.assessment.fragilities import fragility_of
 from stylobate.earthquakes.assessment.governing import governing_record, histories_of
 from stylobate.earthquakes.assessment.ground_motions import ground_motions, spectra_of
@@ -32,14 +30,15 @@ from stylobate.earthquakes.remarks import remark_on
 from stylobate.errors import LARGEST_SEED, require_positive, require_whole
 from stylobate.models import Model
 from stylobate.progress import Progress, in_parts, report_of, shows_progress
+from stylobate.provenance import provenance_of_run
 from stylobate.quantities import exact_repr
 from stylobate.results.assessment import Assessment
 from stylobate.results.few_records import FEW_RECORDS
 from stylobate.results.report_details import ReportDetails
 from stylobate.results.verdict import require_variations
+from stylobate.run_arguments import FREE_TAIL, RunOptions
 from stylobate.studies.checks import require_no_tilt_limit
 from stylobate.studies.sweeps import Executor
-from stylobate.studies.sweeps.recipe import RunOptions
 
 # Packages whose versions can change the last digits of the results.
 _PACKAGES = ("stylobate", "numpy", "scipy", "llvmlite", "xarray")

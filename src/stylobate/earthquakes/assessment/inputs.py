@@ -9,7 +9,6 @@ import numpy as np
 import numpy.typing as npt
 
 from stylobate.base_motions import BASE_AT_REST, BaseMotion
-from stylobate.config import provenance_of_run
 from stylobate.config.levels import OF_DISSIPATION, Dissipation, at_levels, levels_by_column
 from stylobate.earthquakes.assessment.parts import identities
 from stylobate.earthquakes.named_records import Records, named_records
@@ -17,9 +16,10 @@ from stylobate.earthquakes.verdict_study import has_other_contact_law, with_othe
 from stylobate.engine.parameters import changed_model, model_names
 from stylobate.errors import ParameterError, require_not_negative, require_positive
 from stylobate.models import Model
+from stylobate.provenance import provenance_of_run
+from stylobate.run_arguments import RunOptions
 from stylobate.studies.sweeps.fingerprint import identity_of
 from stylobate.studies.sweeps.quantities import Floats
-from stylobate.studies.sweeps.recipe import RunOptions
 
 CENTRAL = "central"
 NO_VERTICAL = "central, no vertical"

@@ -5,7 +5,6 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from stylobate.config.run_numbers import Accuracy, numbers_of
 from stylobate.earthquakes.assessment.inputs import CENTRAL, Inputs
 from stylobate.earthquakes.assessment.parts import Parts
 from stylobate.earthquakes.following import tail_of
@@ -15,6 +14,7 @@ from stylobate.models import Model, Sliding
 from stylobate.models.declared import dissipation_of
 from stylobate.progress import Report
 from stylobate.results.outcomes import NOT_COMPUTED, NUMERICALLY_UNCERTAIN, outcome_attributes
+from stylobate.run_arguments import Accuracy, numbers_of
 
 _OPTIONS = tuple(name for name in numbers_of(Accuracy) if name != "tilt_limit")
 _NUMBERS = {

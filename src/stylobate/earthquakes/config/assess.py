@@ -22,7 +22,6 @@ from stylobate.config.record_collection import RecordsConfig
 from stylobate.earthquakes.config.design_spectrum import DesignSpectrumConfig
 from stylobate.errors import (
     LARGEST_SEED,
-    MOST_STEPS,
     ConfigError,
     FileError,
     ParameterError,
@@ -36,6 +35,7 @@ from stylobate.models.declared import model_quantities
 from stylobate.results.few_records import FEW_RECORDS
 from stylobate.results.report_details import ReportDetails
 from stylobate.results.verdict import require_variations
+from stylobate.run_arguments import Accuracy, numbers_of
 from stylobate.text import did_you_mean
 
 _MARGIN = {"from": 0.2, "to": 5.0, "number": 300, "spacing": "log"}
@@ -273,8 +273,7 @@ class AssessConfig(Config):
         by_column = friction if isinstance(friction, dict) else {}
         checks: list[Callable[[], object]] = [
             lambda: require_positive("width", self.width),
-            lambda: require_positive("rtol", self.rtol),
-            lambda: require_whole("max_steps", self.max_steps, least=1, most=MOST_STEPS),
+            *(partial(numbers_of(Accuracy)[name].checked, getattr(self, name)) for name in _OF_RUNS),
             lambda: require_whole("least_records", self.least_records, least=2),
             lambda: require_variations(self.variations),
             lambda: require_whole("seed", self.seed, least=0, most=LARGEST_SEED),
@@ -284,8 +283,6 @@ class AssessConfig(Config):
         ]
         if not isinstance(friction, dict):
             checks.append(lambda: require_positive("friction_coefficient", friction))
-        if self.rest_energy is not None:
-            checks.append(partial(require_not_negative, "rest_energy", self.rest_energy))
         problems = [] if self.scales else ["scales must hold at least one scale factor, such as [1.0]"]
         for check in checks:
             try:
@@ -331,7 +328,8 @@ _PLACEHOLDERS: dict[str, Any] = {
     "friction_coefficient": 1.0,
 }
 
+_OF_RUNS = ("rtol", "rest_energy", "max_steps")
 _PASSED = (
     *("title", "dissipation", "friction_coefficient", "scales", "width", "tail", "planar", "contact"),
-    *("sliding", "contact_laws", "variations", "seed", "least_records", "notes", "rtol", "rest_energy", "max_steps"),
+    *("sliding", "contact_laws", "variations", "seed", "least_records", "notes", *_OF_RUNS),
 )

@@ -12,14 +12,14 @@ import xarray as xr
 from stylobate.base_motions import BaseMotion
 from stylobate.base_motions.one_of import members_of
 from stylobate.base_motions.varying import frequency_of
-from stylobate.config.parameter_quantities import attributes_of
 from stylobate.engine.parameters import own_numbers, with_parameters
 from stylobate.errors import ParameterError, require_positive
 from stylobate.models import Model
+from stylobate.parameter_quantities import attributes_of
+from stylobate.run_arguments import RunOptions
 from stylobate.studies.checks import remark_on_lengths, require_values
 from stylobate.studies.sweeps import Sweep
 from stylobate.studies.sweeps.quantities import OF_A_RUN, Floats, check_quantities, checked_values
-from stylobate.studies.sweeps.recipe import RunOptions
 
 Integers = npt.NDArray[np.int64]
 

@@ -10,19 +10,19 @@ import numpy.typing as npt
 import xarray as xr
 
 from stylobate.base_motions import BaseMotion
-from stylobate.config.parameter_quantities import attributes_of
 from stylobate.earthquakes.spectra.cases import Cases
 from stylobate.earthquakes.spectra.edges import Edges, Ends, Integers, joined
 from stylobate.earthquakes.spectra.interval_table import interval_table
 from stylobate.earthquakes.spectra.provenance import provenance_of_spectrum
 from stylobate.errors import Interrupted, Most, ParameterError, require_positive, require_whole
 from stylobate.models import Model
+from stylobate.parameter_quantities import attributes_of
 from stylobate.progress import Progress, Report, report_of, shows_progress
 from stylobate.results.outcomes import NOT_COMPUTED
+from stylobate.run_arguments import RunOptions
 from stylobate.studies.checks import require_no_tilt_limit
 from stylobate.studies.sweeps import Executor, run_sweep
 from stylobate.studies.sweeps.quantities import Floats, checked_values
-from stylobate.studies.sweeps.recipe import RunOptions
 
 # Scales that differ by less than this fraction count as equal.
 _SAME_SCALE = 1e-9

@@ -17,11 +17,11 @@ from stylobate.errors import ParameterError, require_whole
 from stylobate.models import Model
 from stylobate.progress import Progress, shows_progress
 from stylobate.results.outcomes import NOT_COMPUTED
+from stylobate.run_arguments import RunOptions
 from stylobate.studies.checks import require_no_tilt_limit
 from stylobate.studies.maps.uncertainty_exponent import overturned_or_not
 from stylobate.studies.sweeps import Executor
 from stylobate.studies.sweeps.labelled import labelled_sweep
-from stylobate.studies.sweeps.recipe import RunOptions
 
 _SAMPLES = 2001
 # Histories; the result keeps only the peak rate of them.

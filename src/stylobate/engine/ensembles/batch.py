@@ -13,17 +13,18 @@ from stylobate.engine.ensembles.broadcasting import Runs
 from stylobate.engine.ensembles.look_times import LookTimes
 from stylobate.engine.ensembles.model_columns import ModelColumns
 from stylobate.engine.ensembles.motion_columns import MotionColumns, MotionPlan
-from stylobate.engine.ensembles.options import Options
 from stylobate.engine.ensembles.orbit_columns import OrbitReached, fill_orbits, orbit_reached
 from stylobate.engine.kernel.columns import LOG, NOTE, PAIRS, STATE, Log, Setup, Status
 from stylobate.engine.kernel.expansion import series_integrals
 from stylobate.engine.kernel.kernels import kernel_of
 from stylobate.engine.kernel.shape import Shape
-from stylobate.engine.known_orbits import OrbitsOfRuns
 from stylobate.engine.starts import cannot_depart, out_of_plane, refuse_spin
 from stylobate.engine.thresholds import is_rest, rest_energy_for_good, usual_rest_energy
-from stylobate.engine.tolerances import ATOL_SHARE, FIRST_STEP_OFF, PARALLEL_ULP
+from stylobate.engine.tolerances import ATOL_SHARE, FIRST_STEP_OFF, OVERTURNED_TILT, PARALLEL_ULP
 from stylobate.models import Model
+from stylobate.results import OutcomeRules
+from stylobate.results.known_orbits import OrbitsOfRuns
+from stylobate.run_arguments import Options
 
 Floats = npt.NDArray[np.float64]
 
@@ -60,19 +61,29 @@ class Plan:
     plain: bool = False
     orbits: int = 0
 
+    @property
+    def rules(self) -> OutcomeRules:
+        """Thresholds that classify a motion."""
+        return self.options["rules"] or OutcomeRules()
+
+    @property
+    def samples(self) -> int:
+        """Number of samples of each history."""
+        return self.options["samples"] or 0
+
     def repeated(self) -> "Plan":
         """Return the plan to repeat runs in doubt: finer thresholds, another tolerance, no samples or traces."""
         own = self.options
-        rtol = other_tolerance(own.rtol)
-        atol = None if own.atol is None else own.atol * (rtol / own.rtol)
-        options = replace(own, rtol=rtol, atol=atol, samples=0, strobes=0, recheck=False)
+        rtol, atol = other_tolerance(own["rtol"]), own["atol"]
+        atol = None if atol is None else atol * (rtol / own["rtol"])
+        options: Options = {**own, "rtol": rtol, "atol": atol, "samples": None, "strobes": 0, "recheck": False}
         return replace(self, options=options, rest_share=FINER_REST, passage_share=FINER_PASSAGE, traces=0)
 
     def shape(self, *, planar: bool) -> Shape:
         """Return the shape of the kernel for planar or three-dimensional motion."""
         states, parameters = len(self.model.state_names), len(self.model.parameters)
         forcing = self.motion.source(planar=planar)
-        by_series = self.options.method == "taylor" and not planar  # planar equations are linear between events
+        by_series = self.options["method"] == "taylor" and not planar  # planar equations are linear between events
         vertical = "az" in forcing.components
         return Shape(
             states=states,
@@ -81,7 +92,7 @@ class Plan:
             forcing=forcing,
             width=self._width,
             series=series_integrals(type(self.model), states, parameters, vertical=vertical) if by_series else (),
-            demands=self.options.demands,
+            demands=self.options["demands"],
             guards=len(self.model.guard_names),
             slip=self.model.slip_states,
             kept=self.model.kept_states,
@@ -135,13 +146,13 @@ class Batch:
         motions = MotionColumns.of(plan.motion, runs.values, models)
         energy = plan.rest_share * _rest_energy(plan.options, models, motions)
         shape = plan.layout
-        times = LookTimes.of(runs.duration / models.time_scale, motions.period, plan.options.rules)
+        times = LookTimes.of(runs.duration / models.time_scale, motions.period, plan.rules)
         table = _empty_table(plan, shape, len(runs), motions.breaks.shape[1], times.notes)
         _fill_setup(table, plan, runs, models, motions, energy)
         times.fill(table)
         planar = _fill_starts(table, plan.model, runs, models, motions)
         if runs.orbits is not None:
-            fill_orbits(table, shape.orbits_at, runs.orbits, motions.period, models.time_scale, plan.options.rules)
+            fill_orbits(table, shape.orbits_at, runs.orbits, motions.period, models.time_scale, plan.rules)
         table[:, shape.parameters_at : shape.motion_at] = models.parameters
         table[:, shape.motion_at : shape.breaks_at] = motions.columns
         table[:, shape.breaks_at : shape.breaks_at + motions.breaks.shape[1]] = motions.breaks
@@ -161,25 +172,24 @@ class Batch:
 
     def notes(self, *, strobes: bool) -> Floats:
         """Return the (stroboscopic) samples, shape (n, number, 5): tilt vector, its rate, time; NaN if missing."""
-        options = self.plan.options
-        return self._notes(options.samples, options.strobes) if strobes else self._notes(0, options.samples)
+        kept, of_phase = self.plan.samples, self.plan.options["strobes"]
+        return self._notes(kept, of_phase) if strobes else self._notes(0, kept)
 
     @property
     def looks(self) -> Floats:
         """Looks, shape (n, number, 5): tilt vector, its rate, azimuth; zero if missing."""
-        options = self.plan.options
-        return self._notes(options.samples + options.strobes, int(self.table[0, Setup.LOOKS]))
+        return self._notes(self.plan.samples + self.plan.options["strobes"], int(self.table[0, Setup.LOOKS]))
 
     @property
     def pairs(self) -> Floats:
         """Pairs, shape (n, `PAIRS`, 5): see `Pair`; zero if missing."""
-        options = self.plan.options
-        return self._notes(options.samples + options.strobes + int(self.table[0, Setup.LOOKS]), PAIRS)
+        looks = int(self.table[0, Setup.LOOKS])
+        return self._notes(self.plan.samples + self.plan.options["strobes"] + looks, PAIRS)
 
     @property
     def places(self) -> Floats:
         """Footprint and twist at the stroboscopic samples, shape (n, number, 3); NaN if missing."""
-        strobes = self.plan.options.strobes
+        strobes = self.plan.options["strobes"]
         return self._notes(int(self.table[0, Setup.NOTES]) - strobes, strobes)[..., :3]
 
     def _notes(self, before: int, count: int) -> Floats:
@@ -242,7 +252,7 @@ class Batch:
 
 
 def _rest_energy(options: Options, models: ModelColumns, motions: MotionColumns) -> Floats:
-    if options.rest_energy is None:
+    if options["rest_energy"] is None:
         energy = usual_rest_energy(
             motions.mean_frequency,
             motions.largest,
@@ -251,19 +261,19 @@ def _rest_energy(options: Options, models: ModelColumns, motions: MotionColumns)
             least=motions.least_rest_energy,
         )
     else:
-        energy = np.full(len(models.capacity), options.rest_energy)
+        energy = np.full(len(models.capacity), options["rest_energy"])
     return np.where(models.comes_to_rest, energy, 0.0)
 
 
 def _rest_energy_for_good(options: Options, models: ModelColumns, motions: MotionColumns) -> Floats:
     usual = rest_energy_for_good(motions.mean_frequency)
-    energy = usual if options.rest_energy is None else options.rest_energy
+    energy = usual if options["rest_energy"] is None else options["rest_energy"]
     return np.where(models.comes_to_rest, energy, 0.0)
 
 
 def _empty_table(plan: Plan, shape: Shape, count: int, breaks: int, looks: int) -> Floats:
-    samples = plan.options.samples + plan.options.strobes
-    notes, places = shape.breaks_at + breaks, plan.options.strobes if plan.model.switches else 0
+    samples = plan.samples + plan.options["strobes"]
+    notes, places = shape.breaks_at + breaks, plan.options["strobes"] if plan.model.switches else 0
     number = samples + looks + places
     table = np.zeros((count, notes + NOTE * number + plan.traces * shape.trace_width))
     table[:, notes : notes + NOTE * samples] = np.nan
@@ -280,20 +290,20 @@ def _fill_setup(
     table: Floats, plan: Plan, runs: Runs, models: ModelColumns, motions: MotionColumns, energy: Floats
 ) -> None:
     options, traces = plan.options, plan.traces
-    atol = ATOL_SHARE * options.rtol * models.slenderness if options.atol is None else options.atol
+    atol = ATOL_SHARE * options["rtol"] * models.slenderness if options["atol"] is None else options["atol"]
     with np.errstate(divide="ignore"):
         # Half the shortest period, so that no step misses the forcing.
         longest = math.pi / motions.frequency
     columns = {
         Setup.END: runs.duration / models.time_scale,
-        Setup.RTOL: options.rtol,
+        Setup.RTOL: options["rtol"],
         Setup.ATOL: atol,
-        Setup.MOST_STEPS: options.max_steps,
+        Setup.MOST_STEPS: options["max_steps"],
         Setup.LONGEST_STEP: longest,
         Setup.SLENDERNESS: models.slenderness,
         Setup.CAPACITY: models.capacity,
-        Setup.TILT_LIMIT: math.inf if options.tilt_limit is None else options.tilt_limit,
-        Setup.OVERTURNED_TILT: options.overturned_tilt,
+        Setup.TILT_LIMIT: math.inf if options["tilt_limit"] is None else options["tilt_limit"],
+        Setup.OVERTURNED_TILT: OVERTURNED_TILT,
         Setup.REST_ENERGY: energy,
         Setup.REST_ENERGY_FOR_GOOD: _rest_energy_for_good(options, models, motions),
         Setup.LARGEST_HORIZONTAL: motions.largest,
@@ -304,10 +314,10 @@ def _fill_setup(
         Setup.FREQUENCY: motions.frequency,
         Setup.PERIOD: motions.period,
         Setup.STROBE: (-motions.phase - np.floor(-motions.phase)) * motions.period,
-        Setup.PERIODS: options.rules.periods,
+        Setup.PERIODS: plan.rules.periods,
         Setup.BREAKS: motions.breaks.shape[1],
-        Setup.SAMPLES: options.samples,
-        Setup.STROBES: options.strobes,
+        Setup.SAMPLES: plan.samples,
+        Setup.STROBES: options["strobes"],
         Setup.TRACES: traces,
         Setup.PASSAGE_TILT: plan.passage_share * models.loss_tilt,
         **dict(zip((Setup.SLOPE_X, Setup.SLOPE_Y, Setup.SLOPE_Z), models.slope.T, strict=True)),

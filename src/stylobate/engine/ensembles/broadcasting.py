@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from stylobate.engine.known_orbits import KnownOrbit, OrbitsOfRuns
 from stylobate.engine.starts import Start, Turning, require_below_level
 from stylobate.engine.thresholds import without_dust
 from stylobate.errors import ParameterError, require_size
+from stylobate.results.known_orbits import KnownOrbit, OrbitsOfRuns
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -8,14 +8,11 @@ import numpy as np
 import numpy.typing as npt
 
 from stylobate.engine.ensembles.batch import Batch
+from stylobate.engine.ensembles.variables import CONTACT_KINDS, TIMES_OF_CONTACTS
 from stylobate.engine.kernel.columns import SLACK, STATE, Change, Log, Status
 from stylobate.errors import Outcome
 
 Floats = npt.NDArray[np.float64]
-
-_TIMES = tuple(column for column in Change if column.name.startswith("TIME_"))
-CONTACT_KINDS = tuple(column.name.removeprefix("TIME_").lower() for column in _TIMES)
-"""Kinds of contact, in the order of their numbers."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,7 +32,7 @@ class Contacts:
         kind, present = state[-1].astype(np.int8), batch.log(Log.TIME) - noted[:, Change.SINCE]
         times = {
             name: noted[:, column] + np.where(kind == number, present, 0.0)
-            for number, (name, column) in enumerate(zip(CONTACT_KINDS, _TIMES, strict=True))
+            for number, (name, column) in enumerate(zip(CONTACT_KINDS, TIMES_OF_CONTACTS, strict=True))
         }
         return cls(state, noted, kind, times)
 

@@ -8,8 +8,8 @@ import numpy.typing as npt
 
 from stylobate.engine.kernel.columns import ORBIT, Orbit, Setup
 from stylobate.engine.kernel.driver.convergence import CERTAIN, NEAR
-from stylobate.engine.known_orbits import OrbitsOfRuns
 from stylobate.results import OutcomeRules
+from stylobate.results.known_orbits import OrbitsOfRuns
 
 Floats = npt.NDArray[np.float64]
 

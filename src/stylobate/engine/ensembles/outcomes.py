@@ -45,7 +45,7 @@ class Late:
 
 def late_periods(batch: Batch) -> Late:
     """Return the measures of the last periods of each run."""
-    rules, period = batch.plan.options.rules, batch.motions.period
+    rules, period = batch.plan.rules, batch.motions.period
     n, end = rules.periods, batch.table[:, Setup.END] * (1.0 + SLACK)
     seen = (batch.log(Log.STATUS) == Status.STOPPED) & (period > 0.0) & (end >= (n + 1) * period)
 
@@ -122,7 +122,7 @@ def grounds_of(batch: Batch, late: Late) -> npt.NDArray[np.int8]:
     """Return the `Ground` of the outcome of each run that moves at its end."""
     ground = np.full(len(batch.table), Ground.SHORT, dtype=np.int8)
     if late.evidence is not None:
-        ground[late.runs] = grounds(late.evidence, batch.plan.options.rules)
+        ground[late.runs] = grounds(late.evidence, batch.plan.rules)
     return np.where(batch.motions.period > 0.0, ground, Ground.NO_PERIOD).astype(np.int8)
 
 

@@ -68,7 +68,7 @@ def evidence_of(batch: Batch, runs: Integers, turned: Floats, minimum_tilt: Floa
     turned, minimum_tilt, mean_tilt
         Turns of the contact point, minimum tilt [units of c] and mean tilt of these runs in the last periods.
     """
-    rules, period = batch.plan.options.rules, batch.motions.period[runs]
+    rules, period = batch.plan.rules, batch.motions.period[runs]
     held = np.floor(periods_of(batch.table[runs, Setup.END], period))
     evidence = Evidence.unknown(turned, minimum_tilt, held, batch.table[runs, Setup.LOOKED_BACK])
     steady = held >= steady_periods(rules)

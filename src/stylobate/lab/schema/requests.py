@@ -8,7 +8,6 @@ from stylobate import config
 from stylobate.base_motions.declared import MOTIONS, composite_kinds, kinds_with_response, motion_quantities
 from stylobate.config.description import Config
 from stylobate.config.motions import is_to_end
-from stylobate.config.run_numbers import run_numbers
 from stylobate.lab.limits import Limits
 from stylobate.lab.parameter_info import NUMBERS
 from stylobate.lab.schema.notation import Schema, listed, or_none, ref, table, text
@@ -17,6 +16,7 @@ from stylobate.lab.starts import StartConfig
 from stylobate.models.declared import column_quantities, model_quantities
 from stylobate.quantities import Quantity
 from stylobate.results import OutcomeRules
+from stylobate.run_arguments import run_numbers
 
 _DESCRIPTIONS: dict[str, type[Config]] = {
     "Simulation": config.SimulationConfig,

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Any, TypedDict
+from typing import Any
 
 from stylobate.base_motions import BaseMotion
 from stylobate.column import Column
@@ -10,21 +10,11 @@ from stylobate.engine import simulate
 from stylobate.engine.forcing import common_line
 from stylobate.models import Model, PlanarRocking, Rolling, Slender, SlenderRolling, Wobbling
 from stylobate.models.declared import dissipation_of
-from stylobate.results import OutcomeRules, Response
+from stylobate.results import Response
+from stylobate.run_arguments import Accuracy
 
 
-class RunArguments(TypedDict, total=False):
-    """Arguments of `simulate` that all models share."""
-
-    rtol: float
-    atol: float | None
-    tilt_limit: float | None
-    rest_energy: float | None
-    max_steps: int
-    rules: OutcomeRules | None
-
-
-class HierarchyArguments(RunArguments, total=False):
+class HierarchyArguments(Accuracy, total=False):
     """Arguments that all models of a comparison share; each model uses the dissipation parameters that it declares.
 
     They are `damping`, `spin_damping`, `rolling_resistance`, `restitution`, and `rtol`, `atol`, `tilt_limit`,

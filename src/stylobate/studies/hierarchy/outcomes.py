@@ -14,9 +14,9 @@ from stylobate.errors import Outcome
 from stylobate.models import Model
 from stylobate.progress import Progress, shows_progress
 from stylobate.results.outcomes import NOT_COMPUTED, flag_attributes
+from stylobate.run_arguments import RunOptions
 from stylobate.studies.maps.overturning import overturning_map
 from stylobate.studies.sweeps import Executor
-from stylobate.studies.sweeps.recipe import RunOptions
 
 
 class Comparison(Enum):

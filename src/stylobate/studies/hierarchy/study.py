@@ -11,20 +11,21 @@ import xarray as xr
 
 from stylobate.base_motions import BASE_AT_REST, BaseMotion
 from stylobate.column import Column
-from stylobate.config import provenance_of_run
 from stylobate.errors import ParameterError, as_numbers, require_finite, require_positive, require_vector, require_whole
 from stylobate.models import Rolling
 from stylobate.models.declared import dissipation_of
 from stylobate.models.model import require_column
+from stylobate.provenance import provenance_of_run
 from stylobate.results import Response
 from stylobate.results.outcomes import outcome_attributes
-from stylobate.studies.hierarchy.models import Case, HierarchyArguments, RunArguments
+from stylobate.run_arguments import Accuracy
+from stylobate.studies.hierarchy.models import Case, HierarchyArguments
 from stylobate.studies.hierarchy.runs import Course, Floats, largest_distance
 
 # Number of times at which models are compared, unless the user requests histories of another length.
 _TIMES = 2001
 
-_OF_SIMULATE = tuple(RunArguments.__annotations__)
+_OF_SIMULATE = tuple(Accuracy.__annotations__)
 
 
 def model_hierarchy(

@@ -14,6 +14,7 @@ from stylobate.models import Model
 from stylobate.progress import Progress, shows_progress
 from stylobate.results.outcomes import NOT_COMPUTED, flag_attributes
 from stylobate.results.random_numbers import Rng
+from stylobate.run_arguments import RunOptions
 from stylobate.studies.checks import require_starts
 from stylobate.studies.maps.attractor_search import (
     NOT_SETTLED,
@@ -30,7 +31,6 @@ from stylobate.studies.maps.stroboscopic_count import with_strobes
 from stylobate.studies.proportions import fraction_interval
 from stylobate.studies.sweeps import Executor, Sweep
 from stylobate.studies.sweeps.labelled import labelled_sweep
-from stylobate.studies.sweeps.recipe import RunOptions
 
 _TABLE = "attractor_index"
 

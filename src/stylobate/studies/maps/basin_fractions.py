@@ -10,13 +10,14 @@ import numpy.typing as npt
 import xarray as xr
 
 from stylobate.base_motions import BASE_AT_REST, BaseMotion
-from stylobate.config.parameter_quantities import attributes_of
 from stylobate.engine import with_parameters
 from stylobate.errors import MOST_RUNS, require_whole
 from stylobate.models import Model
+from stylobate.parameter_quantities import attributes_of
 from stylobate.progress import Progress, shows_progress
 from stylobate.results.outcomes import NOT_COMPUTED
 from stylobate.results.random_numbers import Rng
+from stylobate.run_arguments import RunOptions
 from stylobate.studies.checks import SYSTEM_STARTS, one_parameter, require_starts
 from stylobate.studies.maps.attractor_continuation import Branches, follow_branches
 from stylobate.studies.maps.attractor_search import NOT_SETTLED, REMEDY, Found, find_attractors
@@ -27,7 +28,6 @@ from stylobate.studies.proportions import fraction_interval, require_confidence
 from stylobate.studies.sweeps import Executor, Sweep
 from stylobate.studies.sweeps.designs import Box, whole
 from stylobate.studies.sweeps.labelled import labelled_sweep
-from stylobate.studies.sweeps.recipe import RunOptions
 
 
 @shows_progress("basin fractions")

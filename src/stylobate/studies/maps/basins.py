@@ -14,6 +14,7 @@ from stylobate.models import Model
 from stylobate.orbits import PeriodicOrbit
 from stylobate.progress import Progress, shows_progress
 from stylobate.results.random_numbers import Rng
+from stylobate.run_arguments import RunOptions
 from stylobate.studies.checks import require_starts, require_values
 from stylobate.studies.known_rolling import known_orbit_of
 from stylobate.studies.maps.attractors import label_attractors
@@ -21,7 +22,6 @@ from stylobate.studies.maps.stroboscopic import AttractorRules
 from stylobate.studies.maps.stroboscopic_count import with_strobes
 from stylobate.studies.sweeps import Executor, Sweep
 from stylobate.studies.sweeps.labelled import labelled_sweep
-from stylobate.studies.sweeps.recipe import RunOptions
 
 _PLANE = 2
 

@@ -14,6 +14,7 @@ from stylobate.base_motions import BaseMotion
 from stylobate.errors import ParameterError
 from stylobate.models import Model
 from stylobate.progress import Progress, shows_progress
+from stylobate.run_arguments import RunOptions
 from stylobate.studies.checks import (
     SYSTEM_STARTS,
     one_parameter,
@@ -24,7 +25,6 @@ from stylobate.studies.checks import (
 from stylobate.studies.maps.safe_distance import Metric, distance_to_overturning
 from stylobate.studies.sweeps import Executor, Sweep
 from stylobate.studies.sweeps.labelled import labelled_sweep
-from stylobate.studies.sweeps.recipe import RunOptions
 
 
 @shows_progress("integrity")

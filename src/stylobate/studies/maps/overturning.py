@@ -14,10 +14,10 @@ from stylobate.errors import Outcome, ParameterError
 from stylobate.models import Model
 from stylobate.progress import Progress, shows_progress
 from stylobate.results.outcomes import NOT_COMPUTED
+from stylobate.run_arguments import RunOptions
 from stylobate.studies.checks import require_values
 from stylobate.studies.sweeps import Executor, Sweep
 from stylobate.studies.sweeps.labelled import labelled_sweep
-from stylobate.studies.sweeps.recipe import RunOptions
 
 _PLANE = 2
 

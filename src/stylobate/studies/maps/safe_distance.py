@@ -8,9 +8,9 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from stylobate.config.parameter_quantities import quantity_of
 from stylobate.errors import Outcome, ParameterError, require_finite
 from stylobate.models import Model
+from stylobate.parameter_quantities import quantity_of
 from stylobate.results.outcomes import NOT_COMPUTED
 from stylobate.studies.maps.stroboscopic import Floats
 from stylobate.studies.sweeps.quantities import STARTS, checked_values

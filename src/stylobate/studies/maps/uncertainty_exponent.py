@@ -11,12 +11,13 @@ import numpy.typing as npt
 import xarray as xr
 
 from stylobate.base_motions import BaseMotion
-from stylobate.config.parameter_quantities import attributes_of
 from stylobate.errors import MOST_RUNS, Outcome, ParameterError, require_whole
 from stylobate.models import Model
+from stylobate.parameter_quantities import attributes_of
 from stylobate.progress import Progress, shows_progress
 from stylobate.results.outcomes import NOT_COMPUTED
 from stylobate.results.random_numbers import Rng
+from stylobate.run_arguments import RunOptions
 from stylobate.studies.checks import require_no_tilt_limit, require_starts
 from stylobate.studies.maps.attractor_search import UNSETTLED, find_attractors
 from stylobate.studies.maps.power_law import fit_power_law
@@ -28,7 +29,6 @@ from stylobate.studies.sweeps import Executor, Sweep
 from stylobate.studies.sweeps.designs import Box, whole
 from stylobate.studies.sweeps.labelled import labelled_sweep
 from stylobate.studies.sweeps.quantities import checked_values
-from stylobate.studies.sweeps.recipe import RunOptions
 
 # Default shifts: this many, geometric, between these fractions of the range of the shifted component.
 _USUAL_SHIFTS = np.geomspace(1e-5, 3e-2, 8)

@@ -6,13 +6,13 @@ from collections.abc import Sequence
 import numpy as np
 import xarray as xr
 
-from stylobate.config import provenance_of_run
-from stylobate.config.parameter_quantities import attributes_of, quantity_of
 from stylobate.engine import simulate_ensemble
 from stylobate.errors import Interrupted, ParameterError, as_numbers, require_positive, require_whole
 from stylobate.orbits import Bifurcation
 from stylobate.orbits.arguments import require_bifurcation
+from stylobate.parameter_quantities import attributes_of, quantity_of
 from stylobate.progress import Progress, report_of, shows_progress
+from stylobate.provenance import provenance_of_run
 from stylobate.results.random_numbers import Rng, seed_of
 from stylobate.studies.maps.attractors import label_attractors
 from stylobate.text import plural

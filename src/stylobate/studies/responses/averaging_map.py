@@ -9,15 +9,15 @@ import numpy.typing as npt
 import xarray as xr
 
 from stylobate.base_motions import BaseMotion
-from stylobate.config import provenance_of_run
-from stylobate.config.parameter_quantities import attributes_of
 from stylobate.engine import with_parameters
 from stylobate.errors import Interrupted, NoOrbitError
 from stylobate.models import Model
 from stylobate.orbits import Branch, continue_branch
 from stylobate.orbits.arguments import require_subject
 from stylobate.orbits.multipliers import is_stable
+from stylobate.parameter_quantities import attributes_of
 from stylobate.progress import Progress, report_of, shows_progress
+from stylobate.provenance import provenance_of_run
 from stylobate.studies.ranges import require_rising_frequencies, require_values
 from stylobate.studies.responses.first_orbit import first_orbit
 from stylobate.studies.responses.orbit_families import between_bifurcations

@@ -7,7 +7,6 @@ import numpy as np
 import xarray as xr
 
 from stylobate.base_motions import BaseMotion
-from stylobate.config import provenance_of_run
 from stylobate.engine import with_parameters
 from stylobate.engine.parameters import present_value
 from stylobate.errors import Interrupted, ParameterError, UnsupportedError, require_whole
@@ -15,6 +14,7 @@ from stylobate.models import Model
 from stylobate.orbits import PeriodicOrbit, StepControl, continue_branch
 from stylobate.orbits.arguments import require_orbit, require_subject
 from stylobate.progress import Progress, at_value, shows_progress
+from stylobate.provenance import provenance_of_run
 from stylobate.studies.ranges import require_frequencies
 from stylobate.studies.responses.first_orbit import first_orbit
 from stylobate.studies.responses.orbit_families import Followed, between_bifurcations, born

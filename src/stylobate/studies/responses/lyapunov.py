@@ -8,13 +8,13 @@ import numpy.typing as npt
 import xarray as xr
 
 from stylobate.base_motions import BaseMotion
-from stylobate.config import provenance_of_run
 from stylobate.engine.flow.periodic import PeriodicSystem, plane_of
 from stylobate.engine.flow.status import Status
 from stylobate.errors import Interrupted, ParameterError, as_numbers, require_positive, require_vector, require_whole
 from stylobate.models import Model
 from stylobate.orbits.arguments import require_subject
 from stylobate.progress import Progress, report_of, shows_progress
+from stylobate.provenance import provenance_of_run
 from stylobate.text import plural
 
 Floats = npt.NDArray[np.float64]

@@ -1,6 +1,7 @@
 """Poincaré sections: states of columns once per period of the base motion."""
 
 import json
+from typing import Unpack
 
 import numpy as np
 import xarray as xr
@@ -12,6 +13,7 @@ from stylobate.errors import ParameterError, UnsupportedError, require_whole
 from stylobate.models import Model
 from stylobate.orbits.arguments import require_subject
 from stylobate.progress import Progress, shows_progress
+from stylobate.run_arguments import Accuracy
 
 _FOLLOWED = ("outcome", "decided_at", "uncertain")
 
@@ -25,10 +27,9 @@ def poincare_section(
     tilt_rate: ArrayLike = (0.0, 0.0),
     periods: int = 1000,
     skip: int = 200,
-    rtol: float = 1e-10,
-    rest_energy: float | None = None,
     threads: int | None = None,
     progress: Progress = None,
+    **options: Unpack[Accuracy],
 ) -> xr.Dataset:
     """Compute Poincaré sections: states once per period, when the base motion has the phase of t = 0.
 
@@ -45,8 +46,11 @@ def poincare_section(
         Duration of the runs in periods.
     skip
         Number of periods at the beginning to leave out, while the motion settles.
-    rtol, rest_energy, threads, progress
+    threads, progress
         As in `simulate_ensemble`.
+    **options
+        Accuracy of the runs as in `simulate_ensemble`; by default `rtol` is 1e-10, and `max_steps` grows with the
+        number of periods.
 
     Returns
     -------
@@ -87,6 +91,7 @@ def poincare_section(
     points = periods - skip + 1
     # Samples at equal times, one per period, without those of the skipped periods. Stroboscopic samples have phase
     # zero of the base motion, which is t = 0 only for a start phase of zero.
+    accuracy: Accuracy = {"rtol": 1e-10, "max_steps": _most_steps(periods), **options}
     runs = simulate_ensemble(
         model,
         motion,
@@ -94,11 +99,9 @@ def poincare_section(
         tilt_rate=tilt_rate,
         duration=periods * motion.period,
         samples=periods + 1,
-        rtol=rtol,
-        rest_energy=rest_energy,
-        max_steps=_most_steps(periods),
         threads=threads,
         progress=progress,
+        **accuracy,
     )
     late = runs.isel(sample=slice(periods + 1 - points, None)).rename(sample="period")
     names = {"sampled_tilt": "section_tilt", "sampled_tilt_rate": "section_tilt_rate"}

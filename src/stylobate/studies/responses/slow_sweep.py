@@ -3,22 +3,23 @@
 import json
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
-from typing import Any
+from typing import Any, Unpack
 
 import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
 from stylobate.base_motions import BaseMotion
-from stylobate.config import provenance_of_run
-from stylobate.config.parameter_quantities import attributes_of, quantity_of
 from stylobate.engine import simulate_ensemble, with_parameters
 from stylobate.errors import Interrupted, Outcome, ParameterError, UnsupportedError, as_numbers, require_whole
 from stylobate.models import Model
 from stylobate.orbits.arguments import require_subject
+from stylobate.parameter_quantities import attributes_of, quantity_of
 from stylobate.progress import Progress, report_of, shows_progress
+from stylobate.provenance import provenance_of_run
 from stylobate.results import OutcomeRules
 from stylobate.results.outcomes import NOT_COMPUTED, outcome_attributes
+from stylobate.run_arguments import Accuracy, defaults_of
 from stylobate.studies.sweeps.quantities import Floats, checked_values
 
 # Samples per period for the mean tilt.
@@ -53,11 +54,9 @@ def slow_sweep(
     tilt_rate: npt.ArrayLike = (0.0, 0.0),
     periods_each: int = 200,
     back: bool = False,
-    rtol: float = 1e-8,
-    rest_energy: float | None = None,
-    rules: OutcomeRules | None = None,
     threads: int | None = None,
     progress: Progress = None,
+    **options: Unpack[Accuracy],
 ) -> xr.Dataset:
     """Integrate columns while a parameter steps through its values, to show jumps and hysteresis.
 
@@ -82,13 +81,13 @@ def slow_sweep(
         smaller steps would not overturn.
     back
         Return through the values after the last one.
-    rtol, rest_energy, threads
+    threads
         As in `simulate_ensemble`.
-    rules
-        Rules of the outcome at each value; by default with 25 `periods` and 51 `steady_periods`. With n =
-        `rules.periods` the last 2n + 1 periods decide.
     progress
         A function that is called as `progress(steps done, steps in all)`; a bar by default, False for none.
+    **options
+        Accuracy and rules of the runs as in `simulate_ensemble`. By default the rules of the outcome at each value have
+        25 `periods` and 51 `steady_periods`. With n = `rules.periods` the last 2n + 1 periods decide.
 
     Returns
     -------
@@ -120,7 +119,7 @@ def slow_sweep(
     ['ROLLING', 'ROLLING', 'MODULATED', 'OVERTURNED']
     """
     require_subject(model, motion)
-    held = rules or _RULES
+    held = options.get("rules") or _RULES
     watched = 2 * held.periods + 1
     steps, starts = _together(parameter, values, tilt, tilt_rate)
     if back:
@@ -131,14 +130,15 @@ def slow_sweep(
         parameter,
         settling=require_whole("periods_each", periods_each, least=watched) - watched,
         watched=watched,
-        options={"rtol": rtol, "rest_energy": rest_energy, "rules": held, "threads": threads},
+        options={**options, "rules": held, "threads": threads},
     )
     periods = _periods(hold, steps)
     table = _empty(steps.shape)
 
     def result() -> xr.Dataset:
-        kept = {"tilt": starts[0].tolist(), "tilt_rate": starts[1].tolist(), "periods_each": periods_each, "rtol": rtol}
-        provenance = provenance_of_run(model, motion, **kept, rest_energy=rest_energy, rules=asdict(held))
+        kept = {"tilt": starts[0].tolist(), "tilt_rate": starts[1].tolist(), "periods_each": periods_each}
+        accuracy = {**defaults_of(Accuracy), **options, "rules": asdict(held)}
+        provenance = provenance_of_run(model, motion, **kept, **accuracy)
         return _dataset(table, steps, parameter, watched, provenance)
 
     state, moving = starts, np.ones(steps.shape[1], dtype=bool)

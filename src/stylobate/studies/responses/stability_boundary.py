@@ -7,8 +7,6 @@ import numpy as np
 import xarray as xr
 
 from stylobate.base_motions import BaseMotion
-from stylobate.config import provenance_of_run
-from stylobate.config.parameter_quantities import attributes_of, quantity_of
 from stylobate.engine import with_parameters
 from stylobate.errors import Interrupted, NoOrbitError, ParameterError, UnsupportedError, as_numbers, require_positive
 from stylobate.models import Model
@@ -23,7 +21,9 @@ from stylobate.orbits import (
 )
 from stylobate.orbits.arguments import require_subject
 from stylobate.orbits.multipliers import is_stable
+from stylobate.parameter_quantities import attributes_of, quantity_of
 from stylobate.progress import Progress, report_of, shows_progress
+from stylobate.provenance import provenance_of_run
 from stylobate.studies.ranges import require_bounds, require_frequencies
 from stylobate.studies.responses.first_orbit import first_orbit
 from stylobate.studies.responses.orbit_families import between_bifurcations

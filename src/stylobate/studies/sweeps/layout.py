@@ -9,8 +9,8 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from stylobate.config.parameter_quantities import attributes_of
 from stylobate.engine import simulate_ensemble
+from stylobate.parameter_quantities import attributes_of
 from stylobate.results.outcomes import NOT_COMPUTED
 from stylobate.studies.sweeps.blocks import DISK_BLOCK, Block, Blocks
 from stylobate.studies.sweeps.designs import Design, whole

@@ -7,10 +7,10 @@ import numpy as np
 import numpy.typing as npt
 
 from stylobate.base_motions import BaseMotion
-from stylobate.config.parameter_quantities import quantity_of
 from stylobate.engine.parameters import check_names
 from stylobate.errors import ParameterError, as_numbers, require_finite, require_size
 from stylobate.models import Model
+from stylobate.parameter_quantities import quantity_of
 from stylobate.quantities import Parameter
 
 Floats = npt.NDArray[np.float64]

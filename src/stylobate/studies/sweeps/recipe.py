@@ -1,66 +1,20 @@
 """Recipe of the runs of a sweep: the shared arguments, combined with the values that vary."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, TypedDict
+from typing import Any
 
 import numpy as np
 
 from stylobate.base_motions import BaseMotion
 from stylobate.base_motions.one_of import members_of
 from stylobate.base_motions.varying import stated_numbers, with_numbers
-from stylobate.engine import KnownOrbit
 from stylobate.models import Model
-from stylobate.results import OutcomeRules
+from stylobate.results.known_orbits import as_orbits
+from stylobate.run_arguments import RunOptions
 from stylobate.studies.known_rolling import known_rolling
 from stylobate.studies.sweeps.quantities import OF_A_RUN, Floats
-
-
-class RunOptions(TypedDict, total=False):
-    """Arguments of `simulate_ensemble` that all runs of a sweep share.
-
-    They are `tilt`, `tilt_rate`, `spin`, `method`, `rtol`, `atol`, `tilt_limit`, `rest_energy`, `max_steps`, `samples`,
-    `strobes`, `rules`, `demands`, `recheck`, `known_orbits` and `end_converged`. With `end_converged`, runs that have
-    converged to steady rolling in closed form end early.
-    """
-
-    tilt: Sequence[float]
-    tilt_rate: Sequence[float]
-    spin: float
-    method: str
-    rtol: float
-    atol: float | None
-    tilt_limit: float | None
-    rest_energy: float | None
-    max_steps: int
-    samples: int | None
-    strobes: int
-    rules: OutcomeRules | None
-    demands: bool
-    recheck: bool
-    known_orbits: Sequence[KnownOrbit]
-    end_converged: bool
-
-
-DEFAULTS = RunOptions(
-    tilt=(0.0, 0.0),
-    tilt_rate=(0.0, 0.0),
-    spin=0.0,
-    method="dop853",
-    rtol=1e-8,
-    atol=None,
-    tilt_limit=None,
-    rest_energy=None,
-    max_steps=200_000,
-    samples=None,
-    strobes=0,
-    rules=None,
-    demands=False,
-    recheck=False,
-    known_orbits=(),
-    end_converged=False,
-)
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,7 +39,7 @@ class Recipe:
         own = {name: array for name, array in values.items() if name not in OF_A_RUN}
         if chosen.pop("end_converged") and count > 0:
             rolling = known_rolling(self.model, self.motion, own, count)
-            chosen["known_orbits"] = (*chosen["known_orbits"], rolling)
+            chosen["known_orbits"] = (*as_orbits(chosen["known_orbits"]), rolling)
         return {**chosen, "duration": self._durations(values), "parameters": own}
 
     def _durations(self, values: Mapping[str, Floats]) -> Floats | float:

@@ -20,9 +20,9 @@ import lazy_loader
 import numpy as np
 import xarray as xr
 
-from stylobate.config.parameter_quantities import attributes_of
 from stylobate.errors import FileError
 from stylobate.files import written_aside
+from stylobate.parameter_quantities import attributes_of
 from stylobate.results.storage import require_this_version
 from stylobate.studies.sweeps.blocks import Blocks
 from stylobate.studies.sweeps.chunks import CODECS, METADATA, SEAL, Chunks, State, checksum, chunk_file

@@ -9,20 +9,21 @@ import numpy.typing as npt
 
 from stylobate.base_motions import BASE_AT_REST, BaseMotion
 from stylobate.base_motions.varying import is_pulse
-from stylobate.config import provenance_of_run
 from stylobate.engine.parameters import own_numbers
 from stylobate.errors import ParameterError, require_positive, require_vector
 from stylobate.kinds import names_code
 from stylobate.models import Model
+from stylobate.provenance import provenance_of_run
 from stylobate.results import OutcomeRules
 from stylobate.results.random_numbers import Rng
+from stylobate.run_arguments import RunOptions, defaults_of
 from stylobate.studies.known_rolling import require_closed_form
 from stylobate.studies.sweeps.blocks import Blocks
 from stylobate.studies.sweeps.designs import Box, Design, Grid, Points
 from stylobate.studies.sweeps.fingerprint import identity_of
 from stylobate.studies.sweeps.layout import Layout, bytes_on_disk, layout_of
 from stylobate.studies.sweeps.quantities import OF_A_RUN, check_quantities
-from stylobate.studies.sweeps.recipe import DEFAULTS, Recipe, RunOptions
+from stylobate.studies.sweeps.recipe import Recipe
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -81,13 +82,14 @@ class Sweep:
             raise ParameterError(message)
         check_quantities(self.design.argument, self.model, self.design.names, self.motion)
         self._check_duration()
-        unknown = [name for name in self.options if name not in DEFAULTS]
+        defaults = defaults_of(RunOptions)
+        unknown = [name for name in self.options if name not in defaults]
         if unknown:
-            message = f"{unknown[0]} is no option of a sweep; the options are {', '.join(DEFAULTS)}"
+            message = f"{unknown[0]} is no option of a sweep; the options are {', '.join(defaults)}"
             raise ParameterError(message)
-        options = {**DEFAULTS, **self.options}
+        options = {**defaults, **self.options}
         for name, unit in (("tilt", "rad"), ("tilt_rate", "rad/s")):
-            options[name] = require_vector(name, options[name], 2, unit)  # type: ignore[arg-type]
+            options[name] = require_vector(name, options[name], 2, unit)
         if options["end_converged"]:
             require_closed_form(self.model, self.motion, [name for name in self.design.names if name not in OF_A_RUN])
         object.__setattr__(self, "options", options)
