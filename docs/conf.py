@@ -57,7 +57,6 @@ napoleon_use_ivar = True
 napoleon_use_param = False
 autodoc_member_order = "bysource"
 autodoc_typehints_format = "short"
-autodoc_preserve_defaults = True
 python_maximum_signature_line_length = 88
 
 # The names of other packages that signatures and pages use: text files, so that a build fetches nothing.

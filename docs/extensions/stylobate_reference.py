@@ -357,7 +357,7 @@ _DIRECTIVES: dict[str, type[SphinxDirective]] = {
 
 
 def setup(app: Sphinx) -> dict[str, Any]:
-    """Add the directives, and read all declarations: autodoc replaces the defaults in signatures by texts later."""
+    """Add the directives, and read all declarations."""
     declared_options.shared_options()
     for part in declared_fields.PARTS:
         declared_fields.numbers(part)

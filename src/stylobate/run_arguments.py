@@ -385,4 +385,5 @@ def _described(group: Any) -> str:
     return "".join(f"    {name}\n" + "".join(f"        {line}\n" for line in lines) for name, lines in said)
 
 
-RunOptions.__doc__ = f"{RunOptions.__doc__}\n\n    Parameters\n    ----------\n{_described(RunOptions)}"
+for _group in (Accuracy, RunOptions):
+    _group.__doc__ = f"{_group.__doc__}\n\n    Parameters\n    ----------\n{_described(_group)}"
