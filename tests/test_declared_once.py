@@ -31,9 +31,6 @@ REGISTRIES = {"base_motions/declared.py", "models/declared.py", "column.py"}
 WRITTEN = {"lab/web/src/page/server/declared.ts"}
 """Files that tools/page_types.py writes from the declarations; a test checks them."""
 
-SIGNATURES_THAT_DECLARE = {"engine/single.py": "simulate", "engine/ensemble.py": "simulate_ensemble"}
-"""Functions of the package's public face: their arguments are documented where they stand, one by one."""
-
 REMAINING: dict[str, int] = {
     "engine/ensemble.py": 2,  # arguments of `simulate_ensemble` by name
     "engine/ensembles/broadcasting.py": 1,  # numbers of a column that are masses
@@ -61,10 +58,10 @@ def displays(tree: ast.AST) -> Iterator[list[str]]:
         yield [one.value for one in parts if isinstance(one, ast.Constant) and isinstance(one.value, str)]
 
 
-def signatures(tree: ast.AST, declaring: str = "") -> Iterator[list[str]]:
-    """Yield the names of the arguments of each function but the one that declares them."""
+def signatures(tree: ast.AST) -> Iterator[list[str]]:
+    """Yield the names of the arguments of each function."""
     for node in ast.walk(tree):
-        if isinstance(node, ast.FunctionDef) and node.name != declaring:
+        if isinstance(node, ast.FunctionDef):
             yield [argument.arg for argument in (*node.args.args, *node.args.kwonlyargs)]
 
 
@@ -75,21 +72,21 @@ def is_a_list_of_names(strings: list[str]) -> bool:
     )
 
 
-def lists_in(path: Path, declaring: str = "") -> int:
+def lists_in(path: Path) -> int:
     """Return how many lists of names a file holds."""
     text = path.read_text(encoding="utf-8")
     if path.suffix == ".ts":
         found = re.findall(r"\[((?:\s*\"[a-z_]+\",?)+)\s*\]", text)
         return sum(is_a_list_of_names(re.findall(r"\"([a-z_]+)\"", one)) for one in found)
     tree = ast.parse(text)
-    long = sum(sum(name in NUMBERS for name in names) >= LEAST_OF_A_SIGNATURE for names in signatures(tree, declaring))
+    long = sum(sum(name in NUMBERS for name in names) >= LEAST_OF_A_SIGNATURE for names in signatures(tree))
     return long + sum(map(is_a_list_of_names, displays(tree)))
 
 
 def test_no_list_of_names_is_kept_beside_the_declarations():
     sources = [*ROOT.rglob("*.py"), *(ROOT / "lab/web/src").rglob("*.ts")]
     places = {path.relative_to(ROOT).as_posix(): path for path in sources}
-    counted = {name: lists_in(path, SIGNATURES_THAT_DECLARE.get(name, "")) for name, path in places.items()}
+    counted = {name: lists_in(path) for name, path in places.items()}
     found = {name: count for name, count in counted.items() if count and name not in {*REGISTRIES, *WRITTEN}}
     assert found == REMAINING
 

@@ -223,7 +223,7 @@ class AssessConfig(Config):
         details = self._details(problems)
         if problems:
             raise ConfigError(problems)
-        options = {"details": details} | {name: getattr(self, name) for name in _PASSED}
+        options = {"details": details} | {name: getattr(self, name) for name in (*_PASSED, *self._of_runs())}
         options["notes"] = (
             *self.notes,
             *(f"Warning: {one.message}" for one in remarks if one.category is UnlikelyInputWarning),
@@ -267,13 +267,18 @@ class AssessConfig(Config):
         repeated = [name for name in stated if name in self.model.model_fields_set]
         return [f"model.{name}: `dissipation` sets it. Remove it from the model." for name in repeated]
 
+    @classmethod
+    def _of_runs(cls) -> list[str]:
+        """Return the names of the numbers of all runs."""
+        return [name for name in numbers_of(Accuracy) if name in cls.model_fields]
+
     def _problems_of_the_numbers(self) -> list[str]:
         """Return a line for each invalid number."""
         friction = self.friction_coefficient
         by_column = friction if isinstance(friction, dict) else {}
         checks: list[Callable[[], object]] = [
             lambda: require_positive("width", self.width),
-            *(partial(numbers_of(Accuracy)[name].checked, getattr(self, name)) for name in _OF_RUNS),
+            *(partial(numbers_of(Accuracy)[name].checked, getattr(self, name)) for name in self._of_runs()),
             lambda: require_whole("least_records", self.least_records, least=2),
             lambda: require_variations(self.variations),
             lambda: require_whole("seed", self.seed, least=0, most=LARGEST_SEED),
@@ -328,8 +333,7 @@ _PLACEHOLDERS: dict[str, Any] = {
     "friction_coefficient": 1.0,
 }
 
-_OF_RUNS = ("rtol", "rest_energy", "max_steps")
 _PASSED = (
     *("title", "dissipation", "friction_coefficient", "scales", "width", "tail", "planar", "contact"),
-    *("sliding", "contact_laws", "variations", "seed", "least_records", "notes", *_OF_RUNS),
+    *("sliding", "contact_laws", "variations", "seed", "least_records", "notes"),
 )

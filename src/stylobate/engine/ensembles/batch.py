@@ -76,7 +76,8 @@ class Plan:
         own = self.options
         rtol, atol = other_tolerance(own["rtol"]), own["atol"]
         atol = None if atol is None else atol * (rtol / own["rtol"])
-        options: Options = {**own, "rtol": rtol, "atol": atol, "samples": None, "strobes": 0, "recheck": False}
+        finer: Options = {**own, "rtol": rtol, "atol": atol}
+        options: Options = {**finer, "samples": None, "strobes": 0, "recheck": False}
         return replace(self, options=options, rest_share=FINER_REST, passage_share=FINER_PASSAGE, traces=0)
 
     def shape(self, *, planar: bool) -> Shape:
