@@ -23,14 +23,11 @@ import math
 import warnings
 from collections.abc import Callable, Iterable, Sequence
 from enum import IntEnum
-from functools import cache, wraps
-from typing import Any, NamedTuple, ParamSpec, TypeVar
+from functools import cache
+from typing import Any, NamedTuple
 
 from stylobate import units
 from stylobate.text import did_you_mean
-
-_P = ParamSpec("_P")
-_T = TypeVar("_T")
 
 SMALLEST, LARGEST = 1e-30, 1e15
 """Limits for the size of a number other than zero: numbers of columns are far inside, and no product overflows."""
@@ -231,17 +228,6 @@ def refuse_unknown_arguments(function: Callable[..., Any], names: Iterable[str])
             question = did_you_mean(name, known)
             message = f"{function.__qualname__}() got an unexpected keyword argument {name!r}; {question}".rstrip("; ")
             raise TypeError(message)
-
-
-def suggests_arguments(function: Callable[_P, _T]) -> Callable[_P, _T]:
-    """Suggest the most similar argument for an unknown one; a decorator."""
-
-    @wraps(function)
-    def suggesting(*arguments: _P.args, **named: _P.kwargs) -> _T:
-        refuse_unknown_arguments(function, named)
-        return function(*arguments, **named)
-
-    return suggesting
 
 
 @cache

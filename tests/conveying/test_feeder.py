@@ -84,7 +84,7 @@ def test_the_table_states_a_horizontal_vibration_and_the_default_friction():
     rows = dict(sheet_rows(level))
     assert rows["vibration angle"] == ["0.0° (horizontal)"]
     assert rows["friction"] == ["0.5 (the default)"]
-    with pytest.raises(sb.errors.ParameterError, match="a feeder sheet is a table"):
+    with pytest.raises(sb.errors.ParameterError, match="kind 'feeder sheet', which has no figure"):
         sb.plot(level)
 
 

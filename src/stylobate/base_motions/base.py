@@ -18,6 +18,11 @@ DISPLACEMENT, VELOCITY, ACCELERATION = range(3)
 Components = tuple[npt.NDArray[np.float64], npt.NDArray[np.float64], npt.NDArray[np.float64]]
 
 
+def along_azimuth(azimuth: float, size: float) -> tuple[tuple[float, float], ...]:
+    """Return the one horizontal vector of this size that spans a motion along a line."""
+    return ((size * math.cos(azimuth), size * math.sin(azimuth)),)
+
+
 class MotionContract(Declared, ABC):
     """The properties of a base motion from t = 0 on, in SI units, along x, y (horizontal) and z (up)."""
 

@@ -9,7 +9,7 @@ from typing import Annotated, Any, ClassVar, Self
 import numpy as np
 import numpy.typing as npt
 
-from stylobate.base_motions.base import ACCELERATION, DISPLACEMENT, VELOCITY, Components
+from stylobate.base_motions.base import ACCELERATION, DISPLACEMENT, VELOCITY, Components, along_azimuth
 from stylobate.base_motions.combined import BaseMotion
 from stylobate.base_motions.numbers import (
     Acceleration,
@@ -215,8 +215,7 @@ class SineSweep(BaseMotion):
 
     def directions(self) -> tuple[tuple[float, float], ...]:
         """Return the peak acceleration along the line [m/s²]."""
-        largest = self.peak_horizontal()
-        return ((largest * math.cos(self.direction), largest * math.sin(self.direction)),)
+        return along_azimuth(self.direction, self.peak_horizontal())
 
     @property
     def duration(self) -> float:

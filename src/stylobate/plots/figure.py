@@ -113,8 +113,10 @@ def _drawn(result: Any, labels: Sequence[str] | None) -> Figure:
     if isinstance(result, Assessment):
         message = "result must have one figure, got an Assessment. Write its report by earthquakes.assessment_report"
         raise ParameterError(message)
+    table = result.attrs.get("kind") if isinstance(result, xr.Dataset) else None
+    got = f"a Dataset of kind {table!r}, which has no figure" if table else type(result).__name__
     message = (
         "result must be a column, a base motion, a run, an orbit, a branch, a curve, a sequence of runs, branches or "
-        f"curves, or the result of a study, got {type(result).__name__}"
+        f"curves, or the result of a study, got {got}"
     )
     raise ParameterError(message)

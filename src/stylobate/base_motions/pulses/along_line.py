@@ -7,7 +7,7 @@ from typing import ClassVar
 import numpy as np
 import numpy.typing as npt
 
-from stylobate.base_motions.base import ACCELERATION, DISPLACEMENT, VELOCITY, Components
+from stylobate.base_motions.base import ACCELERATION, DISPLACEMENT, VELOCITY, Components, along_azimuth
 from stylobate.base_motions.combined import BaseMotion
 from stylobate.base_motions.numbers import Direction, Start, VerticalRatio
 from stylobate.base_motions.pulses.waveform import Waveform
@@ -57,8 +57,7 @@ class AlongLine(BaseMotion):
 
     def directions(self) -> tuple[tuple[float, float], ...]:
         """Return the peak acceleration along the line [m/s²]."""
-        largest = self.peak_horizontal()
-        return ((largest * math.cos(self.direction), largest * math.sin(self.direction)),)
+        return along_azimuth(self.direction, self.peak_horizontal())
 
     @property
     def duration(self) -> float:

@@ -6,9 +6,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FormatStrFormatter, LogLocator, NullFormatter
 
-from stylobate.conveying.feeder import KIND as SHEET
 from stylobate.conveying.posture import KIND, Posture
-from stylobate.errors import ParameterError
 from stylobate.plots.cells import fill_options
 from stylobate.plots.classes import KIND_LOOKS
 from stylobate.plots.kinds import figure_of
@@ -35,16 +33,6 @@ def plot_posture(found: xr.Dataset) -> Figure:
     _draw_peaks(peaks, found)
     heading(figure, str(found.attrs["verdict"]).partition(";")[0])
     return figure
-
-
-@figure_of(SHEET)
-def refuse_sheet(found: xr.Dataset) -> Figure:
-    """Raise ParameterError: a feeder sheet is a table."""
-    message = (
-        f"result: a feeder sheet is a table (got {found.attrs['kind']!r}). Print it by conveying.sheet_rows, or plot "
-        "the postures of conveying.upright or the speeds of conveying.drift."
-    )
-    raise ParameterError(message)
 
 
 def _draw_shares(axes: Axes, found: xr.Dataset) -> None:
