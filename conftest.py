@@ -12,7 +12,7 @@ from sybil import Sybil
 from sybil.parsers.myst import PythonCodeBlockParser, SkipParser
 
 # pytest puts a module that it imports first in the place of the function of that name in its package.
-import stylobate.studies  # noqa: F401
+import stylobate.studies
 
 # Programs of the documentation run while the site is built.
 collect_ignore_glob = ["docs/*.py"]
@@ -32,7 +32,7 @@ def _leave_folder(namespace: Mapping[str, Any]) -> None:
 @pytest.fixture(scope="session")
 def laboratory() -> Iterator[str]:
     """The address of a laboratory that is served."""
-    from tests.lab.conftest import laboratory as served  # noqa: PLC0415  heavy, and for one page only
+    from tests.lab.conftest import laboratory as served
 
     with served() as address:
         yield address

@@ -60,12 +60,12 @@ def test_dir_lists_the_public_names():
 
 def test_an_unknown_name_is_an_attribute_error():
     with pytest.raises(AttributeError, match=r"no attribute 'colum'; did you mean Column\?"):
-        stylobate.colum  # noqa: B018
+        stylobate.colum
 
 
 def test_names_are_the_same_objects_wherever_they_are_reached():
-    from stylobate.column import Column  # noqa: PLC0415
-    from stylobate.engine import simulate  # noqa: PLC0415
+    from stylobate.column import Column
+    from stylobate.engine import simulate
 
     assert stylobate.Column is Column
     assert stylobate.simulate is simulate

@@ -47,7 +47,7 @@ def one_of(descriptions: Iterable[type[Config]], tag: str, own: Callable[[Place]
 
     With `own`, which describes a user's own class, the key can also hold the place of such a class.
     """
-    union: Any = Union[tuple(descriptions)]  # noqa: UP007  the members are known only at run time
+    union: Any = Union[tuple(descriptions)]
 
     def read(value: Any, registered: Callable[[Any], Any]) -> Any:
         kind = value.get(tag) if isinstance(value, Mapping) else None
@@ -87,7 +87,7 @@ def number_or_word(quantity: Quantity) -> Any:
             return _NUMBER.validate_python(value)
         except ValidationError:
             message = f"must be a number or {' or '.join(map(repr, words))}"
-            raise PydanticCustomError("number_or_word", message) from None  # noqa: EM101  the first argument is the type
+            raise PydanticCustomError("number_or_word", message) from None
 
     return Annotated[float | Literal[words], WrapValidator(read)]
 

@@ -11,7 +11,7 @@ from starlette.requests import Request
 from starlette.responses import JSONResponse, Response
 from starlette.routing import Route
 
-from stylobate import config
+from stylobate import config, studies
 from stylobate.lab.bodies import json_body
 from stylobate.lab.curves import response
 from stylobate.lab.jobs import Jobs, broken
@@ -30,8 +30,8 @@ _log = logging.getLogger("stylobate.lab")
 
 _JOBS: dict[str, type[Any]] = {
     "exact": config.ResponseConfig,
-    "map": config.MapConfig,
-    "basin": config.BasinConfig,
+    "map": config.study_config(studies.overturning_map),
+    "basin": config.study_config(studies.basins),
     "animation": config.SimulationConfig,
 }
 
@@ -128,7 +128,7 @@ class Api:
     async def follow(self, request: Request) -> Response:
         """Return the state of a job, with the events from the number `after` on."""
         after = request.query_params.get("after", "0")
-        if not (after.isascii() and after.isdigit() and len(after) < 10):  # noqa: PLR2004  digits of a count
+        if not (after.isascii() and after.isdigit() and len(after) < 10):
             raise RefusedError(422, [f"after must be a number of events, got {after!r}"])
         return JSONResponse(self.jobs.report(request.path_params["identity"], int(after)))
 

@@ -151,7 +151,7 @@ class Jobs:
         with job.scope:
             try:
                 answer: Answer = await self.pool.perform(job.kind, values, job.heard)
-            except Exception:  # noqa: BLE001  a mistake in one job must not end the others
+            except Exception:
                 answer = Broken(traceback.format_exc())
             job.end(answer)
 

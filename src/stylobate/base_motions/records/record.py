@@ -158,7 +158,7 @@ class Record(BaseMotion):
 
     def to_dataframe(self) -> "pd.DataFrame":
         """Convert the record to a table in pandas: accelerations x, y, z [m/s²] over `time` [s]."""
-        import pandas as pd  # noqa: PLC0415  slow to import
+        import pandas as pd
 
         table = pd.DataFrame(self.samples, columns=list(AXES), index=pd.Index(self.times, name="time"))
         table.attrs["units"] = {"time": "s", **dict.fromkeys(AXES, "m s-2")}
@@ -328,7 +328,7 @@ class Record(BaseMotion):
         begin, end = self.start if begin is None else begin, self.end if end is None else end
         slack = _KNOT_SLACK * self.step
         kept = (self.times >= begin - slack) & (self.times <= end + slack)
-        if np.count_nonzero(kept) < 2:  # noqa: PLR2004  a step has two ends
+        if np.count_nonzero(kept) < 2:
             message = f"begin and end must leave two samples of {self!r}, got {begin!r} s and {end!r} s"
             raise ParameterError(message)
         return self.changed(f"trimmed to {begin!r} s … {end!r} s", samples=self.samples[kept], origin=origin)
@@ -356,7 +356,7 @@ class Record(BaseMotion):
 
     def resampled(self, step: float) -> "Record":
         """Resample this record to another `step` [s], band-limited (see `records.resampling`)."""
-        from stylobate.base_motions.records.resampling import resampled  # noqa: PLC0415  imports SciPy
+        from stylobate.base_motions.records.resampling import resampled
 
         step = require_positive("step", step, "s")
         samples, note = resampled(self.samples, self.step, step)
@@ -368,7 +368,7 @@ class Record(BaseMotion):
         self, *, highpass: float | None = None, lowpass: float | None = None, order: int = 4, causal: bool = False
     ) -> "Record":
         """Filter this record by a Butterworth filter with corners in Hz (see `records.filtering`)."""
-        from stylobate.base_motions.records.filtering import filtered  # noqa: PLC0415
+        from stylobate.base_motions.records.filtering import filtered
 
         highpass = None if highpass is None else require_positive("highpass", highpass, "Hz")
         lowpass = None if lowpass is None else require_positive("lowpass", lowpass, "Hz")
@@ -378,7 +378,7 @@ class Record(BaseMotion):
 
     def baseline_corrected(self, degree: int = 1) -> "Record":
         """Subtract the derivative of a polynomial fitted to the velocity (see `records.baseline`)."""
-        from stylobate.base_motions.records.baseline import baseline_corrected  # noqa: PLC0415
+        from stylobate.base_motions.records.baseline import baseline_corrected
 
         samples, note = baseline_corrected(self.samples, self.step, degree)
         return self.changed(note, samples=samples, origin=self._then("baseline_corrected", degree=degree))
@@ -400,7 +400,7 @@ def _checked(samples: npt.ArrayLike) -> Floats:
         array = np.empty(0)
     if array.ndim == 1:
         array = array[:, np.newaxis]
-    if array.ndim != 2 or len(array) < 2 or not 1 <= array.shape[1] <= len(AXES):  # noqa: PLR2004
+    if array.ndim != 2 or len(array) < 2 or not 1 <= array.shape[1] <= len(AXES):
         message = f"samples must be numbers of shape (n,) or (n, 1 to 3) with n of at least 2, got {np.shape(samples)}"
         raise ParameterError(message)
     if not np.all(np.isfinite(array)):

@@ -28,7 +28,7 @@ class PackageIdentity:
 @cache
 def package_identity() -> PackageIdentity:
     """Return the identity of the package in this process, computed once."""
-    from stylobate import __version__  # noqa: PLC0415  computed when it is asked for
+    from stylobate import __version__
 
     return PackageIdentity(__version__, source_digest(Path(__file__).parents[2]))
 
@@ -71,11 +71,11 @@ def perform(version: str, source: str, work: bytes, task: bytes) -> Computed:
             "Install the same version for both, and start the workers again."
         )
         raise StylobateError(message)
-    return _opened(work)(pickle.loads(task), threads=1, progress=None)  # noqa: S301  as below
+    return _opened(work)(pickle.loads(task), threads=1, progress=None)
 
 
 @lru_cache(maxsize=1)
 def _opened(work: bytes) -> "Work":
     """Return the function of a sweep, the same object for all its tasks, so that what it has prepared is kept."""
-    function: Work = pickle.loads(work)  # noqa: S301  from the scheduler, which can run any code
+    function: Work = pickle.loads(work)
     return function
