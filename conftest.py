@@ -12,7 +12,7 @@ from sybil import Sybil
 from sybil.parsers.myst import PythonCodeBlockParser, SkipParser
 
 # pytest puts a module that it imports first in the place of the function of that name in its package.
-import stylobate.studies
+import stylobate.studies  # noqa: F401
 
 # Programs of the documentation run while the site is built.
 collect_ignore_glob = ["docs/*.py"]

@@ -57,5 +57,5 @@ def _bundle(web: Path) -> None:
     """Build the bundles if npm is installed; Node prints its own errors."""
     npm = shutil.which("npm")
     for command in (["ci", "--no-audit", "--no-fund"], ["run", "build"]) if npm else ():
-        if subprocess.run([npm, *command], cwd=web, check=False).returncode:
+        if subprocess.run([npm, *command], cwd=web, check=False).returncode:  # noqa: S603  fixed arguments
             return

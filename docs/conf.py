@@ -16,7 +16,7 @@ sys.path[:0] = [
 
 project = "stylobate"
 author = "The stylobate developers"
-copyright = f"{author}, MIT licence"
+copyright = f"{author}, MIT licence"  # noqa: A001  the name that Sphinx asks for
 release = installed_version("stylobate")
 language = "en"
 
@@ -188,11 +188,11 @@ def _finish_attributes(
 ) -> None:
     del app, what, name, thing, options
     for index, line in enumerate(lines):
-        line = _SHARED_TEXT.sub(
+        line = _SHARED_TEXT.sub(  # noqa: PLW2901
             lambda match: f":ivar {match[1].replace(' ', '')}:", line
         )
         if line.startswith(":vartype "):
-            line = _named(line, {}) or ""
+            line = _named(line, {}) or ""  # noqa: PLW2901
         lines[index] = line
 
 

@@ -173,7 +173,7 @@ def test_what_is_found_equals_its_name_and_label_and_no_other_text(kind):
         assert one == one.label
         assert one.name == one
         assert one in (one.name, None)
-        assert not one != one.label
+        assert not one != one.label  # noqa: SIM202  the other operator
         for other in kind:
             assert (one == other.name) is (one is other)
             assert (one != other.label) is (one is not other)
@@ -184,7 +184,7 @@ def test_what_is_found_equals_its_name_and_label_and_no_other_text(kind):
 def test_a_comparison_with_a_text_that_names_nothing_warns_and_suggests(kind):
     member = next(iter(kind))
     with pytest.warns(UnlikelyInputWarning, match=rf"^{kind.__name__}: .*did you mean {member.name}\?$") as caught:
-        assert not member == f"{member.name}_"
+        assert not member == f"{member.name}_"  # noqa: SIM201  the other operator
     assert caught[0].filename == __file__
     with pytest.warns(UnlikelyInputWarning, match="use one of"):
         assert member != "elephant"
@@ -194,7 +194,7 @@ def test_outcomes_stay_codes():
     assert Outcome.ROLLING == 2 == np.int8(2)
     assert hash(Outcome.ROLLING) == hash(2)
     assert Outcome.ROLLING != 3
-    assert Outcome.ROLLING != None
+    assert Outcome.ROLLING != None  # noqa: E711  the operator
     np.testing.assert_array_equal(np.arange(4) == Outcome.ROLLING, [False, False, True, False])
     assert {2: "rolls"}[Outcome.ROLLING] == "rolls"
 

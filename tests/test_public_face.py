@@ -60,7 +60,7 @@ def test_dir_lists_the_public_names():
 
 def test_an_unknown_name_is_an_attribute_error():
     with pytest.raises(AttributeError, match=r"no attribute 'colum'; did you mean Column\?"):
-        stylobate.colum
+        stylobate.colum  # noqa: B018
 
 
 def test_names_are_the_same_objects_wherever_they_are_reached():

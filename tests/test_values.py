@@ -102,7 +102,7 @@ RESULTS = {
     "assessment": (assessment, 2),
     "check of a paper": (check, "0.2"),
 }
-COPIES = {"copy": copy.copy, "deep copy": copy.deepcopy, "pickle": lambda one: pickle.loads(pickle.dumps(one))}
+COPIES = {"copy": copy.copy, "deep copy": copy.deepcopy, "pickle": lambda one: pickle.loads(pickle.dumps(one))}  # noqa: S301
 NAMES = [*CASES, *RESULTS]
 every_value = pytest.mark.parametrize("name", NAMES)
 
@@ -118,7 +118,7 @@ def of(name):
 @every_value
 def test_a_value_equals_itself_and_differs_from_another(name):
     value, other = of(name)
-    assert value == value
+    assert value == value  # noqa: PLR0124  contents are compared
     assert value != other
     assert value != repr(value)
 
@@ -217,8 +217,8 @@ def test_provenance_keeps_all_digits_of_what_has_no_description():
     assert "steepness=0.3333)" in repr(pulse)
     made = sb.simulate(SMALL, pulse, duration=1.0)
     assert made.provenance["motion"]["repr"] == exact_repr(pulse)
-    assert eval(exact_repr(pulse), {"Pulse": sb.Pulse, "Rising": Rising}) == pulse
-    assert eval(exact_repr(MODEL), {"Wobbling": sb.Wobbling, "Column": sb.Column}) == MODEL
+    assert eval(exact_repr(pulse), {"Pulse": sb.Pulse, "Rising": Rising}) == pulse  # noqa: S307
+    assert eval(exact_repr(MODEL), {"Wobbling": sb.Wobbling, "Column": sb.Column}) == MODEL  # noqa: S307
 
 
 class Cells(HTMLParser):

@@ -184,7 +184,7 @@ def main() -> int:
                 with plt.style.context(style):
                     figure = sb.plot(result, size=size)
                 figure.savefig(folder / f"{kind.replace(' ', '-')}-{look}.png", dpi=60 if look == "slide" else 110)
-        except Exception as error:
+        except Exception as error:  # noqa: BLE001  the others are drawn
             failed.append(kind)
             print(f"{kind}: {type(error).__name__}: {error}", file=sys.stderr)
         else:

@@ -46,7 +46,7 @@ def costs(workload: str, *, largest: int = COUNTS[-1]) -> list[Cost]:
 
 def _in_own_process(workload: str, count: int) -> Cost:
     command = [sys.executable, "-m", __spec__.name, workload, str(count)]
-    done = subprocess.run(command, check=True, capture_output=True, text=True)
+    done = subprocess.run(command, check=True, capture_output=True, text=True)  # noqa: S603
     return Cost(**json.loads(done.stdout))
 
 

@@ -26,7 +26,7 @@ _IN_TEXT = re.compile(r"`([^`]+)`|(--[a-z][a-z-]*)")
 Cell = str | nodes.Node | Sequence[nodes.Node]
 
 
-class summary(nodes.General, nodes.Element):
+class summary(nodes.General, nodes.Element):  # noqa: N801  docutils names nodes so
     """Stands for the summary of a page until everything on the page is read."""
 
 

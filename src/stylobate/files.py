@@ -103,7 +103,7 @@ def _remove_left_behind(target: Path) -> None:
     stem, suffix = re.escape(target.stem[:_STEM]), re.escape(target.suffix)
     name = re.compile(rf"\.{stem}\.{_MACHINE}-(\d+)-[0-9a-f]+\.part{suffix}")
     with suppress(OSError):  # the folder cannot be listed, or a part belongs to another user
-        for other in os.listdir(target.parent):
+        for other in os.listdir(target.parent):  # noqa: PTH208  a store may have many thousand files in a folder
             if other[0] == "." and (match := name.fullmatch(other)) and not _is_alive(int(match[1])):
                 _remove(target.parent / other)
 

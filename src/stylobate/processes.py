@@ -52,7 +52,7 @@ class Worker:
         program = f"import sys; sys.path[:] = {sys.path!r}; from stylobate.processes import _serve; _serve()"
         errors = subprocess.DEVNULL if quiet else None
         with _without_interrupts():
-            process = subprocess.Popen(
+            process = subprocess.Popen(  # noqa: S603  this Python
                 [sys.executable, "-c", program], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=errors
             )
         worker = cls(process)
@@ -76,7 +76,7 @@ class Worker:
         try:
             pipes[0].write(len(request).to_bytes(_LENGTH) + request)
             pipes[0].flush()
-            answer, error = pickle.load(pipes[1])
+            answer, error = pickle.load(pipes[1])  # noqa: S301  our own process
         except (OSError, EOFError, pickle.UnpicklingError):
             if self not in _running:
                 raise KeyboardInterrupt from None
@@ -114,7 +114,7 @@ def computed(tasks: Mapping[_K, Callable[[], _R]], *, workers: int) -> Generator
     started: list[Worker] = []
     try:
         for _ in range(min(workers, len(tasks))):
-            started.append(Worker.started())
+            started.append(Worker.started())  # noqa: PERF401  if the next start fails, the others are ended
         idle = list(started)
         while waiting or running:
             while waiting and idle:
@@ -193,7 +193,7 @@ def _serve() -> None:
     never()
     while request := requests.read(int.from_bytes(requests.read(_LENGTH))):
         end_when_closed(0)
-        task, arguments = pickle.loads(request)
+        task, arguments = pickle.loads(request)  # noqa: S301  our own parent; imports what the task needs
         answer = pickle.dumps(_answer(task, arguments))
         end_when_closed(0, watched=False)
         try:
@@ -206,11 +206,11 @@ def _serve() -> None:
 def _answer(task: Callable[..., Any], arguments: tuple[Any, ...]) -> tuple[Any, Exception | None]:
     try:
         return task(*arguments), None
-    except Exception as error:
+    except Exception as error:  # noqa: BLE001  raised in the calling process
         error.add_note(traceback.format_exc())
         try:
-            pickle.loads(pickle.dumps(error))
-        except Exception:
+            pickle.loads(pickle.dumps(error))  # noqa: S301  our own
+        except Exception:  # noqa: BLE001  pickling can fail in any way
             return None, RuntimeError(traceback.format_exc())
         return None, error
 

@@ -106,7 +106,7 @@ def beat() -> None:
 
 def never() -> None:
     """Show no bars in this process."""
-    global _quiet
+    global _quiet  # noqa: PLW0603  one for the process
     _quiet = True
 
 

@@ -331,8 +331,8 @@ class Declared:
         numbers = [_row(one.name, value, one) for one, value in self._derived()] if derived else []
         sections = [Section("", rows), Section("derived", numbers)]
         for name, value in inner.items():
-            own, *others = value._sections(derived=derived and not numbers)
-            sections += [Section(f"{name}: {value._title()}", own.rows), *others]
+            own, *others = value._sections(derived=derived and not numbers)  # noqa: SLF001  of the same class, as below
+            sections += [Section(f"{name}: {value._title()}", own.rows), *others]  # noqa: SLF001
         return sections
 
     def _derived(self) -> list[tuple["Parameter", Any]]:

@@ -225,7 +225,7 @@ STATED = [
 def test_a_motion_keeps_the_numbers_of_its_constructor(motion):
     for again in (
         motion.made_by()[0](**motion.made_by()[1]),
-        pickle.loads(pickle.dumps(motion)),
+        pickle.loads(pickle.dumps(motion)),  # noqa: S301
         describe_motion(motion).build(),
     ):
         assert again == motion

@@ -27,7 +27,7 @@ class Pair(NamedTuple):
     second: tuple[float, float] = (1.0, 2.0)
 
 
-Old = namedtuple("Old", "x y")
+Old = namedtuple("Old", "x y")  # noqa: PYI024
 
 
 def arithmetic(x, out):
@@ -77,7 +77,7 @@ def conditions(x, out):
     for i in range(len(x)):
         if x[i] > 1.0:
             out[i] = 1.0
-        elif x[i] < 0.0 or not x[i] != 0.0:
+        elif x[i] < 0.0 or not x[i] != 0.0:  # noqa: SIM202
             out[i] = 2.0
         else:
             out[i] = 3.0
@@ -203,7 +203,7 @@ def made_by(factor):
 
 
 doubled = made_by(2.0)
-tripled = lambda a: a * 3.0
+tripled = lambda a: a * 3.0  # noqa: E731
 
 
 def closures(x, out):
@@ -270,7 +270,7 @@ def mathematics(x, out):
 def of_what_is_no_number(x, out):
     nan = x[9]
     out[0], out[1], out[2], out[3] = min(nan, 1.0), min(1.0, nan), max(nan, 1.0), max(1.0, nan)
-    out[4] = nan < 1.0 or nan > 1.0 or nan == nan
+    out[4] = nan < 1.0 or nan > 1.0 or nan == nan  # noqa: PLR0124
     out[5] = math.isnan(nan) and math.isfinite(x[0]) and not math.isfinite(x[8])
     out[6] = abs(x[4])
     out[7] = x[4]
@@ -280,7 +280,7 @@ def what_is_known(x, out):
     if len(LIMITS) == 2 and LIMITS[0] < 1.0:
         out[0] = 1.0
     else:
-        undefined_here(x)
+        undefined_here(x)  # noqa: F821  never compiled
     out[1] = 3 if LIMITS is None else 4
     out[2] = 1.0 if Color.RED in (3, 4) else 0.0
 
@@ -288,7 +288,7 @@ def what_is_known(x, out):
 def documented(x, out):
     """Do nothing."""
     total: float = x[0]
-    pass
+    pass  # noqa: PIE790
     out[0] = total
 
 

@@ -24,7 +24,7 @@ def plain(text):
     """Return the array that a program of plain Python leaves and its result, or its error."""
     out = Floats([7.0] * LENGTH)
     names = names_of(plain=True)
-    exec(compile(text, "<program>", "exec"), names)
+    exec(compile(text, "<program>", "exec"), names)  # noqa: S102
     try:
         result = names["program"](Floats(list(X)), out)
     except (*INFINITE, IndexError, NameError, TypeError) as error:

@@ -37,12 +37,12 @@ def text(x):
 
 
 def not_assigned(x):
-    x[0] = y
-    y = 1.0
+    x[0] = y  # noqa: F821
+    y = 1.0  # noqa: F841
 
 
 def not_defined(x):
-    x[0] = nothing_here(x[0])
+    x[0] = nothing_here(x[0])  # noqa: F821
 
 
 def recursive(x):
@@ -55,7 +55,7 @@ def deep(x, a):
 
 
 def opens_a_file(x):
-    open("x")
+    open("x")  # noqa: PTH123, SIM115
     x[0] = 1.0
 
 
@@ -63,7 +63,7 @@ def some_ways(x):
     x[0] = sometimes(x[0])
 
 
-def sometimes(a):
+def sometimes(a):  # noqa: RET503
     if a > 0.0:
         return 1.0
 
@@ -213,7 +213,7 @@ def test_what_is_not_compiled_is_refused_with_its_line(function):
 
 def test_a_function_without_text_is_refused_with_a_remedy():
     names = {}
-    exec("def hidden(x):\n    x[0] = 1.0\n", names)
+    exec("def hidden(x):\n    x[0] = 1.0\n", names)  # noqa: S102
     with pytest.raises(CompileError, match="the text of hidden cannot be found in <string>; write it in a file"):
         text_of(names["hidden"], X)
 
@@ -248,6 +248,6 @@ def test_a_function_in_a_document_that_is_no_program_is_refused_with_its_line(tm
     path.write_text("\n".join(lines))
     names = {}
     # As tools do that run the blocks of a page: the block is compiled at its place in the file.
-    exec(compile("\n" * 4 + "\n".join(lines[4:7]), str(path), "exec"), names)
+    exec(compile("\n" * 4 + "\n".join(lines[4:7]), str(path), "exec"), names)  # noqa: S102
     with pytest.raises(CompileError, match=rf"^{re.escape(str(path))}:7: in on_a_page: "):
         text_of(names["on_a_page"], X)

@@ -16,7 +16,7 @@ from .calling import both_ways, text_of
 X = np.array([0.7, -1.3, 2.0, 0.0, -0.0, 1e-300, 3.5, -2.5, 0.25, 9.0])
 LIMIT = 2.5
 TABLE = np.arange(6.0).reshape(2, 3)
-A, B = namedtuple("A", "one other"), namedtuple("B", "other one")
+A, B = namedtuple("A", "one other"), namedtuple("B", "other one")  # noqa: PYI024
 
 
 def loop_left_early(x, out):
@@ -33,11 +33,11 @@ def loop_left_early(x, out):
 def target_assigned_in_the_body(x, out):
     for k in (0, 1, 2):
         if x[k] < 0.0:
-            k = 9
+            k = 9  # noqa: PLW2901
         out[k] = 1.0
     for k in (0, 1):
         while k < 3 and x[k] < 5.0:
-            k += 1
+            k += 1  # noqa: PLW2901
         out[4] += k
 
 
@@ -98,7 +98,7 @@ def conditions_of_numbers(x, out):
         if x[i] and not (x[i] > 1.0 or count):
             count += 1
     out[0] = count
-    known = None or 3.0
+    known = None or 3.0  # noqa: SIM222
     out[1] = known
 
 
@@ -267,7 +267,7 @@ def enumerated_array(x):
 
 
 def mistake_in_what_is_known(x):
-    x[0] = (1.0, 2.0)[5]
+    x[0] = (1.0, 2.0)[5]  # noqa: PLE0643
 
 
 def number_too_large(x):
@@ -429,7 +429,7 @@ def test_a_name_without_a_value_on_some_path_is_refused(function):
 
 
 def assigned_on_each_path(x, out):
-    if x[0] > 0.0:
+    if x[0] > 0.0:  # noqa: SIM108
         k = 1.0
     else:
         k = 2.0
@@ -447,7 +447,7 @@ def assigned_on_each_path(x, out):
     else:
         out[0] = 1.0
         return
-    if len(out) > 2:
+    if len(out) > 2:  # noqa: SIM108
         p = 5.0
     else:
         p = 6.0

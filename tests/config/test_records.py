@@ -83,7 +83,7 @@ def test_every_method_can_be_described_and_what_was_done_in_python_is_remembered
     in_file = RecordMotion.parse({**raw.values(), "processing": [step]}).build()
     in_python = apply(raw.build())
     expected = apply(sb.read_record(quakes / "second_NS.txt", "g", step=0.01))
-    for found in (in_file, in_python, describe_motion(in_python).build(), pickle.loads(pickle.dumps(in_python))):
+    for found in (in_file, in_python, describe_motion(in_python).build(), pickle.loads(pickle.dumps(in_python))):  # noqa: S301  our own
         assert found == expected
         assert found.provenance == expected.provenance
 

@@ -109,7 +109,7 @@ def folder(tmp_path, monkeypatch):
 
 def run_by(program):
     names = {}
-    exec(program, names)
+    exec(program, names)  # noqa: S102  it is what users are given
     return names["run"]
 
 
@@ -182,5 +182,5 @@ def test_a_record_in_files_is_read_as_it_is_described(tmp_path):
     program = as_python(description)
     assert "sb.read_records(" in program
     names = {}
-    exec(program, names)
+    exec(program, names)  # noqa: S102
     assert np.array_equal(names["motion"].samples, description.build().motion.samples)

@@ -81,7 +81,7 @@ def test_a_narrow_peak_is_not_stepped_over_while_the_column_moves():
 
 def test_a_run_goes_through_pickle_with_its_samples():
     run = sb.simulate(MODEL, tilt=(0.05, 0.0), duration=5.0)
-    again = pickle.loads(pickle.dumps(run))
+    again = pickle.loads(pickle.dumps(run))  # noqa: S301  our own bytes
     xr.testing.assert_identical(again.data, run.data)
     assert (again.outcome, again.measures, again.provenance) == (run.outcome, run.measures, run.provenance)
     with pytest.raises(UnsupportedError):

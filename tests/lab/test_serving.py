@@ -129,7 +129,7 @@ def test_half_open_connections_exhaust_neither_descriptors_nor_a_core():
 
 @pytest.mark.posix
 def test_at_an_address_for_other_machines_the_token_opens_it_under_the_names_of_this_machine():
-    process = started("--port", "0", "--host", "0.0.0.0")
+    process = started("--port", "0", "--host", "0.0.0.0")  # noqa: S104
     try:
         address = httpx.URL(re.search(r"http://\S+\?token=\S+", process.stdout.readline())[0])
         assert address.host == own_names()[0]

@@ -62,7 +62,7 @@ def test_saving_leaves_the_run_as_it_is(run, tmp_path):
 
 def test_the_dataset_of_a_run_is_made_when_it_is_used_and_stays_the_same():
     run = sb.simulate(MODEL, MOTION, tilt=(0.03, 0.01), duration=1.0)
-    sent = pickle.loads(pickle.dumps(run))
+    sent = pickle.loads(pickle.dumps(run))  # noqa: S301  of our own
     assert isinstance(vars(run)["data"], Samples)
     assert isinstance(vars(sent)["data"], Samples)
     run.data.attrs["note"] = "of the user"

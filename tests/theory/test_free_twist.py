@@ -96,7 +96,7 @@ def test_integration_from_elsewhere_settles_on_it():
 def test_without_spin_damping_the_tilt_dies():
     nu, a0, eta = 3.0, 0.65, 0.1
     start = on_the_orbit(theory.free_twist_rolling(nu, a0 * C, c=C, eta=eta, zeta=math.inf), nu)
-    dies = lambda _, state, *__: math.hypot(state[0], state[1]) - 1e-4
+    dies = lambda _, state, *__: math.hypot(state[0], state[1]) - 1e-4  # noqa: E731
     dies.terminal = True
     run = solve_ivp(
         fixed_frame, (0.0, 200.0), start, "DOP853", rtol=1e-9, atol=1e-11, events=dies,

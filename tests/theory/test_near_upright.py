@@ -28,7 +28,7 @@ def test_rolling_by_integration_turns_as_far(spin):
     # Approached at unit rate from 1e-3, missing the upright by about 1e-6: what is left of the turn before and after is
     # the ratio of the two, and gravity changes the rate by about c · 1e-3 of it.
     c, at, far, miss = 0.4, {"inertia_ratio": 0.7, "axial_ratio": 0.5}, 1e-3, 1e-6
-    leaves = lambda tau, state: state[2] - far if tau > 0.0 else -1.0
+    leaves = lambda tau, state: state[2] - far if tau > 0.0 else -1.0  # noqa: E731
     leaves.terminal, leaves.direction = True, 1.0
     run = solve_ivp(
         lambda _, x: full_rolling_rates(x, 0.0, 0.0, c=c, eta=0.0, zeta=0.0, **at), (0.0, 1.0),

@@ -16,8 +16,8 @@ from stylobate.theory.rolling_friction import rolling_required_friction
 from stylobate.theory.slipping_rolling import slipping_rolling
 from stylobate.theory.slipping_rolling_rates import EASED, EXPONENT, SLOWED, TWISTING
 
-from ..models.constrained_body import TURNING, UP, VELOCITY
-from ..models.sliding_body import SlidingBody
+from ..models.constrained_body import TURNING, UP, VELOCITY  # noqa: TID252
+from ..models.sliding_body import SlidingBody  # noqa: TID252
 
 PAPER = {"c": 0.1, "eta": 0.1}
 BODIES = [

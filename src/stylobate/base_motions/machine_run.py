@@ -231,7 +231,7 @@ def _quadrature(
     """Return ∫ e^{λ(t−s)} force(s) ds from `first` to `last` for each t."""
     half = 0.5 * (last - first)
     s = first[:, None] + half[:, None] * (1.0 + _NODES)
-    return np.asarray(half * ((np.exp(pole * (t[:, None] - s)) * machine._force(s)) @ _WEIGHTS))
+    return np.asarray(half * ((np.exp(pole * (t[:, None] - s)) * machine._force(s)) @ _WEIGHTS))  # noqa: SLF001
 
 
 @lru_cache(maxsize=16)
@@ -261,5 +261,5 @@ def _free_oscillation(machine: MachineRun) -> _FreeOscillation:
 def _later_peaks(machine: MachineRun) -> Floats:
     """Return a bound of the acceleration from each of many times to the end [m/s²]: tables ask for it at each piece."""
     count = math.ceil(_SAMPLES * max(machine.frequency, machine.resonance) * machine.duration)
-    sampled = np.abs(machine._along(np.linspace(0.0, machine.duration, count + 1), ACCELERATION))
+    sampled = np.abs(machine._along(np.linspace(0.0, machine.duration, count + 1), ACCELERATION))  # noqa: SLF001
     return np.asarray(_MARGIN * np.maximum.accumulate(sampled[::-1])[::-1])

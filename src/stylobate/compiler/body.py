@@ -111,7 +111,7 @@ class Body(Names):
             self._at = statement
             self._statement(statement)
 
-    def _statement(self, node: ast.stmt) -> None:
+    def _statement(self, node: ast.stmt) -> None:  # noqa: C901, PLR0912  one case for each form
         match node:
             case ast.Expr(value=ast.Constant()) | ast.Pass():
                 pass

@@ -54,7 +54,7 @@ class Expressions(ABC):
     def generated(self, node: ast.GeneratorExp) -> tuple[Value, ...]:
         """Return the values of a generator, as a tuple."""
 
-    def value(self, node: ast.expr) -> Value:
+    def value(self, node: ast.expr) -> Value:  # noqa: C901, PLR0911, PLR0912  one case for each form
         """Return the value of an expression."""
         match node:
             case ast.Constant():

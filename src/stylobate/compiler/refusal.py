@@ -7,7 +7,7 @@ class CompileError(Exception):
     """A function cannot be compiled; the message has location, reason and remedy."""
 
 
-class Refusal(Exception):
+class Refusal(Exception):  # noqa: N818  becomes a CompileError where the place is known
     """A function contains unsupported code.
 
     Parameters

@@ -47,7 +47,7 @@ def one_of(descriptions: Iterable[type[Config]], tag: str, own: Callable[[Place]
 
     With `own`, which describes a user's own class, the key can also hold the place of such a class.
     """
-    union: Any = Union[tuple(descriptions)]
+    union: Any = Union[tuple(descriptions)]  # noqa: UP007  the members are known only at run time
 
     def read(value: Any, registered: Callable[[Any], Any]) -> Any:
         kind = value.get(tag) if isinstance(value, Mapping) else None

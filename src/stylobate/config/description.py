@@ -116,4 +116,4 @@ def _without_tags(loc: tuple[int | str, ...]) -> list[str]:
 
 def _in_table(loc: tuple[int | str, ...], place: int) -> bool:
     """Return whether the part at this `place` is the tag of a union in a table of named descriptions."""
-    return place == 2 and loc[0] in _UNION_TABLES and len(loc) > 3
+    return place == 2 and loc[0] in _UNION_TABLES and len(loc) > 3  # noqa: PLR2004  columns, name, shape, number

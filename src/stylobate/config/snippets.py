@@ -47,7 +47,7 @@ def as_python(description: SimulationConfig) -> str:
     sb.plot(run).savefig("run.png")
     """
     column, model = description.column.model_dump(exclude_defaults=True), description.model
-    shape = str(getattr(description.column, "shape"))
+    shape = str(getattr(description.column, "shape"))  # noqa: B009  every member of the union has one
     column.pop("shape", None)
     maker = "sb.Column" if shape == "given" else f"sb.Column.{shape}"
     numbers = model.model_dump(exclude={"kind"}, exclude_defaults=True)

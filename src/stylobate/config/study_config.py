@@ -87,7 +87,7 @@ class StudyConfig(ManyRuns):
         for name in getattr(study.numbers, "__annotations__", ()):
             if getattr(self, name) is not None:
                 options[name] = getattr(self, name)
-        if study.early and getattr(self, "end_converged"):
+        if study.early and self.end_converged:
             options["end_converged"] = True
         setup = Setup(model, motion, arguments | options)
         setup.options.update(study.arguments(self, setup))

@@ -538,7 +538,7 @@ def _interval(found: "xr.Dataset") -> tuple[Floats, Floats]:
 
 def _accelerates(means: Floats, period: float, sliding: float) -> bool:
     """Return whether the mean velocities of successive periods grow as those of a body that slides down freely."""
-    if sliding <= 0.0 or means.size < 2:
+    if sliding <= 0.0 or means.size < 2:  # noqa: PLR2004  two values for a slope
         return False
     slope = np.polyfit(np.arange(means.size) * period, means, 1)[0]
     return bool(slope > _ACCELERATES * sliding)

@@ -94,7 +94,7 @@ class SpectralAcceleration:
             raise UnsupportedError(message)
         spectra = response_spectra(motion, [self.period], damping=self.damping).isel(period=0)
         along = [float(spectra["psa"].sel(axis=axis)) for axis in motion.axes if axis != "z"]
-        if len(along) < 2:
+        if len(along) < 2:  # noqa: PLR2004  one component or none
             return max(along, default=0.0)
         match component if has_two_components(motion) else HorizontalComponent.ROTD100:
             case HorizontalComponent.ROTD50:

@@ -596,7 +596,7 @@ def _deciding(state: npt.NDArray[np.int8], parts: Mapping[str, npt.NDArray[np.in
         return ""
     name = list(parts)[int(np.argmax(influence))]
     between, within, number, count = _scatter(state, parts[name])
-    if number < 2 or count <= number or between <= 0.0:
+    if number < 2 or count <= number or between <= 0.0:  # noqa: PLR2004  parts to compare
         return ""
     ratio = between / (number - 1) / (within / (count - number)) if within > 0.0 else np.inf
     return name if fdtrc(number - 1, count - number, ratio) < _BY_CHANCE / influence.size else ""

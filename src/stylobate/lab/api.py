@@ -128,7 +128,7 @@ class Api:
     async def follow(self, request: Request) -> Response:
         """Return the state of a job, with the events from the number `after` on."""
         after = request.query_params.get("after", "0")
-        if not (after.isascii() and after.isdigit() and len(after) < 10):
+        if not (after.isascii() and after.isdigit() and len(after) < 10):  # noqa: PLR2004  digits of a count
             raise RefusedError(422, [f"after must be a number of events, got {after!r}"])
         return JSONResponse(self.jobs.report(request.path_params["identity"], int(after)))
 

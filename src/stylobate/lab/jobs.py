@@ -151,7 +151,7 @@ class Jobs:
         with job.scope:
             try:
                 answer: Answer = await self.pool.perform(job.kind, values, job.heard)
-            except Exception:
+            except Exception:  # noqa: BLE001  a mistake in one job must not end the others
                 answer = Broken(traceback.format_exc())
             job.end(answer)
 

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 PORT = 8642
 LOOPBACK = ("127.0.0.1", "localhost", "::1")
-_ALL = ("0.0.0.0", "::", "")
+_ALL = ("0.0.0.0", "::", "")  # noqa: S104  addresses that stand for all of this machine's
 _HIGHEST_PORT = 65535
 _ELSEWHERE = ("192.0.2.1", 9)
 """An address of no machine (RFC 5737), for finding the address by which this machine reaches others."""

@@ -54,7 +54,7 @@ def _done(task: Callable[[Any, Emit], Any], values: Any, emit: Emit) -> Finished
         return Refused(("out of memory: make the record, the duration or the grid smaller",))
     except OSError:  # of the pipe
         raise
-    except Exception:
+    except Exception:  # noqa: BLE001  after any error the process continues with the next task
         return Broken(traceback.format_exc())
 
 

@@ -109,7 +109,7 @@ async def _started(*, background: bool) -> tuple[BaseProcess, Connection]:
     def start() -> None:
         try:
             started.set_result(_process(background=background))
-        except Exception as error:
+        except Exception as error:  # noqa: BLE001  raised for the caller
             started.set_exception(error)
 
     threading.Thread(target=start, daemon=True).start()
@@ -258,7 +258,7 @@ class WorkerPool:
     async def _start(self) -> None:
         try:
             worker = await Worker.started(background=self.background)
-        except Exception:
+        except Exception:  # noqa: BLE001  any caller that waits gets an answer
             _log.exception("a worker process could not be started")
             self._failed = LostError()
             self._notify()

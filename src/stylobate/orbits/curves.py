@@ -429,7 +429,7 @@ def _follow(
         points.append(found.point)
         seen(*found.point.values)
         sense = found.tangent if found.tangent @ sense > 0.0 else -found.tangent
-        if len(points) > 10 and np.linalg.norm(found.u - start.u) < 0.75 * length:
+        if len(points) > 10 and np.linalg.norm(found.u - start.u) < 0.75 * length:  # noqa: PLR2004
             return End.CLOSED
         here = found
         length = min(_LONGER * length, control.largest) if found.steps <= _EASY else length
@@ -457,4 +457,4 @@ def _only_critical(point: CurvePoint) -> bool:
 
 
 def _on_circle(multiplier: complex) -> bool:
-    return abs(abs(multiplier) - 1.0) < 1e-6 and abs(multiplier.imag) > _REAL
+    return abs(abs(multiplier) - 1.0) < 1e-6 and abs(multiplier.imag) > _REAL  # noqa: PLR2004

@@ -237,7 +237,7 @@ def _repelled(step: Floats, states: Floats, known: Sequence[Floats], scale: floa
     # d ln(1 + 1/s)/ds = −1/(s(s + 1))
     growth = -2.0 * (apart @ step[0]) / scale / (square * (square + 1.0))
     factor = 1.0 - float(growth.sum())
-    return step / factor if abs(factor) > 1e-3 else step
+    return step / factor if abs(factor) > 1e-3 else step  # noqa: PLR2004  if singular, a plain step
 
 
 def _shortest(orbit: PeriodicOrbit) -> PeriodicOrbit:

@@ -50,7 +50,7 @@ def plot_basins(found: xr.Dataset) -> Figure:
         Result of `stylobate.studies.maps.basins` or `attractors`, finished or not.
     """
     dims = found["attractor"].dims if "attractor" in found else ()
-    if len(dims) == 2:
+    if len(dims) == 2:  # noqa: PLR2004  a plane
         return _plot_grid(found)
     figure = new_figure(_TABLE_HEIGHT + _ENTRY * max(found.sizes["attractor_index"] - _ENTRIES, 0))
     bars, orbits = figure.subplots(1, 2, width_ratios=(1.25, 1.0))

@@ -143,7 +143,7 @@ def _lines(words: str, most: int) -> list[str]:
 
 def _length(text: Text) -> float:
     box = text.get_window_extent()
-    return float(box.height if text.get_rotation() == 90.0 else box.width)
+    return float(box.height if text.get_rotation() == 90.0 else box.width)  # noqa: PLR2004  degrees
 
 
 def _in_millimetres(axes: Axes) -> None:

@@ -77,7 +77,7 @@ def plot_interactive(
         If there is no interactive figure for this result.
     """
     try:
-        import plotly.graph_objects
+        import plotly.graph_objects  # noqa: F401  an extra, slow to import
     except ImportError:
         message = "interactive figures need Plotly. Install it by: pip install stylobate[interactive]"
         raise UnsupportedError(message) from None

@@ -140,7 +140,7 @@ def _called(name: str, neutral: str) -> str:
 def _contours(axes: Axes, x: np.ndarray, y: np.ndarray, error: np.ndarray) -> None:
     """Draw contours of the deviation of the averaged mean tilt at round percentages."""
     inside = [level for level in _LEVELS if np.nanmin(error) < level < np.nanmax(error)]
-    if not inside or min(error.shape) < 2:
+    if not inside or min(error.shape) < 2:  # noqa: PLR2004
         return
     lines = axes.contour(x, y, error, levels=inside, colors="black", linewidths=0.8)
     axes.clabel(lines, fmt=lambda level: f"{100.0 * level:g} %", fontsize="x-small")

@@ -124,7 +124,7 @@ def test_records_are_values():
     assert hash(same) == hash(RECORD)
     assert RECORD.scaled(2.0) != RECORD
     assert RECORD != "six"
-    assert pickle.loads(pickle.dumps(RECORD)) == RECORD
+    assert pickle.loads(pickle.dumps(RECORD)) == RECORD  # noqa: S301
     with pytest.raises(ValueError, match="read-only"):
         RECORD.samples[0, 0] = 1.0
 

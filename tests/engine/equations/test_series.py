@@ -41,8 +41,8 @@ def coefficients(function, moving, fixed):
     space = {"math": math, **fixed}
     space |= {f"{name}_{k}": value for name, values in moving.items() for k, value in enumerate(padded(values))}
     for k in range(COUNT):
-        exec("\n".join(series.lines(k)), space)
-    return np.array([[eval(series.result(j, k), space) for k in range(COUNT)] for j in range(len(results))])
+        exec("\n".join(series.lines(k)), space)  # noqa: S102  the text is what is tested
+    return np.array([[eval(series.result(j, k), space) for k in range(COUNT)] for j in range(len(results))])  # noqa: S307
 
 
 # An independent route: series in forty digits, quotients and roots by Newton's iteration, errors followed beside them.
@@ -318,8 +318,8 @@ def expanded(model, state, parameters, pushes, *, vertical=False):
         if integral != j:
             space[f"s{integral}_1"] = state[j]
     for k in range(COUNT):
-        exec("\n".join(expansion.coefficient_lines(k)), space)
-    square = [eval(expansion.square(k), space) for k in range(COUNT)]
+        exec("\n".join(expansion.coefficient_lines(k)), space)  # noqa: S102
+    square = [eval(expansion.square(k), space) for k in range(COUNT)]  # noqa: S307
     return np.array([[space[f"s{j}_{k}"] for k in range(COUNT)] for j in range(len(state))]), np.array(square)
 
 
@@ -436,6 +436,6 @@ def test_functions_of_what_is_fixed_need_no_recurrence():
     series = Series(record, [result], ["x"])
     space = {"math": math, "c": 0.3, "x_0": 2.0, "x_1": 5.0}
     for k in range(2):
-        exec("\n".join(series.lines(k)), space)
-    assert eval(series.result(0, 0), space) == pytest.approx(2.0 * math.exp(0.3) + 0.3**1.5, rel=1e-15)
-    assert eval(series.result(0, 1), space) == pytest.approx(5.0 * math.exp(0.3), rel=1e-15)
+        exec("\n".join(series.lines(k)), space)  # noqa: S102  the text is what is tested
+    assert eval(series.result(0, 0), space) == pytest.approx(2.0 * math.exp(0.3) + 0.3**1.5, rel=1e-15)  # noqa: S307
+    assert eval(series.result(0, 1), space) == pytest.approx(5.0 * math.exp(0.3), rel=1e-15)  # noqa: S307

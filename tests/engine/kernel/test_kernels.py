@@ -60,7 +60,7 @@ def test_a_second_process_compiles_nothing_and_computes_the_same_bits(tmp_path, 
     assert len(first.stderr.splitlines()) == 1
     monkeypatch.setenv("STYLOBATE_CACHE", str(tmp_path))
     monkeypatch.delattr(machine, "object_code")
-    exec(SCRIPT, {})
+    exec(SCRIPT, {})  # noqa: S102
     one, two = json.loads(first.stdout), json.loads(capsys.readouterr().out)
     assert two["took"] < one["took"]
     assert one["end"] == two["end"]

@@ -162,7 +162,7 @@ def test_a_changed_store_is_refused_or_holds_what_was_written(store, damage, req
             assert_same_arrays(sb.load(path).load(), data)
         except FileError as error:
             refused += 1
-            assert [str(path) in line for line in str(error).splitlines()] == [True]
+            assert [str(path) in line for line in str(error).splitlines()] == [True]  # noqa: PT017  or the same
         shutil.rmtree(path)
     assert refused or damage is add_an_array
 

@@ -29,7 +29,7 @@ def is_one_set(directions: Sequence[Direction]) -> bool:
     (True, False)
     """
     flat = [one for one in directions if not one.vertical]
-    return len(directions) - len(flat) <= 1 and len(flat) <= 2 and (len(flat) < 2 or _sine(*flat) != 0.0)
+    return len(directions) - len(flat) <= 1 and len(flat) <= 2 and (len(flat) < 2 or _sine(*flat) != 0.0)  # noqa: PLR2004
 
 
 def are_perpendicular(first: Direction, second: Direction) -> bool:
@@ -59,7 +59,7 @@ def along_axes(event: str, components: Sequence[Directed]) -> tuple[dict[str, Fl
     """
     up = [one for one in components if one.direction.vertical]
     flat = sorted((one for one in components if not one.direction.vertical), key=_order)
-    if len(up) > 1 or len(flat) > 2:
+    if len(up) > 1 or len(flat) > 2:  # noqa: PLR2004
         message = (
             f"{event}: two horizontal components and a vertical one at most, got {_listed(components)}. If they are of "
             "several events, list the files of each event together"
@@ -109,7 +109,7 @@ def _horizontal(event: str, flat: list[Directed]) -> tuple[dict[str, Floats], li
         return {"x": first.samples, "y": second.samples}, lines
     turn = math.radians(second.direction.azimuth - first.direction.azimuth)
     # exact right angles: the rounding error of cos 90° must not mix the components
-    across = abs(math.cos(turn)) < 1e-12
+    across = abs(math.cos(turn)) < 1e-12  # noqa: PLR2004
     cos, sin = (0.0, math.copysign(1.0, math.sin(turn))) if across else (math.cos(turn), math.sin(turn))
     lines = [
         f"x at {first.direction}, from {first.label}",

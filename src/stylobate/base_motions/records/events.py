@@ -193,7 +193,7 @@ def _confirmed(group: list[EventFile]) -> Iterable[list[EventFile]]:
     if len(group) == 1 or not all(file.guessed for file in group):
         return [group]
     ways = [file.direction for file in group if file.direction]
-    if len(group) > 2 or not are_perpendicular(*ways):
+    if len(group) > 2 or not are_perpendicular(*ways):  # noqa: PLR2004
         return [[file] for file in group]
     names = " and ".join(f"{file.path.name} ({file.direction})" for file in group)
     message = (

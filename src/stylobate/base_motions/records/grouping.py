@@ -52,7 +52,7 @@ def read_records(
     directions: Mapping[str, float | str] | None = None,
     lengths: Lengths = Lengths.TRIM,
     steps: Steps = Steps.REFUSE,
-    format: RecordFormat | None = None,
+    format: RecordFormat | None = None,  # noqa: A002  the word of the field
     one_component: bool = False,
 ) -> tuple[Record, ...]:
     """Read records and join the components of each event.
@@ -135,7 +135,7 @@ def read_records(
 def reader(
     step: float | None = None,
     columns: Mapping[str, str] | None = None,
-    format: RecordFormat | None = None,
+    format: RecordFormat | None = None,  # noqa: A002
 ) -> Read:
     """Return a function that reads the component in a file, with these arguments of `read_record`."""
     step = None if step is None else require_positive("step", step, "s")
@@ -214,7 +214,7 @@ def _part(file: EventFile, units: str | None) -> _Part:
 def _require_one_title(event: Event) -> None:
     """Raise FileError if headers name several events; warn if the user lists such files as one."""
     titles = {file.title: file.path.name for file in event.files if file.title}
-    if len(titles) < 2:
+    if len(titles) < 2:  # noqa: PLR2004
         return
     headers = ", ".join(f"{name} ({title})" for title, name in titles.items())
     message = (

@@ -142,7 +142,7 @@ def _names(header: list[str], width: int, separator: str | None, *, named: bool)
     units = [unit_of(found[0][1:-1]) for found in map(_BRACKETED.search, names) if found]
     if width == 1:
         return names if named or any(units) else None
-    certain = named or separator is not None or "\t" in header[-1] or width > 2
+    certain = named or separator is not None or "\t" in header[-1] or width > 2  # noqa: PLR2004  time, acceleration
     return names if certain or units or names[0].lower() in TIMES else None
 
 

@@ -64,7 +64,7 @@ def read_bytes(path: Path) -> bytes:
 
 def is_binary(content: bytes) -> bool:
     """Return whether the content has bytes that no text file holds."""
-    return any(byte < 0x20 and byte not in b"\t\n\r\f\x1a" for byte in content[:4096])
+    return any(byte < 0x20 and byte not in b"\t\n\r\f\x1a" for byte in content[:4096])  # noqa: PLR2004  a space
 
 
 def is_number(token: str) -> bool:
@@ -119,7 +119,7 @@ class Text:
         """Parse a token of the line at `index` as a number of samples, at least two."""
         if not _WHOLE.fullmatch(token):
             raise self.fault(index, f"{name} must be a whole number, got {token!r}. Correct the header")
-        if int(token) < 2:
+        if int(token) < 2:  # noqa: PLR2004  a step has two ends
             raise self.fault(index, f"{name} must be at least 2 samples, got {token}. Correct the header")
         return int(token)
 

@@ -127,7 +127,7 @@ def _components_among(text: Text, line: int, names: list[str], places: list[int]
     on_axes = {place: names[place].lower()[-1] for place in places if names[place].lower() in _AXIS_NAMES}
     axes = {axis: place for place, axis in on_axes.items()}
     directed = _directed(names, places)
-    if axes.keys() - {"z"} or (axes and len(directed) < 2):
+    if axes.keys() - {"z"} or (axes and len(directed) < 2):  # noqa: PLR2004  others beside z
         _require_distinct(text, line, [(names[place], axis) for place, axis in on_axes.items()])
         # velocities and displacements such as vel_NS may stand beside axes
         mixed = any(len(names[at]) > 1 and Direction.parse(names[at]) for at in places if at not in on_axes)

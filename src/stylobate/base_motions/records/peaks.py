@@ -38,7 +38,7 @@ def horizontal_peak(record: Record, order: int, component: HorizontalComponent, 
     since
         Start of the time interval of the peak [s].
     """
-    if len(record.directions()) < 2:
+    if len(record.directions()) < 2:  # noqa: PLR2004  along one line
         component = HorizontalComponent.ROTD100
     count = len(record.samples) - 1
     times = record.times if order == ACCELERATION else record.start + record.step * np.arange(8 * count + 1) / 8

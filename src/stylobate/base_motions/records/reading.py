@@ -51,7 +51,7 @@ def read_record(
     step: float | None = None,
     columns: Mapping[str, str] | None = None,
     axis: str | None = None,
-    format: RecordFormat | None = None,
+    format: RecordFormat | None = None,  # noqa: A002  the word of the field
 ) -> Record:
     """Read a record from one file.
 
@@ -99,7 +99,7 @@ def plain_reading(
     units: str | None,
     step: float | None,
     columns: Mapping[str, str] | None,
-    format: RecordFormat | None,
+    format: RecordFormat | None,  # noqa: A002
 ) -> dict[str, Any]:
     """Convert the arguments of the reading to plain values for the origin of a record."""
     return {
@@ -114,7 +114,7 @@ def read_component(
     path: Path,
     step: float | None,
     columns: Mapping[str, str] | None,
-    format: RecordFormat | None,
+    format: RecordFormat | None,  # noqa: A002
 ) -> Component:
     """Read the component of a file in the units of the file."""
     content = read_bytes(path)
@@ -136,7 +136,7 @@ def _read_text(
     text: Text,
     step: float | None,
     columns: Mapping[str, str] | None,
-    format: RecordFormat | None,
+    format: RecordFormat | None,  # noqa: A002
 ) -> Component:
     if all(not line.strip() or line.lstrip().startswith(REMARKS[0]) for line in text.lines):
         raise text.fault(len(text.lines) - 1, "the file has no numbers. Export it again")

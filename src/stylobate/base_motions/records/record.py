@@ -328,7 +328,7 @@ class Record(BaseMotion):
         begin, end = self.start if begin is None else begin, self.end if end is None else end
         slack = _KNOT_SLACK * self.step
         kept = (self.times >= begin - slack) & (self.times <= end + slack)
-        if np.count_nonzero(kept) < 2:
+        if np.count_nonzero(kept) < 2:  # noqa: PLR2004  a step has two ends
             message = f"begin and end must leave two samples of {self!r}, got {begin!r} s and {end!r} s"
             raise ParameterError(message)
         return self.changed(f"trimmed to {begin!r} s … {end!r} s", samples=self.samples[kept], origin=origin)
@@ -400,7 +400,7 @@ def _checked(samples: npt.ArrayLike) -> Floats:
         array = np.empty(0)
     if array.ndim == 1:
         array = array[:, np.newaxis]
-    if array.ndim != 2 or len(array) < 2 or not 1 <= array.shape[1] <= len(AXES):
+    if array.ndim != 2 or len(array) < 2 or not 1 <= array.shape[1] <= len(AXES):  # noqa: PLR2004
         message = f"samples must be numbers of shape (n,) or (n, 1 to 3) with n of at least 2, got {np.shape(samples)}"
         raise ParameterError(message)
     if not np.all(np.isfinite(array)):

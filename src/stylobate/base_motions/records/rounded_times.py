@@ -87,6 +87,6 @@ def _simplest(step: float) -> Iterator[float]:
     for digits in range(1, _LONGEST_DECIMAL):
         if short := float(f"{step:.{digits}g}"):
             yield short
-        if digits == 2 and 0.0 < step < 1.0:
+        if digits == 2 and 0.0 < step < 1.0:  # noqa: PLR2004
             yield 1.0 / round(1.0 / step)
     yield step

@@ -88,7 +88,7 @@ def _rounded(text: Text, times: Floats, places: list[int], step: float | None, u
 
 
 def _require_two(text: Text, places: list[int]) -> None:
-    if len(places) < 2:
+    if len(places) < 2:  # noqa: PLR2004  a step has two ends
         raise text.fault(
             places[-1] if places else len(text.lines) - 1, "the file is too short: one sample. Give two or more"
         )

@@ -51,7 +51,7 @@ def read_waveform(path: Path, content: bytes) -> Component:
     (trace,) = stream
     stats = trace.stats
     samples = np.ma.filled(np.ma.asarray(trace.data, dtype=float), np.nan) * float(stats.calib)
-    if len(samples) < 2 or not np.all(np.isfinite(samples)):
+    if len(samples) < 2 or not np.all(np.isfinite(samples)):  # noqa: PLR2004  a step has two ends
         remedy = "Download the file again, or fill its gaps"
         message = f"{path}: the trace must have at least two finite samples without gaps. {remedy}"
         raise FileError(message)

@@ -314,7 +314,7 @@ class AssessConfig(Config):
 
 
 def _problems_of_the_margin(scales: npt.NDArray[np.float64]) -> list[str]:
-    if scales.size < 2:
+    if scales.size < 2:  # noqa: PLR2004  edges lie between two
         return [f"margin.number must be 2 or more, got {scales.size}"]
     if np.all(np.diff(scales) > 0.0):
         return []

@@ -118,7 +118,7 @@ def _two_names(line: str) -> tuple[str, str] | None:
     if len(parts) == 1:
         first, comma, second = line.rpartition(",")
         return (first, second) if comma else None
-    return (parts[0], parts[1]) if len(parts) == 2 else None
+    return (parts[0], parts[1]) if len(parts) == 2 else None  # noqa: PLR2004  two columns
 
 
 def _pair(path: str, place: int, line: str) -> Row:

@@ -101,7 +101,7 @@ def _draw(tilts: Axes, strip: Axes, level: Floats, tilt: Floats, *, place: int, 
 
 def _draw_quantiles(axes: Axes, level: Floats, tilt: Floats) -> list[Line2D]:
     """Draw quantiles over the series at common intensities; return the legend entries, none without quantiles."""
-    if len(level) < 3 or np.any(np.ptp(level, axis=0) > _ONE_LEVEL * level.max(axis=0)):
+    if len(level) < 3 or np.any(np.ptp(level, axis=0) > _ONE_LEVEL * level.max(axis=0)):  # noqa: PLR2004
         return []
     quantiles = _quantiles(tilt)
     for share, line in zip(_QUANTILES, quantiles, strict=True):

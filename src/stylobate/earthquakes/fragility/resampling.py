@@ -42,7 +42,7 @@ class Replicates:
     def covariance(self) -> Floats:
         """Compute the covariance of (ln median, ln dispersion) over the resamples with a fit."""
         used = self.dispersion > 0.0
-        if np.count_nonzero(used) < 2:
+        if np.count_nonzero(used) < 2:  # noqa: PLR2004  a covariance needs two
             return np.full((2, 2), np.nan)
         return np.asarray(np.cov(self.log_median[used], np.log(self.dispersion[used])))
 

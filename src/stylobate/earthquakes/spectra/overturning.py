@@ -275,7 +275,7 @@ def _resolution(step: float, span: float, fine_scales: int) -> str:
 
 def _checked_scales(scales: npt.ArrayLike) -> Floats:
     values = checked_values("scales", "scale", scales)
-    if values.size < 2 or not (values[0] > 0.0 and np.all(np.diff(values) > 0.0)):
+    if values.size < 2 or not (values[0] > 0.0 and np.all(np.diff(values) > 0.0)):  # noqa: PLR2004  an interval
         message = f"scales must be two or more positive numbers, increasing; got {values.tolist()}"
         raise ParameterError(message)
     return values

@@ -136,12 +136,12 @@ def _vectors(name: str, value: ArrayLike) -> "xr.DataArray":
     import xarray as xr
 
     if isinstance(value, xr.DataArray):
-        if value.sizes.get(AXIS) != 2:
+        if value.sizes.get(AXIS) != 2:  # noqa: PLR2004
             message = f'{name} must have a dimension "{AXIS}" of length 2, got {dict(value.sizes)}'
             raise ParameterError(message)
         return _as_float(name, value).drop_vars(AXIS, errors="ignore")
     array = _array(name, value)
-    if array.ndim not in (1, 2) or array.shape[-1] != 2:
+    if array.ndim not in (1, 2) or array.shape[-1] != 2:  # noqa: PLR2004
         message = f"{name} must have shape (2,) or (n, 2), got {array.shape}"
         raise ParameterError(message)
     return xr.DataArray(array, dims=(*((RUN,) * (array.ndim - 1)), AXIS))

@@ -221,7 +221,7 @@ def _found(subject: Subject, laws: tuple[Law, ...]) -> list[str]:
         try:
             with _without_warnings():
                 problems += law.problems(subject)
-        except Exception as error:
+        except Exception as error:  # noqa: BLE001  a user's function may raise anything
             if subject.thorough:
                 name = _member(subject.model, error) or law.member
                 problems.append(f"{name}: raises {type(error).__name__} at a random state ({error}).")

@@ -130,7 +130,7 @@ def problems_of_lengths(subject: Subject) -> Iterator[str]:
         if function is None:
             continue
         found = function(*arguments, *numbers)
-        if name == "passage" and isinstance(found, tuple) and len(found) == 2:
+        if name == "passage" and isinstance(found, tuple) and len(found) == 2:  # noqa: PLR2004
             found = found[1]  # the first result is the duration
         at = subject.described(state) if arguments[:states] == state else f"the arguments {arguments}"
         if not _are_numbers(found):

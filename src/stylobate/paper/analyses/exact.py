@@ -76,7 +76,7 @@ def _circular() -> Finding:
         f"{lost.kind.value} bifurcation at ν = {lost.parameter:.9f}, {gap:.0e} from the closed form; supercritical: "
         "a stable modulated motion bifurcates.",
         judged(
-            max(errors) < 1e-8 and gap < 1e-7 and lost.kind is Kind.NEIMARK_SACKER and bool(lost.supercritical),
+            max(errors) < 1e-8 and gap < 1e-7 and lost.kind is Kind.NEIMARK_SACKER and bool(lost.supercritical),  # noqa: PLR2004
             ClaimStatus.SHARPENED,
         ),
     )
@@ -136,5 +136,5 @@ def _error(straight: dict[float, Branch]) -> Finding:
         f"The mean tilt of the exact orbit is larger than the averaged one by {100 * small[0]:.2f} % at a1 = 0.04 and "
         f"{100 * large[0]:.2f} % at a1 = 0.13, at ν = 3, and by {100 * small[1]:.2f} % and {100 * large[1]:.2f} % at "
         f"ν = 6: the error does not fall with ν; between these amplitudes it grows as the power {order:.2f} of a1/c.",
-        judged(abs(small[1] / small[0] - 1.0) < 0.1 and abs(order - 2.0) < 0.2, ClaimStatus.LIMITED),
+        judged(abs(small[1] / small[0] - 1.0) < 0.1 and abs(order - 2.0) < 0.2, ClaimStatus.LIMITED),  # noqa: PLR2004
     )

@@ -246,7 +246,7 @@ def _size(size: Sequence[int]) -> tuple[int, int]:
 
 def _view(azimuth: float, elevation: float) -> View:
     around, above = require_finite("azimuth", azimuth, "degrees"), require_positive("elevation", elevation, "degrees")
-    if above > 90.0:
+    if above > 90.0:  # noqa: PLR2004  from straight above
         message = f"elevation must be at most 90 degrees, got {above!r}"
         raise ParameterError(message)
     return View(math.radians(around), math.radians(above))

@@ -198,7 +198,7 @@ class Drawing:
         level, label = (1.0, "c") if near else (highest, f"{highest:.2g} c")
         text: dict[str, Any] = {"size": _SMALL, "color": palette.PALE, "va": "center"}
         strip.text(1.01, level, label, transform=strip.get_yaxis_transform(), **text)
-        if not near or highest < 2.0:
+        if not near or highest < 2.0:  # noqa: PLR2004  else the names of the two lines would touch
             strip.text(1.01, 0.0, "0", transform=strip.get_yaxis_transform(), **text)
         strip.text(-0.01, 0.5, "tilt", transform=strip.transAxes, ha="right", **text)
         self._progress = self._animated(strip.plot([], [], color=BLUE, linewidth=2.0)[0])

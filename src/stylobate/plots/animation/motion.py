@@ -202,7 +202,7 @@ def _require_run(run: Response) -> None:
     if not isinstance(run, Response):
         message = f"run must be a run, as simulate returns it, got {type(run).__name__}"
         raise ParameterError(message)
-    if run.data.sizes["time"] < 2:
+    if run.data.sizes["time"] < 2:  # noqa: PLR2004  no motion in less
         message = f"run must have 2 samples at least, got {run.data.sizes['time']}"
         raise ParameterError(message)
 

@@ -136,7 +136,7 @@ def distance_to_overturning(outcome: xr.DataArray, metric: Metric) -> xr.Dataset
 
 def _increasing(name: str, values: npt.ArrayLike) -> Floats:
     axis = checked_values("over", name, values)
-    if axis.size < 2 or not np.all(np.diff(axis) > 0.0):
+    if axis.size < 2 or not np.all(np.diff(axis) > 0.0):  # noqa: PLR2004
         message = f"over[{name!r}] must be two or more increasing values, got {values!r}"
         raise ParameterError(message)
     return axis

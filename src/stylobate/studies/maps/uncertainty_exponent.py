@@ -271,7 +271,7 @@ def _shifts(shifts: npt.ArrayLike | None, over: Mapping[str, Sequence[float]], s
         low, high = checked_values("over", shifted, over[shifted])[[0, -1]]
         return np.asarray(_USUAL_SHIFTS * (high - low))
     epsilon = checked_values("shifts", shifted, shifts)
-    if epsilon.size < 2 or not (epsilon[0] > 0.0 and np.all(np.diff(epsilon) > 0.0)):
+    if epsilon.size < 2 or not (epsilon[0] > 0.0 and np.all(np.diff(epsilon) > 0.0)):  # noqa: PLR2004
         message = f"shifts must be at least two positive numbers, increasing; got {shifts!r}"
         raise ParameterError(message)
     return epsilon

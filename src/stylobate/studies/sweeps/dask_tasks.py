@@ -71,11 +71,11 @@ def perform(version: str, source: str, work: bytes, task: bytes) -> Computed:
             "Install the same version for both, and start the workers again."
         )
         raise StylobateError(message)
-    return _opened(work)(pickle.loads(task), threads=1, progress=None)
+    return _opened(work)(pickle.loads(task), threads=1, progress=None)  # noqa: S301  as below
 
 
 @lru_cache(maxsize=1)
 def _opened(work: bytes) -> "Work":
     """Return the function of a sweep, the same object for all its tasks, so that what it has prepared is kept."""
-    function: Work = pickle.loads(work)
+    function: Work = pickle.loads(work)  # noqa: S301  from the scheduler, which can run any code
     return function

@@ -242,7 +242,7 @@ def _require_names(where: str, given: object) -> None:
 
 def _bounds(name: str, pair: Sequence[float], own: Own) -> tuple[float, float]:
     values = checked_values("over", name, pair, own)
-    if values.size != 2 or not values[0] <= values[1]:
+    if values.size != 2 or not values[0] <= values[1]:  # noqa: PLR2004
         message = f"over[{name!r}] must be a lower and an upper bound, got {pair!r}"
         raise ParameterError(message)
     low, high = (float(value) for value in values)

@@ -311,7 +311,7 @@ def _require_room(path: Path, needed: int) -> None:
 
 def _size(count: int) -> str:
     size, units = float(count), ["bytes", "kB", "MB", "GB", "TB"]
-    while size >= 1000.0 and len(units) > 1:
+    while size >= 1000.0 and len(units) > 1:  # noqa: PLR2004  SI prefixes
         size, units = size / 1000.0, units[1:]
     return f"{size:.3g} {units[0]}"
 

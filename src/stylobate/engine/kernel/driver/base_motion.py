@@ -65,7 +65,7 @@ def set_terms(buf: Table, i: int, motion: Table, t: float) -> None:
             full = 0.0 if t < wave[Wave.ONSET] else 0.5 if t < ends else 1.0
             per_turn = 0.5 / (ends - begins) if ends > begins else 0.0
             buf[row, i] = full
-            buf[row + 1, i] = 0.5 if full == 0.5 else 0.0
+            buf[row + 1, i] = 0.5 if full == 0.5 else 0.0  # noqa: PLR2004
             buf[row + 2, i] = per_turn
             buf[row + 3, i] = -per_turn * begins
 

@@ -104,7 +104,7 @@ def first_step(buf: Table, i: int, t: float) -> float:
         d0 += (buf[R.STATE + j, i] / scale) ** 2 / ORDER
         d1 += (slopes[j] / scale) ** 2 / ORDER
     d0, d1 = math.sqrt(d0), math.sqrt(d1)
-    h = 1e-6 if d0 < 1e-5 or d1 < 1e-5 else 0.01 * d0 / d1
+    h = 1e-6 if d0 < 1e-5 or d1 < 1e-5 else 0.01 * d0 / d1  # noqa: PLR2004  numbers of the reference
     h = min(h, longest)
     for j in range(ORDER):
         buf[R.NEW + j, i] = buf[R.STATE + j, i] + h * slopes[j]
@@ -113,7 +113,7 @@ def first_step(buf: Table, i: int, t: float) -> float:
         scale = atol + rtol * abs(buf[R.STATE + j, i])
         d2 += ((ahead[j] - slopes[j]) / scale) ** 2 / ORDER
     d2 = math.sqrt(d2) / h if h > 0.0 else 0.0
-    still = d1 <= 1e-15 and d2 <= 1e-15
+    still = d1 <= 1e-15 and d2 <= 1e-15  # noqa: PLR2004
     other = max(1e-6, h * 1e-3) if still else (0.01 / max(d1, d2)) ** 0.125
     found = min(100.0 * h, other, longest)
     # If the rates overflow, the step is zero or NaN. The longest step is then shortened until the run fails.
