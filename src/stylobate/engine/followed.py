@@ -6,11 +6,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
-from stylobate.engine.endings import ENDINGS
 from stylobate.engine.ensembles.batch import Batch, Plan
 from stylobate.engine.ensembles.broadcasting import Runs
 from stylobate.engine.ensembles.outcomes import Late, late_periods
-from stylobate.engine.kernel.columns import STATE, TRACE_TERMS, Log, Setup, Status, Trace, TraceKind
+from stylobate.engine.kernel.columns import STATE, TRACE_TERMS, Log, Setup, Trace
+from stylobate.engine.kernel.driver.events import Status, TraceKind
 from stylobate.engine.pace import EVERY
 from stylobate.engine.starts import Turning
 from stylobate.engine.trajectory import Trajectory
@@ -18,13 +18,6 @@ from stylobate.models import Model
 from stylobate.results import Event
 
 Floats = npt.NDArray[np.float64]
-
-_EVENTS = {
-    TraceKind.RELEASE: "uplift",
-    TraceKind.REST: "rest",
-    TraceKind.IMPACT: "impact",
-    TraceKind.PASSAGE: "passage",
-}
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,8 +57,7 @@ class Followed:
         trajectory = Trajectory(plan.model, stretches, (line[0], line[1]), carried, end)
         scale = plan.model.time_scale
         named = [(_event_in(plan.model, entry), float(entry[Trace.START])) for entry in entries[happened]]
-        ending = ENDINGS.get(Status(int(batch.log(Log.STATUS)[0])))
-        named.append((ending.event if ending else "", end))
+        named.append((Status(int(batch.log(Log.STATUS)[0])).event, end))
         events = tuple(Event(name, time * scale) for name, time in named if name)
         changes = entries[entries[:, Trace.KIND] == TraceKind.CONTACT]
         last_guard = int(changes[-1, len(Trace)]) if len(changes) else -1
@@ -85,7 +77,7 @@ def _event_in(model: Model, entry: Floats) -> str:
     """Return the name of the event of an entry; "" for none."""
     kind = TraceKind(int(entry[Trace.KIND]))
     if kind is not TraceKind.CONTACT:
-        return _EVENTS[kind]
+        return kind.event
     number, before, after = entry[len(Trace) : len(Trace) + 3].astype(int).tolist()
     return model.event_of(model.guard_names[number], before, after)
 

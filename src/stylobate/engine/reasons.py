@@ -6,10 +6,10 @@ import numpy as np
 
 from stylobate.base_motions import BaseMotion
 from stylobate.engine.end_of_motion import survival
-from stylobate.engine.endings import ENDINGS
 from stylobate.engine.ensembles.outcomes import grounds_of
 from stylobate.engine.followed import Followed
-from stylobate.engine.kernel.columns import Log, Status
+from stylobate.engine.kernel.columns import Log
+from stylobate.engine.kernel.driver.events import Status
 from stylobate.engine.pace import step_limit, unseen
 from stylobate.engine.verdict import Ground, reason_on, steady_periods
 from stylobate.errors import Outcome
@@ -40,8 +40,7 @@ def reason_of(model: Model, motion: BaseMotion, followed: Followed, outcome: Out
         return _UNPROVED
     if status is Status.RESTED:
         return f"it stands, and the base motion to come {_STANDS[model.switches]}"
-    reason = ENDINGS[status].reason if status in ENDINGS else ""
-    return reason or _UPRIGHT.get(outcome) or _at_its_end(model, motion, followed, outcome)
+    return status.reason or _UPRIGHT.get(outcome) or _at_its_end(model, motion, followed, outcome)
 
 
 def _at_its_end(model: Model, motion: BaseMotion, followed: Followed, outcome: Outcome) -> str:
@@ -67,7 +66,7 @@ def _failure(model: Model, followed: Followed) -> str:
             remedy = "; it moves in exactly one vertical plane: pass a tilt out of it" if planar else ""
             return f"its contact changes without end ({model.guard_names[followed.last_guard]}){remedy}"
         case status:
-            return ENDINGS[status].reason
+            return status.reason
 
 
 def _standing(model: Model, motion: BaseMotion, followed: Followed) -> str:

@@ -14,7 +14,8 @@ from stylobate.engine.ensembles.broadcasting import Runs, one_run
 from stylobate.engine.ensembles.motion_columns import MotionPlan
 from stylobate.engine.ensembles.summaries import summaries
 from stylobate.engine.followed import Followed
-from stylobate.engine.kernel.columns import Log, Setup
+from stylobate.engine.kernel.columns import EVENTS_AT, Log, Setup
+from stylobate.engine.kernel.driver.events import EventSetup
 from stylobate.engine.pace import LOG, report
 from stylobate.engine.reasons import bounds_of, late_measures, reason_of
 from stylobate.engine.starts import Start
@@ -98,7 +99,7 @@ def run_result(
             "no_return_tilt": model.least_safe_tilt(*bounds_of(followed)),
             "rest_energy": float(followed.batch.rest_energy[0]),
             "rest_energy_for_good": float(table[Setup.REST_ENERGY_FOR_GOOD]),
-            "tilt_limit": float(table[Setup.TILT_LIMIT]),
+            "tilt_limit": float(table[EVENTS_AT + EventSetup.TILT_LIMIT]),
             "overturned_tilt": OVERTURNED_TILT,
         },
         measures={

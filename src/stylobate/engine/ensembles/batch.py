@@ -14,13 +14,14 @@ from stylobate.engine.ensembles.look_times import LookTimes
 from stylobate.engine.ensembles.model_columns import ModelColumns
 from stylobate.engine.ensembles.motion_columns import MotionColumns, MotionPlan
 from stylobate.engine.ensembles.orbit_columns import OrbitReached, fill_orbits, orbit_reached
-from stylobate.engine.kernel.columns import LOG, NOTE, PAIRS, STATE, Log, Setup, Status
+from stylobate.engine.kernel.columns import EVENTS_AT, LOG, NOTE, PAIRS, STATE, Log, Setup
+from stylobate.engine.kernel.driver.events import Status, event_numbers
 from stylobate.engine.kernel.expansion import series_integrals
 from stylobate.engine.kernel.kernels import kernel_of
 from stylobate.engine.kernel.shape import Shape
 from stylobate.engine.starts import cannot_depart, out_of_plane, refuse_spin
 from stylobate.engine.thresholds import is_rest, rest_energy_for_good, usual_rest_energy
-from stylobate.engine.tolerances import ATOL_SHARE, FIRST_STEP_OFF, OVERTURNED_TILT, PARALLEL_ULP
+from stylobate.engine.tolerances import ATOL_SHARE, FIRST_STEP_OFF, PARALLEL_ULP
 from stylobate.models import Model
 from stylobate.results import OutcomeRules
 from stylobate.results.known_orbits import OrbitsOfRuns
@@ -303,8 +304,6 @@ def _fill_setup(
         Setup.LONGEST_STEP: longest,
         Setup.SLENDERNESS: models.slenderness,
         Setup.CAPACITY: models.capacity,
-        Setup.TILT_LIMIT: math.inf if options["tilt_limit"] is None else options["tilt_limit"],
-        Setup.OVERTURNED_TILT: OVERTURNED_TILT,
         Setup.REST_ENERGY: energy,
         Setup.REST_ENERGY_FOR_GOOD: _rest_energy_for_good(options, models, motions),
         Setup.LARGEST_HORIZONTAL: motions.largest,
@@ -323,7 +322,8 @@ def _fill_setup(
         Setup.PASSAGE_TILT: plan.passage_share * models.loss_tilt,
         **dict(zip((Setup.SLOPE_X, Setup.SLOPE_Y, Setup.SLOPE_Z), models.slope.T, strict=True)),
     }
-    for column, values in columns.items():
+    numbers = {EVENTS_AT + column: values for column, values in event_numbers(options, models.time_scale).items()}
+    for column, values in (columns | numbers).items():
         table[:, column] = values
 
 

@@ -9,7 +9,8 @@ import numpy.typing as npt
 
 from stylobate.engine.ensembles.batch import Batch
 from stylobate.engine.ensembles.variables import CONTACT_KINDS, TIMES_OF_CONTACTS
-from stylobate.engine.kernel.columns import SLACK, STATE, Change, Log, Status
+from stylobate.engine.kernel.columns import SLACK, STATE, Change, Log
+from stylobate.engine.kernel.driver.events import Status
 from stylobate.errors import Outcome
 
 Floats = npt.NDArray[np.float64]

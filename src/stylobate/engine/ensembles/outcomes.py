@@ -6,20 +6,18 @@ import numpy as np
 import numpy.typing as npt
 
 from stylobate.engine.end_of_motion import energy_over_balance, has_ended
-from stylobate.engine.endings import ENDINGS
 from stylobate.engine.ensembles.batch import Batch
 from stylobate.engine.ensembles.contacts import upright_outcomes
 from stylobate.engine.ensembles.steady import evidence_of
-from stylobate.engine.kernel.columns import EARLIER, LAGS, SLACK, STATE, Log, Setup, Status
+from stylobate.engine.kernel.columns import EARLIER, LAGS, SLACK, STATE, Log, Setup
+from stylobate.engine.kernel.driver.events import Status
 from stylobate.engine.verdict import Evidence, Ground, grounds, outcome_on
 from stylobate.errors import Outcome
 
 Floats = npt.NDArray[np.float64]
 
 _OTHERS = -1
-_OUTCOME_OF_STATUS = np.array(
-    [ENDINGS[status].outcome if status in ENDINGS else _OTHERS for status in Status], dtype=np.int8
-)
+_OUTCOME_OF_STATUS = np.array([_OTHERS if one.outcome is None else one.outcome for one in Status], dtype=np.int8)
 """Outcomes of runs that ended in the kernel; the last periods decide the other outcomes."""
 
 _OUTCOME_OF_GROUND = np.array([outcome_on(kind) for kind in Ground], dtype=np.int8)

@@ -11,7 +11,8 @@ from stylobate.engine.ensembles.contacts import contact_arrays
 from stylobate.engine.ensembles.orbit_columns import OrbitReached
 from stylobate.engine.ensembles.outcomes import late_periods, outcomes
 from stylobate.engine.ensembles.variables import DEMANDS, Arrays, empty
-from stylobate.engine.kernel.columns import STATE, Log, Setup, Status
+from stylobate.engine.kernel.columns import STATE, Log, Setup
+from stylobate.engine.kernel.driver.events import Status
 from stylobate.engine.thresholds import coarse
 from stylobate.engine.tolerances import CLOSE_PASSAGE
 from stylobate.errors import Outcome

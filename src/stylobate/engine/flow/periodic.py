@@ -11,7 +11,7 @@ import numpy.typing as npt
 from stylobate.base_motions import BaseMotion
 from stylobate.engine.ensembles.harmonics import terms_of
 from stylobate.engine.flow.flows import columns_of, flow_of
-from stylobate.engine.flow.status import Status
+from stylobate.engine.flow.status import Record, Status
 from stylobate.engine.forcing import common_line
 from stylobate.engine.parameters import present_value, with_parameters
 from stylobate.equality import ByContent
@@ -196,7 +196,8 @@ class PeriodicSystem(ByContent):
         )
         if self.planar and side == 0.0:
             side = math.copysign(1.0, state[0] if state[0] != 0.0 else state[1])
-        record = np.array([math.inf, 0.0, 0.0, side, 0.0])
+        record = np.zeros(len(Record))
+        record[Record.LEAST_TILT], record[Record.SIDE] = math.inf, side
         status = flow(
             table,
             begin,
@@ -214,11 +215,11 @@ class PeriodicSystem(ByContent):
             table[:, 0].copy(),
             table[:, 1 : order + 1].copy(),
             table[:, order + 1].copy(),
-            float(record[0]),
-            float(record[1]),
-            int(record[2]),
-            float(record[3]),
-            float(record[4]),
+            float(record[Record.LEAST_TILT]),
+            float(record[Record.PEAK_TILT]),
+            int(record[Record.STEPS]),
+            float(record[Record.SIDE]),
+            float(record[Record.TURNS]),
         )
 
 

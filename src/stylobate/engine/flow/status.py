@@ -13,3 +13,17 @@ class Status(IntEnum):
     """The motion exceeded the peak tilt."""
     FAILED = 3
     """There were too many steps, or a step was too short."""
+
+
+class Record(IntEnum):
+    """Places of the record of a flow."""
+
+    LEAST_TILT = 0
+    PEAK_TILT = 1
+    """Minimum and maximum tilt so far."""
+    STEPS = 2
+    """Number of steps."""
+    SIDE = 3
+    """Side of the vertical in planar motion."""
+    TURNS = 4
+    """Turns of the tilt vector."""

@@ -14,8 +14,44 @@ from stylobate.compiler.programs import Bound, Written
 from stylobate.compiler.unit import ArrayArgument
 from stylobate.compiler.values import Element
 from stylobate.engine import dop853, elementary, radau, sums, tolerances
-from stylobate.engine.kernel import columns, driver, linear_equations, roots
+from stylobate.engine.kernel import columns, linear_equations, roots
 from stylobate.engine.kernel import shape as shapes
+from stylobate.engine.kernel.driver import (
+    base_motion,
+    batch,
+    contact_changes,
+    contact_ends,
+    contact_events,
+    contact_implicit,
+    contact_steps,
+    contact_stiffness,
+    convergence,
+    demands,
+    equations,
+    events,
+    guards,
+    implicit_step,
+    lift_off,
+    looks,
+    moving,
+    observation,
+    passages,
+    peaks,
+    push,
+    release,
+    release_search,
+    resting,
+    series,
+    smooth,
+    stages,
+    standing_loads,
+    starting,
+    step,
+    step_control,
+    stops,
+    tracing,
+    within,
+)
 from stylobate.engine.kernel.expansion import expand_source
 from stylobate.engine.kernel.layout import Row, Table
 from stylobate.engine.kernel.shape import SERIES_ORDER, STAGES, Shape
@@ -32,6 +68,17 @@ _IN_LANES = ("rates", "tilt_of", "contact", "guards", "project")
 
 _OPTIONAL = ("rest_energy", "no_return_tilt", "departure", "passage", "at_rest", "impact_map")
 """Functions that a model may lack."""
+
+_COMMON = (
+    *(events, push, equations, stages, series, guards, step_control, demands, observation, step),
+    *(base_motion, moving, within, tracing, looks, stops, release, release_search, standing_loads, peaks, convergence),
+    batch,
+)
+_SMOOTH = (resting, lift_off, passages, smooth, starting)
+_SWITCHING = (
+    *(contact_ends, contact_changes, contact_stiffness, contact_steps),
+    *(implicit_step, contact_implicit, contact_events),
+)
 
 _USED_AS_THEY_ARE = (columns, dop853, elementary, linear_equations, radau, roots, shapes, sums, tolerances)
 
@@ -68,7 +115,7 @@ def _kernel(model: type[Model], shape: Shape, functions: tuple[tuple[str, Callab
     compiled = Compiled(
         name="advance",
         program=lambda: Bound(
-            modules=driver.modules(switching=shape.guards > 0),
+            modules=_COMMON + (_SWITCHING if shape.guards else _SMOOTH),
             names={"R": _rows(shape), **_constants(model, shape)},
             written=Written(expand_source(model, shape)) if shape.series else None,
             imported=_USED_AS_THEY_ARE,

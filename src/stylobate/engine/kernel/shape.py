@@ -9,12 +9,16 @@ from stylobate.engine.kernel.columns import (
     SWITCHING_TRACE_ROOM,
     TRACE_ROOM,
     TRACE_TERMS,
+    BySeries,
     Change,
     Lane,
     Log,
     Setup,
+    Switching,
     Trace,
+    Watching,
 )
+from stylobate.engine.kernel.driver.events import EventSetup
 from stylobate.engine.kernel.forcing import KernelForcing
 from stylobate.engine.kernel.layout import Rows
 
@@ -134,7 +138,7 @@ class Shape:
 @cache
 def _rows_of(shape: Shape) -> Rows:
     rows = Rows()
-    rows.add(*(column.name.lower() for column in Setup), *(column.name.lower() for column in Log))
+    rows.add(*(column.name.lower() for group in (Setup, EventSetup, Log) for column in group))
     rows.add_many("y", shape.order)
     rows.add(*shape.changes)
     rows.add(*(row.name.lower() for row in Lane))
@@ -144,7 +148,7 @@ def _rows_of(shape: Shape) -> Rows:
     for name in ("new", "last"):
         rows.add_many(name, shape.order)
     if shape.orbits:
-        rows.add("phase_zero_at", "converged")
+        rows.add(*(row.name.lower() for row in Watching))
         rows.add_many("orbit", shape.orbits * ORBIT)
     if shape.demands:
         rows.add(*(f"{name}_{place}" for place in ("now", 1, 2, 3, 4) for name in DEMANDS))
@@ -153,7 +157,7 @@ def _rows_of(shape: Shape) -> Rows:
 
 
 def _add_series(shape: Shape, rows: Rows) -> None:
-    rows.add("proposed", *(f"node_{name}" for name in OBSERVED))
+    rows.add(*(row.name.lower() for row in BySeries))
     rows.add_many("square", SERIES_ORDER + 1)
     for j in shape.expanded:
         rows.add(*(f"c{k}_{j}" for k in range(1, shape.degree(j) + 1)))
@@ -164,7 +168,7 @@ def _add_stages(shape: Shape, rows: Rows) -> None:
         rows.add_many(f"k{stage}_", shape.order)
     rows.add_many("last_slope", shape.order)
     if shape.guards:
-        rows.add("last_guard", "guard_now", "broken", "stiff_looks", "stiff_look_at", "stiff_wait")
+        rows.add(*(row.name.lower() for row in Switching))
         for name in ("stage", "rate", "step"):
             rows.add_many(name, shape.order)
     for name in ("extra0_", "extra1_", "extra2_", *(f"dense{power}_" for power in range(DENSE_TERMS))):
@@ -173,6 +177,3 @@ def _add_stages(shape: Shape, rows: Rows) -> None:
 
 DEMANDS = ("normal", "friction", "pivoting")
 """Contact demands: normal force over m g, and friction force and moment over the normal force."""
-
-OBSERVED = ("mean_tilt", "forward_cos", "forward_sin", "backward_cos", "backward_sin")
-"""Rows of the integrals over the last periods."""

@@ -17,9 +17,10 @@ from stylobate.engine.kernel.bound import (
     begin,
     handle,
 )
-from stylobate.engine.kernel.columns import STATE, Status
+from stylobate.engine.kernel.columns import EVENTS_AT, LOG, STATE
 from stylobate.engine.kernel.driver.base_motion import set_bounds, set_leg
 from stylobate.engine.kernel.driver.convergence import start_watching, watch
+from stylobate.engine.kernel.driver.events import Status
 from stylobate.engine.kernel.driver.looks import set_look, set_pair
 from stylobate.engine.kernel.driver.moving import azimuth_now, square_of_speed
 from stylobate.engine.kernel.driver.observation import observe
@@ -81,7 +82,7 @@ def set_idle(buf: Table, i: int) -> None:
         buf[row, i] = 0.0
     for row in (R.STATE, R.TILT, R.X, R.SLENDERNESS, R.SIDE, R.ATOL, R.ATOL_NOW):
         buf[row, i] = 1.0
-    for row in (R.STOP, R.NO_RETURN, R.TILT_LIMIT, R.PEAK_TILT, R.MOST_STEPS):
+    for row in (*range(EVENTS_AT, LOG), R.STOP, R.NO_RETURN, R.PEAK_TILT, R.MOST_STEPS):
         buf[row, i] = 1e300
     if ORBITS:
         buf[R.PHASE_ZERO_AT, i] = math.inf

@@ -17,10 +17,10 @@ from stylobate.engine.kernel.bound import (
     SLIPPING,
     R,
 )
-from stylobate.engine.kernel.columns import Status, TraceKind
 from stylobate.engine.kernel.driver.base_motion import held_for_good
 from stylobate.engine.kernel.driver.contact_ends import broken_now
 from stylobate.engine.kernel.driver.equations import lean_of_new, row_state
+from stylobate.engine.kernel.driver.events import STATUSES_AT_LIMITS, Status, TraceKind
 from stylobate.engine.kernel.driver.guards import guards_at, model_reset, moves_in_plane
 from stylobate.engine.kernel.driver.moving import azimuth_now, first_step, set_lean, set_rates, set_state
 from stylobate.engine.kernel.driver.observation import observe
@@ -45,8 +45,8 @@ def apply_resets(buf: Table, i: int, table: Table, pieces: Table, number: int) -
     while True:
         if number == FALLEN:
             return Status.OVERTURNED
-        if number == LIMIT:
-            return Status.LIMIT
+        if number >= LIMIT:
+            return STATUSES_AT_LIMITS[number - LIMIT]
         if endless(buf, i):
             return Status.ENDLESS
         apply_reset(buf, i, table, number)

@@ -4,6 +4,7 @@ import math
 
 from stylobate.engine.kernel.bound import LAST, LIMIT, R
 from stylobate.engine.kernel.driver.equations import row_state
+from stylobate.engine.kernel.driver.events import LIMITS
 from stylobate.engine.kernel.driver.guards import guards_at
 from stylobate.engine.kernel.driver.stages import dense_state
 from stylobate.engine.kernel.layout import Table
@@ -12,7 +13,7 @@ from stylobate.engine.kernel.shape import GUARD_PLACES
 # Times closer than this are equal [units of the larger of 1 and the time].
 ROUNDING = 4e-15
 # A guard counts as broken below this value, because reset maps have their own rounding errors.
-BROKEN = -1e-14
+LEAST_MARGIN = -1e-14
 # Maximum number of secant steps before bisection, and of all steps.
 SECANTS, MOST_LOOKS = 20, 100
 # A guard below this value is nearly broken.
@@ -32,12 +33,12 @@ def first_broken_guard(buf: Table, i: int) -> tuple[float, int]:
         now = h if place == GUARD_PLACES else h * place / GUARD_PLACES
         guards = guards_within(buf, i, now)
         first, number = math.inf, -1
-        for k in range(LIMIT + 1):
-            if guards[k] < BROKEN and (before[k] >= BROKEN or k != LAST):
+        for k in range(LIMIT + len(LIMITS)):
+            if guards[k] < LEAST_MARGIN and (before[k] >= LEAST_MARGIN or k != LAST):
                 end = (
                     past
-                    if before[k] <= BROKEN
-                    else crossing_of(buf, i, k, past, now, before[k] - BROKEN, guards[k] - BROKEN)
+                    if before[k] <= LEAST_MARGIN
+                    else crossing_of(buf, i, k, past, now, before[k] - LEAST_MARGIN, guards[k] - LEAST_MARGIN)
                 )
                 if end < first:
                     first, number = end, k
@@ -50,7 +51,7 @@ def first_broken_guard(buf: Table, i: int) -> tuple[float, int]:
 def crossing_of(buf: Table, i: int, number: int, low: float, high: float, at_low: float, at_high: float) -> float:
     """Return the earliest time, up to rounding, at which a guard is broken, by the Illinois method.
 
-    `at_low` and `at_high` are the guard minus BROKEN at both ends.
+    `at_low` and `at_high` are the guard minus LEAST_MARGIN at both ends.
     """
     rounding = ROUNDING * max(1.0, buf[R.TIME, i] + high)
     side = 0
@@ -59,7 +60,7 @@ def crossing_of(buf: Table, i: int, number: int, low: float, high: float, at_low
             break
         guess = (low * at_high - high * at_low) / (at_high - at_low) if look < SECANTS else 0.5 * (low + high)
         guess = min(max(guess, low + rounding), high - rounding)
-        value = guards_within(buf, i, guess)[number] - BROKEN
+        value = guards_within(buf, i, guess)[number] - LEAST_MARGIN
         if value < 0.0:
             high, at_high = guess, value
             at_low = 0.5 * at_low if side < 0 else at_low
@@ -77,8 +78,8 @@ def broken_now(buf: Table, i: int) -> int:
     buf[R.LAST_GUARD, i] = guards[LAST]
     buf[R.GUARD_NOW, i] = guards[LAST]
     buf[R.BROKEN, i] = 0.0
-    for k in range(LIMIT + 1):
-        if guards[k] < BROKEN and k != LAST:
+    for k in range(LIMIT + len(LIMITS)):
+        if guards[k] < LEAST_MARGIN and k != LAST:
             return k
     return -1
 

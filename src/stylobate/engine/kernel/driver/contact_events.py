@@ -3,7 +3,6 @@
 import math
 
 from stylobate.engine.kernel.bound import FLYING, FRICTION, R
-from stylobate.engine.kernel.columns import Status
 from stylobate.engine.kernel.driver.contact_changes import BEGINS, apply_resets, set_moving
 from stylobate.engine.kernel.driver.contact_ends import broken_now, first_broken_guard, nearly_broken
 from stylobate.engine.kernel.driver.contact_implicit import follow_implicitly
@@ -15,6 +14,7 @@ from stylobate.engine.kernel.driver.contact_steps import (
     slip_turns,
 )
 from stylobate.engine.kernel.driver.contact_stiffness import LOOK_EVERY, detect_stiffness
+from stylobate.engine.kernel.driver.events import Status, limit_passed
 from stylobate.engine.kernel.driver.moving import set_lean
 from stylobate.engine.kernel.driver.peaks import measure_peak
 from stylobate.engine.kernel.driver.stages import set_dense
@@ -33,8 +33,9 @@ def begin(buf: Table, i: int, table: Table, pieces: Table) -> int:
     buf[R.STIFF_LOOK_AT, i] = LOOK_EVERY
     buf[R.STIFF_WAIT, i] = LOOK_EVERY
     set_lean(buf, i)
-    if buf[R.TILT, i] > buf[R.TILT_LIMIT, i]:
-        return Status.LIMIT
+    status = limit_passed(buf, i)
+    if status != Status.WAITING:
+        return status
     if buf[R.CONTACT, i] != FLYING:
         return apply_resets(buf, i, table, pieces, BEGINS)
     buf[R.STANDS, i] = 0.0

@@ -5,7 +5,6 @@ import math
 import numpy as np
 
 from stylobate.engine.kernel.bound import CHANGES, FRICTION, ORDER, R
-from stylobate.engine.kernel.columns import Status
 from stylobate.engine.kernel.driver.contact_changes import apply_resets
 from stylobate.engine.kernel.driver.contact_ends import broken_now, first_broken_guard
 from stylobate.engine.kernel.driver.contact_steps import (
@@ -17,6 +16,7 @@ from stylobate.engine.kernel.driver.contact_steps import (
 )
 from stylobate.engine.kernel.driver.contact_stiffness import LOOK_AGAIN, LOOK_EVERY, NEAR_BOUNDARY
 from stylobate.engine.kernel.driver.equations import row_state
+from stylobate.engine.kernel.driver.events import Status
 from stylobate.engine.kernel.driver.guards import model_project
 from stylobate.engine.kernel.driver.implicit_step import (
     MOST_ITERATIONS,

@@ -4,10 +4,10 @@ import math
 
 from stylobate.engine.elementary import turning_point, winding
 from stylobate.engine.kernel.bound import FLYING, LAST, ORDER, SLIDING, SLIP_X, SLIP_Y, SLIPPING, R
-from stylobate.engine.kernel.columns import Status
 from stylobate.engine.kernel.driver.contact_changes import ONE_MOMENT, apply_resets
 from stylobate.engine.kernel.driver.contact_ends import broken_now
 from stylobate.engine.kernel.driver.equations import row_state
+from stylobate.engine.kernel.driver.events import Status
 from stylobate.engine.kernel.driver.moving import set_lean, set_rates, set_state
 from stylobate.engine.kernel.driver.observation import observe
 from stylobate.engine.kernel.driver.peaks import measure_peak, record_loss

@@ -139,7 +139,7 @@ def watch(buf: Table, i: int, table: Table) -> None:
             if approaches(buf, i, k, distance):
                 table[int(buf[R.RUN, i]), ORBITS_AT + k * ORBIT + Orbit.REACHED] = 1.0
                 buf[R.CONVERGED, i] = 1.0
-                buf[R.FLAG, i] = 2.0  # not 1, which `passes_knot` takes for a stop reached
+                buf[R.FLAG, i] += 1.0
         else:
             reset_approach(buf, i, k)
 

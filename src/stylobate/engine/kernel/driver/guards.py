@@ -1,7 +1,5 @@
 """Guards and reset maps of models that change between kinds of contact."""
 
-import math
-
 from stylobate.compiler.marks import fast, flat, lanes
 from stylobate.engine.dop853 import STAGES
 from stylobate.engine.kernel.bound import (
@@ -22,6 +20,7 @@ from stylobate.engine.kernel.bound import (
     reset_map,
 )
 from stylobate.engine.kernel.driver.equations import State, lean_of, numbers, row_state
+from stylobate.engine.kernel.driver.events import lean, margins_of_limits
 from stylobate.engine.kernel.driver.push import Accelerations, accelerations
 from stylobate.engine.kernel.layout import Table
 from stylobate.engine.kernel.shape import GUARD_PLACES
@@ -36,15 +35,10 @@ def guards_under(buf: Table, i: int, state: State, push: Accelerations) -> tuple
     return guards(*state, *push, buf[R.REST_ENERGY, i], buf[R.PASSAGE_TILT, i], *numbers(buf, i))
 
 
-def limit_guard(buf: Table, i: int, state: State) -> float:
-    """Return the tilt limit minus the tilt of a state."""
-    x, y, _, _ = lean_of(buf, i, state)
-    return buf[R.TILT_LIMIT, i] - math.sqrt(x * x + y * y)
-
-
 def guards_at(buf: Table, i: int, t: float, state: State) -> tuple[float, ...]:
-    """Return the guards of the model, followed by the guard of the tilt limit."""
-    return *guards_under(buf, i, state, accelerations(buf, i, t)), limit_guard(buf, i, state)
+    """Return the guards of the model, followed by the margins of the limits."""
+    guards = guards_under(buf, i, state, accelerations(buf, i, t))
+    return *guards, *margins_of_limits(buf, i, lean(*lean_of(buf, i, state)))
 
 
 def model_reset(
@@ -124,11 +118,14 @@ def evaluate_guards_within(buf: Table, share: float) -> None:
 
 @fast
 def mark_broken_guards(buf: Table, share: float) -> None:
-    """Mark the lanes with a broken guard, or with a tilt beyond its limit, at this fraction of the step."""
+    """Mark the lanes with a broken guard, or beyond a limit, at this fraction of the step."""
     for i in lanes(WIDTH):
         state = row_state(buf, i, R.STAGE)
         margins = guards_under(buf, i, state, accelerations(buf, i, buf[R.TIME, i] + share * buf[R.H, i]))
-        least = limit_guard(buf, i, state)
+        limits = margins_of_limits(buf, i, lean(*lean_of(buf, i, state)))
+        least = limits[0]
+        for limit in limits[1:]:
+            least = min(least, limit)
         for k in range(GUARDS - 1):
             least = min(least, margins[k])
         # The last guard counts only if it falls through zero.

@@ -4,8 +4,8 @@ import math
 
 from stylobate.engine.elementary import length
 from stylobate.engine.kernel.bound import CAN_LOSE, CAN_REST, R
-from stylobate.engine.kernel.columns import TraceKind
 from stylobate.engine.kernel.driver.equations import lean_of_new, model_impact, model_passage
+from stylobate.engine.kernel.driver.events import TraceKind
 from stylobate.engine.kernel.driver.moving import azimuth_now, set_lean, set_state, start_moving
 from stylobate.engine.kernel.driver.peaks import record_loss
 from stylobate.engine.kernel.driver.push import accelerations

@@ -4,9 +4,9 @@ import math
 
 from stylobate.engine.elementary import length
 from stylobate.engine.kernel.bound import CAN_DEPART, CAN_GO_TO_PLANE, CAN_LOSE, PLANAR, SPIN, R
-from stylobate.engine.kernel.columns import Status, TraceKind
 from stylobate.engine.kernel.driver.base_motion import forcing_rate, held_for_good
 from stylobate.engine.kernel.driver.equations import lean_of_new, model_at_rest, model_departure, model_rest_energy
+from stylobate.engine.kernel.driver.events import Status, TraceKind
 from stylobate.engine.kernel.driver.moving import azimuth_now, is_at_rest, set_state, start_moving
 from stylobate.engine.kernel.driver.push import Accelerations, accelerations
 from stylobate.engine.kernel.driver.release import RELEASE_MARGIN

@@ -1,7 +1,7 @@
 """Start of a run in a lane."""
 
 from stylobate.engine.kernel.bound import R
-from stylobate.engine.kernel.columns import Status
+from stylobate.engine.kernel.driver.events import Status, limit_passed
 from stylobate.engine.kernel.driver.lift_off import find_lift
 from stylobate.engine.kernel.driver.moving import start_moving
 from stylobate.engine.kernel.driver.resting import stand
@@ -16,6 +16,5 @@ def begin(buf: Table, i: int, table: Table, pieces: Table) -> int:
     if buf[R.STANDS, i] > 0.0:
         return stand(buf, i, table, pieces, t)
     start_moving(buf, i, t, 0.0)
-    if buf[R.TILT, i] > buf[R.TILT_LIMIT, i]:
-        return Status.LIMIT
-    return resume(buf, i, table, pieces)
+    status = limit_passed(buf, i)
+    return resume(buf, i, table, pieces) if status == Status.WAITING else status

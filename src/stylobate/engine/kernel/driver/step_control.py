@@ -10,6 +10,7 @@ from stylobate.engine.dop853 import E3, E5, STAGES
 from stylobate.engine.elementary import turning_point, winding
 from stylobate.engine.kernel.bound import ORDER, PLANAR, SERIES, SLIDING, SLIP_X, SLIP_Y, SLIPPING, SWITCHING, R
 from stylobate.engine.kernel.driver.equations import lean_of_new
+from stylobate.engine.kernel.driver.events import lean, overshoot_of
 from stylobate.engine.kernel.driver.series import extremes_by_series, falls_and_rises, rises_and_falls
 from stylobate.engine.kernel.driver.stages import slopes_of
 from stylobate.engine.kernel.layout import Table
@@ -86,9 +87,9 @@ def absolute_tolerance(buf: Table, i: int, j: int) -> float:
 def accept(buf: Table, i: int) -> None:
     """Compute the new tilt vector, and decide whether the step is accepted, rejected, or held back by an event."""
     x, y, vx, vy = lean_of_new(buf, i)
-    tilt = math.sqrt(x * x + y * y)
-    radial = x * vx + y * vy
-    past = overshoot(buf, i, x, vx, tilt, radial)
+    new = lean(x, y, vx, vy)
+    # The guards of a model that changes between kinds of contact have been evaluated.
+    past = buf[R.BROKEN, i] if SWITCHING else overshoot_of(buf, i, new)
     ok = 1.0 if buf[R.ERROR, i] < 1.0 else 0.0
     ahead = (1.0 if past > 0.0 else 0.0) * (0.0 if buf[R.AIMED, i] > 0.0 else 1.0)
     buf[R.OK, i] = ok
@@ -98,25 +99,8 @@ def accept(buf: Table, i: int) -> None:
     buf[R.NEW_Y, i] = y
     buf[R.NEW_VX, i] = vx
     buf[R.NEW_VY, i] = vy
-    buf[R.NEW_TILT, i] = tilt
-    buf[R.NEW_RADIAL, i] = radial
-
-
-def overshoot(buf: Table, i: int, x: float, vx: float, tilt: float, radial: float) -> float:
-    """Return an indicator that is positive if the step overshoots an event."""
-    if SWITCHING:  # the guards have been evaluated
-        return buf[R.BROKEN, i]
-    past = min(tilt - buf[R.NO_RETURN, i], radial)
-    past = max(past, tilt - buf[R.TILT_LIMIT, i])
-    if not PLANAR:
-        return past
-    side, h = buf[R.SIDE, i], buf[R.H, i]
-    s0, s1 = side * buf[R.X, i], side * x
-    v0, v1 = side * buf[R.VX, i], side * vx
-    _, lowest = turning_point(s0, s1, v0 * h, v1 * h, -1.0)
-    lowest = lowest if v0 < 0.0 else s1
-    lowest = lowest if v1 > 0.0 else s1
-    return max(past, -min(s1, lowest))
+    buf[R.NEW_TILT, i] = new.tilt
+    buf[R.NEW_RADIAL, i] = new.radial
 
 
 # Extremes

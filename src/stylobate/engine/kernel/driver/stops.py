@@ -3,8 +3,9 @@
 import math
 
 from stylobate.engine.kernel.bound import BREAKS_AT, DEGREE, R
-from stylobate.engine.kernel.columns import SLACK, Status
+from stylobate.engine.kernel.columns import SLACK
 from stylobate.engine.kernel.driver.base_motion import continues_in_next_piece, set_leg
+from stylobate.engine.kernel.driver.events import Status
 from stylobate.engine.kernel.driver.looks import record_lean, record_place, set_look, set_pair, take_look, take_pair
 from stylobate.engine.kernel.driver.moving import set_rates
 from stylobate.engine.kernel.driver.standing_loads import record_standing_loads
@@ -68,8 +69,8 @@ def limit_step(buf: Table, i: int) -> None:
 
 def passes_knot(buf: Table, i: int, table: Table, pieces: Table) -> bool:
     """Continue with the next piece of the base motion if that is the only task of this stop; return whether it is."""
-    # A flag of 1 with a stop reached has no other cause.
-    if DEGREE < 0 or buf[R.FLAG, i] != 1.0 or buf[R.REACHED, i] != 1.0 or buf[R.RUN, i] < 0.0:
+    only_stop = buf[R.FLAG, i] == 1.0 and buf[R.REACHED, i] == 1.0
+    if DEGREE < 0 or not only_stop or buf[R.RUN, i] < 0.0:
         return False
     t = buf[R.TIME, i]
     if t != buf[R.LEG_ENDS, i] or t >= buf[R.OTHER_STOP, i] or not continues_in_next_piece(buf, i, table, pieces):

@@ -12,7 +12,8 @@ from stylobate.engine.kernel.bound import (
     WIDTH,
     R,
 )
-from stylobate.engine.kernel.columns import NOTE, TRACE_TERMS, Trace, TraceKind
+from stylobate.engine.kernel.columns import NOTE, TRACE_TERMS, Trace
+from stylobate.engine.kernel.driver.events import TraceKind
 from stylobate.engine.kernel.driver.stages import set_dense
 from stylobate.engine.kernel.layout import Table
 from stylobate.engine.kernel.roots import turns_of
