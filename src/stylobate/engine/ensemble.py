@@ -1,7 +1,9 @@
-"""Integration of many runs: `simulate_ensemble`."""
+"""Integration of many runs: simulate_ensemble."""
 
 import json
-from collections.abc import Mapping
+import os
+from collections.abc import Callable, Mapping
+from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from dataclasses import asdict
 from typing import Any, Unpack
 
@@ -12,15 +14,12 @@ import xarray as xr
 from stylobate.base_motions import BASE_AT_REST, BaseMotion
 from stylobate.base_motions.one_of import members_of
 from stylobate.column import Column
+from stylobate.engine.cost import announce, expected_steps
 from stylobate.engine.ensembles.batch import Batch, Plan
-from stylobate.engine.ensembles.broadcasting import AXIS, ArrayLike, Runs, broadcast
-from stylobate.engine.ensembles.harmonics import terms_of
-from stylobate.engine.ensembles.motion_columns import MotionPlan
-from stylobate.engine.ensembles.pool import Halt, parts_of, run_parts, usual_threads
+from stylobate.engine.ensembles.run_columns import MotionPlan, terms_of
+from stylobate.engine.ensembles.runs import AXIS, QUANTITIES, ArrayLike, Arrays, Runs, broadcast, empty
 from stylobate.engine.ensembles.summaries import fallen, summarize_into
-from stylobate.engine.ensembles.variables import QUANTITIES, Arrays, empty
-from stylobate.engine.motion_checks import check_motion
-from stylobate.engine.pace import announce, expected_steps
+from stylobate.engine.forcing import check_motion
 from stylobate.engine.parameters import changed_model, check_names, in_declared_units, own_numbers, split
 from stylobate.engine.starts import require_nouns
 from stylobate.errors import (
@@ -34,7 +33,8 @@ from stylobate.errors import (
 )
 from stylobate.models import Model
 from stylobate.models.consistency import check_once
-from stylobate.progress import Progress, Report, report_of, shows_progress, silent
+from stylobate.processes import end_all
+from stylobate.progress import Progress, Report, beat, report_of, shows_progress, silent
 from stylobate.provenance import provenance_of_run
 from stylobate.quantities import Parameter, parameters_of
 from stylobate.results import OutcomeRules
@@ -250,3 +250,66 @@ def _dataset(
         if known is not None and not data.variables[name].attrs:
             data.variables[name].attrs = {"long_name": known.quantity.text, "units": known.quantity.cf_units}
     return data
+
+
+Halt = npt.NDArray[np.uint8]
+
+# Size of parts: small enough that every thread has one, all threads end together and progress is visible; large enough
+# to fill the lanes and to keep the overhead of Python small.
+_FEWEST, _ENOUGH, _MOST, _PARTS_PER_THREAD = 32, 512, 4096, 4
+
+
+def parts_of(count: int, threads: int) -> list[slice]:
+    """Return the slices of the parts of `count` runs."""
+    share = -(-count // threads)
+    size = min(max(_FEWEST, min(share, _ENOUGH), -(-share // _PARTS_PER_THREAD)), _MOST)
+    return [slice(start, min(start + size, count)) for start in range(0, count, size)]
+
+
+def usual_threads() -> int:
+    """Return the number of threads that this process may run at a time."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def run_parts(
+    parts: list[slice],
+    compute: Callable[[slice, Halt], None],
+    threads: int,
+    done: Callable[[slice], None],
+) -> bool:
+    """Call `compute` for each part, and `done` in this thread as each is finished; return False after Ctrl-C.
+
+    The second argument of `compute` is a flag that is set when it should stop. An exception of `compute` is raised here
+    after all parts have stopped.
+    """
+    halt = np.zeros(1, dtype=np.uint8)
+    waiting = iter(parts)
+    with ThreadPoolExecutor(max_workers=threads, thread_name_prefix="stylobate") as pool:
+        running: dict[Future[None], slice] = {}
+
+        def start() -> None:
+            part = next(waiting, None)
+            if part is not None:
+                running[pool.submit(compute, part, halt)] = part
+
+        try:
+            for _ in range(threads):
+                start()
+            while running:
+                # The timeout lets Python react to Ctrl-C, which it can only do between its own steps.
+                finished, _ = wait(running, timeout=0.1, return_when=FIRST_COMPLETED)
+                beat()
+                for future in finished:
+                    part = running.pop(future)
+                    future.result()
+                    start()
+                    done(part)
+        except KeyboardInterrupt:
+            halt[0] = 1
+            while running and wait(running, timeout=0.1).not_done:
+                end_all()  # a thread may wait for a compiler, and the next one may start another
+            return False
+        except BaseException:
+            halt[0] = 1
+            raise
+    return True

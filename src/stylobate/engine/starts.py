@@ -9,8 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from stylobate.base_motions import BaseMotion
-from stylobate.engine.forcing import common_line
-from stylobate.engine.motion_checks import check_kinds
+from stylobate.engine.forcing import check_kinds, common_line
 from stylobate.errors import ParameterError, UnsupportedError
 from stylobate.models import Model
 from stylobate.models.consistency import check_once

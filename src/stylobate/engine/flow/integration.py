@@ -1,13 +1,7 @@
-"""Integration of a model's motion, with its derivatives, over a part of the period of the base motion.
-
-The state of order n is the first column of a matrix of n rows. The next columns are its derivatives with respect to the
-initial state and to one parameter of the system; columns that fill the last vector are zero. `flows` binds the open
-names to a model.
-
-DOP853: E. Hairer, S. P. Nørsett, G. Wanner, "Solving Ordinary Differential Equations I", 2nd ed., section II.5.
-"""
+"""Integration of the variational equations of a motion over periods of the base motion."""
 
 import math
+from enum import IntEnum
 from typing import NamedTuple
 
 import numpy as np
@@ -15,7 +9,7 @@ import numpy.typing as npt
 
 from stylobate.compiler.marks import fast, lanes
 from stylobate.engine.dop853 import E3, E5, STAGES, A, B, C
-from stylobate.engine.elementary import turning_point, winding
+from stylobate.engine.elementary import turning_point, weighted, winding
 from stylobate.engine.flow.bound import (
     ACCELERATIONS,
     COLUMNS,
@@ -29,8 +23,33 @@ from stylobate.engine.flow.bound import (
     rates,
     tilt_of,
 )
-from stylobate.engine.flow.status import Record, Status
-from stylobate.engine.sums import weighted
+
+
+class Status(IntEnum):
+    """Status of a flow at its end."""
+
+    DONE = 0
+    LOST = 1
+    """The motion came to the vertical, where the derivatives do not exist."""
+    GONE = 2
+    """The motion exceeded the peak tilt."""
+    FAILED = 3
+    """There were too many steps, or a step was too short."""
+
+
+class Record(IntEnum):
+    """Places of the record of a flow."""
+
+    LEAST_TILT = 0
+    PEAK_TILT = 1
+    """Minimum and maximum tilt so far."""
+    STEPS = 2
+    """Number of steps."""
+    SIDE = 3
+    """Side of the vertical in planar motion."""
+    TURNS = 4
+    """Turns of the tilt vector."""
+
 
 Table = npt.NDArray[np.float64]
 Vector = npt.NDArray[np.float64]

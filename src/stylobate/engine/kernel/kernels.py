@@ -13,44 +13,22 @@ from stylobate.compiler.compiled import Compiled
 from stylobate.compiler.programs import Bound, Written
 from stylobate.compiler.unit import ArrayArgument
 from stylobate.compiler.values import Element
-from stylobate.engine import dop853, elementary, radau, sums, tolerances
-from stylobate.engine.kernel import columns, linear_equations, roots
+from stylobate.engine import dop853, elementary, tolerances
+from stylobate.engine.kernel import columns
 from stylobate.engine.kernel import shape as shapes
 from stylobate.engine.kernel.driver import (
-    base_motion,
-    batch,
-    contact_changes,
-    contact_ends,
-    contact_events,
-    contact_implicit,
-    contact_steps,
-    contact_stiffness,
-    convergence,
-    demands,
     equations,
     events,
     guards,
     implicit_step,
-    lift_off,
-    looks,
-    moving,
-    observation,
-    passages,
-    peaks,
-    push,
-    release,
-    release_search,
-    resting,
-    series,
+    loop,
+    motion,
+    records,
+    rest,
     smooth,
     stages,
-    standing_loads,
-    starting,
     step,
-    step_control,
-    stops,
-    tracing,
-    within,
+    switching,
 )
 from stylobate.engine.kernel.expansion import expand_source
 from stylobate.engine.kernel.layout import Row, Table
@@ -69,18 +47,12 @@ _IN_LANES = ("rates", "tilt_of", "contact", "guards", "project")
 _OPTIONAL = ("rest_energy", "no_return_tilt", "departure", "passage", "at_rest", "impact_map")
 """Functions that a model may lack."""
 
-_COMMON = (
-    *(events, push, equations, stages, series, guards, step_control, demands, observation, step),
-    *(base_motion, moving, within, tracing, looks, stops, release, release_search, standing_loads, peaks, convergence),
-    batch,
-)
-_SMOOTH = (resting, lift_off, passages, smooth, starting)
-_SWITCHING = (
-    *(contact_ends, contact_changes, contact_stiffness, contact_steps),
-    *(implicit_step, contact_implicit, contact_events),
-)
+_COMMON = (events, equations, stages, motion, guards, step, records, rest, loop)
+_SMOOTH = (smooth,)
+_SWITCHING = (switching, implicit_step)
+"""Modules of the driver: of all kernels, and for models without or with changes between kinds of contact."""
 
-_USED_AS_THEY_ARE = (columns, dop853, elementary, linear_equations, radau, roots, shapes, sums, tolerances)
+_USED_AS_THEY_ARE = (columns, dop853, elementary, shapes, tolerances)
 
 
 @dataclass(frozen=True, slots=True)
@@ -220,7 +192,7 @@ def _contact_constants(model: type[Model], shape: Shape) -> dict[str, Any]:
         **{name: names.index(guard) if guard in names else -1 for name, guard in places.items()},
         **dict(zip(("SLIP_X", "SLIP_Y"), shape.slip or (-1, -1), strict=True)),
         "KEPT_STATES": shape.kept,
-        "CHANGES": radau.STAGES * shape.order,
+        "CHANGES": implicit_step.STAGES * shape.order,
         "WINDOW_ENDS": tuple(model.state_names.index(name) for name in states),
         **dict.fromkeys(("RESTING", "SLIDING", "ROLLING", "SLIPPING", "FLYING", "JAMMED"), -1),
         **{kind.name: kind.value for kind in kinds or ()},

@@ -1,24 +1,62 @@
-"""Events of a lane: overturning, tilt limit, passage through the vertical, rest, and stops."""
+"""Start and events of lanes whose model keeps one kind of contact."""
 
 import math
 
+from stylobate.engine.elementary import length
 from stylobate.engine.kernel.bound import CAN_LOSE, CAN_PASS, CAN_REST, ORDER, PLANAR, SERIES, R
-from stylobate.engine.kernel.driver.equations import lean_of, lean_of_new, row_state
-from stylobate.engine.kernel.driver.events import Status, Target, first_event, lean, status_at_target, time_left
-from stylobate.engine.kernel.driver.moving import set_lean, set_state
-from stylobate.engine.kernel.driver.passages import (
-    apply_impact,
-    cross_vertical,
-    loses_energy,
-    nears_vertical,
-    pass_analytically,
+from stylobate.engine.kernel.driver.equations import (
+    accelerations,
+    lean_of,
+    lean_of_new,
+    model_impact,
+    model_passage,
+    row_state,
 )
-from stylobate.engine.kernel.driver.peaks import closest_within, measure_peak, undo_step
-from stylobate.engine.kernel.driver.resting import rest_within_step, settle
-from stylobate.engine.kernel.driver.stops import meet_stop, set_next_stop
-from stylobate.engine.kernel.driver.tracing import remove_trace_entry
-from stylobate.engine.kernel.driver.within import set_within
+from stylobate.engine.kernel.driver.events import (
+    Status,
+    Target,
+    TraceKind,
+    first_event,
+    lean,
+    limit_passed,
+    status_at_target,
+    time_left,
+)
+from stylobate.engine.kernel.driver.motion import (
+    azimuth_now,
+    closest_within,
+    measure_peak,
+    record_loss,
+    set_lean,
+    set_state,
+    start_moving,
+    undo_step,
+)
+from stylobate.engine.kernel.driver.records import (
+    meet_stop,
+    next_stop,
+    remove_trace_entry,
+    resume,
+    set_next_stop,
+    trace_analytical_step,
+    trace_event,
+)
+from stylobate.engine.kernel.driver.rest import find_lift, rest_margin, rest_within_step, settle, stand
+from stylobate.engine.kernel.driver.stages import set_within
 from stylobate.engine.kernel.layout import Table
+from stylobate.engine.tolerances import PASSAGE_FROM, PASSAGE_OFFSET
+
+
+def begin(buf: Table, i: int, table: Table, pieces: Table) -> int:
+    """Start the run of a lane; return WAITING if the column moves, else the status with which the run ends at once."""
+    t = buf[R.TIME, i]
+    find_lift(buf, i, table, pieces)
+    if buf[R.STANDS, i] > 0.0:
+        return stand(buf, i, table, pieces, t)
+    start_moving(buf, i, t, 0.0)
+    status = limit_passed(buf, i)
+    return resume(buf, i, table, pieces) if status == Status.WAITING else status
+
 
 # Maximum number of steps aimed at an event. A remaining step below the second number, in units of the longest step, is
 # made by a Taylor polynomial, whose error is of third order.
@@ -121,3 +159,77 @@ def handle(buf: Table, i: int, table: Table, pieces: Table) -> int:
             return status
     set_next_stop(buf, i)
     return Status.WAITING
+
+
+# A tilt that falls at less than this fraction of the speed is at its minimum.
+JUST_MET = 1e-6
+
+
+def cross_vertical(buf: Table, i: int, table: Table, pieces: Table) -> int:
+    """Pass the vertical in planar motion, or come to rest there."""
+    t, speed = buf[R.TIME, i], buf[R.STATE + 1, i]
+    buf[R.REACHED_VERTICAL, i] = 1.0
+    buf[R.STATE, i] = 0.0
+    can_rest = CAN_REST and buf[R.REST_ENERGY, i] > 0.0
+    if speed == 0.0 or (can_rest and rest_margin(buf, i, accelerations(buf, i, t), 0.0, abs(speed)) > 0.0):
+        return settle(buf, i, table, pieces, t)
+    costs = CAN_LOSE and buf[R.PASSAGE_TILT, i] > 0.0
+    trace_event(buf, i, table, TraceKind.IMPACT if costs else TraceKind.PASSAGE, t)
+    if costs:
+        set_state(buf, i, model_impact(buf, i))
+    start_moving(buf, i, t, buf[R.HELD_STEP, i])
+    return resume(buf, i, table, pieces)
+
+
+def loses_energy(buf: Table, i: int) -> bool:
+    """Return whether the step just made passed the vertical so closely that the passage loses energy."""
+    if buf[R.LOW, i] >= buf[R.PASSAGE_TILT, i] or buf[R.RADIAL, i] <= 0.0:
+        return False
+    set_within(buf, i, 0.0)
+    x, y, vx, vy = lean_of_new(buf, i)
+    # A passage that has just been handled does not count again.
+    return x * vx + y * vy < -JUST_MET * length(x, y) * length(vx, vy)
+
+
+def apply_impact(buf: Table, i: int, table: Table, pieces: Table) -> int:
+    """Apply the impact map of a lossy passage at the minimum tilt; return as `resume` does."""
+    set_lean(buf, i)
+    record_loss(buf, i)
+    trace_event(buf, i, table, TraceKind.IMPACT, buf[R.TIME, i])
+    set_state(buf, i, model_impact(buf, i))
+    start_moving(buf, i, buf[R.TIME, i], buf[R.WANTED, i])
+    buf[R.ATOL_NOW, i] = buf[R.ATOL, i]
+    return resume(buf, i, table, pieces)
+
+
+def nears_vertical(buf: Table, i: int) -> bool:
+    """Return whether the column approaches the vertical so closely that the passage is an analytical step."""
+    c, speed = buf[R.SLENDERNESS, i], length(buf[R.VX, i], buf[R.VY, i])
+    near = buf[R.RADIAL, i] < 0.0 and buf[R.TILT, i] < PASSAGE_FROM * min(c, speed)
+    return near and abs(buf[R.MOMENTUM, i]) < PASSAGE_OFFSET * c * speed
+
+
+def pass_analytically(buf: Table, i: int, table: Table) -> None:
+    """Make the passage by an analytical step, if it ends before the next stop."""
+    t = buf[R.TIME, i]
+    ax, ay, az = accelerations(buf, i, t)
+    elapsed, state = model_passage(buf, i, ax, ay, az)
+    if t + elapsed > next_stop(buf, i):
+        return
+    momentum, speed = buf[R.MOMENTUM, i], length(buf[R.VX, i], buf[R.VY, i])
+    # The contact point travels half a turn; the momentum gives the direction.
+    azimuth = azimuth_now(buf, i) + math.copysign(0.5, momentum)
+    trace_analytical_step(buf, i, table, elapsed, state, azimuth)
+    set_state(buf, i, state)
+    if CAN_LOSE and buf[R.PASSAGE_TILT, i] > 0.0:
+        record_loss(buf, i)
+        trace_event(buf, i, table, TraceKind.IMPACT, t + elapsed)
+        set_state(buf, i, model_impact(buf, i))
+    set_lean(buf, i)
+    closest = abs(momentum) / speed
+    buf[R.MINIMUM_TILT, i] = min(buf[R.MINIMUM_TILT, i], closest)
+    if speed * speed > buf[R.REST_SQUARE, i]:
+        buf[R.CLOSEST_PASSAGE, i] = min(buf[R.CLOSEST_PASSAGE, i], closest)
+    buf[R.LAST_AZIMUTH, i] = azimuth
+    start_moving(buf, i, t + elapsed, buf[R.WANTED, i])
+    buf[R.ATOL_NOW, i] = buf[R.ATOL, i]
