@@ -58,7 +58,7 @@ class Followed:
         stretches = entries[~happened] if not happened.all() else _nothing_moved(batch)
         line = batch.table[0, [Setup.LINE_X, Setup.LINE_Y]].tolist()
         end = float(batch.log(Log.TIME)[0])
-        carried = (run.turning or Turning()).carried(plan.model)
+        carried = (run.turning[0] if run.turning else Turning()).carried(plan.model)
         trajectory = Trajectory(plan.model, stretches, (line[0], line[1]), carried, end)
         scale = plan.model.time_scale
         named = [(_event_in(plan.model, entry), float(entry[Trace.START])) for entry in entries[happened]]

@@ -18,12 +18,12 @@ from stylobate.engine.forcing import check_motion, is_rest, without_dust
 from stylobate.engine.history import contact_measures, contact_warnings, history
 from stylobate.engine.kernel.columns import EVENTS_AT, Log, Setup
 from stylobate.engine.kernel.driver.events import EventSetup
-from stylobate.engine.starts import Start, Turning, require_below_level, require_nouns, require_plane
+from stylobate.engine.starts import Start, Turning, refuse_friction, require_below_level, require_nouns, require_plane
 from stylobate.engine.tolerances import CLOSE_PASSAGE, OVERTURNED_TILT
 from stylobate.engine.trajectory import Trajectory
 from stylobate.engine.user_events import EventFunction, checked_events, own_events
 from stylobate.engine.verdict import FALLEN, FIRST_DIGIT, MANY_PASSAGES, UNSETTLED, duration_of
-from stylobate.errors import Outcome, ParameterError, UnsupportedError, require_vector
+from stylobate.errors import Outcome, UnsupportedError, require_vector
 from stylobate.models import Model
 from stylobate.provenance import provenance_of_run
 from stylobate.results import Event, OutcomeRules, Response
@@ -87,9 +87,7 @@ def simulate(
     at_rest = bool(is_rest(np.array(start_tilt), np.array(start_rate), model.column.slenderness, model.time_scale))
     turning = Turning.checked(model, run, standing=at_rest)
     friction_coefficient = arguments_of(SingleRun)["friction_coefficient"].checked(run["friction_coefficient"])
-    if friction_coefficient is not None and model.switches:
-        message = f"friction_coefficient must be given to model {model.name} itself, got {friction_coefficient!r} here"
-        raise ParameterError(message)
+    refuse_friction(model, friction_coefficient)
     duration = duration_of(run["duration"], model, moved)
     samples = arguments_of(SingleRun)["samples"].checked(run["samples"])
     options = checked_options({**run, "samples": None, "recheck": False})

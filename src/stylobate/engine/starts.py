@@ -100,6 +100,13 @@ class Start:
     turning: Turning = Turning()
 
 
+def refuse_friction(model: Model, friction_coefficient: object) -> None:
+    """Raise ParameterError if a friction coefficient is given besides a `model` that has its own."""
+    if friction_coefficient is not None and model.switches:
+        message = f"friction_coefficient must be given to model {model.name} itself, got {friction_coefficient!r} here"
+        raise ParameterError(message)
+
+
 def require_below_level(tilt: Floats) -> None:
     """Raise ParameterError if an initial tilt vector, shape (…, 2) [rad], is as long as π/2."""
     largest = float(np.hypot(tilt[..., 0], tilt[..., 1]).max(initial=0.0))

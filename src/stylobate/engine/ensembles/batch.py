@@ -365,8 +365,10 @@ def _fill_starts(
         states[upright] = columns.states[upright]
     if model.contact_kinds is not None:  # a standing column begins as sliding; the reset map decides its contact
         states[stands, -1] = model.contact_kinds["SLIDING"]
-        if runs.turning is not None:
-            states[0] = runs.turning.begun(model, states[0])
+        turning = runs.turning or ()
+        for changed, chosen in models.kinds if turning else ():
+            for k in np.arange(len(runs))[chosen]:
+                states[k] = turning[k].begun(changed, states[k])
     table[:, STATE : STATE + states.shape[1]] = states
     if planar.any():
         table[planar, STATE] = np.sum(runs.tilt * line, axis=1)[planar]
@@ -377,9 +379,8 @@ def _fill_starts(
 
 def _keeps_to_plane(runs: Runs, models: ModelColumns, line: Floats) -> npt.NDArray[np.bool_]:
     """Return which runs without spin, on planes that slope along their `line`, also start to slip along it."""
-    velocity = (0.0, 0.0) if runs.turning is None else runs.turning.velocity[:2]
-    slips = np.broadcast_to(velocity, (len(line), 1, 2))
-    vectors = np.concatenate([line[:, np.newaxis], models.slope[:, np.newaxis, :2], slips], axis=1)
+    slips = np.zeros((len(line), 2)) if runs.turning is None else np.array([one.velocity[:2] for one in runs.turning])
+    vectors = np.stack([line, models.slope[:, :2], slips], axis=1)
     return np.asarray(_not_zero(line) & _not_zero(common_lines(vectors)) & (runs.spin == 0.0))
 
 

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
@@ -24,7 +24,9 @@ if TYPE_CHECKING:
 Floats = npt.NDArray[np.float64]
 ArrayLike: TypeAlias = "npt.ArrayLike | xr.DataArray"
 
-RUN, AXIS = "run", "axis"
+RUN, AXIS, COMPONENT = "run", "axis", "component"
+"""Dimensions: the runs, x and y, and x, y and z."""
+_COMPONENTS = {AXIS: 2, COMPONENT: 3}
 _MASS_NAMES = ("mass", "transverse_inertia", "axial_inertia")
 
 
@@ -47,7 +49,9 @@ class Runs:
     coordinates
         Coordinates of the results.
     turning
-        Other initial conditions of a single run; None in ensembles.
+        Other initial conditions of each run; None without any.
+    free
+        Arrays of the arguments that only some models or runs have, by name.
     orbits
         The known orbits of each run; None without any.
     """
@@ -60,8 +64,9 @@ class Runs:
     duration: Floats
     values: Mapping[str, Floats]
     coordinates: Mapping[str, "xr.DataArray"]
-    turning: Turning | None = None
+    turning: tuple[Turning, ...] | None = None
     orbits: OrbitsOfRuns | None = None
+    free: Mapping[str, Floats] = field(default_factory=dict)
 
     def __len__(self) -> int:
         return math.prod(self.shape)
@@ -72,7 +77,8 @@ class Runs:
         values = {name: value[chosen] for name, value in self.values.items()}
         starts = (self.tilt[chosen], self.tilt_rate[chosen], self.spin[chosen], self.duration[chosen])
         orbits = None if self.orbits is None else self.orbits.part(chosen)
-        return Runs((RUN,), (length,), *starts, values, {}, orbits=orbits)
+        turning = self.turning and tuple(self.turning[k] for k in np.arange(len(self))[chosen])
+        return Runs((RUN,), (length,), *starts, values, {}, turning=turning, orbits=orbits)
 
 
 def broadcast(
@@ -82,8 +88,9 @@ def broadcast(
     duration: ArrayLike,
     parameters: Mapping[str, ArrayLike],
     known_orbits: Sequence[KnownOrbit] = (),
+    free: Mapping[str, ArrayLike] | None = None,
 ) -> Runs:
-    """Return the runs that these arguments describe.
+    """Return the runs that these arguments describe; `free` are those that only some models or runs have.
 
     Raises
     ------
@@ -93,6 +100,11 @@ def broadcast(
     given = {"tilt": _vectors("tilt", tilt), "tilt_rate": _vectors("tilt_rate", tilt_rate)}
     given |= {"spin": _numbers("spin", spin), "duration": _numbers("duration", duration)}
     given |= {name: _numbers(name, value) for name, value in parameters.items()}
+    vectors = {"position": AXIS, "velocity": COMPONENT}
+    given |= {
+        name: _vectors(name, value, vectors[name]) if name in vectors else _numbers(name, value)
+        for name, value in (free or {}).items()
+    }
     of_orbits = [_numbers_of_orbit(orbit, f"known_orbits[{k}]") for k, orbit in enumerate(known_orbits)]
     dims, shape = _common({**given, **{name: array for orbit in of_orbits for name, array in orbit.items()}})
     if not dims:
@@ -100,12 +112,13 @@ def broadcast(
     flat = {name: _flat(array, dims, shape) for name, array in given.items()}
     _check(flat)
     values = {name: flat[name] for name in parameters}
-    coordinates = {name: array for name, array in given.items() if array.dims and array.dims != (AXIS,)}
+    coordinates = {name: array for name, array in given.items() if set(array.dims) - _COMPONENTS.keys()}
     orbits = [{name.split(".")[1]: _flat(array, dims, shape) for name, array in orbit.items()} for orbit in of_orbits]
     return Runs(
         *(dims, shape, without_dust(flat["tilt"]), flat["tilt_rate"], flat["spin"], flat["duration"]),
         *(values, coordinates),
         orbits=OrbitsOfRuns.of(orbits) if orbits else None,
+        free={name: flat[name] for name in free or {}},
     )
 
 
@@ -122,7 +135,7 @@ def one_run(start: Start) -> Runs:
     """Return a single run, whose arguments have been checked."""
     vectors = (np.array([start.tilt]), np.array([start.tilt_rate]))
     numbers = (np.array([start.turning.spin]), np.array([start.duration]))
-    return Runs((RUN,), (1,), *vectors, *numbers, {}, {}, start.turning)
+    return Runs((RUN,), (1,), *vectors, *numbers, {}, {}, (start.turning,))
 
 
 def _numbers(name: str, value: ArrayLike) -> "xr.DataArray":
@@ -137,19 +150,20 @@ def _numbers(name: str, value: ArrayLike) -> "xr.DataArray":
     return xr.DataArray(array, dims=(RUN,) * array.ndim)
 
 
-def _vectors(name: str, value: ArrayLike) -> "xr.DataArray":
+def _vectors(name: str, value: ArrayLike, axis: str = AXIS) -> "xr.DataArray":
     import xarray as xr
 
+    size = _COMPONENTS[axis]
     if isinstance(value, xr.DataArray):
-        if value.sizes.get(AXIS) != 2:
-            message = f'{name} must have a dimension "{AXIS}" of length 2, got {dict(value.sizes)}'
+        if value.sizes.get(axis) != size:
+            message = f'{name} must have a dimension "{axis}" of length {size}, got {dict(value.sizes)}'
             raise ParameterError(message)
-        return _as_float(name, value).drop_vars(AXIS, errors="ignore")
+        return _as_float(name, value).drop_vars(axis, errors="ignore")
     array = _array(name, value)
-    if array.ndim not in (1, 2) or array.shape[-1] != 2:
-        message = f"{name} must have shape (2,) or (n, 2), got {array.shape}"
+    if array.ndim not in (1, 2) or array.shape[-1] != size:
+        message = f"{name} must have shape ({size},) or (n, {size}), got {array.shape}"
         raise ParameterError(message)
-    return xr.DataArray(array, dims=(*((RUN,) * (array.ndim - 1)), AXIS))
+    return xr.DataArray(array, dims=(*((RUN,) * (array.ndim - 1)), axis))
 
 
 def _array(name: str, value: Any) -> Floats:
@@ -176,7 +190,7 @@ def _common(given: Mapping[str, "xr.DataArray"]) -> tuple[tuple[str, ...], tuple
     first: dict[str, str] = {}
     for name, array in given.items():
         for dim, size in array.sizes.items():
-            if dim == AXIS:
+            if dim in _COMPONENTS:
                 continue
             if sizes.setdefault(str(dim), size) != size:
                 message = f"{name} must have {sizes[str(dim)]} values along {dim} as {first[str(dim)]}, got {size}"
@@ -187,7 +201,7 @@ def _common(given: Mapping[str, "xr.DataArray"]) -> tuple[tuple[str, ...], tuple
 
 def _flat(array: "xr.DataArray", dims: tuple[str, ...], shape: tuple[int, ...]) -> Floats:
     own = [dim for dim in dims if dim in array.dims]
-    tail = (AXIS,) if AXIS in array.dims else ()
+    tail = tuple(dim for dim in _COMPONENTS if dim in array.dims)
     order = (*own, *tail)
     values = (array if array.dims == order else array.transpose(*order)).to_numpy()
     lengths = [array.sizes[dim] if dim in own else 1 for dim in dims]
@@ -271,6 +285,7 @@ QUANTITIES: Mapping[str, Variable] = {
         np.int8, (), {"long_name": "periods of the base motion after which the motion repeats; 0 if it does not"}
     ),
     "end_spin": _declared_numbers("angular velocity about the axis at the end", "rad s-1"),
+    "would_slip": Variable(np.bool_, (), {"long_name": "needs more friction than friction_coefficient provides"}),
     "peak_friction_demand": _declared_numbers("peak friction force over normal force", "1"),
     "peak_pivoting_demand": _declared_numbers("peak moment about the vertical over normal force and radius", "1"),
     "minimum_normal_force": _declared_numbers("minimum normal force over weight", "1"),
@@ -305,11 +320,14 @@ QUANTITIES: Mapping[str, Variable] = {
 DEMANDS = ("peak_friction_demand", "peak_pivoting_demand", "minimum_normal_force")
 
 
-def empty(model: Model, options: Options, count: int) -> Arrays:
-    """Return arrays for the results of `count` runs, filled with the values for runs that are not computed."""
+def empty(model: Model, options: Options, count: int, *, slips: bool = False) -> Arrays:
+    """Return arrays for the results of `count` runs, filled with the values for runs that are not computed.
+
+    `slips` adds an array for runs with a friction coefficient.
+    """
     sizes = {"axis": 2, "strobe": options["strobes"], "sample": options["samples"] or 0}
     left_out = {*(() if options["demands"] else DEMANDS), *(("end_spin",) if model.spin_state is None else ())}
-    left_out |= {*(() if model.switches else _CONTACTS)}
+    left_out |= {*(() if model.switches else _CONTACTS), *(() if slips else ("would_slip",))}
     shapes = {
         name: tuple(sizes[dim] for dim in quantity.dims)
         for name, quantity in QUANTITIES.items()

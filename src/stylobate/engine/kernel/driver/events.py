@@ -258,7 +258,7 @@ def secant(h: float, before: float, now: float) -> float:
 
 
 def past_vertical(buf: Table, i: int, new: Lean) -> float:
-    """Return how far the tilt falls below zero, at the end of the step or within it."""
+    """Return the depth to which the tilt falls below zero, at the end of the step or within it."""
     side, h = buf[R.SIDE, i], buf[R.H, i]
     s0, s1 = side * buf[R.X, i], side * new.x
     v0, v1 = side * buf[R.VX, i], side * new.vx
