@@ -10,7 +10,7 @@ from stylobate.base_motions.declared import motion_quantities
 from stylobate.base_motions.one_of import number_of, with_choice
 from stylobate.base_motions.varying import numbers_of, stated_numbers, value_of, with_numbers
 from stylobate.column import Column
-from stylobate.engine.ensembles.variables import QUANTITIES
+from stylobate.engine.ensembles.runs import QUANTITIES
 from stylobate.errors import ParameterError, UnsupportedError, as_numbers, require_finite
 from stylobate.models import Model
 from stylobate.parameter_quantities import quantity_of

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 # Dimensions of the components of one quantity.
-_COMPONENTS = ("axis", "direction", "part")
+_COMPONENTS = ("axis", "component", "direction", "part")
 
 
 class Table(NamedTuple):

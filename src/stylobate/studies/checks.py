@@ -7,7 +7,7 @@ import numpy as np
 import numpy.typing as npt
 
 from stylobate.column import Column
-from stylobate.engine.contact_measures import EQUAL
+from stylobate.engine.history import EQUAL
 from stylobate.errors import ParameterError, UnlikelyInputWarning, as_numbers
 from stylobate.models import Model, Sliding
 from stylobate.quantities import parameters_of

@@ -1,23 +1,217 @@
-"""Rest: conditions of rest, standing, and uplift from rest."""
+"""Rest of a column and its end: search for uplift and lift-off, conditions of rest, and standing."""
 
 import math
 
 from stylobate.engine.elementary import length
-from stylobate.engine.kernel.bound import CAN_DEPART, CAN_GO_TO_PLANE, CAN_LOSE, PLANAR, SPIN, R
-from stylobate.engine.kernel.columns import Status, TraceKind
-from stylobate.engine.kernel.driver.base_motion import forcing_rate, held_for_good
-from stylobate.engine.kernel.driver.equations import lean_of_new, model_at_rest, model_departure, model_rest_energy
-from stylobate.engine.kernel.driver.moving import azimuth_now, is_at_rest, set_state, start_moving
-from stylobate.engine.kernel.driver.push import Accelerations, accelerations
-from stylobate.engine.kernel.driver.release import RELEASE_MARGIN
-from stylobate.engine.kernel.driver.release_search import next_release, search_end
-from stylobate.engine.kernel.driver.standing_loads import record_standing_loads
-from stylobate.engine.kernel.driver.stops import leg_end, meet_stop, next_stop, set_next_stop, stand_to_the_end
-from stylobate.engine.kernel.driver.tracing import trace_event, trace_stand
-from stylobate.engine.kernel.driver.within import set_dense_output, set_within, set_within_closely
+from stylobate.engine.kernel.bound import CAN_DEPART, CAN_GO_TO_PLANE, CAN_LOSE, DEGREE, PLANAR, SPIN, VERTICAL, R
+from stylobate.engine.kernel.driver.equations import (
+    Accelerations,
+    accelerations,
+    forcing_rate,
+    held_for_good,
+    lean_of_new,
+    model_at_rest,
+    model_departure,
+    model_rest_energy,
+    set_leg,
+)
+from stylobate.engine.kernel.driver.events import Status, TraceKind
+from stylobate.engine.kernel.driver.motion import azimuth_now, is_at_rest, set_state, start_moving
+from stylobate.engine.kernel.driver.records import (
+    leg_end,
+    meet_stop,
+    next_stop,
+    record_standing_loads,
+    set_break,
+    set_next_stop,
+    stand_to_the_end,
+    trace_event,
+    trace_stand,
+)
+from stylobate.engine.kernel.driver.stages import set_dense_output, set_within, set_within_closely
 from stylobate.engine.kernel.layout import Table
-from stylobate.engine.tolerances import CHATTER, DEPARTURE, SHORTEST_DEPARTURE, STILL, SWINGS_APART
+from stylobate.engine.tolerances import CHATTER, DEPARTURE, SAMPLES_PER_PERIOD, SHORTEST_DEPARTURE, STILL, SWINGS_APART
 from stylobate.models.model import Push
+
+
+def find_lift(buf: Table, i: int, table: Table, pieces: Table) -> None:
+    """Set the time at which the base begins to fall faster than gravity."""
+    buf[R.LIFTS_AT, i] = math.inf
+    if not VERTICAL or buf[R.MINIMUM_VERTICAL, i] > -1.0:
+        return
+    t, end = buf[R.TIME, i], buf[R.END, i]
+    first = int(buf[R.NEXT_BREAK, i])
+    while t < end and math.isinf(buf[R.LIFTS_AT, i]):
+        leg_end = min(end, buf[R.LEG_ENDS, i])
+        while buf[R.BREAKS_AT, i] <= t:
+            buf[R.NEXT_BREAK, i] += 1.0
+            set_break(buf, i, table)
+        leg_end = min(leg_end, buf[R.BREAKS_AT, i])
+        buf[R.LIFTS_AT, i] = lift_in_leg(buf, i, t, leg_end)
+        t = leg_end
+        if t < end:
+            set_leg(buf, i, table, pieces, t)
+    buf[R.NEXT_BREAK, i] = first
+    set_break(buf, i, table)
+    set_leg(buf, i, table, pieces, buf[R.TIME, i])
+
+
+def weight(buf: Table, i: int, t: float) -> float:
+    return 1.0 + accelerations(buf, i, t)[2]
+
+
+def lift_in_leg(buf: Table, i: int, start: float, end: float) -> float:
+    frequency = buf[R.FREQUENCY, i]
+    # A weight that is linear in time has its minimum at an end.
+    sampled = frequency > 0.0 and DEGREE != 1
+    spacing = 2.0 * math.pi / (frequency * SAMPLES_PER_PERIOD) if sampled else end - start
+    t0 = t1 = start
+    w0 = w1 = weight(buf, i, start)
+    if w0 < 0.0:
+        return start
+    for k in range(1, math.ceil((end - start) / spacing) + 1):
+        t2 = min(start + k * spacing, end)
+        w2 = weight(buf, i, t2)
+        below = t2
+        if k > 1 and w1 <= w0 and w1 <= w2 and w2 >= 0.0:
+            low, high = t0, t2  # minimum weight between three samples, by ternary search
+            for _ in range(80):
+                a, b = low + (high - low) / 3.0, high - (high - low) / 3.0
+                if weight(buf, i, a) < weight(buf, i, b):
+                    high = b
+                else:
+                    low = a
+            below = low
+        if weight(buf, i, below) < 0.0:
+            low, high = t0, below
+            for _ in range(60):
+                middle = 0.5 * (low + high)
+                if weight(buf, i, middle) < 0.0:
+                    high = middle
+                else:
+                    low = middle
+            return high
+        t0, t1, w0, w1 = t1, t2, w1, w2
+    return math.inf
+
+
+# Time difference that counts as zero [samples].
+MOMENT = 1e-6
+# Weight that counts as zero.
+RELEASE_MARGIN = 8.0 * 2.220446049250313e-16
+
+
+def excess(buf: Table, i: int, t: float) -> float:
+    ax, ay, az = accelerations(buf, i, t)
+    pushed = length(ax + buf[R.SLOPE_X, i], ay + buf[R.SLOPE_Y, i])
+    return pushed - buf[R.CAPACITY, i] * (1.0 + az + buf[R.SLOPE_Z, i])
+
+
+def release_time(buf: Table, i: int, start: float, end: float) -> float:
+    """Return the first time of uplift of a standing column in [start, end), or infinity."""
+    if held_for_good(buf, i) or end <= start:
+        return math.inf
+    if DEGREE == 1:
+        return release_on_line(buf, i, start, end)
+    frequency = buf[R.FREQUENCY, i]
+    spacing = 2.0 * math.pi / (frequency * SAMPLES_PER_PERIOD) if frequency > 0.0 else end - start
+    spacing = min(spacing, 0.5 * (end - start))
+    # An excess that vanishes at once is a rounding error of the time at which the column came to rest.
+    if excess(buf, i, start) > 0.0:
+        moment = min(start + MOMENT * spacing, end)
+        if excess(buf, i, moment) > 0.0:
+            return start
+        start = moment
+    e1 = excess(buf, i, start)
+    t0, e0, t1 = start, e1, start
+    for k in range(1, math.ceil((end - start) / spacing) + 1):
+        t2 = min(start + k * spacing, end)
+        e2 = excess(buf, i, t2)
+        curvature = e0 - 2.0 * e1 + e2
+        # A peak counts if twice the rise of the parabola through three samples would pass the limit.
+        if k > 1 and e1 >= e0 and e1 >= e2 and curvature < 0.0:
+            rise = -((e2 - e0) ** 2) / (8.0 * curvature)
+            if e1 + 2.0 * rise - curvature > 0.0:
+                top = peak(buf, i, t0, t2)
+                if excess(buf, i, top) > 0.0:
+                    return crossing(buf, i, t0, top)
+        if e2 > 0.0:
+            found = crossing(buf, i, t1, t2)
+            return found if found < end else math.inf
+        t0, e0, t1, e1 = t1, e1, t2, e2
+    return math.inf
+
+
+def release_on_line(buf: Table, i: int, start: float, end: float) -> float:
+    """Return the same for a base acceleration linear in time: the excess is convex, with its maximum at an end."""
+    if excess(buf, i, start) > 0.0:
+        moment = min(start + MOMENT * (end - start), end)
+        if excess(buf, i, moment) > 0.0:
+            return start
+        start = moment
+    if excess(buf, i, end) <= 0.0:
+        return math.inf
+    found = crossing(buf, i, start, end)
+    return found if found < end else math.inf
+
+
+def peak(buf: Table, i: int, low: float, high: float) -> float:
+    """Return the time of the maximum excess, by golden-section search."""
+    golden = 0.6180339887498949
+    a, b = high - golden * (high - low), low + golden * (high - low)
+    ea, eb = excess(buf, i, a), excess(buf, i, b)
+    for _ in range(50):
+        if ea > eb:
+            high, b, eb = b, a, ea
+            a = high - golden * (high - low)
+            ea = excess(buf, i, a)
+        else:
+            low, a, ea = a, b, eb
+            b = low + golden * (high - low)
+            eb = excess(buf, i, b)
+    return a if ea > eb else b
+
+
+def crossing(buf: Table, i: int, low: float, high: float) -> float:
+    if excess(buf, i, low) >= 0.0:
+        return low
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        if excess(buf, i, middle) > 0.0:
+            high = middle
+        else:
+            low = middle
+    return high
+
+
+# Number of periods that show all of a periodic motion, whatever the phase at their start.
+PERIODS_KNOWN = 2.0
+
+
+def next_release(buf: Table, i: int, t: float) -> float:
+    """Return the time of the next uplift before the leg ends, or infinity.
+
+    NaN means that the search reached its limit of one period per allowed step; a moving column takes two steps in a
+    period.
+    """
+    end = search_end(buf, i, t)
+    release = release_time(buf, i, t, end)
+    return math.nan if release > end and end < leg_end(buf, i) and not repeats_to_the_end(buf, i) else release
+
+
+def search_end(buf: Table, i: int, t: float) -> float:
+    """Return the end of the search for uplift that begins at `t` within the leg."""
+    end, frequency = leg_end(buf, i), buf[R.FREQUENCY, i]
+    if DEGREE == 1 or frequency == 0.0:
+        return end
+    most = t + buf[R.MOST_STEPS, i] * (2.0 * math.pi / frequency)
+    known = t + PERIODS_KNOWN * buf[R.PERIOD, i]
+    return min(end, known if end > most and known < most and repeats_to_the_end(buf, i) else most)
+
+
+def repeats_to_the_end(buf: Table, i: int) -> bool:
+    """Return whether the base motion is periodic from now to the end of the run."""
+    return buf[R.PERIOD, i] > 0.0 and min(buf[R.LEG_ENDS, i], buf[R.BREAKS_AT, i]) >= buf[R.END, i]
 
 
 def holding_force(buf: Table, i: int, push: Accelerations) -> float:
