@@ -5,7 +5,7 @@ from stylobate.base_motions.harmonic import Harmonic, as_harmonic
 from stylobate.base_motions.machine_run import MachineRun
 from stylobate.base_motions.one_of import OneOf
 from stylobate.base_motions.pulses.pulse import Pulse
-from stylobate.base_motions.records.record import Record
+from stylobate.base_motions.record import Record
 from stylobate.base_motions.sweeps import SineSweep
 
 __all__ = [

@@ -41,7 +41,7 @@ MOTIONS = Kinds(
         "linear_sweep": f"{_SWEEP}.linear",
         "logarithmic_sweep": f"{_SWEEP}.logarithmic",
         "machine_run": "stylobate.base_motions.machine_run:MachineRun",
-        "record": "stylobate.base_motions.records.record:Record",
+        "record": "stylobate.base_motions.record:Record",
         "one_of": "stylobate.base_motions.one_of:OneOf",
         "sum": "stylobate.base_motions.combined:Sum",
         "scaled": "stylobate.base_motions.combined:BaseMotion.scaled",

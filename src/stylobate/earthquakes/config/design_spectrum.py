@@ -3,11 +3,10 @@
 import re
 from pathlib import Path
 
-from stylobate.base_motions.records.layout import plain_table
-from stylobate.base_motions.records.lines import REMARKS, Text, begins_with_a_number, read_bytes
-from stylobate.base_motions.records.units import KNOWN, in_si, unit_of
 from stylobate.config.description import Config
 from stylobate.errors import ParameterError
+from stylobate.records.tables import plain_table
+from stylobate.records.text_files import KNOWN, REMARKS, Text, begins_with_a_number, in_si, read_bytes, unit_of
 from stylobate.results.report_details import DesignSpectrum
 
 _BRACKETED = re.compile(r"[\[(]([^\])]*)[\])]")

@@ -4,7 +4,6 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import TypeVar
 
-from stylobate.base_motions.records import HorizontalComponent
 from stylobate.config.description import Config
 from stylobate.earthquakes.config.hazard_columns import (
     ExceedanceColumn,
@@ -15,6 +14,7 @@ from stylobate.earthquakes.config.hazard_columns import (
 )
 from stylobate.earthquakes.config.hazard_file import HazardTable, Row, Site, read_hazard
 from stylobate.errors import ParameterError, require_positive
+from stylobate.records import HorizontalComponent
 
 _T = TypeVar("_T")
 

@@ -3,9 +3,9 @@
 import re
 from dataclasses import dataclass
 
-from stylobate.base_motions.records import HorizontalComponent
-from stylobate.base_motions.records.units import in_si, unit_of
 from stylobate.errors import ParameterError
+from stylobate.records import HorizontalComponent
+from stylobate.records.text_files import in_si, unit_of
 
 # Units of velocities; units of accelerations are those of records.
 _VELOCITIES = {"m/s": 1.0, "ms-1": 1.0, "cm/s": 0.01, "cms-1": 0.01, "mm/s": 0.001, "mms-1": 0.001}

@@ -6,10 +6,10 @@ from itertools import takewhile
 from pathlib import Path
 from typing import TypeAlias
 
-from stylobate.base_motions.records import HorizontalComponent
-from stylobate.base_motions.records.lines import REMARKS, begins_with_a_number
 from stylobate.earthquakes.config.hazard_columns import ExceedanceColumn, IntensityColumn
 from stylobate.errors import FileError, ParameterError
+from stylobate.records import HorizontalComponent
+from stylobate.records.text_files import REMARKS, begins_with_a_number
 
 Site: TypeAlias = int | tuple[float, float]
 """Number of a site in its table, from 0, or its longitude and latitude [degrees]."""

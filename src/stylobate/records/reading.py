@@ -1,4 +1,4 @@
-"""Reading of a record from one file: formats, units and checks."""
+"""Reading of a record from one file, and writing."""
 
 import os
 import warnings
@@ -10,20 +10,16 @@ from typing import Any
 
 import numpy as np
 
-from stylobate.base_motions.records.asc import is_asc, read_asc
-from stylobate.base_motions.records.at2 import is_at2, is_wrapped, read_at2
-from stylobate.base_motions.records.component import Component
-from stylobate.base_motions.records.layout import plain_table
-from stylobate.base_motions.records.lines import REMARKS, Text, is_binary, read_bytes
-from stylobate.base_motions.records.named_columns import is_csv, read_csv
-from stylobate.base_motions.records.origin import RecordOrigin
-from stylobate.base_motions.records.record import AXES, Floats, Record
-from stylobate.base_motions.records.sources import require_path
-from stylobate.base_motions.records.tables import read_table
-from stylobate.base_motions.records.units import KNOWN, in_si, require_unit
-from stylobate.base_motions.records.waveforms import read_waveform
+from stylobate.base_motions.record import AXES, Record, RecordOrigin
+from stylobate.base_motions.signal_processing import Floats
 from stylobate.column import STANDARD_GRAVITY
 from stylobate.errors import FileError, ParameterError, UnlikelyInputWarning, require_positive
+from stylobate.files import write_whole
+from stylobate.records.databases import is_asc, is_at2, is_wrapped, read_asc, read_at2, read_waveform
+from stylobate.records.directions import Component
+from stylobate.records.events import require_path
+from stylobate.records.tables import is_csv, plain_table, read_csv, read_table
+from stylobate.records.text_files import KNOWN, REMARKS, Text, in_si, is_binary, read_bytes, require_unit
 
 # Horizontal and vertical peaks of earthquakes are below, except a few close to the fault [g].
 _LARGEST_PEAK = 3.0
@@ -234,3 +230,47 @@ def _scale(component: Component, path: Path, units: str | None) -> tuple[float, 
     unit = component.unit or given
     assert unit is not None
     return in_si(unit), f"in {unit}" + (" as the file states" if component.unit else " as given")
+
+
+_ON_A_LINE = 5
+
+
+def write_csv(record: Record, path: str | os.PathLike[str]) -> Path:
+    """Write time [s] and the accelerations along x, y and z [m/s²] and return the path; reading restores each number.
+
+    Raises
+    ------
+    FileError
+        If the file cannot be written.
+    """
+    rows = zip(record.times.tolist(), *record.samples.T.tolist(), strict=True)
+    header = ",".join(["time [s]", *(f"{axis} [m/s²]" for axis in AXES)])
+    return _write_lines(path, [header, *(",".join(map(repr, row)) for row in rows)])
+
+
+def write_at2(record: Record, path: str | os.PathLike[str], *, axis: str) -> Path:
+    """Write the accelerations along one `axis` as a PEER AT2 file, in g with eight digits, and return the path.
+
+    Raises
+    ------
+    FileError
+        If the file cannot be written.
+    ParameterError
+        If the axis is not "x", "y" or "z".
+    """
+    if axis not in AXES:
+        message = f'axis must be "x", "y" or "z", got {axis!r}'
+        raise ParameterError(message)
+    values = [f"{value:15.7E}" for value in (record.samples[:, AXES.index(axis)] / STANDARD_GRAVITY).tolist()]
+    header = [
+        "PEER format, written by stylobate",
+        f"{record.name}, {'UP' if axis == 'z' else axis}",
+        "ACCELERATION TIME SERIES IN UNITS OF G",
+        f"NPTS= {len(values):6d}, DT= {record.step!r} SEC",
+    ]
+    lines = ["".join(values[at : at + _ON_A_LINE]) for at in range(0, len(values), _ON_A_LINE)]
+    return _write_lines(path, [*header, *lines])
+
+
+def _write_lines(path: str | os.PathLike[str], lines: list[str]) -> Path:
+    return write_whole(Path(path), "\n".join(lines) + "\n")

@@ -2,7 +2,9 @@
 
 import hashlib
 import math
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
@@ -10,8 +12,7 @@ import numpy.typing as npt
 
 from stylobate.base_motions.base import ACCELERATION, VELOCITY, Components
 from stylobate.base_motions.combined import BaseMotion
-from stylobate.base_motions.records.knots import corners, integrals, largest_from_each, mean_frequency
-from stylobate.base_motions.records.origin import RecordOrigin
+from stylobate.base_motions.signal_processing import Floats, baseline_corrected, filtered, integrals, resampled
 from stylobate.cards import Row, Section
 from stylobate.errors import ParameterError, as_numbers, require_finite, require_not_negative, require_positive
 from stylobate.text import four_digits
@@ -19,13 +20,51 @@ from stylobate.text import four_digits
 if TYPE_CHECKING:
     import pandas as pd
 
-Floats = npt.NDArray[np.float64]
 
 AXES = ("x", "y", "z")
 # Distance from a line, in ulp of the largest, at which horizontal accelerations count as on the line.
 _ON_LINE_ULP = 8.0
 # Distance from a knot, as a fraction of a step, at which a time counts as the knot.
 _KNOT_SLACK = 1e-6
+
+
+@dataclass(frozen=True, slots=True)
+class RecordOrigin:
+    """The files or the sample of a record, and the methods of `Record` applied to it.
+
+    Parameters
+    ----------
+    reading
+        Arguments of the reading as plain values: `path` or `sample`, `units`, `directions` and others.
+    processing
+        Name (`method`) and arguments of each method, in order.
+    """
+
+    reading: Mapping[str, Any]
+    processing: tuple[Mapping[str, Any], ...] = ()
+
+    @classmethod
+    def of_files(cls, paths: Path | Iterable[Path], **arguments: Any) -> Self:
+        """Create the origin of a record read from one file or from the files of one event.
+
+        Parameters
+        ----------
+        paths
+            The file or the files.
+        **arguments
+            Arguments of the reading as plain values; None for arguments not given.
+        """
+        one = isinstance(paths, Path)
+        files = [paths] if isinstance(paths, Path) else list(paths)
+        names = [str(path.absolute()) for path in files]
+        digests = {name: hashlib.sha256(path.read_bytes()).hexdigest() for name, path in zip(names, files, strict=True)}
+        given = {name: value for name, value in arguments.items() if value is not None}
+        return cls({"path": names[0] if one else tuple(names), **given, "file_sha256": digests})
+
+    def then(self, method: str, **arguments: Any) -> Self:
+        """Append a method of `Record` and its arguments; None for an argument not given."""
+        given = {name: value for name, value in arguments.items() if value is not None}
+        return replace(self, processing=(*self.processing, {"method": method, **given}))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -95,10 +134,10 @@ class Record(BaseMotion):
         object.__setattr__(self, "_velocity", velocity)
         object.__setattr__(self, "_displacement", displacement)
         object.__setattr__(self, "_slope", np.diff(samples, axis=0) / self.step)
-        object.__setattr__(self, "_largest", largest_from_each(np.hypot(samples[:, 0], samples[:, 1])))
+        object.__setattr__(self, "_largest", _largest_from_each(np.hypot(samples[:, 0], samples[:, 1])))
         # the acceleration ends at zero, so zero is always among the later values
-        object.__setattr__(self, "_lowest", -largest_from_each(np.maximum(-samples[:, 2], 0.0)))
-        object.__setattr__(self, "_highest", largest_from_each(np.maximum(samples[:, 2], 0.0)))
+        object.__setattr__(self, "_lowest", -_largest_from_each(np.maximum(-samples[:, 2], 0.0)))
+        object.__setattr__(self, "_highest", _largest_from_each(np.maximum(samples[:, 2], 0.0)))
 
     @classmethod
     def from_components(
@@ -258,7 +297,9 @@ class Record(BaseMotion):
 
         S. O. Rice, "Mathematical analysis of random noise", Bell Syst. Tech. J. 23 (1944).
         """
-        return mean_frequency(self.samples, self.step)
+        left, right = self.samples[:-1], self.samples[1:]
+        square = np.sum(left * left + left * right + right * right) / 3.0
+        return float(np.sqrt(np.sum((right - left) ** 2) / square) / self.step) if square > 0.0 else 0.0
 
     @property
     def degree(self) -> int:
@@ -267,8 +308,11 @@ class Record(BaseMotion):
 
     @property
     def breaks(self) -> tuple[float, ...]:
-        """Times of the samples at which the slope changes [s]."""
-        return tuple(self.times[corners(self.samples)].tolist())
+        """Times of the samples with a change of slope or a jump from or to the zero acceleration outside [s]."""
+        slopes = np.diff(self.samples, axis=0, prepend=self.samples[:1], append=self.samples[-1:])
+        bent = np.any(np.diff(slopes, axis=0) != 0.0, axis=1)
+        bent[[0, -1]] |= np.any(self.samples[[0, -1]] != 0.0, axis=1)
+        return tuple(self.times[bent].tolist())
 
     # A scaled, rotated or delayed record remains a record, which can be filtered and measured.
 
@@ -355,9 +399,7 @@ class Record(BaseMotion):
         return math.ceil(length / self.step - _KNOT_SLACK)
 
     def resampled(self, step: float) -> "Record":
-        """Resample this record to another `step` [s], band-limited (see `records.resampling`)."""
-        from stylobate.base_motions.records.resampling import resampled  # noqa: PLC0415  imports SciPy
-
+        """Resample this record to another `step` [s], band-limited (see `signal_processing`)."""
         step = require_positive("step", step, "s")
         samples, note = resampled(self.samples, self.step, step)
         if not note:
@@ -367,9 +409,7 @@ class Record(BaseMotion):
     def filtered(
         self, *, highpass: float | None = None, lowpass: float | None = None, order: int = 4, causal: bool = False
     ) -> "Record":
-        """Filter this record by a Butterworth filter with corners in Hz (see `records.filtering`)."""
-        from stylobate.base_motions.records.filtering import filtered  # noqa: PLC0415
-
+        """Filter this record by a Butterworth filter with corners in Hz (see `signal_processing`)."""
         highpass = None if highpass is None else require_positive("highpass", highpass, "Hz")
         lowpass = None if lowpass is None else require_positive("lowpass", lowpass, "Hz")
         arguments: dict[str, Any] = {"highpass": highpass, "lowpass": lowpass, "order": order, "causal": causal}
@@ -377,9 +417,7 @@ class Record(BaseMotion):
         return self.changed(note, samples=samples, origin=self._then("filtered", **arguments))
 
     def baseline_corrected(self, degree: int = 1) -> "Record":
-        """Subtract the derivative of a polynomial fitted to the velocity (see `records.baseline`)."""
-        from stylobate.base_motions.records.baseline import baseline_corrected  # noqa: PLC0415
-
+        """Subtract the derivative of a polynomial fitted to the velocity (see `signal_processing`)."""
         samples, note = baseline_corrected(self.samples, self.step, degree)
         return self.changed(note, samples=samples, origin=self._then("baseline_corrected", degree=degree))
 
@@ -390,6 +428,11 @@ class Record(BaseMotion):
     def _then(self, method: str, **arguments: Any) -> RecordOrigin | None:
         """Return the origin of this record extended by one method."""
         return None if self.origin is None else self.origin.then(method, **arguments)
+
+
+def _largest_from_each(values: Floats) -> Floats:
+    """Return the maximum of each value and all later values."""
+    return np.asarray(np.maximum.accumulate(values[::-1])[::-1])
 
 
 def _checked(samples: npt.ArrayLike) -> Floats:

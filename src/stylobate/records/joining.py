@@ -1,23 +1,57 @@
-"""Assembly of records from the files of an event: two horizontal components and a vertical one."""
+"""Records from the files of an event: two horizontal components and a vertical one, and the samples of the package."""
 
 import re
 import warnings
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
+from functools import cache
+from importlib.resources import as_file, files
 from pathlib import Path
 
 import numpy as np
 
-from stylobate.base_motions.records.axes import Directed, along_axes
-from stylobate.base_motions.records.component import Component, Direction
-from stylobate.base_motions.records.events import Event, EventFile, Read, find_events
-from stylobate.base_motions.records.origin import RecordOrigin
-from stylobate.base_motions.records.reading import RecordFormat, as_record, plain_reading, read_component
-from stylobate.base_motions.records.record import Record
-from stylobate.base_motions.records.sources import RecordSource
-from stylobate.base_motions.records.trimming import warn_of_lost_shaking
-from stylobate.errors import FileError, StylobateError, UnlikelyInputWarning, require_positive
+from stylobate.base_motions.record import Record, RecordOrigin
+from stylobate.base_motions.signal_processing import energy
+from stylobate.errors import FileError, ParameterError, StylobateError, UnlikelyInputWarning, require_positive
+from stylobate.records.directions import Component, Directed, Direction, along_axes
+from stylobate.records.events import Event, EventFile, Read, RecordSource, find_events
+from stylobate.records.reading import RecordFormat, as_record, plain_reading, read_component
+from stylobate.text import did_you_mean
+
+# Lost fraction of the Arias intensity that triggers a warning; the tail of a record is usually below.
+_REMARKABLE = 0.01
+
+
+def lost_intensity(record: Record, kept: int) -> float:
+    """Return the fraction of the Arias intensity after the first `kept` samples, over all components."""
+    grown = energy(record.samples, record.step).sum(axis=1)
+    return float(1.0 - grown[kept - 1] / grown[-1]) if grown[-1] > 0.0 else 0.0
+
+
+def warn_of_lost_shaking(event: str, names: Sequence[str], records: Sequence[Record], kept: int) -> None:
+    """Issue an UnlikelyInputWarning for each component that loses more than 1 % of its Arias intensity.
+
+    Parameters
+    ----------
+    event
+        Name of the event.
+    names
+        Names of the files, one per record.
+    records
+        The components, with one time step.
+    kept
+        Number of kept samples.
+    """
+    for name, record in zip(names, records, strict=True):
+        if (lost := lost_intensity(record, kept)) > _REMARKABLE:
+            message = (
+                f"{event}: {name} is trimmed from {record.step * (len(record.samples) - 1):g} s to "
+                f"{record.step * (kept - 1):g} s and loses {100.0 * lost:.3g} % of its Arias intensity. Set lengths to "
+                "pad, or check that the files are of one event"
+            )
+            warnings.warn(message, UnlikelyInputWarning, stacklevel=2)
+
 
 _SAME_STEP = 1e-9
 
@@ -251,3 +285,66 @@ def _alike(event: str, parts: list[_Part], lengths: Lengths, steps: Steps) -> tu
         np.pad(record.samples[:target], ((0, max(0, target - len(record.samples))), (0, 0))) for record in records
     ]
     return [replace(record, samples=samples) for record, samples in zip(records, fitted, strict=True)], notes
+
+
+_FILES = ("elcentro_1940_NS.dat.gz", "elcentro_1940_EW.dat.gz", "elcentro_1940_UP.dat.gz")
+_SOURCE = (
+    "Imperial Valley earthquake, 18 May 1940, El Centro terminal substation, corrected data (vibrationdata.com, "
+    "after the U.S. strong-motion archives; public domain)"
+)
+_EL_CENTRO, _WITHOUT_DRIFT = "el centro 1940", "el centro 1940 corrected"
+# Rest before and after [s] for the transients of the filter; corner [Hz] and order of the filter.
+_REST, _CORNER, _ORDER = 20.0, 0.1, 2
+
+
+def sample_names() -> tuple[str, ...]:
+    """Return the names of the sample records of the package."""
+    return _EL_CENTRO, _WITHOUT_DRIFT
+
+
+def sample_record(name: str = "el centro 1940") -> Record:
+    """Load a sample record of the package.
+
+    Parameters
+    ----------
+    name
+        "el centro 1940": the three components of the Imperial Valley earthquake of 18 May 1940 at El Centro, x north,
+        y west, z up, 53.46 s at 0.02 s. "el centro 1940 corrected": the same without its drift, between 20 s of rest.
+
+    Raises
+    ------
+    ParameterError
+        If the name is unknown.
+
+    Notes
+    -----
+    Several digitizations of this record exist. The peaks of this version are 0.3487 g (north-south), 0.2141 g
+    (east-west) and 0.2101 g (up); textbooks use another version with 0.319 g.
+
+    The published record drifts: integration moves the ground by 6.3 m along y and leaves a velocity of 0.11 m/s. The
+    drift does not affect the column, but PGV, PGD and figures. The corrected record is the published record after
+    `padded(before=20.0, after=20.0).filtered(highpass=0.1, order=2)`; its peak accelerations differ by less than 0.5 %.
+
+    Examples
+    --------
+    >>> sample_record("el centro 1940")
+    Record('el centro 1940', 2674 samples every 0.02 s, x y z, peak 3.42 m/s², ...)
+    """
+    key = " ".join(name.lower().split()) if isinstance(name, str) else name
+    if key not in sample_names():
+        question = did_you_mean(str(key), sample_names())
+        message = f"name must be one of {', '.join(map(repr, sample_names()))}, got {name!r}"
+        message += f"; {question}" if question else ""
+        raise ParameterError(message)
+    return _read(key)
+
+
+@cache
+def _read(key: str) -> Record:
+    folder = files("stylobate.records") / "data"
+    with as_file(folder) as here:
+        (record,) = read_records([here / file for file in _FILES], units="g")
+    record = replace(record, name=key, provenance=(_SOURCE, *record.provenance))
+    if key == _WITHOUT_DRIFT:
+        record = record.padded(before=_REST, after=_REST).filtered(highpass=_CORNER, order=_ORDER)
+    return replace(record, origin=RecordOrigin({"sample": key}))

@@ -1,21 +1,16 @@
-from .component import Direction
-from .evolving_noise import EvolvingNoise
-from .grouping import Lengths, Steps, read_records
-from .horizontal_components import HorizontalComponent
-from .intensity import (
+from .directions import Direction
+from .intensities import (
+    HorizontalComponent,
     arias_intensity,
     cumulative_absolute_velocity,
     intensity_measures,
     rocking_measures,
     significant_duration,
 )
-from .oscillator import oscillator_response
-from .reading import RecordFormat, read_record
-from .record import Record
-from .samples import sample_record
-from .spectra import response_spectra
-from .spectral_representation import CloughPenzien, random_vibration
-from .writing import write_at2, write_csv
+from .joining import Lengths, Steps, read_records, sample_record
+from .reading import RecordFormat, read_record, write_at2, write_csv
+from .spectra import oscillator_response, response_spectra
+from .synthesis import CloughPenzien, EvolvingNoise, random_vibration
 
 __all__ = [
     "CloughPenzien",
@@ -23,7 +18,6 @@ __all__ = [
     "EvolvingNoise",
     "HorizontalComponent",
     "Lengths",
-    "Record",
     "RecordFormat",
     "Steps",
     "arias_intensity",
