@@ -2,7 +2,6 @@
 
 import io
 import re
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +11,8 @@ from stylobate.errors import FileError, UnsupportedError
 from stylobate.records.directions import Component, Direction
 from stylobate.records.text_files import SECOND, Text, is_number, time_unit_of, unit_of, unknown_unit
 
+# AT2: four lines of header, then the accelerations, several per line. The fourth line is
+# `NPTS=   4000, DT=   .0050 SEC` in newer files and `4000    0.0050    NPTS, DT` in older ones.
 _NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[EeDd][-+]?\d+)?"
 _NEW = re.compile(
     rf"NPTS\s*=\s*(?P<count>\S+?)\s*,\s*DT\s*=\s*(?P<step>{_NUMBER})?\s*(?P<clock>[^\W\d_]*)", re.IGNORECASE
@@ -29,6 +30,12 @@ def is_at2(text: Text) -> bool:
     return _counting_line(text) is not None
 
 
+def is_wrapped(text: Text) -> bool:
+    """Return whether the numbers are laid out as in an AT2 file: several per line, fewer on the last line."""
+    rows = [row for row in map(str.split, text.lines[_first_row(text) :]) if row]
+    return bool(rows) and _TIME_AND_ACCELERATION < len(rows[0]) >= len(rows[-1])
+
+
 def read_at2(text: Text, step: float | None = None) -> Component:
     """Read the component of an AT2 file.
 
@@ -44,46 +51,38 @@ def read_at2(text: Text, step: float | None = None) -> Component:
     FileError
         If the header or a number is wrong, or the count of numbers differs from the header.
     """
-    at = _counting_line(text)
-    if at is None:
-        return _without_count(text, step)
-    found = _NEW.search(text.lines[at]) or _OLD.match(text.lines[at])
-    assert found is not None
-    if found["step"] is None:
-        raise text.fault(at, "the time step DT is missing. State it in the header, in s")
-    count = text.count(at, "NPTS", found["count"])
-    clock = time_unit_of(found["clock"])
-    step = (clock or SECOND).in_seconds(text.number(at, found["step"].upper().replace("D", "E")))
-    if step <= 0.0:
-        raise text.fault(at, f"the time step DT must be positive, got {step!r}. Correct the header")
-    return _component(text, at, count, step, states_time_unit=clock is not None)
-
-
-def is_wrapped(text: Text) -> bool:
-    """Return whether the numbers are laid out as in an AT2 file: several per line, fewer on the last line."""
-    rows = [row for row in map(str.split, text.lines[_first_row(text) :]) if row]
-    return bool(rows) and _TIME_AND_ACCELERATION < len(rows[0]) >= len(rows[-1])
-
-
-def _without_count(text: Text, step: float | None) -> Component:
-    header = _first_row(text)
-    if step is None or not is_wrapped(text):
-        state = "incomplete header" if header else "no header"
-        remedy = "Restore it, or state step, in s, and units"
-        raise text.fault(0, f"{state} of an AT2 file: the line with NPTS and DT is missing. {remedy}")
-    return _component(text, header - 1, None, step, states_time_unit=False)
-
-
-def _component(text: Text, last: int, count: int | None, step: float, *, states_time_unit: bool) -> Component:
-    """Read the component below the header, whose last line has the index `last`."""
+    last, count, clock = _counting_line(text), None, None
+    if last is not None:
+        found = _NEW.search(text.lines[last]) or _OLD.match(text.lines[last])
+        assert found is not None
+        if found["step"] is None:
+            raise text.fault(last, "the time step DT is missing. State it in the header, in s")
+        count, clock = text.count(last, "NPTS", found["count"]), time_unit_of(found["clock"])
+        step = (clock or SECOND).in_seconds(text.number(last, found["step"].upper().replace("D", "E")))
+        if step <= 0.0:
+            raise text.fault(last, f"the time step DT must be positive, got {step!r}. Correct the header")
+    else:
+        last = _first_row(text) - 1
+        if step is None or not is_wrapped(text):
+            state = "incomplete header" if last >= 0 else "no header"
+            remedy = "Restore it, or state step, in s, and units"
+            raise text.fault(0, f"{state} of an AT2 file: the line with NPTS and DT is missing. {remedy}")
+    header = text.lines[: last + 1]
+    # the second line ends with the component: "Loma Prieta, 10/18/1989, Corralitos, 90"
+    title = header[1] if len(header) > 1 else ""
     return Component(
         samples=text.series(last, count),
         step=step,
-        unit=_unit_of_header(text, last + 1),
-        direction=_direction_in_title(text.lines[: last + 1]),
-        title=text.lines[1].strip() if last > 0 else "",
-        states_time_unit=states_time_unit,
+        unit=_unit_of_at2(text, header),
+        direction=Direction.parse(title.rsplit(",", maxsplit=1)[-1]) if "," in title else None,
+        title=title.strip(),
+        states_time_unit=clock is not None,
     )
+
+
+def _counting_line(text: Text) -> int | None:
+    found = (at for at, line in enumerate(text.lines[:_HEADER]) if _NEW.search(line) or _OLD.match(line))
+    return next(found, None)
 
 
 def _first_row(text: Text) -> int:
@@ -92,15 +91,8 @@ def _first_row(text: Text) -> int:
     return next(rows, len(text.lines))
 
 
-def _counting_line(text: Text) -> int | None:
-    for index, line in enumerate(text.lines[:_HEADER]):
-        if _NEW.search(line) or _OLD.match(line):
-            return index
-    return None
-
-
-def _unit_of_header(text: Text, header: int) -> str | None:
-    for index, line in enumerate(text.lines[:header]):
+def _unit_of_at2(text: Text, header: tuple[str, ...]) -> str | None:
+    for index, line in enumerate(header):
         if _OTHERS.match(line):
             what = line.split()[0].lower()
             raise text.fault(index, f"the file holds {what}, not acceleration. Read the .AT2 file of this component")
@@ -112,47 +104,17 @@ def _unit_of_header(text: Text, header: int) -> str | None:
     return None
 
 
-def _direction_in_title(header: tuple[str, ...]) -> Direction | None:
-    # the second line ends with the component: "Loma Prieta, 10/18/1989, Corralitos, 90"
-    return Direction.parse(header[1].rsplit(",", maxsplit=1)[-1]) if len(header) > 1 and "," in header[1] else None
-
-
+# ASC, with headers of DYNA 1.x: lines `KEY: value` such as `SAMPLING_INTERVAL_S: 0.005000`, then one acceleration per
+# line. L. Luzi et al., "The engineering strong-motion database: a platform to access pan-European accelerometric data",
+# Seismol. Res. Lett. 87, 2016.
 _KEY = re.compile(r"(?P<key>[A-Z][A-Z0-9_/^.%]*)\s*:\s*(?P<value>.*?)\s*")
-_NEEDED = ("SAMPLING_INTERVAL_S", "NDATA")
-_KNOWN = {*_NEEDED, "DATA_TYPE", "STREAM", "UNITS", "HEADER_FORMAT"}
-
-
-@dataclass(frozen=True, slots=True)
-class _Header:
-    text: Text
-    places: dict[str, int]
-    values: dict[str, str]
-
-    @classmethod
-    def of(cls, text: Text) -> "_Header":
-        places: dict[str, int] = {}
-        values: dict[str, str] = {}
-        for at, line in enumerate(text.lines):
-            found = _KEY.fullmatch(line)
-            if found is None and line.strip():
-                break
-            if found is not None:
-                places[found["key"]], values[found["key"]] = at, found["value"]
-        return cls(text, places, values)
-
-    @property
-    def last(self) -> int:
-        """Index of the last line of the header."""
-        return max(self.places.values())
-
-    def get(self, key: str) -> str:
-        """Return the value of a key, empty if the key is missing."""
-        return self.values.get(key, "")
+_STEP, _COUNT = "SAMPLING_INTERVAL_S", "NDATA"
+_KNOWN = {_STEP, _COUNT, "DATA_TYPE", "STREAM", "UNITS", "HEADER_FORMAT"}
 
 
 def is_asc(text: Text) -> bool:
     """Return whether the file begins with the header of an ASC file, complete or not."""
-    return len(_KNOWN & _Header.of(text).values.keys()) > 1
+    return len(_KNOWN & _asc_header(text).keys()) > 1
 
 
 def read_asc(text: Text) -> Component:
@@ -164,28 +126,30 @@ def read_asc(text: Text) -> Component:
         If the header or a number is wrong, the count of numbers differs from the header, or the data are no
         acceleration.
     """
-    header = _Header.of(text)
-    for key in _NEEDED:
-        if not header.get(key):
+    header = _asc_header(text)
+    places = {key: at for key, (at, _) in header.items()}
+    values = dict.fromkeys(_KNOWN, "") | {key: value for key, (_, value) in header.items()}
+    for key in (_STEP, _COUNT):
+        if not values[key]:
             what = f"incomplete header of an ASC file: {key} is missing. Restore it"
-            raise text.fault(header.places.get(key, 0), what)
-    kind = header.get("DATA_TYPE").lower()
-    if kind and kind != "acceleration":
+            raise text.fault(places.get(key, 0), what)
+    kind = values["DATA_TYPE"].lower()
+    if kind not in ("", "acceleration"):
         what = f"the file holds {kind}, not acceleration. Read the file of this component with ACC in its name"
-        raise text.fault(header.places["DATA_TYPE"], what)
-    step = text.number(header.places["SAMPLING_INTERVAL_S"], header.get("SAMPLING_INTERVAL_S"))
+        raise text.fault(places["DATA_TYPE"], what)
+    step = text.number(places[_STEP], values[_STEP])
     if step <= 0.0:
-        raise text.fault(
-            header.places["SAMPLING_INTERVAL_S"],
-            f"SAMPLING_INTERVAL_S must be positive, got {step!r}. Correct the header",
-        )
-    count = text.count(header.places["NDATA"], "NDATA", header.get("NDATA"))
+        raise text.fault(places[_STEP], f"{_STEP} must be positive, got {step!r}. Correct the header")
+    count = text.count(places[_COUNT], _COUNT, values[_COUNT])
+    unit = unit_of(values["UNITS"])
+    if values["UNITS"] and unit is None:
+        raise text.fault(places["UNITS"], unknown_unit(values["UNITS"]))
     return Component(
-        samples=text.series(header.last, count),
+        samples=text.series(max(places.values()), count),
         step=step,
-        unit=_stated_unit(header),
-        direction=direction_of_channel(header.get("STREAM")),
-        title=_title(header),
+        unit=unit,
+        direction=direction_of_channel(values["STREAM"]),
+        title=_title(values),
     )
 
 
@@ -198,22 +162,25 @@ def direction_of_channel(code: str) -> Direction | None:
     return Direction.parse(code) or (Direction.parse(code[-1:]) if code[-1:].isalpha() else None)
 
 
-def _stated_unit(header: _Header) -> str | None:
-    stated = header.get("UNITS")
-    unit = unit_of(stated)
-    if stated and unit is None:
-        raise header.text.fault(header.places["UNITS"], unknown_unit(stated))
-    return unit
+def _asc_header(text: Text) -> dict[str, tuple[int, str]]:
+    """Return the values of the header by their keys, each with the index of its line."""
+    header: dict[str, tuple[int, str]] = {}
+    for at, line in enumerate(text.lines):
+        found = _KEY.fullmatch(line)
+        if found is None and line.strip():
+            break
+        if found is not None:
+            header[found["key"]] = at, found["value"]
+    return header
 
 
-def _title(header: _Header) -> str:
+def _title(values: dict[str, str]) -> str:
     """Return event, date, station and component, in the order of the second line of an AT2 file."""
-    event = header.get("EVENT_NAME") or header.get("EVENT_ID")
-    station = ".".join(filter(None, (header.get("NETWORK"), header.get("STATION_CODE"))))
-    date, time = header.get("EVENT_DATE_YYYYMMDD"), header.get("EVENT_TIME_HHMMSS")
+    event = values.get("EVENT_NAME") or values.get("EVENT_ID", "")
+    station = ".".join(filter(None, (values.get("NETWORK"), values.get("STATION_CODE"))))
+    date, time = values.get("EVENT_DATE_YYYYMMDD", ""), values.get("EVENT_TIME_HHMMSS", "")
     when = f"{date[:4]}-{date[4:6]}-{date[6:]} {time}".strip(" -")
-    parts = (event, when, station, header.get("STREAM"))
-    return ", ".join(filter(None, parts))
+    return ", ".join(filter(None, (event, when, station, values["STREAM"])))
 
 
 # ObsPy's calibration of these formats is in m/s².
@@ -265,16 +232,15 @@ def read_waveform(path: Path, content: bytes) -> Component:
         samples=samples,
         step=float(stats.delta),
         unit="m/s²" if stats.get("_format") in _IN_SI else None,
-        direction=_direction(stats),
+        direction=_direction_of_trace(stats),
         title=f"{trace.id} {stats.starttime}",
     )
 
 
-def _direction(stats: Any) -> Direction | None:
+def _direction_of_trace(stats: Any) -> Direction | None:
     sac = stats.get("sac", {})
     if "cmpaz" in sac and "cmpinc" in sac:
         if float(sac["cmpinc"]) == 0.0:
             return Direction(vertical=1)
         return Direction.of(float(sac["cmpaz"]))
-    channel = str(stats.channel)
-    return direction_of_channel(channel)
+    return direction_of_channel(str(stats.channel))

@@ -19,41 +19,9 @@ from stylobate.records.events import Event, EventFile, Read, RecordSource, find_
 from stylobate.records.reading import RecordFormat, as_record, plain_reading, read_component
 from stylobate.text import did_you_mean
 
+_SAME_STEP = 1e-9
 # Lost fraction of the Arias intensity that triggers a warning; the tail of a record is usually below.
 _REMARKABLE = 0.01
-
-
-def lost_intensity(record: Record, kept: int) -> float:
-    """Return the fraction of the Arias intensity after the first `kept` samples, over all components."""
-    grown = energy(record.samples, record.step).sum(axis=1)
-    return float(1.0 - grown[kept - 1] / grown[-1]) if grown[-1] > 0.0 else 0.0
-
-
-def warn_of_lost_shaking(event: str, names: Sequence[str], records: Sequence[Record], kept: int) -> None:
-    """Issue an UnlikelyInputWarning for each component that loses more than 1 % of its Arias intensity.
-
-    Parameters
-    ----------
-    event
-        Name of the event.
-    names
-        Names of the files, one per record.
-    records
-        The components, with one time step.
-    kept
-        Number of kept samples.
-    """
-    for name, record in zip(names, records, strict=True):
-        if (lost := lost_intensity(record, kept)) > _REMARKABLE:
-            message = (
-                f"{event}: {name} is trimmed from {record.step * (len(record.samples) - 1):g} s to "
-                f"{record.step * (kept - 1):g} s and loses {100.0 * lost:.3g} % of its Arias intensity. Set lengths to "
-                "pad, or check that the files are of one event"
-            )
-            warnings.warn(message, UnlikelyInputWarning, stacklevel=2)
-
-
-_SAME_STEP = 1e-9
 
 
 class Lengths(Enum):
@@ -285,6 +253,36 @@ def _alike(event: str, parts: list[_Part], lengths: Lengths, steps: Steps) -> tu
         np.pad(record.samples[:target], ((0, max(0, target - len(record.samples))), (0, 0))) for record in records
     ]
     return [replace(record, samples=samples) for record, samples in zip(records, fitted, strict=True)], notes
+
+
+def lost_intensity(record: Record, kept: int) -> float:
+    """Return the fraction of the Arias intensity after the first `kept` samples, over all components."""
+    grown = energy(record.samples, record.step).sum(axis=1)
+    return float(1.0 - grown[kept - 1] / grown[-1]) if grown[-1] > 0.0 else 0.0
+
+
+def warn_of_lost_shaking(event: str, names: Sequence[str], records: Sequence[Record], kept: int) -> None:
+    """Issue an UnlikelyInputWarning for each component that loses more than 1 % of its Arias intensity.
+
+    Parameters
+    ----------
+    event
+        Name of the event.
+    names
+        Names of the files, one per record.
+    records
+        The components, with one time step.
+    kept
+        Number of kept samples.
+    """
+    for name, record in zip(names, records, strict=True):
+        if (lost := lost_intensity(record, kept)) > _REMARKABLE:
+            message = (
+                f"{event}: {name} is trimmed from {record.step * (len(record.samples) - 1):g} s to "
+                f"{record.step * (kept - 1):g} s and loses {100.0 * lost:.3g} % of its Arias intensity. Set lengths to "
+                "pad, or check that the files are of one event"
+            )
+            warnings.warn(message, UnlikelyInputWarning, stacklevel=2)
 
 
 _FILES = ("elcentro_1940_NS.dat.gz", "elcentro_1940_EW.dat.gz", "elcentro_1940_UP.dat.gz")

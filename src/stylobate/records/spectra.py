@@ -1,4 +1,13 @@
-"""Response spectra."""
+"""Elastic response spectra of components, and RotD spectra independent of the sensor orientation.
+
+The response of a linear oscillator to piecewise linear base acceleration is exact (Nigam and Jennings 1969).
+
+With displacement d relative to the base, natural frequency ω and damping ratio ζ::
+
+    d̈ + 2ζω ḋ + ω² d = −a(t)                                                       (1)
+
+Over a step, the next state is linear in the state (d, ḋ) and the accelerations (a0, a1), by one matrix exponential.
+"""
 
 import math
 from typing import Any
@@ -13,6 +22,10 @@ from stylobate.base_motions.record import AXES, Record
 from stylobate.base_motions.signal_processing import Floats
 from stylobate.errors import ParameterError, as_numbers, require_not_negative, require_positive
 from stylobate.records.intensities import over_directions
+
+# Minimum number of values per period of the response, and after interpolation by cubics.
+_PER_PERIOD, _DENSELY = 20, 200
+_PERCENTILES = {"rotd00": 0.0, "rotd50": 50.0, "rotd100": 100.0}
 
 
 def oscillator_response(acceleration: Floats, step: float, period: float, damping: float) -> tuple[Floats, Floats]:
@@ -86,11 +99,6 @@ def free_vibration(
     return d, v
 
 
-# Minimum number of values per period of the response, and after interpolation by cubics.
-_PER_PERIOD, _DENSELY = 20, 200
-_PERCENTILES = {"rotd00": 0.0, "rotd50": 50.0, "rotd100": 100.0}
-
-
 def response_spectra(record: Record, periods: npt.ArrayLike, *, damping: float = 0.05) -> xr.Dataset:
     """Compute the elastic response spectra of a record.
 
@@ -118,7 +126,7 @@ def response_spectra(record: Record, periods: npt.ArrayLike, *, damping: float =
 
     Notes
     -----
-    Exact for accelerations linear between samples (`records.oscillator`), including the response after the last sample.
+    Exact for accelerations linear between samples, including the response after the last sample.
     Peaks come from at least 200 values per period and are low by at most 0.02 %. RotD after D. M. Boore,
     "Orientation-independent, nongeometric-mean measures of seismic intensity from two horizontal components of motion",
     BSSA 100, 2010.

@@ -1,4 +1,18 @@
-"""Synthetic ground motions."""
+"""Synthetic ground motions: accelerograms of an evolving noise, and random vibration with a given density.
+
+`EvolvingNoise` is modulated, high-passed white noise through a time-varying filter, the model of S. Rezaeian and A. Der
+Kiureghian, "A stochastic ground motion model with separable temporal and spectral nonstationarity", Earthquake Engng
+Struct. Dyn. 37, 2008, and "Simulation of synthetic ground motions for specified earthquake and site characteristics",
+39, 2010::
+
+    x(t) = q(t)/σ(t) ∫ h(t − τ, τ) w(τ) dτ,    σ² = ∫ h(t − τ, τ)² dτ                   (1)
+    h(s, τ) = ω_f/√(1 − ζ_f²) exp(−ζ_f ω_f s) sin(ω_f √(1 − ζ_f²) s),  ω_f = ω_f(τ)      (2)
+    ω_f(τ) = ω_mid + ω' (τ − t_mid)                                                      (3)
+    q(t) = α1 t^(α2 − 1) exp(−α3 t)                                                      (4)
+    z̈ + 2 ω_c ż + ω_c² z = x(t)                                                          (5)
+
+The accelerogram is z̈: the critically damped oscillator (5) removes the residual velocity.
+"""
 
 import math
 from collections.abc import Callable

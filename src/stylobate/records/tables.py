@@ -1,21 +1,23 @@
-"""Tables of numbers in text files: their layout, names, units and equal time steps."""
+"""Tables of numbers in text files, as spreadsheets and other programs write them: layout, names and units.
+
+A table has lines of header (titles, names of columns, units in brackets) and rows of fields between commas, semicolons,
+tabs or spaces. Lines that begin with #, %, ! or // are comments.
+"""
 
 import csv
-import io
 import itertools
 import re
 from collections.abc import Hashable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from stylobate.base_motions.record import AXES
+from stylobate.base_motions.signal_processing import Floats
 from stylobate.records.directions import Component, Directed, Direction, along_axes, is_one_set, split_name
-from stylobate.records.rounded_times import even_grid
 from stylobate.records.text_files import (
     REMARKS,
     SECOND,
-    Floats,
     Text,
     TimeUnit,
     is_number,
@@ -23,6 +25,15 @@ from stylobate.records.text_files import (
     unit_of,
     unknown_unit,
 )
+from stylobate.records.time_steps import equal_steps, require_two
+
+TIMES = ("time", "t", "zeit", "temps", "tempo", "tiempo")
+"""Names of a column of times, in small letters."""
+_ACCELERATION = ("acceleration", "accel", "acc", "a")
+# Single letters that are a velocity, a length, a time or a radius unless they fit the directions of other columns.
+_UNSURE = ("v", "l", "t", "r")
+_AXIS_NAMES = {name for axis in AXES for name in (axis, f"a{axis}")}
+_TIME_AND_ACCELERATION = 2
 
 _BETWEEN = re.compile(r"[;,\s]+")
 _LEADING_ZERO = re.compile(r"[-+]?0\d")
@@ -33,61 +44,70 @@ _DIGITS = re.compile(r"[-+]?\.?\d")
 _HAS_LETTER = re.compile(r"[^\W\d_]")
 _WIDE_SPACE = re.compile(r"\s{2,}")
 _RULE = re.compile(r"[-=_+|\s]+")
-TIMES = ("time", "t", "zeit", "temps", "tempo", "tiempo")
-"""Names of a column of times, in small letters."""
+_NAME = re.compile(r"\s*(?P<name>[^\[(]*?)\s*(?:[\[(](?P<unit>[^\])]*)[\])])?\s*")
 _WRITE_POINTS = "Write decimal points, or put semicolons between the columns"
 
-Rows = list[tuple[int, str]]
+Line = tuple[int, str]
+"""A line and its index in the file."""
 
 
 @dataclass(frozen=True, slots=True)
-class PlainTable:
-    """A table with decimal points; the line of names, if any, is the first line that is no comment."""
+class Table:
+    """Rows of fields with decimal points, each with the index of its line, below names and other lines of header.
+
+    `names` are the names of the columns with their units in brackets, in the line at `names_at`; None without names.
+    """
 
     text: Text
-    named: bool
+    rows: list[tuple[int, list[str]]]
+    names: list[str] | None = None
+    names_at: int = 0
+
+    @classmethod
+    def of(cls, text: Text, *, named: bool = False) -> "Table":
+        """Find the rows and names of a text table.
+
+        Parameters
+        ----------
+        text
+            The file. Commas are decimal if no number has a point and semicolons, tabs or spaces separate the columns.
+            Lines of words above the first line of numbers are a header.
+        named
+            Whether the last line of the header must hold names, one for each column.
+
+        Raises
+        ------
+        FileError
+            If commas may be decimal signs or column separators.
+        """
+        lines = [(at, line) for at, line in enumerate(text.lines) if line.strip()]
+        lines = [(at, line) for at, line in lines if not line.lstrip().startswith(REMARKS)]
+        begin = next((place for place, (_, line) in enumerate(lines) if _is_row(line)), len(lines))
+        header, body = [one for one in lines[:begin] if not _RULE.fullmatch(one[1])], lines[begin:]
+        if has_decimal_commas(text, body):
+            body = [(at, line.replace(",", ".")) for at, line in body]
+        separator = next((sign for sign in ";," if body and sign in body[0][1]), None)
+        width = len(_fields(body[0][1], separator)) if body else 0
+        names = _names([line for _, line in header], width, separator, named=named) if header and body else None
+        unnamed_csv = names is None and separator is not None and any(separator in line for _, line in header)
+        if not body or unnamed_csv or not all(_is_header(line, width) for _, line in header):
+            return cls._with_names_in_first_line(text, lines, named=named)
+        if names is None:
+            return cls(text, [(at, _pieces(line)) for at, line in body])
+        return cls(text, [(at, _fields(line, separator)) for at, line in body], names, header[-1][0])
+
+    @classmethod
+    def _with_names_in_first_line(cls, text: Text, lines: list[Line], *, named: bool) -> "Table":
+        """Return a table of quoted fields or of spoilt rows, whose first line may hold names of columns."""
+        first = lines[0][1] if lines else ""
+        if not named and (not re.search(r"[,;]", first) or any(map(is_number, re.split(r"[,;]", first)))):
+            return cls(text, [(at, _pieces(line)) for at, line in lines])
+        between = ";" if first.count(";") > first.count(",") else ","
+        rows = [(at, [cell.strip() for cell in next(csv.reader([line], delimiter=between))]) for at, line in lines]
+        return cls(text, rows[1:], *rows[0][::-1]) if rows else cls(text, [])
 
 
-def plain_table(text: Text, *, named: bool = False) -> PlainTable:
-    """Rewrite a text table with decimal points and without lines above its names; line numbers stay.
-
-    Parameters
-    ----------
-    text
-        The file. Commas are decimal if no number has a point and semicolons, tabs or spaces separate the columns. Lines
-        of words above the first line of numbers are a header: titles, names, units in brackets.
-    named
-        Whether the last line of the header must hold names, one for each column.
-
-    Raises
-    ------
-    FileError
-        If commas may be decimal signs or column separators.
-    """
-    lines = [(at, line) for at, line in enumerate(text.lines) if line.strip() and not line.lstrip().startswith(REMARKS)]
-    begin = next((place for place, (_, line) in enumerate(lines) if _is_row(line)), None)
-    if begin is None:
-        return PlainTable(text, named=False)
-    header, body = lines[:begin], lines[begin:]
-    if has_decimal_commas(text, body):
-        body = [(at, line.replace(",", ".")) for at, line in body]
-    separator = next((sign for sign in ";," if sign in body[0][1]), None)
-    width = len(_fields(body[0][1], separator))
-    words = [(at, line) for at, line in header if not _RULE.fullmatch(line)]
-    names = _names([line for _, line in words], width, separator, named=named) if words else None
-    unnamed_csv = names is None and separator is not None and any(separator in line for _, line in words)
-    if unnamed_csv or not all(_is_header(line, width) for _, line in words):
-        return PlainTable(text, named=False)
-    changed = dict(body)
-    if names is not None:
-        changed = {at: ",".join(_fields(line, separator)) for at, line in body}
-        changed[words[-1][0]] = _csv_line(names)
-    above = range(body[0][0])
-    lines_now = tuple(changed.get(at, "" if at in above else line) for at, line in enumerate(text.lines))
-    return PlainTable(replace(text, lines=lines_now), named=names is not None)
-
-
-def has_decimal_commas(text: Text, rows: Rows) -> bool:
+def has_decimal_commas(text: Text, rows: list[Line]) -> bool:
     """Return whether the commas in rows of numbers, each with the index of its line, are decimal.
 
     Raises
@@ -170,126 +190,47 @@ def _header_fields(line: str, width: int, separator: str | None) -> list[str] | 
     return next((fields for fields in splits if len(fields) == width), None)
 
 
-def _csv_line(fields: list[str]) -> str:
-    line = io.StringIO()
-    csv.writer(line, lineterminator="").writerow(fields)
-    return line.getvalue()
-
-
-# Tolerance of times that are printed with few digits, as a fraction of a step.
-_TIME_SLACK = 0.02
-_TIME_AND_ACCELERATION = 2
-
-
-def read_table(text: Text, step: float | None) -> Component:
-    """Read the component of a text file with one or two columns; comments begin with #, %, ! or //.
+def read_table(table: Table, step: float | None) -> Component:
+    """Read the component of a table without names: a column of accelerations, or times and accelerations.
 
     Raises
     ------
     FileError
-        If a token is no number, lines differ in length, times are not in equal steps, or a single column lacks `step`
+        If a field is no number, rows differ in length, times are not in equal steps, or a single column lacks `step`
         [s].
     """
-    tokens = [(at, line.replace(",", " ").replace(";", " ").split()) for at, line in enumerate(text.lines)]
-    tokens = [(at, row) for at, row in tokens if row and not row[0].startswith(REMARKS)]
-    if not tokens:
+    text, rows = table.text, table.rows
+    if table.names is not None:
+        rows = [(table.names_at, table.names), *rows]
+    if not rows:
         raise text.fault(len(text.lines) - 1, "the file has no numbers. Export it again")
-    width = len(tokens[0][1])
+    width = len(rows[0][1])
     if width > _TIME_AND_ACCELERATION:
-        text.rows(tokens[:1])
+        text.rows(rows[:1])
         what = "one (acceleration) or two (time, acceleration) are expected. Name them in the first line"
-        raise text.fault(tokens[0][0], f"{width} columns: {what}")
-    for at, row in tokens:
+        raise text.fault(rows[0][0], f"{width} columns: {what}")
+    for at, row in rows:
         if len(row) != width:
             text.rows([(at, row)])
             raise text.fault(at, f"{len(row)} columns, the lines before have {width}. Correct the line")
-    values = text.rows(tokens)
-    places = [at for at, _ in tokens]
+    values = text.rows(rows)
+    places = [at for at, _ in rows]
     if width == 1:
         if step is None:
             raise text.fault(places[0], "a single column has no time step: state step, in s")
-        _require_two(text, places)
+        require_two(text, places)
         return Component(samples=values[:, 0], step=step, unit=None, states_time_unit=False)
     start, own = equal_steps(text, values[:, 0], places, step)
     return Component(samples=values[:, 1], step=own, start=start, unit=None, states_time_unit=False)
 
 
-def equal_steps(
-    text: Text, times: Floats, places: list[int], step: float | None, unit: TimeUnit = SECOND
-) -> tuple[float, float]:
-    """Return first time and step [s] of equally spaced `times` in `unit`; `step` [s] is the given step, or None.
-
-    The times may be rounded to the printed digits. `places` are the indices of their lines.
-
-    Raises
-    ------
-    FileError
-        If the steps are not equal, or differ from the given step.
-    """
-    _require_two(text, places)
-    own = float(times[-1] - times[0]) / (len(times) - 1)
-    steps = np.diff(times)
-    typical = float(np.median(steps))
-    wrong = np.abs(steps - typical) > _TIME_SLACK * abs(typical)
-    if own <= 0.0 or typical <= 0.0 or np.any(wrong):
-        start, own = _rounded(text, times, places, None if step is None else step / unit.seconds, unit)
-    elif step is not None and abs(own * unit.seconds - step) > _TIME_SLACK * step:
-        problem = f"the times are in steps of {own:g} {unit.symbol}, not of the step given, {step:g} s"
-        raise text.fault(places[1], f"{problem}. Correct step, or leave it out")
-    else:
-        start, own = float(times[0]), _as_printed(own)
-    return unit.in_seconds(start), float(step if step is not None else unit.in_seconds(own))
-
-
-def _rounded(text: Text, times: Floats, places: list[int], step: float | None, unit: TimeUnit) -> tuple[float, float]:
-    """Return first time and step of unequal times that may be rounded from equal steps, all in `unit`."""
-    if (grid := even_grid(times, step)) is not None:
-        return grid
-    steps = np.diff(times)
-    common = float(np.median(steps))
-    wrong = np.abs(steps - common) > _TIME_SLACK * common if common > 0.0 else steps <= 0.0
-    first = int(np.argmax(wrong))
-    problem = f"unequal time steps: {times[first]:g} {unit.symbol} to {times[first + 1]:g} {unit.symbol}"
-    problem += f" is {steps[first]:.3g} {unit.symbol}"
-    problem += f", most are {common:.3g} {unit.symbol}" if common > 0.0 else ""
-    remedy = "Resample the file" + (", or state step, in s, if its times are rounded" if step is None else "")
-    raise text.fault(places[first + 1], f"{problem}. {remedy}")
-
-
-def _require_two(text: Text, places: list[int]) -> None:
-    if len(places) < 2:  # noqa: PLR2004  a step has two ends
-        raise text.fault(
-            places[-1] if places else len(text.lines) - 1, "the file is too short: one sample. Give two or more"
-        )
-
-
-def _as_printed(step: float) -> float:
-    # A quotient of sums is 0.02 except for rounding; the intended step has few digits.
-    short = float(f"{step:.9g}")
-    return short if abs(short - step) <= 1e-9 * step else step
-
-
-_NAME = re.compile(r"\s*(?P<name>[^\[(]*?)\s*(?:[\[(](?P<unit>[^\])]*)[\])])?\s*")
-_ACCELERATION = ("acceleration", "accel", "acc", "a")
-# Single letters that are a velocity, a length, a time or a radius unless they fit the directions of other columns.
-_UNSURE = ("v", "l", "t", "r")
-_AXIS_NAMES = {name for axis in AXES for name in (axis, f"a{axis}")}
-_SAME = {name: name for name in ("time", *AXES)}
-
-
-def is_csv(text: Text) -> bool:
-    """Return whether the first line that is no comment names columns, separated by commas or semicolons."""
-    line = next((line for line in text.lines if line.strip() and not line.lstrip().startswith("#")), "")
-    return ("," in line or ";" in line) and not any(map(is_number, re.split(r"[,;]", line)))
-
-
-def read_csv(text: Text, columns: Mapping[str, str] | None, step: float | None) -> Component:
-    """Read the component or components of a CSV file.
+def read_named_columns(table: Table, columns: Mapping[str, str] | None, step: float | None) -> Component:
+    """Read the component or components of a table with names.
 
     Parameters
     ----------
-    text
-        The file, with names in its first line, such as `time [s],x [m/s²],y [m/s²]`.
+    table
+        The table, with names such as `time [s],x [m/s²],y [m/s²]`.
     columns
         Columns of "time", "x", "y", "z" by their names in the file, without units. None looks for columns with these
         names, for names of directions such as NS, EW and UD, or for one acceleration beside the time. A column named
@@ -300,28 +241,26 @@ def read_csv(text: Text, columns: Mapping[str, str] | None, step: float | None) 
     Raises
     ------
     FileError
-        If a column is missing, units differ or are unknown, or a number is wrong.
+        If the table has no names, a column is missing, units differ or are unknown, or a number is wrong.
     """
-    first = next(at for at, line in enumerate(text.lines) if line.strip() and not line.lstrip().startswith("#"))
-    between = ";" if text.lines[first].count(";") > text.lines[first].count(",") else ","
-    rows = list(csv.reader(text.lines, delimiter=between))
-    header = [_NAME.fullmatch(name) for name in rows[first]]
+    text, first = table.text, table.names_at
+    if table.names is None:
+        raise text.fault(table.rows[0][0] if table.rows else 0, "no names of columns. Write them above the numbers")
+    header = [_NAME.fullmatch(name) for name in table.names]
     names = [found["name"].strip() if found else "" for found in header]
     units = [found["unit"] if found else None for found in header]
-    body = [(at, row) for at, row in enumerate(rows) if at > first and any(token.strip() for token in row)]
     chosen = _chosen(text, first, names, columns)
-    for at, row in body:
+    for at, row in table.rows:
         if len(row) != len(names):
             raise text.fault(at, f"{len(row)} columns, the first line names {len(names)}. Correct the line")
-    values = text.rows([(at, [row[place] for place in chosen.values()]) for at, row in body])
-    if not body:
+    values = text.rows([(at, [row[place] for place in chosen.values()]) for at, row in table.rows])
+    if not table.rows:
         raise text.fault(first, "the file has no numbers. Export it again")
     by_name = dict(zip(chosen, values.T, strict=True))
-    places = [at for at, _ in body]
     start = 0.0
     clock = _time_unit(text, first, units[chosen["time"]]) if "time" in chosen else None
     if "time" in by_name:
-        start, step = equal_steps(text, by_name["time"], places, step, clock or SECOND)
+        start, step = equal_steps(text, by_name["time"], [at for at, _ in table.rows], step, clock or SECOND)
     elif step is None:
         raise text.fault(first, "no column of times: state step, the time step in s")
     unit = _unit(text, first, {names[place]: units[place] for axis, place in chosen.items() if axis != "time"})
@@ -360,7 +299,7 @@ def _chosen(text: Text, line: int, names: list[str], columns: Mapping[str, str] 
     lower = [name.lower() for name in names]
     if columns is not None:
         for axis, name in columns.items():
-            if axis not in _SAME or name not in names:
+            if axis not in ("time", *AXES) or name not in names:
                 raise text.fault(line, f"no column {name!r} for {axis!r}: the columns are {', '.join(names)}")
         _require_distinct(text, line, [(name, name) for name in names if name in columns.values()])
         return {axis: names.index(name) for axis, name in columns.items()}

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 import stylobate as sb
 from stylobate.errors import FileError
-from stylobate.records.rounded_times import even_grid
+from stylobate.records.time_steps import even_grid
 
 COUNT = 400
 

@@ -1,4 +1,4 @@
-"""Recovery of equal time steps from times that were printed with few digits."""
+"""Equal time steps of a column of times, also of times that were printed with few digits."""
 
 from collections.abc import Iterator
 from decimal import Decimal
@@ -6,8 +6,11 @@ from decimal import Decimal
 import numpy as np
 import numpy.typing as npt
 
-Floats = npt.NDArray[np.float64]
+from stylobate.base_motions.signal_processing import Floats
+from stylobate.records.text_files import SECOND, Text, TimeUnit
 
+# Tolerance of times that are printed with few digits, as a fraction of a step.
+_TIME_SLACK = 0.02
 # Two missing samples can look like a rounded grid; three must lie at equal distances to within a sample.
 _LEAST_EXCEPTIONS = 3
 # Less frequent gaps of two steps are also missing samples, even at equal distances: buffers lose samples in this way.
@@ -16,6 +19,62 @@ _RARE = 0.05
 _SLACK = 1e-6
 _LONGEST_DECIMAL = 12
 _HALVINGS = 60
+
+
+def equal_steps(
+    text: Text, times: Floats, places: list[int], step: float | None, unit: TimeUnit = SECOND
+) -> tuple[float, float]:
+    """Return first time and step [s] of equally spaced `times` in `unit`; `step` [s] is the given step, or None.
+
+    The times may be rounded to the printed digits. `places` are the indices of their lines.
+
+    Raises
+    ------
+    FileError
+        If the steps are not equal, or differ from the given step.
+    """
+    require_two(text, places)
+    own = float(times[-1] - times[0]) / (len(times) - 1)
+    steps = np.diff(times)
+    typical = float(np.median(steps))
+    wrong = np.abs(steps - typical) > _TIME_SLACK * abs(typical)
+    if own <= 0.0 or typical <= 0.0 or np.any(wrong):
+        start, own = _rounded(text, times, places, None if step is None else step / unit.seconds, unit)
+    elif step is not None and abs(own * unit.seconds - step) > _TIME_SLACK * step:
+        problem = f"the times are in steps of {own:g} {unit.symbol}, not of the step given, {step:g} s"
+        raise text.fault(places[1], f"{problem}. Correct step, or leave it out")
+    else:
+        start, own = float(times[0]), _as_printed(own)
+    return unit.in_seconds(start), float(step if step is not None else unit.in_seconds(own))
+
+
+def _rounded(text: Text, times: Floats, places: list[int], step: float | None, unit: TimeUnit) -> tuple[float, float]:
+    """Return first time and step of unequal times that may be rounded from equal steps, all in `unit`."""
+    if (grid := even_grid(times, step)) is not None:
+        return grid
+    steps = np.diff(times)
+    common = float(np.median(steps))
+    wrong = np.abs(steps - common) > _TIME_SLACK * common if common > 0.0 else steps <= 0.0
+    first = int(np.argmax(wrong))
+    problem = f"unequal time steps: {times[first]:g} {unit.symbol} to {times[first + 1]:g} {unit.symbol}"
+    problem += f" is {steps[first]:.3g} {unit.symbol}"
+    problem += f", most are {common:.3g} {unit.symbol}" if common > 0.0 else ""
+    remedy = "Resample the file" + (", or state step, in s, if its times are rounded" if step is None else "")
+    raise text.fault(places[first + 1], f"{problem}. {remedy}")
+
+
+def require_two(text: Text, places: list[int]) -> None:
+    """Raise FileError if a table has fewer than two rows, whose line indices are `places`."""
+    if len(places) < 2:  # noqa: PLR2004  a step has two ends
+        raise text.fault(
+            places[-1] if places else len(text.lines) - 1, "the file is too short: one sample. Give two or more"
+        )
+
+
+def _as_printed(step: float) -> float:
+    # A quotient of sums is 0.02 except for rounding; the intended step has few digits.
+    short = float(f"{step:.9g}")
+    return short if abs(short - step) <= 1e-9 * step else step
 
 
 def even_grid(times: Floats, step: float | None = None) -> tuple[float, float] | None:
