@@ -12,7 +12,7 @@ import numpy.typing as npt
 import xarray as xr
 
 from stylobate.base_motions import BaseMotion
-from stylobate.base_motions.varying import numbers_of, value_of
+from stylobate.base_motions.declared import numbers_of, value_of
 from stylobate.conveying.contact_maps import lands_flat, remark_on_knife_edge, stays_in_a_plane
 from stylobate.conveying.transport import require_conveyor, throw_number_of
 from stylobate.errors import MOST_RUNS, Named, Outcome, ParameterError, require_finite, require_positive, require_whole

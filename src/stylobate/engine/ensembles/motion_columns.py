@@ -9,8 +9,8 @@ import numpy as np
 import numpy.typing as npt
 
 from stylobate.base_motions import BaseMotion
-from stylobate.base_motions.one_of import members_of
-from stylobate.base_motions.varying import is_pulse, numbers_of, stated_numbers
+from stylobate.base_motions.combined import members_of
+from stylobate.base_motions.declared import is_pulse, numbers_of, stated_numbers
 from stylobate.engine.end_of_motion import remaining_acceleration
 from stylobate.engine.ensembles.harmonics import Term, Terms, factors, terms_of
 from stylobate.engine.ensembles.model_columns import ModelColumns
