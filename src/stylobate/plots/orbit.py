@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 
-from stylobate.plots.pose import Floats
+from stylobate.plots.geometry import Floats
 from stylobate.plots.result_figure import InAxes, ResultFigure, heading
 from stylobate.plots.style import BLACK, BLUE, GREY, STABLE_WIDTH, VERMILION, new_figure, styled
 

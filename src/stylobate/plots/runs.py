@@ -13,8 +13,8 @@ from matplotlib.patches import Circle
 
 from stylobate.errors import ParameterError
 from stylobate.plots.contact_strip import ContactHistory, draw_contact
+from stylobate.plots.geometry import Floats
 from stylobate.plots.labels import axis_label, unit_label
-from stylobate.plots.pose import Floats
 from stylobate.plots.result_figure import InAxes, ResultFigure, font_ratio, heading
 from stylobate.plots.style import BLACK, DASHES, GREY, PALETTE, new_figure, styled
 from stylobate.plots.varied import what_varies

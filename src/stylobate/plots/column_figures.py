@@ -1,6 +1,8 @@
-"""The column at chosen times in axonometry, with the path of its contact point, and this path from above."""
+"""Figures of a column: its sketch to scale, and its path in three dimensions."""
 
+import math
 from collections.abc import Sequence
+from dataclasses import asdict
 from typing import Any
 
 import numpy as np
@@ -12,16 +14,92 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Circle, Polygon
 from matplotlib.ticker import MaxNLocator
 
+from stylobate.column import Column
 from stylobate.errors import ParameterError
-from stylobate.plots.axonometry import Cylinder, View
-from stylobate.plots.labels import axis_label, unit_label
-from stylobate.plots.pose import Floats
-from stylobate.plots.result_figure import ResultFigure, font_ratio
-from stylobate.plots.shape import Shape
-from stylobate.plots.style import BLACK, BLUE, GREY, SKY, VERMILION, new_figure, styled
+from stylobate.plots.body import ColumnArtists
+from stylobate.plots.geometry import Floats, Shape, View, base_centres, frames, quaternions
+from stylobate.plots.labels import axis_label, is_dimensionless, unit_label
+from stylobate.plots.result_figure import InAxes, ResultFigure, font_ratio, heading
+from stylobate.plots.style import BLACK, BLUE, GREY, VERMILION, new_figure, styled
 from stylobate.results import Response
 
+_HEIGHT, _FACE = 3.6, "#dcebf5"
+# Ground beside the base and room for dimensions [of the larger of height and diameter].
+_GROUND, _ROOM = 0.12, 0.16
+
+
+@styled
+def plot_column(column: Column) -> Figure:
+    """Draw the side of a column to scale: base, height, centre of mass and the angle α of the diagonal through it.
+
+    The title states slenderness c, the frequency parameter p of small rocking, the base acceleration c g at which it
+    uplifts, and the mass. A column without a known height is drawn twice as high as its centre of mass.
+    """
+    shape = Shape.of_column(asdict(column))
+    figure = new_figure(_HEIGHT)
+    axes = figure.subplots()
+    r, top, height, centre = shape.radius, shape.top_radius, shape.height, shape.mass_height
+    size = max(height, 2.0 * max(r, top))
+    known = column.height is not None
+    side = [(-r, 0.0), (r, 0.0), (top, height), (-top, height)]
+    axes.add_patch(Polygon(side, facecolor=_FACE, edgecolor=BLACK, linestyle="-" if known else "--", linewidth=1.2))
+    half = max(r, top) + _GROUND * size
+    axes.plot([-half, half], [0.0, 0.0], color=GREY, linewidth=2.0)
+    axes.plot([r, 0.0], [0.0, centre], color=VERMILION, linewidth=1.2)
+    axes.plot([0.0], [centre], marker="o", color=VERMILION, markersize=5)
+    axes.plot([r, r], [0.0, centre], color=VERMILION, linewidth=0.7, linestyle=":")
+    unit = "" if _has_no_units(column) else " m"
+    out = half + 0.4 * _ROOM * size
+    _dimension(axes, (-r, -_ROOM * size), (r, -_ROOM * size), f"2r = {2.0 * r:.4g}{unit}", {"va": "top"})
+    _dimension(axes, (out, 0.0), (out, height), f"{height:.4g}{unit}" + ("" if known else " assumed"), {})
+    _dimension(axes, (-out, 0.0), (-out, centre), f"h = {centre:.4g}{unit}", {"ha": "right"}, left=True)
+    corners = [(-1.4 * out, -1.6 * _ROOM * size), (1.4 * out, (1.0 + 0.3 * _ROOM) * size)]
+    axes.plot(*np.transpose(corners), linestyle="none")  # room for the dimensions
+    axes.set_aspect("equal", adjustable="datalim")
+    axes.axis("off")
+    if isinstance(figure, InAxes):
+        axes.set_title("\n".join(_numbers(column)))
+    else:
+        heading(figure, ", ".join(_numbers(column)))
+    return figure
+
+
+def _dimension(
+    axes: Axes,
+    start: tuple[float, float],
+    end: tuple[float, float],
+    text: str,
+    look: dict[str, Any],
+    *,
+    left: bool = False,
+) -> None:
+    """Draw a line of dimension with its text beside the middle."""
+    axes.annotate("", end, xytext=start, arrowprops={"arrowstyle": "<->", "color": GREY, "shrinkA": 0, "shrinkB": 0})
+    middle = 0.5 * (start[0] + end[0]), 0.5 * (start[1] + end[1])
+    level = start[1] == end[1]
+    shift = (0, -4) if level else (-5, 0) if left else (5, 0)
+    place = {"ha": "center" if level else "left", "va": "center"} | look
+    axes.annotate(text, middle, xytext=shift, textcoords="offset points", fontsize="small", **place)
+
+
+def _has_no_units(column: Column) -> bool:
+    return is_dimensionless({"column": asdict(column)})
+
+
+def _numbers(column: Column) -> list[str]:
+    first = f"c = {column.slenderness:.4g} (α = {math.degrees(column.tipping_angle):.4g}°)"
+    if _has_no_units(column):
+        return [first]
+    uplift = column.slenderness * column.gravity
+    return [
+        f"{first}, p = {column.frequency_parameter:.4g} rad/s",
+        f"uplifts at {uplift:.4g} m/s², mass {column.mass:.4g} kg",
+    ]
+
+
 _GHOSTS = 4
+# Strength of the colours of the column before the last of the times.
+_BEFORE = 0.4
 # Margin of the base about the path [base radii].
 _MARGIN = 0.35
 _TICKS = 3
@@ -46,9 +124,9 @@ def plot_column_path(
 ) -> Figure:
     """Draw the column in three dimensions and the path of its contact point, in the frame of the base.
 
-    The column is a cylinder of its base radius and height at chosen times: opaque at the last, transparent before; a
-    line on its top turns with the column. The base shows the paths of the contact point and of the centre of the
-    footprint circle, which moves if the column turns about its axis. The right panel shows the same from above.
+    The column is that of animations at chosen times, pale before the last; its marked flute turns with it. The base
+    shows the paths of the contact point and of the centre of the footprint circle, which moves if the column turns
+    about its axis. The right panel shows the same from above.
 
     Parameters
     ----------
@@ -73,7 +151,6 @@ def plot_column_path(
     shape = Shape.of(run)
     radius, height = shape.radius, shape.height
     view = View(np.radians(azimuth), np.radians(elevation))
-    columns = [_column(data, at, radius, height) for at in drawn]
     figure = new_figure(4.6)
     space, plan = figure.subplots(1, 2, width_ratios=(1.0, 1.15))
     low, high = _extent(data, radius)
@@ -81,8 +158,8 @@ def plot_column_path(
     _draw_ground(space, view, low, high, unit, _font_size(figure, view, low, high, height))
     leap = (_LEAP if run.sampler is not None else _LEAP_OF_SAMPLES) * radius
     _draw_paths_in_space(space, view, data, leap)
-    for index, one in enumerate(columns):
-        _draw_column(space, view, one, full=index == len(columns) - 1)
+    for at in drawn:
+        _draw_column(space, view, shape, data.isel(time=at), 1.0 if at == drawn[-1] else _BEFORE)
     _draw_height(space, view, low, high, height, f"{height:.3g} {unit}")
     space.set_aspect("equal")
     space.axis("off")
@@ -119,11 +196,6 @@ def _path(run: Response, last: float, chosen: Floats) -> xr.Dataset:
 def _footprint(data: xr.Dataset) -> Floats:
     tilt = data["tilt"].to_numpy()
     return data["footprint"].to_numpy() if "footprint" in data else np.zeros_like(tilt)
-
-
-def _column(data: xr.Dataset, at: int, radius: float, height: float) -> Cylinder:
-    twist = float(data["twist"][at]) if "twist" in data else 0.0
-    return Cylinder.leaning(data["tilt"].to_numpy()[at], twist, _footprint(data)[at], radius, height)
 
 
 def _extent(data: xr.Dataset, radius: float) -> tuple[Floats, Floats]:
@@ -218,17 +290,12 @@ def _draw_paths_in_space(axes: Axes, view: View, data: xr.Dataset, leap: float) 
         axes.plot(*view.project(_on_ground(centres)).T, color=BLUE, linewidth=1.0)
 
 
-def _draw_column(axes: Axes, view: View, column: Cylinder, *, full: bool) -> None:
-    edge, width = (BLACK, 1.0) if full else (GREY, 0.6)
-    fill: dict[str, Any] = {"facecolor": SKY, "alpha": 0.35 if full else 0.10, "linewidth": 0.0}
-    outline = view.outline(column)
-    axes.add_patch(Polygon(outline, **fill))
-    axes.add_patch(Polygon(outline, fill=False, edgecolor=edge, linewidth=width))
-    for part, outward in ((0.0, -column.axis), (1.0, column.axis)):
-        hidden = not view.sees(outward)
-        axes.plot(*view.project(column.circle(part)).T, color=edge, linewidth=width, linestyle=":" if hidden else "-")
-    if view.sees(column.axis):
-        axes.plot(*view.project(column.mark()).T, color=edge, linewidth=width)
+def _draw_column(axes: Axes, view: View, shape: Shape, data: xr.Dataset, strength: float) -> None:
+    """Draw the column at one instant of `data`, and make room for it."""
+    tilt, twist = data["tilt"].to_numpy(), float(data["twist"]) if "twist" in data else 0.0
+    centre = base_centres(tilt, _footprint(data), shape.radius)
+    rims = ColumnArtists(axes, shape, view, strength).place(frames(quaternions(tilt, twist)), centre)
+    axes.update_datalim(np.concatenate(rims))
 
 
 def _draw_height(axes: Axes, view: View, low: Floats, high: Floats, height: float, text: str) -> None:
