@@ -62,7 +62,7 @@ def response(options: Options) -> None:
 
 
 def _print_exact(curves: "xr.Dataset") -> None:
-    from stylobate.plots.branch_lines import stability_of  # noqa: PLC0415  heavy, as above
+    from stylobate.plots.orbits import stability_of  # noqa: PLC0415  heavy, as above
 
     names = curves["branch_name"].to_numpy()
     rows = [

@@ -22,9 +22,17 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.text import Annotation, Text
 
-from stylobate.plots.fitting import fit_words, thin_out_ticks
 from stylobate.plots.labels import in_own_units, with_literal_names
-from stylobate.plots.result_figure import WIDTH, InAxes, ResultFigure, asked_for, enlarged, usual_font
+from stylobate.plots.result_figure import (
+    WIDTH,
+    InAxes,
+    ResultFigure,
+    asked_for,
+    enlarged,
+    fit_words,
+    thin_out_ticks,
+    usual_font,
+)
 
 # Okabe and Ito's palette ("Color Universal Design", 2008) without its yellow; the lightness alternates.
 PALETTE = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#000000")
