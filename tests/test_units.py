@@ -15,8 +15,8 @@ from hypothesis import strategies as st
 
 import stylobate as sb
 from stylobate import config, theory, units
+from stylobate.base_motions import Record
 from stylobate.base_motions.declared import MOTIONS
-from stylobate.base_motions.records import Record
 from stylobate.cli.main import run as run_command
 from stylobate.column import SHAPES
 from stylobate.errors import ParameterError, UnlikelyInputWarning, as_float

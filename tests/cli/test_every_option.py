@@ -100,7 +100,7 @@ COMPUTING = (
         "earthquakes.FragilityStudy.runs",
     ),
     *("earthquakes.assess", "paper.check_paper", "lab.serving.serve"),
-    *("cli.records.print_table", "base_motions.records.response_spectra"),
+    *("cli.records.print_table", "records.response_spectra"),
 )
 
 STUDY = """

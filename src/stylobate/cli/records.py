@@ -15,7 +15,7 @@ from stylobate.text import plural
 
 if TYPE_CHECKING:
     from stylobate.base_motions import Record
-    from stylobate.base_motions.records.listing import ComponentRow
+    from stylobate.records.intensities import ComponentRow
 
 _PERIODS = (0.05, 5.0, 60)
 _COLUMNS = {
@@ -74,7 +74,7 @@ def records(options: Options) -> None:
     values = _values(options["sources"] or [], options)
     options.refuse_unused()
     listed = list(config.RecordsConfig.parse(values).build().values())
-    from stylobate.base_motions.records.listing import component_rows, notes_on
+    from stylobate.records.intensities import component_rows, notes_on
 
     rows = {record.name: component_rows(record) for record in listed}
     notes = [note for record in listed for note in notes_on(record)]
@@ -135,7 +135,7 @@ def _save(rows: Mapping[str, Sequence["ComponentRow"]], output: Path) -> None:
 def _draw(listed: Sequence["Record"], damping: float, figure: Path) -> None:
     import numpy as np
 
-    from stylobate.base_motions.records import response_spectra
+    from stylobate.records import response_spectra
 
     moving = [record for record in listed if record.axes]
     if not moving:

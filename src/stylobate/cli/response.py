@@ -59,7 +59,7 @@ def response(options: Options) -> None:
 
 
 def _print_exact(curves: "xr.Dataset") -> None:
-    from stylobate.plots.branch_lines import stability_of
+    from stylobate.plots.orbits import stability_of
 
     names = curves["branch_name"].to_numpy()
     rows = [

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from stylobate.base_motions import BaseMotion
-from stylobate.base_motions.varying import numbers_of, value_of
+from stylobate.base_motions.declared import numbers_of, value_of
 from stylobate.config.options import MOTION_WITHOUT_RECORDS, SLIDING
 from stylobate.config.study import Study
 from stylobate.conveying.transport import require_conveyor, throw_number_of

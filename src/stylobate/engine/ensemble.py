@@ -12,7 +12,7 @@ import numpy.typing as npt
 import xarray as xr
 
 from stylobate.base_motions import BASE_AT_REST, BaseMotion
-from stylobate.base_motions.one_of import members_of
+from stylobate.base_motions.combined import members_of
 from stylobate.column import Column
 from stylobate.engine.cost import announce, expected_steps
 from stylobate.engine.ensembles.batch import Batch, Plan

@@ -8,7 +8,6 @@ from typing import Any, get_args
 from pydantic_core import PydanticUndefined
 
 from stylobate.base_motions.declared import composite_kinds
-from stylobate.base_motions.records.samples import sample_names
 from stylobate.config.columns import ColumnConfig
 from stylobate.config.description import Config
 from stylobate.config.models import DESCRIBED_MODELS
@@ -17,6 +16,7 @@ from stylobate.errors import Outcome
 from stylobate.lab.limits import Limits
 from stylobate.lab.parameter_info import NUMBERS, VARIED, Number
 from stylobate.lab.presets import presets
+from stylobate.records.joining import sample_names
 
 
 def about(limits: Limits) -> dict[str, Any]:

@@ -5,10 +5,10 @@ from collections.abc import Iterator, Mapping
 from itertools import islice
 from typing import Any
 
-from stylobate.base_motions.records.samples import sample_record
 from stylobate.errors import LARGEST, SMALLEST, ParameterError
 from stylobate.lab.limits import Limits
 from stylobate.lab.uploads import Uploads
+from stylobate.records.joining import sample_record
 from stylobate.units import size_of, split
 
 LEAST, MOST = SMALLEST, LARGEST

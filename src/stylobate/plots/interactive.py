@@ -13,13 +13,21 @@ from matplotlib import rcParams
 from matplotlib.colors import to_hex, to_rgb
 
 from stylobate.errors import ParameterError, UnsupportedError
-from stylobate.plots.classes import Look, MapClass, attractor_classes, contact_classes, outcome_classes
-from stylobate.plots.contact_strip import COLOURS, ContactHistory
+from stylobate.plots.cells import Look, MapClass, attractor_classes, contact_classes, outcome_classes
 from stylobate.plots.kinds import HasPoints, check_sequence
-from stylobate.plots.labels import axis_label, in_own_units, unit_label
-from stylobate.plots.runs import EVENT_NAMES, along_line, colours_of, in_print, is_along_a_line, length_unit, panels_of
+from stylobate.plots.labels import axis_label, in_own_units, unit_label, what_varies
+from stylobate.plots.runs import (
+    COLOURS,
+    EVENT_NAMES,
+    ContactHistory,
+    along_line,
+    colours_of,
+    in_print,
+    is_along_a_line,
+    length_unit,
+    panels_of,
+)
 from stylobate.plots.style import BLACK, GREY, PALETTE
-from stylobate.plots.varied import what_varies
 from stylobate.results import Response, Verdict
 from stylobate.results.verdict import CONTACT_LAW, LABELS
 

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 import stylobate as sb
-from stylobate.base_motions.records import RecordFormat
 from stylobate.column import STANDARD_GRAVITY
 from stylobate.errors import FileError
+from stylobate.records import RecordFormat
 
 VALUES = np.random.default_rng(11).normal(scale=0.1, size=23)
 NUMBERS = "\n".join(" ".join(f"{value:.7E}" for value in VALUES[at : at + 5]) for at in range(0, len(VALUES), 5))

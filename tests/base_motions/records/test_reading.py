@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 import stylobate as sb
-from stylobate.base_motions.records import RecordFormat, write_at2, write_csv
 from stylobate.column import STANDARD_GRAVITY
 from stylobate.errors import FileError, ParameterError, UnlikelyInputWarning, UnsupportedError
+from stylobate.records import RecordFormat, write_at2, write_csv
 
 VALUES = np.array([0.0, 0.1, -0.25, 0.03125, 1e-4, -2e-5, 0.5])
 NEW = """PEER NGA STRONG MOTION DATABASE RECORD

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import stylobate as sb
-from stylobate.base_motions.numbers import Acceleration, AngularFrequency
+from stylobate.base_motions.base import Acceleration, AngularFrequency
 from stylobate.config import SimulationConfig, config_of, read_config, study_config
 from stylobate.config.many_runs import common_values
 from stylobate.errors import ConfigError, ParameterError, UnsupportedError
@@ -127,7 +127,7 @@ from dataclasses import dataclass
 from typing import Annotated
 import numpy as np
 import stylobate as sb
-from stylobate.base_motions.numbers import Acceleration, AngularFrequency
+from stylobate.base_motions.base import Acceleration, AngularFrequency
 {}
 
 @dataclass(frozen=True, slots=True)

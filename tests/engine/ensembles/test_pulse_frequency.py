@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 import stylobate as sb
-from stylobate.base_motions.numbers import AngularFrequency
+from stylobate.base_motions.base import AngularFrequency
+from stylobate.base_motions.declared import with_numbers
 from stylobate.base_motions.pulses import Waveform
-from stylobate.base_motions.varying import with_numbers
 from stylobate.engine.ensembles.polynomials import tabulated, tabulated_alike
 from stylobate.errors import ParameterError, UnsupportedError
 

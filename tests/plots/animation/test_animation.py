@@ -13,7 +13,7 @@ from PIL import Image
 
 import stylobate as sb
 from stylobate.errors import FileError, ParameterError, UnlikelyInputWarning, UnsupportedError
-from stylobate.plots.animation import Animation, drawn_motion, page
+from stylobate.plots.animation import Animation, drawn_motion, formats
 from stylobate.plots.animation.drawing import Drawing
 
 SMALL = {"size": (320, 280), "frames_per_second": 12}
@@ -132,7 +132,7 @@ def viewer(monkeypatch, tmp_path):
     folder = tmp_path / "viewer"
     folder.mkdir()
     (folder / "viewer.js").write_text('var stylobateViewer = "</script><!-- é";\r\n', encoding="utf-8", newline="")
-    monkeypatch.setattr(page, "files", lambda name: folder)
+    monkeypatch.setattr(formats, "files", lambda name: folder)
     return folder / "viewer.js"
 
 

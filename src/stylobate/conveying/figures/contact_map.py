@@ -7,8 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 
-from stylobate.plots.cells import cell_edges
-from stylobate.plots.classes import contact_classes
+from stylobate.plots.cells import cell_edges, contact_classes
 from stylobate.plots.kinds import figure_of
 from stylobate.plots.labels import axis_label
 from stylobate.plots.maps import draw_classes

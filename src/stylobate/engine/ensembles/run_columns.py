@@ -10,8 +10,8 @@ import numpy as np
 import numpy.typing as npt
 
 from stylobate.base_motions import BaseMotion, Delayed, Harmonic, Rotated, Scaled, Sum
-from stylobate.base_motions.one_of import members_of
-from stylobate.base_motions.varying import is_pulse, numbers_of, stated_numbers
+from stylobate.base_motions.combined import members_of
+from stylobate.base_motions.declared import is_pulse, numbers_of, stated_numbers
 from stylobate.engine.ensembles.polynomials import Table, one_after_another, tabulated, tabulated_alike
 from stylobate.engine.forcing import least_rest_energy
 from stylobate.engine.kernel.columns import Tabulated

@@ -18,7 +18,7 @@ from stylobate.lab.schema.notation import (
     word,
 )
 from stylobate.models.sliding.phases import Contact
-from stylobate.plots.shape import Shape
+from stylobate.plots.geometry import Shape
 from stylobate.quantities import parameters_of
 from stylobate.results.outcomes import NUMERICALLY_UNCERTAIN
 

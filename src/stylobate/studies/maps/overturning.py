@@ -7,7 +7,7 @@ import numpy as np
 import numpy.typing as npt
 
 from stylobate.base_motions import BaseMotion
-from stylobate.base_motions.varying import is_pulse, with_numbers
+from stylobate.base_motions.declared import is_pulse, with_numbers
 from stylobate.config.study import Study
 from stylobate.errors import Outcome, ParameterError, UnsupportedError
 from stylobate.models import Model
