@@ -12,19 +12,15 @@ from starlette.responses import JSONResponse, Response
 from starlette.routing import Route
 
 from stylobate import config
-from stylobate.lab.bodies import json_body
 from stylobate.lab.curves import response
 from stylobate.lab.jobs import Jobs, broken
-from stylobate.lab.limits import Limits
-from stylobate.lab.messages import Broken, Finished, Lost, Refused
+from stylobate.lab.limits import Limits, RefusedError
 from stylobate.lab.options import about
-from stylobate.lab.refusals import RefusedError
-from stylobate.lab.request_parsing import Described, described
+from stylobate.lab.pool import Answer, Broken, BusyError, Finished, Lost, Pool, Refused
+from stylobate.lab.requests import Described, described, json_body, problems_of_numbers
 from stylobate.lab.responses import plain_column, snippets
 from stylobate.lab.schema import schema
-from stylobate.lab.size_limits import beyond_size
 from stylobate.lab.uploads import Uploads
-from stylobate.lab.worker_pool import Answer, BusyError, WorkerPool
 
 _log = logging.getLogger("stylobate.lab")
 
@@ -41,7 +37,7 @@ class Api:
     """The endpoints and the state that they share."""
 
     limits: Limits
-    runs: WorkerPool
+    runs: Pool
     jobs: Jobs
     uploads: Uploads
 
@@ -100,7 +96,7 @@ class Api:
     async def upload(self, request: Request) -> Response:
         """Store the files of a record and report their contents."""
         body = await json_body(request, self.limits.records)
-        problems = beyond_size({name: value for name, value in body.items() if name != "files"})
+        problems = problems_of_numbers({name: body[name] for name in body if name != "files"}, self.limits)
         if problems:
             raise RefusedError(422, problems)
         upload = await to_thread.run_sync(self.uploads.add, body)
@@ -110,7 +106,6 @@ class Api:
             self.uploads.drop(upload)
             folder = f"{upload.paths[0].parent}/"
             raise RefusedError(error.status, [line.replace(folder, "") for line in error.problems]) from None
-        self.uploads.measured(upload, answer["samples"], answer["step"])
         return JSONResponse({"upload": upload.digest, **answer})
 
     async def begin(self, request: Request) -> Response:

@@ -17,11 +17,10 @@ from stylobate.errors import ConfigError, StylobateError
 from stylobate.lab.api import Api
 from stylobate.lab.guards import Guard
 from stylobate.lab.jobs import Jobs, broken
-from stylobate.lab.limits import Limits
+from stylobate.lab.limits import Limits, RefusedError
 from stylobate.lab.pages import page_routes
-from stylobate.lab.refusals import RefusedError
+from stylobate.lab.pool import OUT_OF_MEMORY, Pool
 from stylobate.lab.uploads import Uploads
-from stylobate.lab.worker_pool import WorkerPool
 
 
 def end_processes(app: Starlette) -> None:
@@ -59,7 +58,7 @@ def create_app(
             folder = Path(stack.enter_context(tempfile.TemporaryDirectory(prefix="stylobate-lab-")))
             group = await stack.enter_async_context(anyio.create_task_group())
             stack.callback(group.cancel_scope.cancel)
-            runs, work = WorkerPool(bounds.runs, group), WorkerPool(bounds.jobs, group, background=True)
+            runs, work = Pool(bounds.runs, group), Pool(bounds.jobs, group, background=True)
             for pool in (runs, work):
                 stack.callback(pool.end)
             app.state.pools = (runs, work)
@@ -77,6 +76,7 @@ def create_app(
         exception_handlers={
             RefusedError: _refusal,
             StylobateError: _mistake,
+            MemoryError: _out_of_memory,
             HTTPException: _problem,
             Exception: _failure,
         },
@@ -95,6 +95,11 @@ async def _mistake(request: Request, error: Exception) -> Response:
     del request
     problems = error.problems if isinstance(error, ConfigError) else str(error).splitlines()
     return JSONResponse({"problems": list(problems)}, status_code=422)
+
+
+async def _out_of_memory(request: Request, error: Exception) -> Response:
+    del request, error
+    return JSONResponse({"problems": [OUT_OF_MEMORY]}, status_code=422)
 
 
 async def _failure(request: Request, error: Exception) -> Response:

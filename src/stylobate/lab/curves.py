@@ -9,7 +9,7 @@ import xarray as xr
 
 from stylobate import config, studies
 from stylobate.lab.json_values import numbers
-from stylobate.lab.messages import Emit, Note
+from stylobate.lab.pool import Emit, Note
 from stylobate.orbits import StepControl
 from stylobate.orbits.saving import SUPERCRITICAL_OF
 from stylobate.text import plural

@@ -12,7 +12,7 @@ from stylobate import config, conveying, studies
 from stylobate.errors import Outcome, ParameterError
 from stylobate.lab.case_axes import case_map, case_numbers, units_of
 from stylobate.lab.json_values import number, numbers
-from stylobate.lab.messages import Emit, Found, Progress
+from stylobate.lab.pool import Emit, Found, Progress
 from stylobate.lab.progressive_executor import Cells, Refining
 from stylobate.parameter_quantities import attributes_of
 

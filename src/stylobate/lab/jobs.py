@@ -13,10 +13,8 @@ from typing import Any
 import anyio
 from anyio.abc import TaskGroup
 
-from stylobate.lab.limits import Limits
-from stylobate.lab.messages import Broken, Finished, Found, Lost, Note, Progress, Refused
-from stylobate.lab.refusals import RefusedError
-from stylobate.lab.worker_pool import Answer, Message, WorkerPool
+from stylobate.lab.limits import Limits, RefusedError
+from stylobate.lab.pool import Answer, Broken, Finished, Found, Lost, Message, Note, Pool, Progress, Refused
 from stylobate.text import plural
 
 _log = logging.getLogger("stylobate.lab")
@@ -98,7 +96,7 @@ class Job:
 class Jobs:
     """All jobs; they run in `pool`, in tasks of `group`."""
 
-    pool: WorkerPool
+    pool: Pool
     limits: Limits
     group: TaskGroup
     _known: dict[str, Job] = field(default_factory=dict)

@@ -8,7 +8,7 @@ from stylobate import config
 from stylobate.base_motions import Record
 from stylobate.lab.json_values import numbers, table
 from stylobate.lab.parameter_info import OF_ANY_COLUMN
-from stylobate.lab.request_parsing import Described
+from stylobate.lab.requests import Described
 from stylobate.models import Model
 from stylobate.plots.animation import drawn_motion
 from stylobate.results import Response

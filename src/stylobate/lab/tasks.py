@@ -6,9 +6,9 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from stylobate import config, engine
-from stylobate.lab.messages import Emit, Progress
+from stylobate.lab.pool import Emit, Progress
 from stylobate.lab.remarks import remarks
-from stylobate.lab.request_parsing import Described
+from stylobate.lab.requests import Described
 from stylobate.lab.responses import plain_record, plain_run, snippets
 
 _USUAL_LENGTH = 12.0

@@ -8,39 +8,74 @@ import io
 import shutil
 import zlib
 from collections import OrderedDict
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from contextlib import suppress
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from pathlib import Path, PurePosixPath, PureWindowsPath
-from typing import Any
+from typing import Annotated, Any
 
-from stylobate.lab.refusals import RefusedError
+from pydantic import AfterValidator, BaseModel, BeforeValidator, Field, ValidationError, WithJsonSchema
 
-_MOST_FILES = 3  # components of one event
+from stylobate.lab.limits import RefusedError
+
 _LONGEST_NAME = 120
 _GZIP = b"\x1f\x8b"
 _PIECE = 1 << 16
 
 
+def _plain_name(name: str) -> str:
+    """Return the name of a file if it is valid on any system, without a folder."""
+    alone = PurePosixPath(name).name == name == PureWindowsPath(name).name
+    short = 0 < len(name.encode(errors="replace")) <= _LONGEST_NAME
+    if alone and short and name.isprintable() and name[0] != ".":
+        return name
+    raise ValueError(f"must be the name of a file without a folder (got {name!r})")
+
+
+def _decoded(content: object) -> bytes:
+    if not isinstance(content, str):
+        raise ValueError("must be the file in base64")  # noqa: TRY004  pydantic reports it
+    try:
+        return base64.b64decode(content, validate=True)
+    except (binascii.Error, ValueError) as error:
+        raise ValueError(f"must be the file in base64 ({error})") from None
+
+
+_NAME = {"type": "string", "pattern": r"^[A-Za-z0-9_-][A-Za-z0-9_. -]*$", "maxLength": _LONGEST_NAME}
+_BASE64 = "^(?:[A-Za-z0-9+/]{4})*(?:[A-Za-z0-9+/]{2}==|[A-Za-z0-9+/]{3}=)?$"
+_CONTENT = {"type": "string", "contentEncoding": "base64", "pattern": _BASE64}
+
+
+class RecordFile(BaseModel, extra="forbid", frozen=True):
+    """A file of a record."""
+
+    name: Annotated[str, AfterValidator(_plain_name), WithJsonSchema(_NAME)] = Field(
+        description="file name without a folder"
+    )
+    content: Annotated[bytes, BeforeValidator(_decoded), WithJsonSchema(_CONTENT)] = Field(
+        description="content of the file"
+    )
+
+
+class RecordRequest(BaseModel, extra="forbid", frozen=True):
+    """The files of a record: its components."""
+
+    files: list[RecordFile] = Field(min_length=1, max_length=3, description="files of one event")
+    units: str | None = Field(
+        None, description="unit of the acceleration, such as g or cm/s²; null if the file states the unit"
+    )
+    step: Annotated[float, Field(strict=True)] | None = Field(
+        None, description="time step [s]; null if the file states the step"
+    )
+
+
 @dataclass(frozen=True, slots=True)
 class Upload:
-    """The files of one event on disk, the options for reading them, and the resulting number of samples."""
+    """The files of one event on disk, and the options for reading them."""
 
     digest: str
     paths: tuple[Path, ...]
     reading: Mapping[str, Any]
-    samples: int = 0
-    step: float = 0.0
-
-    @property
-    def size(self) -> int:
-        """Size of the files [bytes]."""
-        return sum(path.stat().st_size for path in self.paths)
-
-    @property
-    def names(self) -> tuple[str, ...]:
-        """Names of the files."""
-        return tuple(path.name for path in self.paths)
 
     def motion(self) -> dict[str, Any]:
         """Return the plain values of the record, with the paths of its files."""
@@ -52,7 +87,7 @@ class Upload:
 
     def as_json(self) -> dict[str, Any]:
         """Return the plain values of the record, with the names of its files."""
-        return {**self._motion(list(self.names)), "one_component": True}
+        return {**self._motion([path.name for path in self.paths]), "one_component": True}
 
     def _motion(self, paths: list[str]) -> dict[str, Any]:
         return {"kind": "record", "path": paths[0] if len(paths) == 1 else paths, **self.reading}
@@ -86,9 +121,16 @@ class Uploads:
         RefusedError
             If a name, a content or a unit is invalid.
         """
-        files, reading = _files(body), _reading(body)
+        try:
+            given = RecordRequest.model_validate(body)
+        except ValidationError as error:
+            raise RefusedError(422, [_line(one) for one in error.errors(include_input=False)]) from None
+        files = {file.name: file.content for file in given.files}
+        if len(files) < len(given.files):
+            raise RefusedError(422, ["files: the names must be different. Rename a file."])
         for name, content in files.items():
             _require_unpacked_size(name, content, self.unpacked)
+        reading = given.model_dump(include={"units", "step"}, exclude_none=True)
         digest = hashlib.sha256(repr(sorted(reading.items())).encode())
         for name, content in files.items():
             digest.update(name.encode() + b"\0" + hashlib.sha256(content).digest())
@@ -103,28 +145,22 @@ class Uploads:
         self._make_room()
         return self._known[known]
 
-    def measured(self, upload: Upload, samples: int, step: float) -> None:
-        """Record the number of samples of an upload, and the `step` between them [s]."""
-        self._known[upload.digest] = replace(upload, samples=samples, step=step)
-
     def drop(self, upload: Upload) -> None:
         """Remove an upload and its files."""
         self._known.pop(upload.digest, None)
         shutil.rmtree(self.folder / upload.digest, ignore_errors=True)
 
     def _make_room(self) -> None:
-        while len(self._known) > 1 and sum(upload.size for upload in self._known.values()) > self.limit:
+        def size() -> int:
+            return sum(path.stat().st_size for upload in self._known.values() for path in upload.paths)
+
+        while len(self._known) > 1 and size() > self.limit:
             self.drop(next(iter(self._known.values())))
 
 
-def _files(body: Mapping[str, Any]) -> dict[str, bytes]:
-    files = body.get("files")
-    if not isinstance(files, Sequence) or isinstance(files, str) or not 1 <= len(files) <= _MOST_FILES:
-        raise RefusedError(422, ["files must be a list of one to three files of one event"])
-    found = dict(_file(index, file) for index, file in enumerate(files))
-    if len(found) < len(files):
-        raise RefusedError(422, ["files must have different names"])
-    return found
+def _line(problem: Any) -> str:
+    place = ".".join(str(part) for part in problem["loc"])
+    return f"{place}: {problem['msg'].removeprefix('Value error, ')}"
 
 
 def _require_unpacked_size(name: str, content: bytes, most: int) -> None:
@@ -139,33 +175,3 @@ def _require_unpacked_size(name: str, content: bytes, most: int) -> None:
         raise RefusedError(
             422, [f"{name}: more than {most} bytes when unpacked. Cut the record, or read it in Python."]
         )
-
-
-def _file(index: int, file: object) -> tuple[str, bytes]:
-    name, content = (file.get("name"), file.get("content")) if isinstance(file, Mapping) else (None, None)
-    if not isinstance(name, str) or not _is_plain(name):
-        raise RefusedError(422, [f"files.{index}.name must be the name of a file without a folder, got {name!r}"])
-    if not isinstance(content, str):
-        raise RefusedError(422, [f"files.{index}.content must be the file in base64"])
-    try:
-        return name, base64.b64decode(content, validate=True)
-    except (binascii.Error, ValueError) as error:
-        raise RefusedError(422, [f"files.{index}.content is not base64: {error}"]) from None
-
-
-def _is_plain(name: str) -> bool:
-    """Return whether `name` is a valid file name on any system, without a folder."""
-    alone = PurePosixPath(name).name == name == PureWindowsPath(name).name
-    return alone and 0 < len(name.encode(errors="replace")) <= _LONGEST_NAME and name.isprintable() and name[0] != "."
-
-
-def _reading(body: Mapping[str, Any]) -> dict[str, Any]:
-    known: dict[str, tuple[type, ...]] = {"units": (str,), "step": (int, float)}
-    unknown = sorted(set(body) - {"files", *known})
-    if unknown:
-        raise RefusedError(422, [f"{unknown[0]} is unknown. Remove it."])
-    reading = {name: body[name] for name in known if body.get(name) is not None}
-    for name, value in reading.items():
-        if not isinstance(value, known[name]) or isinstance(value, bool):
-            raise RefusedError(422, [f"{name} must be a {'text' if name == 'units' else 'number'}, got {value!r}"])
-    return reading

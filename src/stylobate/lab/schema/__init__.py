@@ -3,6 +3,7 @@
 from importlib.metadata import version
 from typing import Any
 
+from stylobate.errors import LARGEST, SMALLEST
 from stylobate.lab.limits import Limits
 from stylobate.lab.schema.curves import CURVES
 from stylobate.lab.schema.endpoints import paths
@@ -10,7 +11,6 @@ from stylobate.lab.schema.jobs import JOBS
 from stylobate.lab.schema.options import CATALOGUE
 from stylobate.lab.schema.requests import components
 from stylobate.lab.schema.runs import RUNS
-from stylobate.lab.size_limits import LEAST, MOST
 
 
 def schema(limits: Limits) -> dict[str, Any]:
@@ -21,7 +21,7 @@ def schema(limits: Limits) -> dict[str, Any]:
             "title": "stylobate laboratory",
             "version": version("stylobate"),
             "description": f"Requests may have {limits.body} bytes, uploads of records {limits.records}. Numbers are "
-            f"in SI units, angles in rad; their size must be zero or between {LEAST:g} and {MOST:g}.",
+            f"in SI units, angles in rad; their size must be zero or between {SMALLEST:g} and {LARGEST:g}.",
         },
         "paths": paths(),
         "components": {"schemas": {**components(limits), **CATALOGUE, **RUNS, **CURVES, **JOBS}},

@@ -10,7 +10,6 @@ _REFUSALS = {
     403: "A foreign Host or Origin.",
     401: "The token is missing or wrong; needed if other machines can reach the laboratory.",
     404: "The job does not exist (any more), or has no file.",
-    408: "The request did not arrive in time.",
     413: "The body is too large.",
     415: "The content type of the body is not application/json.",
     422: "The values are invalid: one line for each mistake.",
@@ -21,7 +20,7 @@ _REFUSALS = {
     504: "The run exceeded the time limit; the same request would exceed it again.",
 }
 
-_OF_ALL = (401, 403, 408)
+_OF_ALL = (401, 403)
 _OF_BODIES = (*_OF_ALL, 400, 413, 415, 422)
 _OF_RUNS = (*_OF_BODIES, 500, 502, 503, 504)
 

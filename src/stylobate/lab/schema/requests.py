@@ -4,26 +4,29 @@ from collections.abc import Collection, Mapping
 from dataclasses import fields
 from typing import Any
 
+from pydantic import BaseModel
+
 from stylobate import config
 from stylobate.base_motions.declared import MOTIONS, composite_kinds, kinds_with_response, motion_quantities
-from stylobate.config.description import Config
 from stylobate.config.motions import is_to_end
+from stylobate.errors import LARGEST, SMALLEST
 from stylobate.lab.limits import Limits
 from stylobate.lab.parameter_info import NUMBERS
-from stylobate.lab.schema.notation import Schema, listed, or_none, ref, table, text
-from stylobate.lab.size_limits import HIGHEST_DEGREE, LEAST, MOST
+from stylobate.lab.schema.notation import Schema, or_none, ref, table, text
 from stylobate.lab.starts import StartConfig
+from stylobate.lab.uploads import RecordRequest
 from stylobate.models.declared import column_quantities, model_quantities
 from stylobate.quantities import Quantity
 from stylobate.results import OutcomeRules
 from stylobate.run_arguments import run_numbers
 
-_DESCRIPTIONS: dict[str, type[Config]] = {
+_DESCRIPTIONS: dict[str, type[BaseModel]] = {
     "Simulation": config.SimulationConfig,
     "Response": config.ResponseConfig,
     "SteadyRollingStart": StartConfig,
     "Map": config.MapConfig,
     "Basin": config.BasinConfig,
+    "Record": RecordRequest,
 }
 
 _OF_JOBS = {"exact": "Response", "map": "Map", "basin": "Basin", "animation": "Simulation"}
@@ -47,45 +50,52 @@ _TEXTS = {
 _TAGS = ("shape", "kind", "method")
 """Keys that distinguish columns, models, motions and steps of processing."""
 
+_STEPS = ("before", "after", "length", "order", "degree")
+"""Bounded numbers of steps of processing."""
+
+_LOWEST_OF_STEPS: Mapping[str, Schema] = {name: {"minimum": 1} for name in ("order", "degree")}
+
 _ENDING = (*(kind for kind in MOTIONS if is_to_end({"kind": kind})), *composite_kinds())
 
 
 def _bounds_of(quantity: Quantity) -> Schema:
     if quantity.choices:
         return {"enum": list(quantity.choices)}
-    above = LEAST if quantity.gt == 0.0 and quantity.components == 1 else None
+    above = SMALLEST if quantity.gt == 0.0 and quantity.components == 1 else None
     bounds = {"minimum": above if quantity.ge is None else quantity.ge, "maximum": quantity.le}
     return {name: bound for name, bound in bounds.items() if bound is not None}
 
 
-_RULE: Schema = {"type": "number", "minimum": LEAST}
+_RULE: Schema = {"type": "number", "minimum": SMALLEST}
 
-_BOUNDS: dict[str, Schema] = {
-    **{
-        name: _bounds_of(quantity)
-        for name, quantity in {
-            **{name: one.quantity for name, one in run_numbers().items()},
-            **column_quantities(),
-            **model_quantities(),
-            **motion_quantities(),
-        }.items()
-    },
-    "points": {"minimum": 2},
-    "tail": {"minimum": 0},
-    **{name: {"minimum": 1, "maximum": HIGHEST_DEGREE} for name in ("order", "degree")},
+_DECLARED = {
+    **{name: one.quantity for name, one in run_numbers().items()},
+    **column_quantities(),
+    **model_quantities(),
+    **motion_quantities(),
 }
-"""Bounds of numbers; some numbers have further conditions, which the refusal states."""
+
+
+def _bounds(limits: Limits) -> dict[str, Schema]:
+    """Return the bounds of numbers by name; some numbers have further conditions, which the refusal states."""
+    lowest = {"points": 2, "tail": 0}
+    found = {
+        **{name: _bounds_of(quantity) for name, quantity in _DECLARED.items()},
+        **{name: {"minimum": least} for name, least in lowest.items()},
+    }
+    return found | {name: {**found.get(name, {}), "maximum": most} for name, (most, _) in limits.of_numbers().items()}
 
 
 def components(limits: Limits) -> dict[str, Schema]:
     """Return the components of all requests."""
     found: dict[str, Schema] = {}
+    bounds = _bounds(limits)
     for name, description in _DESCRIPTIONS.items():
         body = description.model_json_schema(ref_template="#/components/schemas/{model}")
-        found |= {part: _part(schema) for part, schema in body.pop("$defs", {}).items()}
-        found[name] = _within(body, limits)
+        found |= {part: _part(schema, bounds) for part, schema in body.pop("$defs", {}).items()}
+        found[name] = _within(body, bounds)
     found["RecordMotion"] = _uploaded(found["RecordMotion"])
-    return {**{name: _finite(schema) for name, schema in found.items()}, "Record": _RECORD, "JobConfig": _job()}
+    return {**{name: _finite(schema) for name, schema in found.items()}, "JobConfig": _job()}
 
 
 def _finite(schema: Any) -> Any:
@@ -94,20 +104,18 @@ def _finite(schema: Any) -> Any:
         return [_finite(part) for part in schema]
     if not isinstance(schema, dict):
         return schema
-    bounds = {"minimum": -MOST, "maximum": MOST} if schema.get("type") == "number" else {}
+    bounds = {"minimum": -LARGEST, "maximum": LARGEST} if schema.get("type") == "number" else {}
     return {**bounds, **{name: _finite(part) for name, part in schema.items()}}
 
 
-def _within(body: Schema, limits: Limits) -> Schema:
-    """Return the schema of a description with texts for its numbers, and the limits."""
-    most = {name: bound for name, (bound, _) in limits.of_numbers().items()}
+def _within(body: Schema, bounds: Mapping[str, Schema]) -> Schema:
+    """Return the schema of a description with texts and bounds for its numbers."""
     properties: dict[str, Schema] = body["properties"]
     for name, schema in properties.items():
         if name in _TEXTS:
             schema["description"] = _TEXTS[name]
-        _bound(name, schema)
-        if name in most:
-            _of_numbers(schema)["maximum"] = most[name]
+        if name in bounds:
+            _of_numbers(schema).update(bounds[name])
     if "rules" in properties:
         properties["rules"] = table(_TEXTS["rules"], {}, {field.name: _RULE for field in fields(OutcomeRules)})
     if "angular_frequency_range" in properties or "branch" in properties:
@@ -134,23 +142,20 @@ def _only(union: Schema, kinds: Collection[str]) -> Schema:
     return {**union, "discriminator": {**union["discriminator"], "mapping": mapping}, "oneOf": places}
 
 
-def _part(schema: Schema) -> Schema:
+def _part(schema: Schema, bounds: Mapping[str, Schema]) -> Schema:
     """Return the schema of a column, a model, a motion or a step, with texts and bounds for its numbers."""
     properties = schema.get("properties", {})
     own = not {"motion", "motions", "method"} & set(properties)  # composite motions and steps state their own texts
     for name, body in properties.items():
         if own:
             body |= {**_described(name), **body}
-        if own or name in ("order", "degree"):
-            _bound(name, body)
+        if name in bounds and own:
+            _of_numbers(body).update(bounds[name])
+        elif name in _STEPS:
+            _of_numbers(body).update({"maximum": bounds[name]["maximum"], **_LOWEST_OF_STEPS.get(name, {})})
     tags = [tag for tag in _TAGS if tag in properties]
     required = [*tags, *(name for name in schema.get("required", []) if name not in tags)]
     return {**schema, **({"required": required} if required else {})}
-
-
-def _bound(name: str, schema: Schema) -> None:
-    if name in _BOUNDS:
-        _of_numbers(schema).update(_BOUNDS[name])
 
 
 def _of_numbers(schema: Schema) -> Schema:
@@ -182,30 +187,3 @@ def _job() -> Schema:
         table("", {"kind": {"const": kind}, "description": ref(description)}) for kind, description in _OF_JOBS.items()
     ]
     return {"description": "A job: its kind and description.", "oneOf": kinds}
-
-
-_BASE64 = "^(?:[A-Za-z0-9+/]{4})*(?:[A-Za-z0-9+/]{2}==|[A-Za-z0-9+/]{3}=)?$"
-
-_RECORD = table(
-    "The files of a record: its components.",
-    {
-        "files": listed(
-            "files of one event",
-            table(
-                "",
-                {
-                    "name": text(
-                        "file name without a folder", pattern=r"^[A-Za-z0-9_-][A-Za-z0-9_. -]*$", maxLength=120
-                    ),
-                    "content": text("content of the file", contentEncoding="base64", pattern=_BASE64),
-                },
-            ),
-            most=3,
-            minItems=1,
-        )
-    },
-    {
-        "units": or_none(text("unit of the acceleration, such as g or cm/s²; null if the file states the unit")),
-        "step": {"type": ["number", "null"], "description": "time step [s]; null if the file states the step"},
-    },
-)

@@ -9,16 +9,12 @@ export type About = {
     readonly body: number;
     readonly records: number;
     readonly unpacked: number;
-    readonly receiving: number;
-    readonly connections: number;
     readonly uploads: number;
     readonly duration: number;
     readonly steps: number;
     readonly usual_steps: number;
     readonly points: number;
     readonly cells: number;
-    readonly motions: number;
-    readonly record_samples: number;
     readonly run_time: number;
     readonly wait: number;
     readonly runs: number;
