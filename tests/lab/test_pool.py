@@ -11,7 +11,7 @@ import pytest
 
 from stylobate.lab import pool as pool_module
 from stylobate.lab.pool import Finished, Lost, Pool
-from stylobate.lab.requests import Described
+from stylobate.lab.requests import Description
 
 VALUES = {"column": {"shape": "dimensionless", "slenderness": 0.1}, "tilt": [0.02, 0.0], "duration": 1.0}
 
@@ -24,7 +24,7 @@ def performed(limit=1, *, background=False):
         before = multiprocessing.active_children()
         async with anyio.create_task_group() as group:
             pool = Pool(limit, group, background)
-            answers.append(await pool.perform("run", Described(VALUES, VALUES), lambda _: None))
+            answers.append(await pool.perform("run", Description(VALUES, VALUES), lambda _: None))
             started = [process for process in multiprocessing.active_children() if process not in before]
             stats.extend(stat(process.pid) for process in started)
             pool.end()
@@ -129,7 +129,7 @@ def test_a_pipe_that_breaks_ends_its_process_only(monkeypatch):
             pool = Pool(1, group)
             for process in (broken, start):
                 monkeypatch.setattr(pool_module, "_process", process)
-                answers.append(await pool.perform("run", Described(VALUES, VALUES), lambda _: None))
+                answers.append(await pool.perform("run", Description(VALUES, VALUES), lambda _: None))
             pool.end()
             group.cancel_scope.cancel()
 

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from starlette.responses import PlainTextResponse
 from tests.lab.conftest import client_of, laboratory
 
-from stylobate.lab import Limits, api
+from stylobate.lab import Limits, app
 from stylobate.lab.guards import Guard
 from stylobate.lab.limits import RefusedError
 from stylobate.lab.uploads import Uploads
@@ -256,7 +256,7 @@ def test_a_lack_of_memory_is_told(client, monkeypatch):
     def refuse(given):
         raise MemoryError
 
-    monkeypatch.setattr(api, "snippets", refuse)
+    monkeypatch.setattr(app, "snippets", refuse)
     answer = client.post("/api/describe", json={"column": {"slenderness": 0.1}, "duration": 5.0})
     assert answer.status_code == 422
     assert problems_of(answer) == ["out of memory: make the record, the duration or the grid smaller"]

@@ -12,7 +12,7 @@ from stylobate import config
 from stylobate.conveying.contact_maps import class_shares
 from stylobate.engine.parameters import COLUMN_NAMES, present_value
 from stylobate.errors import UnsupportedError
-from stylobate.lab.parameter_info import CASE_NUMBERS
+from stylobate.lab.options import CASE_NUMBERS
 from stylobate.models import Model
 from stylobate.progress import Progress
 from stylobate.studies.maps.overturning import outcome_shares

@@ -51,14 +51,14 @@ def _refuse_constant(name: str) -> NoReturn:
 
 
 @dataclass(frozen=True, slots=True)
-class Described:
+class Description:
     """Plain values of a description: `values` to compute with, `shown` for users, with the file names of uploads."""
 
     values: dict[str, Any]
     shown: dict[str, Any]
 
 
-def described(body: Mapping[str, Any], uploads: Uploads, limits: Limits) -> Described:
+def described(body: Mapping[str, Any], uploads: Uploads, limits: Limits) -> Description:
     """Parse the description in the `body` of a request.
 
     Raises
@@ -66,7 +66,7 @@ def described(body: Mapping[str, Any], uploads: Uploads, limits: Limits) -> Desc
     RefusedError
         If the description names files of this machine or a missing upload, or exceeds a limit.
     """
-    found = Described(
+    found = Description(
         _with_uploads(body, lambda digest: uploads[digest].motion()),
         _with_uploads(body, lambda digest: uploads[digest].as_json()),
     )

@@ -1,15 +1,14 @@
 """Tasks of worker processes by name; each takes plain values and returns plain values."""
 
-import json
 import math
 from collections.abc import Callable, Mapping
 from typing import Any
 
 from stylobate import config, engine
+from stylobate.lab.answers import BasinResult, ContactMapResult, ExactOrbits, MapResult, Start
 from stylobate.lab.pool import Emit, Progress
-from stylobate.lab.remarks import remarks
-from stylobate.lab.requests import Described
-from stylobate.lab.responses import plain_record, plain_run, snippets
+from stylobate.lab.requests import Description
+from stylobate.lab.runs import answered_run, record_contents, remarks
 
 _USUAL_LENGTH = 12.0
 """Usual duration of an animation [s]; longer if the base oscillates too fast to be visible."""
@@ -20,16 +19,14 @@ _SAMPLES_PER_PERIOD, _FEWEST_SAMPLES, _MOST_SAMPLES = 48, 601, 2000
 # Imports inside tasks are heavy, and few processes need them.
 
 
-def run(given: Described, emit: Emit) -> bytes:
+def run(given: Description, emit: Emit) -> bytes:
     """Compute one run with its histories and motion, as JSON, so that the server need not encode it."""
     del emit
     with remarks(given.values) as remarked:
         setup = config.SimulationConfig.parse(given.values).build()
     samples = setup.options["samples"] or _enough(setup)
     found = engine.simulate(setup.model, setup.motion, **{**setup.options, "samples": samples})
-    answer = {**plain_run(found, setup.model), **snippets(given)}
-    answer["warnings"] = [*remarked, *answer["warnings"]]
-    return json.dumps(answer, separators=(",", ":")).encode()
+    return answered_run(found, setup.model, given, remarked).as_json()
 
 
 def _enough(setup: config.Setup) -> int:
@@ -43,33 +40,33 @@ def record(values: Mapping[str, Any], emit: Emit) -> dict[str, Any]:
     """Read a record; return its contents, and the warnings about its files."""
     del emit
     with remarks(values) as remarked:
-        found = plain_record(config.RecordMotion.parse(values).build())
+        found = record_contents(config.RecordMotion.parse(values).build())
     return {**found, "warnings": remarked}
 
 
-def start(values: Mapping[str, Any], emit: Emit) -> dict[str, Any]:
+def start(values: Mapping[str, Any], emit: Emit) -> Start:
     """Compute initial conditions on a branch of steady rolling."""
-    from stylobate.lab.starts import start as start_on_branch  # noqa: PLC0415
+    from stylobate.lab import curves  # noqa: PLC0415
 
     del emit
-    return start_on_branch(values)
+    return curves.start(values)
 
 
-def exact(values: Mapping[str, Any], emit: Emit) -> dict[str, Any]:
+def exact(values: Mapping[str, Any], emit: Emit) -> ExactOrbits:
     """Compute exact periodic orbits over a range of frequencies, with their bifurcations."""
     from stylobate.lab.curves import exact_curves  # noqa: PLC0415
 
     return exact_curves(values, emit)
 
 
-def overturning(values: Mapping[str, Any], emit: Emit) -> dict[str, Any]:
+def overturning(values: Mapping[str, Any], emit: Emit) -> MapResult | ContactMapResult:
     """Compute the map over two quantities."""
     from stylobate.lab.grids import overturning_plane  # noqa: PLC0415
 
     return overturning_plane(values, emit)
 
 
-def basin(values: Mapping[str, Any], emit: Emit) -> dict[str, Any]:
+def basin(values: Mapping[str, Any], emit: Emit) -> BasinResult:
     """Compute basins of attraction over two initial conditions."""
     from stylobate.lab.grids import basin_plane  # noqa: PLC0415
 
@@ -98,7 +95,7 @@ def speed_of_pictures(setup: config.Setup, end: float) -> float:
 def warm_up() -> None:
     """Import and compile the code that every run needs."""
     values = {"column": {"shape": "dimensionless", "slenderness": 0.1}, "tilt": [0.02, 0.0], "duration": 1.0}
-    run(Described(values, values), lambda _: None)
+    run(Description(values, values), lambda _: None)
 
 
 TASKS: Mapping[str, Callable[[Any, Emit], Any]] = {
