@@ -1,6 +1,6 @@
 """The laboratory as an ASGI application: its page, and its HTTP API for the page and for any program on this machine.
 
-`stylobate.lab.schema` lists the endpoints; see docs/reference/http-api.md.
+See docs/reference/http-api.md.
 """
 
 import tempfile
@@ -22,7 +22,7 @@ from starlette.routing import Mount, Route, Router
 
 from stylobate import config
 from stylobate.errors import ConfigError, StylobateError
-from stylobate.lab.answers import Answer, Begun, Described, Problems, UploadedRecord
+from stylobate.lab import answers, openapi
 from stylobate.lab.curves import response
 from stylobate.lab.guards import Guard
 from stylobate.lab.jobs import Jobs, broken
@@ -32,7 +32,6 @@ from stylobate.lab.pages import page_routes
 from stylobate.lab.pool import OUT_OF_MEMORY, Broken, BusyError, Finished, Lost, Pool, Refused
 from stylobate.lab.requests import Description, described, json_body, problems_of_numbers
 from stylobate.lab.runs import column_numbers, snippets
-from stylobate.lab.schema import ENDPOINTS, JOBS, schema
 from stylobate.lab.uploads import Uploads
 
 
@@ -110,10 +109,10 @@ async def _problems(request: Request, error: Exception) -> Response:
             lines = [f"{request.method} {request.url.path}: {error.detail.lower()}"]
         case _:
             status, lines = 500, [broken(repr(error))]
-    return _answer(Problems(problems=list(lines)), status, headers)
+    return _answer(answers.Problems(problems=list(lines)), status, headers)
 
 
-def _answer(answer: Answer, status: int = 200, headers: Any = None) -> Response:
+def _answer(answer: answers.Answer, status: int = 200, headers: Any = None) -> Response:
     return Response(answer.as_json(), status, headers, media_type="application/json")
 
 
@@ -131,44 +130,51 @@ class Api:
 
     def routes(self) -> list[Route]:
         """Return the endpoints by path; each has the name of a method."""
-        return [Route(one.path, getattr(self, one.name), methods=[one.method.upper()]) for one in ENDPOINTS]
+        return [Route(one.path, getattr(self, one.name), methods=[one.method.upper()]) for one in endpoints()]
 
+    @openapi.endpoint("GET /api/about", answers.About)
     async def about(self, request: Request) -> Response:
         """Return the options: models, motions and columns with their parameters; presets; limits."""
         del request
         return _answer(about(self.limits))
 
+    @openapi.endpoint("GET /api/schema", answers.Document)
     async def schema(self, request: Request) -> Response:
         """Return the description of the endpoints (OpenAPI)."""
         del request
         return JSONResponse(schema(self.limits))
 
+    @openapi.endpoint("POST /api/describe", answers.Described, refusals=openapi.OF_BODIES, body="Simulation")
     async def describe(self, request: Request) -> Response:
         """Return the description as TOML and as Python, and the derived numbers of the column, without a run."""
         given = await self._described(request)
 
-        def describe() -> Described:
+        def describe() -> answers.Described:
             model = config.SimulationConfig.parse(given.values).build().model
-            return Described(**snippets(given), column=column_numbers(model))
+            return answers.Described(**snippets(given), column=column_numbers(model))
 
         return _answer(await to_thread.run_sync(describe))
 
+    @openapi.endpoint("POST /api/simulate", answers.Run, refusals=openapi.OF_RUNS, body="Simulation")
     async def simulate(self, request: Request) -> Response:
         """Compute one run."""
         given = await self._described(request)
         limited = replace(given, values={"max_steps": min(self.limits.usual_steps, self.limits.steps), **given.values})
         return Response(await self._run("run", limited, request), media_type="application/json")
 
+    @openapi.endpoint("POST /api/response", answers.ResponseCurves, refusals=openapi.OF_BODIES, body="Response")
     async def response(self, request: Request) -> Response:
         """Compute amplitude and phase of steady rolling over frequency, from theory."""
         given = await self._described(request)
         return _answer(await to_thread.run_sync(response, given.values))
 
+    @openapi.endpoint("POST /api/start", answers.Start, refusals=openapi.OF_RUNS, body="SteadyRollingStart")
     async def start(self, request: Request) -> Response:
         """Compute initial conditions on steady rolling: from theory, or on the exact orbit if theory is approximate."""
         given = await self._described(request)
         return _answer(await self._run("start", given.values, request))
 
+    @openapi.endpoint("POST /api/records", answers.UploadedRecord, refusals=openapi.OF_RUNS, body="Record")
     async def upload(self, request: Request) -> Response:
         """Store the files of a record and report their contents."""
         body = await json_body(request, self.limits.records)
@@ -182,20 +188,24 @@ class Api:
             self.uploads.drop(upload)
             folder = f"{upload.paths[0].parent}/"
             raise RefusedError(error.status, [line.replace(folder, "") for line in error.problems]) from None
-        return _answer(UploadedRecord(upload=upload.digest, **contents))
+        return _answer(answers.UploadedRecord(upload=upload.digest, **contents))
 
+    @openapi.endpoint("POST /api/jobs", answers.Begun, refusals=(*openapi.OF_BODIES, 429), body="JobConfig", status=202)
     async def begin(self, request: Request) -> Response:
         """Begin a job."""
         body = await json_body(request, self.limits.body)
         kind, values = body.get("kind"), body.get("description")
-        if not isinstance(kind, str) or kind not in JOBS:
-            raise RefusedError(422, [f"kind must be one of {', '.join(JOBS)}, got {kind!r}"])
+        if not isinstance(kind, str) or kind not in openapi.JOBS:
+            raise RefusedError(422, [f"kind must be one of {', '.join(openapi.JOBS)}, got {kind!r}"])
         if not isinstance(values, dict):
             raise RefusedError(422, ["description is missing: the plain values of a description"])
         given = described(values, self.uploads, self.limits)
-        await to_thread.run_sync(JOBS[kind].parse, given.values)
-        return _answer(Begun(id=self.jobs.begin(kind, given.values)), 202)
+        await to_thread.run_sync(openapi.JOBS[kind].parse, given.values)
+        return _answer(answers.Begun(id=self.jobs.begin(kind, given.values)), 202)
 
+    @openapi.endpoint(
+        "GET /api/jobs/{identity}", answers.Job, refusals=(*openapi.OF_ALL, 404, 422), parameters=(openapi.AFTER,)
+    )
     async def follow(self, request: Request) -> Response:
         """Return the state of a job, with the events from the number `after` on."""
         after = request.query_params.get("after", "0")
@@ -203,12 +213,14 @@ class Api:
             raise RefusedError(422, [f"after must be a number of events, got {after!r}"])
         return _answer(self.jobs.report(request.path_params["identity"], int(after)))
 
+    @openapi.endpoint("DELETE /api/jobs/{identity}", answers.Job, refusals=(*openapi.OF_ALL, 404))
     async def cancel(self, request: Request) -> Response:
         """Cancel a job."""
         identity = request.path_params["identity"]
         self.jobs.cancel(identity)
         return _answer(self.jobs.report(identity))
 
+    @openapi.endpoint("GET /api/jobs/{identity}/file", None, refusals=(*openapi.OF_ALL, 404))
     async def file(self, request: Request) -> Response:
         """Return the GIF of a job."""
         result = self.jobs[request.path_params["identity"]].result
@@ -247,6 +259,16 @@ class Api:
             case Broken(trace):
                 raise RefusedError(500, [broken(trace)])
         raise RefusedError(400, ["the caller cancelled the request"])
+
+
+def endpoints() -> list[openapi.Endpoint]:
+    """Return the endpoints as they are declared."""
+    return [one.endpoint for one in vars(Api).values() if hasattr(one, "endpoint")]
+
+
+def schema(limits: Limits) -> answers.Schema:
+    """Return the description of the API, OpenAPI 3.1."""
+    return openapi.document(endpoints(), limits)
 
 
 async def _when_gone(request: Request, act: Callable[[], None]) -> None:

@@ -17,6 +17,7 @@ from dataclasses import dataclass, field
 from multiprocessing.connection import Connection
 from multiprocessing.process import BaseProcess
 from typing import TYPE_CHECKING, Any
+from weakref import WeakSet
 
 import anyio
 from anyio.abc import TaskGroup
@@ -139,7 +140,7 @@ class Pool:
     """Whether the pool performs no more tasks."""
     _taken: int = 0
     _idle: "list[_Worker]" = field(default_factory=list)
-    _all: "set[_Worker]" = field(default_factory=set)
+    _all: "WeakSet[_Worker]" = field(default_factory=WeakSet)
     _changed: anyio.Event = field(default_factory=anyio.Event)
 
     def warm_up(self) -> None:
@@ -203,7 +204,6 @@ class Pool:
         self._taken += 1
         worker = self._idle.pop() if self._idle else self._started()
         while worker.has_ended():
-            self._all.remove(worker)
             worker = self._idle.pop() if self._idle else self._started()
         try:
             if not worker.ready:
@@ -227,7 +227,6 @@ class Pool:
             self._give_back(worker)
             return
         worker.end()
-        self._all.remove(worker)
         self._give_back(self._started())
 
     def _give_back(self, worker: "_Worker") -> None:

@@ -1,13 +1,13 @@
-"""The endpoints, and their description in OpenAPI 3.1: requests, answers and errors.
+"""Description of endpoints in OpenAPI 3.1: requests, answers and errors.
 
 Requests are the descriptions of the command line, without files of this machine, within the limits.
 """
 
 import base64
-from collections.abc import Collection, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass, fields
 from importlib.metadata import version
-from typing import Any
+from typing import Any, TypeVar
 
 from pydantic import BaseModel
 
@@ -26,6 +26,8 @@ from stylobate.models.declared import column_quantities, model_quantities
 from stylobate.quantities import Quantity
 from stylobate.results import OutcomeRules
 from stylobate.run_arguments import run_numbers
+
+_F = TypeVar("_F", bound=Callable[..., Any])
 
 JOBS: Mapping[str, type[Config]] = {
     "exact": config.ResponseConfig,
@@ -46,76 +48,36 @@ _REQUESTS: Mapping[str, type[BaseModel]] = {
 """The components of requests."""
 
 
-def schema(limits: Limits) -> Schema:
-    """Return the endpoints as OpenAPI 3.1."""
-    paths: dict[str, Schema] = {}
-    for one in ENDPOINTS:
-        place = paths.setdefault(one.path, {"parameters": [_IDENTITY]} if "{" in one.path else {})
-        place[one.method] = one.described()
-    return {
-        "openapi": "3.1.0",
-        "info": {
-            "title": "stylobate laboratory",
-            "version": version("stylobate"),
-            "description": f"Requests may have {limits.body} bytes, uploads of records {limits.records}. Numbers "
-            f"are in SI units, angles in rad; their size must be zero or between {SMALLEST:g} and {LARGEST:g}.",
-        },
-        "paths": paths,
-        "components": {"schemas": {**_requests(limits), **answers.schemas()}},
-    }
-
-
-def _ref(name: str) -> Schema:
-    return {"$ref": answers.REFERENCE.format(model=name)}
-
-
 # Examples of requests, ready to send
 
 _PRESETS = {preset.identity: preset.description for preset in presets()}
-_COLUMN = {"shape": "dimensionless", "slenderness": 0.1}
-_MODEL = {"kind": "slender", "damping": 0.1}
 _CIRCLE = {
-    "column": _COLUMN,
-    "model": _MODEL,
+    "column": {"shape": "dimensionless", "slenderness": 0.1},
+    "model": {"kind": "slender", "damping": 0.1},
     "motion": {"kind": "circular", "acceleration": 0.065, "angular_frequency": 1.8},
 }
 _START = {"tilt": [0.03, 0.0], "tilt_rate": [0.0, 0.07]}
-_RECORD = b"0.00 0.000\n0.01 0.120\n0.02 0.310\n0.03 0.080\n0.04 -0.210\n0.05 0.000\n"
-
-EXAMPLES_OF_RUNS: dict[str, Any] = {name: _PRESETS[name] for name in (presets()[0].identity, "temple")}
-
-EXAMPLES_OF_RESPONSES: dict[str, Any] = {"circle": {**_CIRCLE, "angular_frequency_range": [0.5, 4.0], "points": 100}}
-
-EXAMPLES_OF_STARTS: dict[str, Any] = {"circle": {**_CIRCLE, "branch": "upper"}}
-
-EXAMPLES_OF_RECORDS: dict[str, Any] = {
-    "text": {"files": [{"name": "shock.txt", "content": base64.b64encode(_RECORD).decode()}], "units": "g"}
+_PLANE = {
+    "x": {"name": "angular_frequency", "from": 0.8, "to": 4.0, "number": 12},
+    "y": {"name": "acceleration", "from": 0.02, "to": 0.4, "number": 10},
+}
+_TILTS = {place: {"name": f"tilt_{place}", "from": -0.12, "to": 0.12, "number": 7} for place in "xy"}
+_RECORD = base64.b64encode(b"0.00 0.000\n0.01 0.120\n0.02 0.310\n0.03 0.080\n0.04 -0.210\n0.05 0.000\n").decode()
+_OF_JOBS = {
+    "map": {**_CIRCLE, **_START, "duration": 60.0, "map": _PLANE},
+    "basin": {**_CIRCLE, "duration": 200.0, "basin": _TILTS},
+    "exact": {**_CIRCLE, "angular_frequency_range": [1.2, 2.0]},
+    "animation": {**_CIRCLE, **_START, "duration": 2.0},
 }
 
-EXAMPLES_OF_JOBS: dict[str, Any] = {
-    "map": {
-        "kind": "map",
-        "description": {
-            **_CIRCLE,
-            **_START,
-            "duration": 60.0,
-            "map": {
-                "x": {"name": "angular_frequency", "from": 0.8, "to": 4.0, "number": 12},
-                "y": {"name": "acceleration", "from": 0.02, "to": 0.4, "number": 10},
-            },
-        },
-    },
-    "basin": {
-        "kind": "basin",
-        "description": {
-            **_CIRCLE,
-            "duration": 200.0,
-            "basin": {place: {"name": f"tilt_{place}", "from": -0.12, "to": 0.12, "number": 7} for place in "xy"},
-        },
-    },
-    "exact": {"kind": "exact", "description": {**_CIRCLE, "angular_frequency_range": [1.2, 2.0]}},
-    "animation": {"kind": "animation", "description": {**_CIRCLE, **_START, "duration": 2.0}},
+EXAMPLES: Mapping[str, Mapping[str, Any]] = {
+    "Simulation": {name: _PRESETS[name] for name in (next(iter(_PRESETS)), "temple")},
+    "Response": {"circle": {**_CIRCLE, "angular_frequency_range": [0.5, 4.0], "points": 100}},
+    "SteadyRollingStart": {"circle": {**_CIRCLE, "branch": "upper"}},
+    "Record": {"text": {"files": [{"name": "shock.txt", "content": _RECORD}], "units": "g"}},
+    "JobConfig": {kind: {"kind": kind, "description": description} for kind, description in _OF_JOBS.items()},
 }
+"""Examples by the component of which they are."""
 
 # Endpoints
 
@@ -134,12 +96,12 @@ _REFUSALS = {
     504: "The run exceeded the time limit; the same request would exceed it again.",
 }
 
-_OF_ALL = (401, 403)
-_OF_BODIES = (*_OF_ALL, 400, 413, 415, 422)
-_OF_RUNS = (*_OF_BODIES, 500, 502, 503, 504)
+OF_ALL = (401, 403)
+OF_BODIES = (*OF_ALL, 400, 413, 415, 422)
+OF_RUNS = (*OF_BODIES, 500, 502, 503, 504)
 
 _IDENTITY = {"name": "identity", "in": "path", "required": True, "schema": {"type": "string"}, "description": "the job"}
-_AFTER = {
+AFTER = {
     "name": "after",
     "in": "query",
     "description": "number of events that the caller has already received",
@@ -149,86 +111,87 @@ _AFTER = {
 
 @dataclass(frozen=True, slots=True)
 class Endpoint:
-    """An endpoint: the `name` of its method in `Api`, its request, its answer, and the refusals that it may give.
+    """An endpoint, declared on the function that answers it.
 
-    Without an `answer` it returns a GIF. A `body` is the name of a component, and examples.
+    Attributes
+    ----------
+    method, path, name, about
+        HTTP method, path, name of the function and its first line.
+    answer
+        What is answered; None for a GIF.
+    refusals
+        HTTP statuses of refusals.
+    body
+        Name of the component that the request is.
+    status
+        HTTP status of the answer.
+    parameters
+        Parameters of the query.
     """
 
     method: str
     path: str
     name: str
     about: str
-    answer: str | None
-    refusals: tuple[int, ...] = _OF_ALL
-    body: tuple[str, Mapping[str, Any]] | None = None
+    answer: type[BaseModel] | None
+    refusals: tuple[int, ...] = OF_ALL
+    body: str | None = None
     status: int = 200
     parameters: tuple[Schema, ...] = ()
 
     def described(self) -> Schema:
         """Return the endpoint in OpenAPI."""
-        content: Schema = {"application/json": {"schema": _ref(self.answer)}} if self.answer else {"image/gif": {}}
-        problems = {"application/json": {"schema": _ref("Problems")}}
-        found: Schema = {
-            "operationId": self.name,
-            "summary": self.about,
-            "parameters": list(self.parameters),
-            "responses": {
-                str(self.status): {"description": self.about, "content": content},
-                **{str(code): {"description": _REFUSALS[code], "content": problems} for code in sorted(self.refusals)},
-            },
-        }
+        content = {"image/gif": {}} if self.answer is None else _json(_ref(self.answer.__name__))
+        responses = {str(self.status): {"description": self.about, "content": content}}
+        for code in sorted(self.refusals):
+            responses[str(code)] = {"description": _REFUSALS[code], "content": _json(_ref("Problems"))}
+        found: Schema = {"operationId": self.name, "summary": self.about, "responses": responses}
+        if self.parameters:
+            found["parameters"] = list(self.parameters)
         if self.body is not None:
-            component, shown = self.body
-            examples = {name: {"value": value} for name, value in shown.items()}
-            sent = {"application/json": {"schema": _ref(component), "examples": examples}}
-            found["requestBody"] = {"required": True, "content": sent}
+            examples = {name: {"value": value} for name, value in EXAMPLES[self.body].items()}
+            found["requestBody"] = {"required": True, "content": _json(_ref(self.body), examples=examples)}
         return found
 
 
-_RUN, _JOB = ("Simulation", EXAMPLES_OF_RUNS), "/api/jobs/{identity}"
+def endpoint(place: str, answer: type[BaseModel] | None, **more: Any) -> Callable[[_F], _F]:
+    """Declare an endpoint at a `place`, such as "POST /api/simulate"; other arguments are those of `Endpoint`."""
+    method, path = place.split()
 
-ENDPOINTS = (
-    Endpoint("get", "/api/about", "about", "Options", "About"),
-    Endpoint("get", "/api/schema", "schema", "This description", "Document"),
-    Endpoint(
-        "post",
-        "/api/describe",
-        "describe",
-        "Description of a run as TOML and Python, and the numbers of its column",
-        "Described",
-        _OF_BODIES,
-        _RUN,
-    ),
-    Endpoint("post", "/api/simulate", "simulate", "One run", "Run", _OF_RUNS, _RUN),
-    Endpoint(
-        "post",
-        "/api/response",
-        "response",
-        "Response curves from theory",
-        "ResponseCurves",
-        _OF_BODIES,
-        ("Response", EXAMPLES_OF_RESPONSES),
-    ),
-    Endpoint(
-        "post",
-        "/api/start",
-        "start",
-        "Initial conditions on steady rolling, from theory or on the exact orbit",
-        "Start",
-        _OF_RUNS,
-        ("SteadyRollingStart", EXAMPLES_OF_STARTS),
-    ),
-    Endpoint(
-        "post", "/api/records", "upload", "Upload a record", "UploadedRecord", _OF_RUNS, ("Record", EXAMPLES_OF_RECORDS)
-    ),
-    Endpoint(
-        "post", "/api/jobs", "begin", "Begin a job", "Begun", (*_OF_BODIES, 429), ("JobConfig", EXAMPLES_OF_JOBS), 202
-    ),
-    Endpoint("get", _JOB, "follow", "State of a job", "Job", (*_OF_ALL, 404, 422), parameters=(_AFTER,)),
-    Endpoint("delete", _JOB, "cancel", "Cancel a job", "Job", (*_OF_ALL, 404)),
-    Endpoint("get", f"{_JOB}/file", "file", "The GIF of an animation", None, (*_OF_ALL, 404)),
-)
-"""All endpoints."""
+    def declare(function: _F) -> _F:
+        about = (function.__doc__ or "").partition("\n")[0].rstrip(".")
+        function.endpoint = Endpoint(method.lower(), path, function.__name__, about, answer, **more)  # type: ignore[attr-defined]
+        return function
+
+    return declare
+
+
+def document(endpoints: Iterable[Endpoint], limits: Limits) -> Schema:
+    """Return the description of `endpoints` in OpenAPI 3.1."""
+    paths: dict[str, Schema] = {}
+    for one in endpoints:
+        place = paths.setdefault(one.path, {"parameters": [_IDENTITY]} if "{identity}" in one.path else {})
+        place[one.method] = one.described()
+    return {
+        "openapi": "3.1.0",
+        "info": {
+            "title": "stylobate laboratory",
+            "version": version("stylobate"),
+            "description": f"Requests may have {limits.body} bytes, uploads of records {limits.records}. Numbers "
+            f"are in SI units, angles in rad; their size must be zero or between {SMALLEST:g} and {LARGEST:g}.",
+        },
+        "paths": paths,
+        "components": {"schemas": {**_requests(limits), **answers.schemas()}},
+    }
+
+
+def _ref(name: str) -> Schema:
+    return {"$ref": answers.REFERENCE.format(model=name)}
+
+
+def _json(schema: Schema, **more: Schema) -> Schema:
+    return {"application/json": {"schema": schema, **more}}
+
 
 # Requests
 
