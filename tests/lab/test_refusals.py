@@ -16,7 +16,7 @@ from tests.lab.conftest import client_of, laboratory
 from stylobate.lab import Limits, app
 from stylobate.lab.guards import Guard
 from stylobate.lab.limits import RefusedError
-from stylobate.lab.uploads import Uploads
+from stylobate.lab.requests import Uploads
 
 SMALL = Limits(body=4000, unpacked=3000, cells=100, points=200, duration=50.0, run_time=10.0)
 

@@ -30,9 +30,8 @@ from stylobate.lab.limits import Limits, RefusedError
 from stylobate.lab.options import about
 from stylobate.lab.pages import page_routes
 from stylobate.lab.pool import OUT_OF_MEMORY, Broken, BusyError, Finished, Lost, Pool, Refused
-from stylobate.lab.requests import Description, described, json_body, problems_of_numbers
+from stylobate.lab.requests import Description, Uploads, described, json_body, problems_of_numbers
 from stylobate.lab.runs import column_numbers, snippets
-from stylobate.lab.uploads import Uploads
 
 
 def create_app(
@@ -183,7 +182,7 @@ class Api:
             raise RefusedError(422, problems)
         upload = await to_thread.run_sync(self.uploads.add, body)
         try:
-            contents = await self._run("record", upload.as_read(), request)
+            contents = await self._run("record", upload.first_read(), request)
         except RefusedError as error:
             self.uploads.drop(upload)
             folder = f"{upload.paths[0].parent}/"

@@ -12,16 +12,7 @@ from stylobate.base_motions import Harmonic
 from stylobate.config.response import SteadyCase
 from stylobate.config.simulation import built_parts
 from stylobate.errors import NoOrbitError, ParameterError, UnsupportedError
-from stylobate.lab.answers import (
-    Bifurcation,
-    CriticalFrequency,
-    CurveBranch,
-    ExactOrbits,
-    OrbitFamily,
-    ResponseCurves,
-    Start,
-    numbers,
-)
+from stylobate.lab import answers
 from stylobate.lab.pool import Emit, Note
 from stylobate.models import Model
 from stylobate.orbits.saving import SUPERCRITICAL_OF
@@ -34,7 +25,7 @@ _ORBITS = 400
 """Maximum number of orbits of a family each way, enough for a plot; near the vertical, families have thousands."""
 
 
-def response(values: Mapping[str, Any]) -> ResponseCurves:
+def response(values: Mapping[str, Any]) -> answers.ResponseCurves:
     """Compute the curves of theory that `values` describe, one for each sense and branch, within milliseconds."""
     setup = config.ResponseConfig.parse(values).build()
     low, high = setup.options["range"]
@@ -44,14 +35,14 @@ def response(values: Mapping[str, Any]) -> ResponseCurves:
         return _curves(curves)
 
 
-def _curves(curves: xr.Dataset) -> ResponseCurves:
+def _curves(curves: xr.Dataset) -> answers.ResponseCurves:
     senses, branches = curves["sense"].to_numpy(), curves["branch"].to_numpy()
     lines = {(sense, branch): curves.sel(sense=sense, branch=branch) for sense in senses for branch in branches}
-    critical = zip(senses, numbers(curves["critical_frequency"]), strict=True)
-    return ResponseCurves(
+    critical = zip(senses, answers.numbers(curves["critical_frequency"]), strict=True)
+    return answers.ResponseCurves(
         angular_frequency=curves["angular_frequency"],
         branches=[
-            CurveBranch(
+            answers.CurveBranch(
                 sense=str(sense),
                 branch=str(branch),
                 amplitude=line["amplitude"],
@@ -61,12 +52,12 @@ def _curves(curves: xr.Dataset) -> ResponseCurves:
             for (sense, branch), line in lines.items()
         ],
         backbone=curves["backbone"],
-        critical=[CriticalFrequency(sense=str(sense), angular_frequency=value) for sense, value in critical],
+        critical=[answers.CriticalFrequency(sense=str(sense), angular_frequency=value) for sense, value in critical],
         averaged=bool(curves.attrs["averaged"]),
     )
 
 
-def exact_curves(values: Mapping[str, Any], emit: Emit) -> ExactOrbits:
+def exact_curves(values: Mapping[str, Any], emit: Emit) -> answers.ExactOrbits:
     """Compute the exact orbits that `values` describe; progress states the number of orbits and the last frequency."""
     setup = config.ResponseConfig.parse(values).build()
 
@@ -83,18 +74,20 @@ def exact_curves(values: Mapping[str, Any], emit: Emit) -> ExactOrbits:
         progress=reached,
     )
     owner = found["branch"].to_numpy()
-    arrays = {name: found[name].to_numpy() for name in OrbitFamily.model_fields if name != "name"}
+    arrays = {name: found[name].to_numpy() for name in answers.OrbitFamily.model_fields if name != "name"}
     families = [
-        OrbitFamily(name=str(label), **{name: array[owner == index].tolist() for name, array in arrays.items()})
+        answers.OrbitFamily(name=str(label), **{name: array[owner == index].tolist() for name, array in arrays.items()})
         for index, label in enumerate(found["branch_name"].to_numpy())
     ]
     names = ("kind", "angular_frequency", "mean_tilt", "supercritical")
     rows = zip(*(found[f"bifurcation_{name}"].to_numpy().tolist() for name in names), strict=True)
     bifurcations = [
-        Bifurcation(kind=kind, angular_frequency=frequency, mean_tilt=tilt, supercritical=SUPERCRITICAL_OF[known])
+        answers.Bifurcation(
+            kind=kind, angular_frequency=frequency, mean_tilt=tilt, supercritical=SUPERCRITICAL_OF[known]
+        )
         for kind, frequency, tilt, known in rows
     ]
-    return ExactOrbits(families=families, bifurcations=bifurcations)
+    return answers.ExactOrbits(families=families, bifurcations=bifurcations)
 
 
 # Initial conditions on steady rolling, which the page updates while the user changes the frequency
@@ -117,7 +110,7 @@ class StartConfig(SteadyCase):
     branch: Literal["upper", "lower"] = "upper"
 
 
-def start(values: Mapping[str, Any]) -> Start:
+def start(values: Mapping[str, Any], emit: Emit) -> answers.Start:
     """Compute the initial conditions on steady rolling that `values` describe.
 
     Under a circular motion the closed form is exact. Under an elliptic or straight motion it is averaged, and not
@@ -131,6 +124,7 @@ def start(values: Mapping[str, Any]) -> Start:
     ConfigError, ParameterError, UnsupportedError
         If the case is invalid, or has no steady rolling on the branch in closed form.
     """
+    del emit
     given = StartConfig.parse(values)
     model, motion = built_parts(given.column, given.model, given.motion, [])
     if not isinstance(motion, Harmonic):
@@ -170,5 +164,5 @@ def _orbit_near(model: Model, motion: Harmonic, tilt: Any) -> orbits.PeriodicOrb
     return orbit if near and abs(orbit.turns) == 1.0 else None
 
 
-def _start(found: Mapping[str, Any], *warnings: str) -> Start:
-    return Start(**{name: found.get(name, 0.0) for name in numbers_of(RunStart)}, warnings=list(warnings))
+def _start(found: Mapping[str, Any], *warnings: str) -> answers.Start:
+    return answers.Start(**{name: found.get(name, 0.0) for name in numbers_of(RunStart)}, warnings=list(warnings))

@@ -1,9 +1,9 @@
-"""Maps and basins, shown progressively during their computation: every eighth run along each axis first."""
+"""Maps and basins, shown progressively during their computation."""
 
 import os
 import time
 from collections.abc import Callable, Generator, Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
 
@@ -12,28 +12,26 @@ import numpy.typing as npt
 import xarray as xr
 
 from stylobate import config, conveying, studies
-from stylobate.errors import Outcome, ParameterError
-from stylobate.lab.answers import (
-    Attractor,
-    BasinResult,
-    ContactMapResult,
-    MapResult,
-    PlaneAxes,
-    PlaneAxis,
-    PlaneBegun,
-    PlaneCells,
-)
-from stylobate.lab.case_axes import case_map, case_numbers, units_of
+from stylobate.conveying.contact_maps import class_shares
+from stylobate.engine.parameters import COLUMN_NAMES, present_value
+from stylobate.errors import Outcome, ParameterError, UnsupportedError
+from stylobate.lab import answers
+from stylobate.lab.options import CASE_NUMBERS
 from stylobate.lab.pool import Emit, Found, Progress
+from stylobate.models import Model
 from stylobate.parameter_quantities import attributes_of
 from stylobate.progress import Report
+from stylobate.studies.maps.overturning import outcome_shares
+from stylobate.studies.sweeps import Executor, Sweep
 from stylobate.studies.sweeps.computing import Arrays, Computed, Task
 from stylobate.studies.sweeps.executors import Work
+from stylobate.studies.sweeps.labelled import labelled_sweep
 
 Cells = npt.NDArray[np.int64]
+Floats = npt.NDArray[np.float64]
 
 
-def overturning_plane(values: Mapping[str, Any], emit: Emit) -> MapResult | ContactMapResult:
+def overturning_plane(values: Mapping[str, Any], emit: Emit) -> answers.MapResult | answers.ContactMapResult:
     """Compute the map of outcomes over two quantities; for a sliding model, the map of kinds of contact."""
     setup = config.MapConfig.parse(values).build()
     study = conveying.contact_map if setup.model.switches else studies.overturning_map
@@ -42,12 +40,12 @@ def overturning_plane(values: Mapping[str, Any], emit: Emit) -> MapResult | Cont
     else:
         found = _watched(partial(study, setup.model, setup.motion), setup, emit, keywords=setup.options)
     if "contact_class" in found:
-        return ContactMapResult(**_classes(found, "contact_class", found["class_name"].to_numpy(), setup))
+        return answers.ContactMapResult(**_classes(found, "contact_class", found["class_name"].to_numpy(), setup))
     shares = zip(Outcome, found["share"].to_numpy().tolist(), strict=True)
-    return MapResult(**_size(found), shares={outcome.label: share for outcome, share in shares})
+    return answers.MapResult(**_size(found), shares={outcome.label: share for outcome, share in shares})
 
 
-def basin_plane(values: Mapping[str, Any], emit: Emit) -> BasinResult:
+def basin_plane(values: Mapping[str, Any], emit: Emit) -> answers.BasinResult:
     """Compute the attractor of each initial condition of a grid."""
     setup = config.BasinConfig.parse(values).build()
     if "count" in setup.options:
@@ -57,11 +55,11 @@ def basin_plane(values: Mapping[str, Any], emit: Emit) -> BasinResult:
     found = _watched(partial(studies.basins, setup.model, setup.motion), setup, emit, keywords=setup.options)
     classes = _classes(found, "attractor", found["attractor_name"].to_numpy(), setup)
     members = [found.isel(attractor_index=i) for i in range(found.sizes["attractor_index"])]
-    return BasinResult(**classes, attractors=[_attractor(one) for one in members])
+    return answers.BasinResult(**classes, attractors=[_attractor(one) for one in members])
 
 
-def _attractor(one: xr.Dataset) -> Attractor:
-    return Attractor(
+def _attractor(one: xr.Dataset) -> answers.Attractor:
+    return answers.Attractor(
         name=str(one["attractor_name"].item()),
         kind=str(one["attractor_kind"].item()),
         period=int(one["attractor_period"]),
@@ -80,14 +78,14 @@ def _watched(
     """Run `study` and emit the outcomes as soon as they are known; `flat` if the runs of the study form one row."""
     over = setup.options["over"]
     axes = {
-        place: PlaneAxis(name=name, values=values, **(attributes_of(name) or {"units": units_of(name)}))
+        place: answers.PlaneAxis(name=name, values=values, **(attributes_of(name) or {"units": units_of(name)}))
         for place, (name, values) in zip("xy", over.items(), strict=True)
     }
     names = [(int(outcome), outcome.label) for outcome in Outcome]
-    emit(Found(PlaneBegun(axes=PlaneAxes(**axes), names=names)))
+    emit(Found(answers.PlaneBegun(axes=answers.PlaneAxes(**axes), names=names)))
 
     def show(stride: int, places: Cells, outcomes: Cells) -> None:
-        emit(Found(PlaneCells(stride=stride, cells=np.column_stack([places, outcomes]).tolist())))
+        emit(Found(answers.PlaneCells(stride=stride, cells=np.column_stack([places, outcomes]).tolist())))
 
     shape = tuple(len(values) for values in over.values()) if flat else None
     executor = Refining(show, threads=max(1, (os.cpu_count() or 2) // 2), shape=shape)
@@ -109,7 +107,7 @@ def _size(found: xr.Dataset) -> dict[str, int]:
     return {"uncertain": int(found["uncertain"].sum()), "runs": int(found["outcome"].size)}
 
 
-# The executor
+# The executor: every eighth run along each axis first, then the runs between them
 
 _STRIDES = (8, 4, 2, 1)
 _FIRST_PIECE, _LARGEST_PIECE = 32, 4096
@@ -186,3 +184,100 @@ def _put(found: Arrays, chosen: Cells, arrays: Mapping[str, npt.NDArray[np.gener
         if name not in found:
             found[name] = np.zeros((runs, *values.shape[1:]), dtype=values.dtype)
         found[name][chosen] = values
+
+
+# Maps over numbers of a description that sweeps do not support, such as revolutions per minute or a height
+
+_BODY = tuple(name for name in COLUMN_NAMES if name not in ("slenderness", "size"))
+_MOVED = ("angular_frequency", "acceleration")
+
+
+def units_of(name: str) -> str:
+    """Return the unit of a number of a description; empty for a name that the study refuses."""
+    return next((part[name].cf_units for part in CASE_NUMBERS.values() if name in part), "")
+
+
+def case_numbers(values: Mapping[str, Any], over: Mapping[str, Floats]) -> dict[str, tuple[str, ...]]:
+    """Return the axes that are numbers of the described column or motion, by part; empty if sweeps support them all.
+
+    Sweeps can vary the radius of a body with given mass and inertia; for other bodies mass and inertia depend on it.
+    """
+    given = values["column"].get("shape") == "given"
+    found = {
+        part: tuple(name for name in over if name in values.get(part, {}))
+        for part, names in CASE_NUMBERS.items()
+        if any(name in values.get(part, {}) for name in over if name in names)
+    }
+    return {part: names for part, names in found.items() if not (part == "column" and given)}
+
+
+def case_map(
+    setup: config.Setup, values: Mapping[str, Any], *, executor: Executor, progress: Report | None = None
+) -> xr.Dataset:
+    """Compute a map whose axes are numbers of the described case.
+
+    Each run has the column and motion of the case with the numbers of its cell.
+
+    Parameters
+    ----------
+    setup, values
+        Model, motion and options of the map, and the plain values that describe it.
+    executor, progress
+        As in `run_sweep`. The runs form one row, with the second axis varying fastest.
+
+    Returns
+    -------
+    xarray.Dataset
+        An overturning map, or a contact map if the model slides, over `run`.
+
+    Raises
+    ------
+    ConfigError, ParameterError
+        If an axis has an impossible value.
+    """
+    options = {name: value for name, value in setup.options.items() if name != "over"}
+    sweep = Sweep.points(_without_height(setup.model), setup.motion, at=_at(values, setup.options["over"]), **options)
+    label = class_shares if setup.model.switches else outcome_shares
+    return labelled_sweep(sweep, label, executor=executor, progress=progress)
+
+
+def _without_height(model: Model) -> Model:
+    """Return `model` without the height of its body, which differs between runs."""
+    bare: Model = replace(model, column=replace(model.column, height=None))  # type: ignore[type-var]  # a dataclass
+    return bare
+
+
+def _at(values: Mapping[str, Any], over: Mapping[str, Floats]) -> dict[str, Floats]:
+    """Return the quantities of sweeps for each cell, with the second axis varying fastest."""
+    cells = dict(zip(over, (grid.ravel() for grid in np.meshgrid(*over.values(), indexing="ij")), strict=True))
+    found: dict[str, Floats] = {}
+    for part, names in case_numbers(values, over).items():
+        own = np.stack([cells.pop(name) for name in names], axis=1)
+        different, which = np.unique(own, axis=0, return_inverse=True)
+        read = [_READ[part](_with(values, part, dict(zip(names, row, strict=True)))) for row in different.tolist()]
+        found |= {name: np.array([one[name] for one in read])[which.ravel()] for name in read[0]}
+    return found | cells
+
+
+def _with(values: Mapping[str, Any], part: str, numbers: Mapping[str, float]) -> config.Setup:
+    """Return the setup of the case with other numbers of one part."""
+    case = {name: values[name] for name in ("column", "model", "motion") if name in values}
+    changed = {**case, part: {**case[part], **numbers}, "duration": 1.0}
+    return config.SimulationConfig.parse(changed).build()
+
+
+def _body(setup: config.Setup) -> dict[str, float]:
+    return {name: float(getattr(setup.model.column, name)) for name in _BODY}
+
+
+def _moved(setup: config.Setup) -> dict[str, float]:
+    found: dict[str, float] = {}
+    for name in _MOVED:
+        try:
+            found[name] = present_value(setup.model, setup.motion, name)
+        except UnsupportedError:
+            continue  # a motion without a frequency of its own
+    return found
+
+
+_READ: Mapping[str, Callable[[config.Setup], dict[str, float]]] = {"column": _body, "motion": _moved}

@@ -21,7 +21,7 @@ from stylobate.lab.answers import Schema, in_words
 from stylobate.lab.curves import StartConfig
 from stylobate.lab.limits import Limits
 from stylobate.lab.options import NUMBERS, presets
-from stylobate.lab.uploads import RecordRequest
+from stylobate.lab.requests import RecordRequest
 from stylobate.models.declared import column_quantities, model_quantities
 from stylobate.quantities import Quantity
 from stylobate.results import OutcomeRules

@@ -17,28 +17,28 @@ from stylobate.config.models import DESCRIBED_MODELS
 from stylobate.config.motions import MotionConfig, is_to_end
 from stylobate.engine.parameters import COLUMN_NAMES, MOTION_NAMES
 from stylobate.errors import Outcome
-from stylobate.lab.answers import About, Kind, OutcomeCode, Parameter, Preset, Sample
+from stylobate.lab import answers
 from stylobate.lab.limits import Limits
 from stylobate.models.declared import column_quantities, model_quantities
 from stylobate.quantities import Quantity
 
 
-def about(limits: Limits) -> About:
+def about(limits: Limits) -> answers.About:
     """Return all options."""
     motions = _kinds(_members(MotionConfig), "kind")
-    return About(
+    return answers.About(
         version=version("stylobate"),
         limits=asdict(limits),
-        shapes=[Kind(**one) for one in _kinds(_members(ColumnConfig), "shape")],
-        models=[Kind(**one) for one in _kinds(DESCRIBED_MODELS, "kind")],
+        shapes=[answers.Kind(**one) for one in _kinds(_members(ColumnConfig), "shape")],
+        models=[answers.Kind(**one) for one in _kinds(DESCRIBED_MODELS, "kind")],
         motions=[
-            Kind(**one, ends=is_to_end(one))
+            answers.Kind(**one, ends=is_to_end(one))
             for one in motions
             if one["kind"] not in composite_kinds()  # available in files only
         ],
-        samples=[Sample(name=name, about="sample record") for name in sample_names()],
+        samples=[answers.Sample(name=name, about="sample record") for name in sample_names()],
         presets=presets(),
-        outcomes=[OutcomeCode(name=one.name, value=one.label, code=int(one)) for one in Outcome],
+        outcomes=[answers.OutcomeCode(name=one.name, value=one.label, code=int(one)) for one in Outcome],
     )
 
 
@@ -57,12 +57,12 @@ def _kinds(descriptions: Iterable[type[Config]], tag: str) -> Iterator[dict[str,
             yield {"kind": kind, "name": kind.replace("_", " "), "about": summary, "parameters": parameters}
 
 
-def _parameter(name: str, field: Any) -> Parameter:
+def _parameter(name: str, field: Any) -> answers.Parameter:
     quantity = NUMBERS.get(name, Quantity())
     first, last = quantity.slider or (None, None)
     default = None if field.default is PydanticUndefined else field.default
     choices = [*quantity.choices, *(one for one in get_args(field.annotation) if isinstance(one, str))]
-    return Parameter(
+    return answers.Parameter(
         name=name,
         symbol=quantity.symbol,
         unit=quantity.unit,
@@ -107,7 +107,7 @@ VARIED = frozenset(
 # Presets
 
 
-def presets() -> list[Preset]:
+def presets() -> list[answers.Preset]:
     """Return all presets, from `presets.toml` beside this file; the page opens with the first one."""
     text = (files("stylobate.lab") / "presets.toml").read_text(encoding="utf-8")
-    return [Preset(**{"view": {}, **one}) for one in tomllib.loads(text)["preset"]]
+    return [answers.Preset(**{"view": {}, **one}) for one in tomllib.loads(text)["preset"]]

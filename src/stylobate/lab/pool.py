@@ -357,7 +357,7 @@ def work(connection: Connection, *, background: bool = False) -> None:
         connection.send(Ready())
         while True:
             kind, values = connection.recv()
-            connection.send(_done(tasks.TASKS[kind], values, connection.send))
+            connection.send(_done(tasks.task(kind), values, connection.send))
     except (EOFError, OSError):  # the server has ended
         os._exit(0)
 

@@ -1,11 +1,11 @@
-"""Tasks of worker processes by name; each takes plain values and returns plain values."""
+"""Tasks of worker processes by name."""
 
 import math
 from collections.abc import Callable, Mapping
+from importlib import import_module
 from typing import Any
 
 from stylobate import config, engine
-from stylobate.lab.answers import BasinResult, ContactMapResult, ExactOrbits, MapResult, Start
 from stylobate.lab.pool import Emit, Progress
 from stylobate.lab.requests import Description
 from stylobate.lab.runs import answered_run, record_contents, remarks
@@ -15,8 +15,6 @@ _USUAL_LENGTH = 12.0
 _PICTURES_PER_SECOND, _PICTURES_PER_PERIOD, _MOST_PICTURES = 25.0, 12.0, 1400
 
 _SAMPLES_PER_PERIOD, _FEWEST_SAMPLES, _MOST_SAMPLES = 48, 601, 2000
-
-# Imports inside tasks are heavy, and few processes need them.
 
 
 def run(given: Description, emit: Emit) -> bytes:
@@ -44,38 +42,9 @@ def record(values: Mapping[str, Any], emit: Emit) -> dict[str, Any]:
     return {**found, "warnings": remarked}
 
 
-def start(values: Mapping[str, Any], emit: Emit) -> Start:
-    """Compute initial conditions on a branch of steady rolling."""
-    from stylobate.lab import curves  # noqa: PLC0415
-
-    del emit
-    return curves.start(values)
-
-
-def exact(values: Mapping[str, Any], emit: Emit) -> ExactOrbits:
-    """Compute exact periodic orbits over a range of frequencies, with their bifurcations."""
-    from stylobate.lab.curves import exact_curves  # noqa: PLC0415
-
-    return exact_curves(values, emit)
-
-
-def overturning(values: Mapping[str, Any], emit: Emit) -> MapResult | ContactMapResult:
-    """Compute the map over two quantities."""
-    from stylobate.lab.grids import overturning_plane  # noqa: PLC0415
-
-    return overturning_plane(values, emit)
-
-
-def basin(values: Mapping[str, Any], emit: Emit) -> BasinResult:
-    """Compute basins of attraction over two initial conditions."""
-    from stylobate.lab.grids import basin_plane  # noqa: PLC0415
-
-    return basin_plane(values, emit)
-
-
 def animation(values: Mapping[str, Any], emit: Emit) -> bytes:
     """Animate a run as a GIF; long runs are shown faster."""
-    from stylobate.plots.animation import animate  # noqa: PLC0415
+    from stylobate.plots.animation import animate  # noqa: PLC0415  heavy, and few processes need it
 
     setup = config.SimulationConfig.parse(values).build()
     run = engine.simulate(setup.model, setup.motion, **setup.options)
@@ -98,12 +67,20 @@ def warm_up() -> None:
     run(Description(values, values), lambda _: None)
 
 
-TASKS: Mapping[str, Callable[[Any, Emit], Any]] = {
-    "run": run,
-    "record": record,
-    "start": start,
-    "exact": exact,
-    "map": overturning,
-    "basin": basin,
-    "animation": animation,
+_TASKS = {
+    "run": "tasks:run",
+    "record": "tasks:record",
+    "start": "curves:start",
+    "exact": "curves:exact_curves",
+    "map": "grids:overturning_plane",
+    "basin": "grids:basin_plane",
+    "animation": "tasks:animation",
 }
+"""Module and function of each task, imported by the processes that need it."""
+
+
+def task(kind: str) -> Callable[[Any, Emit], Any]:
+    """Return the task of this `kind`, which takes plain values and sends messages during the computation."""
+    module, _, name = _TASKS[kind].partition(":")
+    found: Callable[[Any, Emit], Any] = getattr(import_module(f"stylobate.lab.{module}"), name)
+    return found
