@@ -136,3 +136,21 @@ def test_a_pipe_that_breaks_ends_its_process_only(monkeypatch):
     anyio.run(perform)
     assert isinstance(answers[0], Lost)
     assert isinstance(answers[1], Finished)
+
+
+def test_an_idle_process_that_dies_is_replaced_and_loses_no_task():
+    answers = []
+
+    async def perform():
+        before = multiprocessing.active_children()
+        async with anyio.create_task_group() as group:
+            pool = Pool(1, group)
+            for _ in range(2):
+                answers.append(await pool.perform("run", Description(VALUES, VALUES), lambda _: None))
+                (process,) = [one for one in multiprocessing.active_children() if one not in before]
+                process.kill()
+                await anyio.sleep(0.5)  # its end is heard
+            group.cancel_scope.cancel()
+
+    anyio.run(perform)
+    assert [type(answer) for answer in answers] == [Finished, Finished]

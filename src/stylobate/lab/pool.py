@@ -301,7 +301,7 @@ class _Worker:
         with suppress(RuntimeError):  # the loop of the server has ended
             try:
                 self._process, self._connection = _process(background=background)
-            except Exception:  # noqa: BLE001  whoever waits gets an answer
+            except Exception:  # noqa: BLE001  the waiting task gets an answer
                 _log.exception("a worker process could not be started")
             else:
                 if self._ended:
