@@ -2,7 +2,6 @@
 
 import type { Clock, Stage, Theme } from "../viewer/index";
 import type { About } from "./case/about";
-import { Address } from "./view/address";
 import type { Answer } from "./server/answers";
 import { Refused, Unreachable } from "./server/api";
 import type { ResponsePanel } from "./charts/response-panel";
@@ -35,7 +34,7 @@ import { startAlike, startOf } from "./case/starting";
 import type { Run, WantedRun } from "./server/run";
 import { run } from "./server/run";
 import { setUnitsOf } from "./frame/units";
-import { firstView, viewOfLink, viewOfPreset } from "./view/views";
+import { Address, firstView, viewOfLink, viewOfPreset } from "./view/link";
 
 /** Before the first answer: the column of the equations. */
 const ANY_COLUMN: ColumnScales = { slenderness: 0.1, frequency_scale: 1 };
