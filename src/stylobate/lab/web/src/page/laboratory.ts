@@ -16,7 +16,6 @@ import { Job, problemsIn } from "./server/job";
 import { Help } from "./frame/help";
 import { listenToKeys } from "./frame/keys";
 import { Latest } from "./server/latest";
-import { inWords } from "./view/link";
 import { menuOf } from "./view/menu";
 import { MotionView } from "./motion/motion-view";
 import { paceOf } from "./motion/pace";
@@ -34,7 +33,7 @@ import { startAlike, startOf } from "./case/starting";
 import type { Run, WantedRun } from "./server/run";
 import { run } from "./server/run";
 import { setUnitsOf } from "./frame/units";
-import { Address, firstView, viewOfLink, viewOfPreset } from "./view/link";
+import { Address, firstView, inWords, viewOfLink, viewOfPreset } from "./view/link";
 
 /** Before the first answer: the column of the equations. */
 const ANY_COLUMN: ColumnScales = { slenderness: 0.1, frequency_scale: 1 };
