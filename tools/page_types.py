@@ -1,6 +1,6 @@
 """Write what the laboratory's page takes from the package, in TypeScript: `python tools/page_types.py`.
 
-These are the types of the server's answers, from its OpenAPI document, and names and kinds, from their declarations.
+These are the types of the server's answers, from `stylobate.lab.answers`, and names and kinds, from their declarations.
 With `--check` nothing is written, and the exit status is 1 if a file is not what would be written.
 """
 
@@ -11,18 +11,13 @@ from typing import Any
 
 from stylobate.base_motions import Harmonic
 from stylobate.base_motions.declared import MOTIONS, kinds_by_acceleration, kinds_with_response
-from stylobate.lab.limits import Limits
-from stylobate.lab.schema import schema
-from stylobate.lab.schema.curves import CURVES
-from stylobate.lab.schema.jobs import JOBS
-from stylobate.lab.schema.options import CATALOGUE
-from stylobate.lab.schema.runs import RUNS
+from stylobate.lab.answers import schemas
 from stylobate.models.declared import MODELS
 from stylobate.quantities import parameters_of
 from stylobate.run_arguments import Start, numbers_of, run_numbers
 
 FOLDER = Path(__file__).parents[1] / "src/stylobate/lab/web/src/page/server"
-_HEAD = "/** Types of the server's answers, written by tools/page_types.py from its OpenAPI document. Do not edit. */\n"
+_HEAD = "/** Types of the answers, written by tools/page_types.py from stylobate.lab.answers. Do not edit. */\n"
 _HEAD_OF_NAMES = "/** Names and kinds, written by tools/page_types.py from their declarations. Do not edit. */\n"
 _RATES = ("rad/s", "Hz", "1/min")
 
@@ -68,12 +63,8 @@ def names() -> str:
 
 
 def types() -> str:
-    """Return the types of all components that are answered."""
-    components = schema(Limits())["components"]["schemas"]
-    answered = sorted({*RUNS, *CURVES, *JOBS, *CATALOGUE})
-    parts = [
-        f"{_comment(components[name], '')}export type {name} = {type_of(components[name])};\n" for name in answered
-    ]
+    """Return the types of all answers and their parts."""
+    parts = [f"{_comment(one, '')}export type {name} = {type_of(one)};\n" for name, one in schemas().items()]
     return "\n".join([_HEAD, *parts])
 
 
@@ -128,7 +119,7 @@ def _key(name: str) -> str:
 
 
 def _comment(part: dict[str, Any], indent: str) -> str:
-    text = str(part.get("description", ""))
+    text = " ".join(str(part.get("description", "")).split())
     return f"{indent}/** {text} */\n" if text else ""
 
 

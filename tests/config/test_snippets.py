@@ -8,7 +8,7 @@ from PIL import Image
 
 import stylobate as sb
 from stylobate.config import SimulationConfig, as_python, as_toml
-from stylobate.lab.presets import presets
+from stylobate.lab.options import presets
 
 COLUMN = {"shape": "dimensionless", "slenderness": 0.1}
 RICKER = {"kind": "ricker", "acceleration": 0.2, "angular_frequency": 3.0}

@@ -6,7 +6,7 @@ from urllib.parse import unquote
 import jsonschema_rs
 
 from stylobate.lab import Limits
-from stylobate.lab.schema import schema
+from stylobate.lab.app import schema
 
 DOCUMENT = schema(Limits())
 

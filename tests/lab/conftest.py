@@ -19,7 +19,7 @@ def laboratory(limits: Limits | None = None, port: int = 0) -> Iterator[str]:
     """Serve a laboratory in a thread of this process and give its address."""
     with listening("127.0.0.1", port) as place:
         host = f"127.0.0.1:{place.getsockname()[1]}"
-        server = server_of(create_app(hosts={host}, limits=limits), limits)
+        server = server_of(create_app(hosts={host}, limits=limits))
         thread = threading.Thread(target=server.run, kwargs={"sockets": [place]})
         thread.start()
         while not server.started:

@@ -9,7 +9,7 @@ import pytest
 import stylobate as sb
 from stylobate.config import ResponseConfig, SimulationConfig
 from stylobate.lab import Limits
-from stylobate.lab.presets import presets
+from stylobate.lab.options import presets
 from stylobate.lab.tasks import speed_of_pictures
 
 # Numbers are sent in nine digits.

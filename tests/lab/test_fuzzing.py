@@ -8,11 +8,12 @@ from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
 from tests.lab.conftest import client_of, laboratory
 
+from stylobate.errors import LARGEST as MOST
+from stylobate.errors import SMALLEST as LEAST
 from stylobate.lab import Limits
-from stylobate.lab.presets import presets
-from stylobate.lab.schema import schema
-from stylobate.lab.schema.examples import JOBS, RESPONSES, STARTS
-from stylobate.lab.size_limits import LEAST, MOST
+from stylobate.lab.app import schema
+from stylobate.lab.openapi import EXAMPLES
+from stylobate.lab.options import presets
 
 SMALL = Limits(body=20_000, cells=200, points=100, duration=5.0, steps=1000, run_time=4.0, waiting=1000)
 # A run with numbers of any size may take all the time that runs have; these end, most of them.
@@ -119,9 +120,9 @@ BODIES = [{**preset.description, "duration": 2.0} for preset in presets()]
 REQUESTS = [
     *(("/api/simulate", body) for body in BODIES),
     *(("/api/describe", body) for body in BODIES),
-    *(("/api/response", body) for body in RESPONSES.values()),
-    *(("/api/start", body) for body in STARTS.values()),
-    *(("/api/jobs", body) for body in JOBS.values()),
+    *(("/api/response", body) for body in EXAMPLES["Response"].values()),
+    *(("/api/start", body) for body in EXAMPLES["SteadyRollingStart"].values()),
+    *(("/api/jobs", body) for body in EXAMPLES["JobConfig"].values()),
 ]
 ODD = st.sampled_from(
     [

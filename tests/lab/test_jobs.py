@@ -11,7 +11,7 @@ from tests.lab.conftest import client_of, laboratory
 
 import stylobate as sb
 from stylobate.lab import Limits
-from stylobate.lab.progressive_executor import Refining
+from stylobate.lab.grids import Refining
 
 CIRCLE = {
     "column": {"shape": "dimensionless", "slenderness": 0.1},

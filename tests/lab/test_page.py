@@ -10,7 +10,7 @@ from tests.lab.conftest import laboratory
 
 import stylobate as sb
 from stylobate.config import SimulationConfig
-from stylobate.lab.presets import presets
+from stylobate.lab.options import presets
 from stylobate.results.summary import measure_rows
 
 PRESETS = {preset.identity: preset for preset in presets()}

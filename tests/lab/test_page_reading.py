@@ -6,7 +6,7 @@ import re
 import pytest
 from tests.lab.browser import shown
 
-from stylobate.lab.presets import presets
+from stylobate.lab.options import presets
 
 PRESETS = {preset.identity: preset for preset in presets()}
 STATE = "window.stylobate.state()"

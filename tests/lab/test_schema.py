@@ -13,8 +13,8 @@ from tests.lab.conformity import DOCUMENT, component, conforms, endpoint, mistak
 
 from stylobate.config.columns import implied_shape
 from stylobate.lab import Limits
-from stylobate.lab.api import Api
-from stylobate.lab.presets import presets
+from stylobate.lab.app import Api
+from stylobate.lab.options import presets
 
 OPERATIONS = [
     (path, method, told)

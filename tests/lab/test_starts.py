@@ -6,8 +6,8 @@ import pytest
 import stylobate as sb
 from stylobate.config import SimulationConfig
 from stylobate.errors import NoOrbitError
-from stylobate.lab.presets import presets
-from stylobate.lab.starts import start
+from stylobate.lab import curves
+from stylobate.lab.options import presets
 
 # Numbers are sent in nine digits.
 SENT = 2e-8
@@ -26,6 +26,10 @@ def straight(angular_frequency, **more):
 def elliptic(angular_frequency, phase):
     amplitude = [0.13, 0.05]
     return case({"kind": "elliptic", "amplitude": amplitude, "phase": phase, "angular_frequency": angular_frequency})
+
+
+def start(values):
+    return curves.start(values, lambda _: None).model_dump()
 
 
 def last_state(values, begun, periods=5):

@@ -6,7 +6,7 @@ import pytest
 
 import stylobate as sb
 from stylobate.errors import LARGEST, ParameterError, UnsupportedError
-from stylobate.lab.schema import requests
+from stylobate.lab import Limits, openapi
 from stylobate.models.declared import MODELS, model_quantities
 from stylobate.quantities import parameters_of
 from stylobate.studies.ranges import require_bounds, require_values
@@ -59,9 +59,10 @@ def test_studies_sweeps_and_the_schema_have_the_bounds_of_the_models(name):
                 require_values([value], name)
             with pytest.raises(ParameterError, match=name):
                 require_bounds(sorted((value, 0.5 * (low + high))), name)
-    quantity, schema = QUANTITIES[name], requests._finite({"type": "number", **requests._BOUNDS[name]})
-    assert schema["minimum"] == (-LARGEST if quantity.ge is None else quantity.ge)
-    assert schema["maximum"] == (LARGEST if quantity.le is None else quantity.le)
+    quantity, bounds = QUANTITIES[name], openapi._bounds(Limits())[name]
+    described = openapi._finite({"type": "number", **bounds})
+    assert described["minimum"] == (-LARGEST if quantity.ge is None else quantity.ge)
+    assert described["maximum"] == (LARGEST if quantity.le is None else quantity.le)
 
 
 def test_a_number_of_several_models_is_declared_once():

@@ -1,33 +1,38 @@
-"""The laboratory as an ASGI application."""
+"""The laboratory as an ASGI application: its page, and its HTTP API for the page and for any program on this machine.
+
+See docs/reference/http-api.md.
+"""
 
 import tempfile
-from collections.abc import AsyncIterator, Callable, Collection
+from collections.abc import AsyncIterator, Callable, Collection, Sequence
 from contextlib import AsyncExitStack, asynccontextmanager
+from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
+from typing import Any
 
 import anyio
+from anyio import to_thread
 from starlette.applications import Starlette
 from starlette.exceptions import HTTPException
 from starlette.middleware import Middleware
 from starlette.requests import Request
 from starlette.responses import JSONResponse, Response
-from starlette.routing import Mount, Router
+from starlette.routing import Mount, Route, Router
 
+from stylobate import config
 from stylobate.errors import ConfigError, StylobateError
-from stylobate.lab.api import Api
+from stylobate.lab import answers, openapi
+from stylobate.lab.curves import response
 from stylobate.lab.guards import Guard
 from stylobate.lab.jobs import Jobs, broken
-from stylobate.lab.limits import Limits
+from stylobate.lab.limits import Limits, RefusedError
+from stylobate.lab.options import about
 from stylobate.lab.pages import page_routes
-from stylobate.lab.refusals import RefusedError
-from stylobate.lab.uploads import Uploads
-from stylobate.lab.worker_pool import WorkerPool
-
-
-def end_processes(app: Starlette) -> None:
-    """End the worker processes of a running application; open requests are then answered with an error."""
-    for pool in getattr(app.state, "pools", ()):
-        pool.end()
+from stylobate.lab.pool import OUT_OF_MEMORY, Broken, BusyError, Finished, Lost, Pool, Refused
+from stylobate.lab.requests import Description, Uploads, described, json_body, problems_of_numbers
+from stylobate.lab.runs import column_numbers, snippets
+from stylobate.lab.tasks import JOBS
 
 
 def create_app(
@@ -59,10 +64,9 @@ def create_app(
             folder = Path(stack.enter_context(tempfile.TemporaryDirectory(prefix="stylobate-lab-")))
             group = await stack.enter_async_context(anyio.create_task_group())
             stack.callback(group.cancel_scope.cancel)
-            runs, work = WorkerPool(bounds.runs, group), WorkerPool(bounds.jobs, group, background=True)
-            for pool in (runs, work):
-                stack.callback(pool.end)
+            runs, work = Pool(bounds.runs, group), Pool(bounds.jobs, group, background=True)
             app.state.pools = (runs, work)
+            stack.callback(end_processes, app)
             jobs = Jobs(work, bounds, group)
             group.start_soon(jobs.watch)
             runs.warm_up()
@@ -74,35 +78,201 @@ def create_app(
     return Starlette(
         routes=[*page_routes(), Mount("/", app=inner)],
         middleware=[Middleware(Guard, hosts=hosts, token=token)],
-        exception_handlers={
-            RefusedError: _refusal,
-            StylobateError: _mistake,
-            HTTPException: _problem,
-            Exception: _failure,
-        },
+        exception_handlers=dict.fromkeys(
+            (RefusedError, StylobateError, MemoryError, HTTPException, Exception), _problems
+        ),
         lifespan=lifespan,
     )
 
 
-async def _refusal(request: Request, error: Exception) -> Response:
-    del request
-    assert isinstance(error, RefusedError)
-    return JSONResponse({"problems": list(error.problems)}, status_code=error.status)
+def end_processes(app: Starlette) -> None:
+    """End the worker processes of a running application; open requests are then answered with an error."""
+    for pool in getattr(app.state, "pools", ()):
+        pool.end()
 
 
-async def _mistake(request: Request, error: Exception) -> Response:
-    """Answer with the library's messages about the values."""
-    del request
-    problems = error.problems if isinstance(error, ConfigError) else str(error).splitlines()
-    return JSONResponse({"problems": list(problems)}, status_code=422)
+async def _problems(request: Request, error: Exception) -> Response:
+    """Answer with one line for each reason of a refusal or a failure."""
+    status, headers = 422, None
+    lines: Sequence[str]
+    match error:
+        case RefusedError(problems=lines):
+            status = error.status
+        case ConfigError(problems=lines):
+            pass
+        case StylobateError():
+            lines = str(error).splitlines()
+        case MemoryError():
+            lines = [OUT_OF_MEMORY]
+        case HTTPException():
+            status, headers = error.status_code, error.headers
+            lines = [f"{request.method} {request.url.path}: {error.detail.lower()}"]
+        case _:
+            status, lines = 500, [broken(repr(error))]
+    return _answer(answers.Problems(problems=list(lines)), status, headers)
 
 
-async def _failure(request: Request, error: Exception) -> Response:
-    del request
-    return JSONResponse({"problems": [broken(repr(error))]}, status_code=500)
+def _answer(answer: answers.Answer, status: int = 200, headers: Any = None) -> Response:
+    return Response(answer.as_json(), status, headers, media_type="application/json")
 
 
-async def _problem(request: Request, error: Exception) -> Response:
-    assert isinstance(error, HTTPException)
-    problem = f"{request.method} {request.url.path}: {error.detail.lower()}"
-    return JSONResponse({"problems": [problem]}, status_code=error.status_code, headers=error.headers)
+# Endpoints
+
+
+@dataclass(frozen=True, slots=True)
+class Api:
+    """The endpoints and the state that they share."""
+
+    limits: Limits
+    runs: Pool
+    jobs: Jobs
+    uploads: Uploads
+
+    def routes(self) -> list[Route]:
+        """Return the endpoints by path; each has the name of a method."""
+        return [Route(one.path, getattr(self, one.name), methods=[one.method.upper()]) for one in endpoints()]
+
+    @openapi.endpoint("GET /api/about", answers.About)
+    async def about(self, request: Request) -> Response:
+        """Return the options: models, motions and columns with their parameters; presets; limits."""
+        del request
+        return _answer(about(self.limits))
+
+    @openapi.endpoint("GET /api/schema", answers.Document)
+    async def schema(self, request: Request) -> Response:
+        """Return the description of the endpoints (OpenAPI)."""
+        del request
+        return JSONResponse(schema(self.limits))
+
+    @openapi.endpoint("POST /api/describe", answers.Described, refusals=openapi.OF_BODIES, body="Simulation")
+    async def describe(self, request: Request) -> Response:
+        """Return the description as TOML and as Python, and the derived numbers of the column, without a run."""
+        given = await self._described(request)
+
+        def describe() -> answers.Described:
+            model = config.SimulationConfig.parse(given.values).build().model
+            return answers.Described(**snippets(given), column=column_numbers(model))
+
+        return _answer(await to_thread.run_sync(describe))
+
+    @openapi.endpoint("POST /api/simulate", answers.Run, refusals=openapi.OF_RUNS, body="Simulation")
+    async def simulate(self, request: Request) -> Response:
+        """Compute one run."""
+        given = await self._described(request)
+        limited = replace(given, values={"max_steps": min(self.limits.usual_steps, self.limits.steps), **given.values})
+        return Response(await self._run("run", limited, request), media_type="application/json")
+
+    @openapi.endpoint("POST /api/response", answers.ResponseCurves, refusals=openapi.OF_BODIES, body="Response")
+    async def response(self, request: Request) -> Response:
+        """Compute amplitude and phase of steady rolling over frequency, from theory."""
+        given = await self._described(request)
+        return _answer(await to_thread.run_sync(response, given.values))
+
+    @openapi.endpoint("POST /api/start", answers.Start, refusals=openapi.OF_RUNS, body="SteadyRollingStart")
+    async def start(self, request: Request) -> Response:
+        """Compute initial conditions on steady rolling: from theory, or on the exact orbit if theory is approximate."""
+        given = await self._described(request)
+        return _answer(await self._run("start", given.values, request))
+
+    @openapi.endpoint("POST /api/records", answers.UploadedRecord, refusals=openapi.OF_RUNS, body="Record")
+    async def upload(self, request: Request) -> Response:
+        """Store the files of a record and report their contents."""
+        body = await json_body(request, self.limits.records)
+        problems = problems_of_numbers({name: body[name] for name in body if name != "files"}, self.limits)
+        if problems:
+            raise RefusedError(422, problems)
+        upload = await to_thread.run_sync(self.uploads.add, body)
+        try:
+            contents = await self._run("record", upload.first_read(), request)
+        except RefusedError as error:
+            self.uploads.drop(upload)
+            folder = f"{upload.paths[0].parent}/"
+            raise RefusedError(error.status, [line.replace(folder, "") for line in error.problems]) from None
+        return _answer(answers.UploadedRecord(upload=upload.digest, **contents))
+
+    @openapi.endpoint("POST /api/jobs", answers.Begun, refusals=(*openapi.OF_BODIES, 429), body="JobConfig", status=202)
+    async def begin(self, request: Request) -> Response:
+        """Begin a job."""
+        body = await json_body(request, self.limits.body)
+        kind, values = body.get("kind"), body.get("description")
+        if not isinstance(kind, str) or kind not in JOBS:
+            raise RefusedError(422, [f"kind must be one of {', '.join(JOBS)}, got {kind!r}"])
+        if not isinstance(values, dict):
+            raise RefusedError(422, ["description is missing: the plain values of a description"])
+        given = described(values, self.uploads, self.limits)
+        await to_thread.run_sync(JOBS[kind].parse, given.values)
+        return _answer(answers.Begun(id=self.jobs.begin(kind, given.values)), 202)
+
+    @openapi.endpoint(
+        "GET /api/jobs/{identity}", answers.Job, refusals=(*openapi.OF_ALL, 404, 422), parameters=(openapi.AFTER,)
+    )
+    async def follow(self, request: Request) -> Response:
+        """Return the state of a job, with the events from the number `after` on."""
+        after = request.query_params.get("after", "0")
+        if not (after.isascii() and after.isdigit() and len(after) < 10):  # noqa: PLR2004  digits of a count
+            raise RefusedError(422, [f"after must be a number of events, got {after!r}"])
+        return _answer(self.jobs.report(request.path_params["identity"], int(after)))
+
+    @openapi.endpoint("DELETE /api/jobs/{identity}", answers.Job, refusals=(*openapi.OF_ALL, 404))
+    async def cancel(self, request: Request) -> Response:
+        """Cancel a job."""
+        identity = request.path_params["identity"]
+        self.jobs.cancel(identity)
+        return _answer(self.jobs.report(identity))
+
+    @openapi.endpoint("GET /api/jobs/{identity}/file", None, refusals=(*openapi.OF_ALL, 404))
+    async def file(self, request: Request) -> Response:
+        """Return the GIF of a job."""
+        result = self.jobs[request.path_params["identity"]].result
+        if not isinstance(result, bytes):
+            raise RefusedError(404, ["this job has no file (yet)"])
+        return Response(result, media_type="image/gif")
+
+    async def _described(self, request: Request) -> Description:
+        return described(await json_body(request, self.limits.body), self.uploads, self.limits)
+
+    async def _run(self, kind: str, values: Any, request: Request) -> Any:
+        """Return the result of a task; end the task when the caller disconnects or its time limit passes."""
+        limits = self.limits
+        perform = partial(self.runs.perform, kind, values, wait=limits.wait, limit=limits.run_time)
+        answer = None
+        try:
+            async with anyio.create_task_group() as group:
+                group.start_soon(_when_gone, request, group.cancel_scope.cancel)
+                answer = await perform(lambda _: None)
+                group.cancel_scope.cancel()
+        except* BusyError:
+            problem = f"all {limits.runs} worker processes were busy for {limits.wait:g} s. Try again."
+            raise RefusedError(503, [problem]) from None
+        except* TimeoutError:
+            problem = f"the run was stopped after {limits.run_time:g} s. Shorten its duration or run it in Python."
+            raise RefusedError(504, [problem]) from None
+        match answer:
+            case Finished(result):
+                return result
+            case Refused(problems):
+                raise RefusedError(422, problems)
+            case Lost() if self.runs.ended:
+                raise RefusedError(503, ["the laboratory is ending. Start it again."])
+            case Lost():
+                raise RefusedError(502, [answer.problem])
+            case Broken(trace):
+                raise RefusedError(500, [broken(trace)])
+        raise RefusedError(400, ["the caller cancelled the request"])
+
+
+def endpoints() -> list[openapi.Endpoint]:
+    """Return the endpoints as they are declared."""
+    return [one.endpoint for one in vars(Api).values() if hasattr(one, "endpoint")]
+
+
+def schema(limits: Limits) -> answers.Schema:
+    """Return the description of the API, OpenAPI 3.1."""
+    return openapi.document(endpoints(), limits)
+
+
+async def _when_gone(request: Request, act: Callable[[], None]) -> None:
+    """Call `act` when the sender of `request` disconnects."""
+    while (await request.receive())["type"] != "http.disconnect":
+        pass
+    act()

@@ -1,23 +1,36 @@
 """Maps and basins, shown progressively during their computation."""
 
 import os
-from collections.abc import Callable, Mapping
+import time
+from collections.abc import Callable, Generator, Iterable, Iterator, Mapping
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 import xarray as xr
 
 from stylobate import config, studies
-from stylobate.errors import Outcome, ParameterError
-from stylobate.lab.case_axes import case_map, case_numbers, units_of
-from stylobate.lab.json_values import number, numbers
-from stylobate.lab.messages import Emit, Found, Progress
-from stylobate.lab.progressive_executor import Cells, Refining
+from stylobate.engine.parameters import COLUMN_NAMES, present_value
+from stylobate.errors import Outcome, ParameterError, UnsupportedError
+from stylobate.lab import answers
+from stylobate.lab.options import CASE_NUMBERS
+from stylobate.lab.pool import Emit, Found, Progress
+from stylobate.models import Model
 from stylobate.parameter_quantities import attributes_of
+from stylobate.progress import Report
+from stylobate.studies.maps.overturning import labelled
+from stylobate.studies.sweeps import Executor, Sweep
+from stylobate.studies.sweeps.computing import Arrays, Computed, Task
+from stylobate.studies.sweeps.executors import Work
+from stylobate.studies.sweeps.labelled import labelled_sweep
+
+Cells = npt.NDArray[np.int64]
+Floats = npt.NDArray[np.float64]
 
 
-def overturning_plane(values: Mapping[str, Any], emit: Emit) -> dict[str, Any]:
+def overturning_plane(values: Mapping[str, Any], emit: Emit) -> answers.MapResult | answers.ContactMapResult:
     """Compute the map of outcomes over two quantities; for a sliding model, the map of kinds of contact."""
     study = studies.overturning_map
     setup = config.study_config(study).parse(values).build()
@@ -26,31 +39,31 @@ def overturning_plane(values: Mapping[str, Any], emit: Emit) -> dict[str, Any]:
     else:
         found = _watched(partial(study, setup.model, setup.motion), setup, emit, keywords=setup.options)
     if "contact_class" in found:
-        return _finer(found, "contact_class", found["class_name"].to_numpy(), setup)
-    return _counts(found, [outcome.label for outcome in Outcome])
+        return answers.ContactMapResult(**_classes(found, "contact_class", found["class_name"].to_numpy(), setup))
+    shares = zip(Outcome, found["share"].to_numpy().tolist(), strict=True)
+    return answers.MapResult(**_size(found), shares={outcome.label: share for outcome, share in shares})
 
 
-def basin_plane(values: Mapping[str, Any], emit: Emit) -> dict[str, Any]:
+def basin_plane(values: Mapping[str, Any], emit: Emit) -> answers.BasinResult:
     """Compute the attractor of each initial condition of a grid."""
     setup = config.study_config(studies.basins).parse(values).build()
     if "count" in setup.options:
-        message = "basin.random: the laboratory computes grids only. Give basin.x and basin.y, or use the command line."
-        raise ParameterError(message)
-    study = partial(studies.basins, setup.model, setup.motion)
-    found = _watched(study, setup, emit, keywords=setup.options)
-    answer = _finer(found, "attractor", found["attractor_name"].to_numpy(), setup)
-    answer["attractors"] = [_attractor(found.isel(attractor_index=i)) for i in range(found.sizes["attractor_index"])]
-    return answer
+        raise ParameterError(
+            "basin.random: the laboratory computes grids only. Give basin.x and basin.y, or use the command line."
+        )
+    found = _watched(partial(studies.basins, setup.model, setup.motion), setup, emit, keywords=setup.options)
+    classes = _classes(found, "attractor", found["attractor_name"].to_numpy(), setup)
+    members = [found.isel(attractor_index=i) for i in range(found.sizes["attractor_index"])]
+    return answers.BasinResult(**classes, attractors=[_attractor(one) for one in members])
 
 
-def _attractor(one: xr.Dataset) -> dict[str, Any]:
-    shares = ("fraction", "fraction_low", "fraction_high")
-    return {
-        "name": str(one["attractor_name"].item()),
-        "kind": str(one["attractor_kind"].item()),
-        "period": int(one["attractor_period"]),
-        **{name: number(float(one[name])) for name in shares},
-    }
+def _attractor(one: xr.Dataset) -> answers.Attractor:
+    return answers.Attractor(
+        name=str(one["attractor_name"].item()),
+        kind=str(one["attractor_kind"].item()),
+        period=int(one["attractor_period"]),
+        **{name: float(one[name]) for name in ("fraction", "fraction_low", "fraction_high")},
+    )
 
 
 def _watched(
@@ -64,15 +77,14 @@ def _watched(
     """Run `study` and emit the outcomes as soon as they are known; `flat` if the runs of the study form one row."""
     over = setup.options["over"]
     axes = {
-        place: {"name": name, "values": numbers(values), **(attributes_of(name) or {"units": units_of(name)})}
+        place: answers.PlaneAxis(name=name, values=values, **(attributes_of(name) or {"units": units_of(name)}))
         for place, (name, values) in zip("xy", over.items(), strict=True)
     }
-    names = [[int(outcome), outcome.label] for outcome in Outcome]
-    emit(Found({"axes": axes, "names": names}))
+    names = [(int(outcome), outcome.label) for outcome in Outcome]
+    emit(Found(answers.PlaneBegun(axes=answers.PlaneAxes(**axes), names=names)))
 
     def show(stride: int, places: Cells, outcomes: Cells) -> None:
-        cells = np.column_stack([places, outcomes]).tolist()
-        emit(Found({"stride": stride, "cells": cells}))
+        emit(Found(answers.PlaneCells(stride=stride, cells=np.column_stack([places, outcomes]).tolist())))
 
     shape = tuple(len(values) for values in over.values()) if flat else None
     executor = Refining(show, threads=max(1, (os.cpu_count() or 2) // 2), shape=shape)
@@ -83,16 +95,187 @@ def _watched(
     )
 
 
-def _finer(found: xr.Dataset, variable: str, names: Any, setup: config.Setup) -> dict[str, Any]:
+def _classes(found: xr.Dataset, variable: str, names: Any, setup: config.Setup) -> dict[str, Any]:
     """Return the cells with their final classes."""
     codes = found[variable].transpose(*found["outcome"].dims).to_numpy()
     codes = codes.reshape([len(values) for values in setup.options["over"].values()])
-    listed = [[index, str(name)] for index, name in enumerate(names)]
-    return {"codes": codes.tolist(), "names": listed, **_counts(found, None)}
+    return {**_size(found), "codes": codes.tolist(), "names": [(index, str(name)) for index, name in enumerate(names)]}
 
 
-def _counts(found: xr.Dataset, names: list[str] | None) -> dict[str, Any]:
-    answer: dict[str, Any] = {"uncertain": int(found["uncertain"].sum()), "runs": int(found["outcome"].size)}
-    if names is not None:
-        answer["shares"] = dict(zip(names, numbers(found["share"]), strict=True))
-    return answer
+def _size(found: xr.Dataset) -> dict[str, int]:
+    return {"uncertain": int(found["uncertain"].sum()), "runs": int(found["outcome"].size)}
+
+
+# The executor: every eighth run along each axis first, then the runs between them
+
+_STRIDES = (8, 4, 2, 1)
+_FIRST_PIECE, _LARGEST_PIECE = 32, 4096
+_SHOWN_EVERY = 0.4
+"""Time between updates [s]; the pieces grow until they take about this long."""
+
+
+@dataclass(frozen=True, slots=True)
+class Refining:
+    """Executor with threads of this process that compute a plane of runs from coarse to fine.
+
+    Parameters
+    ----------
+    show
+        Called with the stride, the indices of runs in the plane, shape (n, 2), and their outcomes, shape (n,).
+    threads
+        Number of threads; None for all cores.
+    shape
+        Shape of the plane if the runs form one row, with the second axis varying fastest; None if they form a grid.
+    """
+
+    show: Callable[[int, Cells, Cells], None]
+    threads: int | None = None
+    shape: tuple[int, ...] | None = None
+
+    def results(
+        self, work: Work, tasks: Iterable[Task], progress: Report | None = None
+    ) -> Generator[tuple[Task, Computed], None, None]:
+        """Yield each task with its result when all are computed."""
+        asked = list(tasks)
+        places = np.concatenate([_places(task) for task in asked])
+        if self.shape is not None:
+            places = np.stack(np.unravel_index(places[:, 0], self.shape), axis=-1)
+        values = {name: np.concatenate([task.values[name] for task in asked]) for name in asked[0].values}
+        found: Arrays = {}
+        done = 0
+        for stride, chosen in _pieces(places):
+            piece = Task(asked[0].block, {name: every[chosen] for name, every in values.items()})
+            result = work(piece, threads=self.threads, progress=None)
+            _put(found, chosen, result.arrays, len(places))
+            done += len(chosen)
+            self.show(stride, places[chosen], result.arrays["outcome"])
+            if progress is not None:
+                progress(done, len(places))
+        ends = np.cumsum([task.block.size for task in asked])
+        for task, end in zip(asked, ends, strict=True):
+            own = slice(end - task.block.size, end)
+            yield task, Computed({name: array[own] for name, array in found.items()})
+
+
+def _places(task: Task) -> Cells:
+    """Return the indices in the plane of each run of `task`, shape (n, 2)."""
+    across = np.meshgrid(*(np.arange(part.start, part.stop) for part in task.block.slices), indexing="ij")
+    return np.stack([axis.ravel() for axis in across], axis=-1)
+
+
+def _pieces(places: Cells) -> Iterator[tuple[int, Cells]]:
+    """Yield each stride with some of the runs that it adds; fast pieces are followed by larger ones."""
+    seen = np.zeros(len(places), dtype=bool)
+    size = _FIRST_PIECE
+    for stride in _STRIDES:
+        new = np.flatnonzero(~seen & (places % stride == 0).all(axis=1))
+        seen[new] = True
+        while len(new):
+            begun = time.monotonic()
+            yield stride, new[:size]
+            new = new[size:]
+            if time.monotonic() - begun < 0.5 * _SHOWN_EVERY:
+                size = min(2 * size, _LARGEST_PIECE)
+
+
+def _put(found: Arrays, chosen: Cells, arrays: Mapping[str, npt.NDArray[np.generic]], runs: int) -> None:
+    for name, values in arrays.items():
+        if name not in found:
+            found[name] = np.zeros((runs, *values.shape[1:]), dtype=values.dtype)
+        found[name][chosen] = values
+
+
+# Maps over numbers of a description that sweeps do not support, such as revolutions per minute or a height
+
+_BODY = tuple(name for name in COLUMN_NAMES if name not in ("slenderness", "size"))
+_MOVED = ("angular_frequency", "acceleration")
+
+
+def units_of(name: str) -> str:
+    """Return the unit of a number of a description; empty for a name that the study refuses."""
+    return next((part[name].cf_units for part in CASE_NUMBERS.values() if name in part), "")
+
+
+def case_numbers(values: Mapping[str, Any], over: Mapping[str, Floats]) -> dict[str, tuple[str, ...]]:
+    """Return the axes that are numbers of the described column or motion, by part; empty if sweeps support them all.
+
+    Sweeps can vary the radius of a body with given mass and inertia; for other bodies mass and inertia depend on it.
+    """
+    given = values["column"].get("shape") == "given"
+    found = {
+        part: tuple(name for name in over if name in values.get(part, {}))
+        for part, names in CASE_NUMBERS.items()
+        if any(name in values.get(part, {}) for name in over if name in names)
+    }
+    return {part: names for part, names in found.items() if not (part == "column" and given)}
+
+
+def case_map(
+    setup: config.Setup, values: Mapping[str, Any], *, executor: Executor, progress: Report | None = None
+) -> xr.Dataset:
+    """Compute a map whose axes are numbers of the described case.
+
+    Each run has the column and motion of the case with the numbers of its cell.
+
+    Parameters
+    ----------
+    setup, values
+        Model, motion and options of the map, and the plain values that describe it.
+    executor, progress
+        As in `run_sweep`. The runs form one row, with the second axis varying fastest.
+
+    Returns
+    -------
+    xarray.Dataset
+        An overturning map, or a contact map if the model slides, over `run`.
+
+    Raises
+    ------
+    ConfigError, ParameterError
+        If an axis has an impossible value.
+    """
+    options = {name: value for name, value in setup.options.items() if name != "over"}
+    sweep = Sweep.points(_without_height(setup.model), setup.motion, at=_at(values, setup.options["over"]), **options)
+    return labelled_sweep(sweep, labelled, executor=executor, progress=progress)
+
+
+def _without_height(model: Model) -> Model:
+    """Return `model` without the height of its body, which differs between runs."""
+    bare: Model = replace(model, column=replace(model.column, height=None))  # type: ignore[type-var]  # a dataclass
+    return bare
+
+
+def _at(values: Mapping[str, Any], over: Mapping[str, Floats]) -> dict[str, Floats]:
+    """Return the quantities of sweeps for each cell, with the second axis varying fastest."""
+    cells = dict(zip(over, (grid.ravel() for grid in np.meshgrid(*over.values(), indexing="ij")), strict=True))
+    found: dict[str, Floats] = {}
+    for part, names in case_numbers(values, over).items():
+        own = np.stack([cells.pop(name) for name in names], axis=1)
+        different, which = np.unique(own, axis=0, return_inverse=True)
+        read = [_READ[part](_with(values, part, dict(zip(names, row, strict=True)))) for row in different.tolist()]
+        found |= {name: np.array([one[name] for one in read])[which.ravel()] for name in read[0]}
+    return found | cells
+
+
+def _with(values: Mapping[str, Any], part: str, numbers: Mapping[str, float]) -> config.Setup:
+    """Return the setup of the case with other numbers of one part."""
+    case = {name: values[name] for name in ("column", "model", "motion") if name in values}
+    changed = {**case, part: {**case[part], **numbers}, "duration": 1.0}
+    return config.SimulationConfig.parse(changed).build()
+
+
+def _body(setup: config.Setup) -> dict[str, float]:
+    return {name: float(getattr(setup.model.column, name)) for name in _BODY}
+
+
+def _moved(setup: config.Setup) -> dict[str, float]:
+    found: dict[str, float] = {}
+    for name in _MOVED:
+        try:
+            found[name] = present_value(setup.model, setup.motion, name)
+        except UnsupportedError:
+            continue  # a motion without a frequency of its own
+    return found
+
+
+_READ: Mapping[str, Callable[[config.Setup], dict[str, float]]] = {"column": _body, "motion": _moved}

@@ -6,137 +6,121 @@ import time
 import traceback
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from enum import Enum
-from itertools import takewhile
 from typing import Any
 
 import anyio
 from anyio.abc import TaskGroup
 
-from stylobate.lab.limits import Limits
-from stylobate.lab.messages import Broken, Finished, Found, Lost, Note, Progress, Refused
-from stylobate.lab.refusals import RefusedError
-from stylobate.lab.worker_pool import Answer, Message, WorkerPool
+from stylobate.lab import pool
+from stylobate.lab.answers import Job, JobState
+from stylobate.lab.limits import Limits, RefusedError
 from stylobate.text import plural
 
 _log = logging.getLogger("stylobate.lab")
 
-
-class State(Enum):
-    """State of a job."""
-
-    WAITING = "waiting"
-    RUNNING = "running"
-    DONE = "done"
-    FAILED = "failed"
-    CANCELLED = "cancelled"
-
-
-_OPEN = (State.WAITING, State.RUNNING)
+_OPEN: tuple[JobState, ...] = ("waiting", "running")
 
 
 @dataclass(slots=True)
-class Job:
-    """A task of some `kind`, its state and its events."""
+class Work:
+    """The task of a job, its state and its events."""
 
     kind: str
     identity: str = field(default_factory=lambda: secrets.token_urlsafe(12))
-    state: State = State.WAITING
+    state: JobState = "waiting"
     done: int = 0
     total: int = 0
     note: str = ""
-    events: list[Mapping[str, Any]] = field(default_factory=list)
+    events: list[Any] = field(default_factory=list)
     problems: tuple[str, ...] = ()
     result: Any = None
     asked_at: float = field(default_factory=time.monotonic)
     scope: anyio.CancelScope = field(default_factory=anyio.CancelScope)
 
-    def heard(self, message: Message) -> None:
+    def heard(self, message: pool.Message) -> None:
         """Process a message during the computation."""
-        self.state = State.RUNNING
+        self.state = "running"
         match message:
-            case Found(value):
+            case pool.Found(value):
                 self.events.append(value)
-            case Progress(done, total):
+            case pool.Progress(done, total):
                 self.done, self.total = done, total
-            case Note(line):
+            case pool.Note(line):
                 self.note = line
 
-    def end(self, answer: Answer) -> None:
+    def end(self, answer: pool.Answer) -> None:
         """Process the answer at the end of the task."""
         self.note = ""
         match answer:
-            case Finished(result):
-                self.state, self.result = State.DONE, result
-            case Refused(problems):
-                self.state, self.problems = State.FAILED, problems
-            case Lost():
-                self.state, self.problems = State.FAILED, (answer.problem,)
-            case Broken(trace):
-                _log.error(trace)
-                self.state, self.problems = State.FAILED, (broken(trace),)
-
-    def report(self, after: int, ahead: int) -> dict[str, Any]:
-        """Describe the job in plain values: events from the number `after` on, `ahead` jobs before it in the queue."""
-        self.asked_at = time.monotonic()
-        waits = f"waits for {plural(ahead, 'other job')}" if self.state is State.WAITING and ahead else ""
-        return {
-            "id": self.identity,
-            "kind": self.kind,
-            "state": self.state.value,
-            "done": self.done,
-            "total": self.total,
-            "note": waits or self.note,
-            "events": self.events[after:],
-            "next": len(self.events),
-            "problems": list(self.problems),
-            "result": None if isinstance(self.result, bytes) else self.result,
-        }
+            case pool.Finished(result):
+                self.state, self.result = "done", result
+            case pool.Refused(problems):
+                self.state, self.problems = "failed", problems
+            case pool.Lost():
+                self.state, self.problems = "failed", (answer.problem,)
+            case pool.Broken(trace):
+                self.state, self.problems = "failed", (broken(trace),)
 
 
 @dataclass(slots=True)
 class Jobs:
-    """All jobs; they run in `pool`, in tasks of `group`."""
+    """All jobs; they run in `processes`, in tasks of `group`."""
 
-    pool: WorkerPool
+    processes: pool.Pool
     limits: Limits
     group: TaskGroup
-    _known: dict[str, Job] = field(default_factory=dict)
+    _known: dict[str, Work] = field(default_factory=dict)
 
-    def __getitem__(self, identity: str) -> Job:
+    def __getitem__(self, identity: str) -> Work:
         if identity not in self._known:
             raise RefusedError(404, ["this job does not exist (any more). Begin it again."])
         return self._known[identity]
 
-    def begin(self, kind: str, values: Mapping[str, Any]) -> Job:
-        """Begin a new job and return it.
+    def begin(self, kind: str, values: Mapping[str, Any]) -> str:
+        """Begin a new job and return its identity.
 
         Raises
         ------
         RefusedError
             If too many jobs wait.
         """
-        waiting = sum(job.state is State.WAITING for job in self._known.values())
+        waiting = sum(one.state == "waiting" for one in self._known.values())
         if waiting >= self.limits.waiting:
             raise RefusedError(429, [f"{waiting} jobs are already waiting. Cancel one, or try again when one is done."])
-        job = Job(kind)
+        job = Work(kind)
         self._known[job.identity] = job
         self.group.start_soon(self._run, job, values)
-        return job
+        return job.identity
 
-    def report(self, identity: str, after: int) -> dict[str, Any]:
-        """Return the state of a job as plain values, with the events from the number `after` on."""
+    def report(self, identity: str, after: int | None = None) -> Job:
+        """Return the state of a job, with the events from the number `after` on, or none."""
         job = self[identity]
-        earlier = takewhile(lambda one: one is not job, self._known.values())
-        return job.report(after, sum(one.state in _OPEN for one in earlier))
+        job.asked_at = time.monotonic()
+        ahead = 0
+        for one in self._known.values():
+            if one is job:
+                break
+            ahead += one.state in _OPEN
+        waits = f"waits for {plural(ahead, 'other job')}" if job.state == "waiting" and ahead else ""
+        return Job(
+            id=identity,
+            kind=job.kind,
+            state=job.state,
+            done=job.done,
+            total=job.total,
+            note=waits or job.note,
+            events=[] if after is None else job.events[after:],
+            next=len(job.events),
+            problems=list(job.problems),
+            result=None if isinstance(job.result, bytes) else job.result,
+        )
 
-    def cancel(self, identity: str) -> Job:
-        """Cancel the job unless it has ended, and return it."""
+    def cancel(self, identity: str) -> None:
+        """Cancel the job unless it has ended."""
         job = self[identity]
         if job.state in _OPEN:
-            job.state = State.CANCELLED
+            job.state = "cancelled"
             job.scope.cancel()
-        return job
 
     async def watch(self) -> None:
         """Remove abandoned jobs periodically; never returns."""
@@ -147,16 +131,17 @@ class Jobs:
                     self.cancel(job.identity)
                     del self._known[job.identity]
 
-    async def _run(self, job: Job, values: Mapping[str, Any]) -> None:
+    async def _run(self, job: Work, values: Mapping[str, Any]) -> None:
         with job.scope:
             try:
-                answer: Answer = await self.pool.perform(job.kind, values, job.heard)
+                answer = await self.processes.perform(job.kind, values, job.heard)
             except Exception:  # noqa: BLE001  a mistake in one job must not end the others
-                answer = Broken(traceback.format_exc())
+                answer = pool.Broken(traceback.format_exc())
             job.end(answer)
 
 
 def broken(trace: str) -> str:
-    """Return the line that reports a mistake in the program."""
+    """Log the traceback of a mistake in the program, and return the line that reports it."""
+    _log.error(trace)
     last = trace.strip().splitlines()[-1]
     return f"internal error of the laboratory: {last}. Please report it with the link of this page."

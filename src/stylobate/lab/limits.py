@@ -1,6 +1,10 @@
-"""Limits of the laboratory: size and duration of requests, runs and jobs."""
+"""Limits of the laboratory: size and duration of requests, runs and jobs; refusals of requests."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+
+_HIGHEST_DEGREE = 20
+"""Maximum degree of filters and baselines, which are badly conditioned far below it."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -15,14 +19,10 @@ class Limits:
         Size of a request with files of records [bytes].
     unpacked
         Size of a file of a record when it is unpacked [bytes].
-    receiving
-        Time limit for the arrival of a request [s].
-    connections
-        Maximum number of connections.
     uploads
         Size of all stored records [bytes]; the oldest are removed first.
     duration
-        Length of a run [s].
+        Length of a run, and of the pauses before and after a record [s].
     steps
         Maximum number of integration steps of a run.
     usual_steps
@@ -32,10 +32,6 @@ class Limits:
         Frequencies of a response curve.
     cells
         Runs of a map or basin.
-    motions
-        Number of motions that a base motion combines.
-    record_samples
-        Samples of all records of a base motion together.
     run_time
         Time limit for the computation of a single run [s].
     wait
@@ -53,16 +49,12 @@ class Limits:
     body: int = 1 << 20
     records: int = 24 << 20
     unpacked: int = 32 << 20
-    receiving: float = 30.0
-    connections: int = 128
     uploads: int = 256 << 20
     duration: float = 3600.0
     steps: int = 200_000
     usual_steps: int = 50_000
     points: int = 2000
     cells: int = 40_000
-    motions: int = 100
-    record_samples: int = 4_000_000
     run_time: float = 60.0
     wait: float = 120.0
     runs: int = 3
@@ -71,11 +63,29 @@ class Limits:
     abandoned: float = 120.0
 
     def of_numbers(self) -> dict[str, tuple[float, str]]:
-        """Return the maximum of each limited number of a run, with its unit, by name."""
+        """Return the maximum of each limited number of a description, with its unit, by name."""
         return {
-            "duration": (self.duration, "s"),
+            **dict.fromkeys(("duration", "tail", "before", "after", "length"), (self.duration, "s")),
             "max_steps": (self.steps, "steps"),
             "samples": (self.steps, "samples"),
             "points": (self.points, "frequencies"),
             "strobes": (self.points, "states"),
+            **dict.fromkeys(("order", "degree"), (_HIGHEST_DEGREE, "")),
         }
+
+
+class RefusedError(Exception):
+    """A refused request.
+
+    Attributes
+    ----------
+    status
+        HTTP status of the answer.
+    problems
+        One line for each reason, with the remedy.
+    """
+
+    def __init__(self, status: int, problems: Sequence[str]) -> None:
+        self.status = status
+        self.problems = tuple(problems)
+        super().__init__("\n".join(self.problems))

@@ -1,50 +1,45 @@
-"""Options of the laboratory: columns, models and motions with their parameters, and presets."""
+"""Options of the page: columns, models and motions with their parameters, and presets, from their declarations."""
 
-from collections.abc import Iterable
+import tomllib
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import asdict
 from importlib.metadata import version
+from importlib.resources import files
 from typing import Any, get_args
 
 from pydantic_core import PydanticUndefined
 
-from stylobate.base_motions.declared import composite_kinds
+from stylobate.base_motions.declared import composite_kinds, motion_quantities
 from stylobate.config.columns import ColumnConfig
 from stylobate.config.description import Config
 from stylobate.config.models import DESCRIBED_MODELS
 from stylobate.config.motions import MotionConfig, is_to_end
+from stylobate.engine.parameters import COLUMN_NAMES, MOTION_NAMES
 from stylobate.errors import Outcome
+from stylobate.lab import answers
 from stylobate.lab.limits import Limits
-from stylobate.lab.parameter_info import NUMBERS, VARIED, Number
-from stylobate.lab.presets import presets
+from stylobate.models.declared import column_quantities, model_quantities
+from stylobate.quantities import Quantity
 from stylobate.records.joining import sample_names
 
 
-def about(limits: Limits) -> dict[str, Any]:
-    """Return all options as plain values."""
-    motions = (
-        {**kind, "ends": is_to_end(kind)}
-        for kind in _kinds(_members(MotionConfig), "kind")
-        if kind["kind"] not in composite_kinds()  # available in files only
-    )
-    return {
-        "version": version("stylobate"),
-        "limits": asdict(limits),
-        "shapes": list(_kinds(_members(ColumnConfig), "shape")),
-        "models": list(_kinds(DESCRIBED_MODELS, "kind")),
-        "motions": list(motions),
-        "samples": [{"name": name, "about": "sample record"} for name in sample_names()],
-        "presets": [
-            {
-                "id": one.identity,
-                "title": one.title,
-                "about": one.about,
-                "description": one.description,
-                "view": one.view,
-            }
-            for one in presets()
+def about(limits: Limits) -> answers.About:
+    """Return all options."""
+    motions = _kinds(_members(MotionConfig), "kind")
+    return answers.About(
+        version=version("stylobate"),
+        limits=asdict(limits),
+        shapes=[answers.Kind(**one) for one in _kinds(_members(ColumnConfig), "shape")],
+        models=[answers.Kind(**one) for one in _kinds(DESCRIBED_MODELS, "kind")],
+        motions=[
+            answers.Kind(**one, ends=is_to_end(one))
+            for one in motions
+            if one["kind"] not in composite_kinds()  # available in files only
         ],
-        "outcomes": [{"name": one.name, "value": one.label, "code": int(one)} for one in Outcome],
-    }
+        samples=[answers.Sample(name=name, about="sample record") for name in sample_names()],
+        presets=presets(),
+        outcomes=[answers.OutcomeCode(name=one.name, value=one.label, code=int(one)) for one in Outcome],
+    )
 
 
 def _members(union: Any) -> tuple[type[Config], ...]:
@@ -53,28 +48,66 @@ def _members(union: Any) -> tuple[type[Config], ...]:
     return members
 
 
-def _kinds(descriptions: Iterable[type[Config]], tag: str) -> Iterable[dict[str, Any]]:
+def _kinds(descriptions: Iterable[type[Config]], tag: str) -> Iterator[dict[str, Any]]:
     for description in descriptions:
         summary = (description.__doc__ or "").partition("\n")[0]
         fields = sorted(description.model_fields.items(), key=lambda item: not item[1].is_required())
-        numbers = [_parameter(name, field) for name, field in fields if name != tag]
+        parameters = [_parameter(name, field) for name, field in fields if name != tag]
         for kind in get_args(description.model_fields[tag].annotation):
-            yield {"kind": kind, "name": kind.replace("_", " "), "about": summary, "parameters": numbers}
+            yield {"kind": kind, "name": kind.replace("_", " "), "about": summary, "parameters": parameters}
 
 
-def _parameter(name: str, field: Any) -> dict[str, Any]:
-    number = NUMBERS.get(name, Number())
+def _parameter(name: str, field: Any) -> answers.Parameter:
+    quantity = NUMBERS.get(name, Quantity())
+    first, last = quantity.slider or (None, None)
     default = None if field.default is PydanticUndefined else field.default
-    choices = [*number.choices, *(one for one in get_args(field.annotation) if isinstance(one, str))]
-    return {
-        "name": name,
-        "symbol": number.symbol,
-        "unit": number.unit,
-        "about": number.about,
-        "default": list(default) if isinstance(default, tuple) else default,
-        "needed": field.is_required(),
-        "varies": name in VARIED,
-        "from": number.first,
-        "to": number.last,
+    choices = [*quantity.choices, *(one for one in get_args(field.annotation) if isinstance(one, str))]
+    return answers.Parameter(
+        name=name,
+        symbol=quantity.symbol,
+        unit=quantity.unit,
+        about=quantity.text,
+        default=list(default) if isinstance(default, tuple) else default,
+        needed=field.is_required(),
+        varies=name in VARIED,
+        **{"from": first, "to": last},
         **({"choices": choices} if choices else {}),
-    }
+    )
+
+
+# Numbers
+
+NUMBERS: Mapping[str, Quantity] = {
+    **column_quantities(),
+    **model_quantities(),
+    **motion_quantities(),
+    "scale": Quantity(text="scale factor", slider=(0.1, 4.0)),
+    "rotation": Quantity(unit="rad", text="rotation about the vertical", slider=(-3.142, 3.142)),
+    "tail": Quantity(unit="s", text="free-vibration time after the record"),
+}
+"""The numbers of columns, models and base motions; without a range a slider is centred on the present value."""
+
+_PATHS_AND_RATES = ("m", "m/s", "Hz", "1/min")
+
+CASE_NUMBERS = {
+    # A sweep varies a radius at constant mass; the mass of a body of a described shape depends on its radius.
+    "column": {name: one for name, one in column_quantities().items() if name not in COLUMN_NAMES or name == "radius"},
+    # Displacements and rates, from which acceleration and angular frequency follow; a sweep supports these.
+    "motion": {
+        name: one for name, one in motion_quantities().items() if one.unit in _PATHS_AND_RATES and one.components == 1
+    },
+}
+"""Numbers that an axis can vary besides the quantities of sweeps, by the part that they describe."""
+
+VARIED = frozenset(
+    {*COLUMN_NAMES, *MOTION_NAMES, *model_quantities(), *CASE_NUMBERS["column"], *CASE_NUMBERS["motion"]}
+)
+"""The numbers of columns, models and base motions that a map can vary."""
+
+# Presets
+
+
+def presets() -> list[answers.Preset]:
+    """Return all presets, from `presets.toml` beside this file; the page opens with the first one."""
+    text = (files("stylobate.lab") / "presets.toml").read_text(encoding="utf-8")
+    return [answers.Preset(**{"view": {}, **one}) for one in tomllib.loads(text)["preset"]]

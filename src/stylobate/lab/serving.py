@@ -70,27 +70,24 @@ def serve(
         # The browser's connection waits in the queue of the socket until the server accepts it.
         app = create_app(hosts=hosts, token=token, limits=limits, ready=lambda: started(address))
         _end_with_the_terminal()
-        server_of(app, limits).run(sockets=[place])
+        server_of(app).run(sockets=[place])
 
 
-def server_of(app: "Starlette", limits: Limits | None = None) -> "uvicorn.Server":
-    """Return a server for the application, with bounds on its connections, that ends without waiting for requests."""
+def server_of(app: "Starlette") -> "uvicorn.Server":
+    """Return a server for the application, which ends without waiting for requests."""
     import uvicorn
 
     from stylobate.lab.app import end_processes
-    from stylobate.lab.connections import BACKLOG, bounded, close_incomplete
 
     class Server(uvicorn.Server):
         async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
             end_processes(app)
-            close_incomplete(self.server_state.connections)
             await super().shutdown(sockets)
 
     settings = uvicorn.Config(
         app,
-        http=bounded(limits or Limits()),
+        http="h11",
         ws="none",
-        backlog=BACKLOG,
         log_level="warning",
         timeout_graceful_shutdown=1,
     )

@@ -1,15 +1,15 @@
-"""Tasks of worker processes by name; each takes plain values and returns plain values."""
+"""Tasks of worker processes by name."""
 
-import json
 import math
 from collections.abc import Callable, Mapping
+from importlib import import_module
 from typing import Any
 
-from stylobate import config, engine
-from stylobate.lab.messages import Emit, Progress
-from stylobate.lab.remarks import remarks
-from stylobate.lab.request_parsing import Described
-from stylobate.lab.responses import plain_record, plain_run, snippets
+from stylobate import config, engine, studies
+from stylobate.config.description import Config
+from stylobate.lab.pool import Emit, Progress
+from stylobate.lab.requests import Description
+from stylobate.lab.runs import answered_run, record_contents, remarks
 
 _USUAL_LENGTH = 12.0
 """Usual duration of an animation [s]; longer if the base oscillates too fast to be visible."""
@@ -17,19 +17,15 @@ _PICTURES_PER_SECOND, _PICTURES_PER_PERIOD, _MOST_PICTURES = 25.0, 12.0, 1400
 
 _SAMPLES_PER_PERIOD, _FEWEST_SAMPLES, _MOST_SAMPLES = 48, 601, 2000
 
-# Imports inside tasks are heavy, and few processes need them.
 
-
-def run(given: Described, emit: Emit) -> bytes:
+def run(given: Description, emit: Emit) -> bytes:
     """Compute one run with its histories and motion, as JSON, so that the server need not encode it."""
     del emit
     with remarks(given.values) as remarked:
         setup = config.SimulationConfig.parse(given.values).build()
     samples = setup.options["samples"] or _enough(setup)
     found = engine.simulate(setup.model, setup.motion, **{**setup.options, "samples": samples})
-    answer = {**plain_run(found, setup.model), **snippets(given)}
-    answer["warnings"] = [*remarked, *answer["warnings"]]
-    return json.dumps(answer, separators=(",", ":")).encode()
+    return answered_run(found, setup.model, given, remarked).as_json()
 
 
 def _enough(setup: config.Setup) -> int:
@@ -43,37 +39,8 @@ def record(values: Mapping[str, Any], emit: Emit) -> dict[str, Any]:
     """Read a record; return its contents, and the warnings about its files."""
     del emit
     with remarks(values) as remarked:
-        found = plain_record(config.RecordMotion.parse(values).build())
+        found = record_contents(config.RecordMotion.parse(values).build())
     return {**found, "warnings": remarked}
-
-
-def start(values: Mapping[str, Any], emit: Emit) -> dict[str, Any]:
-    """Compute initial conditions on a branch of steady rolling."""
-    from stylobate.lab.starts import start as start_on_branch
-
-    del emit
-    return start_on_branch(values)
-
-
-def exact(values: Mapping[str, Any], emit: Emit) -> dict[str, Any]:
-    """Compute exact periodic orbits over a range of frequencies, with their bifurcations."""
-    from stylobate.lab.curves import exact_curves
-
-    return exact_curves(values, emit)
-
-
-def overturning(values: Mapping[str, Any], emit: Emit) -> dict[str, Any]:
-    """Compute the map over two quantities."""
-    from stylobate.lab.grids import overturning_plane
-
-    return overturning_plane(values, emit)
-
-
-def basin(values: Mapping[str, Any], emit: Emit) -> dict[str, Any]:
-    """Compute basins of attraction over two initial conditions."""
-    from stylobate.lab.grids import basin_plane
-
-    return basin_plane(values, emit)
 
 
 def animation(values: Mapping[str, Any], emit: Emit) -> bytes:
@@ -98,15 +65,31 @@ def speed_of_pictures(setup: config.Setup, end: float) -> float:
 def warm_up() -> None:
     """Import and compile the code that every run needs."""
     values = {"column": {"shape": "dimensionless", "slenderness": 0.1}, "tilt": [0.02, 0.0], "duration": 1.0}
-    run(Described(values, values), lambda _: None)
+    run(Description(values, values), lambda _: None)
 
 
-TASKS: Mapping[str, Callable[[Any, Emit], Any]] = {
-    "run": run,
-    "record": record,
-    "start": start,
-    "exact": exact,
-    "map": overturning,
-    "basin": basin,
-    "animation": animation,
+JOBS: Mapping[str, type[Config]] = {
+    "exact": config.ResponseConfig,
+    "map": config.study_config(studies.overturning_map),
+    "basin": config.study_config(studies.basins),
+    "animation": config.SimulationConfig,
 }
+"""The description of each kind of job; `stylobate.lab.answers.Job` has its kind and its result."""
+
+_TASKS = {
+    "run": "tasks:run",
+    "record": "tasks:record",
+    "start": "curves:start",
+    "exact": "curves:exact_curves",
+    "map": "grids:overturning_plane",
+    "basin": "grids:basin_plane",
+    "animation": "tasks:animation",
+}
+"""Module and function of each task, imported by the processes that need it."""
+
+
+def task(kind: str) -> Callable[[Any, Emit], Any]:
+    """Return the task of this `kind`, which takes plain values and sends messages during the computation."""
+    module, _, name = _TASKS[kind].partition(":")
+    found: Callable[[Any, Emit], Any] = getattr(import_module(f"stylobate.lab.{module}"), name)
+    return found

@@ -8,7 +8,7 @@ with ending_with_parent():  # a fork server does not notice the end of its paren
     import xarray
 
     from stylobate.engine import single
-    from stylobate.lab import tasks, worker
+    from stylobate.lab import pool, tasks
 
     # The first dataset imports the array libraries that xarray finds.
     xarray.Dataset({"time": ("time", [0.0])})
@@ -16,4 +16,4 @@ with ending_with_parent():  # a fork server does not notice the end of its paren
 # No process searches these objects again; a search at the end of one takes longer than all else.
 gc.freeze()
 
-__all__ = ["single", "tasks", "worker"]
+__all__ = ["pool", "single", "tasks"]

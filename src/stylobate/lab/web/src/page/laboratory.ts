@@ -2,7 +2,6 @@
 
 import type { Clock, Stage, Theme } from "../viewer/index";
 import type { About } from "./case/about";
-import { Address } from "./view/address";
 import type { Answer } from "./server/answers";
 import { Refused, Unreachable } from "./server/api";
 import type { ResponsePanel } from "./charts/response-panel";
@@ -17,7 +16,6 @@ import { Job, problemsIn } from "./server/job";
 import { Help } from "./frame/help";
 import { listenToKeys } from "./frame/keys";
 import { Latest } from "./server/latest";
-import { inWords } from "./view/link";
 import { menuOf } from "./view/menu";
 import { MotionView } from "./motion/motion-view";
 import { paceOf } from "./motion/pace";
@@ -35,7 +33,7 @@ import { startAlike, startOf } from "./case/starting";
 import type { Run, WantedRun } from "./server/run";
 import { run } from "./server/run";
 import { setUnitsOf } from "./frame/units";
-import { firstView, viewOfLink, viewOfPreset } from "./view/views";
+import { Address, firstView, inWords, viewOfLink, viewOfPreset } from "./view/link";
 
 /** Before the first answer: the column of the equations. */
 const ANY_COLUMN: ColumnScales = { slenderness: 0.1, frequency_scale: 1 };

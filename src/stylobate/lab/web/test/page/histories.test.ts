@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import type { Answer, Series } from "../../src/page/server/answers";
-import { brokenAt } from "../../src/page/frame/captioned";
+import { brokenAt } from "../../src/page/frame/exports";
 import type { HistoryName, RunShown } from "../../src/page/charts/history-kinds";
 import { chosenHistories, historyOf, offeredHistories } from "../../src/page/charts/history-kinds";
 

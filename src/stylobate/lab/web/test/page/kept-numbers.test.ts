@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import type { Kind, Parameter } from "../../src/page/case/about";
-import { KeptNumbers } from "../../src/page/controls/kept-numbers";
+import { KeptNumbers } from "../../src/page/controls/controls";
 import { partOfKind } from "../../src/page/controls/part-form";
 
 const of = (kind: string, ...parameters: readonly Parameter[]): Kind => ({ kind, name: kind, parameters });

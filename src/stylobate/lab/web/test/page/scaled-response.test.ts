@@ -2,7 +2,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import type { Described, ResponseCurves } from "../../src/page/server/answers";
 import type { Part } from "../../src/page/case/description";
-import { ScaledResponse } from "../../src/page/server/scaled-response";
+import { ScaledResponse } from "../../src/page/charts/response-asking";
 
 const CURVES: ResponseCurves = { angular_frequency: [], branches: [], backbone: [], critical: [], averaged: true };
 const SIGNAL = new AbortController().signal;

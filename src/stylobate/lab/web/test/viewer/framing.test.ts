@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { PerspectiveCamera, Vector3 } from "three";
-import { frame } from "../../src/viewer/framing";
+import { frame } from "../../src/viewer/look";
 
 const BOXES = [
   [0.3, 0.3, 10],

@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { convexHull, outwardNormals } from "../../src/viewer/outline";
+import { convexHull, outwardNormals } from "../../src/viewer/shadow";
 
 const CORNERS = [
   [0, 0],

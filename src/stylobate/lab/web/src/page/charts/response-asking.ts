@@ -1,20 +1,54 @@
 /** The frequency response of the case that is shown: curves at once, exact orbits on request. */
 
-import type { JobReport } from "../server/answers";
-import { describe, response, Unreachable } from "../server/api";
-import { mayTurn } from "../case/starting";
-import type { ExactOrbit } from "./response-plot";
-import { ResponsePanel } from "./response-panel";
-import type { Part } from "../case/description";
-import { without, written } from "../case/description";
+import { type Part, isPart, without, written } from "../case/description";
 import { angularFrequency, withAngularFrequency } from "../case/frequency";
+import type { ColumnScales } from "../case/quantities";
+import { mayTurn } from "../case/starting";
+import type { Described, JobReport, ResponseCurves } from "../server/answers";
+import { Unreachable, describe, response } from "../server/api";
 import type { Job } from "../server/job";
 import { Latest } from "../server/latest";
-import type { ColumnScales } from "../case/quantities";
 import { exactRequest, isSlender, responseRequest, usualRange } from "../server/requests";
-import type { ScaledCurves } from "../server/scaled-response";
-import { ScaledResponse } from "../server/scaled-response";
 import type { View } from "../view/state";
+import { ResponsePanel } from "./response-panel";
+import type { ExactOrbit } from "./response-plot";
+
+/** Response curves with the slenderness of the very column that they are of: they are drawn in units of it. */
+export interface ScaledCurves {
+  readonly curves: ResponseCurves;
+  readonly slenderness: number;
+}
+
+type AskCurves = (body: Part, signal: AbortSignal) => Promise<ResponseCurves>;
+type AskDescribed = (description: Part) => Promise<Described>;
+
+export class ScaledResponse {
+  readonly #response: AskCurves;
+  readonly #describe: AskDescribed;
+  /** The column that was described last: most requests are of the same one. */
+  #known = { column: "", slenderness: 0 };
+
+  constructor(response: AskCurves, describe: AskDescribed) {
+    this.#response = response;
+    this.#describe = describe;
+  }
+
+  async ask(body: Part, signal: AbortSignal): Promise<ScaledCurves> {
+    const [curves, slenderness] = await Promise.all([this.#response(body, signal), this.#slenderness(body["column"])]);
+    return { curves, slenderness };
+  }
+
+  /** The run of the case may be answered later than its curves, or not at all: the column is asked for by itself. */
+  async #slenderness(given: Part[string] | undefined): Promise<number> {
+    const column = isPart(given) ? given : {};
+    const wanted = written(column);
+    if (wanted === this.#known.column) return this.#known.slenderness;
+    const answer = await this.#describe({ column, duration: 1 });
+    if (answer.column === undefined) throw new Error("the server did not describe the column");
+    this.#known = { column: wanted, slenderness: answer.column.slenderness };
+    return answer.column.slenderness;
+  }
+}
 
 /** Why a run is not started on an orbit of a column that may turn. */
 const SPINS = "These orbits spin about the axis at a rate that is unknown here. Start on the upper branch instead.";

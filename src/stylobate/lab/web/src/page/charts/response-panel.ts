@@ -1,19 +1,38 @@
 /** The frequency response: curves of theory, exact orbits on request, and the frequency that is shown. */
 
-import type { ExactResponse, JobReport, ResponseCurves } from "../server/answers";
 import { button, element, newId, onResize } from "../frame/dom";
-import { enlarging } from "../frame/enlarging";
 import { Elapsed } from "../frame/elapsed";
-import { axisLabel, capital, plain, readNumber, formatted, unitWritten } from "../frame/format";
+import { enlarging } from "../frame/enlarging";
+import { axisLabel, capital, counted, formatted, plain, readNumber, unitWritten, words } from "../frame/format";
 import { joined } from "../frame/units";
+import type { ExactResponse, JobReport, ResponseCurves } from "../server/answers";
 import type { Job } from "../server/job";
-import type { Extent } from "./frequency-marker";
-import { FrequencyMarker } from "./frequency-marker";
+import { type Extent, FrequencyMarker } from "./frequency-marker";
 import { AXIS_WIDTH } from "./plot-looks";
 import { heightOf, linesOf } from "./response-lines";
-import type { ExactOrbit } from "./response-plot";
-import { ResponsePlot } from "./response-plot";
-import { aboutCurves, aboutExact } from "./response-texts";
+import { type ExactOrbit, ResponsePlot } from "./response-plot";
+
+/** Returns whose curves are shown, and how they were computed. */
+function aboutCurves(curves: ResponseCurves, own: boolean): string {
+  const how = curves.averaged ? "by averaging" : "in closed form";
+  return own
+    ? `Steady rolling, ${how}.`
+    : `Steady rolling of a slender column that cannot spin, ${how}; exact orbits are those of this model.`;
+}
+
+/** Returns how many families of exact orbits there are, and where they bifurcate. */
+function aboutExact(exact: ExactResponse): string {
+  const families = counted(exact.families.length, "family", "families");
+  const kinds = [...new Set(exact.bifurcations.map((one) => one.kind))];
+  const found = kinds.map((kind) => {
+    const places = exact.bifurcations.filter((one) => one.kind === kind).map((one) => one.angular_frequency);
+    return `${words(kind)} at ${places
+      .sort((a, b) => a - b)
+      .map((one) => formatted(one, 4))
+      .join(", ")}`;
+  });
+  return `${families} of exact orbits; ${found.length > 0 ? joined(found.join("; "), "rad/s") : "no bifurcation in the range"}. Click a dot to start on that orbit.`;
+}
 
 export interface ResponseHearing {
   readonly frequency: (value: number) => void;

@@ -1,21 +1,55 @@
 /** The column of controls: preset, column, model, base motion, start and length. */
 
-import type { About, Kind, Preset } from "../case/about";
-import { kindNamed, kindsOf } from "../case/about";
-import type { Description, Part, PartName, Value } from "../case/description";
-import { kindOf, tagOf, withPartValue, written } from "../case/description";
-import { button, choice, element, newId } from "../frame/dom";
+import { type About, type Kind, type Parameter, type Preset, kindNamed, kindsOf } from "../case/about";
+import {
+  type Description,
+  type Part,
+  type PartName,
+  type Value,
+  kindOf,
+  tagOf,
+  withPartValue,
+  written,
+} from "../case/description";
 import { angularFrequency, withAngularFrequency } from "../case/frequency";
-import { inOnePlane, PlaneTurn } from "../case/in-one-plane";
-import { atScaleOf } from "../case/scaling";
+import { PlaneTurn, inOnePlane } from "../case/in-one-plane";
 import type { ColumnScales } from "../case/quantities";
-import type { Wrong } from "../frame/problems";
+import { atScaleOf } from "../case/scaling";
 import type { Branch } from "../case/starting";
-import { KeptNumbers } from "./kept-numbers";
+import { button, choice, element, newId } from "../frame/dom";
+import type { Wrong } from "../frame/problems";
 import { NumberField } from "./number-field";
 import { PartForm, partOfKind } from "./part-form";
 import { RecordForm } from "./record-form";
 import { StartForm } from "./start-form";
+
+/** The numbers of the kinds that a part has been of: another kind that has them too begins with them. */
+export class KeptNumbers {
+  readonly #values = new Map<string, Value>();
+
+  keep(kind: Kind, part: Part): void {
+    for (const parameter of kind.parameters) {
+      const value = part[parameter.name];
+      if (value !== undefined) this.#values.set(quantityOf(parameter), value);
+    }
+  }
+
+  /** Returns the numbers that were kept of those that the kind has. */
+  of(kind: Kind): Part {
+    const found = kind.parameters.map((one) => [one.name, this.#values.get(quantityOf(one))] as const);
+    return Object.fromEntries(found.filter((one): one is readonly [string, Value] => one[1] !== undefined));
+  }
+
+  /** What was kept belongs to another case. */
+  forget(): void {
+    this.#values.clear();
+  }
+}
+
+/** An amplitude in m is not one in m/s². */
+function quantityOf({ name, unit }: Parameter): string {
+  return `${name} [${unit ?? ""}]`;
+}
 
 export interface ControlsHearing {
   /** A number has been moved. */

@@ -1,13 +1,100 @@
 /** The menu of what can be taken along: pictures, the same run as Python or TOML, a link. */
 
 import type { Stage } from "../../viewer/index";
+import type { Part } from "../case/description";
 import type { Described } from "../server/answers";
 import { jobFile } from "../server/api";
-import { captioned } from "./captioned";
-import type { Part } from "../case/description";
-import { button, download, element } from "./dom";
 import { Job, problemsIn } from "../server/job";
-import { TextDialog } from "./text-dialog";
+import { button, download, element, themeColour } from "./dom";
+
+const LETTERS = 14; // px of a picture 800 px wide
+const WIDTH = 800;
+
+/** Returns `picture` as PNG with `lines` below it, broken where they are too long. */
+export async function captioned(picture: Blob, lines: readonly string[]): Promise<Blob> {
+  const drawn = await createImageBitmap(picture);
+  const unit = Math.max(drawn.width / WIDTH, 1);
+  const [size, margin] = [LETTERS * unit, 12 * unit];
+  const canvas = document.createElement("canvas");
+  const pen = canvas.getContext("2d");
+  if (pen === null) throw new Error("This browser cannot save the canvas as a picture. Take a screenshot instead");
+  const font = `${size}px system-ui, sans-serif`;
+  pen.font = font;
+  const room = drawn.width - 2 * margin;
+  const broken = lines.flatMap((line) => brokenAt(line, (text) => pen.measureText(text).width <= room));
+  const height = 1.4 * size;
+  canvas.width = drawn.width;
+  canvas.height = Math.ceil(drawn.height + 2 * margin + broken.length * height);
+  pen.fillStyle = themeColour("panel");
+  pen.fillRect(0, 0, canvas.width, canvas.height);
+  pen.drawImage(drawn, 0, 0);
+  pen.font = font; // a canvas that changes its size forgets it
+  pen.fillStyle = themeColour("ink");
+  pen.textBaseline = "top";
+  broken.forEach((line, i) => pen.fillText(line, margin, drawn.height + margin + i * height));
+  return new Promise((done, failed) => {
+    canvas.toBlob(
+      (blob) => (blob === null ? failed(new Error("The browser could not write the picture as PNG")) : done(blob)),
+      "image/png",
+    );
+  });
+}
+
+/** Returns `text` in lines of whole words that fit; a word that is too long has a line of its own. */
+export function brokenAt(text: string, fits: (line: string) => boolean): readonly string[] {
+  const lines: string[] = [];
+  let line = "";
+  for (const word of text.split(" ")) {
+    const longer = line === "" ? word : `${line} ${word}`;
+    if (line !== "" && !fits(longer)) {
+      lines.push(line);
+      line = word;
+    } else line = longer;
+  }
+  return line === "" ? lines : [...lines, line];
+}
+
+/** A text to copy or to save. */
+class TextDialog {
+  readonly root = element("dialog", { class: "text-dialog" });
+  readonly #title = element("h2", {});
+  readonly #text = element("pre", { tabindex: 0 });
+  readonly #copy = button("Copy", { class: "primary" }, () => void this.#copied());
+  readonly #save = button("Save", {}, () => download(new Blob([this.#content], { type: "text/plain" }), this.#name));
+  #content = "";
+  #name = "";
+
+  constructor() {
+    const close = button("Close", {}, () => this.root.close());
+    const bar = element("div", { class: "dialog-bar" }, this.#copy, this.#save, close);
+    this.root.append(this.#title, this.#text, bar);
+    this.root.addEventListener("click", (event) => {
+      if (event.target === this.root) this.root.close(); // beside the box
+    });
+  }
+
+  /** Opens with a text; one without a file name is not to be saved. */
+  show(title: string, content: string, name: string | null): void {
+    this.#title.textContent = title;
+    this.#text.textContent = content;
+    this.#content = content;
+    this.#name = name ?? "";
+    this.#save.hidden = name === null;
+    this.#copy.textContent = "Copy";
+    this.root.showModal();
+  }
+
+  async #copied(): Promise<void> {
+    try {
+      await navigator.clipboard.writeText(this.#content);
+      this.#copy.textContent = "Copied";
+    } catch {
+      // Browsers may refuse; then the text is chosen, and the user's own keys copy it.
+      getSelection()?.selectAllChildren(this.#text);
+      this.#copy.textContent = "Press Ctrl+C to copy";
+    }
+  }
+}
 
 export interface Exported {
   /** The stage of which pictures are taken. */

@@ -1,17 +1,54 @@
 /** The motion in all its pictures, led by one clock: stage, histories, orbit, verdict. */
 
 import { Clock, Stage, type Theme, withFall } from "../../viewer/index";
-import type { Answer } from "../server/answers";
-import type { HistoryPair } from "../charts/history-kinds";
 import { Histories } from "../charts/histories";
+import type { HistoryPair } from "../charts/history-kinds";
 import { OrbitChart } from "../charts/orbit";
 import { button, element } from "../frame/dom";
 import { Elapsed } from "../frame/elapsed";
+import { capital } from "../frame/format";
 import { shownUnit } from "../frame/units";
-import { OldNote } from "./old-note";
-import { NumbersTable } from "./numbers-table";
+import type { Answer } from "../server/answers";
 import { Transport } from "./transport";
 import { Verdict } from "./verdict";
+
+/** The line under the stage that says why the case that was asked for is not shown. */
+class OldNote {
+  readonly root = element("div", { class: "old-note", hidden: true });
+  /** Hidden from readers of the screen, who hear the same lines from the controls. */
+  readonly #lines = element("div", { "aria-hidden": "true" });
+  readonly #again: HTMLButtonElement;
+
+  /** `again` hears that a run that was cancelled is wanted after all. */
+  constructor(again: () => void) {
+    this.#again = button("Compute again", { class: "small" }, again);
+    this.root.append(this.#lines, this.#again);
+  }
+
+  /** Shows the lines, whether an earlier case is seen meanwhile, and whether the case can be computed again. */
+  show(lines: readonly string[], { earlier, again = false }: { earlier: boolean; again?: boolean }): void {
+    const all = earlier ? [...lines, "Shown: the last case that could be computed."] : lines;
+    this.#lines.replaceChildren(...all.map((line) => element("p", {}, line)));
+    this.#again.hidden = !again;
+    this.root.hidden = !earlier && !again;
+  }
+
+  hide(): void {
+    this.root.hidden = true;
+  }
+}
+
+/** The numbers of the column and of the run, as the command line prints them. */
+class NumbersTable {
+  readonly root = element("div", { class: "numbers", tabindex: 0, role: "region", "aria-label": "Numbers of the run" });
+
+  show({ summary }: Answer): void {
+    const rows = summary.map(([label, text]) =>
+      element("tr", {}, element("th", { scope: "row" }, capital(label)), element("td", {}, text)),
+    );
+    this.root.replaceChildren(element("table", {}, element("tbody", {}, ...rows)));
+  }
+}
 
 /** The message of a run that takes long. */
 const FIRST = "computing… The first run of a model and long runs take time;";

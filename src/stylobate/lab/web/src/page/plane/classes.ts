@@ -1,13 +1,28 @@
 /** The classes of a plane: what its codes mean, how they look, and the legend that shows both. */
 
-import type { Attractor } from "../server/answers";
 import { element } from "../frame/dom";
 import { formatted } from "../frame/format";
-import type { Cells } from "./cells";
-import { UNKNOWN } from "./cells";
-import type { Look } from "./looks";
-import { looksOf } from "./looks";
-import { swatch } from "./swatch";
+import type { Attractor } from "../server/answers";
+import { type Cells, UNKNOWN } from "./cells";
+import { type Look, looksOf, rgbOf } from "./looks";
+
+const [WIDTH, HEIGHT] = [18, 12];
+
+/** A small piece of a look, for legends. */
+function swatch(look: Look): HTMLCanvasElement {
+  const canvas = element("canvas", { class: "swatch", width: WIDTH, height: HEIGHT, "aria-hidden": "true" });
+  const pen = canvas.getContext("2d");
+  if (pen === null) return canvas;
+  const image = pen.createImageData(WIDTH, HEIGHT);
+  const [colour, ink] = [rgbOf(look.colour), rgbOf(look.ink)];
+  for (let y = 0; y < HEIGHT; y += 1) {
+    for (let x = 0; x < WIDTH; x += 1) {
+      image.data.set([...(look.texture?.(x, y) ? ink : colour), 255], 4 * (y * WIDTH + x));
+    }
+  }
+  pen.putImageData(image, 0, 0);
+  return canvas;
+}
 
 export type Names = readonly (readonly [code: number, name: string])[];
 

@@ -1,12 +1,15 @@
-/** The server's answers by the names that the page uses; their types follow from the OpenAPI document. */
+/** The server's answers by the names that the page uses; their types follow from `stylobate.lab.answers`. */
 
 import type * as schema from "./schema";
 
 export type {
+  Attractor,
   ColumnNumbers,
   Described,
   ExactOrbits as ExactResponse,
   Job as JobReport,
+  OrbitFamily as ExactFamily,
+  PlaneAxis as ComputedAxis,
   PlaneBegun as AxesEvent,
   PlaneCells as CellsEvent,
   Run as Answer,
@@ -16,12 +19,9 @@ export type {
 } from "./schema";
 
 export type Numbers = readonly (number | null)[];
-export type ExactFamily = schema.ExactOrbits["families"][number];
-export type ComputedAxis = schema.PlaneBegun["axes"]["x"];
-export type Attractor = schema.BasinResult["attractors"][number];
 
 /** A branch of a response, or two of opposite senses that look the same. */
-export type ResponseBranch = Omit<schema.ResponseCurves["branches"][number], "sense" | "branch" | "stable"> & {
+export type ResponseBranch = Omit<schema.CurveBranch, "sense" | "branch" | "stable"> & {
   readonly sense: string;
   readonly branch: string;
   readonly stable: readonly (boolean | null)[];

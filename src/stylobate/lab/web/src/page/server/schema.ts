@@ -1,24 +1,19 @@
-/** Types of the server's answers, written by tools/page_types.py from its OpenAPI document. Do not edit. */
+/** Types of the answers, written by tools/page_types.py from stylobate.lab.answers. Do not edit. */
 
 /** Options of the laboratory. */
 export type About = {
   /** version of stylobate */
   readonly version: string;
-  /** Limits on requests. */
   readonly limits: {
     readonly body: number;
     readonly records: number;
     readonly unpacked: number;
-    readonly receiving: number;
-    readonly connections: number;
     readonly uploads: number;
     readonly duration: number;
     readonly steps: number;
     readonly usual_steps: number;
     readonly points: number;
     readonly cells: number;
-    readonly motions: number;
-    readonly record_samples: number;
     readonly run_time: number;
     readonly wait: number;
     readonly runs: number;
@@ -33,28 +28,27 @@ export type About = {
   /** kinds of base motions */
   readonly motions: readonly Kind[];
   /** sample records */
-  readonly samples: readonly ({
-    readonly name: string;
-    readonly about: string;
-  })[];
+  readonly samples: readonly Sample[];
   /** example motions */
-  readonly presets: readonly ({
-    readonly id: string;
-    readonly title: string;
-    readonly about: string;
-    /** body for /api/simulate */
-    readonly description: Readonly<Record<string, unknown>>;
-    /** view on the page */
-    readonly view: Readonly<Record<string, unknown>>;
-  })[];
+  readonly presets: readonly Preset[];
   /** the possible outcomes */
-  readonly outcomes: readonly ({
-    readonly name: "AT_REST" | "ROCKING" | "ROLLING" | "MODULATED" | "OVERTURNED" | "STILL_MOVING" | "LIMIT_REACHED" | "LIFTED_OFF" | "FAILED" | "SLID" | "SURVIVED" | "STOPPED" | "PERIODIC" | "APERIODIC";
-    /** outcome in words */
-    readonly value: string;
-    /** code in maps */
-    readonly code: number;
-  })[];
+  readonly outcomes: readonly OutcomeCode[];
+};
+
+/** An attractor, with its share of all initial conditions. */
+export type Attractor = {
+  /** name as in names */
+  readonly name: string;
+  /** kind of outcome */
+  readonly kind: string;
+  /** period in periods of the base; 0 if there is none */
+  readonly period: number;
+  /** share of all initial conditions */
+  readonly fraction: number | null;
+  /** lower end of its interval */
+  readonly fraction_low: number | null;
+  /** upper end of its interval */
+  readonly fraction_high: number | null;
 };
 
 /** The result of a basin: the attractor of each initial condition. */
@@ -63,31 +57,29 @@ export type BasinResult = {
   readonly uncertain: number;
   /** number of runs */
   readonly runs: number;
-  /** a row for each value of x */
+  /** a row for each value of x, with a code for each value of y */
   readonly codes: readonly (readonly number[])[];
   /** codes and their meanings */
   readonly names: readonly (readonly [number, string])[];
-  /** the attractors */
-  readonly attractors: readonly ({
-    /** name as in names */
-    readonly name: string;
-    /** kind of outcome */
-    readonly kind: string;
-    /** period in periods of the base; 0 if there is none */
-    readonly period: number;
-    /** share of all initial conditions */
-    readonly fraction: number | null;
-    /** lower end of its interval */
-    readonly fraction_low: number | null;
-    /** upper end of its interval */
-    readonly fraction_high: number | null;
-  })[];
+  readonly attractors: readonly Attractor[];
 };
 
 /** A new job. */
 export type Begun = {
   /** identity of the job in requests */
   readonly id: string;
+};
+
+/** A bifurcation of a family. */
+export type Bifurcation = {
+  /** kind, such as Neimark-Sacker */
+  readonly kind: string;
+  /** [rad/s] */
+  readonly angular_frequency: number;
+  /** [rad] */
+  readonly mean_tilt: number;
+  /** whether it is supercritical; null if undecided */
+  readonly supercritical: boolean | null;
 };
 
 /** The decisive numbers of the column. */
@@ -118,16 +110,41 @@ export type ColumnNumbers = {
   readonly uplift_acceleration: number;
 };
 
+/** Kind of contact between column and plane: the value of the last state. */
+export type Contact = 0 | 1 | 2 | 3 | 4 | 5;
+
 /** The result of a map of a model that slides: kinds of contact. */
 export type ContactMapResult = {
   /** runs whose outcome is numerically uncertain: rounding or the rest threshold could alter it */
   readonly uncertain: number;
   /** number of runs */
   readonly runs: number;
-  /** a row for each value of x */
+  /** a row for each value of x, with a code for each value of y */
   readonly codes: readonly (readonly number[])[];
   /** codes and their meanings */
   readonly names: readonly (readonly [number, string])[];
+};
+
+/** The frequency at which the upper branch loses its stability. */
+export type CriticalFrequency = {
+  /** sense of rolling, seen from above */
+  readonly sense: "anticlockwise" | "clockwise";
+  /** [rad/s], null if there is none */
+  readonly angular_frequency: number | null;
+};
+
+/** One branch of steady rolling; null at frequencies without such rolling. */
+export type CurveBranch = {
+  /** sense of rolling, seen from above */
+  readonly sense: "anticlockwise" | "clockwise";
+  /** one of the two solutions */
+  readonly branch: "lower" | "upper";
+  /** tilt [rad] */
+  readonly amplitude: readonly (number | null)[];
+  /** phase of the lean relative to the base acceleration [rad] */
+  readonly phase: readonly (number | null)[];
+  /** whether the motion is stable */
+  readonly stable: readonly boolean[];
 };
 
 /** The snippets and the column of a description, without a run. */
@@ -139,9 +156,12 @@ export type Described = {
   readonly column: ColumnNumbers;
 };
 
+/** OpenAPI 3.1. */
+export type Document = Readonly<Record<string, unknown>>;
+
 /** The motion to draw, at equal time steps: lengths in m in the frame of the base, z upwards. Null for quantities that the model does not provide. */
 export type DrawnMotion = {
-  /** The body. */
+  /** the body */
   readonly column: {
     /** radius of the base [m] */
     readonly radius: number;
@@ -155,13 +175,7 @@ export type DrawnMotion = {
     readonly slenderness: number;
     readonly [name: string]: unknown;
   };
-  readonly plane: {
-    /** [rad] */
-    readonly incline: number;
-    /** [rad] */
-    readonly incline_direction: number;
-    readonly [name: string]: unknown;
-  };
+  readonly plane: DrawnPlane;
   /** [s] */
   readonly time: readonly number[];
   /** tilt vector θ(cos β, sin β) [rad] */
@@ -170,6 +184,7 @@ export type DrawnMotion = {
   readonly tilt_rate: readonly (readonly [number, number])[];
   /** twist χ about the axis [rad] */
   readonly twist: readonly number[];
+  /** angular velocity about the axis [rad/s] */
   readonly spin: readonly number[] | null;
   /** centre of the circle on the base about which the contact point lies [m] */
   readonly footprint: readonly (readonly [number, number])[];
@@ -177,6 +192,7 @@ export type DrawnMotion = {
   readonly contact_point: readonly (readonly [number, number])[];
   /** 1 if the whole base face is in contact */
   readonly resting: readonly (0 | 1)[];
+  /** height of the lowest point above the base [m] */
   readonly clearance: readonly number[] | null;
   /** displacement of the base [m] */
   readonly base: readonly (readonly [number, number, number])[];
@@ -184,10 +200,10 @@ export type DrawnMotion = {
   readonly rotation: readonly (readonly [number, number, number, number])[];
   /** centre of the bottom circle [m] */
   readonly centre: readonly (readonly [number, number, number])[];
+  /** friction over normal force */
   readonly friction_demand: readonly (number | null)[] | null;
   /** friction coefficient of the contact, if known */
   readonly friction_coefficient: number | null;
-  /** the outcome */
   readonly outcome: "AT_REST" | "ROCKING" | "ROLLING" | "MODULATED" | "OVERTURNED" | "STILL_MOVING" | "LIMIT_REACHED" | "LIFTED_OFF" | "FAILED" | "SLID" | "SURVIVED" | "STOPPED" | "PERIODIC" | "APERIODIC";
   /** [s] */
   readonly decided_at: number;
@@ -196,40 +212,19 @@ export type DrawnMotion = {
   readonly [name: string]: unknown;
 };
 
+/** The inclined plane. */
+export type DrawnPlane = {
+  /** [rad] */
+  readonly incline: number;
+  /** [rad] */
+  readonly incline_direction: number;
+  readonly [name: string]: unknown;
+};
+
 /** Exact periodic orbits, the result of a job `exact`. */
 export type ExactOrbits = {
-  /** families of orbits; all lists of a family have the same length */
-  readonly families: readonly ({
-    /** name of the family */
-    readonly name: string;
-    /** [rad/s] */
-    readonly angular_frequency: readonly number[];
-    /** [rad] */
-    readonly mean_tilt: readonly number[];
-    /** [rad] */
-    readonly minimum_tilt: readonly number[];
-    /** [rad] */
-    readonly peak_tilt: readonly number[];
-    /** [rad] */
-    readonly phase: readonly (number | null)[];
-    /** whether the motion is stable */
-    readonly stable: readonly boolean[];
-    /** tilt at t = 0, along x and y [rad] */
-    readonly tilt: readonly (readonly [number, number])[];
-    /** tilt rate at t = 0 [rad/s] */
-    readonly tilt_rate: readonly (readonly [number, number])[];
-  })[];
-  /** bifurcations of the family */
-  readonly bifurcations: readonly ({
-    /** kind, such as Neimark-Sacker */
-    readonly kind: string;
-    /** [rad/s] */
-    readonly angular_frequency: number;
-    /** [rad] */
-    readonly mean_tilt: number;
-    /** whether it is supercritical; null if undecided */
-    readonly supercritical: boolean | null;
-  })[];
+  readonly families: readonly OrbitFamily[];
+  readonly bifurcations: readonly Bifurcation[];
 };
 
 /** The state of a job. */
@@ -238,7 +233,6 @@ export type Job = {
   readonly id: string;
   /** kind of computation */
   readonly kind: "exact" | "map" | "basin" | "animation";
-  /** state */
   readonly state: "waiting" | "running" | "done" | "failed" | "cancelled";
   /** number of completed runs */
   readonly done: number;
@@ -253,7 +247,7 @@ export type Job = {
   /** reasons for the failure, one line each */
   readonly problems: readonly string[];
   /** the result when the job is done; null before, and for an animation, which has a file */
-  readonly result: ExactOrbits | MapResult | ContactMapResult | BasinResult | null;
+  readonly result: ExactOrbits | MapResult | BasinResult | ContactMapResult | null;
 };
 
 /** A kind of column, model or motion. */
@@ -264,29 +258,7 @@ export type Kind = {
   readonly name: string;
   /** one-line description */
   readonly about: string;
-  /** parameters */
-  readonly parameters: readonly ({
-    /** name as in descriptions */
-    readonly name: string;
-    /** symbol in the literature; empty if there is none */
-    readonly symbol: string;
-    /** unit; empty if there is none */
-    readonly unit: string;
-    /** one-line description */
-    readonly about: string;
-    /** default value; null if there is none */
-    readonly default: unknown;
-    /** whether the parameter is required */
-    readonly needed: boolean;
-    /** whether maps can vary the parameter */
-    readonly varies: boolean;
-    /** lower end of the slider; null if no range suits all cases */
-    readonly from: number | null;
-    /** upper end of the slider */
-    readonly to: number | null;
-    /** possible values, if there are few */
-    readonly choices?: readonly (number | string)[];
-  })[];
+  readonly parameters: readonly Parameter[];
   /** for motions: whether the motion ends, so that a run needs no duration */
   readonly ends?: boolean;
 };
@@ -297,7 +269,6 @@ export type MapResult = {
   readonly uncertain: number;
   /** number of runs */
   readonly runs: number;
-  /** Shares of outcomes. */
   readonly shares: {
     /** share that ended at rest */
     readonly "at rest": number | null;
@@ -330,7 +301,7 @@ export type MapResult = {
   };
 };
 
-/** Numbers of the run as a whole, null if not finite. Models may add further numbers. */
+/** Numbers of the run as a whole. Models may add further numbers. */
 export type Measures = {
   /** [rad] */
   readonly peak_tilt: number | null;
@@ -399,32 +370,92 @@ export type Measures = {
   readonly [name: string]: unknown;
 };
 
+/** A family of exact orbits; all its lists have the same length. */
+export type OrbitFamily = {
+  /** name of the family */
+  readonly name: string;
+  /** [rad/s] */
+  readonly angular_frequency: readonly number[];
+  /** [rad] */
+  readonly mean_tilt: readonly number[];
+  /** [rad] */
+  readonly minimum_tilt: readonly number[];
+  /** [rad] */
+  readonly peak_tilt: readonly number[];
+  /** [rad] */
+  readonly phase: readonly (number | null)[];
+  /** whether the motion is stable */
+  readonly stable: readonly boolean[];
+  /** tilt at t = 0, along x and y [rad] */
+  readonly tilt: readonly (readonly [number, number])[];
+  /** tilt rate at t = 0 [rad/s] */
+  readonly tilt_rate: readonly (readonly [number, number])[];
+};
+
+/** An outcome. */
+export type OutcomeCode = {
+  readonly name: "AT_REST" | "ROCKING" | "ROLLING" | "MODULATED" | "OVERTURNED" | "STILL_MOVING" | "LIMIT_REACHED" | "LIFTED_OFF" | "FAILED" | "SLID" | "SURVIVED" | "STOPPED" | "PERIODIC" | "APERIODIC";
+  /** outcome in words */
+  readonly value: string;
+  /** code in maps */
+  readonly code: number;
+};
+
+/** A parameter. */
+export type Parameter = {
+  /** name as in descriptions */
+  readonly name: string;
+  /** symbol in the literature; empty if there is none */
+  readonly symbol: string;
+  /** unit; empty if there is none */
+  readonly unit: string;
+  /** one-line description */
+  readonly about: string;
+  /** default value; null if there is none */
+  readonly default: unknown;
+  /** whether the parameter is required */
+  readonly needed: boolean;
+  /** whether maps can vary the parameter */
+  readonly varies: boolean;
+  /** lower end of the slider; null if no range suits all cases */
+  readonly from: number | null;
+  /** upper end of the slider */
+  readonly to: number | null;
+  /** possible values, if there are few */
+  readonly choices?: readonly (number | string)[];
+};
+
+/** Peak accelerations. */
+export type Peaks = {
+  /** along x [m/s²] */
+  readonly x?: number;
+  /** along y [m/s²] */
+  readonly y?: number;
+  /** along z [m/s²] */
+  readonly z?: number;
+};
+
+/** The axes of a map or basin. */
+export type PlaneAxes = {
+  readonly x: PlaneAxis;
+  readonly y: PlaneAxis;
+};
+
+/** A quantity that varies. */
+export type PlaneAxis = {
+  /** name as in the description */
+  readonly name: string;
+  /** in SI units */
+  readonly values: readonly (number | null)[];
+  /** name in words */
+  readonly long_name?: string;
+  /** unit such as rad s-1 */
+  readonly units?: string;
+};
+
 /** The first event of a map or basin: its axes, and the meanings of the codes of cells. */
 export type PlaneBegun = {
-  readonly axes: {
-    /** A quantity that varies. */
-    readonly x: {
-      /** name as in the description */
-      readonly name: string;
-      /** in SI units */
-      readonly values: readonly (number | null)[];
-      /** name in words */
-      readonly long_name?: string;
-      /** unit such as rad s-1 */
-      readonly units?: string;
-    };
-    /** A quantity that varies. */
-    readonly y: {
-      /** name as in the description */
-      readonly name: string;
-      /** in SI units */
-      readonly values: readonly (number | null)[];
-      /** name in words */
-      readonly long_name?: string;
-      /** unit such as rad s-1 */
-      readonly units?: string;
-    };
-  };
+  readonly axes: PlaneAxes;
   /** codes and their meanings */
   readonly names: readonly (readonly [number, string])[];
 };
@@ -433,7 +464,19 @@ export type PlaneBegun = {
 export type PlaneCells = {
   /** step between known values along x and y */
   readonly stride: number;
+  /** index along x, index along y, and code */
   readonly cells: readonly (readonly [number, number, number])[];
+};
+
+/** An example motion. */
+export type Preset = {
+  readonly id: string;
+  readonly title: string;
+  readonly about: string;
+  /** body for /api/simulate */
+  readonly description: Readonly<Record<string, unknown>>;
+  /** view on the page: branch of the start, tab, quantities over time; the page chooses what is missing */
+  readonly view: Readonly<Record<string, unknown>>;
 };
 
 /** Reasons for the refusal of a request. */
@@ -447,34 +490,21 @@ export type ResponseCurves = {
   /** [rad/s] */
   readonly angular_frequency: readonly number[];
   /** one for each sense and branch */
-  readonly branches: readonly ({
-    /** sense of rolling, seen from above */
-    readonly sense: "anticlockwise" | "clockwise";
-    /** one of the two solutions */
-    readonly branch: "lower" | "upper";
-    /** tilt [rad], null if there is no such rolling */
-    readonly amplitude: readonly (number | null)[];
-    /** phase of the lean relative to the base acceleration [rad], null if there is no such rolling */
-    readonly phase: readonly (number | null)[];
-    /** whether the motion is stable */
-    readonly stable: readonly boolean[];
-  })[];
+  readonly branches: readonly CurveBranch[];
   /** tilt of free rolling [rad], null if there is no such rolling */
   readonly backbone: readonly (number | null)[];
-  /** frequencies at which the upper branch loses its stability */
-  readonly critical: readonly ({
-    /** sense of rolling, seen from above */
-    readonly sense: "anticlockwise" | "clockwise";
-    /** [rad/s], null if there is none */
-    readonly angular_frequency: number | null;
-  })[];
+  readonly critical: readonly CriticalFrequency[];
   /** whether the curves are approximate (averaging) rather than exact */
   readonly averaged: boolean;
 };
 
 /** One run. */
 export type Run = {
-  /** the outcome */
+  /** the description as a file for the command line */
+  readonly toml: string;
+  /** the same run as a Python program */
+  readonly python: string;
+  readonly column: ColumnNumbers;
   readonly outcome: "AT_REST" | "ROCKING" | "ROLLING" | "MODULATED" | "OVERTURNED" | "STILL_MOVING" | "LIMIT_REACHED" | "LIFTED_OFF" | "FAILED" | "SLID" | "SURVIVED" | "STOPPED" | "PERIODIC" | "APERIODIC";
   /** the outcome in words */
   readonly label: "at rest" | "rocking" | "rolling" | "modulated" | "overturned" | "still moving" | "limit reached" | "lifted off" | "failed" | "slid" | "survived" | "stopped" | "periodic" | "aperiodic";
@@ -489,27 +519,31 @@ export type Run = {
   /** one line each */
   readonly warnings: readonly string[];
   /** uplifts, impacts and other events */
-  readonly events: readonly ({
-    /** kind of event */
-    readonly kind: string;
-    /** time [s] */
-    readonly time: number;
-  })[];
+  readonly events: readonly RunEvent[];
   readonly measures: Measures;
   /** labels and values */
   readonly summary: readonly (readonly [string, string])[];
-  /** The thresholds that decided the outcome. */
+  /** the thresholds that decided the outcome */
   readonly thresholds: Readonly<Record<string, number | null>>;
-  readonly column: ColumnNumbers;
   readonly drawn: DrawnMotion;
   readonly series: Series;
-  /** the description as a file for the command line */
-  readonly toml: string;
-  /** the same run as a Python program */
-  readonly python: string;
 };
 
-/** Histories, all as long as `time`; null for numbers that are not finite. Models may add further histories. */
+/** An uplift, an impact or another event. */
+export type RunEvent = {
+  /** kind of event */
+  readonly kind: string;
+  /** time [s] */
+  readonly time: number;
+};
+
+/** A sample record. */
+export type Sample = {
+  readonly name: string;
+  readonly about: string;
+};
+
+/** Histories, all as long as `time`. Models may add further histories. */
 export type Series = {
   /** [s] */
   readonly time: readonly number[];
@@ -530,7 +564,7 @@ export type Series = {
   /** normal force over weight */
   readonly normal_force?: readonly (number | null)[];
   /** 0 resting, 1 sliding, 2 rolling, 3 slipping, 4 flying, 5 jammed */
-  readonly contact?: readonly (0 | 1 | 2 | 3 | 4 | 5)[];
+  readonly contact?: readonly Contact[];
   /** height of the lowest point above the base [m] */
   readonly clearance?: readonly (number | null)[];
   /** displacement of the centre of the footprint since the start [m] */
@@ -564,15 +598,7 @@ export type UploadedRecord = {
   readonly step: number;
   /** duration [s] */
   readonly duration: number;
-  /** Peak accelerations [m/s²]. */
-  readonly peaks: {
-    /** along x [m/s²] */
-    readonly x?: number;
-    /** along y [m/s²] */
-    readonly y?: number;
-    /** along z [m/s²] */
-    readonly z?: number;
-  };
+  readonly peaks: Peaks;
   /** origin, one line each */
   readonly provenance: readonly string[];
   /** possible mistakes in its files, one line each */

@@ -6,14 +6,20 @@
  * A part is its kind and its numbers; a vector in it is written `0.1/0.2`, what has parts of its own as JSON after `~`.
  */
 
-import type { About } from "../case/about";
-import { kindNamed } from "../case/about";
-import type { Description, Part, PartName, Value } from "../case/description";
-import { isPart, isVector, PARTS, tagOf } from "../case/description";
+import { type About, type Preset, kindNamed } from "../case/about";
+import {
+  type Description,
+  PARTS,
+  type Part,
+  type PartName,
+  type Value,
+  isPart,
+  isVector,
+  tagOf,
+} from "../case/description";
 import { BRANCHES } from "../case/starting";
 import { RUN } from "../server/declared";
-import type { Axis, Plane, View } from "./state";
-import { historiesFrom, isRange, TABS, viewOf } from "./state";
+import { type Axis, type Plane, TABS, type View, historiesFrom, isRange, viewOf } from "./state";
 
 /** A link that cannot be read; the message says why in one line. */
 export class BrokenLink extends Error {}
@@ -203,4 +209,58 @@ function planeRead(what: string, text: string): Value {
 /** Returns the line for a link that cannot be followed. */
 export function inWords(reason: string): string {
   return `This link cannot be opened: ${reason.replace(/\.$/, "")}. The first preset is shown instead.`;
+}
+
+// Views of presets and of links
+
+export function viewOfPreset(preset: Preset): View {
+  return viewOf(preset.description, preset.view ?? {});
+}
+
+export function firstView(about: About): View {
+  const [first] = about.presets;
+  if (first === undefined) throw new Error("the server has no presets");
+  return viewOfPreset(first);
+}
+
+/** Returns the view of a link, or that of the first preset with a line that says what is wrong with the link. */
+export function viewOfLink(link: string, about: About): readonly [view: View, problem: string | null] {
+  if (link === "" || link === "#") return [firstView(about), null];
+  try {
+    return [viewFrom(link, about), null];
+  } catch (error) {
+    if (error instanceof BrokenLink) return [firstView(about), inWords(error.message)];
+    throw error;
+  }
+}
+
+// The address bar
+
+/** Browsers refuse more than some hundred changes in half a minute: while a slider is dragged, a few a second do. */
+const PAUSE = 250; // ms
+
+/** The address bar follows the view: at every change, and with an entry in the history at every jump. */
+export class Address {
+  #due: ReturnType<typeof setTimeout> | null = null;
+  #view: View | null = null;
+
+  /** Writes the view into the address, soon. */
+  replace(view: View): void {
+    this.#view = view;
+    this.#due ??= setTimeout(() => this.flush(), PAUSE);
+  }
+
+  /** Writes the view into the address, as a new entry of the history. */
+  push(view: View): void {
+    this.flush();
+    history.pushState(null, "", `#${linkOf(view)}`);
+  }
+
+  /** Writes at once what is due. */
+  flush(): void {
+    if (this.#due !== null) clearTimeout(this.#due);
+    this.#due = null;
+    if (this.#view !== null) history.replaceState(null, "", `#${linkOf(this.#view)}`);
+    this.#view = null;
+  }
 }

@@ -9,10 +9,9 @@ from pathlib import Path
 import anyio
 import pytest
 
-from stylobate.lab import worker_pool
-from stylobate.lab.messages import Finished, Lost
-from stylobate.lab.request_parsing import Described
-from stylobate.lab.worker_pool import LostError, Worker, WorkerPool
+from stylobate.lab import pool as pool_module
+from stylobate.lab.pool import Finished, Lost, Pool
+from stylobate.lab.requests import Description
 
 VALUES = {"column": {"shape": "dimensionless", "slenderness": 0.1}, "tilt": [0.02, 0.0], "duration": 1.0}
 
@@ -24,8 +23,8 @@ def performed(limit=1, *, background=False):
     async def perform():
         before = multiprocessing.active_children()
         async with anyio.create_task_group() as group:
-            pool = WorkerPool(limit, group, background)
-            answers.append(await pool.perform("run", Described(VALUES, VALUES), lambda _: None))
+            pool = Pool(limit, group, background)
+            answers.append(await pool.perform("run", Description(VALUES, VALUES), lambda _: None))
             started = [process for process in multiprocessing.active_children() if process not in before]
             stats.extend(stat(process.pid) for process in started)
             pool.end()
@@ -66,7 +65,7 @@ def test_a_task_that_waits_for_a_process_is_lost_when_the_pool_ends():
 
     async def end_while_a_task_waits():
         async with anyio.create_task_group() as group:
-            pool = WorkerPool(0, group)
+            pool = Pool(0, group)
 
             async def perform():
                 answers.append(await pool.perform("run", None, lambda _: None))
@@ -85,7 +84,7 @@ def test_a_process_that_cannot_be_started_is_reported(monkeypatch, caplog, error
     def refuse(*, background):
         raise error
 
-    monkeypatch.setattr(worker_pool, "_process", refuse)
+    monkeypatch.setattr(pool_module, "_process", refuse)
     assert performed() == (Lost(None), [])
     assert "could not be started" in caplog.text
 
@@ -93,7 +92,7 @@ def test_a_process_that_cannot_be_started_is_reported(monkeypatch, caplog, error
 def test_a_laboratory_that_a_process_starts_as_it_imports_the_users_program_is_refused(monkeypatch):
     monkeypatch.setattr(multiprocessing.current_process(), "_name", "stylobate lab")
     with pytest.raises(RuntimeError, match="__main__"):
-        WorkerPool(1, None).warm_up()
+        Pool(1, None).warm_up()
 
 
 def test_a_start_that_hangs_does_not_delay_the_end(monkeypatch):
@@ -105,26 +104,53 @@ def test_a_start_that_hangs_does_not_delay_the_end(monkeypatch):
 
     async def begin_and_end():
         async with anyio.create_task_group() as group:
-            WorkerPool(1, group).warm_up()
+            Pool(1, group).warm_up()
             await anyio.sleep(0.01)
             group.cancel_scope.cancel()
 
-    monkeypatch.setattr(worker_pool, "_process", hang)
+    monkeypatch.setattr(pool_module, "_process", hang)
     anyio.run(begin_and_end)
     assert waited == []
     end.set()
 
 
-def test_a_pipe_that_is_closed_while_it_is_read_ends_its_process_only():
-    class Closed:
-        def recv(self):
-            raise TypeError
+def test_a_pipe_that_breaks_ends_its_process_only(monkeypatch):
+    start = pool_module._process
 
-    async def listen():
-        hears, heard = anyio.create_memory_object_stream(1)
-        worker = Worker(None, Closed(), heard, hears)
-        await worker.listen(anyio.CapacityLimiter(1))
-        with heard, pytest.raises(LostError):
-            await worker.next()
+    def broken(*, background):
+        process, connection = start(background=background)
+        connection.close()
+        return process, connection
 
-    anyio.run(listen)
+    answers = []
+
+    async def perform():
+        async with anyio.create_task_group() as group:
+            pool = Pool(1, group)
+            for process in (broken, start):
+                monkeypatch.setattr(pool_module, "_process", process)
+                answers.append(await pool.perform("run", Description(VALUES, VALUES), lambda _: None))
+            pool.end()
+            group.cancel_scope.cancel()
+
+    anyio.run(perform)
+    assert isinstance(answers[0], Lost)
+    assert isinstance(answers[1], Finished)
+
+
+def test_an_idle_process_that_dies_is_replaced_and_loses_no_task():
+    answers = []
+
+    async def perform():
+        before = multiprocessing.active_children()
+        async with anyio.create_task_group() as group:
+            pool = Pool(1, group)
+            for _ in range(2):
+                answers.append(await pool.perform("run", Description(VALUES, VALUES), lambda _: None))
+                (process,) = [one for one in multiprocessing.active_children() if one not in before]
+                process.kill()
+                await anyio.sleep(0.5)  # its end is heard
+            group.cancel_scope.cancel()
+
+    anyio.run(perform)
+    assert [type(answer) for answer in answers] == [Finished, Finished]
