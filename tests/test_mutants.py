@@ -43,8 +43,8 @@ def tools(monkeypatch):
     monkeypatch.syspath_prepend(TOOLS)
     for name in ("mutants", "mutations"):
         monkeypatch.delitem(sys.modules, name, raising=False)
-    import mutants  # noqa: PLC0415
-    import mutations  # noqa: PLC0415
+    import mutants
+    import mutations
 
     yield mutants, mutations
     for name in ("mutants", "mutations"):

@@ -197,7 +197,7 @@ class Record(BaseMotion):
 
     def to_dataframe(self) -> "pd.DataFrame":
         """Convert the record to a table in pandas: accelerations x, y, z [m/s²] over `time` [s]."""
-        import pandas as pd  # noqa: PLC0415  slow to import
+        import pandas as pd
 
         table = pd.DataFrame(self.samples, columns=list(AXES), index=pd.Index(self.times, name="time"))
         table.attrs["units"] = {"time": "s", **dict.fromkeys(AXES, "m s-2")}

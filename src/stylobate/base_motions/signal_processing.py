@@ -83,7 +83,7 @@ def filtered(
     filters", BSSA 95, 745-750, 2005) and removes the padding afterwards. To keep the filter's transients, which the
     displacement needs, pad the record first: `record.padded(before=…, after=…).filtered(…)`.
     """
-    from scipy.signal import butter, sosfilt, sosfiltfilt  # noqa: PLC0415  a record comes without SciPy
+    from scipy.signal import butter, sosfilt, sosfiltfilt
 
     order = require_whole("order", order, least=1)
     corners = {name: value for name, value in (("highpass", highpass), ("lowpass", lowpass)) if value is not None}
@@ -159,7 +159,7 @@ def resampled(samples: Floats, before: float, step: float) -> tuple[Floats, str]
     Polyphase resampling with SciPy's zero-phase low-pass filter (`scipy.signal.resample_poly`, Kaiser window β = 5,
     zeros beyond the ends). The motion between the old samples is no longer linear, so peaks may change slightly.
     """
-    from scipy.signal import resample_poly  # noqa: PLC0415
+    from scipy.signal import resample_poly
 
     step = require_positive("step", step, "s")
     ratio = Fraction(before / step).limit_denominator(_LARGEST_FACTOR)

@@ -87,7 +87,7 @@ def number_or_word(quantity: Quantity) -> Any:
             return _NUMBER.validate_python(value)
         except ValidationError:
             message = f"must be a number or {' or '.join(map(repr, words))}"
-            raise PydanticCustomError("number_or_word", message) from None  # noqa: EM101  the first argument is the type
+            raise PydanticCustomError("number_or_word", message) from None
 
     return Annotated[float | Literal[words], WrapValidator(read)]
 

@@ -11,7 +11,7 @@ from starlette.requests import Request
 from starlette.responses import JSONResponse, Response
 from starlette.routing import Route
 
-from stylobate import config
+from stylobate import config, studies
 from stylobate.lab.bodies import json_body
 from stylobate.lab.curves import response
 from stylobate.lab.jobs import Jobs, broken
@@ -30,8 +30,8 @@ _log = logging.getLogger("stylobate.lab")
 
 _JOBS: dict[str, type[Any]] = {
     "exact": config.ResponseConfig,
-    "map": config.MapConfig,
-    "basin": config.BasinConfig,
+    "map": config.study_config(studies.overturning_map),
+    "basin": config.study_config(studies.basins),
     "animation": config.SimulationConfig,
 }
 

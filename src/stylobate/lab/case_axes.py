@@ -9,13 +9,12 @@ import numpy.typing as npt
 import xarray as xr
 
 from stylobate import config
-from stylobate.conveying.contact_maps import class_shares
 from stylobate.engine.parameters import COLUMN_NAMES, present_value
 from stylobate.errors import UnsupportedError
 from stylobate.lab.parameter_info import CASE_NUMBERS
 from stylobate.models import Model
 from stylobate.progress import Progress
-from stylobate.studies.maps.overturning import outcome_shares
+from stylobate.studies.maps.overturning import labelled
 from stylobate.studies.sweeps import Executor, Sweep
 from stylobate.studies.sweeps.labelled import labelled_sweep
 
@@ -70,8 +69,7 @@ def case_map(
     """
     options = {name: value for name, value in setup.options.items() if name != "over"}
     sweep = Sweep.points(_without_height(setup.model), setup.motion, at=_at(values, setup.options["over"]), **options)
-    label = class_shares if setup.model.switches else outcome_shares
-    return labelled_sweep(sweep, label, executor=executor, progress=progress)
+    return labelled_sweep(sweep, labelled, executor=executor, progress=progress)
 
 
 def _without_height(model: Model) -> Model:

@@ -100,7 +100,7 @@ def _descriptors() -> int:
     """Return the maximum number of file descriptors of this process."""
     if sys.platform == "win32":
         return sys.maxsize
-    import resource  # noqa: PLC0415  not on Windows
+    import resource
 
     soft, _ = resource.getrlimit(resource.RLIMIT_NOFILE)
     return sys.maxsize if soft == resource.RLIM_INFINITY else soft

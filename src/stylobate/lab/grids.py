@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from stylobate import config, conveying, studies
+from stylobate import config, studies
 from stylobate.errors import Outcome, ParameterError
 from stylobate.lab.case_axes import case_map, case_numbers, units_of
 from stylobate.lab.json_values import number, numbers
@@ -19,8 +19,8 @@ from stylobate.parameter_quantities import attributes_of
 
 def overturning_plane(values: Mapping[str, Any], emit: Emit) -> dict[str, Any]:
     """Compute the map of outcomes over two quantities; for a sliding model, the map of kinds of contact."""
-    setup = config.MapConfig.parse(values).build()
-    study = conveying.contact_map if setup.model.switches else studies.overturning_map
+    study = studies.overturning_map
+    setup = config.study_config(study).parse(values).build()
     if case_numbers(values, setup.options["over"]):
         found = _watched(partial(case_map, setup, values), setup, emit, keywords={}, flat=True)
     else:
@@ -32,7 +32,7 @@ def overturning_plane(values: Mapping[str, Any], emit: Emit) -> dict[str, Any]:
 
 def basin_plane(values: Mapping[str, Any], emit: Emit) -> dict[str, Any]:
     """Compute the attractor of each initial condition of a grid."""
-    setup = config.BasinConfig.parse(values).build()
+    setup = config.study_config(studies.basins).parse(values).build()
     if "count" in setup.options:
         message = "basin.random: the laboratory computes grids only. Give basin.x and basin.y, or use the command line."
         raise ParameterError(message)

@@ -49,7 +49,7 @@ def record(values: Mapping[str, Any], emit: Emit) -> dict[str, Any]:
 
 def start(values: Mapping[str, Any], emit: Emit) -> dict[str, Any]:
     """Compute initial conditions on a branch of steady rolling."""
-    from stylobate.lab.starts import start as start_on_branch  # noqa: PLC0415
+    from stylobate.lab.starts import start as start_on_branch
 
     del emit
     return start_on_branch(values)
@@ -57,28 +57,28 @@ def start(values: Mapping[str, Any], emit: Emit) -> dict[str, Any]:
 
 def exact(values: Mapping[str, Any], emit: Emit) -> dict[str, Any]:
     """Compute exact periodic orbits over a range of frequencies, with their bifurcations."""
-    from stylobate.lab.curves import exact_curves  # noqa: PLC0415
+    from stylobate.lab.curves import exact_curves
 
     return exact_curves(values, emit)
 
 
 def overturning(values: Mapping[str, Any], emit: Emit) -> dict[str, Any]:
     """Compute the map over two quantities."""
-    from stylobate.lab.grids import overturning_plane  # noqa: PLC0415
+    from stylobate.lab.grids import overturning_plane
 
     return overturning_plane(values, emit)
 
 
 def basin(values: Mapping[str, Any], emit: Emit) -> dict[str, Any]:
     """Compute basins of attraction over two initial conditions."""
-    from stylobate.lab.grids import basin_plane  # noqa: PLC0415
+    from stylobate.lab.grids import basin_plane
 
     return basin_plane(values, emit)
 
 
 def animation(values: Mapping[str, Any], emit: Emit) -> bytes:
     """Animate a run as a GIF; long runs are shown faster."""
-    from stylobate.plots.animation import animate  # noqa: PLC0415
+    from stylobate.plots.animation import animate
 
     setup = config.SimulationConfig.parse(values).build()
     run = engine.simulate(setup.model, setup.motion, **setup.options)

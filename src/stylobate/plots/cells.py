@@ -209,7 +209,7 @@ def draw_cells(axes: Axes, x: npt.ArrayLike, y: npt.ArrayLike, codes: Integers, 
 
 def _name_areas(axes: Axes, x_edges: Floats, y_edges: Floats, places: Integers, classes: Sequence[MapClass]) -> None:
     """Write the name of each class into its widest area, where the area has room for it."""
-    from scipy.ndimage import distance_transform_edt  # noqa: PLC0415  slow to import, and only maps need it
+    from scipy.ndimage import distance_transform_edt
 
     rows, columns = places.shape
     figure = axes.get_figure(root=True)

@@ -354,7 +354,7 @@ class ResultFigure(Figure):
         if hasattr(shell, "kernel"):
             sys.modules["IPython"].display.display(self)
             return
-        import matplotlib.pyplot as plt  # noqa: PLC0415  only windows need it
+        import matplotlib.pyplot as plt
 
         blank = plt.figure()
         kind, number = type(blank.canvas), blank.number

@@ -203,7 +203,7 @@ def read_waveform(path: Path, content: bytes) -> Component:
     removed.
     """
     try:
-        import obspy  # noqa: PLC0415  optional, slow to import
+        import obspy
     except ImportError:
         message = (
             f'{path}: no text. To read a waveform such as miniSEED, install ObsPy: pip install "stylobate[records]"'

@@ -89,7 +89,7 @@ _ALIASES = {
 
 def over_directions(x: Floats, y: Floats, percentiles: tuple[float, ...]) -> Floats:
     """Return `percentiles` over the directions, 1° apart, of the peak projection of (x, y)."""
-    from scipy.spatial import ConvexHull, QhullError  # noqa: PLC0415  the names above come without SciPy
+    from scipy.spatial import ConvexHull, QhullError
 
     points = np.stack([x, y], axis=-1)
     try:  # only corners of the hull can be farthest

@@ -89,7 +89,7 @@ def download(tmp_path):
 
 
 def test_a_peer_download_is_read_as_it_is(download):
-    from stylobate.config import RecordsConfig  # noqa: PLC0415
+    from stylobate.config import RecordsConfig
 
     (record,) = sb.read_records(download)
     assert (record.name, record.axes) == ("RSN1_QUAKE_AB", ("x", "y"))

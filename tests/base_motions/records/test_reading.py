@@ -373,7 +373,7 @@ def test_without_obspy_its_formats_name_the_extra(tmp_path, monkeypatch):
 
 @pytest.mark.filterwarnings("ignore")  # ObsPy's own
 def test_miniseed_and_sac_are_read_through_obspy(tmp_path):
-    import obspy  # noqa: PLC0415  it warns when it is imported
+    import obspy
 
     for kind, name in (("MSEED", "a.mseed"), ("SAC", "a.sac")):
         trace = obspy.Trace(VALUES.astype("float32"), {"delta": 0.01, "channel": "HNE", "station": "AB"})

@@ -106,7 +106,7 @@ def test_a_file_is_written_by_its_suffix_and_nothing_else(run, animation, gif, t
 
 
 def test_an_mp4_has_every_picture_and_holds_the_last(animation, tmp_path):
-    import imageio_ffmpeg  # noqa: PLC0415  another test replaces it
+    import imageio_ffmpeg
 
     animation.save(tmp_path / "run.mp4")
     frames, seconds = imageio_ffmpeg.count_frames_and_secs(str(tmp_path / "run.mp4"))

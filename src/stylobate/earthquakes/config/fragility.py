@@ -48,7 +48,7 @@ def _as_intensity(values: Any) -> Any:
     if isinstance(values, Mapping):
         return Spectral.model_validate(values)
     message = "must be a name, or a table with a period such as {period = 0.5}"
-    raise PydanticCustomError("intensity", message)  # noqa: EM101  the first argument is the type
+    raise PydanticCustomError("intensity", message)
 
 
 class Fragility(Config):

@@ -140,7 +140,7 @@ def _as_spread(values: Any) -> Any:
     kind = values.get("kind") if isinstance(values, Mapping) else None
     if kind not in _KINDS:
         message = f"a spread must have a kind, {', '.join(map(repr, _KINDS))}, such as {_EXAMPLE}"
-        raise PydanticCustomError("spread", message)  # noqa: EM101  the first argument is the type
+        raise PydanticCustomError("spread", message)
     return _KINDS[str(kind)].model_validate(values)
 
 

@@ -121,7 +121,7 @@ def one_run(start: Start) -> Runs:
 
 
 def _numbers(name: str, value: ArrayLike) -> "xr.DataArray":
-    import xarray as xr  # noqa: PLC0415  a single run needs no labels
+    import xarray as xr
 
     if isinstance(value, xr.DataArray):
         return _as_float(name, value)
@@ -133,7 +133,7 @@ def _numbers(name: str, value: ArrayLike) -> "xr.DataArray":
 
 
 def _vectors(name: str, value: ArrayLike) -> "xr.DataArray":
-    import xarray as xr  # noqa: PLC0415  a single run needs no labels
+    import xarray as xr
 
     if isinstance(value, xr.DataArray):
         if value.sizes.get(AXIS) != 2:  # noqa: PLR2004

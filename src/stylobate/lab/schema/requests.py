@@ -4,7 +4,7 @@ from collections.abc import Collection, Mapping
 from dataclasses import fields
 from typing import Any
 
-from stylobate import config
+from stylobate import config, studies
 from stylobate.base_motions.declared import MOTIONS, composite_kinds, kinds_with_response, motion_quantities
 from stylobate.config.description import Config
 from stylobate.config.motions import is_to_end
@@ -22,8 +22,8 @@ _DESCRIPTIONS: dict[str, type[Config]] = {
     "Simulation": config.SimulationConfig,
     "Response": config.ResponseConfig,
     "SteadyRollingStart": StartConfig,
-    "Map": config.MapConfig,
-    "Basin": config.BasinConfig,
+    "Map": config.study_config(studies.overturning_map),
+    "Basin": config.study_config(studies.basins),
 }
 
 _OF_JOBS = {"exact": "Response", "map": "Map", "basin": "Basin", "animation": "Simulation"}

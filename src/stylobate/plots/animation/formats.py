@@ -134,7 +134,7 @@ def write_mp4(path: Path, pictures: Iterable[Image.Image], size: tuple[int, int]
 def _encoder() -> Any:
     """Return the function that writes frames to ffmpeg."""
     try:
-        import imageio_ffmpeg  # noqa: PLC0415  an extra
+        import imageio_ffmpeg
 
         imageio_ffmpeg.get_ffmpeg_exe()
     except (ImportError, RuntimeError):

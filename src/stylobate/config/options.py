@@ -1,16 +1,17 @@
-"""Declarations of the options of commands: each once, in groups that commands share."""
+"""Options: the description of a case as words of a command line, declared once, in groups that commands share.
 
-import inspect
+Columns, models and base motions have an option for their kind, and one for each of their declared numbers.
+"""
+
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import KW_ONLY, dataclass, replace
+from dataclasses import KW_ONLY, dataclass, field, replace
+from functools import partial
 from pathlib import Path
-from typing import Annotated, Any, get_args, get_origin
+from typing import Any, get_args, get_origin
 
-import typer
-
-from stylobate.cli.own_classes import Chosen
 from stylobate.errors import FileError, ParameterError
-from stylobate.quantities import Parameter
+from stylobate.kinds import loaded
+from stylobate.quantities import Parameter, parameters_of
 from stylobate.units import UnitError, is_number, read
 
 MAX_NAMED_KINDS = 3
@@ -74,28 +75,6 @@ class Option:
         head, semicolon, rest = self.text.partition(";")
         return f"{head} [{self.unit}]{semicolon}{rest}" if self.unit else self.text
 
-    def as_parameter(self) -> inspect.Parameter:
-        """Make the parameter of a function from which typer reads this option; numbers remain texts."""
-        kind, numbers = self.type, _numbers_in(self.type)
-        if kind == _NUMBERS:
-            kind = list[str]
-        elif numbers:
-            kind = str if kind is float else tuple[(str,) * numbers]  # type: ignore[misc]
-        declared = typer.Option(
-            self.written_flag,
-            help=self.help,
-            rich_help_panel=self.panel,
-            show_default=False,
-            metavar=self.metavar or " ".join(["NUMBER"] * (numbers or self.type == _NUMBERS)) or None,
-            min=self.minimum,
-            callback=self.callback,
-            hidden=self.hidden,
-        )
-        annotation = kind if self.default is not None else kind | None
-        return inspect.Parameter(
-            self.name, inspect.Parameter.KEYWORD_ONLY, default=self.default, annotation=Annotated[annotation, declared]
-        )
-
     def read(self, value: Any) -> Any:
         """Convert the texts of numbers to numbers in the declared unit; other values are unchanged.
 
@@ -108,7 +87,7 @@ class Option:
             return None if value is None else self._number(value)
         if self.type == _NUMBERS:
             return [self._number(one) for one in value]
-        count = _numbers_in(self.type)
+        count = numbers_in(self.type)
         texts = value if count else value[1:3] if self.type is _AXIS else ()
         if not all(map(is_number, texts)):
             wanted = f"{count} numbers" if count else self.metavar
@@ -127,10 +106,45 @@ class Option:
             raise ParameterError(message) from None
 
 
-def _numbers_in(kind: Any) -> int:
+def numbers_in(kind: Any) -> int:
     """Count the numbers that an option takes, all in its unit; 0 for an option that takes other values too."""
     parts = get_args(kind) if get_origin(kind) is tuple else (kind,)
     return len(parts) if set(parts) == {float} else 0
+
+
+@dataclass(frozen=True, slots=True)
+class Chosen:
+    """The kinds that a command line and its file choose.
+
+    Parameters
+    ----------
+    kinds
+        Kinds by part, "model" or "motion"; a part without a chosen kind is missing.
+    classes
+        User-defined classes among these kinds, by part.
+    """
+
+    kinds: Mapping[str, str] = field(default_factory=dict)
+    classes: Mapping[str, Any] = field(default_factory=dict)
+
+    @classmethod
+    def of(cls, kinds: Mapping[str, str], folder: Path = Path()) -> "Chosen":
+        """Load user-defined classes among these kinds, such as "mine.py:Tethered"; paths are relative to `folder`.
+
+        Raises
+        ------
+        ParameterError
+            If a file has no such class.
+        """
+        if not any(":" in kind for kind in kinds.values()):
+            return cls(kinds)
+        from stylobate.base_motions.declared import MOTIONS
+        from stylobate.kinds import with_places
+        from stylobate.models.declared import MODELS
+
+        registries = {"model": MODELS, "motion": MOTIONS}
+        placed = {part: with_places({"kind": kind}, folder)["kind"] for part, kind in kinds.items()}
+        return cls(placed, {part: registries[part][kind] for part, kind in placed.items() if ":" in kind})
 
 
 @dataclass(frozen=True, slots=True)
@@ -164,7 +178,7 @@ def run_numbers(group: type) -> Group:
     """Make the options of the declared numbers of a run, such as `stylobate.run_arguments.SingleRun`."""
 
     def made(_: Chosen) -> Iterable[Option]:
-        from stylobate.run_arguments import numbers_of  # noqa: PLC0415  heavy imports wait
+        from stylobate.run_arguments import numbers_of
 
         for name, parameter in numbers_of(group).items():
             unit = parameter.quantity.unit
@@ -194,7 +208,8 @@ def text_of(parameter: Parameter, kinds: Sequence[str] = ()) -> str:
     if kinds:
         text += f"; only for {listed(kinds, 'and')}"
     if not (parameter.required or default is None or default in (0.0, (0.0,) * quantity.components)):
-        text += f"; {written(default) if isinstance(default, str) else f'{default:g}'} by default"
+        numbers = default if isinstance(default, tuple) else (default,)
+        text += f"; {listed([one if isinstance(one, str) else f'{one:g}' for one in numbers], 'and')} by default"
     return text
 
 
@@ -286,3 +301,153 @@ OUTPUT_OR_STORE = Group.of(
     Option("output", "save the result as netCDF (.nc), or in a store (.zarr) for --resume", Path),
     JSON,
 )
+
+
+# Two numbers of these names share one option: the model uses the option if it has the number, otherwise the run.
+_OF_MODEL_OR_RUN = ("friction_coefficient",)
+# --velocity is the initial velocity of the column.
+_RENAMED = {("motion", "velocity"): "pulse_velocity"}
+
+
+@dataclass(frozen=True, slots=True)
+class Part:
+    """A part of a configuration that has kinds.
+
+    Parameters
+    ----------
+    table
+        Name of the table in a file, such as "column".
+    tag
+        The key in this table that chooses the kind.
+    flag
+        The option that chooses the kind, without hyphens.
+    noun
+        Name of the part in messages.
+    place
+        Module and name of the registry of classes or constructors; imported on first use.
+    """
+
+    table: str
+    tag: str
+    flag: str
+    noun: str
+    place: str
+
+    @property
+    def kinds(self) -> tuple[str, ...]:
+        """All kinds that the package has."""
+        return tuple(loaded(self.place))
+
+    def makers(self) -> dict[str, Callable[..., Any]]:
+        """Return the class or constructor of each kind that has declared numbers and options for them."""
+        others = kinds_in_files()
+        return {kind: make for kind, make in loaded(self.place).items() if kind not in others and parameters_of(make)}
+
+
+_MOTIONS = "stylobate.base_motions.declared"
+
+
+def _motions_by(function: str) -> tuple[str, ...]:
+    kinds: tuple[str, ...] = loaded(f"{_MOTIONS}:{function}")()
+    return kinds
+
+
+kinds_in_files = partial(_motions_by, "composite_kinds")
+"""Returns the kinds of base motion that combine others: no options state their numbers."""
+
+PARTS = {
+    "column": Part("column", "shape", "shape", "column shape", "stylobate.column:SHAPES"),
+    "model": Part("model", "kind", "model", "model", "stylobate.models.declared:MODELS"),
+    "motion": Part("motion", "kind", "motion", "base motion", f"{_MOTIONS}:MOTIONS"),
+}
+
+
+def part_group(
+    part: Part,
+    panel: str,
+    *,
+    kinds: Callable[[], tuple[str, ...]] | None = None,
+    left_out: tuple[str, ...] = (),
+    default: str = "",
+) -> Group:
+    """Make the options of a part: one for the kind, and one for each number.
+
+    Parameters
+    ----------
+    part
+        The part.
+    panel
+        Heading of the help.
+    kinds
+        Function that returns the kinds of a command; by default all kinds except `left_out`.
+    default
+        Text after the kinds in the help.
+    """
+
+    def made(chosen: Chosen) -> Iterable[Option]:
+        makers, in_files = part.makers(), kinds_in_files()
+        if part.table in chosen.classes:
+            makers[chosen.kinds[part.table]] = chosen.classes[part.table]
+        known = part.kinds if kinds is None else kinds()
+        offered = tuple(kind for kind in known if kind not in (*in_files, *left_out))
+        others = f"; in a file also {listed(in_files)}" if part.table == "motion" and kinds is None else ""
+        text = f"{listed(offered)}{default}{others}"
+        yield Option(part.flag, text, str, panel=panel, part=part.table, number=part.tag, kinds=offered)
+        shown = {*offered, *chosen.kinds.values()}
+        declared = {kind: parameters_of(make) for kind, make in makers.items()}
+        for number in dict.fromkeys(name for numbers in declared.values() for name in numbers):
+            having = {kind: numbers[number] for kind, numbers in declared.items() if number in numbers}
+            if shown & having.keys():
+                some = tuple(kind for kind in having if kind in shown)
+                only = some if len(some) <= MAX_NAMED_KINDS and len(some) < len(shown & makers.keys()) else ()
+                yield _option(part, number, having, chosen.kinds.get(part.table, ""), panel, only)
+
+    return Group(made)
+
+
+def _option(
+    part: Part, number: str, having: Mapping[str, Parameter], chosen: str, panel: str, only: tuple[str, ...]
+) -> Option:
+    """Make the option of a number of some kinds, from the declaration of the `chosen` kind, if any."""
+    parameter = having.get(chosen) or next(iter(having.values()))
+    types = {type_of(one) for one in having.values() if one.quantity.components == parameter.quantity.components}
+    return Option(
+        _RENAMED.get((part.table, number), number),
+        text_of(parameter, only),
+        types.pop() if len(types) == 1 else float,
+        panel=panel,
+        part=part.table,
+        number=number,
+        kinds=tuple(having),
+        unit=parameter.quantity.unit,
+        words=tuple(parameter.quantity.by_word),
+    )
+
+
+COLUMN = part_group(PARTS["column"], "Column", default="; by default the shape that the other numbers imply")
+_WOBBLING = " (wobbling by default), or FILE.py:CLASS"
+MODEL = part_group(PARTS["model"], "Model", default=_WOBBLING)
+MODEL_OF_STEADY_ROLLING = part_group(PARTS["model"], "Model", default=" (slender by default), or FILE.py:CLASS")
+MODEL_WITHOUT_SLIDING = part_group(PARTS["model"], "Model", left_out=("sliding",), default=_WOBBLING)
+SLIDING = part_group(PARTS["model"], "Model", kinds=lambda: ("sliding",))
+MOTION = part_group(PARTS["motion"], "Base motion", default=" (rest by default), or FILE.py:CLASS")
+MOTION_WITHOUT_RECORDS = part_group(
+    PARTS["motion"], "Base motion", default=" (rest by default), or FILE.py:CLASS", left_out=("record",)
+)
+HORIZONTAL_MOTION = part_group(
+    PARTS["motion"], "Base motion", kinds=partial(_motions_by, "kinds_by_acceleration")
+).without("angular_frequency", "start_phase", "ramp")
+
+
+def joined(groups: Iterable[Iterable[Option]]) -> list[Option]:
+    """Join the options of groups; a number with the name of another option gets its part as a prefix."""
+    result: dict[str, Option] = {}
+    for option in (one for group in groups for one in group):
+        name = option.name
+        if name in result and name in _OF_MODEL_OR_RUN:
+            result[name] = replace(result[name], part=option.part, number=option.number, kinds=option.kinds)
+        elif name in result:
+            result[f"{option.part}_{name}"] = replace(option, name=f"{option.part}_{name}")
+        else:
+            result[name] = option
+    return list(result.values())
