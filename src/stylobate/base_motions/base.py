@@ -140,8 +140,9 @@ class MotionContract(Declared, ABC):
         super().__init_subclass__(**options)
         for name in vars(cls).get("__annotations__", {}):
             if isfunction(getattr(super(cls, cls), name, None)):
-                message = f"{name}: a method of every base motion (got a field of {cls.__name__}). Call the field peak."
-                raise ParameterError(message)
+                raise ParameterError(
+                    f"{name}: a method of every base motion (got a field of {cls.__name__}). Call the field peak."
+                )
 
     @abstractmethod
     def derivative(self, time: npt.ArrayLike, order: int) -> Components:

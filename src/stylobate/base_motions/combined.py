@@ -383,8 +383,7 @@ BASE_AT_REST = Sum()
 def require_motion(name: str, motion: object) -> None:
     """Raise ParameterError unless `motion` is a base motion."""
     if not isinstance(motion, BaseMotion):
-        message = f"{name} must be a base motion such as Harmonic.circular(...), got {motion!r}"
-        raise ParameterError(message)
+        raise ParameterError(f"{name} must be a base motion such as Harmonic.circular(...), got {motion!r}")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -423,8 +422,9 @@ class OneOf(Following):
             require_motion("motions", motion)
         count, number = len(self.motions), self.chosen
         if not (0 <= number < count and float(number).is_integer()):
-            message = f"motion must be a whole number from 0 to {count - 1}, of {count} motions; got {number!r}"
-            raise ParameterError(message)
+            raise ParameterError(
+                f"motion must be a whole number from 0 to {count - 1}, of {count} motions; got {number!r}"
+            )
         object.__setattr__(self, "chosen", int(number))
 
     def made_by(self) -> tuple[Callable[..., BaseMotion], Mapping[str, Any]]:

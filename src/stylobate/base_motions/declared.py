@@ -139,8 +139,7 @@ def with_numbers(motion: BaseMotion, values: Mapping[str, float]) -> BaseMotion:
     for name in values:
         if name not in known:
             numbers = f"Its numbers are {', '.join(known)}." if known else "It has none."
-            message = f"{name}: the base motion has no such number (got {motion!r}). {numbers}"
-            raise UnsupportedError(message)
+            raise UnsupportedError(f"{name}: the base motion has no such number (got {motion!r}). {numbers}")
     if "angular_frequency" in values and "frequency" in known and "frequency" not in stated_numbers(motion):
         values = {**values, "frequency": values["angular_frequency"] / (2.0 * math.pi)}
     changed: BaseMotion = _changed(motion, values)

@@ -111,11 +111,10 @@ class MachineRun(BaseMotion):
         """Raise ParameterError for a run of too many cycles."""
         cycles = (self.run_up + self.steady + self.run_down) * max(self.frequency, self.resonance)
         if cycles > _MOST_CYCLES:
-            message = (
+            raise ParameterError(
                 f"steady: a run has at most {_MOST_CYCLES:.0f} cycles (got {self.steady!r} s, {cycles:.3g} cycles). "
                 "Use Harmonic.stroke for long steady vibration."
             )
-            raise ParameterError(message)
 
     def drive_frequency(self, time: npt.ArrayLike) -> Floats:
         """Compute the frequency of the drive at `time` [Hz]."""

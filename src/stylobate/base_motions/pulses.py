@@ -94,8 +94,7 @@ class Pulse(BaseMotion):
     def validate(self) -> None:
         """Raise ParameterError unless `waveform` is a Waveform; find its turning points."""
         if not isinstance(self.waveform, Waveform):
-            message = f"waveform must be a Waveform such as Ricker(...), got {self.waveform!r}"
-            raise ParameterError(message)
+            raise ParameterError(f"waveform must be a Waveform such as Ricker(...), got {self.waveform!r}")
         object.__setattr__(self, "_turning_points", self.waveform.turning_points())
 
     def derivative(self, time: npt.ArrayLike, order: int) -> Components:

@@ -163,8 +163,9 @@ class Record(BaseMotion):
         }
         if not given or len({values.shape for values in given.values()}) > 1:
             shapes = {name: values.shape for name, values in given.items()}
-            message = f"x, y and z must be arrays of one length, one of them at least, got the shapes {shapes}"
-            raise ParameterError(message)
+            raise ParameterError(
+                f"x, y and z must be arrays of one length, one of them at least, got the shapes {shapes}"
+            )
         shape = next(iter(given.values())).shape
         samples = np.stack([given.get(name, np.zeros(shape)) for name in AXES], axis=-1)
         return cls(samples=samples, step=step, **more)
@@ -335,8 +336,7 @@ class Record(BaseMotion):
         """
         largest = float(self._largest[0])
         if largest == 0.0:
-            message = "a record to scale must have a horizontal acceleration, got none"
-            raise ParameterError(message)
+            raise ParameterError("a record to scale must have a horizontal acceleration, got none")
         return self.scaled(require_positive("peak", peak, "m/s²") / largest)
 
     def rotated(self, angle: float) -> "Record":  # type: ignore[override]
@@ -373,8 +373,7 @@ class Record(BaseMotion):
         slack = _KNOT_SLACK * self.step
         kept = (self.times >= begin - slack) & (self.times <= end + slack)
         if np.count_nonzero(kept) < 2:  # noqa: PLR2004  a step has two ends
-            message = f"begin and end must leave two samples of {self!r}, got {begin!r} s and {end!r} s"
-            raise ParameterError(message)
+            raise ParameterError(f"begin and end must leave two samples of {self!r}, got {begin!r} s and {end!r} s")
         return self.changed(f"trimmed to {begin!r} s … {end!r} s", samples=self.samples[kept], origin=origin)
 
     def padded(self, *, before: float = 0.0, after: float = 0.0) -> "Record":
@@ -444,10 +443,10 @@ def _checked(samples: npt.ArrayLike) -> Floats:
     if array.ndim == 1:
         array = array[:, np.newaxis]
     if array.ndim != 2 or len(array) < 2 or not 1 <= array.shape[1] <= len(AXES):  # noqa: PLR2004
-        message = f"samples must be numbers of shape (n,) or (n, 1 to 3) with n of at least 2, got {np.shape(samples)}"
-        raise ParameterError(message)
+        raise ParameterError(
+            f"samples must be numbers of shape (n,) or (n, 1 to 3) with n of at least 2, got {np.shape(samples)}"
+        )
     if not np.all(np.isfinite(array)):
         row = int(np.argmax(~np.all(np.isfinite(array), axis=1)))
-        message = f"samples must be finite, got {array[row].tolist()} at index {row}"
-        raise ParameterError(message)
+        raise ParameterError(f"samples must be finite, got {array[row].tolist()} at index {row}")
     return np.ascontiguousarray(np.pad(array, ((0, 0), (0, len(AXES) - array.shape[1]))))

@@ -88,17 +88,14 @@ def filtered(
     order = require_whole("order", order, least=1)
     corners = {name: value for name, value in (("highpass", highpass), ("lowpass", lowpass)) if value is not None}
     if not corners:
-        message = "highpass or lowpass must be given [Hz]"
-        raise ParameterError(message)
+        raise ParameterError("highpass or lowpass must be given [Hz]")
     nyquist = 0.5 / step
     for name, value in corners.items():
         if require_positive(name, value, "Hz") >= nyquist:
-            message = f"{name} must be below half the sampling rate, {nyquist!r} Hz, got {value!r} Hz"
-            raise ParameterError(message)
+            raise ParameterError(f"{name} must be below half the sampling rate, {nyquist!r} Hz, got {value!r} Hz")
     edges = list(corners.values())
     if len(edges) > 1 and edges[0] >= edges[1]:
-        message = f"highpass must be below lowpass = {edges[1]!r} Hz, got {edges[0]!r} Hz"
-        raise ParameterError(message)
+        raise ParameterError(f"highpass must be below lowpass = {edges[1]!r} Hz, got {edges[0]!r} Hz")
     if len(edges) > 1:
         sections = butter(order, edges, btype="bandpass", fs=1.0 / step, output="sos")
     else:
@@ -165,8 +162,7 @@ def resampled(samples: Floats, before: float, step: float) -> tuple[Floats, str]
     ratio = Fraction(before / step).limit_denominator(_LARGEST_FACTOR)
     up, down = ratio.numerator, ratio.denominator
     if not 0 < up <= _LARGEST_FACTOR or abs(before / step / float(ratio) - 1.0) > _RATIO_TOLERANCE:
-        message = f"step must be in a ratio of whole numbers up to 1000 to {before!r} s, got {step!r} s"
-        raise ParameterError(message)
+        raise ParameterError(f"step must be in a ratio of whole numbers up to 1000 to {before!r} s, got {step!r} s")
     if up == down:
         return samples, ""
     note = f"resampled from {before!r} s to {step!r} s (polyphase {up}:{down}, anti-aliased)"

@@ -115,11 +115,10 @@ class SineSweep(BaseMotion):
         """Raise ParameterError for a sweep with too many cycles to store."""
         cycles = max(self.frequencies) * self.length
         if cycles > MOST_CYCLES:
-            message = (
+            raise ParameterError(
                 f"length: a sweep has at most {MOST_CYCLES:g} cycles, since all are stored (got {cycles:.4g}). "
                 "Shorten it, or lower its frequencies."
             )
-            raise ParameterError(message)
 
     @classmethod
     @checked_arguments
@@ -279,5 +278,6 @@ def _given_amplitude(acceleration: float | None, displacement: float | None) -> 
         return acceleration, SweepQuantity.ACCELERATION
     if displacement is not None and acceleration is None:
         return displacement, SweepQuantity.DISPLACEMENT
-    message = f"acceleration or displacement must be given, one of them, got {acceleration!r} and {displacement!r}"
-    raise ParameterError(message)
+    raise ParameterError(
+        f"acceleration or displacement must be given, one of them, got {acceleration!r} and {displacement!r}"
+    )

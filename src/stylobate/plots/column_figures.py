@@ -145,8 +145,9 @@ def plot_column_path(
         If the model has no contact point, or a time lies outside the run.
     """
     if "contact_point" not in run.data:
-        message = f"run must be of a model with a `contact_point`, got {sorted(map(str, run.data.data_vars))}"
-        raise ParameterError(message)
+        raise ParameterError(
+            f"run must be of a model with a `contact_point`, got {sorted(map(str, run.data.data_vars))}"
+        )
     data, drawn = _shown(run, times, until)
     shape = Shape.of(run)
     radius, height = shape.radius, shape.height
@@ -175,8 +176,7 @@ def _shown(run: Response, times: Sequence[float] | None, until: float | None) ->
     last = until if until is not None else end if times is None else max(times, default=0.0)
     chosen = np.linspace(0.0, last, _GHOSTS + 1) if times is None else np.asarray(times, dtype=float)
     if not (0.0 < last <= end and chosen.size and np.all((chosen >= 0.0) & (chosen <= last))):
-        message = f"times and until must lie within the run, 0 to {end:.6g} s, got {times!r} and {until!r}"
-        raise ParameterError(message)
+        raise ParameterError(f"times and until must lie within the run, 0 to {end:.6g} s, got {times!r} and {until!r}")
     data = _path(run, last, chosen)
     return data, np.searchsorted(data["time"].to_numpy()[:-1], chosen)
 

@@ -78,14 +78,12 @@ def plot(
 def _check_labels(result: Any, labels: Sequence[str]) -> None:
     results = result if isinstance(result, Sequence) else [result]
     if not all(isinstance(one, Response | HasPoints) for one in results):
-        message = f"labels name runs, branches or curves (got {type(result).__name__}). Leave labels out"
-        raise ParameterError(message)
+        raise ParameterError(f"labels name runs, branches or curves (got {type(result).__name__}). Leave labels out")
     if isinstance(labels, str) or len(labels) != len(results):
         got = repr(labels) if isinstance(labels, str) else len(labels)
-        message = (
+        raise ParameterError(
             f"labels must have one name for each of {plural(len(results), 'result')}, got {got}. Pass a list of them"
         )
-        raise ParameterError(message)
 
 
 def _drawn(result: Any, labels: Sequence[str] | None) -> Figure:
@@ -109,12 +107,12 @@ def _drawn(result: Any, labels: Sequence[str] | None) -> Figure:
     if isinstance(result, xr.Dataset) and (draw := figure_for(str(result.attrs.get("kind")))) is not None:
         return draw(result)
     if isinstance(result, Assessment):
-        message = "result must have one figure, got an Assessment. Write its report by earthquakes.assessment_report"
-        raise ParameterError(message)
+        raise ParameterError(
+            "result must have one figure, got an Assessment. Write its report by earthquakes.assessment_report"
+        )
     table = result.attrs.get("kind") if isinstance(result, xr.Dataset) else None
     got = f"a Dataset of kind {table!r}, which has no figure" if table else type(result).__name__
-    message = (
+    raise ParameterError(
         "result must be a column, a base motion, a run, an orbit, a branch, a curve, a sequence of runs, branches or "
         f"curves, or the result of a study, got {got}"
     )
-    raise ParameterError(message)

@@ -87,8 +87,9 @@ def plot_interactive(
     try:
         import plotly.graph_objects  # noqa: F401  an extra, slow to import
     except ImportError:
-        message = "interactive figures need Plotly. Install it by: pip install stylobate[interactive]"
-        raise UnsupportedError(message) from None
+        raise UnsupportedError(
+            "interactive figures need Plotly. Install it by: pip install stylobate[interactive]"
+        ) from None
     results: Sequence[Any] = [result]
     if isinstance(result, Sequence) and not isinstance(result, str):
         check_sequence(result)
@@ -104,11 +105,10 @@ def plot_interactive(
         figure = _of_ensemble(shown[0])
     else:
         kind = result.attrs.get("kind") if isinstance(result, xr.Dataset) else type(result).__name__
-        message = (
+        raise ParameterError(
             "result must be runs, branches, a verdict, or runs over one or two dimensions to be drawn interactively, "
             f"got {kind}. Draw it by plot"
         )
-        raise ParameterError(message)
     dark = np.mean(to_rgb(rcParams["axes.facecolor"])) < np.mean(to_rgb(rcParams["text.color"]))
     figure.update_layout(template="plotly_dark" if dark else "simple_white")
     return figure
@@ -306,8 +306,7 @@ def _of_branches(branches: Sequence[xr.Dataset], labels: Sequence[str] | None) -
     figure = Figure()
     for index, points in enumerate(branches):
         if "mean_tilt" not in points:
-            message = "result must be branches of orbits, got curves of bifurcations. Draw them by plot"
-            raise ParameterError(message)
+            raise ParameterError("result must be branches of orbits, got curves of bifurcations. Draw them by plot")
         x, stable = str(points.attrs["parameter"]), points["stable"].to_numpy().astype(bool)
         name = labels[index] if labels else f"branch {index + 1}"
         hover = _numbers(points, [str(points[x].dims[0])])
@@ -412,8 +411,9 @@ def _of_ensemble(runs: xr.Dataset) -> "Figure":
 
     dims = [str(dim) for dim in runs["outcome"].dims]
     if not 1 <= len(dims) <= _PLANE:
-        message = f"runs must be over one or two dimensions, got {dict(runs['outcome'].sizes)}. Choose others by .isel"
-        raise ParameterError(message)
+        raise ParameterError(
+            f"runs must be over one or two dimensions, got {dict(runs['outcome'].sizes)}. Choose others by .isel"
+        )
     shown, all_classes = next((name, of(runs)) for name, of in _CLASSES.items() if name in runs)
     codes = runs[shown].to_numpy()
     classes = [one for one in all_classes if np.any(codes == one.code)]

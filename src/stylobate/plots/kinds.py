@@ -33,16 +33,16 @@ class HasPoints(Protocol):
 def check_sequence(results: Sequence[object]) -> None:
     """Raise ParameterError unless there are results, and all are runs, or all have points."""
     if not results:
-        message = f"result: nothing is in it (got {results!r}). Pass one run, branch or curve, or several of a kind."
-        raise ParameterError(message)
+        raise ParameterError(
+            f"result: nothing is in it (got {results!r}). Pass one run, branch or curve, or several of a kind."
+        )
     kind = next((kind for kind in (Response, HasPoints) if isinstance(results[0], kind)), None)
     for place, one in enumerate(results):
         if kind is None or not isinstance(one, kind):
-            message = (
+            raise ParameterError(
                 f"result[{place}]: only runs, or only branches or curves, are drawn together (got "
                 f"{type(one).__name__}). Remove it, or draw it alone."
             )
-            raise ParameterError(message)
 
 
 def figure_of(*kinds: str) -> Callable[[_Draw], _Draw]:

@@ -60,11 +60,11 @@ def draw_outcomes(axes: Axes, runs: xr.Dataset) -> list[Artist]:
 def draw_classes(axes: Axes, runs: xr.Dataset, codes: xr.DataArray, classes: Sequence[MapClass]) -> list[Artist]:
     """Draw the `codes` of `runs` over their two dimensions, the first along x, and return the legend's entries."""
     if codes.size == 0:
-        message = f"a map needs at least one run, got sizes {dict(codes.sizes)}. Give each dimension a value or more"
-        raise ParameterError(message)
+        raise ParameterError(
+            f"a map needs at least one run, got sizes {dict(codes.sizes)}. Give each dimension a value or more"
+        )
     if codes.ndim != 2:  # noqa: PLR2004  a plane
-        message = f"a map needs runs over two dimensions, got {dict(codes.sizes)}"
-        raise ParameterError(message)
+        raise ParameterError(f"a map needs runs over two dimensions, got {dict(codes.sizes)}")
     x, y = (str(dim) for dim in codes.dims)
     ordered = runs.assign(_codes=codes).sortby([x, y]).transpose(y, x, ...)
     cells: Integers = ordered["_codes"].to_numpy()
@@ -118,8 +118,9 @@ def plot_ensemble(runs: xr.Dataset) -> Figure:
         return plot_map(runs)
     if len(dims) != 1 or runs["outcome"].size == 0:
         sizes = dict(runs["outcome"].sizes)
-        message = f"runs must be over one or two dimensions, got {sizes}. Choose values of the others by .isel"
-        raise ParameterError(message)
+        raise ParameterError(
+            f"runs must be over one or two dimensions, got {sizes}. Choose values of the others by .isel"
+        )
     (dim,) = dims
     varied = [str(name) for name, one in runs.coords.items() if one.dims == (dim,) and one.dtype.kind in "fiu"]
     figure = new_figure(3.4)

@@ -205,8 +205,9 @@ def plot_branches(branches: Sequence[xr.Dataset], labels: Sequence[str] | None =
     """
     parameters = list(dict.fromkeys(str(one.attrs["parameter"]) for one in branches))
     if len(parameters) > 1:
-        message = f"branches must have one parameter, got {', '.join(parameters)}: plot those of each parameter alone"
-        raise ParameterError(message)
+        raise ParameterError(
+            f"branches must have one parameter, got {', '.join(parameters)}: plot those of each parameter alone"
+        )
     x = parameters[0]
     names: Sequence[str | None] = labels or [None] * len(branches)
     figure = new_figure(4.4)
@@ -262,8 +263,7 @@ def plot_bifurcation_curves(curves: Sequence[xr.Dataset], labels: Sequence[str] 
     planes = [tuple(json.loads(one.attrs["parameters"])) for one in curves]
     if any(set(plane) != set(planes[0]) for plane in planes):
         pairs = " and ".join(str(plane) for plane in dict.fromkeys(planes))
-        message = f"curves must have the same two parameters, got {pairs}: plot those of each plane alone"
-        raise ParameterError(message)
+        raise ParameterError(f"curves must have the same two parameters, got {pairs}: plot those of each plane alone")
     x, y = planes[0]
     figure = new_figure(4.4)
     axes = figure.subplots()

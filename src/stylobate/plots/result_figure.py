@@ -255,11 +255,9 @@ def drawing(size: float | tuple[float, float] | None = None, axes: Axes | None =
         If the size is not positive, or both are given.
     """
     if size is not None and axes is not None:
-        message = f"size: the axes have their own (got {size!r}). Leave size or axes out"
-        raise ParameterError(message)
+        raise ParameterError(f"size: the axes have their own (got {size!r}). Leave size or axes out")
     if axes is not None and not isinstance(axes, Axes):
-        message = f"axes must be Matplotlib's Axes, got {type(axes).__name__}"
-        raise ParameterError(message)
+        raise ParameterError(f"axes must be Matplotlib's Axes, got {type(axes).__name__}")
     asked = None if size is None else _checked(size)
     token = _ASKED.set(Asked(asked, axes))
     try:
@@ -310,8 +308,7 @@ def _checked(size: Any) -> tuple[float, float | None]:
     except (TypeError, ValueError):
         sides = math.nan, None
     if not all(side is None or 0.0 < side < math.inf for side in sides):
-        message = f"size must be a positive width, or width and height, in inches, got {size!r}"
-        raise ParameterError(message)
+        raise ParameterError(f"size must be a positive width, or width and height, in inches, got {size!r}")
     return sides
 
 
@@ -495,8 +492,7 @@ class InAxes(ResultFigure):
         return figure
 
     def _refuse(self) -> None:
-        message = (
+        raise ParameterError(
             "axes: this figure has several panels (got one Axes). Leave axes out and pass size; runs, "
             "ensembles, overturning maps and branches are drawn in axes"
         )
-        raise ParameterError(message)

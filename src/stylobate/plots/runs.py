@@ -251,8 +251,9 @@ def _that_fit(heights: Mapping[str, float], height: float, *, beside: bool) -> l
         needed = font_ratio() * (_MARGIN + _NEEDED * _height(columns))
         if needed <= height:
             return columns
-    message = f"size: a figure of a run must be {needed:.2f} inches high or more, got {height:g}. Give the width only"
-    raise ParameterError(message)
+    raise ParameterError(
+        f"size: a figure of a run must be {needed:.2f} inches high or more, got {height:g}. Give the width only"
+    )
 
 
 def _looks(runs: Sequence[Response]) -> list[dict[str, Any]]:

@@ -205,29 +205,25 @@ def read_waveform(path: Path, content: bytes) -> Component:
     try:
         import obspy
     except ImportError:
-        message = (
+        raise UnsupportedError(
             f'{path}: no text. To read a waveform such as miniSEED, install ObsPy: pip install "stylobate[records]"'
-        )
-        raise UnsupportedError(message) from None
+        ) from None
     try:
         stream = obspy.read(io.BytesIO(content))
     except Exception as error:  # ObsPy's readers raise exceptions of any type; their texts name temporary files
-        message = (
+        raise FileError(
             f"{path}: ObsPy cannot read it: its format is unknown or its content damaged. Download the file again, or "
             "export the record as text or miniSEED"
-        )
-        raise FileError(message) from error
+        ) from error
     if len(stream) != 1:
         remedy = "Write each trace to a file of its own, and fill its gaps"
-        message = f"{path}: the file must hold one trace without gaps, got {len(stream)} traces. {remedy}"
-        raise FileError(message)
+        raise FileError(f"{path}: the file must hold one trace without gaps, got {len(stream)} traces. {remedy}")
     (trace,) = stream
     stats = trace.stats
     samples = np.ma.filled(np.ma.asarray(trace.data, dtype=float), np.nan) * float(stats.calib)
     if len(samples) < 2 or not np.all(np.isfinite(samples)):  # noqa: PLR2004  a step has two ends
         remedy = "Download the file again, or fill its gaps"
-        message = f"{path}: the trace must have at least two finite samples without gaps. {remedy}"
-        raise FileError(message)
+        raise FileError(f"{path}: the trace must have at least two finite samples without gaps. {remedy}")
     return Component(
         samples=samples,
         step=float(stats.delta),

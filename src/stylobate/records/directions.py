@@ -102,10 +102,9 @@ class Direction:
         except (TypeError, ValueError):
             found = None
         if found is None:
-            message = (
+            raise ParameterError(
                 f'a direction must be an azimuth in degrees or "up", got {given!r}; or "down", or a name as N10E, L'
             )
-            raise ParameterError(message)
         return found
 
     def agrees_with(self, other: "Direction") -> bool:
@@ -288,11 +287,10 @@ def along_axes(event: str, components: Sequence[Directed]) -> tuple[dict[str, Fl
     up = [one for one in components if one.direction.vertical]
     flat = sorted((one for one in components if not one.direction.vertical), key=_order)
     if len(up) > 1 or len(flat) > 2:  # noqa: PLR2004
-        message = (
+        raise FileError(
             f"{event}: two horizontal components and a vertical one at most, got {_listed(components)}. If they are of "
             "several events, list the files of each event together"
         )
-        raise FileError(message)
     axes, lines = _horizontal(event, flat)
     if up:
         axes["z"] = up[0].direction.vertical * up[0].samples
@@ -325,11 +323,10 @@ def _horizontal(event: str, flat: list[Directed]) -> tuple[dict[str, Floats], li
         return {"x": first.samples}, [f"x {where}, from {first.label}"]
     second = flat[1]
     if _sine(first.direction, second.direction) == 0.0:
-        message = (
+        raise FileError(
             f"{event}: horizontal components must be perpendicular, or nearly so, got {_listed(flat)}. State "
             "directions, or list the files of each event together"
         )
-        raise FileError(message)
     if first.direction.azimuth is None or second.direction.azimuth is None:
         lines = [
             f"{axis} from {one.label} ({one.direction}, azimuth unknown)" for axis, one in zip("xy", flat, strict=True)

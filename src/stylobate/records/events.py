@@ -79,8 +79,7 @@ def find_files(source: RecordSource) -> tuple[list[StatedEvent], list[Path]]:
         else:
             stated.append(StatedEvent(_all_of(one)))
     if not (stated or loose):
-        message = "no files were given"
-        raise FileError(message)
+        raise FileError("no files were given")
     taken = {path.absolute() for event in stated for path in event.files}
     return stated, [path for path in dict.fromkeys(loose) if path.absolute() not in taken]
 
@@ -89,8 +88,7 @@ def require_path(name: str, value: object) -> Path:
     """Convert `value` to a path, or raise ParameterError."""
     if isinstance(value, (str, os.PathLike)):
         return Path(value)
-    message = f"{name}: must be a path (got {value!r}). Give a string or a pathlib.Path."
-    raise ParameterError(message)
+    raise ParameterError(f"{name}: must be a path (got {value!r}). Give a string or a pathlib.Path.")
 
 
 def is_list_of_files(source: RecordSource) -> bool:
@@ -104,16 +102,16 @@ def _all_of(files: OnePath | Iterable[OnePath]) -> tuple[Path, ...]:
     each = [files] if isinstance(files, (str, os.PathLike)) else _each(files)
     found = tuple(path for one in each for path in _expanded(one))
     if not found:
-        message = "no files were given for an event"
-        raise FileError(message)
+        raise FileError("no files were given for an event")
     return found
 
 
 def _each(source: Iterable[_T]) -> Iterable[_T]:
     if isinstance(source, Iterable):
         return source
-    message = f'source: must be a path, or lists of the files of each event (got {source!r}). Give such as "quakes".'
-    raise ParameterError(message)
+    raise ParameterError(
+        f'source: must be a path, or lists of the files of each event (got {source!r}). Give such as "quakes".'
+    )
 
 
 def _expanded(source: OnePath) -> list[Path]:
@@ -126,8 +124,7 @@ def _expanded(source: OnePath) -> list[Path]:
     start = Path(path.anchor) if path.is_absolute() else Path()
     found = sorted(accelerations_among(one for one in start.glob(str(path.relative_to(start))) if one.is_file()))
     if not found:
-        message = f"{source}: no file has such a name"
-        raise FileError(message)
+        raise FileError(f"{source}: no file has such a name")
     return found
 
 
@@ -135,8 +132,7 @@ def _in_folder(folder: Path) -> list[Path]:
     """Return the acceleration files of a folder."""
     files = sorted(accelerations_among(path for path in folder.iterdir() if path.is_file()))
     if not files:
-        message = f"{folder}: the folder has no files"
-        raise FileError(message)
+        raise FileError(f"{folder}: the folder has no files")
     return files
 
 
@@ -270,13 +266,13 @@ def find_events(
     """
     stated, loose = find_files(source)
     if not isinstance(directions, Mapping | None):
-        message = f'directions: must be by name of a file (got {directions!r}). Give such as {{"q_1.csv": 90.0}}.'
-        raise ParameterError(message)
+        raise ParameterError(
+            f'directions: must be by name of a file (got {directions!r}). Give such as {{"q_1.csv": 90.0}}.'
+        )
     given = {name: Direction.of(direction) for name, direction in (directions or {}).items()}
     names = {path.name for path in [*loose, *(path for event in stated for path in event.files)]}
     if unknown := given.keys() - names:
-        message = f"directions must name files that are read, got {', '.join(sorted(unknown))}"
-        raise ParameterError(message)
+        raise ParameterError(f"directions must name files that are read, got {', '.join(sorted(unknown))}")
 
     def files_of(paths: Iterable[Path]) -> list[EventFile]:
         return [EventFile.of(path, read, given.get(path.name)) for path in paths]

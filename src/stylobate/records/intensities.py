@@ -53,8 +53,9 @@ class HorizontalComponent(Enum):
         found = next((one for one in cls if "".join(one.value.lower().split()) == plain), _ALIASES.get(plain))
         if found is None:
             known = ", ".join(repr(one.value) for one in cls)
-            message = f"{argument}: unknown definition of the horizontal component (got {name!r}). Use one of {known}."
-            raise ParameterError(message)
+            raise ParameterError(
+                f"{argument}: unknown definition of the horizontal component (got {name!r}). Use one of {known}."
+            )
         return found
 
     def peak(self, x: Floats, y: Floats) -> float:

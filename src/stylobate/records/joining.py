@@ -161,14 +161,12 @@ def join_event(
         return replace(parts[0].record, name=event.name)
     for file, part in zip(files, parts, strict=True):
         if part.direction is None:
-            whole = isinstance(file.content, Component) and file.content.samples.ndim > 1
-            message = f"{part.path}: " + (
-                "it has the components of an event already. List it alone"
-                if whole
-                else "its direction is unknown. State directions, its azimuth in degrees or up, or end its name with "
-                "it, such as _NS, _090 or _UP"
+            if isinstance(file.content, Component) and file.content.samples.ndim > 1:
+                raise FileError(f"{part.path}: it has the components of an event already. List it alone")
+            raise FileError(
+                f"{part.path}: its direction is unknown. State directions, its azimuth in degrees or up, or end its "
+                "name with it, such as _NS, _090 or _UP"
             )
-            raise FileError(message)
     records, notes = _alike(event.name, parts, lengths, steps)
     directed = [
         Directed(part.path.name, part.direction, record.samples[:, 0])
@@ -234,13 +232,11 @@ def _alike(event: str, parts: list[_Part], lengths: Lengths, steps: Steps) -> tu
     if any(abs(record.step / finest - 1.0) > _SAME_STEP for record in records):
         if steps is Steps.REFUSE:
             listed = ", ".join(f"{part.path.name} {part.record.step:g} s" for part in parts)
-            message = f"{event}: time steps differ ({listed}); state steps to be resampled, or make them alike"
-            raise FileError(message)
+            raise FileError(f"{event}: time steps differ ({listed}); state steps to be resampled, or make them alike")
         records = [record.resampled(finest) for record in records]
     if len({record.start for record in records}) > 1:
         listed = ", ".join(f"{part.path.name} {part.record.start:g} s" for part in parts)
-        message = f"{event}: components begin at different times ({listed}); trim or pad them one by one"
-        raise FileError(message)
+        raise FileError(f"{event}: components begin at different times ({listed}); trim or pad them one by one")
     counts = [len(record.samples) for record in records]
     if len(set(counts)) == 1:
         return records, []

@@ -115,16 +115,14 @@ def read_component(
     """Read the component of a file in the units of the file."""
     content = read_bytes(path)
     if is_binary(content) and format in (None, RecordFormat.AT2) and _is_called_at2(path):
-        message = f"{path}: no AT2 file: it is no text, and has no header with NPTS and DT. Download it again"
-        raise FileError(message)
+        raise FileError(f"{path}: no AT2 file: it is no text, and has no header with NPTS and DT. Download it again")
     if format is RecordFormat.WAVEFORM or (
         format is None and (is_binary(content) or content.startswith(b"Origin Time"))
     ):
         return read_waveform(path, content)
     if is_binary(content):
         remedy = "Leave format out, or export the record as text"
-        message = f"{path}: a binary file, not {format.value if format else 'text'}. {remedy}"
-        raise FileError(message)
+        raise FileError(f"{path}: a binary file, not {format.value if format else 'text'}. {remedy}")
     return _read_text(Text.of(path, content), step, columns, format)
 
 
@@ -169,8 +167,7 @@ def as_record(component: Component, path: Path, units: str | None, axis: str | N
     up = direction.vertical if direction else 0
     axis = ("z" if up else "x") if axis is None else axis
     if axis not in AXES:
-        message = f'axis must be "x", "y" or "z", got {axis!r}'
-        raise ParameterError(message)
+        raise ParameterError(f'axis must be "x", "y" or "z", got {axis!r}')
     if direction is not None:
         provenance += (f"{direction} along {axis}" + (" with its sign turned" if up < 0 and axis == "z" else ""),)
     sign = -1.0 if up < 0 and axis == "z" else 1.0
@@ -187,8 +184,7 @@ def _require_possible(component: Component, path: Path) -> None:
         ("a peak", float(np.abs(component.samples).max()), 0.0, _BEYOND_ALL),
     ):
         if not least <= value <= most:
-            message = f"{path}: {what} must be between {least:g} and {most:g}, got {value:g}. Check the numbers"
-            raise FileError(message)
+            raise FileError(f"{path}: {what} must be between {least:g} and {most:g}, got {value:g}. Check the numbers")
 
 
 def _remark_on_the_peak(samples: Floats, path: Path, unit_text: str) -> None:
@@ -221,11 +217,11 @@ def name_of(path: Path) -> str:
 def _scale(component: Component, path: Path, units: str | None) -> tuple[float, str]:
     given = None if units is None else require_unit(units)
     if component.unit is None and given is None:
-        message = f"{path}: the file names no unit: state units, {KNOWN}"
-        raise FileError(message)
+        raise FileError(f"{path}: the file names no unit: state units, {KNOWN}")
     if component.unit is not None and given is not None and component.unit != given:
-        message = f"{path}: units must be left out or {component.unit!r}, which the file states, got {units!r}"
-        raise ParameterError(message)
+        raise ParameterError(
+            f"{path}: units must be left out or {component.unit!r}, which the file states, got {units!r}"
+        )
     unit = component.unit or given
     assert unit is not None
     return in_si(unit), f"in {unit}" + (" as the file states" if component.unit else " as given")
@@ -258,8 +254,7 @@ def write_at2(record: Record, path: str | os.PathLike[str], *, axis: str) -> Pat
         If the axis is not "x", "y" or "z".
     """
     if axis not in AXES:
-        message = f'axis must be "x", "y" or "z", got {axis!r}'
-        raise ParameterError(message)
+        raise ParameterError(f'axis must be "x", "y" or "z", got {axis!r}')
     values = [f"{value:15.7E}" for value in (record.samples[:, AXES.index(axis)] / STANDARD_GRAVITY).tolist()]
     header = [
         "PEER format, written by stylobate",

@@ -140,8 +140,7 @@ def response_spectra(record: Record, periods: npt.ArrayLike, *, damping: float =
     """
     damping = require_not_negative("damping", damping)
     if damping >= 1.0:
-        message = f"damping must be below 1, got {damping!r}"
-        raise ParameterError(message)
+        raise ParameterError(f"damping must be below 1, got {damping!r}")
     given = np.ravel(as_numbers("periods", periods, "s"))
     natural = np.array([require_positive(f"periods[{i}]", period, "s") for i, period in enumerate(given)])
     shown = list(record.axes)

@@ -118,15 +118,13 @@ def random_vibration(
     step = require_positive("step", step, "s")
     components = require_whole("components", components, least=1)
     if components > len(AXES):
-        message = f"components must be 1, 2 or 3, got {components!r}"
-        raise ParameterError(message)
+        raise ParameterError(f"components must be 1, 2 or 3, got {components!r}")
     count = 2 * math.ceil(require_positive("duration", duration, "s") / step / 2.0 - 1e-9)
     count = max(count, 4)
     frequency = np.arange(1.0, count // 2) / (count * step)
     power = np.asarray(density(frequency), dtype=float)
     if power.shape != frequency.shape or not np.all(np.isfinite(power) & (power >= 0.0)):
-        message = "density must give finite numbers of zero or above, one for each frequency"
-        raise ParameterError(message)
+        raise ParameterError("density must give finite numbers of zero or above, one for each frequency")
     amplitude = np.sqrt(2.0 * power / (count * step))
     phase = rng.uniform(0.0, 2.0 * math.pi, size=(components, len(frequency)))
     spectrum = np.zeros((components, count // 2 + 1), dtype=complex)
@@ -195,15 +193,13 @@ class EvolvingNoise:
             object.__setattr__(self, name, require_positive(name, getattr(self, name), units.get(name, "")))
         require_finite("frequency_rate", self.frequency_rate, "Hz/s")
         if self.bandwidth >= 1.0:
-            message = f"bandwidth must be below 1, got {self.bandwidth!r}"
-            raise ParameterError(message)
+            raise ParameterError(f"bandwidth must be below 1, got {self.bandwidth!r}")
         least, most = (_spread(shape) for shape in _SHAPES[::-1])
         if not least < self.duration_5_95 / self.middle_time < most:
-            message = (
+            raise ParameterError(
                 f"duration_5_95 must be between {least:.3g} and {most:.3g} of middle_time = {self.middle_time!r} s, "
                 f"got {self.duration_5_95!r} s"
             )
-            raise ParameterError(message)
 
     def record(
         self, rng: np.random.Generator, *, step: float = 0.01, components: int = 1, name: str | None = None
@@ -230,8 +226,7 @@ class EvolvingNoise:
         step = require_positive("step", step, "s")
         components = require_whole("components", components, least=1)
         if components > len(AXES):
-            message = f"components must be 1, 2 or 3, got {components!r}"
-            raise ParameterError(message)
+            raise ParameterError(f"components must be 1, 2 or 3, got {components!r}")
         shape, scale = self._modulation()
         noisy = math.ceil(scale * gammaincinv(shape, 1.0 - _REST_OF_INTENSITY) / step) + 1
         time = step * np.arange(float(noisy))

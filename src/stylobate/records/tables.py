@@ -27,8 +27,8 @@ from stylobate.records.text_files import (
 )
 from stylobate.records.time_steps import equal_steps, require_two
 
-TIMES = ("time", "t", "zeit", "temps", "tempo", "tiempo")
-"""Names of a column of times, in small letters."""
+# Names of a column of times, in small letters.
+_TIMES = ("time", "t", "zeit", "temps", "tempo", "tiempo")
 _ACCELERATION = ("acceleration", "accel", "acc", "a")
 # Single letters that are a velocity, a length, a time or a radius unless they fit the directions of other columns.
 _UNSURE = ("v", "l", "t", "r")
@@ -84,7 +84,7 @@ class Table:
         lines = [(at, line) for at, line in lines if not line.lstrip().startswith(REMARKS)]
         begin = next((place for place, (_, line) in enumerate(lines) if _is_row(line)), len(lines))
         header, body = [one for one in lines[:begin] if not _RULE.fullmatch(one[1])], lines[begin:]
-        if has_decimal_commas(text, body):
+        if _has_decimal_commas(text, body):
             body = [(at, line.replace(",", ".")) for at, line in body]
         separator = next((sign for sign in ";," if body and sign in body[0][1]), None)
         width = len(_fields(body[0][1], separator)) if body else 0
@@ -107,7 +107,7 @@ class Table:
         return cls(text, rows[1:], *rows[0][::-1]) if rows else cls(text, [])
 
 
-def has_decimal_commas(text: Text, rows: list[Line]) -> bool:
+def _has_decimal_commas(text: Text, rows: list[Line]) -> bool:
     """Return whether the commas in rows of numbers, each with the index of its line, are decimal.
 
     Raises
@@ -178,7 +178,7 @@ def _names(header: list[str], width: int, separator: str | None, *, named: bool)
     if width == 1:
         return names if named or any(units) else None
     certain = named or separator is not None or "\t" in header[-1] or width > 2  # noqa: PLR2004  time, acceleration
-    return names if certain or units or names[0].lower() in TIMES else None
+    return names if certain or units or names[0].lower() in _TIMES else None
 
 
 def _header_fields(line: str, width: int, separator: str | None) -> list[str] | None:
@@ -303,7 +303,7 @@ def _chosen(text: Text, line: int, names: list[str], columns: Mapping[str, str] 
                 raise text.fault(line, f"no column {name!r} for {axis!r}: the columns are {', '.join(names)}")
         _require_distinct(text, line, [(name, name) for name in names if name in columns.values()])
         return {axis: names.index(name) for axis, name in columns.items()}
-    times = [lower.index(name) for name in TIMES if name in lower]
+    times = [lower.index(name) for name in _TIMES if name in lower]
     chosen = {"time": times[0]} if times else {}
     others = [place for place in range(len(names)) if place not in times[:1]]
     accelerations = [place for place in others if lower[place] in _ACCELERATION]

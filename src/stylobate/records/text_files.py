@@ -52,15 +52,12 @@ def read_bytes(path: Path) -> bytes:
         several = path.is_dir() or "*" in path.name
         damaged = isinstance(error, (EOFError, zlib.error, gzip.BadGzipFile))
         remedy = ". Read folders and patterns with read_records" if several else ". Download the file again" * damaged
-        message = f"{path}: cannot be read: {reason}{remedy}"
-        raise FileError(message) from error
+        raise FileError(f"{path}: cannot be read: {reason}{remedy}") from error
     if not content.strip():
-        message = f"{path}: the file is empty. Download or export it again"
-        raise FileError(message)
+        raise FileError(f"{path}: the file is empty. Download or export it again")
     for begin, what in _PACKED.items():
         if content.startswith(begin):
-            message = f"{path}: {_PACKED[_EXCEL] if _WORKBOOK in content else what}"
-            raise FileError(message)
+            raise FileError(f"{path}: {_PACKED[_EXCEL] if _WORKBOOK in content else what}")
     return content.decode("utf-16", errors="replace").encode() if content.startswith(_UTF_16) else content
 
 
@@ -231,8 +228,7 @@ def require_unit(text: str) -> str:
     """
     unit = unit_of(text) if isinstance(text, str) else None
     if unit is None:
-        message = f"units must be {KNOWN}, got {text!r}"
-        raise ParameterError(message)
+        raise ParameterError(f"units must be {KNOWN}, got {text!r}")
     return unit
 
 

@@ -101,8 +101,7 @@ class Hazard(Config):
         """
         listed = self.intensity or self.rate or self.probability
         if bool(listed) == (self.file is not None):
-            message = "give either intensity and rate (or probability), or a file"
-            raise ParameterError(message)
+            raise ParameterError("give either intensity and rate (or probability), or a file")
         curve = self._completed(self._listed() if self.file is None else _read(self.file, self.site))
         units = curve.units
         if units is None or units == "1":
@@ -123,15 +122,12 @@ class Hazard(Config):
     def _listed(self) -> "_Curve":
         values = self.rate or self.probability
         if self.rate and self.probability:
-            message = "rate and probability: only one is allowed. Remove the other."
-            raise ParameterError(message)
+            raise ParameterError("rate and probability: only one is allowed. Remove the other.")
         if self.site is not None:
-            message = f"site: applies to files only (got {self.site!r}). Remove it."
-            raise ParameterError(message)
+            raise ParameterError(f"site: applies to files only (got {self.site!r}). Remove it.")
         if len(values) != len(self.intensity):
             counts = f"{len(self.intensity)} and {len(values)}"
-            message = f"intensity and its rates must have equal numbers of values, got {counts}"
-            raise ParameterError(message)
+            raise ParameterError(f"intensity and its rates must have equal numbers of values, got {counts}")
         pairs = enumerate(zip(self.intensity, values, strict=True), start=1)
         rows = tuple(_Row(x, y, f"point {place}") for place, (x, y) in pairs)
         return _Curve(rows=rows, is_probability=bool(self.probability))
@@ -142,8 +138,7 @@ class Hazard(Config):
         measure = None if self.measure is None else _measure(self.measure)
         units = None if self.units is None else _unit(self.units)
         if self.units is not None and units is None:
-            message = f'units must be "g", "m/s²", "cm/s²", "m/s", "cm/s" or "1", got {self.units!r}'
-            raise ParameterError(message)
+            raise ParameterError(f'units must be "g", "m/s²", "cm/s²", "m/s", "cm/s" or "1", got {self.units!r}')
         curve = replace(
             curve,
             measure=_one_of("measure", curve.measure, measure),
@@ -154,13 +149,13 @@ class Hazard(Config):
         given = None if given is None else require_positive("investigation_time", given, "a")
         if not curve.is_probability:
             if given is not None:
-                message = f"investigation_time: not used with annual rates (got {given:g}). Remove it."
-                raise ParameterError(message)
+                raise ParameterError(f"investigation_time: not used with annual rates (got {given:g}). Remove it.")
             return curve
         time = _one_of("investigation_time", curve.investigation_time, given)
         if time is None:
-            message = "investigation_time: needed for probabilities of exceedance. State it in years, such as 50."
-            raise ParameterError(message)
+            raise ParameterError(
+                "investigation_time: needed for probabilities of exceedance. State it in years, such as 50."
+            )
         return replace(curve, investigation_time=time)
 
 
@@ -192,8 +187,9 @@ class _Curve:
 def _one_of(name: str, in_file: _T | None, given: _T | None) -> _T | None:
     """Return the value of file or description; raise ParameterError if they contradict each other."""
     if in_file is not None and given is not None and in_file != given:
-        message = f"{name}: the file states {in_file!r}, the description {given!r}. Remove it from the description."
-        raise ParameterError(message)
+        raise ParameterError(
+            f"{name}: the file states {in_file!r}, the description {given!r}. Remove it from the description."
+        )
     return given if in_file is None else in_file
 
 
@@ -204,28 +200,29 @@ def _in_order(curve: _Curve) -> list[_Row]:
     unit = f" {curve.units}" if curve.units not in (None, "1") else ""
     for row in curve.rows:
         if not 0.0 < row.intensity < float("inf"):
-            message = f"{row.where}: intensity must be positive and finite (got {row.intensity:g}{unit}). Remove it."
-            raise ParameterError(message)
+            raise ParameterError(
+                f"{row.where}: intensity must be positive and finite (got {row.intensity:g}{unit}). Remove it."
+            )
         if curve.is_probability and not 0.0 <= row.exceedance <= most:
-            message = (
+            raise ParameterError(
                 f"{row.where}: probability must be between 0 and {most:g} (got {row.exceedance:g}). Name the column "
                 "“probability in 50 years [%]” if these are percentages."
             )
-            raise ParameterError(message)
         if not curve.is_probability and not 0.0 < row.exceedance < float("inf"):
-            message = f"{row.where}: annual rate must be positive and finite (got {row.exceedance:g}). Remove it."
-            raise ParameterError(message)
+            raise ParameterError(
+                f"{row.where}: annual rate must be positive and finite (got {row.exceedance:g}). Remove it."
+            )
     ordered = sorted(curve.rows, key=lambda row: row.intensity)
     for low, high in pairwise(ordered):
         if low.intensity == high.intensity:
-            message = f"{high.where}: intensity {high.intensity:g}{unit} occurs twice. Keep one of the two points."
-            raise ParameterError(message)
+            raise ParameterError(
+                f"{high.where}: intensity {high.intensity:g}{unit} occurs twice. Keep one of the two points."
+            )
         if high.exceedance > low.exceedance:
-            message = (
+            raise ParameterError(
                 f"{high.where}: {kind} must not increase with intensity (got {high.exceedance:g} at "
                 f"{high.intensity:g}{unit} after {low.exceedance:g} at {low.intensity:g}{unit}). Correct the table."
             )
-            raise ParameterError(message)
     return ordered
 
 
@@ -243,8 +240,7 @@ def _read(path: str, site: Site | None) -> _Curve:
     try:
         lines = Path(path).read_text(encoding="utf-8-sig").splitlines()
     except (OSError, UnicodeDecodeError) as error:
-        message = f"cannot read {path}: {getattr(error, 'strerror', None) or error}"
-        raise FileError(message) from None
+        raise FileError(f"cannot read {path}: {getattr(error, 'strerror', None) or error}") from None
     numbered = [(place, line.strip()) for place, line in enumerate(lines, start=1) if line.strip()]
     try:
         header = next((at for at, (_, line) in enumerate(numbered) if _is_openquake(line)), None)
@@ -252,18 +248,15 @@ def _read(path: str, site: Site | None) -> _Curve:
             return _openquake(path, numbered[: header + 1], numbered[header + 1 :], site)
         return _two_columns(path, numbered, site)
     except ParameterError as error:
-        message = f"{path}: {error}"
-        raise FileError(message) from None
+        raise FileError(f"{path}: {error}") from None
 
 
 def _two_columns(path: str, lines: list[tuple[int, str]], site: Site | None) -> _Curve:
     if site is not None:
-        message = f"site: the file holds one curve, not several (got {site!r}). Remove it."
-        raise ParameterError(message)
+        raise ParameterError(f"site: the file holds one curve, not several (got {site!r}). Remove it.")
     rows = tuple(_pair(path, place, line) for place, line in lines if begins_with_a_number(line))
     if not rows:
-        message = f"{path} holds no numbers: two columns are needed, intensity and annual rate"
-        raise FileError(message)
+        raise FileError(f"{path} holds no numbers: two columns are needed, intensity and annual rate")
     return _Curve(rows=rows, **_header([line for _, line in lines]))
 
 
@@ -277,11 +270,10 @@ def _header(lines: list[str]) -> dict[str, Any]:
     before = [line.lstrip("#%!/ ") for line in before]
     pairs = pairs or [pair for line in reversed(before) if (pair := _two_names(line))]
     if not pairs:
-        message = (
+        raise ParameterError(
             "the columns are not named, so rates cannot be told apart from probabilities. Name them in the first line, "
             "such as “PGA RotD50 [g], annual rate [1/a]” or “PGA RotD50 [g], probability in 50 years”."
         )
-        raise ParameterError(message)
     first, exceedance = _clear(pairs)
     columns = {**_intensity_column(first), **exceedance}
     stated = next((found["component"].strip() for line in before if (found := _STATED.search(line))), None)
@@ -322,8 +314,7 @@ def _pair(path: str, place: int, line: str) -> _Row:
         intensity, exceedance = (float(part) for part in parts)
     except ValueError:
         comma = " If commas are decimal, separate the columns by semicolons." if "," in line else ""
-        message = f"{where}: two numbers are needed, intensity and annual rate, got {line!r}.{comma}"
-        raise FileError(message) from None
+        raise FileError(f"{where}: two numbers are needed, intensity and annual rate, got {line!r}.{comma}") from None
     return _Row(intensity, exceedance, where)
 
 
@@ -338,8 +329,7 @@ def _openquake(path: str, before: list[tuple[int, str]], after: list[tuple[int, 
     remark = " ".join(line for _, line in before[:-1])
     measure, time = _MEASURE.search(remark), _TIME.search(remark)
     if measure is None:
-        message = "imt is not named above the header. State it there as OpenQuake does, such as imt='PGA'."
-        raise ParameterError(message)
+        raise ParameterError("imt is not named above the header. State it there as OpenQuake does, such as imt='PGA'.")
     sites = [_site(path, place, line, names) for place, line in after]
     place, values = sites[_chosen(site, [(row["lon"], row["lat"]) for _, row in sites])]
     units = "cm/s" if measure[1].strip().upper() == "PGV" else "g"
@@ -362,36 +352,33 @@ def _site(path: str, place: int, line: str, names: list[str]) -> tuple[int, dict
         wanted = [name in ("lon", "lat") or name.startswith(_POE) for name in names]
         return place, {name: float(part) for name, part, used in zip(names, parts, wanted, strict=True) if used}
     except ValueError:
-        message = (
+        raise FileError(
             f"{path}, line {place}: {len(names)} values are needed, numbers for lon, lat and {_POE}…, got {line!r}"
-        )
-        raise FileError(message) from None
+        ) from None
 
 
 def _chosen(site: Site | None, places: list[tuple[float, float]]) -> int:
     """Return the number of the requested site."""
     if not places:
-        message = "the table holds no site"
-        raise ParameterError(message)
+        raise ParameterError("the table holds no site")
     if site is None and len(places) == 1:
         return 0
     if site is None:
-        message = (
+        raise ParameterError(
             f"site: missing, and the table holds {len(places)} sites. Give a number from 0 to {len(places) - 1} or "
             f"longitude and latitude, such as {places[0][0]:g}, {places[0][1]:g}."
         )
-        raise ParameterError(message)
     if isinstance(site, int):
         if 0 <= site < len(places):
             return site
-        message = f"site: no such number (got {site}). Give one from 0 to {len(places) - 1}."
-        raise ParameterError(message)
+        raise ParameterError(f"site: no such number (got {site}). Give one from 0 to {len(places) - 1}.")
     away = [max(abs(lon - site[0]), abs(lat - site[1])) for lon, lat in places]
     nearest = away.index(min(away))
     if away[nearest] > _NEAR:
         lon, lat = places[nearest]
-        message = f"site: none within {_NEAR}° (got {site[0]:g}, {site[1]:g}). The nearest is at {lon:g}, {lat:g}."
-        raise ParameterError(message)
+        raise ParameterError(
+            f"site: none within {_NEAR}° (got {site[0]:g}, {site[1]:g}). The nearest is at {lon:g}, {lat:g}."
+        )
     return nearest
 
 
@@ -430,8 +417,7 @@ def _intensity_column(header: str) -> dict[str, Any]:
     """Return measure, units and component of a header such as "PGA RotD50 [g]"; None for what it does not state."""
     name, unit = _split(header)
     if unit is not None and _unit(unit) is None:
-        message = f"the unit of the intensity must be g, m/s², cm/s², m/s, cm/s or 1, got [{unit}]"
-        raise ParameterError(message)
+        raise ParameterError(f"the unit of the intensity must be g, m/s², cm/s², m/s, cm/s or 1, got [{unit}]")
     stated = _COMPONENT.search(name)
     rest = name if stated is None else f"{name[: stated.start()]} {name[stated.end() :]}".strip()
     return {
@@ -454,11 +440,10 @@ def _exceedance_column(header: str) -> dict[str, Any]:
     annual = (unit is None or per_year) and times <= {1.0} and not other_time and "%" not in header
     if is_rate and not is_probability and annual:
         return {}
-    message = (
+    raise ParameterError(
         f'the kind of the second column is unclear (got "{header.strip()}"). Name it "annual rate [1/a]" or '
         '"probability in 50 years"; convert return periods to annual rates.'
     )
-    raise ParameterError(message)
 
 
 def _measure(text: str) -> str:
@@ -467,11 +452,10 @@ def _measure(text: str) -> str:
     if spectral := _SPECTRAL.fullmatch(lower):
         return f"spectral acceleration at {float(spectral['inside'] or spectral['period']):g} s"
     if lower not in _SHORT:
-        message = (
+        raise ParameterError(
             f"measure must be {', '.join(map(repr, _MEASURES))}, or a spectral acceleration of 5 % damping, "
             f'got {text!r}. Name its period in seconds, such as "SA(0.5 s)"'
         )
-        raise ParameterError(message)
     return _SHORT[lower]
 
 

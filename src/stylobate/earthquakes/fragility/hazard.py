@@ -82,12 +82,10 @@ class HazardCurve:
         x, p = _numbers("intensity", intensity), _numbers("probability", probability)
         time = require_positive("investigation_time", investigation_time, "a")
         if x.shape != p.shape:
-            message = f"probability must have one number for each intensity, got {p.size} for {x.size}"
-            raise ParameterError(message)
+            raise ParameterError(f"probability must have one number for each intensity, got {p.size} for {x.size}")
         bad = p[~((p >= 0.0) & (p <= 1.0))]
         if bad.size:
-            message = f"probability must be between 0 and 1, got {bad[0]!s}; divide percentages by 100"
-            raise ParameterError(message)
+            raise ParameterError(f"probability must be between 0 and 1, got {bad[0]!s}; divide percentages by 100")
         inside = (p > 0.0) & (p < 1.0)
         rate = -np.log1p(-p[inside]) / time
         origin = f"probabilities of exceedance in {time:g} years, taken as those of a Poisson process"
@@ -96,20 +94,17 @@ class HazardCurve:
     def __post_init__(self) -> None:
         x, rate = (_points(name, value) for name, value in (("intensity", self.intensity), ("rate", self.rate)))
         if x.shape != rate.shape:
-            message = f"rate must have one number for each intensity, got {rate.size} for {x.size}"
-            raise ParameterError(message)
+            raise ParameterError(f"rate must have one number for each intensity, got {rate.size} for {x.size}")
         order = np.argsort(x)
         x, rate = x[order], rate[order]
         if np.any(twice := np.diff(x) == 0.0):
-            message = f"intensity must hold different values, got {x[1:][twice][0]!s} twice"
-            raise ParameterError(message)
+            raise ParameterError(f"intensity must hold different values, got {x[1:][twice][0]!s} twice")
         if np.any(rises := np.diff(rate) > 0.0):
             at = int(np.argmax(rises))
-            message = (
+            raise ParameterError(
                 f"rate must not increase with intensity, got {rate[at + 1]!s} at {x[at + 1]!s} after {rate[at]!s} at "
                 f"{x[at]!s}"
             )
-            raise ParameterError(message)
         if self.component is not None:
             object.__setattr__(self, "component", HorizontalComponent.named(self.component).value)
         # Tuples are independent of later changes of the arrays.
@@ -154,14 +149,12 @@ def _points(name: str, value: npt.ArrayLike) -> Floats:
     array = _numbers(name, value)
     bad = array[~(np.isfinite(array) & (array > 0.0))]
     if bad.size:
-        message = f"{name} must be positive and finite, got {bad[0]!s}; leave such points out"
-        raise ParameterError(message)
+        raise ParameterError(f"{name} must be positive and finite, got {bad[0]!s}; leave such points out")
     return array
 
 
 def _numbers(name: str, value: npt.ArrayLike) -> Floats:
     given = np.asarray(value)
     if given.dtype.kind not in "iuf" or given.ndim != 1 or given.size < _LEAST:
-        message = f"{name} must be a list of two or more numbers, got {value!r}"
-        raise ParameterError(message)
+        raise ParameterError(f"{name} must be a list of two or more numbers, got {value!r}")
     return given.astype(np.float64)

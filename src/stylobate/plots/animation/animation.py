@@ -193,8 +193,7 @@ def animate(
     path = None if path is None else checked_path(path)
     rate = require_positive("frames_per_second", frames_per_second, "1/s")
     if rate > _FASTEST:
-        message = f"frames_per_second must be at most {_FASTEST:g}, got {rate!r}"
-        raise ParameterError(message)
+        raise ParameterError(f"frames_per_second must be at most {_FASTEST:g}, got {rate!r}")
     history = DrawnMotion.of(run, title=title)
     end = float(history.time[-1])
     pace = max(1.0, _fitting_speed(end, rate)) if speed is None else require_positive("speed", speed)
@@ -225,8 +224,7 @@ def checked_path(path: str | Path) -> Path:
     """Return `path` as a Path, or raise ParameterError unless it ends with .gif, .mp4 or .html."""
     found = Path(path)
     if found.suffix.lower() not in _SUFFIXES:
-        message = f"path must end with .gif, .mp4 or .html, got {str(path)!r}"
-        raise ParameterError(message)
+        raise ParameterError(f"path must end with .gif, .mp4 or .html, got {str(path)!r}")
     return found
 
 
@@ -237,16 +235,14 @@ def _size(size: Sequence[int]) -> tuple[int, int]:
         for at, (number, least) in enumerate(zip(given, _SMALLEST, strict=True))
     )
     if width > _LARGEST[0] or height > _LARGEST[1]:
-        message = f"size must be at most {_LARGEST[0]} × {_LARGEST[1]} pixels, got {width} × {height}"
-        raise ParameterError(message)
+        raise ParameterError(f"size must be at most {_LARGEST[0]} × {_LARGEST[1]} pixels, got {width} × {height}")
     return width, height
 
 
 def _view(azimuth: float, elevation: float) -> View:
     around, above = require_finite("azimuth", azimuth, "degrees"), require_positive("elevation", elevation, "degrees")
     if above > 90.0:  # noqa: PLR2004  from straight above
-        message = f"elevation must be at most 90 degrees, got {above!r}"
-        raise ParameterError(message)
+        raise ParameterError(f"elevation must be at most 90 degrees, got {above!r}")
     return View(math.radians(around), math.radians(above))
 
 
@@ -259,8 +255,7 @@ def _fitting_speed(end: float, rate: float) -> float:
 
 def _require_few(end: float, rate: float, pace: float) -> None:
     if end * rate / pace > _MOST - 1:
-        message = (
+        raise ParameterError(
             f"speed: {end:.6g} s at {rate:g} frames per second need more than {_MOST} frames (got {pace!r}). "
             f"Pass speed={_fitting_speed(end, rate):g}."
         )
-        raise ParameterError(message)

@@ -104,8 +104,7 @@ def write_mp4(path: Path, pictures: Iterable[Image.Image], size: tuple[int, int]
         If the file cannot be written.
     """
     if size[0] % 2 or size[1] % 2:
-        message = f"size must have even numbers for an MP4, got {size!r}"
-        raise ParameterError(message)
+        raise ParameterError(f"size must have even numbers for an MP4, got {size!r}")
     writer = _encoder()(
         str(path),
         size,
@@ -125,8 +124,7 @@ def write_mp4(path: Path, pictures: Iterable[Image.Image], size: tuple[int, int]
         for _ in range(round(_PAUSE_OF_MP4 * frames_per_second)):
             writer.send(last)
     except OSError as error:
-        message = f"cannot write {path}: {str(error).strip().splitlines()[-1]}"
-        raise FileError(message) from None
+        raise FileError(f"cannot write {path}: {str(error).strip().splitlines()[-1]}") from None
     finally:
         writer.close()
 
@@ -138,8 +136,9 @@ def _encoder() -> Any:
 
         imageio_ffmpeg.get_ffmpeg_exe()
     except (ImportError, RuntimeError):
-        message = "an MP4 needs ffmpeg, which is not installed: pip install 'stylobate[video]', or write a .gif"
-        raise UnsupportedError(message) from None
+        raise UnsupportedError(
+            "an MP4 needs ffmpeg, which is not installed: pip install 'stylobate[video]', or write a .gif"
+        ) from None
     return imageio_ffmpeg.write_frames
 
 
@@ -187,11 +186,10 @@ def _viewer() -> str:
     try:
         text = files("stylobate.plots.animation").joinpath("viewer.js").read_text(encoding="utf-8")
     except FileNotFoundError:
-        message = (
+        raise UnsupportedError(
             "an HTML animation needs viewer.js, which wheels of stylobate hold; from sources make it by "
             "'npm ci && npm run build' in src/stylobate/lab/web, or write a .gif"
-        )
-        raise UnsupportedError(message) from None
+        ) from None
     # Line ends as browsers read them; otherwise the hash would not match.
     return text.replace("\r\n", "\n").replace("</script", "<\\/script").replace("<!--", "<\\!--")
 

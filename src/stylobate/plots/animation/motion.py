@@ -199,11 +199,9 @@ def _without_advice(reason: str) -> str:
 
 def _require_run(run: Response) -> None:
     if not isinstance(run, Response):
-        message = f"run must be a run, as simulate returns it, got {type(run).__name__}"
-        raise ParameterError(message)
+        raise ParameterError(f"run must be a run, as simulate returns it, got {type(run).__name__}")
     if run.data.sizes["time"] < 2:  # noqa: PLR2004  no motion in less
-        message = f"run must have 2 samples at least, got {run.data.sizes['time']}"
-        raise ParameterError(message)
+        raise ParameterError(f"run must have 2 samples at least, got {run.data.sizes['time']}")
 
 
 def _at_equal_steps(run: Response, frames_per_second: float | None, most: int) -> xr.Dataset:
