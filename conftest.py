@@ -32,7 +32,7 @@ def _leave_folder(namespace: Mapping[str, Any]) -> None:
 @pytest.fixture(scope="session")
 def laboratory() -> Iterator[str]:
     """The address of a laboratory that is served."""
-    from tests.lab.conftest import laboratory as served  # noqa: PLC0415  heavy, and for one page only
+    from tests.lab.conftest import laboratory as served
 
     with served() as address:
         yield address

@@ -198,8 +198,8 @@ def _finish_attributes(
 
 def _space_names(app: Any, document: Any) -> None:
     del app
-    from docutils import nodes  # noqa: PLC0415
-    from sphinx import addnodes  # noqa: PLC0415
+    from docutils import nodes
+    from sphinx import addnodes
 
     for node in document.findall(addnodes.literal_strong):
         node.children = [nodes.Text(node.astext().replace(",", ", "))]
@@ -208,9 +208,9 @@ def _space_names(app: Any, document: Any) -> None:
 def _aliases() -> dict[str, str]:
     # numpy's aliases arrive written out in full, and classes with the module where they are defined: in signatures
     # both get the names by which users know them.
-    import numpy as np  # noqa: PLC0415
-    import numpy.typing as npt  # noqa: PLC0415
-    from sphinx.util.typing import stringify_annotation  # noqa: PLC0415  tests import this file without Sphinx
+    import numpy as np
+    import numpy.typing as npt
+    from sphinx.util.typing import stringify_annotation
 
     named = {
         "~numpy.typing.ArrayLike": npt.ArrayLike,

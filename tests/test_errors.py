@@ -161,7 +161,7 @@ NAMED = [
     sb.theory.BlockPhase,
     sb.theory.FirstMotion,
     sb.theory.SlidingRegime,
-    sb.conveying.ContactClass,
+    sb.results.ContactClass,
     sb.conveying.RollingRegime,
 ]
 

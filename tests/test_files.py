@@ -14,12 +14,12 @@ import h5py
 import numpy as np
 import pytest
 import xarray as xr
+from stylobate.cli.saved import open_saved
 
 import stylobate as sb
 from stylobate import orbits
 from stylobate.cli.main import run as run_command
 from stylobate.cli.output import check_writable
-from stylobate.cli.saved import open_saved
 from stylobate.earthquakes import incremental_dynamic_analysis
 from stylobate.errors import FileError
 from stylobate.files import read_sealed, sealed, write_whole
@@ -222,7 +222,7 @@ RUN += ["--angular-frequency", "2", "--tilt", "0.03", "0.01", "--duration", "60"
 @contextmanager
 def no_file_longer_than(size):
     """Files of this process end at a size, as on a full disk."""
-    import resource  # noqa: PLC0415  not on Windows
+    import resource
 
     before, most = resource.getrlimit(resource.RLIMIT_FSIZE)
     resource.setrlimit(resource.RLIMIT_FSIZE, (size, most))

@@ -14,7 +14,7 @@ from pathlib import Path
 
 import pytest
 
-from stylobate.engine.ensembles.pool import run_parts
+from stylobate.engine.ensemble import run_parts
 from stylobate.errors import WorkerLostError
 from stylobate.processes import Worker, computed, ending_with_parent
 

@@ -191,7 +191,7 @@ print("rich" in sys.modules)
 
 def on_terminal(due, more=""):
     """Run the script with stderr on a terminal; return its output, and what the terminal received."""
-    import pty  # noqa: PLC0415  missing on Windows
+    import pty
 
     ours, theirs = pty.openpty()
     code = SCRIPT.format(due=due, more=more)

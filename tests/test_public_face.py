@@ -64,8 +64,8 @@ def test_an_unknown_name_is_an_attribute_error():
 
 
 def test_names_are_the_same_objects_wherever_they_are_reached():
-    from stylobate.column import Column  # noqa: PLC0415
-    from stylobate.engine import simulate  # noqa: PLC0415
+    from stylobate.column import Column
+    from stylobate.engine import simulate
 
     assert stylobate.Column is Column
     assert stylobate.simulate is simulate

@@ -15,8 +15,8 @@ from hypothesis import strategies as st
 
 import stylobate as sb
 from stylobate import config, theory, units
+from stylobate.base_motions import Record
 from stylobate.base_motions.declared import MOTIONS
-from stylobate.base_motions.records import Record
 from stylobate.cli.main import run as run_command
 from stylobate.column import SHAPES
 from stylobate.errors import ParameterError, UnlikelyInputWarning, as_float
@@ -513,14 +513,14 @@ def test_axes_have_the_units_of_their_quantities():
         "duration": "1 min",
         "map": plane,
     }
-    setup = config.MapConfig.parse(values).build()
+    setup = config.study_config(sb.studies.overturning_map).parse(values).build()
     assert {name: axis.tolist() for name, axis in setup.options["over"].items()} == {
         "tilt_x": np.linspace(math.radians(1.0), math.radians(2.0), 2).tolist(),
         "acceleration": [0.980665, 3.0],
     }
     plane["x"]["to"] = "2 kg"
     with pytest.raises(sb.errors.ConfigError, match=r"^map\.x\.to must be in deg, rad, mrad or turn, got 2 kg$"):
-        config.MapConfig.parse(values)
+        config.study_config(sb.studies.overturning_map).parse(values)
 
 
 def test_each_wrong_unit_of_a_file_is_one_line_with_its_place():

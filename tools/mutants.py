@@ -195,7 +195,7 @@ def main() -> int:
     """Test a sample of the mutants of a room, and print those that survive."""
     parser = argparse.ArgumentParser(description="List small faults in a room that the tests miss.")
     parser.add_argument(
-        "room", help="folder or file of the package, such as earthquakes or engine/standing.py, or file:line"
+        "room", help="folder or file of the package, such as earthquakes or engine/history.py, or file:line"
     )
     parser.add_argument("--count", type=int, default=50, help="number of mutants (default: 50)")
     parser.add_argument("--first", type=int, default=0, help="number of mutants of the sample to skip (default: 0)")

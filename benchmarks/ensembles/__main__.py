@@ -18,9 +18,9 @@ def main() -> None:
     arguments = _arguments()
     cores = os.cpu_count() or 1
     one_core = use_one_core()  # before the libraries are imported
-    from . import peak, scaling, threads  # noqa: PLC0415
-    from .engines import all_engines  # noqa: PLC0415
-    from .timing import timings  # noqa: PLC0415
+    from . import peak, scaling, threads
+    from .engines import all_engines
+    from .timing import timings
 
     shorter, repetitions = (16, 1) if arguments.quick else (1, arguments.repetitions)
     engines = all_engines()
@@ -57,7 +57,7 @@ def main() -> None:
 
 
 def _write(folder, engines, found, two_threads, costs, results) -> None:
-    from . import figures, tables  # noqa: PLC0415
+    from . import figures, tables
 
     # Accepted steps of stylobate's runs, without events and summaries, at the arithmetic peak.
     per_second = results["peak"] / results["flops of a step"]

@@ -20,10 +20,10 @@ def prepare(workload: Workload, *, rtol: float = RTOL, atol: float = ATOL) -> Ca
 
 
 def _solver(*, circular: bool, rtol: float, atol: float) -> Any:
-    import diffrax  # noqa: PLC0415  optional
-    import jax  # noqa: PLC0415
-    import jax.numpy as jnp  # noqa: PLC0415
-    import optimistix  # noqa: PLC0415
+    import diffrax
+    import jax
+    import jax.numpy as jnp
+    import optimistix
 
     jax.config.update("jax_enable_x64", True)
 

@@ -29,7 +29,7 @@ def prepare(
 
 
 def _integrator(workload: Workload, width: int, tolerance: float) -> Any:
-    import heyoka as hy  # noqa: PLC0415  optional
+    import heyoka as hy
 
     x, y, vx, vy = hy.make_vars("x", "y", "vx", "vy")
     nu, no_return = hy.par[0], hy.par[1]
@@ -53,7 +53,7 @@ def _integrator(workload: Workload, width: int, tolerance: float) -> Any:
 
 
 def _solve(integrator: Any, workload: Workload) -> Answer:
-    import heyoka as hy  # noqa: PLC0415
+    import heyoka as hy
 
     count, width = len(workload), integrator.batch_size
     end, time = np.empty((count, 4)), np.empty(count)

@@ -32,7 +32,7 @@ def prepare_cyrk(workload: Workload, *, rtol: float = RTOL, atol: float = ATOL) 
 
 @cache
 def _accelerations() -> Any:
-    from numba import njit  # noqa: PLC0415  optional
+    from numba import njit
 
     @njit
     def accelerations(tau, x, y, vx, vy, numbers):
@@ -46,7 +46,7 @@ def _accelerations() -> Any:
 
 @cache
 def _rates() -> Any:
-    from numba import njit  # noqa: PLC0415
+    from numba import njit
 
     accelerations = _accelerations()
 
@@ -65,8 +65,8 @@ def _rates_of(workload: Workload, i: int) -> scipy_loop.Rates:
 
 @cache
 def _cyrk_loop() -> Any:
-    from CyRK import cyjit, nbsolve2_ivp  # noqa: PLC0415
-    from numba import carray, njit  # noqa: PLC0415
+    from CyRK import cyjit, nbsolve2_ivp
+    from numba import carray, njit
 
     accelerations = _accelerations()
 

@@ -33,8 +33,8 @@ class Point:
 def main() -> None:
     arguments = _arguments()
     one_core = use_one_core()  # before the libraries are imported
-    from . import figures, peak, tables  # noqa: PLC0415
-    from .engines import engines_by_tolerance  # noqa: PLC0415
+    from . import figures, peak, tables
+    from .engines import engines_by_tolerance
 
     engines = engines_by_tolerance()
     present = [engine for engine in engines if not engine.missing]
@@ -61,7 +61,7 @@ def main() -> None:
 
 
 def _points(engines: Sequence, workload: str, tolerances: Sequence[float], rounds: int, shorter: int) -> list[Point]:
-    from .timing import timings  # noqa: PLC0415
+    from .timing import timings
 
     able = [engine for engine in engines if workload in engine.counts]
     variants = {f"{engine.key} {rtol:.0e}": (engine, rtol) for engine in able for rtol in tolerances}

@@ -15,8 +15,8 @@ import xarray as xr
 from scipy.integrate import solve_ivp
 
 import stylobate as sb
-from stylobate.base_motions.records import sample_record
-from stylobate.engine.ensembles.pool import usual_threads
+from stylobate.engine.ensemble import usual_threads
+from stylobate.records import sample_record
 
 _FOLDER = Path(__file__).parents[2] / "docs" / "_static" / "benchmarks"
 _RECORD = sample_record("el centro 1940")

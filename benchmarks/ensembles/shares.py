@@ -22,7 +22,7 @@ from stylobate.compiler.programs import Bound, Functions, text_of
 from stylobate.compiler.unit import ArrayArgument
 from stylobate.compiler.values import Kind
 from stylobate.compiler.written import written_module
-from stylobate.engine.kernel.driver import batch
+from stylobate.engine.kernel.driver import loop
 from stylobate.engine.kernel.kernels import Kernel
 
 from . import ours, peak, tables
@@ -156,7 +156,7 @@ def _with_counter(kernel: Kernel) -> Kernel:
 
 
 def _rewritten(kernel: Kernel, old: str, new: str) -> Kernel:
-    text = text_of(batch)
+    text = text_of(loop)
     assert text.count(old) == 1, old
     program = _OtherBatch(kernel.compiled.program(), text.replace(old, new))
     return replace(kernel, compiled=replace(kernel.compiled, program=lambda: program))
@@ -175,7 +175,7 @@ class _OtherBatch:
 
     def module(self, name: str, functions: Functions) -> ModuleType:
         other = written_module(f"{name}_batch", self.text, {})
-        modules = [other if module is batch else module for module in self.own.modules]
+        modules = [other if module is loop else module for module in self.own.modules]
         return replace(self.own, modules=modules).module(name, functions)
 
 
@@ -201,7 +201,7 @@ def _steps_alone(method: str) -> Callable[[int], float]:
     steps = replace(
         kernel.compiled,
         name="steps_alone",
-        program=_OtherBatch(kernel.compiled.program, text_of(batch) + _STEPS_ALONE),
+        program=_OtherBatch(kernel.compiled.program, text_of(loop) + _STEPS_ALONE),
         arguments=(ArrayArgument(begun.shape), Kind.INTEGER),
     )
     buffer = kernel.buffer()

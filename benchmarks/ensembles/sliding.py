@@ -15,7 +15,7 @@ import numpy as np
 import xarray as xr
 
 import stylobate as sb
-from stylobate.base_motions.records import sample_record
+from stylobate.records import sample_record
 
 from . import peak
 from .one_core import use_one_core

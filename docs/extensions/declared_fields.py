@@ -12,6 +12,7 @@ from pydantic import BaseModel
 from pydantic_core import PydanticUndefined
 
 from stylobate.column import SHAPES
+from stylobate.config import study_config
 from stylobate.kinds import loaded
 from stylobate.models.declared import MODELS
 from stylobate.quantities import Parameter, parameters_of
@@ -168,8 +169,11 @@ def _shown(value: Any) -> str:
 
 
 def table_of(place: str) -> type:
-    """Load the class at "package.module:Name" whose fields are the keys of a table."""
-    cls: type = loaded(f"stylobate.{place}")
+    """Load the class at "package.module:Name" whose fields are the keys of a table, or that of a declared study."""
+    found: Any = loaded(f"stylobate.{place}")
+    if hasattr(found, "study"):
+        found = study_config(found).model_fields[found.study.name].annotation
+    cls: type = found
     return cls
 
 

@@ -7,8 +7,7 @@ from typing import Any, get_args, get_origin
 
 from stylobate.cli.command import Command
 from stylobate.cli.commands import COMMANDS
-from stylobate.cli.declarations import Option, written
-from stylobate.cli.own_classes import Chosen
+from stylobate.config.options import Chosen, Option, written
 
 # Panels whose options many commands share, in the order of the page. Each is a section of the page.
 SHARED_PANELS = (
@@ -64,7 +63,7 @@ def argument_text(name: str) -> str:
 
 def explanation(name: str) -> tuple[list[str], list[str]]:
     """Return the paragraphs of a command's help, and its examples."""
-    text = COMMANDS[name].load().function.__doc__ or ""
+    text = COMMANDS[name].load().help
     paragraphs = [" ".join(part.split()) for part in text.split("\n\n")]
     paragraphs = [
         one.removesuffix(" Examples:").removesuffix(" Example:") for one in paragraphs

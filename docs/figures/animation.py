@@ -13,9 +13,9 @@ from matplotlib import font_manager
 from PIL import Image, ImageDraw, ImageFont
 
 import stylobate as sb
-from stylobate.plots.animation import palette
+from stylobate.plots import body as palette
 from stylobate.plots.animation.drawing import Drawing
-from stylobate.plots.animation.gif import gif_of
+from stylobate.plots.animation.formats import gif_of
 from stylobate.plots.animation.motion import DrawnMotion
 from stylobate.plots.style import VERMILION
 

@@ -274,7 +274,7 @@ figure.tight_layout()
 # no real part does. The right panel is the peak tilt.
 
 accelerations = factor * np.linspace(0.02, 1.5, 30)
-contact = sb.conveying.contact_map(
+contact = sb.studies.overturning_map(
     model,
     trough,
     over={

@@ -20,11 +20,11 @@ _import_name, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
 
 def __getattr__(name: str) -> Any:
     if name == "__version__":
-        from importlib.metadata import version  # noqa: PLC0415
+        from importlib.metadata import version
 
         return version("stylobate")
     if name not in __all__:
-        from stylobate.text import did_you_mean  # noqa: PLC0415
+        from stylobate.text import did_you_mean
 
         message = f"module {__name__!r} has no attribute {name!r}; {did_you_mean(name, __all__)}".rstrip("; ")
         raise AttributeError(message)

@@ -8,12 +8,12 @@ from . import (
     orbits,
     paper,
     plots,
+    records,
     results,
     studies,
     theory,
 )
-from .base_motions import BaseMotion, Harmonic, MachineRun, OneOf, Pulse, Record, SineSweep, records
-from .base_motions.records import read_record, read_records, sample_record
+from .base_motions import BaseMotion, Harmonic, MachineRun, OneOf, Pulse, Record, SineSweep
 from .column import Column
 from .earthquakes import verdict
 from .engine import EventFunction, simulate, simulate_ensemble, with_parameters
@@ -21,6 +21,7 @@ from .errors import Interrupted, Outcome
 from .models import Contact, Model, PlanarRocking, Rolling, Slender, SlenderRolling, Sliding, Wobbling
 from .plots import animate, plot
 from .quantities import Quantity
+from .records import read_record, read_records, sample_record
 from .results import Event, KnownOrbit, OutcomeRules, Response
 from .studies import load
 

@@ -2,8 +2,8 @@
 
 from collections.abc import Mapping
 
+from stylobate.base_motions.base import Acceleration, AngularFrequency
 from stylobate.base_motions.declared import motion_quantities
-from stylobate.base_motions.numbers import Acceleration, AngularFrequency
 from stylobate.column import Column
 from stylobate.models.declared import model_quantities
 from stylobate.quantities import QUARTER_TURN, Parameter, Quantity, parameters_of

@@ -155,7 +155,7 @@ def end_when_closed(pipe: int, *, watched: bool = True) -> None:
     """
     if sys.platform == "win32":
         return
-    import fcntl  # noqa: PLC0415  not on Windows
+    import fcntl
 
     flags = fcntl.fcntl(pipe, fcntl.F_GETFL)
     fcntl.fcntl(pipe, fcntl.F_SETOWN, os.getpid())

@@ -197,7 +197,7 @@ class _Drawn:
     """A bar of rich: what is computed, the bar, how much is done, and the time that remains."""
 
     def __init__(self, news: News, console: "Console") -> None:
-        from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn  # noqa: PLC0415
+        from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
         what, state = (TextColumn(f"{{task.{name}}}", markup=False) for name in ("description", "fields[state]"))
         # What the program prints on stdout stays there.
@@ -219,7 +219,7 @@ class _OnTerminal(_Drawn):
     """A bar on the last line of a terminal; text on stderr appears above it."""
 
     def __init__(self, news: News) -> None:
-        from rich.console import Console  # noqa: PLC0415
+        from rich.console import Console
 
         super().__init__(news, Console(stderr=True, markup=False, highlight=False))
         self.bar.start()
@@ -229,7 +229,7 @@ class _InNotebook(_Drawn):
     """A bar as text in the output of a cell, which is replaced; it needs no widgets."""
 
     def __init__(self, news: News) -> None:
-        from rich.console import Console  # noqa: PLC0415
+        from rich.console import Console
 
         self._page = io.StringIO()
         super().__init__(news, Console(file=self._page, width=_WIDTH, force_jupyter=False, color_system=None))

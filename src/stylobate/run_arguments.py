@@ -5,7 +5,7 @@ argument is a line here, and the law where it acts.
 """
 
 import inspect
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Container, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache, wraps
 from textwrap import wrap
@@ -350,16 +350,19 @@ def checked_options(given: Mapping[str, Any]) -> Options:
     return cast("Options", {**found, "rules": found["rules"] or OutcomeRules(), "samples": found["samples"] or 0})
 
 
-def takes(group: Any) -> Callable[[Callable[_P, _T]], Callable[_P, _T]]:
+def takes(group: Any, *, described: Sequence[Any] = ()) -> Callable[[Callable[_P, _T]], Callable[_P, _T]]:
     """Let a function take the arguments of a group as keywords: with their defaults, names and meanings; a decorator.
 
-    The function has `**run: Unpack[group]`, and a line `**run` in the parameters of its docstring. It gets every
-    argument of the group.
+    The function has `**run: Unpack[group]`, and a line `**run` in the parameters of its docstring, in whose place the
+    arguments are `described`: those of these groups, by default all. It gets every argument of the group; an argument
+    that the function declares itself replaces that of the group.
     """
 
     def decorated(function: Callable[_P, _T]) -> Callable[_P, _T]:
-        defaults, signature = defaults_of(group), inspect.signature(function)
+        signature = inspect.signature(function)
         own = {name: one for name, one in signature.parameters.items() if one.kind is not one.VAR_KEYWORD}
+        taken = {name: one for name, one in arguments_of(group).items() if name not in own}
+        defaults = {name: one.default for name, one in taken.items()}
 
         @wraps(function)
         def call(*arguments: _P.args, **named: _P.kwargs) -> _T:
@@ -368,20 +371,21 @@ def takes(group: Any) -> Callable[[Callable[_P, _T]], Callable[_P, _T]]:
 
         keyword = inspect.Parameter.KEYWORD_ONLY
         added = [
-            inspect.Parameter(name, keyword, default=one.default, annotation=one.kind)
-            for name, one in arguments_of(group).items()
+            inspect.Parameter(name, keyword, default=one.default, annotation=one.kind) for name, one in taken.items()
         ]
         parts = sorted([*own.values(), *added], key=lambda one: one.kind)
         call.__signature__ = signature.replace(parameters=parts)  # type: ignore[attr-defined]
-        call.__doc__ = (function.__doc__ or "").replace("    **run\n", _described(group))
+        lines = "".join(_described(one, left_out=own) for one in described or (group,))
+        call.__doc__ = (function.__doc__ or "").replace("    **run\n", lines)
         return call
 
     return decorated
 
 
-def _described(group: Any) -> str:
+def _described(group: Any, left_out: Container[str] = ()) -> str:
     """Write the arguments of a group as lines of a docstring; an argument without a meaning of its own is left out."""
-    said = ((one.name, wrap(one.says, 112)) for one in arguments_of(group).values() if one.says)
+    stated = (one for one in arguments_of(group).values() if one.says and one.name not in left_out)
+    said = ((one.name, wrap(one.says, 112)) for one in stated)
     return "".join(f"    {name}\n" + "".join(f"        {line}\n" for line in lines) for name, lines in said)
 
 

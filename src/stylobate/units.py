@@ -190,7 +190,7 @@ def meant(number: float, unit: str, fits: Callable[[float], bool]) -> str:
 
 
 def _converted(value: Any, unit: str) -> Any:
-    import numpy as np  # noqa: PLC0415  the command line imports the errors, and not always NumPy
+    import numpy as np
 
     pint = hasattr(value, "dimensionality")
     given = format(value.units, "~C") if pint else str(value.units if hasattr(value, "units") else value.unit)

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import stylobate as sb
-from stylobate.base_motions.varying import value_of, with_numbers
+from stylobate.base_motions.declared import value_of, with_numbers
 from stylobate.config.motions import describe_motion
 from stylobate.errors import ParameterError
 

@@ -7,8 +7,8 @@ import pytest
 import xarray as xr
 
 import stylobate as sb
+from stylobate.cli.commands import COMMANDS
 from stylobate.cli.main import run
-from stylobate.cli.usage import joined_ranges
 from stylobate.studies.proportions import wilson_interval
 
 SYSTEM = ["--slenderness", "0.1", "--damping", "0.1", "--motion", "circular"]
@@ -121,9 +121,10 @@ def test_after_ctrl_c_a_store_goes_on(tmp_path, capsys, interrupted):
 
 
 def test_the_three_values_of_a_range_go_together():
-    assert joined_ranges(["--over", "tilt-x", "-1", "2", "--seed", "3"]) == ["--over", "tilt-x -1 2", "--seed", "3"]
-    assert joined_ranges(["--over", "tilt-x"]) == ["--over", "tilt-x"]
-    assert joined_ranges([]) == []
+    words = ["--over", "tilt-x", "-1", "2", "--seed", "3", "--over", "tilt-y", "0", "1"]
+    read = COMMANDS["basin"].load().program("basin").make_context("basin", words).params
+    assert read["over"] == (("tilt-x", "-1", "2"), ("tilt-y", "0", "1"))
+    assert read["seed"] == 3
 
 
 @pytest.mark.parametrize(
@@ -136,7 +137,7 @@ def test_the_three_values_of_a_range_go_together():
         ([*BASIN, *SAMPLE[:4]], ["basin.over is missing"]),
         ([*BASIN, *GRID, *SAMPLE], ["basin.x and basin.y: random initial conditions have ranges"]),
         ([*BASIN, *SAMPLE, "--over", "tilt-y", "a", "1"], ["basin.over.tilt-y.0: input should be a valid number"]),
-        ([*BASIN, *SAMPLE, "--over", "tilt-y", "1"], ["--over must be followed by a name, its lowest"]),
+        ([*BASIN, *SAMPLE, "--over", "tilt-y", "1"], ["--over must be followed by NAME LOW HIGH; got fewer"]),
         ([*BASIN, *SAMPLE, "--over", "tilt-y", "1", "0"], ["over['tilt_y'] must be a lower and an upper bound"]),
         ([*BASIN, *SAMPLE, "--over", "damping", "0", "1"], ["basin.over must name starts of one system"]),
         ([*BASIN, "--x", "damping", "0", "1", "3", *GRID[5:]], ["basin.x must name starts of one system"]),

@@ -292,7 +292,7 @@ def test_help_offers_the_motions_that_have_their_options(command, capsys):
 @pytest.mark.parametrize("name", COMMANDS)
 def test_the_table_of_commands_has_the_first_line_of_each_help(name):
     summary = COMMANDS[name].summary
-    assert COMMANDS[name].load().function.__doc__.partition("\n")[0] == summary
+    assert COMMANDS[name].load().help.partition("\n")[0] == summary
 
 
 def test_a_command_that_is_not_known_is_one_line_with_the_most_alike(capsys):

@@ -3,8 +3,8 @@
 from pathlib import Path
 
 from stylobate.cli.command import command
-from stylobate.cli.declarations import Option
 from stylobate.cli.options import Options
+from stylobate.config.options import Option
 
 
 def test_values_are_those_that_the_command_gets_whatever_the_context_holds():

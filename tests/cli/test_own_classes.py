@@ -95,7 +95,7 @@ def test_help_shows_the_options_of_a_class_of_ones_own(folder, capsys):
         (["--motion", "missing.py:Twice"], "kind: cannot load '"),
         (["--motion", "no_such_module:Twice"], "kind: cannot load 'no_such_module:Twice'"),
         (["--model", "mine.py:Tethered", "--stiffness", "-1"], "model: stiffness must be zero or positive, got -1.0"),
-        (["--stiffness", "1"], "No such option: --stiffness"),
+        (["--stiffness", "1"], "No such option '--stiffness'"),
     ],
 )
 def test_mistakes_in_a_class_of_ones_own_are_one_line(folder, own, line, capsys):

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 import stylobate as sb
-from stylobate.base_motions.records import intensity_measures
 from stylobate.cli.main import run
 from stylobate.column import STANDARD_GRAVITY
+from stylobate.records import intensity_measures
 
 READING = ["--units", "g", "--step", "0.01"]
 

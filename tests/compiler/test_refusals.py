@@ -222,7 +222,7 @@ def test_a_file_that_changed_after_it_was_imported_is_refused(tmp_path, monkeypa
     path = tmp_path / "changing_functions.py"
     path.write_text("def changed(x):\n    x[0] = 1.0\n")
     monkeypatch.syspath_prepend(tmp_path)
-    from changing_functions import changed  # noqa: PLC0415
+    from changing_functions import changed
 
     path.write_text("ONE = 1.0\n\n\ndef changed(x):\n    x[0] = 2.0 * ONE\n")
     with pytest.raises(CompileError, match="if the file has changed since it was imported, start again"):

@@ -3,7 +3,7 @@
 import pytest
 
 from stylobate.config import HierarchyConfig, ResponseConfig, SimulationConfig
-from stylobate.engine.end_of_motion import duration_of
+from stylobate.engine.verdict import duration_of
 from stylobate.errors import ConfigError, ParameterError
 from stylobate.models import Slender, Wobbling
 

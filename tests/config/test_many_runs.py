@@ -7,10 +7,11 @@ import numpy as np
 import pytest
 
 import stylobate as sb
-from stylobate.config import BasinConfig, MapConfig, SimulationConfig
+from stylobate.config import SimulationConfig, study_config
 from stylobate.config.axis import Axis
 from stylobate.errors import ConfigError, ParameterError, UnsupportedError
 
+MapConfig, BasinConfig = study_config(sb.studies.overturning_map), study_config(sb.studies.basins)
 COLUMN = {"shape": "dimensionless", "slenderness": 0.1}
 AXES = {
     "x": {"name": "angular_frequency", "from": 1.0, "to": 4.0, "number": 3, "spacing": "log"},

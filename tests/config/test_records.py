@@ -8,12 +8,12 @@ import pytest
 
 import stylobate as sb
 from stylobate.config import (
-    MapConfig,
     RecordMotion,
     RecordsConfig,
     SimulationConfig,
     config_of,
     read_config,
+    study_config,
 )
 from stylobate.config.motions import describe_motion
 from stylobate.errors import ConfigError, FileError, ParameterError, UnlikelyInputWarning, UnsupportedError
@@ -152,7 +152,7 @@ def test_without_a_duration_a_run_outlasts_its_record_by_twenty_time_scales(quak
     assert run.options["duration"] == pytest.approx(expected, rel=1e-14)
     plane = {"x": {"name": "scale", "values": [1.0]}, "y": {"name": "damping", "values": [0.1]}}
     late = {"kind": "delayed", "delay": 1.0, "motion": motion}
-    over = MapConfig.parse({"column": column, "motion": late, "map": plane}).build()
+    over = study_config(sb.studies.overturning_map).parse({"column": column, "motion": late, "map": plane}).build()
     assert over.options["duration"] == pytest.approx(expected + 1.0, rel=1e-14)
     with pytest.raises(ConfigError, match="duration is missing"):
         SimulationConfig.parse({"column": column, "motion": {"kind": "rest"}})

@@ -2,7 +2,7 @@
 
 import pytest
 
-from stylobate import config, conveying, earthquakes
+from stylobate import config, conveying, earthquakes, studies
 from stylobate.errors import ConfigError
 from stylobate.quantities import parameter_of
 from stylobate.run_arguments import OneRun, SharedByRuns, SingleRun, Stroboscopic, numbers_of
@@ -10,10 +10,10 @@ from stylobate.run_arguments import OneRun, SharedByRuns, SingleRun, Stroboscopi
 CONFIGS = [
     (config.SimulationConfig, SingleRun),
     (config.HierarchyConfig, OneRun),
-    (config.MapConfig, SharedByRuns),
-    (config.BasinConfig, SharedByRuns),
-    (config.BasinConfig, Stroboscopic),
-    (conveying.config.DriftConfig, SharedByRuns),
+    (config.study_config(studies.overturning_map), SharedByRuns),
+    (config.study_config(studies.basins), SharedByRuns),
+    (config.study_config(studies.basins), Stroboscopic),
+    (config.study_config(conveying.drift), SharedByRuns),
     (earthquakes.config.SpectrumConfig, SharedByRuns),
     (earthquakes.config.FragilityConfig, SharedByRuns),
 ]

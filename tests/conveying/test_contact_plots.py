@@ -6,7 +6,7 @@ from matplotlib.colors import to_rgba
 
 import stylobate as sb
 from stylobate.models import Contact
-from stylobate.plots.contact_strip import COLOURS
+from stylobate.plots.runs import COLOURS
 
 COLUMN = sb.Column.dimensionless(slenderness=0.1)
 MODEL = sb.Sliding(COLUMN, friction_coefficient=0.06, damping=0.05, passage_tilt=1e-3)

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 import stylobate as sb
-from stylobate.conveying import ContactClass, Transport
+from stylobate.conveying import Transport
 from stylobate.conveying.transport import half_width
+from stylobate.results import ContactClass
 from stylobate.results.summary import column_rows
 
 C = 0.1
@@ -18,7 +19,7 @@ LINE = sb.Harmonic.straight(acceleration=0.2, angular_frequency=2.0)
 @pytest.fixture(scope="module")
 def found():
     over = {"friction_coefficient": [0.03, 0.07, 0.2, 0.5], "acceleration": [0.02, 0.05, 0.09, 0.12, 0.5]}
-    return sb.conveying.contact_map(sb.Sliding(COLUMN), LINE, over=over, periods=5.0)
+    return sb.studies.overturning_map(sb.Sliding(COLUMN), LINE, over=over, periods=5.0)
 
 
 def test_what_moves_first_decides_between_staying_sliding_and_tipping(found):
@@ -47,7 +48,7 @@ def test_a_part_that_hops_is_upright_or_rocks_and_a_flat_landing_is_marked():
     part = sb.Sliding(pin, damping=0.05, normal_restitution=0.1)
     trough = sb.Harmonic.stroke(stroke=0.0006, frequency=50.0, angle=0.436)
     over = {"friction_coefficient": [0.2, 0.5], "stroke": [0.0003, 0.0006]}
-    flat, askew = (sb.conveying.contact_map(part, trough, over=over, periods=30, tilt=(x, 0.0)) for x in (0.0, 1e-2))
+    flat, askew = (sb.studies.overturning_map(part, trough, over=over, periods=30, tilt=(x, 0.0)) for x in (0.0, 1e-2))
     names = [[ContactClass(code).name for code in row] for row in flat["contact_class"].values]
     assert names[0] == ["SLIDES", "HOPS_UPRIGHT"]  # μ < c, throw number 0.64 and 1.28
     assert set(names[1]) == {"HOPS_AND_ROCKS"}  # μ > c
@@ -62,14 +63,16 @@ def test_a_friction_coefficient_that_equals_the_slenderness_is_told():
     for over in ({"friction_coefficient": [0.2, 0.3]}, {"slenderness": [0.5, 0.4]}):
         given = {**over, "acceleration": [0.1]}
         with pytest.warns(sb.errors.UnlikelyInputWarning, match="friction coefficient equals the slenderness"):
-            sb.conveying.contact_map(sb.Sliding(squat, friction_coefficient=0.5), LINE, over=given, periods=2.0)
+            sb.studies.overturning_map(sb.Sliding(squat, friction_coefficient=0.5), LINE, over=given, periods=2.0)
     equal = sb.simulate(sb.Sliding(squat, friction_coefficient=0.3), LINE, duration=2.0)
     assert any("equals the slenderness c = 0.3" in line for line in equal.warnings)
 
 
 def test_a_map_of_contacts_needs_a_contact_that_slips():
     with pytest.raises(sb.errors.UnsupportedError, match="model rolling assumes permanent contact"):
-        sb.conveying.contact_map(sb.Rolling(COLUMN), LINE, over={"acceleration": [1.0], "damping": [0.1]}, periods=2.0)
+        sb.studies.overturning_map(
+            sb.Rolling(COLUMN), LINE, least_share=0.1, over={"acceleration": [1.0], "damping": [0.1]}, periods=2.0
+        )
     with pytest.raises(sb.errors.UnsupportedError, match="model slender assumes permanent contact"):
         sb.conveying.drift(sb.Slender(COLUMN), LINE, over={"acceleration": [1.0]})
 
@@ -97,7 +100,7 @@ def test_bad_questions_are_told():
     with pytest.raises(sb.errors.ParameterError, match="periods must be at least one more than late"):
         sb.conveying.drift(model, LINE, over={"acceleration": [0.1]}, periods=10.0, late=20)
     with pytest.raises(sb.errors.ParameterError, match="least_share must lie between 0 and 1"):
-        sb.conveying.contact_map(
+        sb.studies.overturning_map(
             model, LINE, over={"acceleration": [0.1], "friction_coefficient": [0.1]}, periods=2.0, least_share=1.5
         )
 

@@ -11,7 +11,6 @@ import pytest
 import xarray as xr
 
 import stylobate as sb
-from stylobate.base_motions.records.listing import drifts
 from stylobate.earthquakes import LogUniformSpread, UniformSpread, assess, incremental_dynamic_analysis
 from stylobate.earthquakes.assessment import planar
 from stylobate.earthquakes.assessment.governing import governing_record
@@ -22,6 +21,7 @@ from stylobate.earthquakes.assessment.report.column_verdict import VerdictClass,
 from stylobate.earthquakes.assessment.sliding import sliding_model
 from stylobate.earthquakes.remarks import remark_on
 from stylobate.errors import FileError, ParameterError, UnlikelyInputWarning
+from stylobate.records.intensities import drifts
 from stylobate.results import Assessment
 from stylobate.results.verdict import word_of
 from stylobate.studies.proportions import fraction_interval

@@ -8,7 +8,6 @@ import pytest
 
 import stylobate as sb
 from stylobate.base_motions.base import VELOCITY
-from stylobate.base_motions.records import response_spectra
 from stylobate.earthquakes.assessment.ground_motions import (
     ONE_COMPONENT,
     ROTD50,
@@ -18,6 +17,7 @@ from stylobate.earthquakes.assessment.ground_motions import (
     spectra_of,
 )
 from stylobate.earthquakes.assessment.parts import Parts
+from stylobate.records import response_spectra
 
 RECORD = sb.sample_record("el centro 1940")
 

@@ -8,7 +8,7 @@ import xarray as xr
 from matplotlib import rc_context
 
 import stylobate as sb
-from stylobate.base_motions.records import response_spectra
+from stylobate.records import response_spectra
 
 NAN, INF = np.nan, np.inf
 

@@ -32,7 +32,7 @@ def least_covered(share, replications, risk=1e-4):
 
 @pytest.mark.parametrize("count", [30, 200, 2000])
 def test_the_fit_is_the_probit_of_statsmodels(count):
-    import statsmodels.api as sm  # noqa: PLC0415  slow to import, and for one test only
+    import statsmodels.api as sm
 
     intensity, reached = runs(np.random.default_rng(count), count)
     found = fit_fragility(intensity, reached)

@@ -11,8 +11,7 @@ from stylobate.earthquakes.spectra.cases import Cases
 from stylobate.earthquakes.spectra.edges import Edges, Ends
 from stylobate.earthquakes.spectra.interval_table import interval_table
 from stylobate.errors import Outcome, ParameterError
-from stylobate.plots.cells import cell_edges
-from stylobate.plots.classes import OUTCOME_LOOKS
+from stylobate.plots.cells import OUTCOME_LOOKS, cell_edges
 from stylobate.plots.style import VERMILION
 
 MODEL = sb.Slender(sb.Column.dimensionless(0.1), damping=0.1)

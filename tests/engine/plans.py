@@ -3,7 +3,7 @@
 import numpy as np
 
 from stylobate.engine.ensembles.batch import Plan
-from stylobate.engine.ensembles.motion_columns import MotionPlan
+from stylobate.engine.ensembles.run_columns import MotionPlan
 from stylobate.run_arguments import checked_options
 
 

@@ -7,7 +7,7 @@ import pytest
 import xarray as xr
 
 import stylobate as sb
-from stylobate.engine.doubt import LATE, in_doubt
+from stylobate.engine.verdict import LATE, in_doubt
 
 BLOCK = sb.PlanarRocking.block(width=1.2, height=6.0, density=2400.0)
 EL_CENTRO = sb.sample_record("el centro 1940")

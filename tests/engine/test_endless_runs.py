@@ -9,7 +9,7 @@ from tests.reference.forcing import Forcing
 from tests.reference.resting import release_time, release_within
 
 import stylobate as sb
-from stylobate.engine.pace import expected_steps
+from stylobate.engine.cost import expected_steps
 
 COLUMN = sb.Column.dimensionless(slenderness=0.1)
 MODEL = sb.Slender(COLUMN, damping=0.1)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import stylobate as sb
-from stylobate.engine.ensembles import pool
+from stylobate.engine import ensemble as engine
 from stylobate.errors import UnsupportedError
 from stylobate.models.sliding import Contact, Sliding
 
@@ -109,8 +109,8 @@ def test_runs_on_a_base_that_moves_up_and_down_are_those_of_the_single_engine():
 
 
 def test_threads_change_nothing(monkeypatch):
-    monkeypatch.setattr(pool, "_FEWEST", 4)
-    monkeypatch.setattr(pool, "_MOST", 4)
+    monkeypatch.setattr(engine, "_FEWEST", 4)
+    monkeypatch.setattr(engine, "_MOST", 4)
     starts, numbers, acceleration = random_runs(16, seed=7)
     options = {"acceleration": acceleration, "parameters": numbers, "duration": 4.0, "rtol": 1e-8, "samples": 3}
     alone, shared = (ensemble(threads=threads, **options, **starts) for threads in (1, 3))

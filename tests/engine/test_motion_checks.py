@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import stylobate as sb
-from stylobate.engine.motion_checks import check_motion, own_motions
+from stylobate.engine.forcing import check_motion, own_motions
 from stylobate.errors import ParameterError
 
 MODEL = sb.Slender(sb.Column.dimensionless(0.1), damping=0.1)
@@ -156,5 +156,5 @@ OF_THE_PACKAGE = (
 @pytest.mark.parametrize("motion", OF_THE_PACKAGE, ids=lambda motion: type(motion).__name__)
 def test_the_motions_of_the_package_keep_what_is_asked_of_a_users(motion, monkeypatch):
     assert list(own_motions(motion)) == []
-    monkeypatch.setattr("stylobate.engine.motion_checks._is_of_the_package", lambda _: False)
+    monkeypatch.setattr("stylobate.engine.forcing._is_of_the_package", lambda _: False)
     check_motion(motion, 25.0)

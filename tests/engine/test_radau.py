@@ -3,9 +3,9 @@
 import numpy as np
 from scipy.integrate._ivp import radau as scipys
 
-from stylobate.engine import radau
+from stylobate.engine.kernel.driver import implicit_step
 
-NODES, SLOPES = np.array(radau.NODES), np.array(radau.SLOPES)
+NODES, SLOPES = np.array(implicit_step.NODES), np.array(implicit_step.SLOPES)
 
 
 def test_the_stages_are_collocation_of_order_five():
@@ -18,10 +18,10 @@ def test_the_stages_are_collocation_of_order_five():
 
 
 def test_the_eigenvector_belongs_to_the_real_eigenvalue():
-    vector = np.array(radau.EIGENVECTOR)
+    vector = np.array(implicit_step.EIGENVECTOR)
     np.testing.assert_allclose(SLOPES @ vector, scipys.MU_REAL * vector, rtol=1e-14)
 
 
 def test_the_error_is_estimated_as_by_scipy():
-    np.testing.assert_allclose(radau.NODES, scipys.C, rtol=1e-15)
-    np.testing.assert_allclose(radau.ERROR, scipys.E, rtol=1e-15)
+    np.testing.assert_allclose(implicit_step.NODES, scipys.C, rtol=1e-15)
+    np.testing.assert_allclose(implicit_step.ERROR, scipys.E, rtol=1e-15)

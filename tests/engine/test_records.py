@@ -5,7 +5,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import stylobate as sb
-from stylobate.base_motions.records import sample_record
+from stylobate.records import sample_record
 
 RECORD = sample_record("el centro 1940").trimmed(1.0, 4.5)
 MODEL = sb.Wobbling(sb.Column.solid(radius=0.5, height=5.0, density=2700.0), damping=0.05)

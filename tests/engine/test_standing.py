@@ -7,7 +7,7 @@ import pytest
 
 import stylobate as sb
 from stylobate.engine.forcing import Forcing
-from stylobate.engine.standing import loads_while_standing
+from stylobate.engine.history import loads_while_standing
 
 MODEL = sb.Slender(sb.Column.solid(radius=0.5, height=5.0, density=2700.0))
 RECORD = sb.sample_record()

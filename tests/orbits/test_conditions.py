@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from stylobate.engine.flow.status import Status
+from stylobate.engine.flow.integration import Status
 from stylobate.orbits import arclength
 from stylobate.orbits.arclength import Family, corrected
 from stylobate.orbits.conditions import branching, complex_pairs, conditions_between, neimark_sacker

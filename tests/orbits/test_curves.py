@@ -66,7 +66,7 @@ def test_the_pitchfork_curve_meets_what_is_located_at_other_amplitudes():
     frequency, amplitude = np.transpose([point.values for point in curve.path])
     order = np.argsort(amplitude)
     # A cubic through points 0.003 apart in amplitude.
-    from scipy.interpolate import CubicSpline  # noqa: PLC0415
+    from scipy.interpolate import CubicSpline
 
     spline = CubicSpline(amplitude[order], frequency[order])
     assert float(spline(0.04)) == pytest.approx(at[0.04].parameter, abs=2e-6)

@@ -7,7 +7,8 @@ import pytest
 
 import stylobate as sb
 from stylobate.errors import ParameterError
-from stylobate.plots.axonometry import Cylinder, View
+from stylobate.plots.body import MARKED, FlutedColumn, ring
+from stylobate.plots.geometry import Shape, View, base_centres, frames, hull, quaternions
 
 COLUMN = sb.Column.dimensionless(slenderness=0.1)
 CIRCLE = sb.Harmonic.circular(acceleration=0.065, angular_frequency=1.8)
@@ -62,21 +63,23 @@ def test_differences_of_outcomes_name_the_models():
 def test_a_leaning_cylinder_touches_the_base_at_the_contact_point(run):
     for index in (0, 137, -1):
         at = run.data.isel(time=index)
-        one = Cylinder.leaning(
-            at["tilt"].to_numpy(), float(at["twist"]), at["footprint"].to_numpy(), COLUMN.radius, 1.5
-        )
-        circle = one.circle(0.0)
+        tilt, frame = at["tilt"].to_numpy(), frames(quaternions(at["tilt"], float(at["twist"])))
+        centre = base_centres(tilt, at["footprint"].to_numpy(), COLUMN.radius)
+        circle = ring(np.linspace(0.0, 2.0 * math.pi, 181), COLUMN.radius, 0.0) @ frame.T + centre
         # 181 points on the rim: the lowest of them is within a quarter of a step of the contact point.
         lowest = circle[np.argmin(circle[:, 2])]
         assert abs(lowest[2]) < 1e-4 * COLUMN.radius
         np.testing.assert_allclose(lowest[:2], at["contact_point"], atol=0.02 * COLUMN.radius)
-        np.testing.assert_allclose(one.frame.T @ one.frame, np.eye(3), atol=1e-14)
-        assert math.acos(one.axis[2]) == pytest.approx(float(at["amplitude"]), rel=1e-8)
+        np.testing.assert_allclose(frame.T @ frame, np.eye(3), atol=1e-14)
+        assert math.acos(frame[2, 2]) == pytest.approx(float(at["amplitude"]), rel=1e-8)
 
 
 def test_the_mark_on_an_upright_column_tells_its_twist():
-    mark = Cylinder.leaning(np.zeros(2), 0.7, np.zeros(2), 1.0, 3.0).mark()
-    np.testing.assert_allclose(mark[1] - mark[0], [math.cos(0.7), math.sin(0.7), 0.0], atol=1e-15)
+    column = FlutedColumn.of(Shape(radius=1.0, top_radius=1.0, height=3.0, mass_height=1.5, slenderness=2.0 / 3.0))
+    mark = column.top[column.wedge].mean(axis=0) @ frames(quaternions(np.zeros(2), 0.7)).T - [0.0, 0.0, 3.0]
+    turned = MARKED + 0.7
+    along = mark / np.linalg.norm(mark)
+    np.testing.assert_allclose(along, [math.cos(turned), math.sin(turned), 0.0], atol=1e-15)
 
 
 def test_a_view_from_above_keeps_lengths_and_a_view_from_the_side_heights():
@@ -89,10 +92,15 @@ def test_a_view_from_above_keeps_lengths_and_a_view_from_the_side_heights():
 
 
 def test_an_outline_covers_the_cylinder():
-    one, view = Cylinder.leaning(np.array([0.3, 0.1]), 0.0, np.zeros(2), 0.5, 2.0), View()
-    corners = view.outline(one)
+    tilt, view = np.array([0.3, 0.1]), View()
+    around = np.linspace(0.0, 2.0 * math.pi, 181)
+    low, middle, high = (
+        ring(around, 0.5, height) @ frames(quaternions(tilt, 0.0)).T + base_centres(tilt, np.zeros(2), 0.5)
+        for height in (0.0, 1.0, 2.0)
+    )
+    corners = hull(view.project(np.concatenate([low, high])))
     edges = np.roll(corners, -1, axis=0) - corners
-    for point in view.project(np.concatenate([one.circle(0.0), one.circle(0.5), one.circle(1.0)])):
+    for point in view.project(np.concatenate([low, middle, high])):
         offsets = point - corners
         assert np.all(edges[:, 0] * offsets[:, 1] - edges[:, 1] * offsets[:, 0] > -1e-12)
 

@@ -11,9 +11,9 @@ import xarray as xr
 import stylobate as sb
 from stylobate.cli.main import run as command
 from stylobate.errors import ParameterError, UnsupportedError
-from stylobate.plots.classes import attractor_classes
-from stylobate.plots.contact_strip import ContactHistory
+from stylobate.plots.cells import attractor_classes
 from stylobate.plots.interactive import _extremes
+from stylobate.plots.runs import ContactHistory
 
 STONE = sb.Column.solid(radius=0.35, height=5.2, density=2700.0)
 MODEL = sb.Wobbling(STONE, damping=0.05)

@@ -11,8 +11,16 @@ from matplotlib.patches import Ellipse, PathPatch
 
 import stylobate as sb
 from stylobate.errors import Outcome, ParameterError
-from stylobate.plots.cells import cell_edges, draw_cells
-from stylobate.plots.classes import KIND_LOOKS, OUTCOME_LOOKS, UNFINISHED, Look, MapClass, attractor_classes
+from stylobate.plots.cells import (
+    KIND_LOOKS,
+    OUTCOME_LOOKS,
+    UNFINISHED,
+    Look,
+    MapClass,
+    attractor_classes,
+    cell_edges,
+    draw_cells,
+)
 from stylobate.plots.labels import axis_label
 from stylobate.plots.style import new_figure
 from stylobate.studies.maps.attractor_search import KINDS

@@ -7,7 +7,7 @@ from matplotlib.patches import Circle
 import stylobate as sb
 from stylobate.errors import FileError, ParameterError
 from stylobate.plots.page import Picture, Section, Table, page
-from stylobate.plots.response import draw_branch
+from stylobate.plots.responses import draw_branch
 from stylobate.plots.style import STABLE_WIDTH, UNSTABLE_WIDTH, new_figure
 
 MODEL = sb.Slender(sb.Column.dimensionless(0.1), damping=0.1)

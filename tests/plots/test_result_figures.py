@@ -19,8 +19,8 @@ from PIL import Image
 import stylobate as sb
 from stylobate.errors import ParameterError
 from stylobate.plots.kinds import _FIGURES, figure_for
+from stylobate.plots.labels import what_varies
 from stylobate.plots.style import AS_DRAWN, BLUE
-from stylobate.plots.varied import what_varies
 
 ROOT = Path(__file__).parents[2]
 STONE = sb.Column.solid(radius=0.35, height=5.2, density=2700.0)

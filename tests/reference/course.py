@@ -6,8 +6,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from stylobate.engine.cost import unseen
 from stylobate.engine.forcing import common_line
-from stylobate.engine.pace import unseen
 from stylobate.engine.tolerances import FIRST_STEP_OFF
 from stylobate.models import Model
 from stylobate.models.model import RELEASE_MARGIN

@@ -9,7 +9,7 @@ import numpy as np
 from scipy.integrate import DOP853, OdeSolution
 from scipy.optimize import brentq
 
-from stylobate.engine.pace import report, step_limit
+from stylobate.engine.cost import report, step_limit
 from stylobate.engine.tolerances import PASSAGE_FROM, PASSAGE_OFFSET
 from stylobate.engine.user_events import EventRecorder
 from stylobate.models import Model

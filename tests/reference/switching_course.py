@@ -10,7 +10,7 @@ import numpy as np
 from scipy.integrate import OdeSolution
 from scipy.optimize import brentq
 
-from stylobate.engine.pace import report, step_limit, unseen
+from stylobate.engine.cost import report, step_limit, unseen
 from stylobate.engine.tolerances import SLIP_SHORTER
 from stylobate.engine.user_events import EventFunction, EventRecorder
 from stylobate.models import Model

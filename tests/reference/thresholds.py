@@ -3,7 +3,7 @@
 import math
 from dataclasses import dataclass
 
-from stylobate.engine.thresholds import least_rest_energy, rest_energy_for_good, usual_rest_energy
+from stylobate.engine.forcing import least_rest_energy, rest_energy_for_good, usual_rest_energy
 from stylobate.errors import require_not_negative, require_positive
 from stylobate.models import Model
 

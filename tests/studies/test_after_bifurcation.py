@@ -6,7 +6,7 @@ from matplotlib.colors import to_hex
 
 import stylobate as sb
 from stylobate.errors import ParameterError
-from stylobate.plots.classes import KIND_LOOKS
+from stylobate.plots.cells import KIND_LOOKS
 
 MODEL = sb.Slender(sb.Column.dimensionless(0.1), damping=0.1)
 

@@ -12,7 +12,7 @@ import stylobate as sb
 
 column = sb.Column.dimensionless(slenderness=0.1)
 line = sb.Harmonic.straight(acceleration=0.2, angular_frequency=2.0)  # g, ω₀
-found = sb.conveying.contact_map(
+found = sb.studies.overturning_map(
     sb.Sliding(column, friction_coefficient=0.1, damping=0.05),
     line,
     over={  # a small map

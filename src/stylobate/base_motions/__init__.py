@@ -1,11 +1,10 @@
 """Base motions: acceleration of the base as a function of time."""
 
-from stylobate.base_motions.combined import BASE_AT_REST, BaseMotion, Delayed, Offset, Rotated, Scaled, Sum
+from stylobate.base_motions.combined import BASE_AT_REST, BaseMotion, Delayed, Offset, OneOf, Rotated, Scaled, Sum
 from stylobate.base_motions.harmonic import Harmonic, as_harmonic
 from stylobate.base_motions.machine_run import MachineRun
-from stylobate.base_motions.one_of import OneOf
-from stylobate.base_motions.pulses.pulse import Pulse
-from stylobate.base_motions.records.record import Record
+from stylobate.base_motions.pulses import Pulse
+from stylobate.base_motions.record import Record
 from stylobate.base_motions.sweeps import SineSweep
 
 __all__ = [

@@ -9,12 +9,13 @@ from typing import Annotated, Any, ClassVar, Self
 import numpy as np
 import numpy.typing as npt
 
-from stylobate.base_motions.base import ACCELERATION, VELOCITY, Components
-from stylobate.base_motions.combined import BaseMotion, Rotated, Scaled
-from stylobate.base_motions.numbers import (
+from stylobate.base_motions.base import (
+    ACCELERATION,
+    VELOCITY,
     Acceleration,
     Amplitudes,
     AngularFrequency,
+    Components,
     Direction,
     Frequency,
     Phase,
@@ -27,6 +28,7 @@ from stylobate.base_motions.numbers import (
     Stroke,
     question_path,
 )
+from stylobate.base_motions.combined import BaseMotion, Rotated, Scaled
 from stylobate.quantities import Quantity, Stated, checked_arguments, stating
 
 # Below this |z| the series of the integrals of exp is more accurate than their closed form.

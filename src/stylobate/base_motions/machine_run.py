@@ -9,9 +9,18 @@ from typing import Annotated, ClassVar
 import numpy as np
 import numpy.typing as npt
 
-from stylobate.base_motions.base import ACCELERATION, DISPLACEMENT, Components, along_azimuth
+from stylobate.base_motions.base import (
+    ACCELERATION,
+    DISPLACEMENT,
+    Components,
+    Direction,
+    Frequency,
+    RiseOfPath,
+    StartPhase,
+    Stroke,
+    along_azimuth,
+)
 from stylobate.base_motions.combined import BaseMotion
-from stylobate.base_motions.numbers import Direction, Frequency, RiseOfPath, StartPhase, Stroke
 from stylobate.errors import ParameterError
 from stylobate.quantities import Quantity
 

@@ -9,10 +9,12 @@ from typing import Annotated, Any, ClassVar, Self
 import numpy as np
 import numpy.typing as npt
 
-from stylobate.base_motions.base import ACCELERATION, DISPLACEMENT, VELOCITY, Components, along_azimuth
-from stylobate.base_motions.combined import BaseMotion
-from stylobate.base_motions.numbers import (
+from stylobate.base_motions.base import (
+    ACCELERATION,
+    DISPLACEMENT,
+    VELOCITY,
     Acceleration,
+    Components,
     Direction,
     Displacement,
     Frequencies,
@@ -20,8 +22,10 @@ from stylobate.base_motions.numbers import (
     Start,
     StartPhase,
     VerticalRatio,
+    along_azimuth,
 )
-from stylobate.base_motions.pulses.quadrature import double_integral, integral
+from stylobate.base_motions.combined import BaseMotion
+from stylobate.base_motions.pulse_waveforms import double_integral, integral
 from stylobate.errors import ParameterError
 from stylobate.quantities import Quantity, checked_arguments, parameters_of
 

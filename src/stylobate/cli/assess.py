@@ -9,15 +9,15 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import typer
+import click
 
 from stylobate import config, earthquakes, studies
 from stylobate.cli.command import Argument, command
-from stylobate.cli.declarations import COMPUTING, JSON, Group, Option
 from stylobate.cli.interrupts import INTERRUPTED
 from stylobate.cli.options import Options
 from stylobate.cli.output import NETCDF, check_place, print_json, print_table
 from stylobate.cli.progress import log_lines, part_lines
+from stylobate.config.options import COMPUTING, JSON, Group, Option
 from stylobate.errors import FileError, Interrupted
 
 if TYPE_CHECKING:
@@ -84,7 +84,7 @@ def _locked(folder: Path) -> Iterator[None]:
     FileError
         If another process has locked the folder.
     """
-    from filelock import FileLock, Timeout  # noqa: PLC0415  as above
+    from filelock import FileLock, Timeout
 
     try:
         folder.mkdir(parents=True, exist_ok=True)
@@ -103,7 +103,7 @@ def _locked(folder: Path) -> Iterator[None]:
 
 
 def _loaded(source: Path) -> "Assessment":
-    from stylobate.results import Assessment  # noqa: PLC0415
+    from stylobate.results import Assessment
 
     return Assessment.load(source)
 
@@ -132,7 +132,7 @@ def _computed(setup: "AssessmentSetup", store: Path, threads: int | None) -> "As
         print(
             f"stylobate: the computed parts are kept in {store}; the same command continues from them", file=sys.stderr
         )
-        raise typer.Exit(INTERRUPTED) from None
+        raise click.exceptions.Exit(INTERRUPTED) from None
 
 
 def _refuse_folder_of_another(target: Path, title: str) -> None:

@@ -7,13 +7,10 @@ import numpy as np
 
 from stylobate import config, studies
 from stylobate.cli.command import command
-from stylobate.cli.declarations import OUTPUT, Option
-from stylobate.cli.options import Options
+from stylobate.cli.options import Options, overlay, read_source
 from stylobate.cli.output import check_writable, deliver, print_table
-from stylobate.cli.overlay import overlay
-from stylobate.cli.parts import COLUMN, HORIZONTAL_MOTION, MODEL_OF_STEADY_ROLLING
 from stylobate.cli.response import FREQUENCY_RANGE, plain_curves, save_curves
-from stylobate.cli.source import read_source
+from stylobate.config.options import COLUMN, HORIZONTAL_MOTION, MODEL_OF_STEADY_ROLLING, OUTPUT, Option
 from stylobate.errors import ParameterError
 
 if TYPE_CHECKING:
@@ -50,14 +47,14 @@ def boundary(options: Options) -> None:
     stylobate boundary --slenderness 0.1 --damping 0.1 --motion straight --acceleration 0.1
     --angular-frequency-range 0.5 6 --bounds 0.02 0.4 --figure boundary.png
     """
-    from stylobate.parameter_quantities import quantity_of  # noqa: PLC0415  heavy imports wait
+    from stylobate.parameter_quantities import quantity_of
 
     check_writable(options["figure"], options["output"])
     if options["bounds"] is None:
         name = options["parameter"]
         message = f"--bounds: missing. Give the lowest and the highest {name}: --bounds LOW HIGH."
         raise ParameterError(message)
-    values = overlay(read_source(options["source"]), options, config.ResponseConfig.model_fields)
+    values = overlay(read_source(options), options, config.ResponseConfig.model_fields)
     setup = config.ResponseConfig.parse(values).build()
     parameter = options["parameter"].replace("-", "_")
     # The unit of the bounds is that of the parameter.

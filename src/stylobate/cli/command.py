@@ -1,45 +1,47 @@
-"""Commands: made from a function, groups of options, and the command's own options."""
+"""Commands: made from a function, groups of options, and the command's own options; parsed by click."""
 
-import inspect
 import tomllib
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Any, get_args, get_origin
+from typing import Any, get_args, get_origin
 
-import typer
-import typer.core
+import click
+from click.core import ParameterSource
 
-from stylobate.cli.declarations import Group, Option, as_kind, written
 from stylobate.cli.options import Options
-from stylobate.cli.own_classes import Chosen
-from stylobate.cli.parts import PARTS, joined
+from stylobate.config.options import PARTS, Chosen, Group, Option, as_kind, joined, numbers_in
 from stylobate.units import has_unit
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Argument:
-    """The positional argument of a command: one or several files."""
+    """The positional argument of a command: a file, or several."""
 
     text: str
     name: str = "source"
-    type: Any = Path
+    several: bool = False
     required: bool = False
     metavar: str | None = None
 
-    def as_parameter(self) -> inspect.Parameter:
-        """Make the parameter of a function from which typer reads this argument."""
-        declared = typer.Argument(help=self.text, show_default=False, metavar=self.metavar)
-        kind, default = inspect.Parameter.KEYWORD_ONLY, inspect.Parameter.empty if self.required else None
-        wanted: Any = self.type if self.required else self.type | None
-        return inspect.Parameter(self.name, kind, default=default, annotation=Annotated[wanted, declared])
+    def as_parameter(self) -> click.Argument:
+        """Make the argument of the parser."""
+        return click.Argument(
+            [self.name],
+            type=str if self.several else click.Path(path_type=Path),
+            nargs=-1 if self.several else 1,
+            required=self.required,
+            metavar=self.metavar,
+            help=self.text,
+        )
 
 
 @dataclass(frozen=True, slots=True)
 class Command:
-    """A command: its function, which reads the options, and the declarations of the options."""
+    """A command: its function, which reads the options, its help, and the declarations of its options."""
 
     function: Callable[[Options], None]
+    help: str
     argument: Argument | None
     own: Sequence[Option]
     groups: Sequence[Group]
@@ -49,7 +51,7 @@ class Command:
         groups = (self.own, *(group.options(chosen) for group in self.groups))
         return {option.name: option for option in joined(groups)}
 
-    def program(self, name: str, arguments: Sequence[str] = ()) -> Any:
+    def program(self, name: str, arguments: Sequence[str] = ()) -> click.Command:
         """Make the parser of this command for a command line, which may choose user-defined classes.
 
         Raises
@@ -57,38 +59,28 @@ class Command:
         ParameterError
             If there is no such class.
         """
-        chosen = self._chosen(arguments)
+        chosen, files = _chosen(arguments)
         declared = self.options(chosen)
 
-        def called(context: typer.Context, **texts: Any) -> None:
+        def called(**parsed: Any) -> None:
+            source_of = click.get_current_context().get_parameter_source
+            texts = {one: None if value == () else value for one, value in parsed.items()}
             values = {one: declared[one].read(text) if one in declared else text for one, text in texts.items()}
-            stated = {one: text for one, text in texts.items() if has_unit(text)}
-            self.function(Options.of(context, name, values, declared, chosen, stated))
+            stated = [one for one in declared if source_of(one) is ParameterSource.COMMANDLINE]
+            options = Options(
+                name,
+                values,
+                {one: declared[one].written_flag for one in stated},
+                declared,
+                chosen,
+                with_units={one: text for one, text in texts.items() if has_unit(text)},
+                files=files,
+            )
+            self.function(options)
 
-        context = inspect.Parameter("context", inspect.Parameter.POSITIONAL_OR_KEYWORD, annotation=typer.Context)
         argument = [] if self.argument is None else [self.argument.as_parameter()]
-        parameters = [context, *argument, *(option.as_parameter() for option in declared.values())]
-        called.__signature__ = inspect.Signature(parameters)  # type: ignore[attr-defined]  # what typer reads
-        called.__doc__ = self.function.__doc__
-        app = typer.Typer(add_completion=False, rich_markup_mode=None)
-        app.command(name, cls=_WithPanels)(called)
-        made: Any = typer.main.get_command(app)
-        for one in made.params:
-            _convert_if_stated(one)
-        return made
-
-    def _chosen(self, arguments: Sequence[str]) -> Chosen:
-        """Find which kinds of model and motion a command line and its file choose."""
-        options = self.options(Chosen()).values()
-        parts = {one.name: one.part for one in options if one.number == "kind"}
-        stated, files = _split(arguments, {one.flag or f"--{written(one.name)}": one for one in options})
-        kinds = {part: stated[name] for name, part in parts.items() if name in stated}
-        source = next((Path(one) for one in files if one.endswith(".toml")), None)
-        tables = {} if source is None else _tables(source)
-        described = {part: tables[part] for part in parts.values() if part in tables and part not in kinds}
-        from_file = Chosen.of(described, source.parent if source else Path())
-        from_options = Chosen.of({part: as_kind(kind) for part, kind in kinds.items()})
-        return Chosen({**from_file.kinds, **from_options.kinds}, {**from_file.classes, **from_options.classes})
+        params = [*argument, *map(_as_parameter, declared.values())]
+        return _Program(name, callback=called, params=params, help=self.help)
 
 
 def command(
@@ -96,69 +88,110 @@ def command(
 ) -> Callable[[Callable[[Options], None]], Command]:
     """Make a function a command with its `own` options and the options of the groups; a decorator."""
     made = Argument(text=argument) if isinstance(argument, str) else argument
-    return lambda function: Command(function, made, own, groups)
+    return lambda function: Command(function, function.__doc__ or "", made, own, groups)
 
 
-def _split(arguments: Sequence[str], options: Mapping[str, Option]) -> tuple[dict[str, str], list[str]]:
-    """Split a command line into the last value of each option, by name, and the arguments that are no options."""
-    stated, others, rest = dict[str, str](), list[str](), list(arguments)
-    while rest:
-        flag, equals, value = rest.pop(0).partition("=")
-        option = options.get(flag)
-        if option is None:
-            others += [] if flag.startswith("--") else [f"{flag}{equals}{value}"]
-            continue
-        count = 0 if equals or option.type is bool else _count(option.type)
-        if count:
-            value = " ".join(rest[:count])
-            del rest[:count]
-        stated[option.name] = value
-    return stated, others
+def _as_parameter(option: Option) -> click.Option:
+    """Make the option of the parser; numbers remain texts, which may have a unit."""
+    several = get_origin(option.type) is list
+    kind = get_args(option.type)[0] if several else option.type
+    numbers = numbers_in(kind)
+    names = " ".join(["NUMBER"] * numbers) or None
+    if numbers:
+        kind = str if kind is float else (str,) * numbers
+    elif get_origin(kind) is tuple:
+        kind = get_args(kind)
+    elif kind is Path:
+        kind = click.Path(path_type=Path)
+    elif kind is int:
+        kind = click.IntRange(min=option.minimum)
+    callback = option.callback
+    return _Panelled(
+        [option.written_flag, option.name],
+        panel=option.panel,
+        type=None if kind is bool else kind,
+        is_flag=kind is bool,
+        multiple=several,
+        default=option.default,
+        help=option.help,
+        metavar=option.metavar or names,
+        hidden=option.hidden,
+        callback=None if callback is None else lambda _context, _option, value: callback(value),
+    )
 
 
-def _count(kind: Any) -> int:
-    return len(get_args(kind)) if get_origin(kind) is tuple else 1
+def _chosen(arguments: Sequence[str]) -> tuple[Chosen, Mapping[Path, Mapping[str, Any]]]:
+    """Find the kinds of model and motion that a command line and its file choose; return the file with its values too.
+
+    Mistakes in the file are ignored here: the reading of the description reports them.
+    """
+    flags = {f"--{part.flag}": table for table, part in PARTS.items()}
+    kinds = {}
+    for place, word in enumerate(arguments):
+        flag, equals, value = word.partition("=")
+        if flag in flags:
+            kinds[flags[flag]] = as_kind(value if equals else "".join(arguments[place + 1 : place + 2]))
+    source = next((Path(one) for one in arguments if one.endswith(".toml")), None)
+    read = {} if source is None else _read(source)
+    tables = read.get(source, {}) if source else {}
+    described = {part: tables.get(part) for part in PARTS if part not in kinds}
+    tags = {part: table.get(PARTS[part].tag) for part, table in described.items() if isinstance(table, Mapping)}
+    from_file = Chosen.of(
+        {part: kind for part, kind in tags.items() if isinstance(kind, str)}, source.parent if source else Path()
+    )
+    from_options = Chosen.of(kinds)
+    return Chosen({**from_file.kinds, **from_options.kinds}, {**from_file.classes, **from_options.classes}), read
 
 
-def _tables(source: Path) -> dict[str, str]:
-    """Read the kinds of model and motion in a file; ignore mistakes, which the full reading of the file reports."""
+def _read(source: Path) -> Mapping[Path, Mapping[str, Any]]:
     try:
-        values = tomllib.loads(source.read_text(encoding="utf-8"))
+        return {source: tomllib.loads(source.read_text(encoding="utf-8"))}
     except (OSError, ValueError, RecursionError):
         return {}
-    tables = {part: values.get(part) for part in PARTS}
-    kinds = {part: table.get("kind") for part, table in tables.items() if isinstance(table, dict)}
-    return {part: kind for part, kind in kinds.items() if isinstance(kind, str)}
 
 
-def _convert_if_stated(option: Any) -> None:
-    """Leave out the conversion of an option that is not stated: converters of all options take 15 ms to make."""
-    process = option.process_value
-    if option.required or option.multiple or option.nargs < 0 or option.callback is not None:
-        return
-    option.process_value = lambda ctx, value: None if value is None else process(ctx, value)
+class _Panelled(click.Option):
+    """An option below a heading of the help."""
+
+    def __init__(self, *declarations: Any, panel: str, **settings: Any) -> None:
+        super().__init__(*declarations, **settings)
+        self.panel = panel
 
 
-class _WithPanels(typer.core.TyperCommand):
-    """A command whose help shows the options under headings."""
+class _Program(click.Command):
+    """A parser whose help shows the options under headings; help needs no arguments."""
 
-    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
-        """Parse arguments; help needs none of them."""
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        """Parse arguments."""
         if "--help" in args:
             print(self.get_help(ctx))
             ctx.exit()
         return super().parse_args(ctx, args)
 
-    def format_options(self, ctx: Any, formatter: Any) -> None:
+    def format_options(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """Write the options under their headings."""
         panels: dict[str, list[tuple[str, str]]] = {}
         for option in self.get_params(ctx):
             record = option.get_help_record(ctx)
             if record is not None:
-                heading = getattr(option, "rich_help_panel", None) or (
-                    "Arguments" if option.param_type_name == "argument" else "Options"
-                )
+                heading = "Arguments" if isinstance(option, click.Argument) else getattr(option, "panel", "Options")
                 panels.setdefault(heading, []).append(record)
         for heading, records in panels.items():
             with formatter.section(heading):
                 formatter.write_dl(records)
+
+
+def usage_error(error: click.ClickException, program: click.Command | None) -> str:
+    """Write one line for a mistake in the options; for an option with several values, the line states these values."""
+    message = error.format_message()
+    option = getattr(error, "param", None)
+    if option is None:  # an error about too few values names the option alone
+        name = getattr(error, "option_name", None)
+        option = next((one for one in getattr(program, "params", ()) if name in one.opts), None)
+    if option is None or option.nargs in (1, -1):
+        return message
+    names = option.metavar or ""
+    wanted = f"{option.nargs} numbers" if set(names.split()) <= {"NUMBER"} else names
+    if "requires" in message:
+        return f"{option.opts[0]} must be followed by {wanted}; got fewer"
+    return f"{option.opts[0]} must be followed by {wanted}; {wanted.split()[-1]} must be a whole number"

@@ -3,15 +3,22 @@
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from stylobate import conveying
+from stylobate import config, conveying
 from stylobate.cli.command import command
-from stylobate.cli.declarations import COMPUTING, JSON, Group, Option, run_numbers
-from stylobate.cli.many_runs import executor_of, study_values
-from stylobate.cli.options import Options
+from stylobate.cli.options import Options, merge
 from stylobate.cli.output import NETCDF, check_place, print_json, print_table
-from stylobate.cli.overlay import merge
-from stylobate.cli.parts import COLUMN, MOTION_WITHOUT_RECORDS, SLIDING
-from stylobate.cli.upright import STARTS
+from stylobate.cli.study import executor_of, study_values
+from stylobate.config.options import (
+    COLUMN,
+    COMPUTING,
+    JSON,
+    MOTION_WITHOUT_RECORDS,
+    SLIDING,
+    Group,
+    Option,
+    run_numbers,
+)
+from stylobate.config.study import own_options, study_of
 from stylobate.errors import FileError, ParameterError
 from stylobate.files import csv_text, write_whole
 from stylobate.run_arguments import SharedByRuns
@@ -23,7 +30,7 @@ _KIND, _CSV = "feeder sheet", ".csv"
 
 
 @command(
-    *STARTS,
+    *own_options(conveying.upright),
     argument="TOML description, as of `stylobate upright`, or a saved sheet (.nc) to show",
     groups=(
         run_numbers(SharedByRuns).without("duration", "tilt"),
@@ -63,7 +70,7 @@ def feeder(options: Options) -> None:
 
 
 def _shown(source: Path, options: Options) -> "xr.Dataset":
-    from stylobate.results import read_dataset  # noqa: PLC0415  heavy imports wait until they are needed
+    from stylobate.results import read_dataset
 
     options.refuse_unused(f"to show {source}, for which it computes nothing")
     saved = read_dataset(source)
@@ -74,9 +81,9 @@ def _shown(source: Path, options: Options) -> "xr.Dataset":
 
 
 def _computed(options: Options) -> "xr.Dataset":
-    kind = conveying.config.UprightConfig
-    values = study_values(None, options, kind, {"model": {"kind": "sliding"}})
-    merge(values, "upright", options.pick(*(one.name for one in STARTS)))
+    kind = config.study_config(conveying.upright)
+    values = study_values(None, options, kind, study_of(conveying.upright).usual)
+    merge(values, "upright", options.pick(*(one.name for one in own_options(conveying.upright))))
     setup = kind.parse(values).build()
     executor = executor_of(options)
     options.refuse_unused()
@@ -87,7 +94,7 @@ def _save(result: "xr.Dataset", output: Path) -> None:
     if output.suffix == _CSV:
         write_whole(output, csv_text((), ([label, *values] for label, values in conveying.sheet_rows(result))))
         return
-    from stylobate.results import write_netcdf  # noqa: PLC0415  as above
+    from stylobate.results import write_netcdf
 
     write_netcdf(result, output)
 

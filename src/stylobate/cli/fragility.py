@@ -7,8 +7,15 @@ from typing import TYPE_CHECKING, Any
 
 from stylobate import config, earthquakes
 from stylobate.cli.command import command
-from stylobate.cli.declarations import (
+from stylobate.cli.fragility_table import print_fits, summary
+from stylobate.cli.options import Options, axis_values, overlay, read_source, spacing
+from stylobate.cli.output import check_writable, open_study, print_json, save_plot
+from stylobate.cli.spectrum import SCALES, SCALES_SPACING
+from stylobate.cli.study import check_outputs, computed, end, is_to_compute, save
+from stylobate.config.options import (
+    COLUMN,
     COMPUTING,
+    MODEL,
     ONE_COMPONENT,
     OUTPUT_OR_STORE,
     SAMPLE,
@@ -18,15 +25,6 @@ from stylobate.cli.declarations import (
     Option,
     run_numbers,
 )
-from stylobate.cli.fragility_table import print_fits, summary
-from stylobate.cli.many_runs import check_outputs, computed, end, is_to_compute, save
-from stylobate.cli.options import Options
-from stylobate.cli.output import check_writable, print_json, save_plot
-from stylobate.cli.overlay import axis_values, overlay, spacing
-from stylobate.cli.parts import COLUMN, MODEL
-from stylobate.cli.saved import open_study
-from stylobate.cli.source import read_source
-from stylobate.cli.spectrum import SCALES, SCALES_SPACING
 from stylobate.errors import FileError, ParameterError
 from stylobate.run_arguments import SharedByRuns
 
@@ -117,9 +115,7 @@ def fragility(options: Options) -> None:
     check_outputs(options)
     check_writable(options["runs_figure"])
     saved = _saved(options["source"])
-    values = _overlay(
-        _described(options["source"]) if saved is None else _description(saved, options["source"]), options
-    )
+    values = _overlay(_described(options) if saved is None else _description(saved, options["source"]), options)
     description = earthquakes.config.FragilityConfig.parse(values)
     read = is_to_compute(saved, options, shown_with=_OF_FITS)
     study = earthquakes.FragilityStudy.of(description.build(read=read))
@@ -161,9 +157,9 @@ def _description(saved: "xr.Dataset", source: Path | None) -> dict[str, Any]:
     return description
 
 
-def _described(source: Path | None) -> dict[str, Any]:
+def _described(options: Options) -> dict[str, Any]:
     """Read the values of a TOML file; the file of its hazard is relative to its folder."""
-    values = read_source(source)
+    source, values = options["source"], read_source(options)
     table = values.get("fragility")
     hazard = table.get("hazard") if isinstance(table, Mapping) else None
     if source is None or not isinstance(hazard, Mapping) or "file" not in hazard:
@@ -253,7 +249,7 @@ def _spread(text: str) -> tuple[str, dict[str, Any]]:
 
 
 def _computed(study: "FragilityStudy", options: Options) -> "tuple[xr.Dataset, bool]":
-    from stylobate.base_motions import BASE_AT_REST  # noqa: PLC0415
+    from stylobate.base_motions import BASE_AT_REST
 
     def run(_model: Any, _motion: Any, **computing: Any) -> "xr.Dataset":
         return study.runs(**computing)

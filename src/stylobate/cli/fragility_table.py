@@ -4,10 +4,10 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from stylobate.cli.output import print_table
-from stylobate.cli.saved import model_named, number_of_runs, provenance_of
+from stylobate.cli.output import model_named, print_table, provenance_of
 from stylobate.results.damping_yardstick import yardstick_text
 from stylobate.results.few_records import few_records
+from stylobate.results.tables import number_of_runs
 from stylobate.text import plural
 
 if TYPE_CHECKING:

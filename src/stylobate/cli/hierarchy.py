@@ -7,14 +7,10 @@ import numpy as np
 
 from stylobate import config, studies
 from stylobate.cli.command import command
-from stylobate.cli.declarations import OUTPUT, Group, Option, run_numbers
-from stylobate.cli.options import Options
+from stylobate.cli.options import Options, merge, overlay, read_source
 from stylobate.cli.output import check_writable, deliver, print_table
-from stylobate.cli.overlay import merge, overlay
-from stylobate.cli.own_classes import Chosen
-from stylobate.cli.parts import COLUMN, MODEL, MOTION_WITHOUT_RECORDS
 from stylobate.cli.response import plain_curves, save_curves
-from stylobate.cli.source import read_source
+from stylobate.config.options import COLUMN, MODEL, MOTION_WITHOUT_RECORDS, OUTPUT, Chosen, Group, Option, run_numbers
 from stylobate.errors import ParameterError
 from stylobate.run_arguments import OneRun
 
@@ -24,7 +20,7 @@ if TYPE_CHECKING:
 
 def _dissipation(chosen: Chosen) -> list[Option]:
     """List the options of the dissipation parameters that the models of the hierarchy share."""
-    from stylobate.config.hierarchy import HierarchyDissipation  # noqa: PLC0415  heavy imports wait
+    from stylobate.config.hierarchy import HierarchyDissipation
 
     return [one for one in MODEL.make(chosen) if one.name in HierarchyDissipation.model_fields]
 
@@ -66,7 +62,7 @@ def hierarchy(options: Options) -> None:
         message = f"--scaled-to must be followed by a positive slenderness, got {', '.join(map(str, scaled_to))}"
         raise ParameterError(message)
     check_writable(options["figure"], options["output"])
-    values = overlay(read_source(options["source"]), options, config.HierarchyConfig.model_fields)
+    values = overlay(read_source(options), options, config.HierarchyConfig.model_fields)
     merge(values, "hierarchy", _compared(options))
     setup = config.HierarchyConfig.parse(values).build()
     options.refuse_unused()
@@ -119,7 +115,7 @@ _HEADER = ("model", "outcome", "peak tilt", "late mean", "spin rad/s", "friction
 
 
 def _row(at: "xr.Dataset", c: float, *, several: bool) -> list[str]:
-    from stylobate.results.outcomes import outcome_label  # noqa: PLC0415  heavy, as above
+    from stylobate.results.outcomes import outcome_label
 
     name = str(at["model"].to_numpy())
     distance = float(at["deviation"].sel(other_model=at.attrs["reference"])) / c

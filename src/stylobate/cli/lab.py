@@ -4,8 +4,8 @@ import sys
 import webbrowser
 
 from stylobate.cli.command import command
-from stylobate.cli.declarations import Option
 from stylobate.cli.options import Options
+from stylobate.config.options import Option
 
 
 @command(
@@ -29,8 +29,8 @@ def lab(options: Options) -> None:
 
     stylobate lab --port 9000 --no-browser
     """
-    from stylobate.lab.pages import NO_PAGE, page_is_built  # noqa: PLC0415  heavy imports wait until they are needed
-    from stylobate.lab.serving import LOOPBACK, serve  # noqa: PLC0415
+    from stylobate.lab.pages import NO_PAGE, page_is_built
+    from stylobate.lab.serving import LOOPBACK, serve
 
     host = options["host"]
     if host not in LOOPBACK:

@@ -62,7 +62,7 @@ def _run(arguments: Sequence[str]) -> int:
         print(_help())
         return 0
     if name == "--version":
-        from stylobate import __version__  # noqa: PLC0415  read from the installed package only when asked for
+        from stylobate import __version__
 
         print(f"stylobate {__version__}")
         return 0
@@ -72,18 +72,19 @@ def _run(arguments: Sequence[str]) -> int:
 
 
 def _run_command(name: str, arguments: Sequence[str]) -> int:
-    import typer  # noqa: PLC0415  not needed for the list of commands
+    import click
 
-    from stylobate.cli.usage import joined_ranges, usage_error  # noqa: PLC0415
+    from stylobate.cli.command import usage_error
 
-    # The class of all mistakes on a command line; typer gives it no public name of its own.
-    mistake: type[Exception] = typer.BadParameter.__mro__[1]
     program = None
     try:
-        arguments = joined_ranges(arguments)
         program = COMMANDS[name].load().program(name, arguments)
-        status = program.main(arguments, prog_name=f"stylobate {name}", standalone_mode=False)
-    except mistake as error:
+        with program.make_context(f"stylobate {name}", list(arguments)) as context:
+            program.invoke(context)
+        status = 0
+    except click.exceptions.Exit as ended:
+        status = ended.exit_code
+    except click.ClickException as error:
         return _report([usage_error(error, program)])
     except (ConfigError, ModelError) as error:
         return _report(error.problems)
@@ -94,7 +95,7 @@ def _run_command(name: str, arguments: Sequence[str]) -> int:
         return _report(
             [f"{error.filename}: cannot be used ({reason}). Name another one." if error.filename else reason]
         )
-    except (KeyboardInterrupt, typer.Abort):
+    except (KeyboardInterrupt, click.Abort):
         status = INTERRUPTED
     if status == INTERRUPTED:
         print("stylobate: interrupted", file=sys.stderr)

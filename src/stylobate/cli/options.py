@@ -1,16 +1,27 @@
-"""Options on a command line, with a record of the options that the command has used."""
+"""Options on a command line: those that the command has used, and how they override the values of a file."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
-from stylobate.cli.declarations import MAX_NAMED_KINDS, Option, listed, written
-from stylobate.cli.own_classes import Chosen
-from stylobate.errors import ConfigError
+from stylobate import config, results, studies
+from stylobate.config.options import (
+    MAX_NAMED_KINDS,
+    PARTS,
+    Chosen,
+    Option,
+    Part,
+    kinds_in_files,
+    listed,
+    written,
+)
+from stylobate.errors import ConfigError, FileError, ParameterError
+from stylobate.quantities import parameters_of
 
 if TYPE_CHECKING:
-    import typer
+    from pydantic.fields import FieldInfo
+
 
 # Every command reads its source and prints its result.
 _USED_BY_ALL = ("source", "as_json")
@@ -34,6 +45,8 @@ class Options(Mapping[str, Any]):
         The kinds that the command line and its file choose.
     with_units
         The texts of the options that were stated with a unit, by name.
+    files
+        The values of the TOML file on the command line, as they stand there; empty without one that can be read.
     """
 
     command: str
@@ -42,25 +55,8 @@ class Options(Mapping[str, Any]):
     declared: Mapping[str, Option] = field(default_factory=dict)
     chosen: Chosen = field(default_factory=Chosen)
     with_units: Mapping[str, Any] = field(default_factory=dict)
+    files: Mapping[Path, Mapping[str, Any]] = field(default_factory=dict)
     _used: set[str] = field(default_factory=lambda: set(_USED_BY_ALL))
-
-    @classmethod
-    def of(
-        cls,
-        context: "typer.Context",
-        command: str,
-        values: Mapping[str, Any],
-        declared: Mapping[str, Option],
-        chosen: Chosen,
-        with_units: Mapping[str, Any],
-    ) -> Self:
-        """Join the `values` that a command is called with and the flags on the command line."""
-        flags = {
-            str(option.name): option.opts[0]
-            for option in context.command.params
-            if getattr(context.get_parameter_source(str(option.name)), "name", "") == "COMMANDLINE"
-        }
-        return cls(command, values, flags, declared, chosen, with_units)
 
     def __getitem__(self, name: str) -> Any:
         """Return the value of an option and mark the option as used."""
@@ -123,3 +119,228 @@ class Options(Mapping[str, Any]):
 
 # The keys that choose a kind.
 _TAGS = ("shape", "kind")
+
+
+def read_source(options: Options, source: Path | None = None) -> dict[str, Any]:
+    """Read the plain values of a description, or of a saved run or verdict (.nc) to repeat it; none without a source.
+
+    Parameters
+    ----------
+    options
+        Options of the command.
+    source
+        The file; by default that of the options.
+
+    Raises
+    ------
+    FileError
+        If the file is missing, or is neither a description nor a saved run or verdict.
+
+    Notes
+    -----
+    `config.relocated` finds records that were moved together with a saved run.
+    """
+    source = options["source"] if source is None else source
+    if source is None:
+        return {}
+    if not source.is_file():
+        message = f"cannot read {source}: No such file or directory"
+        raise FileError(message)
+    if source.suffix == ".nc":
+        saved = studies.load(source)
+        loaded = saved if isinstance(saved, results.Verdict) else results.Response.load(source)
+        return config.config_of(config.relocated(loaded.provenance, source.parent)).values()
+    return config.read_config(source, options.files.get(source))
+
+
+_TABLES = ("column", "model", "motion", "records")
+
+
+def overlay(values: Mapping[str, Any], options: Options, fields: "Mapping[str, FieldInfo]") -> dict[str, Any]:
+    """Override the values of a file by the options.
+
+    Parameters
+    ----------
+    values
+        Values from a TOML file, or empty.
+    options
+        All options of the command.
+    fields
+        Fields of the configuration; other options of the run are ignored.
+
+    Raises
+    ------
+    ConfigError
+        With one line for each option that the chosen column shape, model or base motion does not use.
+    """
+    result, problems = dict(values), list[str]()
+    of_parts = {*_column(result, options, problems), *_model(result, options, fields, problems)}
+    of_parts |= {*_motion(result, options, problems)}
+    if problems:
+        raise ConfigError(problems)
+    chosen = options.pick(*(name for name in fields if name not in (*_TABLES, *of_parts)))
+    for name, other in (("duration", "periods"), ("periods", "duration")):
+        if name in chosen and other not in chosen:
+            result.pop(other, None)  # either states the duration
+    return result | chosen
+
+
+def merge(values: dict[str, Any], name: str, options: Mapping[str, Any], tag: str = "") -> None:
+    """Override the table `name` of `values` by options; another kind, at the key `tag`, replaces the table."""
+    table = values.get(name, {})
+    if not isinstance(table, Mapping):
+        return
+    replaced = tag in options and options[tag] != table.get(tag)
+    merged = dict(options) if replaced else {**table, **options}
+    if merged or name in values:
+        values[name] = merged
+
+
+def with_axes(values: Mapping[str, Any], options: Options, section: str) -> dict[str, Any]:
+    """Override the axes in the table `section` of `values` by the options x, y, x_spacing and y_spacing."""
+    result, table = dict(values), values.get(section, {})
+    if not isinstance(table, Mapping):
+        return result
+    table = dict(table)
+    for place in "xy":
+        if options[place] is not None:
+            name, *rest = options[place]
+            table[place] = {"name": name, **axis_values(rest)}
+        table |= spacing(table, place, options)
+    return {**result, section: table} if table else result
+
+
+def axis_values(values: Iterable[Any]) -> dict[str, Any]:
+    """Name the values of an option FROM TO NUMBER."""
+    return dict(zip(("from", "to", "number"), values, strict=True))
+
+
+def spacing(table: Mapping[str, Any], name: str, options: Options) -> dict[str, Any]:
+    """Return the axis `name` of a table with its spacing, if an option states it; listed values have none."""
+    axis = table.get(name)
+    if not isinstance(axis, Mapping) or "values" in axis or options[f"{name}_spacing"] is None:
+        return {}
+    return {name: {**axis, "spacing": options[f"{name}_spacing"]}}
+
+
+def _numbers(
+    part: Part, kind: str | None, options: Options, problems: list[str], fields: Iterable[str] = ()
+) -> tuple[dict[str, Any], list[str]]:
+    """Return the stated numbers of a part, and the names of their options.
+
+    An option that this kind does not use adds a line to `problems`, unless a run has a number of that name in its
+    `fields`. If the kind is missing or unknown, all numbers are kept, and the configuration reports the mistake.
+    """
+    numbers, names = dict[str, Any](), list[str]()
+    known = kind in part.kinds or part.table in options.chosen.classes
+    for option in options.stated(part.table):
+        name = option.name
+        if option.number == part.tag or (option.kinds == ("record",) and kind in (None, "record")):
+            continue
+        if kind is None or kind in option.kinds or not known:
+            value = options.pick(name)[name]
+            numbers[option.number] = value.replace("-", "_") if option.type is str else value
+            names.append(name)
+        elif name not in fields:
+            problems.append(options.refusal_by_kind(option, part.noun, kind))
+    return numbers, names
+
+
+def _column(values: dict[str, Any], options: Options, problems: list[str]) -> list[str]:
+    """Merge the column; options may change the shape of a file only if --shape states it."""
+    from stylobate.config.columns import implied_shape
+
+    part, stated = PARTS["column"], options.stated("column")
+    if not stated:
+        return []
+    table = values.get("column")
+    implied = implied_shape([one.number for one in stated])
+    shape = options["shape"]
+    if shape is None and isinstance(table, Mapping):
+        shape = table.get("shape", implied_shape(table) or "solid")
+        if shape == "given" or implied not in (None, shape):
+            message = (
+                f"column: the file describes another shape (got {shape!r}). "
+                f"To replace it, add --shape {implied or 'solid'} and all of its numbers."
+            )
+            raise ParameterError(message)
+    shape = shape or implied or "solid"
+    numbers, names = _numbers(part, shape, options, problems)
+    merge(values, "column", {**numbers, "shape": shape}, tag="shape")
+    return names
+
+
+def _model(
+    values: dict[str, Any], options: Options, fields: "Mapping[str, FieldInfo]", problems: list[str]
+) -> list[str]:
+    """Merge the model; a kind that differs from the kind in the file keeps the numbers that both have."""
+    part, table = PARTS["model"], values.get("model", {})
+    kind = None
+    if "model" in options.declared and options.declared["model"].part:
+        if options["model"] and isinstance(table, Mapping):
+            kind = options.chosen.kinds.get("model", options["model"])
+            values["model"] = table = {**_kept(table, kind, options), "kind": kind}
+        kind = table.get("kind", fields["model"].default.kind) if isinstance(table, Mapping) else None
+    numbers, names = _numbers(part, kind, options, problems, fields)
+    merge(values, "model", numbers)
+    return names
+
+
+def _kept(table: Mapping[str, Any], kind: str, options: Options) -> dict[str, Any]:
+    own = options.chosen.classes.get("model")
+    makers = PARTS["model"].makers()
+    make = own if own is not None else makers.get(kind)
+    return {name: value for name, value in table.items() if make is None or name in parameters_of(make)}
+
+
+def _motion(values: dict[str, Any], options: Options, problems: list[str]) -> list[str]:
+    """Merge the base motion; a kind that differs from the kind in the file replaces the motion.
+
+    Raises
+    ------
+    ParameterError
+        If no options state its numbers, and the file describes another motion.
+    """
+    if "motion" not in options.declared:
+        return []
+    table = values.get("motion")
+    before = table.get("kind") if isinstance(table, Mapping) else None
+    kind = options.chosen.kinds.get("motion", options["motion"]) if options["motion"] else None
+    if kind in kinds_in_files() and before != kind:
+        message = (
+            f"--motion: no options state the numbers of this motion (got {options['motion']}). "
+            f'Describe it in a file: [motion], kind = "{kind}".'
+        )
+        raise ParameterError(message)
+    record = _record(table if isinstance(table, Mapping) else {}, options) if kind in (None, "record") else {}
+    if kind is None and ("path" in record or "sample" in record):
+        kind = "record"
+    if kind is None and before != "record" and before is not None:
+        record = {}
+    numbers, names = _numbers(PARTS["motion"], kind or before, options, problems)
+    merge(values, "motion", {**({"kind": kind} if kind else {}), **numbers, **record}, tag="kind")
+    return names
+
+
+def _record(table: Mapping[str, Any], options: Options) -> dict[str, Any]:
+    """Return the options of a record; only a record from files can lack a component."""
+    if "record" not in options.declared:
+        return {}
+    stated = options.pick("units", "step", "scale", "rotation", "tail")
+    files = [str(path) for path in options["record"] or ()]
+    if files:
+        stated["path"] = files[0] if len(files) == 1 else files
+    if options["sample_record"]:
+        stated["sample"] = options["sample_record"]
+    if options["record_direction"]:
+        stated["directions"] = [_azimuth_or_name(text) for text in options["record_direction"]]
+    if files or ("sample" not in stated and "path" in table):
+        stated |= options.pick("one_component")
+    return stated
+
+
+def _azimuth_or_name(text: str) -> float | str:
+    try:
+        return float(text)
+    except ValueError:
+        return text

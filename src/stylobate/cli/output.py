@@ -1,20 +1,21 @@
-"""Output of commands: tables and JSON on stdout, figures and data in files."""
+"""Input and output of commands: saved results; tables and JSON on stdout; figures and data in files."""
 
 import json
 import math
 import os
 import sys
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from importlib.util import find_spec
 from io import BytesIO
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
+from stylobate import config, studies
 from stylobate.errors import FileError, ParameterError, require_positive
 from stylobate.files import write_whole
-from stylobate.text import unit_in_text
 
 if TYPE_CHECKING:
+    import xarray as xr
     from matplotlib.figure import Figure
 
 
@@ -32,8 +33,8 @@ def print_json(values: Any) -> None:
 
 def print_table(title: str, rows: Sequence[Sequence[str]], header: Sequence[str] | None = None) -> None:
     """Print `rows` as a table with the width of the terminal; a table with a header has its title below."""
-    from rich.console import Console  # noqa: PLC0415  only tables need it
-    from rich.table import Table  # noqa: PLC0415
+    from rich.console import Console
+    from rich.table import Table
 
     table = Table(show_header=header is not None)
     for name in header or [""] * len(rows[0] if rows else ()):
@@ -45,39 +46,6 @@ def print_table(title: str, rows: Sequence[Sequence[str]], header: Sequence[str]
     console.print(table)
     if header is not None:
         console.print(title, soft_wrap=True)
-
-
-class Practical(NamedTuple):
-    """A unit of a column of a table: its name, and the factor of numbers in SI units."""
-
-    factor: float
-    name: str
-
-    @property
-    def bracketed(self) -> str:
-        """The unit in brackets; empty without unit."""
-        return f"[{self.name}]" if self.name else ""
-
-
-DEGREES = Practical(180.0 / math.pi, "°")
-
-
-def practical(values: Iterable[float], units: str) -> Practical:
-    """Choose the unit of a table: millimetres if all lengths or speeds are below one metre, and degrees.
-
-    Parameters
-    ----------
-    values
-        The numbers in SI units; those that are not finite do not count.
-    units
-        Their units as in netCDF files, such as "m s-1".
-    """
-    unit = unit_in_text(units)
-    if unit == "rad":
-        return DEGREES
-    if unit in ("m", "m/s") and max((abs(one) for one in values if math.isfinite(one)), default=0.0) < 1.0:
-        return Practical(1000.0, f"m{unit}")
-    return Practical(1.0, unit)
 
 
 def deliver(
@@ -162,7 +130,7 @@ def check_animation(path: Path, speed: float | None) -> None:
     FileError
         If the path is a folder, or its parent folder is missing.
     """
-    from stylobate.plots.animation.animation import checked_path  # noqa: PLC0415  only animations need it
+    from stylobate.plots.animation.animation import checked_path
 
     check_place(checked_path(path))
     if speed is not None:
@@ -188,7 +156,7 @@ def save_plot(result: Any, path: Path, label: str | None = None) -> None:
     FileError
         If the file cannot be written, or its ending is not a format for figures.
     """
-    from stylobate import plots  # noqa: PLC0415  slow to import
+    from stylobate import plots
 
     labels = None if label is None else [label]
     if path.suffix.lower() != PAGE:
@@ -197,7 +165,7 @@ def save_plot(result: Any, path: Path, label: str | None = None) -> None:
     try:
         text = plots.plot_interactive(result, labels=labels).to_html(include_plotlyjs=True)
     except ParameterError:
-        from stylobate.plots.page import Picture, page  # noqa: PLC0415
+        from stylobate.plots.page import Picture, page
 
         text = page(path.stem, [Picture(plots.plot(result, labels=labels), path.stem)], [])
     write_whole(path, text.encode())
@@ -232,3 +200,96 @@ def _finite(values: Any) -> Any:
 
 
 _PLAIN_WIDTH = 120
+
+
+def open_saved(source: Path | None) -> "xr.Dataset | None":
+    """Read the runs saved in a netCDF file (.nc) or a store (.zarr), finished or not; None for any other source.
+
+    Raises
+    ------
+    FileError
+        If the file cannot be read, or holds no runs of a study.
+    """
+    if source is None or source.suffix not in (NETCDF, STORE):
+        return None
+    if not source.exists():
+        message = f"cannot read {source}: No such file or directory"
+        raise FileError(message)
+    if source.suffix == STORE:
+        return relocated(studies.open_sweep(source, load=True), source)
+    from stylobate.results import read_dataset
+
+    data = read_dataset(source)
+    if "outcome" not in data.data_vars or "provenance" not in data.attrs or "format" in data.attrs:
+        message = f"{source} holds no map or basins saved by stylobate"
+        raise FileError(message)
+    return relocated(data, source)
+
+
+def open_study(source: Path | None, kinds: Collection[str], *, lacks: str, store: str) -> "xr.Dataset | None":
+    """Read a saved study of one of these kinds from a netCDF file; None for any other source.
+
+    Parameters
+    ----------
+    source
+        The file.
+    kinds
+        The kinds of study that the command shows.
+    lacks
+        Noun for the message about a file of another kind, which lacks it.
+    store
+        Message about a store: the problem and the remedy.
+
+    Raises
+    ------
+    FileError
+        If the source is a store or of another kind, or cannot be read.
+    """
+    if source is not None and source.suffix == STORE:
+        message = f"{source} is {store}"
+        raise FileError(message)
+    saved = open_saved(source)
+    if saved is not None and saved.attrs["kind"] not in kinds:
+        message = f"{source}: no {lacks} (got a {saved.attrs['kind']})."
+        raise FileError(message)
+    return saved
+
+
+def relocated(data: "xr.Dataset", source: Path) -> "xr.Dataset":
+    """Return `data` with new paths of records that were moved together with the file."""
+    return data.assign_attrs(provenance=json.dumps(config.relocated(provenance_of(data), source.parent)))
+
+
+def provenance_of(data: "xr.Dataset") -> dict[str, Any]:
+    """Return the provenance of `data`."""
+    provenance: dict[str, Any] = json.loads(data.attrs["provenance"])
+    return provenance
+
+
+def model_named(data: "xr.Dataset") -> str:
+    """Return the model of the runs in `data` in words, with its damping unless the damping varies."""
+    model = provenance_of(data).get("model", {})
+    damping = "" if "damping" not in model or "damping" in data.dims else f", damping {model['damping']:g}"
+    return f"model {model.get('kind', 'unknown')}{damping}"
+
+
+def axes_of(data: "xr.Dataset") -> dict[str, list[float]]:
+    """Return the values along each dimension of the runs in `data`, by name; none for a random sample."""
+    names = [str(dim) for dim in data["outcome"].dims]
+    return {name: data[name].to_numpy().tolist() for name in names if name in data.coords}
+
+
+def study_summary(data: "xr.Dataset", **own: Any) -> dict[str, Any]:
+    """Describe a study for JSON: kind, axes, `own` values, number of computed runs, provenance."""
+    done = {"computed": int(data["computed"]), "runs": data["outcome"].size}
+    return {"kind": data.attrs["kind"], **plain_axes(data), **own, **done, "provenance": provenance_of(data)}
+
+
+def plain_axes(data: "xr.Dataset") -> Mapping[str, Any]:
+    """Return name, ends and number of the values along each axis, for JSON."""
+    axes = axes_of(data).items()
+    return {
+        place: {"name": name, "from": values[0], "to": values[-1], "number": len(values)}
+        for place, (name, values) in zip("xy", axes, strict=False)
+        if values
+    }

@@ -3,13 +3,13 @@
 import os
 from pathlib import Path
 
-import typer
+import click
 
 from stylobate.cli.command import command
-from stylobate.cli.declarations import JSON, Group, Option
 from stylobate.cli.options import Options
 from stylobate.cli.output import check_place, print_json, print_table
 from stylobate.cli.progress import section_lines
+from stylobate.config.options import JSON, Group, Option
 
 
 @command(
@@ -26,8 +26,8 @@ def paper(options: Options) -> None:
 
     The folder stores each finished section: after Ctrl-C the same command computes only the other sections.
     """
-    from stylobate.paper import check_paper, paper_report  # noqa: PLC0415  heavy imports wait until they are used
-    from stylobate.results import ClaimStatus  # noqa: PLC0415
+    from stylobate.paper import check_paper, paper_report
+    from stylobate.results import ClaimStatus
 
     folder, workers = options["folder"], options["workers"]
     check_place(folder / "report.html" if folder.exists() else folder)
@@ -41,4 +41,4 @@ def paper(options: Options) -> None:
         print(check.summary)
         print(f"report: {report}")
     if any(finding.verdict is ClaimStatus.NOT_CONFIRMED for finding in check.findings):
-        raise typer.Exit(1)
+        raise click.exceptions.Exit(1)

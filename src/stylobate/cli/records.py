@@ -6,17 +6,16 @@ from typing import TYPE_CHECKING, Any
 
 from stylobate import config, earthquakes
 from stylobate.cli.command import Argument, command
-from stylobate.cli.declarations import FIGURE, JSON, ONE_COMPONENT, SAMPLE, STEP, UNITS, Group, Option
-from stylobate.cli.options import Options
+from stylobate.cli.options import Options, read_source
 from stylobate.cli.output import check_place, check_writable, print_json, print_table, save_figure
-from stylobate.cli.source import read_source
+from stylobate.config.options import FIGURE, JSON, ONE_COMPONENT, SAMPLE, STEP, UNITS, Group, Option
 from stylobate.errors import FileError, ParameterError
 from stylobate.files import csv_text, write_whole
 from stylobate.text import plural
 
 if TYPE_CHECKING:
     from stylobate.base_motions import Record
-    from stylobate.base_motions.records.listing import ComponentRow
+    from stylobate.records.intensities import ComponentRow
 
 _PERIODS = (0.05, 5.0, 60)
 _COLUMNS = {
@@ -39,7 +38,7 @@ _SHOWN = tuple(name for name in _COLUMNS if name not in ("origin", "pga"))
 @command(
     argument=Argument(
         name="sources",
-        type=list[str],
+        several=True,
         text="folders, patterns such as 'quakes/*.AT2', files; or a study (.toml)",
         metavar="SOURCE…",
     ),
@@ -75,7 +74,7 @@ def records(options: Options) -> None:
     values = _values(options["sources"] or [], options)
     options.refuse_unused()
     listed = list(config.RecordsConfig.parse(values).build().values())
-    from stylobate.base_motions.records.listing import component_rows, notes_on  # noqa: PLC0415
+    from stylobate.records.intensities import component_rows, notes_on
 
     rows = {record.name: component_rows(record) for record in listed}
     notes = [note for record in listed for note in notes_on(record)]
@@ -96,7 +95,7 @@ def records(options: Options) -> None:
 
 def _values(sources: Sequence[str], options: Options) -> dict[str, Any]:
     """Return the plain values of a description of records; options override the values of a study."""
-    values = _described(sources)
+    values = _described(sources, options)
     if options["sample_records"]:
         values["samples"] = tuple(options["sample_records"])
     # Samples state these numbers.
@@ -104,14 +103,14 @@ def _values(sources: Sequence[str], options: Options) -> dict[str, Any]:
     return values | options.pick(*of_files)
 
 
-def _described(sources: Sequence[str]) -> dict[str, Any]:
+def _described(sources: Sequence[str], options: Options) -> dict[str, Any]:
     studies = [source for source in sources if source.endswith(".toml")]
     if not studies:
         return {"source": tuple(sources)}
     if len(sources) > 1:
         message = f"SOURCE: a study must stand alone (got {', '.join(sources)}). List its records by themselves"
         raise ParameterError(message)
-    values = read_source(Path(studies[0]))
+    values = read_source(options, Path(studies[0]))
     if "records" not in values:
         message = f"{studies[0]}: the study has no records. Add a table [records], or name files"
         raise FileError(message)
@@ -134,9 +133,9 @@ def _save(rows: Mapping[str, Sequence["ComponentRow"]], output: Path) -> None:
 
 
 def _draw(listed: Sequence["Record"], damping: float, figure: Path) -> None:
-    import numpy as np  # noqa: PLC0415
+    import numpy as np
 
-    from stylobate.base_motions.records import response_spectra  # noqa: PLC0415
+    from stylobate.records import response_spectra
 
     moving = [record for record in listed if record.axes]
     if not moving:

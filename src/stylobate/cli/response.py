@@ -7,12 +7,9 @@ import numpy as np
 
 from stylobate import config, studies
 from stylobate.cli.command import command
-from stylobate.cli.declarations import OUTPUT, Option
-from stylobate.cli.options import Options
+from stylobate.cli.options import Options, overlay, read_source
 from stylobate.cli.output import check_writable, deliver, print_table
-from stylobate.cli.overlay import overlay
-from stylobate.cli.parts import COLUMN, HORIZONTAL_MOTION, MODEL_OF_STEADY_ROLLING
-from stylobate.cli.source import read_source
+from stylobate.config.options import COLUMN, HORIZONTAL_MOTION, MODEL_OF_STEADY_ROLLING, OUTPUT, Option
 from stylobate.errors import ParameterError
 
 if TYPE_CHECKING:
@@ -49,7 +46,7 @@ def response(options: Options) -> None:
     if exact and options["points"] is not None:
         message = f"--points: --exact chooses its own frequencies (got {options['points']}). Remove one of them."
         raise ParameterError(message)
-    values = overlay(read_source(options["source"]), options, config.ResponseConfig.model_fields)
+    values = overlay(read_source(options), options, config.ResponseConfig.model_fields)
     setup = config.ResponseConfig.parse(values).build()
     options.refuse_unused()
     low, high = setup.options["range"]
@@ -62,7 +59,7 @@ def response(options: Options) -> None:
 
 
 def _print_exact(curves: "xr.Dataset") -> None:
-    from stylobate.plots.branch_lines import stability_of  # noqa: PLC0415  heavy, as above
+    from stylobate.plots.orbits import stability_of
 
     names = curves["branch_name"].to_numpy()
     rows = [
@@ -104,7 +101,7 @@ def _stable_ranges(curves: "xr.Dataset") -> list[list[str]]:
 
 def save_curves(curves: "xr.Dataset", path: Path) -> None:
     """Write curves to a netCDF file; truth values become integers."""
-    from stylobate.results import write_netcdf  # noqa: PLC0415  heavy imports wait until they are needed
+    from stylobate.results import write_netcdf
 
     flags = {name: data.astype("int8") for name, data in curves.data_vars.items() if data.dtype == bool}
     write_netcdf(curves.assign(flags), path)

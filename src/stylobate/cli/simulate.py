@@ -5,13 +5,10 @@ from typing import TYPE_CHECKING, Any
 
 from stylobate import config, engine
 from stylobate.cli.command import command
-from stylobate.cli.declarations import OUTPUT, RECORD, Option, run_numbers
-from stylobate.cli.options import Options
+from stylobate.cli.options import Options, overlay, read_source
 from stylobate.cli.output import check_animation, check_writable, deliver, print_table
-from stylobate.cli.overlay import overlay
-from stylobate.cli.parts import COLUMN, MODEL, MOTION
-from stylobate.cli.source import read_source
 from stylobate.cli.verdict import VERDICT_OPTIONS, VerdictOfCase
+from stylobate.config.options import COLUMN, MODEL, MOTION, OUTPUT, RECORD, Option, run_numbers
 from stylobate.run_arguments import SingleRun
 
 if TYPE_CHECKING:
@@ -48,7 +45,7 @@ def simulate(options: Options) -> None:
     if options["animation"] is not None:
         check_animation(options["animation"], options["speed"])
     fields = config.SimulationConfig.model_fields
-    values = overlay(read_source(options["source"]), options, fields)
+    values = overlay(read_source(options), options, fields)
     setup = config.SimulationConfig.parse(values).build()
     case = VerdictOfCase.of(options, values.get("verdict"), setup)
     options.refuse_unused()
@@ -72,7 +69,7 @@ def _save(run: "Response", path: Path) -> None:
 
 
 def _animate(run: "Response", path: Path, speed: float | None, title: str | None) -> None:
-    from stylobate.plots import animate  # noqa: PLC0415  heavy, and for one option only
+    from stylobate.plots import animate
 
     animate(run, path, speed=speed, title=title)
 
@@ -93,7 +90,7 @@ def _summary(run: "Response") -> dict[str, Any]:
 
 
 def _rows(run: "Response", model: "Model", outcome: "Rows") -> "Rows":
-    from stylobate.results.summary import column_rows, measure_rows, reason_rows  # noqa: PLC0415
+    from stylobate.results.summary import column_rows, measure_rows, reason_rows
 
     warnings = [("warning", warning) for warning in run.warnings]
     return [*column_rows(model.column, model.rest_capacity), *outcome, *reason_rows(run), *measure_rows(run), *warnings]

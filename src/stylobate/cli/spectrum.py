@@ -7,13 +7,21 @@ from typing import TYPE_CHECKING, Any
 
 from stylobate import config, earthquakes
 from stylobate.cli.command import command
-from stylobate.cli.declarations import AXES, COMPUTING, OUTPUT_OR_STORE, RECORD, Group, Option, run_numbers
-from stylobate.cli.many_runs import check_axes, finish, run_study, study_values
-from stylobate.cli.options import Options
-from stylobate.cli.output import print_table
-from stylobate.cli.overlay import axis_values, spacing, with_axes
-from stylobate.cli.parts import COLUMN, MODEL, MOTION
-from stylobate.cli.saved import model_named, open_study, provenance_of
+from stylobate.cli.options import Options, axis_values, spacing, with_axes
+from stylobate.cli.output import model_named, open_study, print_table, provenance_of
+from stylobate.cli.study import check_axes, finish, run_study, study_values
+from stylobate.config.options import (
+    AXES,
+    COLUMN,
+    COMPUTING,
+    MODEL,
+    MOTION,
+    OUTPUT_OR_STORE,
+    RECORD,
+    Group,
+    Option,
+    run_numbers,
+)
 from stylobate.run_arguments import SharedByRuns
 from stylobate.text import plural
 
@@ -152,7 +160,7 @@ def _intervals(result: "xr.Dataset") -> list[dict[str, Any]]:
 
 
 def _peaks(result: "xr.Dataset") -> list[dict[str, Any]]:
-    from stylobate.results.outcomes import outcome_label  # noqa: PLC0415
+    from stylobate.results.outcomes import outcome_label
 
     names = ("rocking_period", "peak_tilt_ratio", "peak_rate_ratio")
     rows = []

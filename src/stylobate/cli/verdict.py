@@ -8,10 +8,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from stylobate import earthquakes, results
-from stylobate.cli.declarations import Option
 from stylobate.cli.options import Options
-from stylobate.cli.output import NETCDF, check_writable, save_plot
-from stylobate.cli.saved import relocated
+from stylobate.cli.output import NETCDF, check_writable, relocated, save_plot
+from stylobate.config.options import Option
 from stylobate.errors import Outcome, ParameterError, UnlikelyInputWarning
 from stylobate.run_arguments import Accuracy, Start
 from stylobate.text import four_digits
@@ -88,7 +87,7 @@ class VerdictOfCase:
 
     def rows(self, run: "Response", verdict: "Verdict | None") -> "Rows":
         """Return the rows of model, verdict and outcome, with a remark on a run that does not state the verdict."""
-        from stylobate.results.summary import damping_rows, outcome_of  # noqa: PLC0415  as in `simulate`
+        from stylobate.results.summary import damping_rows, outcome_of
 
         model = [("model", _model(self.setup.model))]
         if verdict is None and not self.why_not:
@@ -96,7 +95,7 @@ class VerdictOfCase:
         model += damping_rows(self.setup.model.column, None)
         if verdict is None:
             return [*model, ("outcome", f"{outcome_of(run)} in this run; {self.why_not}")]
-        from stylobate.earthquakes.verdict_study import undamped  # noqa: PLC0415  as in `simulate`
+        from stylobate.earthquakes.verdict_study import undamped
 
         laws = ", ".join(f"{name} {results.percent(share)}" for name, share in verdict.share_by_model.items())
         rows = [*model, ("verdict", str(verdict)), ("by contact law", f"{laws} overturn")]

@@ -106,13 +106,21 @@ class Bound:
             for key, value in vars(module).items():
                 if key in self.names or isinstance(value, Unbound):
                     scopes[module.__name__][key] = meanings.get(key, value)
-                elif _belongs_to(value, set(scopes)):
-                    scopes[module.__name__][key] = own[value.__module__, value.__name__]
                 elif not key.startswith("__"):
-                    scopes[module.__name__][key] = value
+                    scopes[module.__name__][key] = _with_own(value, own)
         made = types.ModuleType(name)
         vars(made).update({key: function for (_, key), function in own.items()})
         return made
+
+
+def _with_own(value: Any, own: Mapping[tuple[str, str], object]) -> Any:
+    """Return a value with the `own` functions in place of those of the modules, in tuples and named tuples too."""
+    if isinstance(value, types.FunctionType):
+        return own.get((value.__module__, value.__name__), value)
+    if not isinstance(value, tuple):
+        return value
+    parts = [_with_own(part, own) for part in value]
+    return type(value)(*parts) if hasattr(value, "_fields") else tuple(parts)
 
 
 def _belongs_to(value: object, modules: set[str]) -> bool:

@@ -96,7 +96,7 @@ class TrustedCache:
     @contextmanager
     def held(self, name: str) -> Iterator[None]:
         """Lock an entry, so that other processes that compute it wait; without file locks they do not wait."""
-        from filelock import FileLock  # noqa: PLC0415  only compiling needs locks; filelock takes long to load
+        from filelock import FileLock
 
         lock = FileLock(self.folder / f"{name}.lock")
         try:

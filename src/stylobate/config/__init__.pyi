@@ -1,18 +1,15 @@
-from .basin import BasinConfig
 from .hierarchy import HierarchyConfig
-from .map import MapConfig
 from .record_collection import EventConfig, RecordsConfig
 from .record_files import relocated
 from .records import RecordMotion
 from .response import ResponseConfig
 from .simulation import Setup, SimulationConfig, config_of, read_config
 from .snippets import as_python, as_toml
+from .study_config import study_config
 
 __all__ = [
-    "BasinConfig",
     "EventConfig",
     "HierarchyConfig",
-    "MapConfig",
     "RecordMotion",
     "RecordsConfig",
     "ResponseConfig",
@@ -23,4 +20,5 @@ __all__ = [
     "config_of",
     "read_config",
     "relocated",
+    "study_config",
 ]

@@ -8,11 +8,10 @@ from typing import Any
 from pydantic import Field
 
 from stylobate.base_motions import Record
-from stylobate.base_motions.records.events import Event
-from stylobate.base_motions.records.sources import find_files
 from stylobate.config.description import Config
 from stylobate.config.records import Reading, RecordMotion
 from stylobate.errors import ConfigError, FileError, ParameterError
+from stylobate.records.events import Event, find_files
 
 
 class EventConfig(Config):

@@ -9,11 +9,7 @@ from typing import Any, ClassVar, Literal
 from pydantic import Field
 
 from stylobate.base_motions import Record
-from stylobate.base_motions.records import Lengths, RecordFormat, Steps, read_record, sample_record
-from stylobate.base_motions.records.events import Event, find_events
-from stylobate.base_motions.records.grouping import join_event, reader, remark_on_missing_components
-from stylobate.base_motions.records.origin import RecordOrigin
-from stylobate.base_motions.records.sources import RecordSource
+from stylobate.base_motions.record import RecordOrigin
 from stylobate.config.description import Config, Radians, Seconds
 from stylobate.config.record_steps import (
     AnyStep,
@@ -24,6 +20,9 @@ from stylobate.config.record_steps import (
     processed,
 )
 from stylobate.errors import FileError, ParameterError
+from stylobate.records import Lengths, RecordFormat, Steps, read_record, sample_record
+from stylobate.records.events import Event, RecordSource, find_events
+from stylobate.records.joining import join_event, reader, remark_on_missing_components
 
 _LAST = ("scale", "rotation", "tail")
 _LONGEST_EVENT = 3  # two horizontal components and a vertical one

@@ -153,8 +153,15 @@ OF_OTHER_COMMANDS = (
 """Keys of a description that are not arguments of a single run."""
 
 
-def read_config(path: str | Path) -> dict[str, Any]:
+def read_config(path: str | Path, values: Mapping[str, Any] | None = None) -> dict[str, Any]:
     """Read a TOML file as plain values; paths of records become relative to its folder.
+
+    Parameters
+    ----------
+    path
+        The file.
+    values
+        Its values, if they have been read already.
 
     Raises
     ------
@@ -164,7 +171,7 @@ def read_config(path: str | Path) -> dict[str, Any]:
         If the file is nested too deeply, a kind is not a word, or a text contains a NUL character.
     """
     try:
-        values = tomllib.loads(Path(path).read_text(encoding="utf-8"))
+        values = tomllib.loads(Path(path).read_text(encoding="utf-8")) if values is None else values
     except OSError as error:
         message = f"cannot read {path}: {error.strerror or error}"
         raise FileError(message) from None

@@ -1,5 +1,3 @@
-from . import config
-from .contact_maps import ContactClass, contact_classes, contact_map
 from .feeder import sheet, sheet_rows
 from .figures.slipping_boundary import plot_slipping_boundary
 from .motion_onset import start_boundary
@@ -8,13 +6,9 @@ from .slip_limits import RollingRegime, slipping_boundary
 from .transport import Transport, drift
 
 __all__ = [
-    "ContactClass",
     "Posture",
     "RollingRegime",
     "Transport",
-    "config",
-    "contact_classes",
-    "contact_map",
     "drift",
     "plot_slipping_boundary",
     "sheet",

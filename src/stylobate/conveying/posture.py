@@ -2,31 +2,34 @@
 
 import json
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from enum import IntEnum
-from pathlib import Path
-from typing import Any, Unpack
+from typing import TYPE_CHECKING, Annotated, Any, Unpack
 
 import numpy as np
 import numpy.typing as npt
-import xarray as xr
 
 from stylobate.base_motions import BaseMotion
-from stylobate.base_motions.varying import numbers_of, value_of
-from stylobate.conveying.contact_maps import lands_flat, remark_on_knife_edge, stays_in_a_plane
+from stylobate.base_motions.declared import numbers_of, value_of
+from stylobate.config.options import MOTION_WITHOUT_RECORDS, SLIDING
+from stylobate.config.study import Study
 from stylobate.conveying.transport import require_conveyor, throw_number_of
 from stylobate.errors import MOST_RUNS, Named, Outcome, ParameterError, require_finite, require_positive, require_whole
 from stylobate.models import Model
-from stylobate.progress import Progress, shows_progress
+from stylobate.quantities import Quantity
 from stylobate.results import OutcomeRules
+from stylobate.results.contact_classes import lands_flat, stays_in_a_plane
 from stylobate.results.outcomes import NOT_COMPUTED, flag_attributes
+from stylobate.results.tables import DEGREES, Table
 from stylobate.results.verdict import CLEAR, VerdictWord, percent, word_of
-from stylobate.run_arguments import RunOptions
-from stylobate.studies.checks import require_no_tilt_limit
 from stylobate.studies.proportions import fraction_interval, require_confidence
-from stylobate.studies.sweeps import Executor, Sweep
-from stylobate.studies.sweeps.labelled import labelled_sweep
-from stylobate.studies.sweeps.quantities import checked_values
+from stylobate.studies.study import PeriodicRuns, options_of, study
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from stylobate.studies.sweeps import Sweep
+    from stylobate.studies.sweeps.labelled import Label
 
 Floats = npt.NDArray[np.float64]
 
@@ -59,23 +62,92 @@ class Posture(Named, IntEnum):
     """It overturned, or tilts by more than twice its tipping angle at the end."""
 
 
-@shows_progress("upright")
+def _summary(result: "xr.Dataset") -> dict[str, Any]:
+    ends = ("share", "share_low", "share_high")
+    shares = {
+        str(name): {end: float(result[end].sel(posture_name=name)) for end in ends}
+        for name in result["posture_name"].to_numpy()
+    }
+    rows = [
+        {"friction_coefficient": mu, "tilt": tilt, **shares_of_tilt} for mu, tilt, shares_of_tilt in _by_tilt(result)
+    ]
+    verdict = {name: result.attrs[name] for name in ("verdict", "throw_number", "confidence")}
+    return {**verdict, "shares": shares, "counted": int(result["counted"]), "by_tilt": rows}
+
+
+def _by_tilt(result: "xr.Dataset") -> list[tuple[float, float, dict[str, float]]]:
+    """Return the shares of each friction coefficient and initial tilt."""
+    names = [str(name) for name in result["posture_name"].to_numpy()]
+    return [
+        (float(mu), float(tilt), dict(zip(names, map(float, shares), strict=True)))
+        for mu, by_tilt in zip(result["friction"].to_numpy(), result["share_of_tilt"].to_numpy(), strict=True)
+        for tilt, shares in zip(result["tilt"].to_numpy(), by_tilt, strict=True)
+    ]
+
+
+def _table(result: "xr.Dataset") -> Table:
+    rows = [
+        [f"{mu:.4g}", f"{DEGREES.factor * tilt:.4g}°", *(percent(share) for share in shares.values())]
+        for mu, tilt, shares in _by_tilt(result)
+    ]
+    header = ("friction coefficient", "initial tilt", *map(str, result["posture_name"].to_numpy()))
+    return Table(str(result.attrs["verdict"]), header, rows)
+
+
+def _repeated(_: Mapping[str, Any], values: dict[str, Any]) -> dict[str, Any]:
+    """Return the values that repeat a posture, whose table has its tilts and the number of its periods."""
+    settings = dict(values[KIND])
+    kept = {name: value for name, value in values.items() if name not in ("tilt", "duration")}
+    return {**kept, "periods": settings.pop("periods"), KIND: settings}
+
+
+_FRICTION = Quantity(text="friction coefficient; repeat it for several, each as probable")
+
+
+@study(
+    "upright",
+    Study(
+        name=KIND,
+        source="TOML description, or a saved result (.nc) to show or repeat",
+        help="""Decide whether a part on a vibrating base stays upright, rocks or falls.
+
+    The runs differ in initial tilt, in the direction of this tilt and in the phase of the vibration. The shares leave
+    out parts that start exactly flat and hop: they always land flat. Examples:
+
+    stylobate upright --radius 6mm --height 40mm --density 7850 --friction-coefficient 0.2 --motion stroke
+    --stroke 1mm --frequency 50Hz --angle 25deg --figure upright.png
+
+    stylobate upright upright.toml --tilts 0.05deg --tilts 0.5deg --friction 0.2 --friction 0.3 --output upright.nc
+    """,
+        without={
+            "duration": "runs last a number of periods. Set `periods` of the base motion instead.",
+            "tilt": "runs start at the tilts of the table `upright`. Set `tilts` there instead.",
+        },
+        usual={"model": {"kind": "sliding"}, "periods": PERIODS},
+        model=SLIDING,
+        motion=MOTION_WITHOUT_RECORDS,
+        records=False,
+        kinds=(KIND,),
+        remedy="The runs of its store are shown by its description, with --output and --resume.",
+        repeated=_repeated,
+        table=_table,
+        summary=_summary,
+    ),
+)
 def upright(
     model: Model,
     motion: BaseMotion,
     *,
-    tilts: npt.ArrayLike = TILTS,
-    phases: int = PHASES,
-    friction: float | Sequence[float] | None = None,
-    azimuth: float | None = None,
+    tilts: Annotated[Sequence[float], Quantity(unit="rad", text="initial tilt angle; repeat it for several")] = TILTS,
+    phases: Annotated[int, Quantity(text="number of phases at which the vibration starts")] = PHASES,
+    friction: Annotated[float | Sequence[float] | None, _FRICTION] = None,
+    azimuth: Annotated[
+        float | None, Quantity(unit="rad", text="azimuth of the initial tilt; spread by default")
+    ] = None,
     periods: float = PERIODS,
-    confidence: float = 0.9,
-    store: str | Path | None = None,
-    executor: Executor | None = None,
-    resume: bool = False,
-    progress: Progress = None,
-    **options: Unpack[RunOptions],
-) -> xr.Dataset:
+    confidence: Annotated[float, Quantity(text="confidence level of intervals")] = 0.9,
+    **run: Unpack[PeriodicRuns],
+) -> "tuple[Sweep, Label]":
     """Decide whether a part on a vibrating base stays upright, rocks or falls, over initial tilts and phases.
 
     One run is one initial tilt and one phase of the vibration. Above the throw number 1 a part that starts at a tilt of
@@ -102,10 +174,7 @@ def upright(
         the `rules` (10). Shorter runs are undecided.
     confidence
         Confidence level of the intervals.
-    store, executor, resume, progress
-        As for `overturning_map`.
-    **options
-        Options of all runs, as in `simulate_ensemble`; a `tilt` is not possible.
+    **run
 
     Returns
     -------
@@ -146,11 +215,16 @@ def upright(
     >>> print(found.attrs["verdict"].partition(", ")[0])
     stays upright: 100 % of 64 runs stay upright (90 % interval 96 to 100 %)
     """
+    from stylobate.studies.checks import remark_on_knife_edge, require_no_tilt_limit
+    from stylobate.studies.sweeps import Sweep
+    from stylobate.studies.sweeps.quantities import checked_values
+
     require_conveyor(model, motion, "posture")
-    require_no_tilt_limit(options)
-    if "tilt" in options:
-        message = f"tilt: tilts sets the initial tilts (got {options['tilt']!r}). Pass tilts, and azimuth if needed."
-        raise ParameterError(message)
+    require_no_tilt_limit(options_of(run))
+    if np.any(run["tilt"]):
+        raise ParameterError(
+            f"tilt: tilts sets the initial tilts (got {run['tilt']!r}). Pass tilts, and azimuth if needed."
+        )
     confidence = require_confidence(confidence)
     lengths = _tilts(tilts)
     count = require_whole("phases", phases, least=1, most=MOST_RUNS)
@@ -173,7 +247,7 @@ def upright(
         **_delayed(motion, angles[turn]),
         **({} if frictions is None else {"friction_coefficient": mu}),
     }
-    sweep = Sweep.points(model, motion, at=at, periods=periods, **options)
+    sweep = Sweep.points(model, motion, at=at, periods=periods, **options_of(run))
     own: Any = model
     given = {
         "friction_coefficient": np.full(mu.size, own.friction_coefficient) if frictions is None else mu,
@@ -190,16 +264,18 @@ def upright(
         "confidence": confidence,
     }
     # The last periods of the mean tilt follow at least one period.
-    least = (options.get("rules") or OutcomeRules()).periods + 1
+    least = (run["rules"] or OutcomeRules()).periods + 1
 
-    def label(runs: xr.Dataset) -> xr.Dataset:
+    def label(runs: "xr.Dataset") -> "xr.Dataset":
         posture = _postures(runs, model.column.slenderness, periods * _period_of(motion))
         return _labelled(runs, posture, throw_number_of(model, motion), given, settings, least)
 
-    return labelled_sweep(sweep, label, store=store, executor=executor, resume=resume, progress=progress)
+    return sweep, label
 
 
 def _tilts(given: npt.ArrayLike) -> Floats:
+    from stylobate.studies.sweeps.quantities import checked_values
+
     values = np.unique(checked_values("tilts", "tilt_x", given, scalar=True))
     if not values.size or values[0] < 0.0:
         message = f"tilts: must be one or more angles from 0 to below π/2 rad (got {given!r}). Give their magnitudes."
@@ -220,13 +296,13 @@ def _period_of(motion: BaseMotion) -> float:
 
 
 def _labelled(
-    runs: xr.Dataset,
+    runs: "xr.Dataset",
     posture: npt.NDArray[np.int8],
     throw: float,
     given: dict[str, Floats],
     settings: dict[str, Any],
     least: int,
-) -> xr.Dataset:
+) -> "xr.Dataset":
     """Add postures, shares and the verdict to the runs, whose coordinates are `given`.
 
     Runs of fewer periods than `least` have no mean tilt.
@@ -272,7 +348,7 @@ def _labelled(
     )
 
 
-def _postures(runs: xr.Dataset, slenderness: float, duration: float) -> npt.NDArray[np.int8]:
+def _postures(runs: "xr.Dataset", slenderness: float, duration: float) -> npt.NDArray[np.int8]:
     """Return the `Posture` of each run; −1 for runs that failed, are too short for a mean tilt, or are not computed."""
     outcome, mean = runs["outcome"].to_numpy(), runs["mean_tilt"].to_numpy()
     # A run that ends early at rest has no mean tilt, and rests for good.
@@ -324,7 +400,7 @@ def _line(ends: Floats, counts: npt.NDArray[np.bool_], settings: dict[str, Any],
 
 
 def _remarks(
-    runs: xr.Dataset, posture: npt.NDArray[np.int8], counts: npt.NDArray[np.bool_], periods: float, least: int
+    runs: "xr.Dataset", posture: npt.NDArray[np.int8], counts: npt.NDArray[np.bool_], periods: float, least: int
 ) -> str:
     """Return remarks on runs that are too short, and on motion exactly in one plane."""
     undecided = counts & (posture == NOT_COMPUTED)

@@ -2,21 +2,19 @@
 
 import json
 import math
-from collections.abc import Collection, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass
 from enum import IntEnum
-from pathlib import Path
-from typing import Any, Unpack
+from typing import TYPE_CHECKING, Annotated, Any, Unpack
 
 import numpy as np
 import numpy.typing as npt
-import xarray as xr
-from scipy.special import stdtrit
 
 from stylobate.base_motions import BASE_AT_REST, BaseMotion
-from stylobate.conveying.contact_maps import contact_classes, lands_flat, remark_on_knife_edge
-from stylobate.engine.parameters import with_parameters
+from stylobate.config.options import MOTION_WITHOUT_RECORDS, SLIDING
+from stylobate.config.study import Study
 from stylobate.errors import (
+    FileError,
     Interrupted,
     Named,
     Outcome,
@@ -26,15 +24,21 @@ from stylobate.errors import (
     require_whole,
 )
 from stylobate.models import Model
-from stylobate.progress import Progress, shows_progress
+from stylobate.progress import Progress
+from stylobate.quantities import Quantity
 from stylobate.results import OutcomeRules
+from stylobate.results.contact_classes import contact_classes, knife_edge_remarks, lands_flat
 from stylobate.results.outcomes import NOT_COMPUTED, flag_attributes
+from stylobate.results.tables import DEGREES, Practical, Table, number_of_runs, practical
 from stylobate.run_arguments import RunOptions
-from stylobate.studies.checks import require_values
 from stylobate.studies.proportions import require_confidence
-from stylobate.studies.sweeps import Executor, Sweep, run_sweep
-from stylobate.studies.sweeps.labelled import labelled_sweep
-from stylobate.studies.sweeps.quantities import OF_A_RUN
+from stylobate.studies.study import PeriodicRuns, options_of, study
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from stylobate.studies.sweeps import Executor, Sweep
+    from stylobate.studies.sweeps.labelled import Label
 
 Floats = npt.NDArray[np.float64]
 
@@ -69,23 +73,144 @@ class Transport(Named, IntEnum):
     """The motion ended early, for example by overturning: no mean velocity exists."""
 
 
-@shows_progress("drift")
+# Maximum rows of a table; longer tables show only the fastest runs.
+_ROWS, _FASTEST = 40, 12
+
+
+def _table(result: "xr.Dataset") -> Table:
+    rows = _rows(result)
+    names = [str(dim) for dim in result["outcome"].dims]
+    title = number_of_runs(result, f" over {' and '.join(names)}")
+    if len(rows) > _ROWS:
+        rows = sorted(rows, key=lambda row: -_or_zero(row["transport_speed"]))[:_FASTEST]
+        title += f"; the {_FASTEST} fastest are shown, --json shows all"
+    axes = {name: practical([row[name] for row in rows], str(result[name].attrs.get("units", "1"))) for name in names}
+    pace = practical([row["transport_speed"] for row in rows], "m s-1")
+    twist = Practical(DEGREES.factor, "°/s")
+    header = (
+        *(f"{name.replace('_', ' ')} {one.bracketed}".rstrip() for name, one in axes.items()),
+        f"velocity x, y {pace.bracketed}",
+        f"speed {pace.bracketed}",
+        f"twist rate {twist.bracketed}",
+        "throw number",
+        "contact class",
+    )
+    cells = [_cells(row, axes, pace, twist) for row in rows]
+    return Table("; ".join([title, *knife_edge_remarks(result)]), header, cells)
+
+
+def _rows(result: "xr.Dataset") -> list[dict[str, Any]]:
+    """Return the numbers of each run, in the order of its names."""
+    names = [str(dim) for dim in result["outcome"].dims]
+    runs = result.stack(run=names)
+    meanings = str(result["contact_class"].attrs["flag_meanings"]).split()
+    return [_row(runs.isel(run=place), names, meanings) for place in range(runs.sizes["run"])]
+
+
+def _row(one: "xr.Dataset", names: list[str], meanings: list[str]) -> dict[str, Any]:
+    x, y = one["mean_velocity"].to_numpy()
+    numbers = ("transport_speed", "speed_low", "speed_high", "periods_computed", "mean_twist_rate", "throw_number")
+    known = str(one["transport"].attrs["flag_meanings"]).split()
+    return {
+        **{name: float(one[name]) for name in names},
+        "mean_velocity": [float(x), float(y)],
+        **{name: float(one[name]) for name in numbers},
+        "transport": known[int(one["transport"])],
+        "contact_class": meanings[int(one["contact_class"]) + 1],
+    }
+
+
+def _speed(row: Mapping[str, Any], unit: Practical) -> str:
+    """Write the speed with the half-width of its interval, or the reason why there is none."""
+    if row["transport"] in ("ACCELERATES", "ENDED"):
+        return str(row["transport"]).lower()
+    half = row["speed_high"] - row["transport_speed"]
+    wide = " (unsettled)" if row["transport"] == "UNSETTLED" else ""
+    return f"{unit.factor * row['transport_speed']:.4g} ± {unit.factor * half:.2g}{wide}"
+
+
+def _or_zero(speed: float) -> float:
+    return speed if math.isfinite(speed) else 0.0
+
+
+def _cells(row: Mapping[str, Any], axes: Mapping[str, Practical], pace: Practical, twist: Practical) -> list[str]:
+    x, y = (pace.factor * one for one in row["mean_velocity"])
+    moves = math.isfinite(row["transport_speed"])
+    return [
+        *(f"{unit.factor * row[name]:.6g}" for name, unit in axes.items()),
+        f"{x:.4g}, {y:.4g}" if moves else "none",
+        _speed(row, pace),
+        f"{twist.factor * row['mean_twist_rate']:.4g}",
+        f"{row['throw_number']:.4g}",
+        row["contact_class"].lower().replace("_", " "),
+    ]
+
+
+def _completed(saved: "xr.Dataset", setup: Callable[[], Any], options: Mapping[str, Any]) -> "xr.Dataset":
+    """Return a saved drift; add speeds and throw numbers to the runs of a store."""
+    del options
+    if "speed_high" in saved:
+        return saved
+    if saved.attrs["kind"] not in ("sweep", "drift") or "mean_twist_rate" not in saved:
+        raise FileError(f"no drift (got a {saved.attrs['kind']}). Show it with stylobate map.")
+    made = setup()
+    arguments = {name: value for name, value in made.options.items() if name not in ("over", "late")}
+    return drift_of_runs(saved, made.model, made.motion, **arguments)
+
+
+def _repeated(_: Mapping[str, Any], values: dict[str, Any]) -> dict[str, Any]:
+    """Return the values that repeat a drift, whose rules state the periods of its means."""
+    late = dict(values.pop("rules", {})).get("periods")
+    return values if late is None else {**values, "drift": {"late": int(late), **values["drift"]}}
+
+
+_LATE = Quantity(text="number of last periods of the initial runs over which means are taken", ge=1)
+
+
+@study(
+    "drift",
+    Study(
+        name="drift",
+        source="TOML description, or a saved drift (.nc) or store (.zarr) to show or repeat",
+        help="""Compute the mean transport velocity of a column on a vibrating base.
+
+    One or two numbers of column, model, base motion or initial state vary: friction-coefficient, acceleration,
+    angular-frequency, stroke, angle … The model is sliding. Each run lasts 60 periods at first, and longer until the
+    interval of its mean velocity is narrow enough. A part that accelerates beyond the friction angle has no mean
+    velocity. The result also holds the mean rate of rotation about the axis. Examples:
+
+    stylobate drift --radius 20mm --height 30mm --density 7800 --friction-coefficient 0.3 --motion stroke
+    --frequency 50Hz --angle 30deg --x stroke 0.1mm 1.2mm 23 --tilt 0 0.1deg --figure drift.png
+
+    stylobate drift drift.toml --y friction-coefficient 0.1 0.5 9 --output drift.zarr
+    """,
+        axes=("x", "y?"),
+        without={
+            "duration": "a drift lasts a number of periods. Set `periods` of its base motion instead.",
+            "rules": "a drift has none. Set `late`, the number of last periods over which means are taken.",
+        },
+        usual={"model": {"kind": "sliding"}, "periods": 60.0},
+        model=SLIDING,
+        motion=MOTION_WITHOUT_RECORDS,
+        records=False,
+        completed=_completed,
+        repeated=_repeated,
+        table=_table,
+        summary=lambda result: {"drifts": _rows(result)},
+    ),
+)
 def drift(
     model: Model,
     motion: BaseMotion,
     *,
     over: Mapping[str, npt.ArrayLike],
     periods: float = 60.0,
-    late: int = 20,
-    tolerance: float | None = TOLERANCE,
-    most_periods: float = MOST_PERIODS,
-    confidence: float = CONFIDENCE,
-    store: str | Path | None = None,
-    executor: Executor | None = None,
-    resume: bool = False,
-    progress: Progress = None,
-    **options: Unpack[RunOptions],
-) -> xr.Dataset:
+    late: Annotated[int, _LATE] = 20,
+    tolerance: Annotated[float | None, Quantity(text="relative half-width of the interval of a speed")] = TOLERANCE,
+    most_periods: Annotated[float, Quantity(text="maximum duration of a run in periods")] = MOST_PERIODS,
+    confidence: Annotated[float, Quantity(text="confidence level of the intervals")] = CONFIDENCE,
+    **run: Unpack[PeriodicRuns],
+) -> "tuple[Sweep, Label]":
     """Compute the mean transport velocity of a column on a vibrating base, and its mean rate of rotation.
 
     Both are means over a whole number of last periods of the base motion. A run whose mean velocity is not known to the
@@ -110,8 +235,7 @@ def drift(
         Maximum duration in periods of the base motion.
     confidence
         Confidence level of the intervals.
-    store, executor, resume, progress, **options
-        As for `overturning_map`; `late` sets the `rules`. A store holds the runs of the initial duration.
+    **run
 
     Returns
     -------
@@ -132,7 +256,7 @@ def drift(
     -----
     The interval is Student's for the means of ten batches of successive periods, along the mean velocity. A lag-one
     correlation ρ > 0 of these means widens it by the factor √((1 + ρ)/(1 − ρ)). It is about one motion: other initial
-    conditions can reach another one, see `upright`.
+    conditions can reach another one, see `upright`. A store holds the runs of the initial duration.
 
     Examples
     --------
@@ -146,6 +270,9 @@ def drift(
     >>> [sb.conveying.Transport(code).name for code in found["transport"].values]
     ['KNOWN', 'KNOWN']
     """
+    from stylobate.studies.checks import remark_on_knife_edge, require_values
+    from stylobate.studies.sweeps import Sweep
+
     require_conveyor(model, motion, "drift", varied=over)
     if not isinstance(over, Mapping) or not 1 <= len(over) <= _MOST_NAMES:
         message = f'over must name one or two parameters, such as "friction_coefficient"; got {over!r}'
@@ -162,18 +289,18 @@ def drift(
         "most_periods": require_positive("most_periods", most_periods),
         "confidence": require_confidence(confidence),
     }
+    options = options_of(run)
+    how: Any = {"executor": run["executor"], "progress": run["progress"]}
     sweep = Sweep.grid(model, motion, over=over, periods=periods, **_with_window(options, late))
 
-    def label(runs: xr.Dataset) -> xr.Dataset:
-        return drift_of_runs(
-            runs, model, motion, periods=periods, **settings, executor=executor, progress=progress, **options
-        )
+    def label(runs: "xr.Dataset") -> "xr.Dataset":
+        return drift_of_runs(runs, model, motion, periods=periods, **settings, **how, **options)
 
-    return labelled_sweep(sweep, label, store=store, executor=executor, resume=resume, progress=progress)
+    return sweep, label
 
 
 def drift_of_runs(
-    runs: xr.Dataset,
+    runs: "xr.Dataset",
     model: Model,
     motion: BaseMotion,
     *,
@@ -181,10 +308,10 @@ def drift_of_runs(
     tolerance: float | None = TOLERANCE,
     most_periods: float = MOST_PERIODS,
     confidence: float = CONFIDENCE,
-    executor: Executor | None = None,
+    executor: "Executor | None" = None,
     progress: Progress = None,
     **options: Unpack[RunOptions],
-) -> xr.Dataset:
+) -> "xr.Dataset":
     """Convert `runs` of the initial duration to a drift, and repeat those whose mean velocity is not known.
 
     Parameters
@@ -246,8 +373,10 @@ class _Case:
     confidence: float
     options: RunOptions
 
-    def labelled(self, runs: xr.Dataset) -> xr.Dataset:
+    def labelled(self, runs: "xr.Dataset") -> "xr.Dataset":
         """Add speeds, intervals, classes and throw numbers to the runs."""
+        import xarray as xr
+
         # A run at permanent rest ends before its last periods: its mean velocity is zero.
         stands = (runs["outcome"] == Outcome.AT_REST) & runs["mean_twist_rate"].isnull()
         velocity = runs["mean_velocity"].where(~stands, 0.0).assign_attrs(runs["mean_velocity"].attrs)
@@ -289,12 +418,16 @@ class _Case:
             .assign_attrs(kind="drift", provenance=json.dumps(provenance))
         )
 
-    def refined(self, found: xr.Dataset, periods: float, executor: Executor | None, progress: Progress) -> xr.Dataset:
+    def refined(
+        self, found: "xr.Dataset", periods: float, executor: "Executor | None", progress: Progress
+    ) -> "xr.Dataset":
         """Repeat runs whose mean velocity is not known with twice the duration, until it is known.
 
         A short run can seem known before it leaves a transient: unless it repeats, its mean must agree with that of the
         run of twice the duration.
         """
+        from stylobate.studies.sweeps import Sweep, run_sweep
+
         names = [str(dim) for dim in found["outcome"].dims]
         if self.tolerance is None:
             return found
@@ -323,12 +456,15 @@ class _Case:
             again = found["transport"].to_numpy() == Transport.UNSETTLED
         return found
 
-    def _numbers(self, runs: xr.Dataset) -> dict[str, Floats]:
+    def _numbers(self, runs: "xr.Dataset") -> dict[str, Floats]:
         """Return numbers of the case of each run.
 
         They are the throw number, the period [s], the peak velocity of the base [m/s], and the acceleration of free
         sliding down the slope [m/s²], which is not positive within the friction angle.
         """
+        from stylobate.engine.parameters import with_parameters
+        from stylobate.studies.sweeps.quantities import OF_A_RUN
+
         names = [str(dim) for dim in runs["outcome"].dims]
         varied = [name for name in runs.coords if name not in OF_A_RUN and set(runs[name].dims) <= set(names)]
         shape = runs["outcome"].shape
@@ -347,7 +483,7 @@ class _Case:
         return found
 
     def _intervals(
-        self, runs: xr.Dataset, velocity: xr.DataArray, numbers: Mapping[str, Floats]
+        self, runs: "xr.Dataset", velocity: "xr.DataArray", numbers: Mapping[str, Floats]
     ) -> tuple[Floats, npt.NDArray[np.int8]]:
         """Return the half-width of the interval of each speed [m/s], and its `Transport`."""
         shape = runs["outcome"].shape
@@ -378,6 +514,8 @@ def half_width(values: Floats, confidence: float) -> float:
 
     Student's interval for the means of batches of successive values (batch means), widened for their correlation.
     """
+    from scipy.special import stdtrit
+
     batches = min(_BATCHES, values.size)
     if batches < _LEAST_BATCHES:
         return math.nan
@@ -392,7 +530,7 @@ def half_width(values: Floats, confidence: float) -> float:
     return float(stdtrit(batches - 1, 0.5 * (1.0 + confidence))) * error
 
 
-def _interval(found: xr.Dataset) -> tuple[Floats, Floats]:
+def _interval(found: "xr.Dataset") -> tuple[Floats, Floats]:
     """Return the speeds of a drift, and the half-widths of their intervals [m/s]."""
     speed = found["transport_speed"].to_numpy()
     return speed, found["speed_high"].to_numpy() - speed
@@ -406,7 +544,7 @@ def _accelerates(means: Floats, period: float, sliding: float) -> bool:
     return bool(slope > _ACCELERATES * sliding)
 
 
-def _over(runs: xr.Dataset, name: str, names: list[str]) -> Floats:
+def _over(runs: "xr.Dataset", name: str, names: list[str]) -> Floats:
     """Return a coordinate of the runs, broadcast over their dimensions."""
     array: Floats = runs[name].broadcast_like(runs["outcome"]).transpose(*names).to_numpy()
     return array

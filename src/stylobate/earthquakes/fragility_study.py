@@ -9,7 +9,6 @@ import numpy as np
 import xarray as xr
 
 from stylobate.base_motions import BaseMotion
-from stylobate.base_motions.records import HorizontalComponent
 from stylobate.earthquakes.config.fragility import FragilitySetup
 from stylobate.earthquakes.fragility import Counting, HazardCurve, annual_rate, dispersion_parts
 from stylobate.earthquakes.incremental import incremental_dynamic_analysis
@@ -20,6 +19,7 @@ from stylobate.earthquakes.run_fragility import fragility_of_runs
 from stylobate.earthquakes.site_hazard import site_hazard
 from stylobate.models import Model
 from stylobate.progress import Progress, shows_progress
+from stylobate.records import HorizontalComponent
 from stylobate.results.damping_yardstick import damping_yardstick
 from stylobate.run_arguments import RunOptions
 from stylobate.studies.sweeps import Executor

@@ -7,9 +7,8 @@ import numpy as np
 import numpy.typing as npt
 
 from stylobate.base_motions import BaseMotion, Record
-from stylobate.base_motions.base import Components
+from stylobate.base_motions.base import Components, Direction
 from stylobate.base_motions.combined import Transformed
-from stylobate.base_motions.numbers import Direction
 from stylobate.errors import require_finite
 
 

@@ -10,7 +10,6 @@ import numpy.typing as npt
 import xarray as xr
 
 from stylobate.base_motions import BaseMotion, OneOf
-from stylobate.base_motions.records import HorizontalComponent
 from stylobate.earthquakes.crossing import crossed, unfolded
 from stylobate.earthquakes.following import tail_of
 from stylobate.earthquakes.fragility import limit_states
@@ -21,6 +20,7 @@ from stylobate.errors import Outcome, ParameterError, as_numbers, require_finite
 from stylobate.models import Model
 from stylobate.parameter_quantities import attributes_of, quantity_of
 from stylobate.progress import Progress, shows_progress
+from stylobate.records import HorizontalComponent
 from stylobate.results.outcomes import NOT_COMPUTED
 from stylobate.run_arguments import RunOptions
 from stylobate.studies.checks import remark_on_lengths, require_no_tilt_limit

@@ -9,11 +9,11 @@ import numpy as np
 
 from stylobate.base_motions import BaseMotion, Record
 from stylobate.base_motions.base import ACCELERATION, VELOCITY
-from stylobate.base_motions.records import HorizontalComponent, response_spectra
-from stylobate.base_motions.records.peaks import horizontal_peak as peak_of_record
 from stylobate.column import Column
 from stylobate.engine.forcing import common_line
 from stylobate.errors import ParameterError, UnsupportedError, require_not_negative, require_positive
+from stylobate.records import HorizontalComponent, response_spectra
+from stylobate.records.intensities import horizontal_peak as peak_of_record
 from stylobate.studies.sweeps.quantities import Floats
 
 # Number of samples of a velocity between breaks, and in a period of the highest frequency.

@@ -1,8 +1,10 @@
-"""Integration of many runs: `simulate_ensemble`."""
+"""Integration of many runs: simulate_ensemble."""
 
 import json
-from collections.abc import Mapping
-from dataclasses import asdict
+import os
+from collections.abc import Callable, Mapping
+from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
+from dataclasses import asdict, replace
 from typing import Any, Unpack
 
 import numpy as np
@@ -10,19 +12,16 @@ import numpy.typing as npt
 import xarray as xr
 
 from stylobate.base_motions import BASE_AT_REST, BaseMotion
-from stylobate.base_motions.one_of import members_of
+from stylobate.base_motions.combined import members_of
 from stylobate.column import Column
+from stylobate.engine.cost import announce, expected_steps
 from stylobate.engine.ensembles.batch import Batch, Plan
-from stylobate.engine.ensembles.broadcasting import AXIS, ArrayLike, Runs, broadcast
-from stylobate.engine.ensembles.harmonics import terms_of
-from stylobate.engine.ensembles.motion_columns import MotionPlan
-from stylobate.engine.ensembles.pool import Halt, parts_of, run_parts, usual_threads
+from stylobate.engine.ensembles.run_columns import MotionPlan, terms_of
+from stylobate.engine.ensembles.runs import AXIS, COMPONENT, QUANTITIES, ArrayLike, Arrays, Runs, broadcast, empty
 from stylobate.engine.ensembles.summaries import fallen, summarize_into
-from stylobate.engine.ensembles.variables import QUANTITIES, Arrays, empty
-from stylobate.engine.motion_checks import check_motion
-from stylobate.engine.pace import announce, expected_steps
+from stylobate.engine.forcing import check_motion
 from stylobate.engine.parameters import changed_model, check_names, in_declared_units, own_numbers, split
-from stylobate.engine.starts import require_nouns
+from stylobate.engine.starts import Turning, refuse_friction, require_nouns
 from stylobate.errors import (
     MOST_THREADS,
     Interrupted,
@@ -34,13 +33,25 @@ from stylobate.errors import (
 )
 from stylobate.models import Model
 from stylobate.models.consistency import check_once
-from stylobate.progress import Progress, Report, report_of, shows_progress, silent
+from stylobate.processes import end_all
+from stylobate.progress import Progress, Report, beat, report_of, shows_progress, silent
 from stylobate.provenance import provenance_of_run
 from stylobate.quantities import Parameter, parameters_of
 from stylobate.results import OutcomeRules
 from stylobate.results.known_orbits import as_orbits
 from stylobate.results.outcomes import NOT_COMPUTED
-from stylobate.run_arguments import OfEnsemble, Options, checked_options, takes
+from stylobate.run_arguments import (
+    FreeStart,
+    OfEnsemble,
+    Options,
+    SingleRun,
+    Start,
+    arguments_of,
+    checked_options,
+    defaults_of,
+    numbers_of,
+    takes,
+)
 
 
 @shows_progress("runs")
@@ -52,7 +63,12 @@ def simulate_ensemble(
     tilt: ArrayLike = (0.0, 0.0),
     tilt_rate: ArrayLike = (0.0, 0.0),
     spin: ArrayLike = 0.0,
+    twist: ArrayLike = 0.0,
+    position: ArrayLike = (0.0, 0.0),
+    velocity: ArrayLike = (0.0, 0.0, 0.0),
+    clearance: ArrayLike = 0.0,
     duration: ArrayLike,
+    friction_coefficient: "ArrayLike | None" = None,
     parameters: Mapping[str, ArrayLike] | None = None,
     threads: int | None = None,
     progress: Progress = None,
@@ -75,8 +91,16 @@ def simulate_ensemble(
         a DataArray with a dimension "axis" and any others.
     spin
         Initial angular velocity about the axis [rad/s], for models that have it; shapes as for `duration`.
+    twist, position, velocity, clearance
+        The other initial conditions of `simulate`: angle of rotation about the axis [rad], centre of the footprint [m],
+        velocity of the lowest point [m/s] and its height above the plane [m]. Shapes as for `spin`; those of `position`
+        as for `tilt`; (3,) or (n, 3) for `velocity`, or a DataArray with a dimension "component". Of models whose
+        contact neither slips nor opens, twist and position change no result of an ensemble.
     duration
         Duration of the runs [s]: a number, shape (n,), or a DataArray.
+    friction_coefficient
+        Friction coefficient of the contact, shapes as for `duration`: the result says which runs need more friction.
+        Models that can slip have a number of their own.
     parameters
         Numbers of column, model and motion that differ between the runs, by name; shapes as for `duration`. The names
         are those of `with_parameters`. All arrays are broadcast together by the names of their dimensions.
@@ -99,6 +123,7 @@ def simulate_ensemble(
         * With `samples`: `sample_time`, `sampled_tilt` and `sampled_tilt_rate`. They and the stroboscopic samples are
           NaN before the start and after the end of a run.
         * Models with a spin: `end_spin`.
+        * With `friction_coefficient`: `would_slip`, and the results of `demands`.
         * With `demands`: `peak_friction_demand`, `peak_pivoting_demand` and `minimum_normal_force` (over the
           weight), interpolated within each step by parabolas through its quarter points. While the column stands, the
           friction demand is |a_h|/(g + a_z).
@@ -132,26 +157,30 @@ def simulate_ensemble(
     changes = in_declared_units(changes, own)
     tilt, tilt_rate = as_numbers("tilt", tilt, "rad"), as_numbers("tilt_rate", tilt_rate, "rad/s")
     spin, duration = as_numbers("spin", spin, "rad/s"), as_numbers("duration", duration, "s")
-    options = checked_options(run)
-    if options["demands"] and model.contact is None:
-        message = f"model {model.name} has no forces of its contact. Give it `contact`, or leave out demands."
-        raise UnsupportedError(message)
+    refuse_friction(model, friction_coefficient)
     orbits = as_orbits(run["known_orbits"])
-    if model.switches and (options["demands"] or orbits or options["method"] != "dop853"):
-        other = "known_orbits" if orbits else f"method {options['method']!r}"
-        asked = "demands" if options["demands"] else other
-        message = f"model {model.name} changes between kinds of contact: leave out {asked}"
-        raise UnsupportedError(message)
+    options = _options(model, run, with_orbits=bool(orbits), with_friction=friction_coefficient is not None)
+    free = _given(
+        twist=twist,
+        position=position,
+        velocity=velocity,
+        clearance=clearance,
+        friction_coefficient=friction_coefficient,
+    )
     threads = usual_threads() if threads is None else require_whole("threads", threads, least=1, most=MOST_THREADS)
-    runs = broadcast(tilt, tilt_rate, spin, duration, changes, orbits)
+    runs = broadcast(tilt, tilt_rate, spin, duration, changes, orbits, free)
+    friction = runs.free.get("friction_coefficient")
+    if friction is not None and len(runs):
+        arguments_of(SingleRun)["friction_coefficient"].checked(float(friction.min()))
+    runs = replace(runs, turning=_turnings(model, runs))
     if len(runs):
         frequency = moved.highest_frequency * model.time_scale
         longest = float(runs.duration.max()) / model.time_scale
         announce(expected_steps(model, frequency, longest), options["max_steps"])
     _check_own_model(model, runs)
-    arrays = empty(model, options, len(runs))
+    arrays = empty(model, options, len(runs), slips=friction is not None)
     # The coordinates hold the arguments that differ between the runs.
-    arguments = {"tilt": tilt, "tilt_rate": tilt_rate, "spin": spin, "duration": duration, **changes}
+    arguments = {"tilt": tilt, "tilt_rate": tilt_rate, "spin": spin, **free, "duration": duration, **changes}
     same = {name: np.asarray(value).tolist() for name, value in arguments.items() if name not in runs.coordinates}
     if terms_of(moved) is None and len(runs):
         for member in members_of(moved):
@@ -159,12 +188,60 @@ def simulate_ensemble(
     plan = Plan(model, MotionPlan.of(moved, split(model, runs.values)[1], runs.duration), options, orbits=len(orbits))
 
     def result() -> xr.Dataset:
+        if friction is not None:
+            arrays["would_slip"][:] = arrays["peak_friction_demand"] > friction
         return _dataset(runs, arrays, _provenance(model, moved, options, same), {**parameters_of(Column), **own})
 
     if _followed(plan, runs, arrays, threads, report_of(progress)) and _rechecked(plan, runs, arrays, threads):
         return result()
     message = "interrupted; `partial` has the finished runs"
     raise Interrupted(message, result())
+
+
+def _options(model: Model, run: Mapping[str, Any], *, with_orbits: bool, with_friction: bool) -> Options:
+    """Check the options that the runs share; runs with a friction coefficient need the contact demand.
+
+    Raises
+    ------
+    UnsupportedError
+        If the model does not support an option.
+    """
+    options = checked_options(run)
+    if with_friction:
+        options = {**options, "demands": True}
+    if options["demands"] and model.contact is None:
+        asked = "friction_coefficient" if with_friction else "demands"
+        message = f"model {model.name} has no forces of its contact. Give it `contact`, or leave out {asked}."
+        raise UnsupportedError(message)
+    if model.switches and (options["demands"] or with_orbits or options["method"] != "dop853"):
+        other = "known_orbits" if with_orbits else f"method {options['method']!r}"
+        asked = "demands" if options["demands"] else other
+        message = f"model {model.name} changes between kinds of contact: leave out {asked}"
+        raise UnsupportedError(message)
+    return options
+
+
+def _given(**free: "ArrayLike | None") -> dict[str, Any]:
+    """Return the arguments that are not None or zero, in their declared units."""
+    declared = numbers_of(SingleRun)
+    return {
+        name: as_numbers(name, value, declared[name].quantity.unit)
+        for name, value in free.items()
+        if value is not None and (declared[name].optional or np.any(value))
+    }
+
+
+def _turnings(model: Model, runs: Runs) -> tuple[Turning, ...] | None:
+    """Return the other initial conditions of each run, checked as those of a single run; None if all are zero."""
+    usual = {**defaults_of(FreeStart), "spin": 0.0}
+    if not runs.free.keys() & usual.keys():
+        return None
+    given = {**usual, **runs.free, "spin": runs.spin}
+    flat = {name: np.broadcast_to(given[name], (len(runs), *np.shape(one))) for name, one in usual.items()}
+    return tuple(
+        Turning.checked(model, {name: values[k].tolist() for name, values in flat.items()}, standing=False)
+        for k in range(len(runs))
+    )
 
 
 def _check_own_model(model: Model, runs: Runs) -> None:
@@ -215,7 +292,8 @@ def _rechecked(plan: Plan, runs: Runs, arrays: Arrays, threads: int) -> bool:
 
 
 def _provenance(model: Model, motion: BaseMotion, options: Options, same: Mapping[str, Any]) -> dict[str, Any]:
-    starts = {name: same[name] for name in ("tilt", "tilt_rate", "spin", "duration") if name in same}
+    names = (*Start.__annotations__, *FreeStart.__annotations__, "duration", "friction_coefficient")
+    starts = {name: same[name] for name in names if name in same}
     parameters = {name: value for name, value in same.items() if name not in starts}
     kept = {**options, "rules": asdict(options["rules"] or OutcomeRules()), **starts, "parameters": parameters}
     return provenance_of_run(model, motion, **kept)
@@ -236,6 +314,8 @@ def _dataset(
         for name, values in arrays.items()
     }
     coordinates: dict[str, Any] = {AXIS: ["x", "y"]}
+    if any(COMPONENT in array.dims for array in runs.coordinates.values()):
+        coordinates[COMPONENT] = ["x", "y", "z"]
     for name, array in runs.coordinates.items():
         for label, index in array.coords.items():
             coordinates.setdefault(str(label), index)
@@ -250,3 +330,66 @@ def _dataset(
         if known is not None and not data.variables[name].attrs:
             data.variables[name].attrs = {"long_name": known.quantity.text, "units": known.quantity.cf_units}
     return data
+
+
+Halt = npt.NDArray[np.uint8]
+
+# Size of parts: small enough that every thread has one, all threads end together and progress is visible; large enough
+# to fill the lanes and to keep the overhead of Python small.
+_FEWEST, _ENOUGH, _MOST, _PARTS_PER_THREAD = 32, 512, 4096, 4
+
+
+def parts_of(count: int, threads: int) -> list[slice]:
+    """Return the slices of the parts of `count` runs."""
+    share = -(-count // threads)
+    size = min(max(_FEWEST, min(share, _ENOUGH), -(-share // _PARTS_PER_THREAD)), _MOST)
+    return [slice(start, min(start + size, count)) for start in range(0, count, size)]
+
+
+def usual_threads() -> int:
+    """Return the number of threads that this process may run at a time."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def run_parts(
+    parts: list[slice],
+    compute: Callable[[slice, Halt], None],
+    threads: int,
+    done: Callable[[slice], None],
+) -> bool:
+    """Call `compute` for each part, and `done` in this thread as each is finished; return False after Ctrl-C.
+
+    The second argument of `compute` is a flag that is set when it should stop. An exception of `compute` is raised here
+    after all parts have stopped.
+    """
+    halt = np.zeros(1, dtype=np.uint8)
+    waiting = iter(parts)
+    with ThreadPoolExecutor(max_workers=threads, thread_name_prefix="stylobate") as pool:
+        running: dict[Future[None], slice] = {}
+
+        def start() -> None:
+            part = next(waiting, None)
+            if part is not None:
+                running[pool.submit(compute, part, halt)] = part
+
+        try:
+            for _ in range(threads):
+                start()
+            while running:
+                # The timeout lets Python react to Ctrl-C, which it can only do between its own steps.
+                finished, _ = wait(running, timeout=0.1, return_when=FIRST_COMPLETED)
+                beat()
+                for future in finished:
+                    part = running.pop(future)
+                    future.result()
+                    start()
+                    done(part)
+        except KeyboardInterrupt:
+            halt[0] = 1
+            while running and wait(running, timeout=0.1).not_done:
+                end_all()  # a thread may wait for a compiler, and the next one may start another
+            return False
+        except BaseException:
+            halt[0] = 1
+            raise
+    return True

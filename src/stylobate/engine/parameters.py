@@ -5,12 +5,10 @@ from dataclasses import fields, is_dataclass, replace
 from typing import Any, TypeVar
 
 from stylobate.base_motions import BaseMotion, Harmonic
-from stylobate.base_motions.combined import BASE_AT_REST, Sum, Transformed
-from stylobate.base_motions.declared import motion_quantities
-from stylobate.base_motions.one_of import number_of, with_choice
-from stylobate.base_motions.varying import numbers_of, stated_numbers, value_of, with_numbers
+from stylobate.base_motions.combined import BASE_AT_REST, Sum, Transformed, number_of, with_choice
+from stylobate.base_motions.declared import motion_quantities, numbers_of, stated_numbers, value_of, with_numbers
 from stylobate.column import Column
-from stylobate.engine.ensembles.variables import QUANTITIES
+from stylobate.engine.ensembles.runs import QUANTITIES
 from stylobate.errors import ParameterError, UnsupportedError, as_numbers, require_finite
 from stylobate.models import Model
 from stylobate.parameter_quantities import quantity_of

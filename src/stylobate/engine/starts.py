@@ -9,8 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from stylobate.base_motions import BaseMotion
-from stylobate.engine.forcing import common_line
-from stylobate.engine.motion_checks import check_kinds
+from stylobate.engine.forcing import check_kinds, common_line
 from stylobate.errors import ParameterError, UnsupportedError
 from stylobate.models import Model
 from stylobate.models.consistency import check_once
@@ -99,6 +98,13 @@ class Start:
     tilt_rate: tuple[float, float]
     duration: float
     turning: Turning = Turning()
+
+
+def refuse_friction(model: Model, friction_coefficient: object) -> None:
+    """Raise ParameterError if a friction coefficient is given besides a `model` that has its own."""
+    if friction_coefficient is not None and model.switches:
+        message = f"friction_coefficient must be given to model {model.name} itself, got {friction_coefficient!r} here"
+        raise ParameterError(message)
 
 
 def require_below_level(tilt: Floats) -> None:

@@ -7,7 +7,8 @@ import numpy as np
 import numpy.typing as npt
 
 from stylobate.compiler.over_rows import over_rows
-from stylobate.engine.kernel.columns import TRACE_TERMS, Trace, TraceKind
+from stylobate.engine.kernel.columns import TRACE_TERMS, Trace
+from stylobate.engine.kernel.driver.events import TraceKind
 from stylobate.models import Model
 
 Floats = npt.NDArray[np.float64]

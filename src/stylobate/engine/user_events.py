@@ -224,6 +224,6 @@ def _root(value: Callable[[float], float], low: float, high: float) -> float:
     """Return the zero in a bracket, which has no length if an impact changes the sign."""
     if low == high:
         return low
-    from scipy.optimize import brentq  # noqa: PLC0415  SciPy takes a while to load
+    from scipy.optimize import brentq
 
     return float(brentq(value, low, high, xtol=4e-15 * max(1.0, abs(high))))

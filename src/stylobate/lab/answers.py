@@ -17,7 +17,7 @@ from stylobate.errors import Outcome
 from stylobate.lab.limits import Limits
 from stylobate.models.declared import column_quantities
 from stylobate.models.sliding.phases import Contact
-from stylobate.plots.shape import Shape
+from stylobate.plots.geometry import Shape
 from stylobate.quantities import Quantity, parameters_of
 from stylobate.results.outcomes import NUMERICALLY_UNCERTAIN
 from stylobate.results.plain import plain_numbers

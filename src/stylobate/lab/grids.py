@@ -11,8 +11,7 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from stylobate import config, conveying, studies
-from stylobate.conveying.contact_maps import class_shares
+from stylobate import config, studies
 from stylobate.engine.parameters import COLUMN_NAMES, present_value
 from stylobate.errors import Outcome, ParameterError, UnsupportedError
 from stylobate.lab import answers
@@ -21,7 +20,7 @@ from stylobate.lab.pool import Emit, Found, Progress
 from stylobate.models import Model
 from stylobate.parameter_quantities import attributes_of
 from stylobate.progress import Report
-from stylobate.studies.maps.overturning import outcome_shares
+from stylobate.studies.maps.overturning import labelled
 from stylobate.studies.sweeps import Executor, Sweep
 from stylobate.studies.sweeps.computing import Arrays, Computed, Task
 from stylobate.studies.sweeps.executors import Work
@@ -33,8 +32,8 @@ Floats = npt.NDArray[np.float64]
 
 def overturning_plane(values: Mapping[str, Any], emit: Emit) -> answers.MapResult | answers.ContactMapResult:
     """Compute the map of outcomes over two quantities; for a sliding model, the map of kinds of contact."""
-    setup = config.MapConfig.parse(values).build()
-    study = conveying.contact_map if setup.model.switches else studies.overturning_map
+    study = studies.overturning_map
+    setup = config.study_config(study).parse(values).build()
     if case_numbers(values, setup.options["over"]):
         found = _watched(partial(case_map, setup, values), setup, emit, keywords={}, flat=True)
     else:
@@ -47,7 +46,7 @@ def overturning_plane(values: Mapping[str, Any], emit: Emit) -> answers.MapResul
 
 def basin_plane(values: Mapping[str, Any], emit: Emit) -> answers.BasinResult:
     """Compute the attractor of each initial condition of a grid."""
-    setup = config.BasinConfig.parse(values).build()
+    setup = config.study_config(studies.basins).parse(values).build()
     if "count" in setup.options:
         raise ParameterError(
             "basin.random: the laboratory computes grids only. Give basin.x and basin.y, or use the command line."
@@ -237,8 +236,7 @@ def case_map(
     """
     options = {name: value for name, value in setup.options.items() if name != "over"}
     sweep = Sweep.points(_without_height(setup.model), setup.motion, at=_at(values, setup.options["over"]), **options)
-    label = class_shares if setup.model.switches else outcome_shares
-    return labelled_sweep(sweep, label, executor=executor, progress=progress)
+    return labelled_sweep(sweep, labelled, executor=executor, progress=progress)
 
 
 def _without_height(model: Model) -> Model:

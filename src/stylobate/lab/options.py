@@ -10,7 +10,6 @@ from typing import Any, get_args
 from pydantic_core import PydanticUndefined
 
 from stylobate.base_motions.declared import composite_kinds, motion_quantities
-from stylobate.base_motions.records.samples import sample_names
 from stylobate.config.columns import ColumnConfig
 from stylobate.config.description import Config
 from stylobate.config.models import DESCRIBED_MODELS
@@ -21,6 +20,7 @@ from stylobate.lab import answers
 from stylobate.lab.limits import Limits
 from stylobate.models.declared import column_quantities, model_quantities
 from stylobate.quantities import Quantity
+from stylobate.records.joining import sample_names
 
 
 def about(limits: Limits) -> answers.About:

@@ -349,7 +349,7 @@ def work(connection: Connection, *, background: bool = False) -> None:
     server = multiprocessing.parent_process()
     if server is not None:
         end_when_closed(server.sentinel)
-    from stylobate.lab import tasks  # noqa: PLC0415  heavy imports happen in the new process
+    from stylobate.lab import tasks
 
     logging.getLogger("stylobate").addHandler(_LogSender(connection))
     tasks.warm_up()
@@ -363,7 +363,7 @@ def work(connection: Connection, *, background: bool = False) -> None:
 
 
 def _done(task: Callable[[Any, Emit], Any], values: Any, emit: Emit) -> Answer:
-    from stylobate.errors import ConfigError, StylobateError  # noqa: PLC0415  as above
+    from stylobate.errors import ConfigError, StylobateError
 
     try:
         return Finished(task(values, emit))

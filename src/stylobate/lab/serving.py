@@ -59,7 +59,7 @@ def serve(
         raise ParameterError(message)
     with listening(host, port) as place:
         # Heavy imports wait until the socket listens.
-        from stylobate.lab.app import create_app  # noqa: PLC0415
+        from stylobate.lab.app import create_app
 
         found = place.getsockname()[1]
         token = None if host in LOOPBACK else secrets.token_urlsafe(16)
@@ -75,9 +75,9 @@ def serve(
 
 def server_of(app: "Starlette") -> "uvicorn.Server":
     """Return a server for the application, which ends without waiting for requests."""
-    import uvicorn  # noqa: PLC0415
+    import uvicorn
 
-    from stylobate.lab.app import end_processes  # noqa: PLC0415
+    from stylobate.lab.app import end_processes
 
     class Server(uvicorn.Server):
         async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:

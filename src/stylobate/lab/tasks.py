@@ -6,7 +6,6 @@ from importlib import import_module
 from typing import Any
 
 from stylobate import config, engine
-from stylobate.config.description import Config
 from stylobate.lab.pool import Emit, Progress
 from stylobate.lab.requests import Description
 from stylobate.lab.runs import answered_run, record_contents, remarks
@@ -45,7 +44,7 @@ def record(values: Mapping[str, Any], emit: Emit) -> dict[str, Any]:
 
 def animation(values: Mapping[str, Any], emit: Emit) -> bytes:
     """Animate a run as a GIF; long runs are shown faster."""
-    from stylobate.plots.animation import animate  # noqa: PLC0415  heavy, and few processes need it
+    from stylobate.plots.animation import animate
 
     setup = config.SimulationConfig.parse(values).build()
     run = engine.simulate(setup.model, setup.motion, **setup.options)
@@ -67,14 +66,6 @@ def warm_up() -> None:
     values = {"column": {"shape": "dimensionless", "slenderness": 0.1}, "tilt": [0.02, 0.0], "duration": 1.0}
     run(Description(values, values), lambda _: None)
 
-
-JOBS: Mapping[str, type[Config]] = {
-    "exact": config.ResponseConfig,
-    "map": config.MapConfig,
-    "basin": config.BasinConfig,
-    "animation": config.SimulationConfig,
-}
-"""The description of each kind of job; `stylobate.lab.answers.Job` has its kind and its result."""
 
 _TASKS = {
     "run": "tasks:run",

@@ -8,7 +8,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from stylobate.cards import Row, Section, card
-from stylobate.engine.flow.status import Status
+from stylobate.engine.flow.integration import Status
 from stylobate.equality import ByContent
 from stylobate.errors import Named
 from stylobate.orbits.arclength import Floats, Point, corrected

@@ -12,7 +12,7 @@ import numpy as np
 import xarray as xr
 
 from stylobate.cards import Row, Section, card
-from stylobate.engine.flow.status import Status
+from stylobate.engine.flow.integration import Status
 from stylobate.engine.parameters import present_value
 from stylobate.equality import ByContent
 from stylobate.errors import Interrupted, NoOrbitError, ParameterError, require_finite

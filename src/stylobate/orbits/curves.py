@@ -12,8 +12,8 @@ import numpy.typing as npt
 import xarray as xr
 
 from stylobate.cards import Row, Section, card
+from stylobate.engine.flow.integration import Status
 from stylobate.engine.flow.periodic import Numbers, PeriodicSystem
-from stylobate.engine.flow.status import Status
 from stylobate.engine.parameters import present_value
 from stylobate.equality import ByContent
 from stylobate.errors import Interrupted, NoOrbitError, ParameterError, StylobateError

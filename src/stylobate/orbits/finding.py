@@ -8,8 +8,8 @@ import numpy as np
 import numpy.typing as npt
 
 from stylobate.base_motions import BaseMotion
+from stylobate.engine.flow.integration import Status
 from stylobate.engine.flow.periodic import PeriodicSystem, plane_of, require_periodic
-from stylobate.engine.flow.status import Status
 from stylobate.engine.forcing import common_line
 from stylobate.errors import NoOrbitError, ParameterError, as_numbers, require_positive, require_whole
 from stylobate.models import Model

@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from stylobate.engine.flow.integration import Status
 from stylobate.engine.flow.periodic import PeriodicSystem
-from stylobate.engine.flow.status import Status
 
 Floats = npt.NDArray[Any]
 Complexes = npt.NDArray[Any]

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from stylobate.engine.flow.integration import Status
 from stylobate.engine.flow.periodic import Flow, Numbers, PeriodicSystem
-from stylobate.engine.flow.status import Status
 from stylobate.equality import ByContent
 from stylobate.errors import NoOrbitError
 

@@ -11,8 +11,8 @@ import xarray as xr
 
 from stylobate.base_motions import BaseMotion
 from stylobate.config import config_of
+from stylobate.engine.flow.integration import Status
 from stylobate.engine.flow.periodic import PeriodicSystem
-from stylobate.engine.flow.status import Status
 from stylobate.errors import FileError
 from stylobate.models import Model
 from stylobate.orbits.arclength import Family, Point

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from stylobate.engine.flow.status import Status
+from stylobate.engine.flow.integration import Status
 from stylobate.errors import NoOrbitError, ParameterError
 from stylobate.orbits.arclength import Family, Point, corrected
 from stylobate.orbits.arguments import control_of, enclosing, require_bifurcation

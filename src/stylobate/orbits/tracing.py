@@ -7,7 +7,7 @@ from enum import Enum
 
 import numpy as np
 
-from stylobate.engine.flow.status import Status
+from stylobate.engine.flow.integration import Status
 from stylobate.errors import Named, ParameterError, require_positive, require_whole
 from stylobate.orbits.arclength import Family, Floats, Point, corrected
 

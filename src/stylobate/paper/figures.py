@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 
-from stylobate.plots.response import draw_branch, set_phase_axis
+from stylobate.plots.responses import draw_branch, set_phase_axis
 from stylobate.plots.style import (
     BLACK,
     BLUE,

@@ -9,9 +9,9 @@ from matplotlib.figure import Figure
 from stylobate.errors import FileError
 from stylobate.files import write_whole
 from stylobate.paper import figures, twist_figures
-from stylobate.plots.exact_response import plot_exact_response
+from stylobate.plots.orbits import plot_exact_response
 from stylobate.plots.page import Picture, Section, Table, page, png_of
-from stylobate.plots.stability_boundary import plot_stability_boundary
+from stylobate.plots.responses import plot_stability_boundary
 from stylobate.results import Finding, PaperCheck, write_netcdf
 
 _TITLE = "A round column on a vibrating base: the source paper reproduced, checked and corrected"

@@ -5,7 +5,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from stylobate.plots.response import draw_branch
+from stylobate.plots.responses import draw_branch
 from stylobate.plots.style import BLACK, DASHES, GREY, PALETTE, STABLE_WIDTH, new_figure, styled
 
 

@@ -1,5 +1,5 @@
 from .animation import Animation, animate
-from .column_path import plot_column_path
+from .column_figures import plot_column_path
 from .figure import plot
 from .interactive import plot_interactive
 from .kinds import figure_of

@@ -8,12 +8,12 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import NullFormatter
 
 from stylobate.base_motions import BaseMotion, Record
-from stylobate.base_motions.records import response_spectra
+from stylobate.plots.geometry import Floats
 from stylobate.plots.labels import literal
-from stylobate.plots.pose import Floats
 from stylobate.plots.result_figure import InAxes, ResultFigure, heading
 from stylobate.plots.runs import draw_history
 from stylobate.plots.style import BLACK, BLUE, DASHES, GREY, VERMILION, new_figure, styled
+from stylobate.records import response_spectra
 
 COMPONENT_LOOKS: tuple[dict[str, Any], ...] = (
     {"color": BLUE, "linestyle": "-"},

@@ -12,11 +12,9 @@ from stylobate.column import Column
 from stylobate.errors import ParameterError
 from stylobate.models import Model
 from stylobate.plots.base_motion import plot_motion
-from stylobate.plots.bifurcation_curves import plot_bifurcation_curves
-from stylobate.plots.branches import plot_branches
-from stylobate.plots.column_sketch import plot_column
+from stylobate.plots.column_figures import plot_column
 from stylobate.plots.kinds import HasPoints, check_sequence, figure_for
-from stylobate.plots.orbit import Orbit, plot_orbit
+from stylobate.plots.orbits import Orbit, plot_bifurcation_curves, plot_branches, plot_orbit
 from stylobate.plots.result_figure import drawing
 from stylobate.plots.runs import plot_runs
 from stylobate.results import Assessment, Response, Verdict

@@ -12,8 +12,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from stylobate.errors import Outcome
-from stylobate.plots.cells import fill_options, percent
-from stylobate.plots.classes import OUTCOME_LOOKS, UNFINISHED_CLASS, Look, MapClass, classes_of
+from stylobate.plots.cells import OUTCOME_LOOKS, UNFINISHED_CLASS, Look, MapClass, classes_of, fill_options, percent
 from stylobate.plots.kinds import figure_of
 from stylobate.plots.labels import axis_label
 from stylobate.plots.maps import draw_classes

@@ -13,13 +13,21 @@ from matplotlib import rcParams
 from matplotlib.colors import to_hex, to_rgb
 
 from stylobate.errors import ParameterError, UnsupportedError
-from stylobate.plots.classes import Look, MapClass, attractor_classes, contact_classes, outcome_classes
-from stylobate.plots.contact_strip import COLOURS, ContactHistory
+from stylobate.plots.cells import Look, MapClass, attractor_classes, contact_classes, outcome_classes
 from stylobate.plots.kinds import HasPoints, check_sequence
-from stylobate.plots.labels import axis_label, in_own_units, unit_label
-from stylobate.plots.runs import EVENT_NAMES, along_line, colours_of, in_print, is_along_a_line, length_unit, panels_of
+from stylobate.plots.labels import axis_label, in_own_units, unit_label, what_varies
+from stylobate.plots.runs import (
+    COLOURS,
+    EVENT_NAMES,
+    ContactHistory,
+    along_line,
+    colours_of,
+    in_print,
+    is_along_a_line,
+    length_unit,
+    panels_of,
+)
 from stylobate.plots.style import BLACK, GREY, PALETTE
-from stylobate.plots.varied import what_varies
 from stylobate.results import Response, Verdict
 from stylobate.results.verdict import CONTACT_LAW, LABELS
 
@@ -77,7 +85,7 @@ def plot_interactive(
         If there is no interactive figure for this result.
     """
     try:
-        import plotly.graph_objects  # noqa: F401, PLC0415  an extra, slow to import
+        import plotly.graph_objects  # noqa: F401  an extra, slow to import
     except ImportError:
         message = "interactive figures need Plotly. Install it by: pip install stylobate[interactive]"
         raise UnsupportedError(message) from None
@@ -108,7 +116,7 @@ def plot_interactive(
 
 def _of_runs(runs: Sequence[Response], names: Sequence[str]) -> "Figure":
     """Draw the panels of the static figure of runs; the time axes zoom together."""
-    from plotly.subplots import make_subplots  # noqa: PLC0415
+    from plotly.subplots import make_subplots
 
     planar = all(run.planar for run in runs)
     panels = panels_of(runs, planar=planar)
@@ -293,7 +301,7 @@ def _set_title(figure: "Figure", text: str | None) -> None:
 
 def _of_branches(branches: Sequence[xr.Dataset], labels: Sequence[str] | None) -> "Figure":
     """Draw mean tilts of branches: stable orbits bold, unstable ones dashed, bifurcations as marks."""
-    from plotly.graph_objects import Figure  # noqa: PLC0415
+    from plotly.graph_objects import Figure
 
     figure = Figure()
     for index, points in enumerate(branches):
@@ -332,7 +340,7 @@ def _of_branches(branches: Sequence[xr.Dataset], labels: Sequence[str] | None) -
 
 def _of_verdict(verdict: Verdict) -> "Figure":
     """Draw the peak tilt of each variation over one varied number, which a menu chooses."""
-    from plotly.graph_objects import Figure  # noqa: PLC0415
+    from plotly.graph_objects import Figure
 
     data = verdict.data.sortby(-verdict.data["influence"])
     names = [str(name) for name in data["variation"].to_numpy()]
@@ -400,7 +408,7 @@ def _of_ensemble(runs: xr.Dataset) -> "Figure":
 
     The classes are those of the static figure: attractors, classes of contact, or outcomes.
     """
-    from plotly.graph_objects import Figure  # noqa: PLC0415
+    from plotly.graph_objects import Figure
 
     dims = [str(dim) for dim in runs["outcome"].dims]
     if not 1 <= len(dims) <= _PLANE:

@@ -16,15 +16,23 @@ from matplotlib import rc_context, rcParams, rcParamsDefault
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.collections import Collection
-from matplotlib.colors import ListedColormap, to_rgba, to_rgba_array
+from matplotlib.colors import ListedColormap, to_rgb, to_rgba, to_rgba_array
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.text import Annotation, Text
 
-from stylobate.plots.fitting import fit_words, thin_out_ticks
 from stylobate.plots.labels import in_own_units, with_literal_names
-from stylobate.plots.result_figure import WIDTH, InAxes, ResultFigure, asked_for, enlarged, usual_font
+from stylobate.plots.result_figure import (
+    WIDTH,
+    InAxes,
+    ResultFigure,
+    asked_for,
+    enlarged,
+    fit_words,
+    thin_out_ticks,
+    usual_font,
+)
 
 # Okabe and Ito's palette ("Color Universal Design", 2008) without its yellow; the lightness alternates.
 PALETTE = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#000000")
@@ -68,6 +76,7 @@ _CLASSES = 32
 
 P = ParamSpec("P")
 _DRAWING: ContextVar[bool] = ContextVar("_DRAWING", default=False)
+_PAPER: ContextVar[Any] = ContextVar("_PAPER", default="white")
 
 
 def styled(draw: Callable[P, Figure]) -> Callable[P, Figure]:
@@ -121,8 +130,17 @@ def _settings() -> Iterator[None]:
     factory: dict[Any, Any] = dict(rcParamsDefault)
     settings = {name: value for name, value in ours.items() if theirs[name] == factory[name]}
     white = {name: factory[name] for name in _COLOURS}
-    with rc_context(settings | white | {"grid.color": _SETTINGS["grid.color"]}):
-        yield
+    token = _PAPER.set(theirs["axes.facecolor"])
+    try:
+        with rc_context(settings | white | {"grid.color": _SETTINGS["grid.color"]}):
+            yield
+    finally:
+        _PAPER.reset(token)
+
+
+def paper() -> tuple[float, float, float]:
+    """Return red, green and blue of the ground in the user's style, for what is drawn with the gid AS_DRAWN."""
+    return to_rgb(_PAPER.get())
 
 
 def _restyle(figure: Figure, panels: Sequence[Axes], drawn: Sequence[Artist], scale: float) -> None:

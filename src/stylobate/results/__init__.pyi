@@ -1,4 +1,5 @@
 from .assessment import Assessment
+from .contact_classes import ContactClass, contact_classes
 from .findings import ClaimStatus, Finding, PaperCheck, Section
 from .known_orbits import KnownOrbit
 from .report_details import DesignSpectrum, ReportDetails
@@ -11,6 +12,7 @@ from .verdict import Verdict, VerdictWord, percent
 __all__ = [
     "Assessment",
     "ClaimStatus",
+    "ContactClass",
     "DesignSpectrum",
     "Event",
     "Finding",
@@ -22,6 +24,7 @@ __all__ = [
     "Section",
     "Verdict",
     "VerdictWord",
+    "contact_classes",
     "percent",
     "read_dataset",
     "to_dataframe",

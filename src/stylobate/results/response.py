@@ -141,14 +141,14 @@ class Response(ByContent):
 
     def to_dataframe(self) -> "pd.DataFrame":
         """Convert the samples to a table in pandas, with one row per sample; see `results.to_dataframe`."""
-        from stylobate.results.tables import to_dataframe  # noqa: PLC0415  heavy imports wait until they are needed
+        from stylobate.results.tables import to_dataframe
 
         return to_dataframe(self.data)
 
     def save(self, path: str | Path) -> Path:
         """Write the run to a netCDF file at `path`, with its provenance; `stylobate.load` reads it again."""
-        from stylobate.results.run_file import as_dataset  # noqa: PLC0415  heavy imports wait until they are needed
-        from stylobate.results.storage import write_netcdf  # noqa: PLC0415
+        from stylobate.results.run_file import as_dataset
+        from stylobate.results.storage import write_netcdf
 
         return write_netcdf(as_dataset(self), Path(path))
 
@@ -161,7 +161,7 @@ class Response(ByContent):
         FileError
             If the file cannot be read or holds no saved run.
         """
-        from stylobate.results.run_file import fields_of  # noqa: PLC0415
+        from stylobate.results.run_file import fields_of
 
         fields = fields_of(path)
         fields["events"] = tuple(Event(kind, time) for kind, time in fields["events"])
@@ -185,7 +185,7 @@ class Response(ByContent):
 
     def _repr_html_(self) -> str:
         """Render the card that notebooks show."""
-        from stylobate.results.summary import measure_rows, outcome_of, reason_rows, threshold_rows  # noqa: PLC0415
+        from stylobate.results.summary import measure_rows, outcome_of, reason_rows, threshold_rows
 
         flags = [(name, "yes" if getattr(self, name) else "no") for name in ("uncertain", "planar")]
         rows = [("outcome", outcome_of(self)), *reason_rows(self), *flags]

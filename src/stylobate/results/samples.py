@@ -39,7 +39,7 @@ class Samples:
 
     def as_dataset(self) -> "xr.Dataset":
         """Make a Dataset of these arrays."""
-        import xarray as xr  # noqa: PLC0415  loaded when a Dataset is used
+        import xarray as xr
 
         coordinates = {
             "time": Labelled(("time",), self.time, {"units": "s", "long_name": "time"}),

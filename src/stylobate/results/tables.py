@@ -1,22 +1,71 @@
-"""Results as tables in pandas: one row per sample, run or curve, and one column per number."""
+"""Results as tables: of text, as the command line prints them, and in pandas."""
 
-from collections.abc import Hashable, Iterator, Sequence
-from typing import TYPE_CHECKING, Any
+import math
+from collections.abc import Hashable, Iterable, Iterator, Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-import xarray as xr
 
 from stylobate.errors import ParameterError
-from stylobate.text import did_you_mean
+from stylobate.text import did_you_mean, plural, unit_in_text
 
 if TYPE_CHECKING:
     import pandas as pd
+    import xarray as xr
 
 # Dimensions of the components of one quantity.
-_COMPONENTS = ("axis", "direction", "part")
+_COMPONENTS = ("axis", "component", "direction", "part")
 
 
-def to_dataframe(data: xr.Dataset, over: str | Sequence[str] | None = None) -> "pd.DataFrame":
+class Table(NamedTuple):
+    """A result as a table: its title, the names of its columns, its rows, and remarks below it."""
+
+    title: str
+    header: Sequence[str]
+    rows: Sequence[Sequence[str]]
+    remarks: Sequence[str] = ()
+
+
+def number_of_runs(data: "xr.Dataset", over: str = "", word: str = "run") -> str:
+    """Describe in words the number of runs of a study, and the number of computed runs."""
+    done, total = int(data["computed"]), data["outcome"].size
+    return f"{plural(total, word)}{over}" + (f", {done} of them done" if done < total else "")
+
+
+class Practical(NamedTuple):
+    """A unit of a column of a table: its name, and the factor of numbers in SI units."""
+
+    factor: float
+    name: str
+
+    @property
+    def bracketed(self) -> str:
+        """The unit in brackets; empty without unit."""
+        return f"[{self.name}]" if self.name else ""
+
+
+DEGREES = Practical(180.0 / math.pi, "°")
+
+
+def practical(values: Iterable[float], units: str) -> Practical:
+    """Choose the unit of a table: millimetres if all lengths or speeds are below one metre, and degrees.
+
+    Parameters
+    ----------
+    values
+        The numbers in SI units; those that are not finite do not count.
+    units
+        Their units as in netCDF files, such as "m s-1".
+    """
+    unit = unit_in_text(units)
+    if unit == "rad":
+        return DEGREES
+    if unit in ("m", "m/s") and max((abs(one) for one in values if math.isfinite(one)), default=0.0) < 1.0:
+        return Practical(1000.0, f"m{unit}")
+    return Practical(1.0, unit)
+
+
+def to_dataframe(data: "xr.Dataset", over: str | Sequence[str] | None = None) -> "pd.DataFrame":
     """Convert the Dataset of a run, an ensemble or a study to a table in pandas.
 
     Parameters
@@ -52,7 +101,7 @@ def to_dataframe(data: xr.Dataset, over: str | Sequence[str] | None = None) -> "
     0            0.05     AT_REST       0.00
     1            0.15  OVERTURNED       0.25
     """
-    import pandas as pd  # noqa: PLC0415  slow to import
+    import pandas as pd
 
     rows = _rows_of(data, over)
     columns = dict[str, Any]()
@@ -73,7 +122,7 @@ def to_dataframe(data: xr.Dataset, over: str | Sequence[str] | None = None) -> "
     return table
 
 
-def _rows_of(data: xr.Dataset, over: str | Sequence[str] | None) -> tuple[Hashable, ...]:
+def _rows_of(data: "xr.Dataset", over: str | Sequence[str] | None) -> tuple[Hashable, ...]:
     if over is None:
         first = data["outcome"] if "outcome" in data else next(iter(data.data_vars.values()))
         return tuple(dim for dim in first.dims if dim not in _COMPONENTS)
@@ -86,7 +135,7 @@ def _rows_of(data: xr.Dataset, over: str | Sequence[str] | None) -> tuple[Hashab
     return dims
 
 
-def _parts_of(name: str, variable: xr.DataArray, rows: Sequence[Hashable]) -> Iterator[tuple[str, xr.DataArray]]:
+def _parts_of(name: str, variable: "xr.DataArray", rows: Sequence[Hashable]) -> "Iterator[tuple[str, xr.DataArray]]":
     """Yield a variable, or its parts along dimensions that name their entries, with their names."""
     others = [dim for dim in variable.dims if dim not in rows]
     if not others:
@@ -96,12 +145,12 @@ def _parts_of(name: str, variable: xr.DataArray, rows: Sequence[Hashable]) -> It
             yield from _parts_of(f"{name}_{label}", variable.isel({others[0]: place}, drop=True), rows)
 
 
-def _coded(variable: xr.DataArray) -> Any:
+def _coded(variable: "xr.DataArray") -> Any:
     """Return the values of a variable, shape (rows,); codes as categories."""
     values = variable.to_numpy().ravel()
     if "flag_meanings" not in variable.attrs:
         return values
-    import pandas as pd  # noqa: PLC0415
+    import pandas as pd
 
     codes, names = np.atleast_1d(variable.attrs["flag_values"]), str(variable.attrs["flag_meanings"]).split()
     return pd.Categorical.from_codes(np.searchsorted(codes, values).tolist(), categories=names)

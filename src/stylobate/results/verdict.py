@@ -153,13 +153,13 @@ class Verdict(ByContent):
 
     def to_dataframe(self) -> "pd.DataFrame":
         """Convert the variations to a table in pandas, with one row per variation; see `results.to_dataframe`."""
-        from stylobate.results.tables import to_dataframe  # noqa: PLC0415  heavy imports wait until they are needed
+        from stylobate.results.tables import to_dataframe
 
         return to_dataframe(self.data)
 
     def save(self, path: str | Path) -> Path:
         """Write the verdict to a netCDF file at `path`, with its provenance; `stylobate.load` reads it again."""
-        from stylobate.results.storage import write_netcdf  # noqa: PLC0415  heavy imports wait until they are needed
+        from stylobate.results.storage import write_netcdf
 
         return write_netcdf(self.data, path)
 
@@ -172,7 +172,7 @@ class Verdict(ByContent):
         FileError
             If the file cannot be read or holds no verdict.
         """
-        from stylobate.results.storage import read_dataset  # noqa: PLC0415
+        from stylobate.results.storage import read_dataset
 
         data = read_dataset(path)
         if data.attrs.get("kind") != KIND:

@@ -3,11 +3,13 @@
 import warnings
 from collections.abc import Iterable, Mapping
 
+import numpy as np
 import numpy.typing as npt
 
 from stylobate.column import Column
-from stylobate.errors import ParameterError, UnlikelyInputWarning
-from stylobate.models import Model
+from stylobate.engine.history import EQUAL
+from stylobate.errors import ParameterError, UnlikelyInputWarning, as_numbers
+from stylobate.models import Model, Sliding
 from stylobate.quantities import parameters_of
 from stylobate.studies.sweeps.quantities import STARTS, Floats, Own, check_quantities, checked_values
 
@@ -84,3 +86,23 @@ def require_no_tilt_limit(options: Mapping[str, object]) -> None:
         given = options["tilt_limit"]
         message = f"tilt_limit must be left out: a run stopped at it is not known to overturn or not; got {given!r} rad"
         raise ParameterError(message)
+
+
+def remark_on_knife_edge(where: str, model: Model, over: Mapping[str, npt.ArrayLike]) -> None:
+    """Warn if a friction coefficient equals the slenderness: rounding then decides between sliding and rocking."""
+    if not isinstance(model, Sliding) or {"radius", "mass_height"} & set(over):
+        return
+    varied = over.get("static_friction_coefficient", over.get("friction_coefficient"))
+    known = model.static_friction_coefficient is not None and "static_friction_coefficient" not in over
+    ratios = (
+        model.numbers.static if known or varied is None else varied,
+        over.get("slenderness", model.column.slenderness),
+    )
+    frictions, slender = (np.atleast_1d(np.asarray(as_numbers(where, one), dtype=float)) for one in ratios)
+    equal = (np.abs(frictions[:, np.newaxis] - slender) <= EQUAL * slender).any(axis=1)
+    if equal.any():
+        message = (
+            f"{where}: a friction coefficient equals the slenderness c (got {float(frictions[equal][0]):g}). Sliding "
+            "and rocking begin together there, and rounding decides. Choose values below and above c."
+        )
+        warnings.warn(message, UnlikelyInputWarning, stacklevel=3)

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 import stylobate as sb
-from stylobate.base_motions.records import RecordFormat
 from stylobate.column import STANDARD_GRAVITY
 from stylobate.errors import FileError
+from stylobate.records import RecordFormat
 
 VALUES = np.random.default_rng(11).normal(scale=0.1, size=23)
 NUMBERS = "\n".join(" ".join(f"{value:.7E}" for value in VALUES[at : at + 5]) for at in range(0, len(VALUES), 5))
@@ -89,7 +89,7 @@ def download(tmp_path):
 
 
 def test_a_peer_download_is_read_as_it_is(download):
-    from stylobate.config import RecordsConfig  # noqa: PLC0415
+    from stylobate.config import RecordsConfig
 
     (record,) = sb.read_records(download)
     assert (record.name, record.axes) == ("RSN1_QUAKE_AB", ("x", "y"))

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 import stylobate as sb
-from stylobate.base_motions.records import Direction
 from stylobate.config import RecordsConfig
 from stylobate.config.motions import describe_motion
 from stylobate.errors import FileError, ParameterError, UnlikelyInputWarning
+from stylobate.records import Direction
 
 COUNT = 50
 WAVES = np.random.default_rng(11).normal(scale=0.2, size=(4, COUNT))

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import stylobate as sb
-from stylobate.base_motions.records import Lengths, Steps
 from stylobate.errors import FileError, ParameterError, UnlikelyInputWarning
+from stylobate.records import Lengths, Steps
 
 STEP = 0.01
 COUNT = 200

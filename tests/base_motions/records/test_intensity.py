@@ -7,14 +7,14 @@ import pytest
 from scipy.integrate import quad
 
 import stylobate as sb
-from stylobate.base_motions.records import (
+from stylobate.column import STANDARD_GRAVITY
+from stylobate.records import (
     arias_intensity,
     cumulative_absolute_velocity,
     intensity_measures,
     rocking_measures,
     significant_duration,
 )
-from stylobate.column import STANDARD_GRAVITY
 
 STEP = 0.1
 RECORD = sb.Record(samples=np.random.default_rng(5).normal(size=(60, 2)), step=STEP, name="noise")

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 import stylobate as sb
-from stylobate.base_motions.records import RecordFormat
 from stylobate.column import STANDARD_GRAVITY
 from stylobate.errors import FileError, UnlikelyInputWarning
+from stylobate.records import RecordFormat
 
 STEP = 0.005
 VALUES = np.array([0.0, 0.125, -1.25, 0.0625, -0.001, 0.002, 1.5, -0.75])

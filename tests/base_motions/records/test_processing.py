@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import stylobate as sb
-from stylobate.base_motions.records import intensity_measures
 from stylobate.errors import ParameterError
+from stylobate.records import intensity_measures
 
 STEP = 0.01
 TIME = STEP * np.arange(2001)

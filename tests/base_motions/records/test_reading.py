@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 import stylobate as sb
-from stylobate.base_motions.records import RecordFormat, write_at2, write_csv
 from stylobate.column import STANDARD_GRAVITY
 from stylobate.errors import FileError, ParameterError, UnlikelyInputWarning, UnsupportedError
+from stylobate.records import RecordFormat, write_at2, write_csv
 
 VALUES = np.array([0.0, 0.1, -0.25, 0.03125, 1e-4, -2e-5, 0.5])
 NEW = """PEER NGA STRONG MOTION DATABASE RECORD
@@ -373,7 +373,7 @@ def test_without_obspy_its_formats_name_the_extra(tmp_path, monkeypatch):
 
 @pytest.mark.filterwarnings("ignore")  # ObsPy's own
 def test_miniseed_and_sac_are_read_through_obspy(tmp_path):
-    import obspy  # noqa: PLC0415  it warns when it is imported
+    import obspy
 
     for kind, name in (("MSEED", "a.mseed"), ("SAC", "a.sac")):
         trace = obspy.Trace(VALUES.astype("float32"), {"delta": 0.01, "channel": "HNE", "station": "AB"})

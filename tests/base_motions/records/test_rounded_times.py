@@ -6,8 +6,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import stylobate as sb
-from stylobate.base_motions.records.rounded_times import even_grid
 from stylobate.errors import FileError
+from stylobate.records.time_steps import even_grid
 
 COUNT = 400
 

@@ -8,9 +8,9 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import stylobate as sb
-from stylobate.base_motions.records import oscillator_response, response_spectra
-from stylobate.base_motions.records.horizontal_components import over_directions
 from stylobate.errors import ParameterError
+from stylobate.records import oscillator_response, response_spectra
+from stylobate.records.intensities import over_directions
 
 STEP = 0.02
 SAMPLES = np.random.default_rng(11).normal(size=(101, 2))

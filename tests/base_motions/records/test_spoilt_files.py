@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 import stylobate as sb
-from stylobate.base_motions.records import RecordFormat, Steps
 from stylobate.errors import StylobateError
+from stylobate.records import RecordFormat, Steps
 
 TABLE = "".join(f"{0.01 * at:.2f} {value}\n" for at, value in enumerate((0.0, 0.5, -0.25, 1e-3, 0.125, 0.0)))
 ROWS = "0,00;0,5\n0,01;-0,25\n0,02;0,125\n0,03;0,5\n"

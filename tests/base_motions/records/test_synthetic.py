@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from scipy.signal import welch
 
-from stylobate.base_motions.records import (
+from stylobate.errors import ParameterError
+from stylobate.records import (
     CloughPenzien,
     EvolvingNoise,
     arias_intensity,
@@ -14,7 +15,6 @@ from stylobate.base_motions.records import (
     random_vibration,
     significant_duration,
 )
-from stylobate.errors import ParameterError
 
 DENSITY = CloughPenzien(level=0.05)
 MODEL = EvolvingNoise(

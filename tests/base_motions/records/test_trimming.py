@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 import stylobate as sb
-from stylobate.base_motions.records import Lengths, Steps, arias_intensity
-from stylobate.base_motions.records.trimming import lost_intensity
 from stylobate.errors import UnlikelyInputWarning
+from stylobate.records import Lengths, Steps, arias_intensity
+from stylobate.records.joining import lost_intensity
 
 STEP = 0.01
 COUNT = 201

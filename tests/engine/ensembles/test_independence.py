@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import stylobate as sb
-from stylobate.engine.ensembles import pool
+from stylobate.engine import ensemble
 
 CIRCLE = sb.Harmonic.circular(acceleration=0.1, angular_frequency=2.0)
 LINE = sb.Harmonic.straight(acceleration=0.1, angular_frequency=2.0)
@@ -49,9 +49,9 @@ def test_a_run_is_the_same_in_any_company_and_order(runs, whole, data):
 @pytest.mark.parametrize("threads", [1, 2, 5])
 @pytest.mark.parametrize("size", [1, 7, 33, 4096])
 def test_a_run_is_the_same_in_parts_of_any_size_on_any_number_of_threads(runs, whole, monkeypatch, size, threads):
-    monkeypatch.setattr(pool, "_FEWEST", size)
-    monkeypatch.setattr(pool, "_MOST", size)
-    assert len(pool.parts_of(COUNT, threads)) == -(-COUNT // size)
+    monkeypatch.setattr(ensemble, "_FEWEST", size)
+    monkeypatch.setattr(ensemble, "_MOST", size)
+    assert len(ensemble.parts_of(COUNT, threads)) == -(-COUNT // size)
     np.testing.assert_array_equal(bits(runs.together(threads=threads)), whole)
 
 

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import stylobate as sb
-from stylobate.engine.ensembles import pool
+from stylobate.engine import ensemble
 from stylobate.errors import Interrupted
 
 CIRCLE = sb.Harmonic.circular(acceleration=0.1, angular_frequency=2.0)
@@ -20,8 +20,8 @@ CIRCLE = sb.Harmonic.circular(acceleration=0.1, angular_frequency=2.0)
 @pytest.mark.parametrize("threads", [1, 2])
 @pytest.mark.parametrize("after", [1, 4])
 def test_what_had_been_computed_is_kept_and_nothing_else_told(mixed_runs, monkeypatch, threads, after):
-    monkeypatch.setattr(pool, "_FEWEST", 50)
-    monkeypatch.setattr(pool, "_MOST", 50)
+    monkeypatch.setattr(ensemble, "_FEWEST", 50)
+    monkeypatch.setattr(ensemble, "_MOST", 50)
     runs = mixed_runs(CIRCLE, 400, seed=8)
     whole = runs.together()
     seen = []
@@ -46,8 +46,8 @@ def test_what_had_been_computed_is_kept_and_nothing_else_told(mixed_runs, monkey
 
 
 def test_progress_counts_all_runs_to_the_end(mixed_runs, monkeypatch):
-    monkeypatch.setattr(pool, "_FEWEST", 7)
-    monkeypatch.setattr(pool, "_MOST", 7)
+    monkeypatch.setattr(ensemble, "_FEWEST", 7)
+    monkeypatch.setattr(ensemble, "_MOST", 7)
     seen = []
     mixed_runs(CIRCLE, 40, seed=8).together(progress=lambda done, total: seen.append((done, total)), threads=2)
     assert [done for done, _ in seen] == sorted({done for done, _ in seen})

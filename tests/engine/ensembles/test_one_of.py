@@ -88,7 +88,7 @@ def test_accelerations_are_those_of_each_record():
 
 
 def test_what_is_linear_is_tabulated_exactly():
-    from stylobate.engine.ensembles.polynomials import tabulated  # noqa: PLC0415
+    from stylobate.engine.ensembles.polynomials import tabulated
 
     table = tabulated(RECORDS[0].rotated(0.3) + RECORDS[1].scaled(0.5), 10.0)
     assert table.degree == 1

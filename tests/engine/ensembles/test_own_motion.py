@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 
 import stylobate as sb
-from stylobate.base_motions.numbers import Acceleration, AngularFrequency
-from stylobate.config import MapConfig, SimulationConfig, config_of, read_config
+from stylobate.base_motions.base import Acceleration, AngularFrequency
+from stylobate.config import SimulationConfig, config_of, read_config, study_config
 from stylobate.config.many_runs import common_values
 from stylobate.errors import ConfigError, ParameterError, UnsupportedError
 from stylobate.studies import Sweep
@@ -127,7 +127,7 @@ from dataclasses import dataclass
 from typing import Annotated
 import numpy as np
 import stylobate as sb
-from stylobate.base_motions.numbers import Acceleration, AngularFrequency
+from stylobate.base_motions.base import Acceleration, AngularFrequency
 {}
 
 @dataclass(frozen=True, slots=True)
@@ -164,7 +164,9 @@ def test_a_file_names_it_by_its_place_and_a_saved_result_repeats_it(study, monke
     again = config_of(kept).build()
     assert (again.model, again.motion) == (setup.model, setup.motion)
     axes = {"x": {"name": "decay", "values": [0.1, 0.2]}, "y": {"name": "tether", "values": [0.0, 0.2]}}
-    assert MapConfig.parse({**read_config(study), "map": axes}).build().options["over"]["decay"].tolist() == [0.1, 0.2]
+    assert study_config(sb.studies.overturning_map).parse({**read_config(study), "map": axes}).build().options["over"][
+        "decay"
+    ].tolist() == [0.1, 0.2]
 
 
 def test_a_sweep_tells_apart_the_code_behind_a_place(study):

@@ -2,7 +2,7 @@
 
 import pytest
 
-from stylobate.engine.ensembles.pool import parts_of
+from stylobate.engine.ensemble import parts_of
 
 COUNTS = [1, 100, 128, 300, 512, 5000, 100_000]
 

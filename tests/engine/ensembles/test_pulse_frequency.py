@@ -6,11 +6,10 @@ import numpy as np
 import pytest
 
 import stylobate as sb
-from stylobate.base_motions.numbers import AngularFrequency
+from stylobate.base_motions.base import AngularFrequency
+from stylobate.base_motions.declared import with_numbers
 from stylobate.base_motions.pulses import Waveform
-from stylobate.base_motions.varying import with_numbers
-from stylobate.engine.ensembles.polynomials import tabulated
-from stylobate.engine.ensembles.stretched import tabulated_alike
+from stylobate.engine.ensembles.polynomials import tabulated, tabulated_alike
 from stylobate.errors import ParameterError, UnsupportedError
 
 MODEL = sb.Slender(sb.Column.solid(radius=0.2, height=2.0, density=2700.0), damping=0.05)

@@ -9,7 +9,7 @@ import pytest
 
 import stylobate as sb
 from stylobate.base_motions import BaseMotion
-from stylobate.engine.ensembles import pool
+from stylobate.engine import ensemble
 from stylobate.errors import ParameterError, UnsupportedError
 
 C, ETA = 0.1, 0.1
@@ -434,8 +434,8 @@ def test_a_run_is_the_same_to_the_last_bit_in_any_company_on_any_number_of_threa
     for chosen in ([0], [16], [96], rng.permutation(97), rng.integers(0, 97, 30)):
         np.testing.assert_array_equal(bits(runs.part(chosen).together()), whole[chosen])
     for size, threads in ((1, 2), (7, 1), (33, 5)):
-        monkeypatch.setattr(pool, "_FEWEST", size)
-        monkeypatch.setattr(pool, "_MOST", size)
+        monkeypatch.setattr(ensemble, "_FEWEST", size)
+        monkeypatch.setattr(ensemble, "_MOST", size)
         np.testing.assert_array_equal(bits(runs.together(threads=threads)), whole)
 
 

@@ -12,8 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import stylobate as sb
-from stylobate.engine.equations.expressions import FUNCTIONS, Recording
-from stylobate.engine.equations.recording import recorded
+from stylobate.engine.expressions import FUNCTIONS, Recording, recorded
 from stylobate.engine.flow.periodic import PeriodicSystem
 from stylobate.errors import UnsupportedError
 

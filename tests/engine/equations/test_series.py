@@ -12,10 +12,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import stylobate as sb
-from stylobate.engine.equations.expressions import Expression, Recording
-from stylobate.engine.equations.recording import recorded
-from stylobate.engine.equations.series import Series
-from stylobate.engine.kernel.expansion import Expansion, series_integrals
+from stylobate.engine.expressions import Expression, Recording, recorded
+from stylobate.engine.kernel.expansion import Expansion, Series, series_integrals
 from stylobate.engine.kernel.shape import SERIES_ORDER
 from stylobate.errors import UnsupportedError
 

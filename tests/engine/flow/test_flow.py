@@ -8,8 +8,8 @@ import pytest
 
 import stylobate as sb
 from stylobate.base_motions.base import ACCELERATION
+from stylobate.engine.flow.integration import Status
 from stylobate.engine.flow.periodic import PeriodicSystem, plane_of
-from stylobate.engine.flow.status import Status
 from stylobate.errors import UnsupportedError
 
 C, ETA = 0.1, 0.1

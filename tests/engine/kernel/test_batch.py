@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 import stylobate as sb
-from stylobate.engine.kernel.columns import STATE, Log, Setup, Status
+from stylobate.engine.kernel.columns import LOG, STATE, Log, Setup
+from stylobate.engine.kernel.driver.events import Status
 
 SLENDER = sb.Slender(sb.Column.dimensionless(0.1))
 CIRCLE = sb.Harmonic.circular(acceleration=0.065, angular_frequency=3.0)
@@ -17,7 +18,7 @@ def batch(lane_of):
     """Make a buffer of idle lanes, with a table of five runs whose numbers are all different."""
     one = lane_of(SLENDER, CIRCLE)
     one.table = np.arange(5.0)[:, None] + 0.001 * np.arange(400.0)
-    one.table[:, len(Setup) + Log.STATUS] = Status.WAITING
+    one.table[:, LOG + Log.STATUS] = Status.WAITING
     for i in range(one.buffer.shape[1]):
         one.driver.set_idle(one.buffer, i)
     return one
@@ -78,7 +79,7 @@ def test_a_run_leaves_its_record_and_state_in_the_table(batch, status, stands):
     for name, value in (given | {"last_azimuth": 0.1}).items():
         batch[name] = value
     batch.driver.leave(batch.buffer, 0, batch.table, status)
-    row, log = batch.table[2], len(Setup)
+    row, log = batch.table[2], LOG
     assert (row[:log] == 9.0).all()
     assert row[log + Log.STATUS] == status
     assert row[log + Log.DECIDED] == (5.0 if status == Status.OVERTURNED else 3.0)
@@ -100,7 +101,7 @@ def test_runs_that_end_at_once_leave_the_lane_to_the_next(batch, monkeypatch):
 
     monkeypatch.setitem(scope, "enter", enter)
     monkeypatch.setitem(scope, "leave", lambda _buf, _i, _table, status: left.append(status))
-    batch.table[2, len(Setup) + Log.STATUS] = Status.STOPPED  # has ended before
+    batch.table[2, LOG + Log.STATUS] = Status.STOPPED  # has ended before
     assert batch.driver.fill(batch.buffer, 0, batch.table, batch.pieces, 0) == 4
     assert (begun, left, batch["run"]) == ([0, 1, 3], [Status.LIFTED, Status.RESTED], 3.0)
     assert batch.driver.fill(batch.buffer, 1, batch.table, batch.pieces, 4) == 5
@@ -113,7 +114,7 @@ def test_a_paused_batch_goes_on_behind_its_last_run(batch):
         batch.buffer[batch.row("run"), i] = run
         batch.buffer[batch.row("next_trace"), i] = 7.0
     assert not batch.driver.pause(batch.buffer, batch.table)
-    column = len(Setup) + Log.NEXT_TRACE
+    column = LOG + Log.NEXT_TRACE
     assert list(batch.table[[3, 1], column]) == [7.0, 7.0]
     batch.table[:, column] = 0.0
     assert batch.driver.begin_or_continue(batch.buffer, batch.table, batch.pieces) == 4

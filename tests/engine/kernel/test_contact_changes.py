@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 import stylobate as sb
-from stylobate.engine.kernel.columns import Status, Trace, TraceKind
+from stylobate.engine.kernel.columns import Trace
+from stylobate.engine.kernel.driver.events import Status, TraceKind
 from stylobate.models.sliding.phases import Contact
 
 MODEL = sb.Sliding(sb.Column.solid(radius=0.5, height=3.0, density=2700.0))

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from stylobate.engine.kernel.driver.convergence import NEAR, ON_ORBIT, approach_after, is_certain
+from stylobate.engine.kernel.driver.loop import NEAR, ON_ORBIT, approach_after, is_certain
 
 PERIODS = 400
 REPEATS = 1e-6

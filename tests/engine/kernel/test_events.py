@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import stylobate as sb
-from stylobate.engine.kernel.columns import Status
+from stylobate.engine.kernel.driver.events import EVENTS, LIMITS, Status, Target, lean
 
 COLUMN = sb.Column.dimensionless(0.1)
 SLENDER = sb.Slender(COLUMN)
@@ -70,11 +70,40 @@ def test_a_step_aimed_at_the_least_tilt_goes_on_by_a_secant_to_where_the_tilt_st
         # Along x(t) = x₀ + vt + bt²/2, with its cubic through the ends.
         place, rate = start + velocity * h + 0.5 * bend * h * h, velocity + bend * h
         growth = [float(start @ velocity), float(place @ rate)]
-        one = lane_of(SLENDER, WEAK, made=h, by_tilt=-1.0, tilt=float(np.hypot(*place)), radial=growth[1])
+        one = lane_of(SLENDER, WEAK, made=h, target=Target.IMPACT, tilt=float(np.hypot(*place)), radial=growth[1])
         for j, (old, new) in enumerate(zip((*start, *velocity), (*place, *rate), strict=True)):
             one[f"last{j}"], one[f"y{j}"] = old, new
         further = -growth[1] * h / (growth[1] - growth[0])
-        assert one.do("remaining_step") == pytest.approx(min(max(further, -0.5 * h), 0.5 * h))
+        assert one.do("time_left", lean(*start, *velocity)) == pytest.approx(min(max(further, -0.5 * h), 0.5 * h))
+
+
+@pytest.mark.parametrize(
+    ("limit", "no_return", "start", "growth", "target"),
+    [
+        (0.3, 0.4, 0.2, 0.5, Target.LIMIT),
+        (0.4, 0.3, 0.2, 0.5, Target.OVERTURNING),
+        (0.3, 0.3, 0.2, 0.5, Target.LIMIT),
+        (9.0, 0.25, 0.3, -0.2, Target.GROWTH),  # the point of no return fell below the tilt
+    ],
+)
+def test_a_held_step_is_aimed_at_the_first_event_within_it(lane_of, limit, no_return, start, growth, target):
+    # Straight outwards along x = start + growth t + t²/2, from which the tilt of 0.5 is passed at the latest.
+    h = -2.0 * growth if target is Target.GROWTH else 1.0
+    one = lane_of(SLENDER, WEAK, tilt_limit=limit, no_return=no_return, tilt=start, radial=start * growth)
+    x, rate = start + growth * h + 0.5 * h * h, growth + h
+    first, time = one.do("first_event", h, lean(x, 0.0, rate, 0.0))
+    expected = (
+        -growth if target is Target.GROWTH else -growth + math.sqrt(growth**2 + 2.0 * (min(limit, no_return) - start))
+    )
+    assert Target(first) is target
+    assert time == pytest.approx(expected, abs=0.02)
+
+
+def test_each_event_that_ends_runs_has_an_outcome_and_a_reason():
+    assert len({event.target for event in EVENTS}) == len(EVENTS)
+    ends = [event.status for event in EVENTS if event.status is not Status.WAITING]
+    assert all(status.outcome is not None and status.event and status.reason for status in ends)
+    assert all(event.status in ends for event in LIMITS)
 
 
 @pytest.mark.parametrize("rests_at", [math.nan, 5.0])
@@ -89,9 +118,9 @@ def test_a_column_rests_near_the_vertical_at_the_time_found_within_the_step(lane
 def test_only_a_very_short_remaining_step_is_made_by_a_taylor_polynomial(lane_of, longest, share):
     further = share * longest
     # On a path straight outwards, with the limit a little ahead.
-    one = lane_of(SLENDER, WEAK, made=0.1, aimed=1.0, by_tilt=1.0, tilt=0.5, radial=0.5, longest_step=longest)
+    one = lane_of(SLENDER, WEAK, made=0.1, aimed=1.0, target=Target.LIMIT, tilt=0.5, radial=0.5, longest_step=longest)
     one["y0"], one["y2"], one["k0_0"], one["last_slope0"], one["tilt_limit"] = 0.5, 1.0, 1.0, 1.0, 0.5 + further
-    status = one.do("approach_event", one.table, one.pieces)
+    status = one.do("approach_target", one.table, one.pieces)
     if abs(share) > 1e-6:
         assert (status, one["aimed"], one["h"]) == (Status.WAITING, 2.0, pytest.approx(further))
     else:

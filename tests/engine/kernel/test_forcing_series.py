@@ -9,10 +9,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from stylobate.compiler.programs import Bound
-from stylobate.engine.kernel.driver import push
-from stylobate.engine.kernel.forcing import Harmonics, Polynomials
+from stylobate.engine.kernel.driver import equations
 from stylobate.engine.kernel.layout import Rows
-from stylobate.engine.kernel.shape import SERIES_ORDER
+from stylobate.engine.kernel.shape import SERIES_ORDER, Harmonics, Polynomials
 
 EPS = float(np.finfo(float).eps)
 COUNT = SERIES_ORDER + 1
@@ -31,7 +30,7 @@ def bound_to(forcing):
     rows = Rows()
     forcing.reserve(rows)
     names = {"COMPONENTS": len(forcing.components), "VERTICAL": "az" in forcing.components, "PLANAR": False}
-    program = Bound((push,), {**forcing.constants(rows), **names, "R": SimpleNamespace()})
+    program = Bound((equations,), {**forcing.constants(rows), **names, "R": SimpleNamespace()})
     return program.module("push", {}), len(rows)
 
 

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 import stylobate as sb
-from stylobate.engine import radau
+from stylobate.engine.elementary import NewtonRoom
 from stylobate.engine.ensembles.batch import Plan
-from stylobate.engine.ensembles.motion_columns import MotionPlan
+from stylobate.engine.ensembles.run_columns import MotionPlan
+from stylobate.engine.kernel.driver import implicit_step
 from stylobate.engine.kernel.kernels import kernel_of
-from stylobate.engine.kernel.linear_equations import NewtonRoom
 from stylobate.run_arguments import checked_options
 
 RTOL = 1e-13
@@ -31,7 +31,7 @@ class Linear:
         self.buf = np.zeros((len(self.rows), kernel.shape.width))
         self.buf[self.rows["rtol"]] = RTOL
         self.buf[self.rows["atol_now"]] = 1e-3 * RTOL
-        changes = radau.STAGES * order
+        changes = implicit_step.STAGES * order
         self.room = NewtonRoom(
             np.zeros((order, order)), np.zeros((changes, changes)), *(np.zeros(changes) for _ in range(3))
         )
@@ -99,7 +99,7 @@ def test_the_dense_output_passes_through_the_changes_at_the_nodes(monkeypatch):
     problem = Linear(monkeypatch, -2.0 * np.eye(15))
     problem.step(0.3, np.ones(16))
     problem.module.set_cubic(problem.buf, 0, problem.room.change)
-    for stage, node in enumerate(radau.NODES):
+    for stage, node in enumerate(implicit_step.NODES):
         change = problem.room.change[stage * problem.order : (stage + 1) * problem.order]
         np.testing.assert_allclose(problem.module.dense_state(problem.buf, 0, node), 1.0 + change, rtol=1e-14)
 

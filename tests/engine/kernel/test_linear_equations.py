@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from stylobate.engine.kernel.linear_equations import factor, solve
+from stylobate.engine.elementary import factor, solve
 
 
 @pytest.mark.parametrize("zeros", [0.0, 0.7])

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import stylobate as sb
-from stylobate.engine.kernel.columns import Status
+from stylobate.engine.kernel.driver.events import Status
 
 COLUMN = sb.Column.dimensionless(0.1)
 SLENDER, ROLLING = sb.Slender(COLUMN), sb.Rolling(COLUMN)

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import stylobate as sb
+from stylobate.engine.kernel.driver.events import Lean
 
 COLUMN = sb.Column.dimensionless(0.1)
 CIRCLE = sb.Harmonic.circular(acceleration=0.065, angular_frequency=3.0)
@@ -60,7 +61,7 @@ def test_a_step_is_accepted_if_its_error_is_small_and_held_if_it_contains_an_eve
 @pytest.mark.parametrize("planar", [False, True])
 def test_beyond_the_point_of_no_return_counts_outwards_and_beyond_the_limit_always(lane, planar, tilt, radial, beyond):
     one = lane(planar=planar, no_return=0.1, tilt_limit=0.2, x=0.05, vx=0.1)
-    assert (one.do("overshoot", tilt, radial / tilt, tilt, radial) > 0.0) == beyond
+    assert (one.do("overshoot_of", Lean(tilt, 0.0, radial / tilt, 0.0, tilt, radial)) > 0.0) == beyond
 
 
 @pytest.mark.parametrize("side", [1.0, -1.0])
@@ -71,12 +72,12 @@ def test_a_planar_step_overshoots_if_its_path_crosses_the_vertical_anywhere(lane
     for start, end, slope, end_slope in rng.uniform([0.0, -0.2, 0.0, 0.0], [1.0, 0.8, 1.0, 1.0], (300, 4)):
         path = hermite(start, end, -4.0 * slope, 4.0 * end_slope, FINE)
         one = lane(planar=True, side=side, x=side * start, vx=side * -4.0 * slope / h, h=h)
-        found = one.do("overshoot", side * end, side * 4.0 * end_slope / h, abs(end), 0.0) > 0.0
+        found = one.do("overshoot_of", Lean(side * end, 0.0, side * 4.0 * end_slope / h, 0.0, abs(end), 0.0)) > 0.0
         assert found == (path.min() < 0.0)
         seen.add((found, end > 0.0))
         # A path that leaves the vertical, or ends before its lowest point, is judged by its end.
         outwards = lane(planar=True, side=side, x=side * start, vx=side * slope / h, h=h)
-        assert (outwards.do("overshoot", side * end, side * 0.1, abs(end), 0.0) > 0.0) == (end < 0.0)
+        assert (outwards.do("overshoot_of", Lean(side * end, 0.0, side * 0.1, 0.0, abs(end), 0.0)) > 0.0) == (end < 0.0)
     assert seen == {(True, True), (True, False), (False, True)}
 
 

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 import stylobate as sb
-from stylobate.engine.kernel.columns import Trace, TraceKind
+from stylobate.engine.kernel.columns import Trace
+from stylobate.engine.kernel.driver.events import TraceKind
 from stylobate.models.sliding.phases import Contact
 
 SLENDER = sb.Slender(sb.Column.dimensionless(0.1))

@@ -11,7 +11,7 @@ from stylobate.compiler import machine
 from stylobate.compiler.unit import ArrayArgument
 from stylobate.compiler.values import Kind
 from stylobate.engine.ensembles.batch import Batch
-from stylobate.engine.ensembles.broadcasting import broadcast
+from stylobate.engine.ensembles.runs import broadcast
 from stylobate.engine.kernel.columns import TRACE_TERMS, Trace
 from stylobate.engine.kernel.kernels import kernel_of
 

@@ -13,7 +13,7 @@ from PIL import Image
 
 import stylobate as sb
 from stylobate.errors import FileError, ParameterError, UnlikelyInputWarning, UnsupportedError
-from stylobate.plots.animation import Animation, drawn_motion, page
+from stylobate.plots.animation import Animation, drawn_motion, formats
 from stylobate.plots.animation.drawing import Drawing
 
 SMALL = {"size": (320, 280), "frames_per_second": 12}
@@ -106,7 +106,7 @@ def test_a_file_is_written_by_its_suffix_and_nothing_else(run, animation, gif, t
 
 
 def test_an_mp4_has_every_picture_and_holds_the_last(animation, tmp_path):
-    import imageio_ffmpeg  # noqa: PLC0415  another test replaces it
+    import imageio_ffmpeg
 
     animation.save(tmp_path / "run.mp4")
     frames, seconds = imageio_ffmpeg.count_frames_and_secs(str(tmp_path / "run.mp4"))
@@ -132,7 +132,7 @@ def viewer(monkeypatch, tmp_path):
     folder = tmp_path / "viewer"
     folder.mkdir()
     (folder / "viewer.js").write_text('var stylobateViewer = "</script><!-- é";\r\n', encoding="utf-8", newline="")
-    monkeypatch.setattr(page, "files", lambda name: folder)
+    monkeypatch.setattr(formats, "files", lambda name: folder)
     return folder / "viewer.js"
 
 

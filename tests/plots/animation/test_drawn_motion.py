@@ -10,7 +10,7 @@ import pytest
 import stylobate as sb
 from stylobate.errors import ParameterError
 from stylobate.plots.animation import DrawnMotion, drawn_motion
-from stylobate.plots.shape import Shape
+from stylobate.plots.geometry import Shape
 
 COLUMN = sb.Column.solid(radius=0.1, height=0.6, density=2700.0)
 CIRCLE = sb.Harmonic.circular(acceleration=1.0, angular_frequency=9.0)
@@ -75,7 +75,7 @@ def test_the_rotation_turns_about_the_axis_by_the_spin_to_second_order(name, req
     for count in (201, 401):
         time = np.linspace(first, min(first + 0.2, float(response.data["time"][-1])), count)
         data = response.sample(time)
-        rotation = sb.plots.pose.quaternions(data["tilt"].to_numpy(), data["twist"].to_numpy())
+        rotation = sb.plots.geometry.quaternions(data["tilt"].to_numpy(), data["twist"].to_numpy())
         found = axial_rate(rotation, time[1] - time[0])
         errors.append(np.abs(found - data["spin"].to_numpy()[1:-1]).max())
     assert errors[1] < 1e-3

@@ -11,14 +11,12 @@ from matplotlib.colors import to_rgb
 from matplotlib.text import Text
 
 import stylobate as sb
-from stylobate.plots.animation import DrawnMotion, palette
-from stylobate.plots.animation.column import MARKED, FlutedColumn, lit
-from stylobate.plots.animation.drawing import Drawing, Look
-from stylobate.plots.animation.path import contact_path
-from stylobate.plots.animation.scene import Scene, round_length
-from stylobate.plots.axonometry import View, direction
-from stylobate.plots.pose import frames
-from stylobate.plots.shape import Shape
+from stylobate.plots import body
+from stylobate.plots.animation import DrawnMotion
+from stylobate.plots.animation.drawing import Drawing, Look, Scene, round_length
+from stylobate.plots.animation.motion import contact_path
+from stylobate.plots.body import MARKED, FlutedColumn, lit
+from stylobate.plots.geometry import Shape, View, direction, frames
 
 LOOK = Look(size=(480, 360), view=View(math.radians(-68.0), math.radians(20.0)))
 DISC = sb.Column.solid(radius=0.1, height=0.05, density=2700.0)
@@ -51,7 +49,7 @@ def test_the_contact_point_is_drawn_where_it_is(drawing, motion, index):
     x, y = drawing.pixels(np.append(motion.contact_point[index], 0.0) + motion.base[index])
     picture = np.asarray(drawing.picture(index)).astype(int)
     near = picture[round(y) - 6 : round(y) + 7, round(x) - 6 : round(x) + 7]
-    strong = np.abs(near - bytes_of(palette.CONTACT_POINT)).sum(axis=-1) < 60
+    strong = np.abs(near - bytes_of(body.CONTACT_POINT)).sum(axis=-1) < 60
     # A dot of 6 points, or a ring of the same.
     assert strong.sum() >= 12
     assert np.argwhere(strong).mean(axis=0) == pytest.approx([6.0, 6.0], abs=1.5)
@@ -107,7 +105,7 @@ def test_facets_close_the_shaft_and_the_mark_faces_the_viewer():
     np.testing.assert_allclose(np.hypot(*column.top[:, :2].T), 0.4)
     np.testing.assert_allclose(np.linalg.norm(column.normals, axis=-1), 1.0)
     # Over a flute its hollows cancel: the mean normal is that of its middle.
-    marked = np.isclose(column.colours, to_rgb(palette.MARK)).all(axis=1)
+    marked = np.isclose(column.colours, to_rgb(body.MARK)).all(axis=1)
     mean = column.normals[marked].mean(axis=0)
     assert math.atan2(mean[1], mean[0]) == pytest.approx(MARKED)
     ends = np.arctan2(*column.bottom[column.wedge][:, 1::-1].T)
@@ -189,7 +187,7 @@ def test_one_thing_has_one_colour_in_pictures_and_on_the_page():
     page = dict(re.findall(r"^  (\w+): (.+),$", light, re.MULTILINE))
     assert page.keys() >= ON_THE_PAGE_ALONE | {"mark", "contact"}
     shared = {name: value for name, value in page.items() if name not in ON_THE_PAGE_ALONE}
-    own = {name: getattr(palette, re.sub("([A-Z])", r"_\1", name).upper()) for name in shared}
+    own = {name: getattr(body, re.sub("([A-Z])", r"_\1", name).upper()) for name in shared}
     assert own == {
         name: float(value) if "." in value else named.get(value, value.strip('"')) for name, value in shared.items()
     }

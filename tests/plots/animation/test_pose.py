@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from stylobate.plots.pose import base_centres, frames, quaternions
+from stylobate.plots.geometry import base_centres, frames, quaternions
 
 RNG = np.random.default_rng(7)
 ANGLE, AZIMUTH, TWIST = RNG.uniform(1e-3, 1.4, 40), RNG.uniform(-math.pi, math.pi, 40), RNG.uniform(-9.0, 9.0, 40)

@@ -20,7 +20,7 @@ MOTION = sb.Harmonic.circular(acceleration=0.15, angular_frequency=1.0)
 @pytest.fixture(scope="module")
 def client():
     """Connect to a cluster of two processes; only tests of this file use it, so that it is started once."""
-    import distributed  # noqa: PLC0415  slow to import
+    import distributed
 
     with (
         distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address="127.0.0.1:0") as cluster,

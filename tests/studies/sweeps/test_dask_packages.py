@@ -21,7 +21,7 @@ PACKAGE = Path(stylobate.__file__).parent
 @pytest.fixture(scope="module")
 def client():
     """Connect to a scheduler without workers."""
-    import distributed  # noqa: PLC0415  slow to import
+    import distributed
 
     with (
         distributed.LocalCluster(

@@ -7,14 +7,13 @@ from matplotlib.axes import Axes
 from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 
-from stylobate.conveying.contact_maps import ContactClass, knife_edge_remarks
-from stylobate.plots.cells import cell_edges
-from stylobate.plots.classes import contact_classes
+from stylobate.plots.cells import cell_edges, contact_classes
 from stylobate.plots.kinds import figure_of
 from stylobate.plots.labels import axis_label
 from stylobate.plots.maps import draw_classes
 from stylobate.plots.result_figure import WIDTH, beside_or_below
 from stylobate.plots.style import BLACK, BLUE, GREY, VERMILION, new_figure, styled
+from stylobate.results.contact_classes import ContactClass, knife_edge_remarks
 
 Floats = npt.NDArray[np.float64]
 

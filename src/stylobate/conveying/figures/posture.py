@@ -7,8 +7,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FormatStrFormatter, LogLocator, NullFormatter
 
 from stylobate.conveying.posture import KIND, Posture
-from stylobate.plots.cells import fill_options
-from stylobate.plots.classes import KIND_LOOKS
+from stylobate.plots.cells import KIND_LOOKS, fill_options
 from stylobate.plots.kinds import figure_of
 from stylobate.plots.result_figure import heading
 from stylobate.plots.style import BLUE, VERMILION, new_figure, styled

@@ -10,8 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from stylobate.errors import Outcome
-from stylobate.plots.cells import class_legend, draw_cells
-from stylobate.plots.classes import KIND_LOOKS, OUTCOME_LOOKS, UNFINISHED, classes_of
+from stylobate.plots.cells import KIND_LOOKS, OUTCOME_LOOKS, UNFINISHED, class_legend, classes_of, draw_cells
 from stylobate.plots.kinds import figure_of
 from stylobate.plots.labels import axis_label
 from stylobate.plots.style import (

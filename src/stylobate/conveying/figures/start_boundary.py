@@ -9,8 +9,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from stylobate.errors import Outcome, ParameterError
-from stylobate.plots.cells import fill_options
-from stylobate.plots.classes import KIND_LOOKS, OUTCOME_LOOKS, Look
+from stylobate.plots.cells import KIND_LOOKS, OUTCOME_LOOKS, Look, fill_options
 from stylobate.plots.kinds import figure_of
 from stylobate.plots.labels import axis_label
 from stylobate.plots.style import (

@@ -7,12 +7,12 @@ import xarray as xr
 
 from stylobate.base_motions import BaseMotion, Record
 from stylobate.base_motions.base import ACCELERATION, VELOCITY
-from stylobate.base_motions.records import HorizontalComponent, response_spectra
-from stylobate.base_motions.records.record import AXES
+from stylobate.base_motions.record import AXES
 from stylobate.earthquakes.assessment.inputs import Inputs
 from stylobate.earthquakes.assessment.parts import Parts, identities
 from stylobate.earthquakes.intensities import has_two_components, horizontal_peak
 from stylobate.progress import Report
+from stylobate.records import HorizontalComponent, response_spectra
 from stylobate.studies.sweeps.quantities import Floats
 
 ROTD50, ONE_COMPONENT = HorizontalComponent.ROTD50.value, "one component"

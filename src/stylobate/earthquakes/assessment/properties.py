@@ -5,10 +5,10 @@ import xarray as xr
 
 from stylobate.base_motions import BaseMotion, Record
 from stylobate.base_motions.base import ACCELERATION
-from stylobate.base_motions.records.listing import drifts
 from stylobate.earthquakes.assessment.ground_motions import as_record, horizontal_peaks
 from stylobate.earthquakes.assessment.inputs import CENTRAL, Inputs
 from stylobate.earthquakes.intensities import peak_horizontal_velocity
+from stylobate.records.intensities import drifts
 from stylobate.results.damping_yardstick import AMPLITUDES, damping_yardstick, side_of_yardstick
 
 # Number of samples for the peaks of a motion that is no record.

@@ -3,11 +3,10 @@
 import re
 from pathlib import Path
 
-from stylobate.base_motions.records.layout import plain_table
-from stylobate.base_motions.records.lines import REMARKS, Text, begins_with_a_number, read_bytes
-from stylobate.base_motions.records.units import KNOWN, in_si, unit_of
 from stylobate.config.description import Config
 from stylobate.errors import ParameterError
+from stylobate.records.tables import Table
+from stylobate.records.text_files import KNOWN, Text, in_si, read_bytes, unit_of
 from stylobate.results.report_details import DesignSpectrum
 
 _BRACKETED = re.compile(r"[\[(]([^\])]*)[\])]")
@@ -76,18 +75,14 @@ class DesignSpectrumConfig(Config):
 
 def _read(path: str) -> tuple[tuple[tuple[float, float], ...], str | None]:
     """Read the points of a file, and the unit of accelerations in its first line."""
-    text = plain_table(Text.of(Path(path), read_bytes(Path(path)))).text
-    units: str | None = None
+    table = Table.of(Text.of(Path(path), read_bytes(Path(path))))
+    text = table.text
+    units = None if table.names is None else _stated_unit(text, table.names_at, table.names)
     points: list[tuple[float, float]] = []
-    for at, line in enumerate(text.lines):
-        plain = line.strip()
-        if not plain or plain.startswith(REMARKS):
-            continue
-        if not points and units is None and not begins_with_a_number(plain):
-            units = _stated_unit(text, at, plain)
-            continue
-        cells = [cell for cell in re.split(r"[,;\s]+", plain) if cell]
+    for at, row in table.rows:
+        cells = " ".join(row).replace(";", " ").split()
         if len(cells) != _COLUMNS:
+            plain = text.lines[at].strip()
             remedy = ". Write decimal points" if "," in plain else ""
             raise text.fault(
                 at, f"two numbers are needed, period [s] and spectral acceleration (got {plain!r}){remedy}"
@@ -96,10 +91,9 @@ def _read(path: str) -> tuple[tuple[tuple[float, float], ...], str | None]:
     return tuple(points), units
 
 
-def _stated_unit(text: Text, at: int, header: str) -> str | None:
-    """Return the unit of the accelerations in the header line; periods must be in seconds."""
-    found = [_BRACKETED.findall(name) for name in re.split(r"[,;\t]", header.rstrip(",;"))]
-    period, acceleration = found if len(found) == _COLUMNS else ([], _BRACKETED.findall(header))
+def _stated_unit(text: Text, at: int, names: list[str]) -> str | None:
+    """Return the unit of the accelerations in the names; periods must be in seconds."""
+    period, *_, acceleration = (_BRACKETED.findall(name) for name in names)
     if period and period[-1].strip().lower() not in _SECONDS:
         raise text.fault(at, f"the first column must be the period in s (got [{period[-1]}]). Convert it")
     return unit_of(acceleration[-1]) if acceleration else None

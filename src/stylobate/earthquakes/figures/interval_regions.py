@@ -14,8 +14,7 @@ from matplotlib.patches import Patch, PathPatch
 from matplotlib.path import Path
 
 from stylobate.errors import Outcome
-from stylobate.plots.cells import fill_options
-from stylobate.plots.classes import OUTCOME_LOOKS, UNFINISHED, Look
+from stylobate.plots.cells import OUTCOME_LOOKS, UNFINISHED, Look, fill_options
 from stylobate.plots.labels import axis_label
 from stylobate.plots.style import BLACK, BLUE, GREY, VERMILION
 from stylobate.results.outcomes import NOT_COMPUTED

@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from stylobate.base_motions import Record
-from stylobate.base_motions.records.record import AXES
+from stylobate.base_motions.record import AXES
 from stylobate.plots.base_motion import COMPONENT_LOOKS, draw_spectra
 from stylobate.plots.labels import literal
 from stylobate.plots.result_figure import WIDTH

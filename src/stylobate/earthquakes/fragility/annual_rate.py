@@ -16,10 +16,10 @@ import numpy as np
 import xarray as xr
 from scipy.special import log_ndtr, ndtr
 
-from stylobate.base_motions.records import HorizontalComponent
 from stylobate.earthquakes.fragility.hazard import HazardCurve
 from stylobate.earthquakes.fragility.observations import LIMIT_STATE, Floats
 from stylobate.errors import ParameterError, require_positive, require_whole
+from stylobate.records import HorizontalComponent
 
 _log = logging.getLogger("stylobate")
 

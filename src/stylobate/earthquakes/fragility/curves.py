@@ -6,10 +6,10 @@ import numpy as np
 import xarray as xr
 from scipy.special import ndtr
 
-from stylobate.base_motions.records import HorizontalComponent
 from stylobate.earthquakes.fragility.observations import LIMIT_STATE, Floats, Observations
 from stylobate.earthquakes.fragility.probit import FitStatus
 from stylobate.errors import require_positive
+from stylobate.records import HorizontalComponent
 from stylobate.results.outcomes import flag_attributes
 
 CURVE_POINTS = 121

@@ -6,10 +6,10 @@ from typing import Any, Self
 import numpy as np
 import numpy.typing as npt
 
-from stylobate.base_motions.records import HorizontalComponent
 from stylobate.cards import Row, Section, card
 from stylobate.earthquakes.fragility.observations import Floats
 from stylobate.errors import ParameterError, require_positive
+from stylobate.records import HorizontalComponent
 from stylobate.text import four_digits, unit_in_text
 
 _LEAST = 2

@@ -10,8 +10,8 @@ import numpy.typing as npt
 import xarray as xr
 
 from stylobate.base_motions import BaseMotion
-from stylobate.base_motions.one_of import members_of
-from stylobate.base_motions.varying import frequency_of
+from stylobate.base_motions.combined import members_of
+from stylobate.base_motions.declared import frequency_of
 from stylobate.engine.parameters import own_numbers, with_parameters
 from stylobate.errors import ParameterError, require_positive
 from stylobate.models import Model

@@ -8,19 +8,31 @@ import numpy as np
 import numpy.typing as npt
 
 from stylobate.compiler.kept import runs_plain
-from stylobate.engine.doubt import FINER_PASSAGE, FINER_REST, other_tolerance
-from stylobate.engine.ensembles.broadcasting import Runs
-from stylobate.engine.ensembles.look_times import LookTimes
-from stylobate.engine.ensembles.model_columns import ModelColumns
-from stylobate.engine.ensembles.motion_columns import MotionColumns, MotionPlan
-from stylobate.engine.ensembles.orbit_columns import OrbitReached, fill_orbits, orbit_reached
-from stylobate.engine.kernel.columns import LOG, NOTE, PAIRS, STATE, Log, Setup, Status
+from stylobate.engine.ensembles.run_columns import ModelColumns, MotionColumns, MotionPlan
+from stylobate.engine.ensembles.runs import Runs
+from stylobate.engine.forcing import is_rest, rest_energy_for_good, usual_rest_energy
+from stylobate.engine.kernel.columns import (
+    EARLIER,
+    EVENTS_AT,
+    LAGS,
+    LOG,
+    NOTE,
+    ORBIT,
+    PAIRS,
+    SLACK,
+    STATE,
+    Log,
+    Orbit,
+    Setup,
+)
+from stylobate.engine.kernel.driver.events import Status, event_numbers
+from stylobate.engine.kernel.driver.loop import CERTAIN, NEAR
 from stylobate.engine.kernel.expansion import series_integrals
 from stylobate.engine.kernel.kernels import kernel_of
 from stylobate.engine.kernel.shape import Shape
 from stylobate.engine.starts import cannot_depart, out_of_plane, refuse_spin
-from stylobate.engine.thresholds import is_rest, rest_energy_for_good, usual_rest_energy
-from stylobate.engine.tolerances import ATOL_SHARE, FIRST_STEP_OFF, OVERTURNED_TILT, PARALLEL_ULP
+from stylobate.engine.tolerances import ATOL_SHARE, FIRST_STEP_OFF, PARALLEL_ULP
+from stylobate.engine.verdict import FINER_PASSAGE, FINER_REST, other_tolerance, steady_periods
 from stylobate.models import Model
 from stylobate.results import OutcomeRules
 from stylobate.results.known_orbits import OrbitsOfRuns
@@ -164,7 +176,7 @@ class Batch:
         return self.table[:, LOG + column]
 
     @property
-    def converged(self) -> OrbitReached | None:
+    def converged(self) -> "OrbitReached | None":
         """Runs that have converged to a known orbit, and the orbit of each; None if no run has."""
         runs = np.flatnonzero(self.log(Log.STATUS) == Status.CONVERGED)
         if self.orbits is None or not runs.size:
@@ -303,8 +315,6 @@ def _fill_setup(
         Setup.LONGEST_STEP: longest,
         Setup.SLENDERNESS: models.slenderness,
         Setup.CAPACITY: models.capacity,
-        Setup.TILT_LIMIT: math.inf if options["tilt_limit"] is None else options["tilt_limit"],
-        Setup.OVERTURNED_TILT: OVERTURNED_TILT,
         Setup.REST_ENERGY: energy,
         Setup.REST_ENERGY_FOR_GOOD: _rest_energy_for_good(options, models, motions),
         Setup.LARGEST_HORIZONTAL: motions.largest,
@@ -323,7 +333,8 @@ def _fill_setup(
         Setup.PASSAGE_TILT: plan.passage_share * models.loss_tilt,
         **dict(zip((Setup.SLOPE_X, Setup.SLOPE_Y, Setup.SLOPE_Z), models.slope.T, strict=True)),
     }
-    for column, values in columns.items():
+    numbers = {EVENTS_AT + column: values for column, values in event_numbers(options, models.time_scale).items()}
+    for column, values in (columns | numbers).items():
         table[:, column] = values
 
 
@@ -354,8 +365,10 @@ def _fill_starts(
         states[upright] = columns.states[upright]
     if model.contact_kinds is not None:  # a standing column begins as sliding; the reset map decides its contact
         states[stands, -1] = model.contact_kinds["SLIDING"]
-        if runs.turning is not None:
-            states[0] = runs.turning.begun(model, states[0])
+        turning = runs.turning or ()
+        for changed, chosen in models.kinds if turning else ():
+            for k in np.arange(len(runs))[chosen]:
+                states[k] = turning[k].begun(changed, states[k])
     table[:, STATE : STATE + states.shape[1]] = states
     if planar.any():
         table[planar, STATE] = np.sum(runs.tilt * line, axis=1)[planar]
@@ -366,9 +379,8 @@ def _fill_starts(
 
 def _keeps_to_plane(runs: Runs, models: ModelColumns, line: Floats) -> npt.NDArray[np.bool_]:
     """Return which runs without spin, on planes that slope along their `line`, also start to slip along it."""
-    velocity = (0.0, 0.0) if runs.turning is None else runs.turning.velocity[:2]
-    slips = np.broadcast_to(velocity, (len(line), 1, 2))
-    vectors = np.concatenate([line[:, np.newaxis], models.slope[:, np.newaxis, :2], slips], axis=1)
+    slips = np.zeros((len(line), 2)) if runs.turning is None else np.array([one.velocity[:2] for one in runs.turning])
+    vectors = np.stack([line, models.slope[:, :2], slips], axis=1)
     return np.asarray(_not_zero(line) & _not_zero(common_lines(vectors)) & (runs.spin == 0.0))
 
 
@@ -404,3 +416,114 @@ def common_lines(vectors: Floats) -> Floats:
     aside = np.abs(line[:, np.newaxis, 0] * vectors[..., 1] - line[:, np.newaxis, 1] * vectors[..., 0])
     fits = np.all(aside <= PARALLEL_ULP * np.finfo(float).eps * lengths, axis=1) & (length > 0.0)
     return np.where(fits[:, np.newaxis], line, 0.0)
+
+
+# Minimum mean number of periods from one pair to the next: pairs meet all phases of the base motion and do not overlap.
+_LEAST_SPACING = 1.5
+# Fraction of a run over which pairs are spread, and fraction between the two groups of looks. Periods too long for one
+# run are then resolved by a longer one.
+_PAIRED, _BETWEEN = 0.5, 0.25
+
+
+@dataclass(frozen=True, slots=True)
+class LookTimes:
+    """Times of the looks and pairs of each run.
+
+    Parameters
+    ----------
+    looks
+        Number of looks in a row, 0 if no run is long enough for an outcome by its last periods.
+    back, spacing
+        `LOOKED_BACK` and `PAIR_SPACING` of each run, see `Setup`.
+    """
+
+    looks: int
+    back: Floats
+    spacing: Floats
+
+    @classmethod
+    def of(cls, end: npt.ArrayLike, period: npt.ArrayLike, rules: OutcomeRules) -> "LookTimes":
+        """Return the times for runs of this duration; runs that are too short to need them have none."""
+        held = periods_of(end, period)
+        latest = rules.periods + LAGS
+        back = np.maximum(latest + 1.0, np.floor(_BETWEEN * held))
+        spacing = np.maximum((_PAIRED * held - 1.0) / (PAIRS - 1.0), _LEAST_SPACING)
+        looks = EARLIER + latest + 1 if np.any(held >= rules.periods + 1.0) else 0
+        steady = held >= steady_periods(rules)
+        back = np.where(steady & (held >= back + EARLIER - 1.0), back, 0.0)
+        return cls(looks, back, np.where(steady, spacing, 0.0))
+
+    @property
+    def notes(self) -> int:
+        """Number of looks and pairs in a row."""
+        return self.looks + PAIRS if self.looks else 0
+
+    def fill(self, table: Floats) -> None:
+        """Set the columns of the table."""
+        table[:, Setup.LOOKS] = self.looks
+        table[:, Setup.LOOKED_BACK] = self.back
+        table[:, Setup.PAIR_SPACING] = self.spacing
+
+
+def periods_of(end: npt.ArrayLike, period: npt.ArrayLike) -> Floats:
+    """Return the number of periods of the base motion in runs of this duration; 0 without a period."""
+    length = np.asarray(period, dtype=float)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.where(length > 0.0, np.asarray(end) * (1.0 + SLACK) / length, 0.0)
+
+
+# Minimum number of periods in a window, over which the oscillations of complex multipliers average out.
+LEAST_WINDOW = 4
+# Factor by which the distance from the orbit must fall in a window.
+FALL_OF_WINDOW = 0.5
+
+
+def fill_orbits(
+    table: Floats, first: int, orbits: OrbitsOfRuns, period: Floats, time_scale: Floats, rules: OutcomeRules
+) -> None:
+    """Set the columns of the known orbits, which begin at column `first`; `period` is in the units of the models.
+
+    A run that is too short is not compared with an orbit, because the latest time for its approach is before its start.
+    """
+    with np.errstate(divide="ignore", invalid="ignore"):
+        decay = -np.log(orbits.multiplier)
+        window = np.fmax(LEAST_WINDOW, np.ceil(math.log(1.0 / FALL_OF_WINDOW) / decay))
+        turning = 2.0 * math.pi / period[:, np.newaxis]
+        judged = table[:, [Setup.END]] - (rules.periods + 1.0) * period[:, np.newaxis]
+        latest = judged - math.log(NEAR / (CERTAIN * rules.repeat_tolerance)) / decay * period[:, np.newaxis]
+        columns = {
+            Orbit.X: orbits.tilt[..., 0],
+            Orbit.Y: orbits.tilt[..., 1],
+            Orbit.VX: orbits.tilt_rate[..., 0] * time_scale[:, np.newaxis],
+            Orbit.VY: orbits.tilt_rate[..., 1] * time_scale[:, np.newaxis],
+            Orbit.SPIN: orbits.spin * time_scale[:, np.newaxis],
+            Orbit.SIZE: np.where(np.isnan(decay), np.nan, orbits.mean_tilt),
+            Orbit.RATE: orbits.mean_tilt * turning,
+            Orbit.WINDOW: window,
+            Orbit.FALL: np.exp(-decay * window),
+            Orbit.DECAY: decay * turning / (2.0 * math.pi),
+            Orbit.LATEST: np.where(np.isfinite(latest) & (period[:, np.newaxis] > 0.0), latest, -np.inf),
+            Orbit.REPEATS: np.broadcast_to(rules.repeat_tolerance, decay.shape),
+        }
+    for k in range(decay.shape[1]):
+        for column, values in columns.items():
+            table[:, first + k * ORBIT + column] = values[:, k]
+
+
+@dataclass(frozen=True, slots=True)
+class OrbitReached:
+    """Runs that have converged to a known orbit, and the numbers of `KnownOrbit` for each of these runs."""
+
+    runs: npt.NDArray[np.intp]
+    tilt: Floats
+    tilt_rate: Floats
+    turns: Floats
+    mean_tilt: Floats
+
+
+def orbit_reached(table: Floats, first: int, orbits: OrbitsOfRuns, runs: npt.NDArray[np.intp]) -> OrbitReached:
+    """Return the orbits to which these `runs` have converged."""
+    places = first + ORBIT * np.arange(orbits.turns.shape[1]) + Orbit.REACHED
+    chosen = np.argmax(table[np.ix_(runs, places)], axis=1)
+    of_runs = (getattr(orbits, name)[runs, chosen] for name in OrbitReached.__slots__[1:])
+    return OrbitReached(runs, *of_runs)

@@ -1,19 +1,30 @@
-"""Conversion of a finished batch to arrays of results in SI units, one entry per run."""
+"""Results of a batch: measures of the last periods, outcomes, and arrays in SI units, one entry per run."""
 
 import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from stylobate.engine.doubt import FALLEN, in_doubt
-from stylobate.engine.ensembles.batch import Batch
-from stylobate.engine.ensembles.contacts import contact_arrays
-from stylobate.engine.ensembles.orbit_columns import OrbitReached
-from stylobate.engine.ensembles.outcomes import late_periods, outcomes
-from stylobate.engine.ensembles.variables import DEMANDS, Arrays, empty
-from stylobate.engine.kernel.columns import STATE, Log, Setup, Status
-from stylobate.engine.thresholds import coarse
+from stylobate.engine.ensembles.batch import Batch, OrbitReached, periods_of
+from stylobate.engine.ensembles.runs import CONTACT_KINDS, DEMANDS, TIMES_OF_CONTACTS, Arrays, empty
+from stylobate.engine.forcing import coarse
+from stylobate.engine.kernel.columns import EARLIER, LAGS, PAIRS, SLACK, STATE, Change, Log, Pair, Setup, pair_begins
+from stylobate.engine.kernel.driver.events import Status
 from stylobate.engine.tolerances import CLOSE_PASSAGE
+from stylobate.engine.verdict import (
+    FALLEN,
+    Evidence,
+    Ground,
+    energy_over_balance,
+    grounds,
+    has_ended,
+    in_doubt,
+    outcome_on,
+    steady_periods,
+)
 from stylobate.errors import Outcome
 from stylobate.models.contact import LEAST_FORCE
 
@@ -166,3 +177,325 @@ def _demands(batch: Batch) -> Arrays:
 def _turns(batch: Batch) -> Floats:
     turns = batch.log(Log.LAST_AZIMUTH) - batch.log(Log.FIRST_AZIMUTH)
     return np.where(np.isnan(turns), 0.0, turns)
+
+
+_OTHERS = -1
+_OUTCOME_OF_STATUS = np.array([_OTHERS if one.outcome is None else one.outcome for one in Status], dtype=np.int8)
+"""Outcomes of runs that ended in the kernel; the last periods decide the other outcomes."""
+
+_OUTCOME_OF_GROUND = np.array([outcome_on(kind) for kind in Ground], dtype=np.int8)
+
+
+@dataclass(frozen=True, slots=True)
+class Late:
+    """Measures of the last periods of each run; NaN if these were not completed.
+
+    `runs` are the indices of runs that completed them, and `evidence` is that of these runs.
+    """
+
+    span: Floats
+    turned: Floats
+    mean_tilt: Floats
+    phase: Floats
+    minimum_tilt: Floats
+    repetition: Floats
+    repeats_after: npt.NDArray[np.int8]
+    runs: npt.NDArray[np.intp]
+    evidence: Evidence | None
+
+
+def late_periods(batch: Batch) -> Late:
+    """Return the measures of the last periods of each run."""
+    rules, period = batch.plan.rules, batch.motions.period
+    n, end = rules.periods, batch.table[:, Setup.END] * (1.0 + SLACK)
+    seen = (batch.log(Log.STATUS) == Status.STOPPED) & (period > 0.0) & (end >= (n + 1) * period)
+
+    def known(values: Floats) -> Floats:
+        return np.where(seen, values, np.nan)
+
+    runs, span = np.flatnonzero(seen), known(n * period)
+    turned, repetition = known(np.zeros(len(seen))), known(np.zeros(len(seen)))
+    mean_tilt, minimum_tilt = known(batch.log(Log.MEAN_TILT)) / span, known(batch.log(Log.LATE_MINIMUM_TILT))
+    repeats_after, evidence = np.zeros(len(seen), dtype=np.int8), None
+    if runs.size:
+        azimuth = batch.looks[:, [EARLIER + LAGS, -1], -1]
+        turned = known(np.where(batch.planar, 0.0, azimuth[:, 1] - azimuth[:, 0]))
+        least = minimum_tilt / batch.models.slenderness
+        evidence = evidence_of(batch, runs, turned[runs], least[runs], mean_tilt[runs])
+        repetition[runs], repeats_after[runs] = evidence.returns[:, 0], evidence.repeats_after(rules)
+    return Late(
+        span=span,
+        turned=turned,
+        mean_tilt=mean_tilt,
+        phase=known(_phase(batch, turned)),
+        minimum_tilt=minimum_tilt,
+        repetition=repetition,
+        repeats_after=repeats_after,
+        runs=runs,
+        evidence=evidence,
+    )
+
+
+def _phase(batch: Batch, turned: Floats) -> Floats:
+    """Return the phase of the tilt vector relative to the base acceleration, in the sense in which it turned."""
+    parts = {
+        name: batch.log(Log[f"{name}_COS"]) + 1j * batch.log(Log[f"{name}_SIN"]) for name in ("FORWARD", "BACKWARD")
+    }
+    phase = np.where(
+        turned >= 0.0,
+        np.angle(parts["FORWARD"]) - _reference(batch, batch.motions.forward),
+        _reference(batch, batch.motions.backward) - np.angle(parts["BACKWARD"]),
+    )
+    return np.asarray(np.angle(np.exp(1j * phase)))
+
+
+def _reference(batch: Batch, azimuth: Floats) -> Floats:
+    """Return the azimuth of a circular component of the forcing, relative to the line for planar motion."""
+    line = np.arctan2(batch.table[:, Setup.LINE_Y], batch.table[:, Setup.LINE_X])
+    return np.where(batch.planar, azimuth - line, azimuth)
+
+
+def _survive(batch: Batch, moving: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool_]:
+    """Return which of the runs that are `moving` at their end have survived a base motion that ends; see `survival`."""
+    lasts = batch.motions.duration
+    survive = moving & (batch.log(Log.STATUS) == Status.STOPPED) & (batch.log(Log.STANDS) == 0.0)
+    survive &= (lasts > 0.0) & has_ended(batch.log(Log.TIME) * batch.models.time_scale, lasts)
+    states = _states(batch) if survive.any() else np.empty((0, 0))
+    for changed, runs in batch.models.kinds:
+        if survive[runs].any():
+            survive[runs] &= energy_over_balance(changed, states[:, runs], batch.motions.remaining[runs]) < 1.0
+    return np.asarray(survive)
+
+
+def _states(batch: Batch) -> Floats:
+    """Return the three-dimensional states, shape (number of states, n)."""
+    model = batch.plan.model
+    states = batch.table[:, STATE : STATE + len(model.state_names)].T
+    if not batch.planar.any():
+        return states
+    assert model.from_plane is not None
+    line = batch.table[:, [Setup.LINE_X, Setup.LINE_Y]].T
+    lifted = np.broadcast_arrays(*model.from_plane(states[0], states[1], *line, *batch.models.parameters.T))
+    return np.where(batch.planar, np.stack(lifted), states)
+
+
+def grounds_of(batch: Batch, late: Late) -> npt.NDArray[np.int8]:
+    """Return the `Ground` of the outcome of each run that moves at its end."""
+    ground = np.full(len(batch.table), Ground.SHORT, dtype=np.int8)
+    if late.evidence is not None:
+        ground[late.runs] = grounds(late.evidence, batch.plan.rules)
+    return np.where(batch.motions.period > 0.0, ground, Ground.NO_PERIOD).astype(np.int8)
+
+
+def outcomes(batch: Batch, late: Late) -> npt.NDArray[np.int8]:
+    """Return the codes of the outcomes."""
+    codes = _OUTCOME_OF_GROUND[grounds_of(batch, late)]
+    codes = np.where(_survive(batch, codes == Outcome.STILL_MOVING), Outcome.SURVIVED, codes)
+    codes = np.where(batch.log(Log.STANDS) > 0.0, Outcome.AT_REST, codes)
+    endings = _OUTCOME_OF_STATUS[batch.log(Log.STATUS).astype(np.intp)]
+    codes = np.where(endings == _OTHERS, codes, endings).astype(np.int8)
+    reached = batch.converged
+    if reached is not None:
+        codes[reached.runs] = np.where(reached.turns == 0.0, Outcome.ROCKING, Outcome.ROLLING)
+    return upright_outcomes(batch, late.span, codes) if batch.plan.model.switches else codes
+
+
+Integers = npt.NDArray[np.intp]
+
+# Pairs begin this many periods before the end, a linear function of their spacing, with the opposite sign.
+_AT_ZERO = -pair_begins(np.arange(PAIRS), 0.0)
+_PER_SPACING = pair_begins(np.arange(PAIRS), 1.0) + _AT_ZERO
+
+# Distances of states in units of the motion below this are rounding errors.
+_ROUNDING = 1e-12
+
+
+@dataclass(frozen=True, slots=True)
+class Units:
+    """Units of the tilts and rates of motions, shape (n,): their peaks at the looks, at least those of the mean tilt.
+
+    All looks may fall on passages through the vertical, or on turning points. The unit of what is always zero is
+    infinite.
+    """
+
+    tilt: Floats
+    rate: Floats
+
+    @classmethod
+    def of(cls, looks: Floats, mean_tilt: Floats, period: Floats) -> "Units":
+        """Return the units of runs with these looks."""
+        tilt, rate = _largest(looks)
+        turning = 2.0 * math.pi / period
+        tilt, rate = np.fmax(tilt, mean_tilt), np.fmax(rate, mean_tilt * turning)
+        return cls(np.where(tilt > 0.0, tilt, np.inf), np.where(rate > 0.0, rate, np.inf))
+
+    def of_some(self, chosen: Integers) -> "Units":
+        """Return the units of some of the runs."""
+        return Units(self.tilt[chosen], self.rate[chosen])
+
+    def distances(self, tilt_change: Floats, rate_change: Floats) -> Floats:
+        """Return the larger of two differences in their units, shape (…, n) as the differences."""
+        return np.maximum(tilt_change / self.tilt, rate_change / self.rate)
+
+    def returns(self, looks: Floats, last: int, lag: int) -> Floats:
+        """Return the maximum distance of the `last` looks from those earlier by this lag, shape (n,)."""
+        first = looks.shape[1] - last
+        return self.distances(*_largest(looks[:, first:] - looks[:, first - lag : looks.shape[1] - lag]))
+
+
+def evidence_of(batch: Batch, runs: Integers, turned: Floats, minimum_tilt: Floats, mean_tilt: Floats) -> Evidence:
+    """Return the evidence of these `runs`, all of which have the looks of their last periods.
+
+    It is complete as far as the outcome depends on it: a run that repeats after one period has no trends, and a run
+    that nearly repeats, or has a trend, is not compared over several periods.
+
+    Parameters
+    ----------
+    batch, runs
+        The batch, and the indices of the runs.
+    turned, minimum_tilt, mean_tilt
+        Turns of the contact point, minimum tilt [units of c] and mean tilt of these runs in the last periods.
+    """
+    rules, period = batch.plan.rules, batch.motions.period[runs]
+    held = np.floor(periods_of(batch.table[runs, Setup.END], period))
+    evidence = Evidence.unknown(turned, minimum_tilt, held, batch.table[runs, Setup.LOOKED_BACK])
+    steady = held >= steady_periods(rules)
+    last = _looks_of(batch, runs, EARLIER + LAGS - 1)
+    units = Units.of(last[:, 1:], mean_tilt, period)
+    after_one = units.returns(last, rules.periods, 1)
+    after_one[~np.any(last[:, 1:], axis=(0, 1))] = np.inf  # the motion between the looks is unknown
+    evidence.returns[:, 0] = after_one
+    moves = np.flatnonzero(steady & ~(after_one < rules.repeat_tolerance))
+    if moves.size:
+        _fill_change(evidence, batch, runs, moves, units)
+    settled = ~evidence.change.exceeds(math.log1p(rules.settled_tolerance), rules.sampling_errors)
+    open_runs = np.flatnonzero(settled & (after_one >= rules.modulation_floor))
+    looks = _looks_of(batch, runs[open_runs])
+    near = _near_repeats(looks, units.of_some(open_runs), rules.repeat_tolerance)
+    compared = steady[open_runs] | near
+    kept = open_runs[compared]
+    if kept.size:
+        _fill_returns(evidence, kept, looks[..., compared], units.of_some(kept), rules.periods)
+        _fill_lag(evidence, batch, runs, kept)
+    return evidence
+
+
+def _looks_of(batch: Batch, runs: Integers, first: int = 0) -> Floats:
+    """Return the looks of runs from the `first` one: tilt vectors and rates, shape (4, number, n)."""
+    return np.ascontiguousarray(batch.looks[runs, first:, :4].transpose(2, 1, 0))
+
+
+def _near_repeats(looks: Floats, units: Units, tolerance: float) -> npt.NDArray[np.bool_]:
+    """Return which runs are within the tolerance after several periods, by their last look alone."""
+    near = [units.returns(looks, 1, lag) < tolerance for lag in range(2, LAGS + 1)]
+    return np.asarray(np.any(near, axis=0))
+
+
+def _fill_returns(evidence: Evidence, kept: Integers, looks: Floats, units: Units, periods: int) -> None:
+    """Compare these runs over several periods, at their end and a quarter of the run before."""
+    few = EARLIER - LAGS
+    held, back = evidence.held[kept], evidence.back[kept]
+    for lag in range(1, LAGS + 1):
+        if lag > 1:
+            returns = units.returns(looks, periods, lag)
+            evidence.returns[kept, lag - 1] = np.where(held < periods + lag, np.nan, returns)
+        evidence.returns_latest[kept, lag - 1] = units.returns(looks, few, lag)
+        before = units.returns(looks[:, :EARLIER], few, lag)
+        evidence.returns_before[kept, lag - 1] = np.where(back == 0.0, np.nan, before)
+
+
+def _fill_change(evidence: Evidence, batch: Batch, runs: Integers, kept: Integers, units: Units) -> None:
+    """Set the trend of the distances of states one period apart."""
+    pairs, places, known = _pairs_of(batch, runs[kept], evidence.held[kept])
+    apart = units.of_some(kept).distances(pairs[..., Pair.TILT_CHANGE].T, pairs[..., Pair.RATE_CHANGE].T).T
+    evidence.change.fill(kept, np.log(np.maximum(apart, _ROUNDING)), places, known)
+
+
+def _fill_lag(evidence: Evidence, batch: Batch, runs: Integers, kept: Integers) -> None:
+    """Set the trend and the range of the azimuth relative to the forcing."""
+    pairs, places, known = _pairs_of(batch, runs[kept], evidence.held[kept])
+    lags = pairs[..., Pair.AZIMUTH] - np.sign(evidence.turned[kept])[:, np.newaxis] * places
+    evidence.lag.fill(kept, lags, places, known)
+    most, least = np.where(known, lags, -np.inf).max(axis=1), np.where(known, lags, np.inf).min(axis=1)
+    evidence.lag_range[kept] = most - least
+
+
+def _pairs_of(batch: Batch, runs: Integers, held: Floats) -> tuple[Floats, Floats, npt.NDArray[np.bool_]]:
+    """Return the pairs of runs, their places in periods before the end, negative, and which of them the run has."""
+    spacing = batch.table[runs, Setup.PAIR_SPACING]
+    places = _AT_ZERO - spacing[:, np.newaxis] * _PER_SPACING
+    return batch.pairs[runs], places, places >= -held[:, np.newaxis]
+
+
+def _largest(vectors: Floats) -> tuple[Floats, Floats]:
+    """Return the maximum lengths of tilts and of rates among vectors of shape (4, number, n), each of shape (n,)."""
+    squares = vectors * vectors
+    tilt, rate = squares[0] + squares[1], squares[2] + squares[3]
+    return np.sqrt(tilt.max(axis=0)), np.sqrt(rate.max(axis=0))
+
+
+@dataclass(frozen=True, slots=True)
+class Contacts:
+    """Contact record of each run; times are in the units of the models."""
+
+    state: Floats
+    noted: Floats
+    kind: npt.NDArray[np.int8]
+    times: Mapping[str, Floats]
+
+    @classmethod
+    def of(cls, batch: Batch) -> "Contacts":
+        """Return the contact record of a batch; the present kind of contact lasts to the end."""
+        order = len(batch.plan.model.state_names)
+        state, noted = batch.table[:, STATE : STATE + order].T, batch.table[:, STATE + order :]
+        kind, present = state[-1].astype(np.int8), batch.log(Log.TIME) - noted[:, Change.SINCE]
+        times = {
+            name: noted[:, column] + np.where(kind == number, present, 0.0)
+            for number, (name, column) in enumerate(zip(CONTACT_KINDS, TIMES_OF_CONTACTS, strict=True))
+        }
+        return cls(state, noted, kind, times)
+
+    def late(self, name: str) -> npt.NDArray[np.bool_]:
+        """Return the runs in which this contact occurred in the last periods."""
+        rim = self.times["rolling"] + self.times["slipping"]
+        taken = {"sliding": self.times["sliding"], "rim": rim, "flying": self.times["flying"]}[name]
+        before = self.noted[:, Change[f"WINDOW_{name.upper()}"]]
+        return np.asarray(taken - before > SLACK * (1.0 + taken))
+
+
+def contact_arrays(batch: Batch, span: Floats) -> dict[str, npt.NDArray[Any]]:
+    """Return final position, contact kind, mean velocities, contact times and event counts of each run.
+
+    `span` is the length of the last periods, NaN if they were not computed.
+    """
+    names, scale, length = batch.plan.model.state_names, batch.models.time_scale, batch.models.length
+    contacts = Contacts.of(batch)
+    places = [names.index(name) for name in ("footprint_x", "footprint_y", "twist")]
+    begun = contacts.noted[:, [Change.WINDOW_X, Change.WINDOW_Y, Change.WINDOW_TWIST]].T
+    span = np.where(np.isnan(span), np.nan, batch.log(Log.TIME) - contacts.noted[:, Change.WINDOW_AT])
+    with np.errstate(divide="ignore", invalid="ignore"):
+        vx, vy, turning = (contacts.state[places] - begun) / (span * scale)
+    return {
+        "end_footprint": (contacts.state[places[:2]] * length).T,
+        "end_twist": contacts.state[places[2]],
+        "end_contact": contacts.kind,
+        "mean_velocity": np.stack([vx, vy], axis=-1) * length[:, np.newaxis],
+        "mean_twist_rate": turning,
+        "impacts": contacts.noted[:, Change.IMPACTS],
+        "slips": contacts.noted[:, Change.SLIPS],
+        **{f"time_{name}": times * scale for name, times in contacts.times.items()},
+    }
+
+
+def upright_outcomes(batch: Batch, span: Floats, codes: npt.NDArray[np.int8]) -> npt.NDArray[np.int8]:
+    """Replace the outcomes of columns that stay upright in the last periods, or at the end if there are none."""
+    contacts = Contacts.of(batch)
+    seen, decided = ~np.isnan(span), batch.log(Log.STATUS) == Status.STOPPED
+    names = [kind.name for kind in batch.plan.model.contact_kinds or ()]
+    upright = ~np.any(contacts.state[:2], axis=0)
+    rim = np.where(seen, contacts.late("rim"), ~upright)
+    flies = np.where(seen, contacts.late("flying"), contacts.kind == names.index("FLYING"))
+    slides = np.where(seen, contacts.late("sliding"), contacts.kind == names.index("SLIDING"))
+    hops = decided & ~rim & flies
+    codes = np.where(hops, Outcome.LIFTED_OFF, codes)
+    return np.where(decided & ~rim & ~flies & slides, Outcome.SLID, codes).astype(np.int8)

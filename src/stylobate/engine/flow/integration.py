@@ -1,13 +1,7 @@
-"""Integration of a model's motion, with its derivatives, over a part of the period of the base motion.
-
-The state of order n is the first column of a matrix of n rows. The next columns are its derivatives with respect to the
-initial state and to one parameter of the system; columns that fill the last vector are zero. `flows` binds the open
-names to a model.
-
-DOP853: E. Hairer, S. P. Nørsett, G. Wanner, "Solving Ordinary Differential Equations I", 2nd ed., section II.5.
-"""
+"""Integration of the variational equations of a motion over periods of the base motion."""
 
 import math
+from enum import IntEnum
 from typing import NamedTuple
 
 import numpy as np
@@ -15,7 +9,7 @@ import numpy.typing as npt
 
 from stylobate.compiler.marks import fast, lanes
 from stylobate.engine.dop853 import E3, E5, STAGES, A, B, C
-from stylobate.engine.elementary import turning_point, winding
+from stylobate.engine.elementary import turning_point, weighted, winding
 from stylobate.engine.flow.bound import (
     ACCELERATIONS,
     COLUMNS,
@@ -29,8 +23,33 @@ from stylobate.engine.flow.bound import (
     rates,
     tilt_of,
 )
-from stylobate.engine.flow.status import Status
-from stylobate.engine.sums import weighted
+
+
+class Status(IntEnum):
+    """Status of a flow at its end."""
+
+    DONE = 0
+    LOST = 1
+    """The motion came to the vertical, where the derivatives do not exist."""
+    GONE = 2
+    """The motion exceeded the peak tilt."""
+    FAILED = 3
+    """There were too many steps, or a step was too short."""
+
+
+class Record(IntEnum):
+    """Places of the record of a flow."""
+
+    LEAST_TILT = 0
+    PEAK_TILT = 1
+    """Minimum and maximum tilt so far."""
+    STEPS = 2
+    """Number of steps."""
+    SIDE = 3
+    """Side of the vertical in planar motion."""
+    TURNS = 4
+    """Turns of the tilt vector."""
+
 
 Table = npt.NDArray[np.float64]
 Vector = npt.NDArray[np.float64]
@@ -232,8 +251,8 @@ def record_tilt(y: Table, new: Table, duration: float, numbers: Vector, record: 
     if slope * end_slope < 0.0:
         at, extreme = turning_point(start, end, slope, end_slope, 1.0 if slope > 0.0 else -1.0)
         least, largest = min(least, extreme), max(largest, extreme)
-    record[0] = min(record[0], math.sqrt(max(least, 0.0)))
-    record[1] = max(record[1], math.sqrt(largest))
+    record[Record.LEAST_TILT] = min(record[Record.LEAST_TILT], math.sqrt(max(least, 0.0)))
+    record[Record.PEAK_TILT] = max(record[Record.PEAK_TILT], math.sqrt(largest))
     return at
 
 
@@ -241,7 +260,7 @@ def count_turns(y: Table, new: Table, numbers: Vector, record: Vector) -> None:
     """Count the passages of the tilt vector across the negative x axis, anticlockwise minus clockwise."""
     x0, y0, vx0, vy0 = lean_of(y[:, 0], numbers)
     x1, y1, vx1, vy1 = lean_of(new[:, 0], numbers)
-    record[4] += winding(x0, y0, x1, y1, x0 * vy0 - y0 * vx0 + x1 * vy1 - y1 * vx1)
+    record[Record.TURNS] += winding(x0, y0, x1, y1, x0 * vy0 - y0 * vx0 + x1 * vy1 - y1 * vx1)
 
 
 def record_extremes(
@@ -261,10 +280,10 @@ def record_extremes(
 
     A cubic over the whole step has an accuracy of only 1e-4, so that an extreme is computed again from a state near it.
     """
-    least, largest = record[0], record[1]
+    least, largest = record[Record.LEAST_TILT], record[Record.PEAK_TILT]
     at = record_tilt(y, new, system.period * h, system.numbers, record)
     if 0.0 < at < 1.0:
-        record[0], record[1] = least, largest
+        record[Record.LEAST_TILT], record[Record.PEAK_TILT] = least, largest
         near[0] = k[0]
         make_step(y, s, at * h, side, system, room, near, middle)
         record_tilt(y, middle, system.period * at * h, system.numbers, record)
@@ -352,12 +371,12 @@ def flow(
 ) -> int:
     """Integrate `y` from `begin` to `end` [turns of the base motion]; return the `Status`.
 
-    `limits`: relative and absolute tolerance, minimum and maximum tilt. `record`: minimum and maximum tilt so far,
-    number of steps, side of the vertical (planar motion only), and turns of the tilt vector.
+    `limits` are the relative and absolute tolerance, and the minimum and maximum tilt. `record` has the places of
+    `Record`.
     """
     before = azimuth(y, numbers)
     status = follow(y, begin, end, System(period, terms, numbers, change, term_change), limits, record)
-    record[4] += azimuth(y, numbers) - before
+    record[Record.TURNS] += azimuth(y, numbers) - before
     return status
 
 
@@ -374,13 +393,13 @@ def follow(y: Table, begin: float, end: float, system: System, limits: Vector, r
     )
     k, new = np.zeros((STAGES + 1, ORDER, COLUMNS)), np.zeros((ORDER, COLUMNS))
     near, middle = np.zeros((STAGES + 1, ORDER, COLUMNS)), np.zeros((ORDER, COLUMNS))
-    side = record[3]
+    side = record[Record.SIDE]
     s, h = begin, min(FIRST_STEP, end - begin)
     rejected = False
     slopes_into(y, s, side, system, room, k[0])
     while s < end:
         too_short = h < SHORTEST_STEP * max(1.0, abs(s)) and end - s > h
-        if too_short or record[2] >= MOST_STEPS:
+        if too_short or record[Record.STEPS] >= MOST_STEPS:
             return Status.FAILED
         last = h >= end - s
         h = end - s if last else h
@@ -395,27 +414,27 @@ def follow(y: Table, begin: float, end: float, system: System, limits: Vector, r
             h = step_to_vertical(y, s, h, side, system, room, k, new)
         record_extremes(y, s, h, side, system, room, k, new, near, middle, record)
         if passed:
-            record[0] = 0.0
-            record[2] += 1
+            record[Record.LEAST_TILT] = 0.0
+            record[Record.STEPS] += 1
             s += h
             y[:, :] = new
             if not cross_vertical(y, s, side, system, room):
                 return Status.LOST
-            side = record[3] = -side
+            side = record[Record.SIDE] = -side
             slopes_into(y, s, side, system, room, k[0])
             h, rejected = FIRST_STEP, False
             continue
         if not PLANAR:
             count_turns(y, new, system.numbers, record)
         s = end if last else s + h
-        record[2] += 1
+        record[Record.STEPS] += 1
         y[:, :] = new
         k[0] = k[STAGES]
         factor = min(LARGEST_FACTOR, max(LEAST_FACTOR, SAFETY / max(error, LEAST_ERROR) ** 0.125))
         h = min(h * (min(factor, 1.0) if rejected else factor), LONGEST_STEP)
         rejected = False
-        if record[1] > largest:
+        if record[Record.PEAK_TILT] > largest:
             return Status.GONE
-        if record[0] < least and not PLANAR:
+        if record[Record.LEAST_TILT] < least and not PLANAR:
             return Status.LOST
     return Status.DONE

@@ -1,22 +1,122 @@
-"""Model under a periodic base motion in the form of the compiled flow: dimensionless, time in turns of the base."""
+"""Flow of the equations over a period of the base motion, with its derivatives."""
 
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
+from functools import cache
 from typing import Any, Self
 
 import numpy as np
 import numpy.typing as npt
 
 from stylobate.base_motions import BaseMotion
-from stylobate.engine.ensembles.harmonics import terms_of
-from stylobate.engine.flow.flows import columns_of, flow_of
-from stylobate.engine.flow.status import Status
+from stylobate.compiler.compiled import Compiled
+from stylobate.compiler.programs import Bound, Written
+from stylobate.compiler.unit import ArrayArgument
+from stylobate.compiler.values import Kind
+from stylobate.engine import dop853, elementary
+from stylobate.engine.ensembles.run_columns import terms_of
+from stylobate.engine.expressions import Expression, Recording, recorded
+from stylobate.engine.flow import integration
+from stylobate.engine.flow.integration import Record, Status
 from stylobate.engine.forcing import common_line
 from stylobate.engine.parameters import present_value, with_parameters
 from stylobate.equality import ByContent
 from stylobate.errors import StylobateError, UnsupportedError
 from stylobate.models import Model
+
+_VECTOR = 8
+"""Maximum number of floats in a vector of a processor."""
+
+
+def flow_of(model: type[Model], states: int, numbers: int, *, planar: bool) -> Compiled:
+    """Return the flow of a class of models with these numbers of states and parameters, three-dimensional or planar.
+
+    Its first call raises `UnsupportedError` if the equations cannot be differentiated.
+    """
+    rates = model.planar_rates if planar else model.rates
+    if rates is None:
+        message = f"model {model.name} has no equations of planar motion"
+        raise UnsupportedError(message)
+    loses = planar and model.impact_map is not None
+    needed = ["impact_map", "from_plane", "tilt_of"] if loses else [] if planar else ["tilt_of"]
+    functions: dict[str, Callable[..., Any]] = {"rates": rates, **{name: getattr(model, name) for name in needed}}
+    if not planar and model.jacobian is not None:
+        functions["jacobian"] = model.jacobian
+    return _flow(model, tuple(functions.items()), states, numbers, planar=planar, loses=loses)
+
+
+@cache
+def _flow(
+    model: type[Model],
+    functions: tuple[tuple[str, Callable[..., Any]], ...],
+    states: int,
+    numbers: int,
+    *,
+    planar: bool,
+    loses: bool,
+) -> Compiled:
+    order, accelerations = (2, 2) if planar else (states, 3)
+    of_model = dict(functions)
+
+    def jacobian() -> Written | None:
+        if "jacobian" in of_model:
+            return None
+        return Written(_jacobian_source(of_model["rates"], order, accelerations, numbers, planar=planar))
+
+    vector, terms = ArrayArgument((numbers,)), ArrayArgument((None, 1 + 2 * accelerations))
+    return Compiled(
+        name="flow",
+        program=lambda: Bound(
+            modules=[integration],
+            names={
+                "ORDER": order,
+                "COLUMNS": columns_of(order),
+                "ACCELERATIONS": accelerations,
+                "NUMBERS": numbers,
+                "PLANAR": planar,
+                "LOSES": loses,
+            },
+            written=jacobian(),
+            imported=[dop853, elementary],
+        ),
+        functions=of_model,
+        arguments=(
+            ArrayArgument((order, columns_of(order))),
+            *[Kind.FLOAT] * 3,
+            terms,
+            vector,
+            ArrayArgument((1 + numbers,)),
+            terms,
+            ArrayArgument((4,)),
+            ArrayArgument((5,)),
+        ),
+        model=model.name,
+        description=f"{model.name}, flow in {'plane' if planar else 'space'} with its derivatives",
+    )
+
+
+def columns_of(order: int) -> int:
+    """Return the number of columns of state and derivatives in whole vectors."""
+    return _VECTOR * math.ceil((order + 2) / _VECTOR)
+
+
+def _jacobian_source(rates: Callable[..., Any], states: int, accelerations: int, numbers: int, *, planar: bool) -> str:
+    """Return the source of `jacobian`, which computes the derivatives of the recorded rates."""
+    state = [f"y{j}" for j in range(states)]
+    rest = [*(f"a{k}" for k in range(accelerations)), *(f"p{j}" for j in range(numbers))]
+    arguments = [*state, *(["side"] if planar else []), *rest]
+    record = Recording()
+    inputs = {name: record.input(name) for name in arguments}
+    results = [record.known(result) for result in recorded(rates, tuple(inputs.values()))]
+    variables: list[Expression] = [inputs[name] for name in (*state, *rest)]
+    table = record.derivatives(results, variables)
+    lines, names = record.source([entry for row in table for entry in row])
+    columns = len(variables)
+    rows = [f"({', '.join(names[i * columns : (i + 1) * columns])})" for i in range(states)]
+    body = "\n".join(f"    {line}" for line in [*lines, f"return {', '.join(rows)}"])
+    return f"import math\n\n\ndef jacobian({', '.join(arguments)}):\n{body}\n"
+
 
 Floats = npt.NDArray[np.float64]
 
@@ -196,7 +296,8 @@ class PeriodicSystem(ByContent):
         )
         if self.planar and side == 0.0:
             side = math.copysign(1.0, state[0] if state[0] != 0.0 else state[1])
-        record = np.array([math.inf, 0.0, 0.0, side, 0.0])
+        record = np.zeros(len(Record))
+        record[Record.LEAST_TILT], record[Record.SIDE] = math.inf, side
         status = flow(
             table,
             begin,
@@ -214,11 +315,11 @@ class PeriodicSystem(ByContent):
             table[:, 0].copy(),
             table[:, 1 : order + 1].copy(),
             table[:, order + 1].copy(),
-            float(record[0]),
-            float(record[1]),
-            int(record[2]),
-            float(record[3]),
-            float(record[4]),
+            float(record[Record.LEAST_TILT]),
+            float(record[Record.PEAK_TILT]),
+            int(record[Record.STEPS]),
+            float(record[Record.SIDE]),
+            float(record[Record.TURNS]),
         )
 
 

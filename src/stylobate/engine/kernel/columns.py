@@ -1,29 +1,25 @@
 """Columns of the table of a batch (input and record of each run), and rows of the buffer of a kernel (`Lane`).
 
-The table is one float64 array with a row for each run. A row holds, in this order: `Setup`, `Log`, the state, `Change`
-if the contact of the model can change, an `Orbit` for each known orbit, the parameters of the model, the numbers of the
-base motion (a `Wave` for each term, or `Tabulated`), its breaks, samples, stroboscopic samples, looks, pairs, and the
-trace of the run if there is one.
+The table is one float64 array with a row for each run. A row holds, in this order: `Setup`, `EventSetup`, `Log`, the
+state, `Change` if the contact of the model can change, an `Orbit` for each known orbit, the parameters of the model,
+the numbers of the base motion (a `Wave` for each term, or `Tabulated`), its breaks, samples, stroboscopic samples,
+looks, pairs, and the trace of the run if there is one.
 
 Looks and pairs are records of the tilt vector that decide the outcome of a motion under a periodic base motion. Looks
 follow each other after one period: those of the last periods, and an earlier group. A pair compares two states one
 period apart; the pairs are spread over the second half of the run.
 """
 
-from enum import IntEnum, auto
+from enum import auto
 from typing import Any
 
 import numpy as np
 
-
-class _FromZero(IntEnum):
-    @staticmethod
-    def _generate_next_value_(name: str, start: int, count: int, last_values: list[int]) -> int:
-        del name, start, last_values
-        return count
+from stylobate.engine.kernel.driver.events import EventSetup
+from stylobate.engine.kernel.layout import FromZero
 
 
-class Setup(_FromZero):
+class Setup(FromZero):
     """Input of a run, in dimensionless time and g."""
 
     END = auto()
@@ -35,9 +31,6 @@ class Setup(_FromZero):
     SLENDERNESS = auto()
     CAPACITY = auto()
     """Maximum |a_h|/(1 + a_z) under which the column stands still."""
-    TILT_LIMIT = auto()
-    OVERTURNED_TILT = auto()
-    """Tilt that counts as overturned if the model proves no point of no return."""
     REST_ENERGY = auto()
     """Rest energy ε; 0 if the column cannot come to rest."""
     REST_ENERGY_FOR_GOOD = auto()
@@ -84,7 +77,7 @@ class Setup(_FromZero):
     """Contribution of an inclined plane to the base acceleration; it is in the equations, not in the base motion."""
 
 
-class Wave(_FromZero):
+class Wave(FromZero):
     """Numbers of one term of a harmonic base motion: Σ a cos 2π(ft + φ), in the units of `Setup`."""
 
     TURNS = auto()
@@ -102,7 +95,7 @@ class Wave(_FromZero):
     """Time before which the term is zero, and interval in which it rises; only if a term has an onset or a ramp."""
 
 
-class Tabulated(_FromZero):
+class Tabulated(FromZero):
     """Numbers of a base motion that is tabulated by polynomials."""
 
     FACTOR = auto()
@@ -121,7 +114,7 @@ class Tabulated(_FromZero):
     """Row of the first polynomial, and number of polynomials."""
 
 
-class Piece(_FromZero):
+class Piece(FromZero):
     """First columns of a polynomial of a tabulated base motion; coefficients for x, y and z follow, lowest power first.
 
     The variable is the time from the middle of the piece over half its length.
@@ -140,8 +133,8 @@ class Piece(_FromZero):
     """Reciprocal of half the length [1/s]."""
 
 
-class Log(_FromZero):
-    """Record of a run, from which the kernel can also continue the run; follows the columns of `Setup`."""
+class Log(FromZero):
+    """Record of a run, from which the kernel can also continue the run; follows the columns of `EventSetup`."""
 
     STATUS = auto()
     TIME = auto()
@@ -204,7 +197,7 @@ class Log(_FromZero):
     """Integrals over the last periods: of the tilt, and of its components that rotate with and against the forcing."""
 
 
-class Lane(_FromZero):
+class Lane(FromZero):
     """Rows of the buffer for a lane that has a run, behind the columns of the table; flags are 0 or 1."""
 
     RUN = auto()
@@ -219,8 +212,8 @@ class Lane(_FromZero):
     """Step last tried."""
     HELD_STEP = auto()
     """Step that was held back because it overshot an event."""
-    BY_TILT = auto()
-    """Flag: the aimed event is reached when the tilt reaches its bound, else when it grows; -1 at a lossy passage."""
+    TARGET = auto()
+    """`Target` at which the aimed steps are to end."""
     STOP = auto()
     """Time that the next step must not pass."""
     OTHER_STOP = auto()
@@ -266,7 +259,7 @@ class Lane(_FromZero):
     PEAK = auto()
     """Flag: a peak tilt lies within the step."""
     FLAG = auto()
-    """Not 0 if the lane has an event for the driver."""
+    """Number of reasons why the driver must handle the lane."""
     ERROR = auto()
     """Error of the step, in units of the tolerance."""
     OK = auto()
@@ -290,7 +283,46 @@ class Lane(_FromZero):
     """1/period of the base motion; 0 if it has none."""
 
 
-class Change(_FromZero):
+class BySeries(FromZero):
+    """Rows of a lane whose steps are those of Taylor series."""
+
+    PROPOSED = auto()
+    """Next step that the last coefficients allow."""
+    NODE_MEAN_TILT = auto()
+    NODE_FORWARD_COS = auto()
+    NODE_FORWARD_SIN = auto()
+    NODE_BACKWARD_COS = auto()
+    NODE_BACKWARD_SIN = auto()
+    """Weighted values at one of the nodes of a step, for the integrals over the last periods, see `observation`."""
+
+
+class Watching(FromZero):
+    """Rows of a lane whose run is compared with known orbits."""
+
+    PHASE_ZERO_AT = auto()
+    """Next time at which the base motion has phase zero; infinite if the run is no longer compared."""
+    CONVERGED = auto()
+    """Flag: the run has converged to an orbit."""
+
+
+class Switching(FromZero):
+    """Rows of a lane whose model changes between kinds of contact."""
+
+    LAST_GUARD = auto()
+    """Last guard of the model at the start of the step; it counts only if it falls through zero."""
+    GUARD_NOW = auto()
+    """The same at the place of the step where the guards were evaluated last."""
+    BROKEN = auto()
+    """Positive if a guard is broken within the step, or a limit is passed."""
+    STIFF_LOOKS = auto()
+    """Number of successive steps that stability limits."""
+    STIFF_LOOK_AT = auto()
+    """Number of steps at which the next check for stiffness is due."""
+    STIFF_WAIT = auto()
+    """Number of steps between these checks."""
+
+
+class Change(FromZero):
     """Record of the changes between kinds of contact, for models that have them; follows the state."""
 
     SINCE = auto()
@@ -319,7 +351,7 @@ class Change(_FromZero):
     """Durations of sliding on the base face, of rim contact and of flight up to that time."""
 
 
-class Orbit(_FromZero):
+class Orbit(FromZero):
     """A known periodic orbit, and the approach of a run to it; follows `Change`."""
 
     X = auto()
@@ -364,7 +396,9 @@ GOLDEN = 0.6180339887498949
 ORBIT = len(Orbit)
 """Columns of a known orbit."""
 
-LOG = len(Setup)
+EVENTS_AT = len(Setup)
+"""First column of the numbers of the events."""
+LOG = EVENTS_AT + len(EventSetup)
 """First column of the log."""
 STATE = LOG + len(Log)
 """First column of the state."""
@@ -396,7 +430,7 @@ NOTE = 5
 """Columns of a sample or stroboscopic sample: tilt vector, its rate, time. A look has its azimuth instead of a time."""
 
 
-class Pair(_FromZero):
+class Pair(FromZero):
     """Columns of a pair; before its second state they are those of a look."""
 
     TILT_CHANGE = auto()
@@ -409,7 +443,7 @@ class Pair(_FromZero):
     """Azimuth of the first state [turns]."""
 
 
-class Trace(_FromZero):
+class Trace(FromZero):
     """First columns of a trace entry; the state at its start and a polynomial follow.
 
     An entry lasts until the next one begins. The polynomial is the dense output of DOP853 (see `stages.dense_change`)
@@ -422,48 +456,3 @@ class Trace(_FromZero):
     AZIMUTH = auto()
     END_AZIMUTH = auto()
     """Continuous azimuth of the tilt vector at both ends [turns]; only for three-dimensional motion."""
-
-
-class TraceKind(_FromZero):
-    """Kind of a trace entry: a segment of motion, or an event."""
-
-    STEP = auto()
-    PLANE_STEP = auto()
-    """A step of planar motion; its state is tilt and tilt rate."""
-    ANALYTICAL_STEP = auto()
-    """A short time for which the solution is analytical."""
-    STAND = auto()
-    """The column stands on its base."""
-    RELEASE = auto()
-    REST = auto()
-    IMPACT = auto()
-    PASSAGE = auto()
-    """Events: only START is used."""
-    CONTACT = auto()
-    """The event that ends a kind of contact; the index of its guard and the kinds before and after it follow."""
-
-
-class Status(_FromZero):
-    """Status of a run in its kernel."""
-
-    WAITING = auto()
-    STOPPED = auto()
-    """The run reached its duration."""
-    RESTED = auto()
-    OVERTURNED = auto()
-    LIMIT = auto()
-    LIFTED = auto()
-    STEP_LIMIT = auto()
-    STEP_TOO_SMALL = auto()
-    UNSEEN = auto()
-    """The column stood for as many periods as the step limit allows to search, and the base motion goes on."""
-    CANNOT_DEPART = auto()
-    """The column was uplifted from rest, but its model has no function `departure`."""
-    TO_PLANE = auto()
-    """The column was uplifted from rest by motion along a line: the kernel for planar motion continues the run."""
-    ENDLESS = auto()
-    """The contact changed infinitely often in a finite time."""
-    JAMMED = auto()
-    """Dynamic jamming: the contact can neither stick nor slip nor open."""
-    CONVERGED = auto()
-    """The run has converged to a known orbit, see `convergence`."""

@@ -13,9 +13,23 @@ from stylobate.compiler.compiled import Compiled
 from stylobate.compiler.programs import Bound, Written
 from stylobate.compiler.unit import ArrayArgument
 from stylobate.compiler.values import Element
-from stylobate.engine import dop853, elementary, radau, sums, tolerances
-from stylobate.engine.kernel import columns, driver, linear_equations, roots
+from stylobate.engine import dop853, elementary, tolerances
+from stylobate.engine.kernel import columns
 from stylobate.engine.kernel import shape as shapes
+from stylobate.engine.kernel.driver import (
+    equations,
+    events,
+    guards,
+    implicit_step,
+    loop,
+    motion,
+    records,
+    rest,
+    smooth,
+    stages,
+    step,
+    switching,
+)
 from stylobate.engine.kernel.expansion import expand_source
 from stylobate.engine.kernel.layout import Row, Table
 from stylobate.engine.kernel.shape import SERIES_ORDER, STAGES, Shape
@@ -33,7 +47,12 @@ _IN_LANES = ("rates", "tilt_of", "contact", "guards", "project")
 _OPTIONAL = ("rest_energy", "no_return_tilt", "departure", "passage", "at_rest", "impact_map")
 """Functions that a model may lack."""
 
-_USED_AS_THEY_ARE = (columns, dop853, elementary, linear_equations, radau, roots, shapes, sums, tolerances)
+_COMMON = (events, equations, stages, motion, guards, step, records, rest, loop)
+_SMOOTH = (smooth,)
+_SWITCHING = (switching, implicit_step)
+"""Modules of the driver: of all kernels, and for models without or with changes between kinds of contact."""
+
+_USED_AS_THEY_ARE = (columns, dop853, elementary, shapes, tolerances)
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,7 +87,7 @@ def _kernel(model: type[Model], shape: Shape, functions: tuple[tuple[str, Callab
     compiled = Compiled(
         name="advance",
         program=lambda: Bound(
-            modules=driver.modules(switching=shape.guards > 0),
+            modules=_COMMON + (_SWITCHING if shape.guards else _SMOOTH),
             names={"R": _rows(shape), **_constants(model, shape)},
             written=Written(expand_source(model, shape)) if shape.series else None,
             imported=_USED_AS_THEY_ARE,
@@ -173,7 +192,7 @@ def _contact_constants(model: type[Model], shape: Shape) -> dict[str, Any]:
         **{name: names.index(guard) if guard in names else -1 for name, guard in places.items()},
         **dict(zip(("SLIP_X", "SLIP_Y"), shape.slip or (-1, -1), strict=True)),
         "KEPT_STATES": shape.kept,
-        "CHANGES": radau.STAGES * shape.order,
+        "CHANGES": implicit_step.STAGES * shape.order,
         "WINDOW_ENDS": tuple(model.state_names.index(name) for name in states),
         **dict.fromkeys(("RESTING", "SLIDING", "ROLLING", "SLIPPING", "FLYING", "JAMMED"), -1),
         **{kind.name: kind.value for kind in kinds or ()},

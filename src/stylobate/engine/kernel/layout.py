@@ -4,12 +4,22 @@
 """
 
 from collections.abc import Iterator
+from enum import IntEnum
 
 import numpy as np
 import numpy.typing as npt
 
 Table = npt.NDArray[np.float64]
 Row = npt.NDArray[np.float64]
+
+
+class FromZero(IntEnum):
+    """Columns or rows, numbered from zero in the order of their definition."""
+
+    @staticmethod
+    def _generate_next_value_(name: str, start: int, count: int, last_values: list[int]) -> int:
+        del name, start, last_values
+        return count
 
 
 class Rows:

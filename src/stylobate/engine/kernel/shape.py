@@ -1,7 +1,8 @@
-"""Shape of a kernel: its distinguishing properties, and the layout of its buffer and table."""
+"""Shape of a kernel: its distinguishing properties, kinds of base motion, and the layout of its buffer and table."""
 
 from dataclasses import dataclass
 from functools import cache
+from typing import Protocol
 
 from stylobate.engine.kernel.columns import (
     ORBIT,
@@ -9,14 +10,128 @@ from stylobate.engine.kernel.columns import (
     SWITCHING_TRACE_ROOM,
     TRACE_ROOM,
     TRACE_TERMS,
+    BySeries,
     Change,
     Lane,
     Log,
     Setup,
+    Switching,
+    Tabulated,
     Trace,
+    Watching,
+    Wave,
 )
-from stylobate.engine.kernel.forcing import KernelForcing
+from stylobate.engine.kernel.driver.events import EventSetup
 from stylobate.engine.kernel.layout import Rows
+
+
+class KernelForcing(Protocol):
+    """A kind of base motion that kernels can evaluate."""
+
+    @property
+    def components(self) -> tuple[str, ...]:
+        """Names of the accelerations: "ax" and "ay", or "ah" if planar, and "az" if the base moves vertically."""
+
+    @property
+    def tag(self) -> str:
+        """Short name for file names."""
+
+    def reserve(self, rows: Rows) -> None:
+        """Add the rows of the coefficients."""
+
+    def constants(self, rows: Rows) -> dict[str, int]:
+        """Return the constants that the driver needs to fill the rows."""
+
+    @property
+    def columns(self) -> int:
+        """Number of columns that describe the motion in the table of a batch."""
+
+
+@dataclass(frozen=True, slots=True)
+class Harmonics(KernelForcing):
+    """Sum of harmonic terms, each with one frequency, and an amplitude and phase for each component.
+
+    Parameters
+    ----------
+    terms
+        Number of terms.
+    windowed
+        Whether the terms may begin later or rise over a time: each is multiplied by α − β cos(window phase).
+    components
+        ("ax", "ay"), or ("ah",) if planar; with "az" if the base moves vertically.
+    """
+
+    terms: int
+    windowed: bool
+    components: tuple[str, ...]
+
+    @property
+    def tag(self) -> str:
+        """Short name such as `h1`, `h2w`; `z` marks a vertical component."""
+        return f"h{self.terms}{'w' * self.windowed}{'z' * ('az' in self.components)}"
+
+    @property
+    def columns(self) -> int:
+        """Number of columns, those of `Wave` for each term."""
+        return self.terms * (len(Wave) if self.windowed else Wave.ONSET)
+
+    def reserve(self, rows: Rows) -> None:
+        """Add the rows of all terms, term by term."""
+        for term in range(self.terms):
+            rows.add(f"turns{term}")
+            for component in self.components:
+                rows.add(f"{component}_amplitude{term}")
+                rows.add(f"{component}_phase{term}")
+            if self.windowed:
+                for name in ("full", "depth", "window_turns", "window_phase"):
+                    rows.add(f"{name}{term}")
+
+    def constants(self, rows: Rows) -> dict[str, int]:
+        """Return the number of terms and the layout of their rows."""
+        return {
+            "TERMS": self.terms,
+            "WINDOWED": int(self.windowed),
+            "FIRST_FORCING": rows["turns0"] if self.terms else 0,
+            "FORCING_ROWS": 1 + 2 * len(self.components) + 4 * self.windowed,
+            "DEGREE": -1,
+        }
+
+
+@dataclass(frozen=True, slots=True)
+class Polynomials(KernelForcing):
+    """Motion tabulated as successive polynomials of the same `degree`; steps end where the pieces end."""
+
+    degree: int
+    components: tuple[str, ...]
+
+    @property
+    def tag(self) -> str:
+        """Short name such as `p1`, `p15`; `z` marks a vertical component."""
+        return f"p{self.degree}{'z' * ('az' in self.components)}"
+
+    @property
+    def columns(self) -> int:
+        """Number of columns, those of `Tabulated`."""
+        return len(Tabulated)
+
+    def reserve(self, rows: Rows) -> None:
+        """Add the rows of the present piece."""
+        rows.add("middle")
+        rows.add("per_half")
+        for component in self.components:
+            for power in range(self.degree + 1):
+                rows.add(f"{component}{power}")
+
+    def constants(self, rows: Rows) -> dict[str, int]:
+        """Return the degree and the first row."""
+        return {
+            "TERMS": 0,
+            "WINDOWED": 0,
+            "FIRST_FORCING": rows["middle"],
+            "FORCING_ROWS": self.degree + 1,
+            "DEGREE": self.degree,
+        }
+
 
 STAGES = 12
 """Stages of DOP853; one more gives the slope at the end of a step."""
@@ -134,7 +249,7 @@ class Shape:
 @cache
 def _rows_of(shape: Shape) -> Rows:
     rows = Rows()
-    rows.add(*(column.name.lower() for column in Setup), *(column.name.lower() for column in Log))
+    rows.add(*(column.name.lower() for group in (Setup, EventSetup, Log) for column in group))
     rows.add_many("y", shape.order)
     rows.add(*shape.changes)
     rows.add(*(row.name.lower() for row in Lane))
@@ -144,7 +259,7 @@ def _rows_of(shape: Shape) -> Rows:
     for name in ("new", "last"):
         rows.add_many(name, shape.order)
     if shape.orbits:
-        rows.add("phase_zero_at", "converged")
+        rows.add(*(row.name.lower() for row in Watching))
         rows.add_many("orbit", shape.orbits * ORBIT)
     if shape.demands:
         rows.add(*(f"{name}_{place}" for place in ("now", 1, 2, 3, 4) for name in DEMANDS))
@@ -153,7 +268,7 @@ def _rows_of(shape: Shape) -> Rows:
 
 
 def _add_series(shape: Shape, rows: Rows) -> None:
-    rows.add("proposed", *(f"node_{name}" for name in OBSERVED))
+    rows.add(*(row.name.lower() for row in BySeries))
     rows.add_many("square", SERIES_ORDER + 1)
     for j in shape.expanded:
         rows.add(*(f"c{k}_{j}" for k in range(1, shape.degree(j) + 1)))
@@ -164,7 +279,7 @@ def _add_stages(shape: Shape, rows: Rows) -> None:
         rows.add_many(f"k{stage}_", shape.order)
     rows.add_many("last_slope", shape.order)
     if shape.guards:
-        rows.add("last_guard", "guard_now", "broken", "stiff_looks", "stiff_look_at", "stiff_wait")
+        rows.add(*(row.name.lower() for row in Switching))
         for name in ("stage", "rate", "step"):
             rows.add_many(name, shape.order)
     for name in ("extra0_", "extra1_", "extra2_", *(f"dense{power}_" for power in range(DENSE_TERMS))):
@@ -173,6 +288,3 @@ def _add_stages(shape: Shape, rows: Rows) -> None:
 
 DEMANDS = ("normal", "friction", "pivoting")
 """Contact demands: normal force over m g, and friction force and moment over the normal force."""
-
-OBSERVED = ("mean_tilt", "forward_cos", "forward_sin", "backward_cos", "backward_sin")
-"""Rows of the integrals over the last periods."""

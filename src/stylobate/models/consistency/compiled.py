@@ -108,7 +108,7 @@ def _plain(function: Callable[..., Any], arguments: Floats) -> tuple[Floats, Flo
 
 def _compiled(function: Callable[..., Any], rows: Floats, results: int, name: str) -> Floats | None:
     """Return the results of compiled code, or None if the function is not compiled."""
-    from stylobate.compiler.kept import runs_plain  # noqa: PLC0415  building a model needs no compiler
+    from stylobate.compiler.kept import runs_plain
 
     if runs_plain():
         return None
@@ -123,9 +123,9 @@ def _compiled(function: Callable[..., Any], rows: Floats, results: int, name: st
 @cache
 def _program(function: Callable[..., Any], arguments: int, results: int, name: str) -> Callable[..., int]:
     """Compile a function as kernels do: vectorised, with fused products and sums."""
-    from stylobate.compiler.compiled import Compiled  # noqa: PLC0415  building a model needs no compiler
-    from stylobate.compiler.programs import Written  # noqa: PLC0415
-    from stylobate.compiler.unit import ArrayArgument  # noqa: PLC0415
+    from stylobate.compiler.compiled import Compiled
+    from stylobate.compiler.programs import Written
+    from stylobate.compiler.unit import ArrayArgument
 
     lines = [
         "from stylobate.compiler.marks import fast, lanes",

@@ -85,7 +85,7 @@ def loss_of_speed(subject: Subject) -> str:
 
 def problems_of_passage(subject: Subject) -> Iterator[str]:
     """Yield a line if the end of `passage` differs from that of `rates`, on a close passage of the vertical."""
-    from scipy.integrate import solve_ivp  # noqa: PLC0415  a thorough check only
+    from scipy.integrate import solve_ivp
 
     model, c = subject.model, subject.slenderness
     if model.passage is None:

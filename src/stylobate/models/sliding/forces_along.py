@@ -22,7 +22,7 @@ def forces_along(states: Floats, accelerations: Floats, n: Numbers) -> Floats:
     n
         The parameters.
     """
-    from stylobate.compiler.over_rows import over_rows  # noqa: PLC0415  building a model needs no compiler
+    from stylobate.compiler.over_rows import over_rows
 
     state = State(*states)
     rows = np.column_stack(np.broadcast_arrays(

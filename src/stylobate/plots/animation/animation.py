@@ -21,11 +21,9 @@ from stylobate.errors import (
 )
 from stylobate.files import written_aside
 from stylobate.plots.animation.drawing import Drawing, Look
-from stylobate.plots.animation.gif import gif_of
+from stylobate.plots.animation.formats import gif_of, page_of, write_mp4
 from stylobate.plots.animation.motion import DrawnMotion
-from stylobate.plots.animation.page import page_of
-from stylobate.plots.animation.video import write_mp4
-from stylobate.plots.axonometry import View
+from stylobate.plots.geometry import View
 from stylobate.progress import Progress, Report, report_of, shows_progress, silent
 from stylobate.results import Response
 

@@ -3,14 +3,14 @@
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, TypeVar
+from typing import Any, Self, TypeVar
 
 import numpy as np
+import numpy.typing as npt
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.collections import LineCollection, PolyCollection
-from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Polygon
@@ -19,14 +19,118 @@ from matplotlib.transforms import IdentityTransform
 from PIL import Image
 
 from stylobate.errors import Outcome
-from stylobate.plots.animation import palette
-from stylobate.plots.animation.column import MARKED, FlutedColumn, lit, ring
-from stylobate.plots.animation.motion import DrawnMotion
-from stylobate.plots.animation.path import contact_path
-from stylobate.plots.animation.scene import Scene, round_length
-from stylobate.plots.axonometry import View, direction, hull
-from stylobate.plots.pose import Floats, frames
+from stylobate.plots import body
+from stylobate.plots.animation.motion import DrawnMotion, contact_path
+from stylobate.plots.body import MARKED, ColumnArtists, FlutedColumn, light_for, ring
+from stylobate.plots.geometry import Floats, View, frames, hull, quaternions
 from stylobate.plots.style import BLUE, VERMILION
+
+# Half the minimum width of the slab: in base radii, and in heights of the column.
+_LEAST, _OF_HEIGHT = 2.3, 0.16
+# Margin of the slab about the path [base radii], its thickness in half widths, number of lines across it.
+_MARGIN, _THICKNESS, _LINES = 1.7, 0.09, 8
+# Number of poses that set the extent of the frames.
+_SEEN = 240
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Scene:
+    """A slab on the ground, and the plane on it in which positions of a motion are given.
+
+    Attributes
+    ----------
+    turned
+        Rotation matrix from the frame of the inclined plane to the frame of gravity, shape (3, 3).
+    low, high
+        Corners of the slab in its plane, shape (2,) [m].
+    thickness, ground
+        Thickness of the slab, and height of the ground [m].
+    grid
+        Distance between lines on the slab and marks on the ground [m].
+    """
+
+    turned: Floats
+    low: Floats
+    high: Floats
+    thickness: float
+    ground: float
+    grid: float
+
+    @classmethod
+    def of(cls, motion: DrawnMotion) -> Self:
+        """Return the scene that contains all of a motion."""
+        shape = motion.shape
+        least, most = motion.footprint.min(axis=0), motion.footprint.max(axis=0)
+        middle, reach = 0.5 * (least + most), 0.5 * float(np.max(most - least))
+        half = max(reach + _MARGIN * shape.radius, _LEAST * shape.radius, _OF_HEIGHT * shape.height)
+        lean = motion.incline * np.array([math.cos(motion.incline_direction), math.sin(motion.incline_direction)])
+        turned = frames(quaternions(lean, 0.0))
+        thickness = _THICKNESS * half
+        corners = _corners(middle - half, middle + half, -thickness) @ turned.T
+        lowest = corners[:, 2].min() + (motion.base @ turned.T)[:, 2].min()
+        return cls(
+            turned=turned,
+            low=middle - half,
+            high=middle + half,
+            thickness=thickness,
+            ground=float(lowest),
+            grid=round_length(2.0 * half / _LINES),
+        )
+
+    def slab(self, height: float) -> Floats:
+        """Return the corners of the slab at a `height` above its upper face, anticlockwise, in its own frame."""
+        return _corners(self.low, self.high, height)
+
+    def lines(self) -> Floats:
+        """Return the ends of the lines on the slab, in its own frame, shape (n, 2, 3)."""
+        found = []
+        for along in (0, 1):
+            first, last = math.ceil(self.low[along] / self.grid), math.floor(self.high[along] / self.grid)
+            for number in range(first, last + 1):
+                ends = np.zeros((2, 3))
+                ends[:, along] = number * self.grid
+                ends[:, 1 - along] = self.low[1 - along], self.high[1 - along]
+                found.append(ends)
+        return np.stack(found)
+
+    @property
+    def normal(self) -> Floats:
+        """Unit vector upwards from the plane, in the frame of gravity."""
+        return self.turned[:, 2]
+
+    def everything(self, motion: DrawnMotion) -> Floats:
+        """Return points whose hull contains slab and column at all times, shape (n, 3)."""
+        shape, chosen = motion.shape, _spread(motion.time.size)
+        poses, base = frames(motion.rotation[chosen]), motion.base[chosen]
+        around = np.linspace(0.0, 2.0 * np.pi, 24, endpoint=False)
+        rings = [
+            np.stack([radius * np.cos(around), radius * np.sin(around), np.full(around.size, height)], axis=-1)
+            for radius, height in ((shape.radius, 0.0), (shape.top_radius, shape.height))
+        ]
+        columns = np.concatenate(rings) @ np.swapaxes(poses, -1, -2) + (base + motion.centre[chosen])[:, None]
+        slabs = np.concatenate([self.slab(0.0), self.slab(-self.thickness)]) + base[:, None]
+        return np.concatenate([columns.reshape(-1, 3), slabs.reshape(-1, 3)]) @ self.turned.T
+
+
+def round_length(length: float) -> float:
+    """Return the largest of 1, 2 and 5 times a power of ten that is no longer than `length`.
+
+    >>> round_length(0.34), round_length(7.0)
+    (0.2, 5.0)
+    """
+    power = 10.0 ** math.floor(math.log10(length))
+    return max(step * power for step in (1.0, 2.0, 5.0) if step * power <= length)
+
+
+def _spread(count: int) -> npt.NDArray[np.intp]:
+    return np.unique(np.linspace(0, count - 1, min(count, _SEEN)).round().astype(int))
+
+
+def _corners(low: Floats, high: Floats, height: float) -> Floats:
+    return np.array(
+        [[low[0], low[1], height], [high[0], low[1], height], [high[0], high[1], height], [low[0], high[1], height]]
+    )
+
 
 _DPI = 100
 # Room about the scene [pixels]: at the sides, above for two lines of text, below for the history of the tilt.
@@ -43,8 +147,6 @@ _LATEST = 0.08
 _MARKS_APART, _FADE = 34.0, 0.45
 # The tilt of unstable balance is drawn if the tilt comes to this fraction of it.
 _NEAR = 0.4
-# The light's azimuth relative to the viewer, and its elevation [rad].
-_BESIDE, _HIGH = math.radians(-62.0), math.radians(48.0)
 _LARGE, _SMALL = 9.0, 8.0
 _FALLS = (Outcome.OVERTURNED,)
 _ROUNDING = 1e-9
@@ -93,12 +195,11 @@ class Drawing:
 
     def __init__(self, motion: DrawnMotion, history: DrawnMotion, look: Look) -> None:
         self.motion, self.look = motion, look
-        self.scene, self.column = Scene.of(motion), FlutedColumn.of(motion.shape)
+        self.scene = Scene.of(motion)
         self._times, self._path = contact_path(history)
-        self._light = direction(look.view.azimuth + _BESIDE, _HIGH)
-        self._eye = direction(look.view.azimuth, look.view.elevation)
+        self._light, self._eye = light_for(look.view), look.view.eye
         inches = (look.size[0] / _DPI, look.size[1] / _DPI)
-        self._figure = Figure(figsize=inches, dpi=_DPI, facecolor=palette.BACKGROUND)
+        self._figure = Figure(figsize=inches, dpi=_DPI, facecolor=body.BACKGROUND)
         canvas: Any = FigureCanvasAgg  # its methods have no types
         self._canvas = canvas(self._figure)
         self._moving: list[Artist] = []
@@ -116,13 +217,18 @@ class Drawing:
         frame = self.scene.turned @ frames(self.motion.rotation[index])
         centre = base + self.scene.turned @ self.motion.centre[index]
         self._place_slab(base, frame, centre)
-        self._place_column(frame, centre)
+        self._drawn_column.place(frame, centre)
         self._place_contact(index, base, frame)
         self._place_time(index)
         self._canvas.restore_region(self._behind)
         for artist in self._moving:
             self._figure.draw_artist(artist)
         return Image.frombuffer("RGBA", self.look.size, self._canvas.buffer_rgba()).convert("RGB")
+
+    @property
+    def column(self) -> FlutedColumn:
+        """Facets of the column in its own frame."""
+        return self._drawn_column.body
 
     def pixels(self, points: Floats) -> Floats:
         """Return the pixels, shape (…, 2) from the upper left corner, of points of shape (…, 3)."""
@@ -167,11 +273,11 @@ class Drawing:
         x, y = self.look.view.project(marks).T
         middle = float(self.look.view.project(np.array([0.0, 0.0, self.scene.ground]))[1])
         strength = np.clip(1.0 - (y - middle) / (_FADE * (high - low)), 0.0, 1.0)
-        self.space.scatter(x, y, s=16.0, c=palette.GROUND_LINE, marker="+", linewidths=0.9, alpha=strength, zorder=0)
+        self.space.scatter(x, y, s=16.0, c=body.GROUND_LINE, marker="+", linewidths=0.9, alpha=strength, zorder=0)
         if self.plan is not None:
             self.plan.axis("on")
-            self.plan.set(facecolor=palette.SLAB, xticks=[], yticks=[])
-            self.plan.set_title("from above", y=-0.14, loc="center", size=_SMALL, color=palette.PALE)
+            self.plan.set(facecolor=body.SLAB, xticks=[], yticks=[])
+            self.plan.set_title("from above", y=-0.14, loc="center", size=_SMALL, color=body.PALE)
             reach = 1.25 * self.motion.shape.radius
             ends = self._from_above(np.stack([self.motion.footprint.min(axis=0), self.motion.footprint.max(axis=0)]))
             middle, half = ends.mean(axis=0), 0.5 * float(np.abs(np.diff(ends, axis=0)).max()) + reach
@@ -191,12 +297,12 @@ class Drawing:
         strip = self._axes(_INDENT, _FLOOR, self.look.size[0] - _INDENT, _FLOOR + _BAND)
         near = highest >= _NEAR
         strip.set(xlim=(0.0, time[-1]), ylim=(0.0, max(highest, 1.0) if near else highest or 1.0))
-        strip.axhline(0.0, color=palette.GROUND_LINE, linewidth=1.0)
-        strip.plot(time, size, color=palette.GROUND_LINE, linewidth=1.0)
+        strip.axhline(0.0, color=body.GROUND_LINE, linewidth=1.0)
+        strip.plot(time, size, color=body.GROUND_LINE, linewidth=1.0)
         if near:
-            strip.axhline(1.0, color=palette.PALE, linewidth=0.8, linestyle="--")
+            strip.axhline(1.0, color=body.PALE, linewidth=0.8, linestyle="--")
         level, label = (1.0, "c") if near else (highest, f"{highest:.2g} c")
-        text: dict[str, Any] = {"size": _SMALL, "color": palette.PALE, "va": "center"}
+        text: dict[str, Any] = {"size": _SMALL, "color": body.PALE, "va": "center"}
         strip.text(1.01, level, label, transform=strip.get_yaxis_transform(), **text)
         if not near or highest < 2.0:  # noqa: PLR2004  else the names of the two lines would touch
             strip.text(1.01, 0.0, "0", transform=strip.get_yaxis_transform(), **text)
@@ -207,18 +313,18 @@ class Drawing:
     def _add_texts(self) -> None:
         """Write the title, the scale and the grid; each frame writes time, tilt and outcome again."""
         width, height = self.look.size
-        self._state = self._animated(self._text(_EDGE, height - 20, "", palette.INK, size=_LARGE))
-        self._verdict = self._animated(self._text(width - _EDGE, height - 20, "", palette.INK, ha="right", size=_LARGE))
+        self._state = self._animated(self._text(_EDGE, height - 20, "", body.INK, size=_LARGE))
+        self._verdict = self._animated(self._text(width - _EDGE, height - 20, "", body.INK, ha="right", size=_LARGE))
         self._verdict.set_fontweight("bold")
         if self.look.title:
-            self._fit(self._text(_EDGE, height - 38, self.look.title, palette.PALE), width - 2 * _EDGE)
+            self._fit(self._text(_EDGE, height - 38, self.look.title, body.PALE), width - 2 * _EDGE)
         scale = self.pixels_per_metre
         length = round_length(0.2 * (width - 2 * _EDGE) / scale)
         left, right, floor = width - _EDGE - length * scale, width - _EDGE, _BELOW - 20
-        bar = Line2D([left, right], [floor, floor], transform=None, color=palette.INK, linewidth=1.5, marker="|")
+        bar = Line2D([left, right], [floor, floor], transform=None, color=body.INK, linewidth=1.5, marker="|")
         self._figure.add_artist(bar)
-        self._text(0.5 * (left + right), floor + 5, _metres(length), palette.INK, ha="center", va="bottom")
-        self._text(_EDGE, floor - 4, f"grid {_metres(self.scene.grid)}", palette.PALE)
+        self._text(0.5 * (left + right), floor + 5, _metres(length), body.INK, ha="center", va="bottom")
+        self._text(_EDGE, floor - 4, f"grid {_metres(self.scene.grid)}", body.PALE)
 
     def _text(self, x: float, y: float, text: str, colour: str, **options: Any) -> Text:
         """Write a text at a position [pixels from the lower left]."""
@@ -258,24 +364,25 @@ class Drawing:
             return add(axes.plot([], [], color=colour, linewidth=width, solid_capstyle="round")[0])
 
         self._sides = add(space.add_collection(PolyCollection([], linewidths=0.0), autolim=False))
-        self._top = patch(palette.SLAB, edgecolor=palette.SLAB_SIDE, linewidth=0.8)
+        self._top = patch(body.SLAB, edgecolor=body.SLAB_SIDE, linewidth=0.8)
         self._lines = add(
-            space.add_collection(LineCollection([], colors=palette.SLAB_LINE, linewidths=0.7), autolim=False)
+            space.add_collection(LineCollection([], colors=body.SLAB_LINE, linewidths=0.7), autolim=False)
         )
-        self._shade = patch(palette.SHADOW, alpha=palette.SHADOW_STRENGTH)
+        self._shade = patch(body.SHADOW, alpha=body.SHADOW_STRENGTH)
         self._shade.set_clip_path(self._top)
         self._views = []
         for axes, project in self._projections():
-            footprint = line(axes, palette.FOOTPRINT, 1.0)
+            footprint = line(axes, body.FOOTPRINT, 1.0)
             self._views.append(
-                (axes, project, footprint, line(axes, palette.CONTACT_OLD, 1.0), line(axes, palette.CONTACT, 2.0))
+                (axes, project, footprint, line(axes, body.CONTACT_OLD, 1.0), line(axes, body.CONTACT, 2.0))
             )
-        self._shaft = add(space.add_collection(PolyCollection([], linewidths=0.4), autolim=False))
-        self._face, self._wedge = patch(palette.STONE, edgecolor=palette.SLAB_SIDE, linewidth=0.6), patch(palette.MARK)
+        self._drawn_column = ColumnArtists(space, self.motion.shape, self.look.view)
+        for one in self._drawn_column.artists:
+            add(one)
         dot: dict[str, Any] = {"linestyle": "none", "marker": "o", "markersize": 6.0}
         self._dots = [add(axes.plot([], [], **dot)[0]) for axes, *_ in self._views]
         if self.plan is not None:
-            self._mark = line(self.plan, palette.MARK, 2.5)
+            self._mark = line(self.plan, body.MARK, 2.5)
 
     def _projections(self) -> list[tuple[Axes, Callable[[Floats, Floats], Floats]]]:
         """Return, for each view, the projection of points in the displaced plane of the base."""
@@ -298,7 +405,7 @@ class Drawing:
             outward = np.cross(upper[second] - upper[first], scene.normal)
             if outward @ self._eye > 0.0:
                 sides.append(project(np.stack([upper[first], upper[second], lower[second], lower[first]])))
-                colours.append(palette.SLAB_LIT if outward @ self._light > 0.0 else palette.SLAB_SIDE)
+                colours.append(body.SLAB_LIT if outward @ self._light > 0.0 else body.SLAB_SIDE)
         self._sides.set(verts=sides, facecolor=colours)
         self._top.set_xy(project(upper))
         self._lines.set(segments=list(project(scene.lines() @ scene.turned.T + base)))
@@ -306,23 +413,6 @@ class Drawing:
         height = (rims - base) @ scene.normal
         cast = rims - (height / (self._light @ scene.normal))[:, None] * self._light
         self._shade.set_xy(hull(project(cast)))
-
-    def _place_column(self, frame: Floats, centre: Floats) -> None:
-        column, project = self.column, self.look.view.project
-        bottom, top = (project(rim @ frame.T + centre) for rim in (column.bottom, column.top))
-        facets = np.stack([bottom, np.roll(bottom, -1, axis=0), np.roll(top, -1, axis=0), top], axis=1)
-        across, up = facets[:, 1] - facets[:, 0], facets[:, 3] - facets[:, 0]
-        seen = across[:, 0] * up[:, 1] - across[:, 1] * up[:, 0] > 0.0
-        colours = lit(column.colours, column.normals @ frame.T, self._light)[seen]
-        self._shaft.set(verts=list(facets[seen]), facecolor=colours, edgecolor=colours)
-        faces = [(rim, outward) for rim, outward in ((bottom, -frame[:, 2]), (top, frame[:, 2]))]
-        shown = [(rim, outward) for rim, outward in faces if outward @ self._eye > 0.0]
-        for patch in (self._face, self._wedge):
-            patch.set_visible(bool(shown))
-        for rim, outward in shown:
-            stone, mark = lit(np.array([to_rgb(palette.STONE), to_rgb(palette.MARK)]), outward[None], self._light)
-            self._face.set(xy=rim, facecolor=stone)
-            self._wedge.set(xy=np.concatenate([rim.mean(axis=0)[None], rim[column.wedge]]), facecolor=mark)
 
     def _place_contact(self, index: int, base: Floats, frame: Floats) -> None:
         """Place the footprint, the path and the contact point; the point is a ring if the column hides it."""
@@ -332,16 +422,16 @@ class Drawing:
         recent = int(np.searchsorted(self._times, time - _LATEST * float(motion.time[-1]), side="right"))
         for (_, project, footprint, old, new), dot in zip(self._views, self._dots, strict=True):
             footprint.set_data(*project(around, base).T)
-            footprint.set_color(palette.CONTACT if motion.resting[index] else palette.FOOTPRINT)
+            footprint.set_color(body.CONTACT if motion.resting[index] else body.FOOTPRINT)
             old.set_data(*project(self._path[:last], base).T)
             new.set_data(*project(self._path[recent:last], base).T)
             dot.set_data(*project(motion.contact_point[index][None], base).T)
             dot.set_visible(bool(motion.on_rim[index]))
-            dot.set(markerfacecolor=palette.CONTACT_POINT, markeredgecolor=palette.BACKGROUND)
+            dot.set(markerfacecolor=body.CONTACT_POINT, markeredgecolor=body.BACKGROUND)
         lean = self.scene.turned @ np.append(motion.contact_point[index] - motion.footprint[index], 0.0)
         outward = lean - (lean @ frame[:, 2]) * frame[:, 2]
         if frame[:, 2] @ self._eye > 0.0 > outward @ self._eye:  # shaft and base face away from the viewer
-            self._dots[0].set(markerfacecolor="none", markeredgecolor=palette.CONTACT_POINT)
+            self._dots[0].set(markerfacecolor="none", markeredgecolor=body.CONTACT_POINT)
         if self.plan is not None:
             turn = motion.twist[index] + MARKED
             radius = motion.shape.radius * np.array([[math.cos(turn), math.sin(turn)]])
@@ -362,7 +452,7 @@ class Drawing:
         at_end = index == motion.time.size - 1
         pace = "" if math.isclose(self.look.pace, 1.0) else f"speed × {self.look.pace:.3g}"
         self._verdict.set_text(motion.outcome.label if at_end else pace)
-        self._verdict.set_color(VERMILION if at_end and motion.outcome in _FALLS else palette.INK)
+        self._verdict.set_color(VERMILION if at_end and motion.outcome in _FALLS else body.INK)
         self._verdict.set_fontweight("bold" if at_end else "normal")
         self._place_verdict()
 

@@ -1,59 +1,119 @@
-"""Overturning maps: outcomes over any two parameters."""
+"""Overturning maps: outcomes over any two parameters; of a column that can slip, the kinds of contact too."""
 
 from collections.abc import Mapping
-from pathlib import Path
-from typing import Unpack
+from typing import TYPE_CHECKING, Annotated, Any, Unpack
 
 import numpy as np
 import numpy.typing as npt
-import xarray as xr
 
 from stylobate.base_motions import BaseMotion
-from stylobate.engine.parameters import own_numbers
-from stylobate.errors import Outcome, ParameterError
+from stylobate.base_motions.declared import is_pulse, with_numbers
+from stylobate.config.study import Study
+from stylobate.errors import Outcome, ParameterError, UnsupportedError
 from stylobate.models import Model
-from stylobate.progress import Progress, shows_progress
+from stylobate.quantities import Quantity
+from stylobate.results.contact_classes import (
+    CONTACT_CLASSES,
+    ContactClass,
+    contact_classes,
+    knife_edge_remarks,
+    lands_flat,
+)
 from stylobate.results.outcomes import NOT_COMPUTED
-from stylobate.run_arguments import RunOptions
-from stylobate.studies.checks import require_values
-from stylobate.studies.sweeps import Executor, Sweep
-from stylobate.studies.sweeps.labelled import labelled_sweep
+from stylobate.results.tables import Table, number_of_runs
+from stylobate.run_arguments import duration_with_tail
+from stylobate.studies.study import Runs, described, study
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from stylobate.studies.sweeps import Sweep
+    from stylobate.studies.sweeps.labelled import Label
 
 _PLANE = 2
+_LEAST_SHARE = 1e-3
+_SHARE = Quantity(text="minimum fraction of a run for a kind of contact to count; only with sliding", ge=0.0, lt=1.0)
 
 
-@shows_progress("map")
+def _shares(result: "xr.Dataset") -> list[tuple[str, int, float]]:
+    """Return the name of each outcome, or class of contact, with the count and share of its runs."""
+    names = "class_name" if "class_name" in result else "outcome_name"
+    table = (result[name].to_numpy() for name in (names, "count", "share"))
+    return [(str(name), int(count), float(share)) for name, count, share in zip(*table, strict=True)]
+
+
+def _summary(result: "xr.Dataset") -> dict[str, Any]:
+    outcomes = {name: {"count": count, "share": share} for name, count, share in _shares(result)}
+    return {"outcomes": outcomes, "uncertain": int(result["uncertain"].sum())}
+
+
+def _table(result: "xr.Dataset") -> Table:
+    rows = [(name, str(count), f"{100.0 * share:.2f} %") for name, count, share in _shares(result) if count]
+    title = number_of_runs(result, f" over {' and '.join(map(str, result['outcome'].dims))}")
+    uncertain = int(result["uncertain"].sum())
+    remarks = [f"{uncertain} numerically uncertain: rounding could alter them"] if uncertain else []
+    if "class_name" in result:
+        remarks = [f"{one}, count outcomes with `upright`" for one in remarks] + knife_edge_remarks(result)
+    return Table("; ".join([title, *remarks]), ("outcome", "runs", "share"), rows)
+
+
+def _arguments(config: Any, setup: Any) -> Mapping[str, Any]:
+    """Return the duration of runs under pulses of several frequencies: that of the longest pulse, with its tail."""
+    frequencies = setup.options["over"].get("angular_frequency")
+    if frequencies is None or config.duration is not None or config.periods is not None:
+        return {}
+    if not is_pulse(setup.motion):
+        return {}
+    longest = with_numbers(setup.motion, {"angular_frequency": float(frequencies.min())})
+    return {"duration": duration_with_tail(longest.duration, setup.model.column.frequency_parameter)}
+
+
+@study(
+    "map",
+    Study(
+        name="map",
+        source="TOML description, or a saved map (.nc) or store (.zarr) to show or repeat",
+        help="""Compute the overturning map over two parameters.
+
+    Each run stays, rocks, rolls or overturns; with --model sliding it may also slide, slip or fly. A number of column,
+    model, base motion or initial state varies along each axis: angular-frequency, acceleration, start-phase, damping,
+    size, tilt-x … A saved map is shown; options that change it compute it again. Examples:
+
+    stylobate map --slenderness 0.1 --damping 0.1 --motion circular --x angular-frequency 0.5 6 100
+    --y acceleration 0.05 0.6 100 --periods 100 --output map.zarr --figure map.png
+
+    stylobate map map.zarr --resume
+    """,
+        axes=("x", "y"),
+        early=True,
+        arguments=_arguments,
+        completed=lambda saved, *_: labelled(saved),
+        table=_table,
+        summary=_summary,
+    ),
+)
 def overturning_map(
     model: Model,
     motion: BaseMotion | None = None,
     *,
     over: Mapping[str, npt.ArrayLike],
-    duration: float | None = None,
-    periods: float | None = None,
-    store: str | Path | None = None,
-    executor: Executor | None = None,
-    resume: bool = False,
-    progress: Progress = None,
-    **options: Unpack[RunOptions],
-) -> xr.Dataset:
+    least_share: Annotated[float | None, _SHARE] = None,
+    **run: Unpack[Runs],
+) -> "tuple[Sweep, Label]":
     """Compute the outcome of a column over two parameters, from rest or a given initial state.
 
     Parameters
     ----------
     model, motion
-        The column and its base motion. The quantities in `over` replace their values.
+        The column and its base motion. The quantities in `over` replace their values. With a model that changes between
+        kinds of contact, `Sliding`, the map has the kinds of contact too.
     over
         Two names with their values: parameters of the column, the model or the base motion, such as
         angular_frequency [rad/s], acceleration [m/s²], start_phase [rad], damping, size; or components of the initial
         condition, tilt_x, tilt_y [rad], tilt_rate_x, tilt_rate_y [rad/s].
-    duration, periods
-        Duration of each run [s], or its number of periods of the base motion.
-    store, executor, resume, progress
-        As in `run_sweep`.
-    **options
-        Arguments of all runs: tilt [rad] and tilt_rate [rad/s] (initial condition, by default at rest), rtol, rules …
-        With `end_converged=True` runs on a circularly moving base end early once they have converged to steady rolling,
-        which the model must state in closed form; see "End converged runs early" on the page on ensembles.
+    least_share
+        Minimum fraction of a run for a kind of contact to count, 0.001 by default; only with `Sliding`.
+    **run
 
     Returns
     -------
@@ -61,10 +121,21 @@ def overturning_map(
         Of kind "overturning map". Over the two names: `outcome`, `decided_at`, `uncertain` and all variables of
         `simulate_ensemble`. Over `outcome_name`: `count` and `share` of the runs computed. `computed` counts the runs.
 
+        With `Sliding`, of kind "contact map": also `contact_class` (see its `flag_meanings`) and `lands_flat`, with
+        `count` and `share` over `class_name`. A run that `lands_flat` hops at a tilt of exactly 0: a small initial tilt
+        can change its class. Count with `stylobate.conveying.upright`.
+
     Raises
     ------
     ParameterError
         If `over` does not have two names with at least one value each, or an argument is out of range.
+    UnsupportedError
+        If `least_share` is given and the model does not change between kinds of contact.
+
+    Notes
+    -----
+    With `end_converged=True` runs on a circularly moving base end early once they have converged to steady rolling,
+    which the model must state in closed form; see "End converged runs early" on the page on ensembles.
 
     Examples
     --------
@@ -76,22 +147,50 @@ def overturning_map(
     >>> found["share"].sel(outcome_name=["at rest", "overturned"]).values
     array([0.5 , 0.25])
     """
+    from stylobate.engine.parameters import own_numbers
+    from stylobate.studies.checks import remark_on_knife_edge, require_values
+    from stylobate.studies.sweeps import Sweep
+
     if not isinstance(over, Mapping) or len(over) != _PLANE:
-        message = f'over must name two parameters, such as "angular_frequency" and "acceleration"; got {over!r}'
-        raise ParameterError(message)
+        raise ParameterError(
+            f'over must name two parameters, such as "angular_frequency" and "acceleration"; got {over!r}'
+        )
+    if least_share is not None:
+        least_share = _SHARE.checked("least_share", least_share)
+        if not model.switches:
+            raise UnsupportedError(
+                f"least_share: model {model.name} assumes permanent contact without slip (got {least_share!r}). "
+                "Kinds of contact need Sliding(column)."
+            )
     require_values("over", over, own_numbers(model, motion))
-    sweep = Sweep.grid(model, motion, over=over, duration=duration, periods=periods, **options)
-    return labelled_sweep(sweep, outcome_shares, store=store, executor=executor, resume=resume, progress=progress)
+    remark_on_knife_edge("over", model, over)
+    return Sweep.grid(model, motion, over=over, **described(run)), lambda runs: labelled(runs, least_share)
 
 
-def outcome_shares(runs: xr.Dataset) -> xr.Dataset:
-    """Return `runs` as an overturning map: with the count and share of each outcome."""
-    codes = runs["outcome"].to_numpy()
-    count = np.array([np.count_nonzero(codes == outcome) for outcome in Outcome], dtype=np.int64)
+def labelled(runs: "xr.Dataset", least_share: float | None = None) -> "xr.Dataset":
+    """Return `runs` as a map: with the class of each run that can slip, and the count and share of each outcome."""
+    if "time_flying" in runs:
+        least_share = _LEAST_SHARE if least_share is None else least_share
+        classes = contact_classes(runs, least_share)
+        runs = runs.assign(contact_class=classes, lands_flat=lands_flat(runs))
+        names = dict(zip(map(int, ContactClass), CONTACT_CLASSES, strict=True))
+        return _counted(runs, classes.to_numpy(), "class_name", names).assign_attrs(
+            kind="contact map", least_share=least_share
+        )
+    names = {int(outcome): outcome.label for outcome in Outcome}
+    return _counted(runs, runs["outcome"].to_numpy(), "outcome_name", names).assign_attrs(kind="overturning map")
+
+
+def _counted(runs: "xr.Dataset", codes: npt.NDArray[np.int8], dim: str, names: Mapping[int, str]) -> "xr.Dataset":
+    """Return `runs` with the count and share of the runs of each code along `dim`."""
+    count = np.array([np.count_nonzero(codes == code) for code in names], dtype=np.int64)
     computed = int(np.count_nonzero(codes != NOT_COMPUTED))
+    what = "runs with this outcome" if dim == "outcome_name" else "runs of this class"
     return runs.assign(
-        count=("outcome_name", count, {"units": "1", "long_name": "runs with this outcome"}),
-        share=("outcome_name", count / max(computed, 1), {"units": "1", "long_name": "share of the runs computed"}),
-        computed=((), computed, {"units": "1", "long_name": "runs computed"}),
-        outcome_name=np.array([outcome.label for outcome in Outcome]),
-    ).assign_attrs(kind="overturning map")
+        {
+            "count": (dim, count, {"units": "1", "long_name": what}),
+            "share": (dim, count / max(computed, 1), {"units": "1", "long_name": "share of the runs computed"}),
+            "computed": ((), computed, {"units": "1", "long_name": "runs computed"}),
+            dim: np.array(list(names.values())),
+        }
+    )

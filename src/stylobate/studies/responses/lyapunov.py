@@ -8,8 +8,8 @@ import numpy.typing as npt
 import xarray as xr
 
 from stylobate.base_motions import BaseMotion
+from stylobate.engine.flow.integration import Status
 from stylobate.engine.flow.periodic import PeriodicSystem, plane_of
-from stylobate.engine.flow.status import Status
 from stylobate.errors import Interrupted, ParameterError, as_numbers, require_positive, require_vector, require_whole
 from stylobate.models import Model
 from stylobate.orbits.arguments import require_subject

@@ -6,7 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from stylobate.engine.flow.status import Status
+from stylobate.engine.flow.integration import Status
 from stylobate.errors import NoOrbitError
 from stylobate.orbits import Bifurcation, Branch, End, Kind, StepControl, switch_branch
 from stylobate.orbits.arclength import Family, Point, corrected

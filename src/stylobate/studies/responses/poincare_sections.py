@@ -8,7 +8,7 @@ import xarray as xr
 
 from stylobate.base_motions import BaseMotion
 from stylobate.engine import simulate_ensemble
-from stylobate.engine.ensembles.broadcasting import ArrayLike
+from stylobate.engine.ensembles.runs import ArrayLike
 from stylobate.errors import ParameterError, UnsupportedError, require_whole
 from stylobate.models import Model
 from stylobate.orbits.arguments import require_subject

@@ -1,11 +1,8 @@
-"""Sweeps: one description of many runs, divided into chunks, computed locally or on a cluster, stored and resumed."""
+"""Sweeps: one description of many runs, divided into chunks, computed locally or on a cluster, stored and resumed.
 
-from stylobate.run_arguments import RunOptions
-from stylobate.studies.sweeps.dask_executor import Dask
-from stylobate.studies.sweeps.executors import Executor, Threads
-from stylobate.studies.sweeps.named_executors import executor_from
-from stylobate.studies.sweeps.running import run_sweep
-from stylobate.studies.sweeps.store import open_sweep
-from stylobate.studies.sweeps.sweep import Sweep
+The public names, imported when they are first used, are those of `__init__.pyi`.
+"""
 
-__all__ = ["Dask", "Executor", "RunOptions", "Sweep", "Threads", "executor_from", "open_sweep", "run_sweep"]
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -218,7 +218,7 @@ def _result(distributed: "ModuleType", future: Any, task: Task) -> Computed:
 
 def _distributed() -> "ModuleType":
     try:
-        import distributed  # noqa: PLC0415  an extra, loaded on first use
+        import distributed
     except ImportError:
         message = 'Dask needs the package dask.distributed: pip install "stylobate[cluster]"'
         raise UnsupportedError(message) from None

@@ -28,7 +28,7 @@ class PackageIdentity:
 @cache
 def package_identity() -> PackageIdentity:
     """Return the identity of the package in this process, computed once."""
-    from stylobate import __version__  # noqa: PLC0415  computed when it is asked for
+    from stylobate import __version__
 
     return PackageIdentity(__version__, source_digest(Path(__file__).parents[2]))
 

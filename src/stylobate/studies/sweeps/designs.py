@@ -8,7 +8,7 @@ from typing import Any, Protocol
 import numpy as np
 import numpy.typing as npt
 
-from stylobate.engine.memory import require_memory
+from stylobate.engine.cost import require_memory
 from stylobate.errors import MOST_RUNS, ParameterError, require_whole
 from stylobate.results.random_numbers import Rng, seed_of
 from stylobate.studies.sweeps.quantities import Floats, Own, checked_values

@@ -1,18 +1,21 @@
 """Executors of the blocks of a sweep: the protocol, and threads of this process."""
 
-from collections.abc import Generator, Iterable
 from dataclasses import dataclass
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 from stylobate.errors import MOST_THREADS, require_whole
 from stylobate.progress import Report
-from stylobate.studies.sweeps.computing import Computed, Task
+
+if TYPE_CHECKING:
+    from collections.abc import Generator, Iterable
+
+    from stylobate.studies.sweeps.computing import Computed, Task
 
 
 class Work(Protocol):
     """Function that computes a task; it can be pickled."""
 
-    def __call__(self, task: Task, *, threads: int | None, progress: Report | None) -> Computed:
+    def __call__(self, task: "Task", *, threads: int | None, progress: Report | None) -> "Computed":
         """Return the results of `task`, or no arrays if they have been stored."""
 
 
@@ -26,8 +29,8 @@ class Executor(Protocol):
     """
 
     def results(
-        self, work: Work, tasks: Iterable[Task], progress: Report | None = None
-    ) -> Generator[tuple[Task, Computed], None, None]:
+        self, work: Work, tasks: "Iterable[Task]", progress: Report | None = None
+    ) -> "Generator[tuple[Task, Computed], None, None]":
         """Yield each task with its result."""
 
 
@@ -48,8 +51,8 @@ class Threads:
             object.__setattr__(self, "threads", require_whole("threads", self.threads, least=1, most=MOST_THREADS))
 
     def results(
-        self, work: Work, tasks: Iterable[Task], progress: Report | None = None
-    ) -> Generator[tuple[Task, Computed], None, None]:
+        self, work: Work, tasks: "Iterable[Task]", progress: Report | None = None
+    ) -> "Generator[tuple[Task, Computed], None, None]":
         """Yield each task with its result, in order."""
         for task in tasks:
             yield task, work(task, threads=self.threads, progress=progress)

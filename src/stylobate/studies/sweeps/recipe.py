@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 from stylobate.base_motions import BaseMotion
-from stylobate.base_motions.one_of import members_of
-from stylobate.base_motions.varying import stated_numbers, with_numbers
+from stylobate.base_motions.combined import members_of
+from stylobate.base_motions.declared import stated_numbers, with_numbers
 from stylobate.models import Model
 from stylobate.results.known_orbits import as_orbits
 from stylobate.run_arguments import RunOptions

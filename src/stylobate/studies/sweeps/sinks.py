@@ -7,7 +7,7 @@ from typing import Protocol
 import numpy as np
 import xarray as xr
 
-from stylobate.engine.memory import require_memory
+from stylobate.engine.cost import require_memory
 from stylobate.errors import FileError
 from stylobate.progress import Report
 from stylobate.studies.sweeps.blocks import Block, Blocks

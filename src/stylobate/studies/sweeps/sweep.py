@@ -8,7 +8,7 @@ from typing import Any, Self, Unpack
 import numpy.typing as npt
 
 from stylobate.base_motions import BASE_AT_REST, BaseMotion
-from stylobate.base_motions.varying import is_pulse
+from stylobate.base_motions.declared import is_pulse
 from stylobate.engine.parameters import own_numbers
 from stylobate.errors import ParameterError, require_positive, require_vector
 from stylobate.kinds import names_code

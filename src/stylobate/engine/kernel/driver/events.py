@@ -1,180 +1,363 @@
-"""Events of a lane: overturning, tilt limit, passage through the vertical, rest, and stops."""
+"""Events of a run: the status of each end, the entries of a trace, and the events at which a step is to end.
+
+A new event that ends runs is declared here and nowhere else: its `Status`, a column of `EventSetup` for a number of the
+run and its value in `event_numbers`, a `Target`, and an `Event` with its laws in `EVENTS`. Kernels call the laws from
+that list. What happens at an event after which the motion goes on is in `smooth`.
+"""
 
 import math
+from collections.abc import Callable, Mapping
+from enum import IntEnum, auto
+from typing import Any, NamedTuple, Self
 
-from stylobate.engine.kernel.bound import CAN_LOSE, CAN_PASS, CAN_REST, ORDER, PLANAR, SERIES, R
-from stylobate.engine.kernel.columns import Status
-from stylobate.engine.kernel.driver.equations import lean_of_new, row_state
-from stylobate.engine.kernel.driver.moving import set_lean, set_state
-from stylobate.engine.kernel.driver.passages import (
-    apply_impact,
-    cross_vertical,
-    loses_energy,
-    nears_vertical,
-    pass_analytically,
+import numpy.typing as npt
+
+from stylobate.engine.elementary import first_growth_past, first_return, turning_point
+from stylobate.engine.kernel.bound import PLANAR, R
+from stylobate.engine.kernel.layout import FromZero, Table
+from stylobate.engine.tolerances import OVERTURNED_TILT
+from stylobate.errors import Outcome
+
+
+class Status(IntEnum):
+    """Status of a run in its kernel, with the outcome, the event and the reason of a run that ends with it.
+
+    `outcome` is None if the last periods decide it or the run goes on, `event` is empty if `Response.events` gets none,
+    and `reason` is empty if it depends on the run.
+    """
+
+    outcome: Outcome | None
+    event: str
+    reason: str
+
+    def __new__(cls, outcome: int | None = None, event: str = "", reason: str = "") -> Self:
+        """Number the members from zero."""
+        member = int.__new__(cls, len(cls.__members__))
+        member._value_ = int(member)
+        member.outcome = None if outcome is None else Outcome(outcome)
+        member.event, member.reason = event, reason
+        return member
+
+    WAITING = None
+    STOPPED = None
+    """The run reached its duration."""
+    RESTED = Outcome.AT_REST
+    OVERTURNED = Outcome.OVERTURNED, "overturned", "its tilt grows beyond the tilt from which it could come back"
+    LIMIT = Outcome.LIMIT_REACHED, "limit", "its tilt reached tilt_limit"
+    LIFTED = Outcome.LIFTED_OFF, "lifted", "the base accelerates downwards faster than gravity"
+    STEP_LIMIT = Outcome.FAILED, "failed"
+    STEP_TOO_SMALL = Outcome.FAILED, "failed", "its step became smaller than the rounding of the time"
+    UNSEEN = Outcome.FAILED, "failed"
+    """The column stood for as many periods as the step limit allows to search, and the base motion goes on."""
+    CANNOT_DEPART = None
+    """The column was uplifted from rest, but its model has no function `departure`."""
+    TO_PLANE = None
+    """The column was uplifted from rest by motion along a line: the kernel for planar motion continues the run."""
+    ENDLESS = Outcome.FAILED, "failed"
+    """The contact changed infinitely often in a finite time."""
+    JAMMED = (
+        Outcome.FAILED,
+        "",
+        "its contact jams: with friction as large as this no motion of a rigid body follows (Painlevé's paradox)",
+    )
+    """Dynamic jamming: the contact can neither stick nor slip nor open."""
+    CONVERGED = None
+    """The run has converged to a known orbit, see `convergence`."""
+
+
+class TraceKind(IntEnum):
+    """Kind of a trace entry: a segment of motion, or an event, with the name of the event in `Response.events`."""
+
+    event: str
+
+    def __new__(cls, event: str | int = "") -> Self:
+        """Number the members from zero."""
+        member = int.__new__(cls, len(cls.__members__))
+        member._value_ = int(member)
+        member.event = str(event)
+        return member
+
+    STEP = ""
+    PLANE_STEP = ""
+    """A step of planar motion; its state is tilt and tilt rate."""
+    ANALYTICAL_STEP = ""
+    """A short time for which the solution is analytical."""
+    STAND = ""
+    """The column stands on its base."""
+    RELEASE = "uplift"
+    """The first kind of event; of an event only START is used."""
+    REST = "rest"
+    IMPACT = "impact"
+    PASSAGE = "passage"
+    CONTACT = ""
+    """The event that ends a kind of contact, named by the model; its guard and the kinds before and after it follow."""
+
+
+class EventSetup(FromZero):
+    """Numbers of a run that its events need; they follow the columns of `Setup`. Large numbers mean no event."""
+
+    TILT_LIMIT = auto()
+    """Tilt that ends the run; infinite if none does."""
+    OVERTURNED_TILT = auto()
+    """Tilt that counts as overturned if the model proves no point of no return."""
+
+
+def event_numbers(options: Mapping[str, Any], time_scale: npt.ArrayLike) -> dict[EventSetup, npt.ArrayLike]:
+    """Return the numbers of `EventSetup` of runs with these options; `time_scale` is the unit of time [s]."""
+    del time_scale  # for events whose numbers have a unit with time
+    return {
+        EventSetup.TILT_LIMIT: math.inf if options["tilt_limit"] is None else options["tilt_limit"],
+        EventSetup.OVERTURNED_TILT: OVERTURNED_TILT,
+    }
+
+
+class Target(FromZero):
+    """Event at which an aimed step is to end."""
+
+    LIMIT = auto()
+    OVERTURNING = auto()
+    """The tilt passes the point of no return while it grows."""
+    GROWTH = auto()
+    """The tilt begins to grow beyond the point of no return, which fell below the tilt."""
+    VERTICAL = auto()
+    """Passage through the vertical in planar motion."""
+    IMPACT = auto()
+    """Minimum tilt of a three-dimensional passage that loses energy."""
+
+
+class Lean(NamedTuple):
+    """Tilt vector and its rate, the tilt, and tilt times tilt rate."""
+
+    x: float
+    y: float
+    vx: float
+    vy: float
+    tilt: float
+    radial: float
+
+
+class Event(NamedTuple):
+    """Laws of an event within a step, as functions of the buffer and a lane.
+
+    Parameters
+    ----------
+    target
+        Name of the event.
+    status
+        Status with which the run ends at the event.
+    past
+        `past(buf, i, new)` is positive if a step to `new` goes beyond the event. It is evaluated in all lanes.
+    ahead
+        `ahead(buf, i, h, new)` is the time to the event within a step `h` to `new`; `h` if it is not within, and
+        infinite if the step cannot end there.
+    left
+        `left(buf, i, before)` is the time from the present state, the end of an aimed step from `before`, to the event.
+    margin
+        `margin(buf, i, lean)` falls below zero at the event, for limits that end the runs of all models; else None.
+    planar
+        Whether only planar motion has the event.
+    """
+
+    target: Target
+    status: Status
+    past: Callable[[Table, int, Lean], float]
+    ahead: Callable[[Table, int, float, Lean], float]
+    left: Callable[[Table, int, Lean], float]
+    margin: Callable[[Table, int, Lean], float] | None = None
+    planar: bool = False
+
+
+def lean(x: float, y: float, vx: float, vy: float) -> Lean:
+    """Return a tilt vector and its rate, with its length and growth."""
+    return Lean(x, y, vx, vy, math.sqrt(x * x + y * y), x * vx + y * vy)
+
+
+def present_lean(buf: Table, i: int) -> Lean:
+    """Return the tilt vector of a lane."""
+    return Lean(buf[R.X, i], buf[R.Y, i], buf[R.VX, i], buf[R.VY, i], buf[R.TILT, i], buf[R.RADIAL, i])
+
+
+# Tilt limit
+
+
+def margin_of_limit(buf: Table, i: int, now: Lean) -> float:
+    """Return the tilt limit minus the tilt."""
+    return -past_limit(buf, i, now)
+
+
+def past_limit(buf: Table, i: int, new: Lean) -> float:
+    """Return the tilt minus its limit."""
+    return new.tilt - buf[R.TILT_LIMIT, i]
+
+
+def time_to_limit(buf: Table, i: int, h: float, new: Lean) -> float:
+    """Return the time at which the tilt passes its limit."""
+    limit = buf[R.TILT_LIMIT, i]
+    return time_of_growth(buf, i, h, new, limit) if new.tilt > limit else h
+
+
+def left_to_limit(buf: Table, i: int, _before: Lean) -> float:
+    """Return the time to the tilt limit."""
+    return left_to_tilt(buf, i, buf[R.TILT_LIMIT, i])
+
+
+def time_of_growth(buf: Table, i: int, h: float, new: Lean, bound: float) -> float:
+    """Return the time at which the tilt first grows beyond a bound, on the cubic of its square."""
+    tilt = buf[R.TILT, i]
+    squares = tilt * tilt, new.x * new.x + new.y * new.y
+    slopes = 2.0 * h * buf[R.RADIAL, i], 2.0 * h * new.radial
+    return h * first_growth_past(bound * bound, *squares, *slopes)
+
+
+def left_to_tilt(buf: Table, i: int, bound: float) -> float:
+    """Return the time to this tilt at the present tilt rate."""
+    tilt, radial = buf[R.TILT, i], buf[R.RADIAL, i]
+    return (bound - tilt) * tilt / radial if radial > 0.0 else 0.0
+
+
+# Overturning: beyond the point of no return, the tilt grows
+
+
+def past_return(buf: Table, i: int, new: Lean) -> float:
+    """Return an indicator that is positive if the tilt grows beyond the point of no return."""
+    return min(new.tilt - buf[R.NO_RETURN, i], new.radial)
+
+
+def time_to_overturning(buf: Table, i: int, h: float, new: Lean) -> float:
+    """Return the time at which the tilt passes the point of no return."""
+    return time_past_return(buf, i, h, new) if buf[R.TILT, i] < buf[R.NO_RETURN, i] else math.inf
+
+
+def left_to_overturning(buf: Table, i: int, _before: Lean) -> float:
+    """Return the time to the point of no return."""
+    return left_to_tilt(buf, i, buf[R.NO_RETURN, i])
+
+
+def time_to_growth(buf: Table, i: int, h: float, new: Lean) -> float:
+    """Return the time at which the tilt, beyond the point of no return, begins to grow."""
+    return math.inf if buf[R.TILT, i] < buf[R.NO_RETURN, i] else time_past_return(buf, i, h, new)
+
+
+def time_past_return(buf: Table, i: int, h: float, new: Lean) -> float:
+    """Return the time at which the tilt first grows beyond the point of no return."""
+    no_return = buf[R.NO_RETURN, i]
+    return time_of_growth(buf, i, h, new, no_return) if new.tilt > no_return and new.radial > 0.0 else h
+
+
+def left_to_growth(buf: Table, i: int, before: Lean) -> float:
+    """Return the time to the minimum tilt, by the secant of the growth."""
+    return secant(buf[R.MADE, i], before.radial, buf[R.RADIAL, i])
+
+
+def secant(h: float, before: float, now: float) -> float:
+    """Return the time from now to the zero of the line through the values `h` ago and now."""
+    return -now * h / (now - before) if now != before else 0.0
+
+
+# Passage through the vertical in planar motion
+
+
+def past_vertical(buf: Table, i: int, new: Lean) -> float:
+    """Return the depth to which the tilt falls below zero, at the end of the step or within it."""
+    side, h = buf[R.SIDE, i], buf[R.H, i]
+    s0, s1 = side * buf[R.X, i], side * new.x
+    v0, v1 = side * buf[R.VX, i], side * new.vx
+    _, lowest = turning_point(s0, s1, v0 * h, v1 * h, -1.0)
+    lowest = lowest if v0 < 0.0 else s1
+    lowest = lowest if v1 > 0.0 else s1
+    return -min(s1, lowest)
+
+
+def time_to_vertical(buf: Table, i: int, h: float, _new: Lean) -> float:
+    """Return the time of the passage, 0 for a swing too short to be resolved within the step."""
+    side = buf[R.SIDE, i]
+    return first_return(
+        h,
+        side * buf[R.STATE, i],
+        side * buf[R.STATE + 1, i],
+        side * buf[R.SLOPE + 1, i],
+        side * buf[R.NEW, i],
+        side * buf[R.NEW + 1, i],
+        side * buf[R.SLOPE_NEW + 1, i],
+    )
+
+
+def left_to_vertical(buf: Table, i: int, _before: Lean) -> float:
+    """Return the time to the vertical at the present rate."""
+    speed = buf[R.STATE + 1, i]
+    return -buf[R.STATE, i] / speed if speed != 0.0 else 0.0
+
+
+EVENTS = (
+    Event(Target.LIMIT, Status.LIMIT, past_limit, time_to_limit, left_to_limit, margin=margin_of_limit),
+    Event(Target.OVERTURNING, Status.OVERTURNED, past_return, time_to_overturning, left_to_overturning),
+    Event(Target.GROWTH, Status.OVERTURNED, past_return, time_to_growth, left_to_growth),
+    Event(Target.VERTICAL, Status.WAITING, past_vertical, time_to_vertical, left_to_vertical, planar=True),
 )
-from stylobate.engine.kernel.driver.peaks import closest_within, measure_peak, undo_step
-from stylobate.engine.kernel.driver.resting import rest_within_step, settle
-from stylobate.engine.kernel.driver.stops import meet_stop, set_next_stop
-from stylobate.engine.kernel.driver.tracing import remove_trace_entry
-from stylobate.engine.kernel.driver.within import set_within
-from stylobate.engine.kernel.layout import Table
-from stylobate.engine.kernel.roots import first_growth_past, first_return
+"""Events for which steps are held back; of two at the same time the first one counts."""
 
-# Maximum number of steps aimed at an event. A remaining step below the second number, in units of the longest step, is
-# made by a Taylor polynomial, whose error is of third order.
-MOST_AIMS, SHORT_AIM = 6, 1e-6
-# Minimum step back to an event, as a fraction of the step that passed it.
-SHORTEST_AIM = 1e-9
+LIMITS = tuple(event for event in EVENTS if event.margin is not None)
+"""Events that end the runs of all models; a model that changes between kinds of contact has them as guards."""
+
+STATUSES_AT_LIMITS = tuple(int(event.status) for event in LIMITS)
+"""Statuses with which runs end at the limits."""
 
 
-def event_ahead(buf: Table, i: int) -> float:
-    """Return the time to the first event within a step that was held back."""
-    h = buf[R.HELD_STEP, i]
-    tilt0, radial0 = buf[R.TILT, i], buf[R.RADIAL, i]
-    x1, y1, vx1, vy1 = lean_of_new(buf, i)
-    square0, square1 = tilt0 * tilt0, x1 * x1 + y1 * y1
-    slope0, slope1 = 2.0 * h * radial0, 2.0 * h * (x1 * vx1 + y1 * vy1)
-    found = h
-    if PLANAR:
-        side = buf[R.SIDE, i]
-        found = first_return(
-            h,
-            side * buf[R.STATE, i],
-            side * buf[R.STATE + 1, i],
-            side * buf[R.SLOPE + 1, i],
-            side * buf[R.NEW, i],
-            side * buf[R.NEW + 1, i],
-            side * buf[R.SLOPE_NEW + 1, i],
-        )
-    limit, no_return = buf[R.TILT_LIMIT, i], buf[R.NO_RETURN, i]
-    tilt1 = math.sqrt(square1)
-    if tilt1 > limit:
-        found = min(found, h * first_growth_past(limit * limit, square0, square1, slope0, slope1))
-    if tilt1 > no_return and slope1 > 0.0:
-        found = min(found, h * first_growth_past(no_return * no_return, square0, square1, slope0, slope1))
-    return found
+# Laws of all events
 
 
-def meets_vertical(buf: Table, i: int) -> bool:
-    """Return whether the targeted event is the passage through the vertical."""
-    return PLANAR and buf[R.TILT, i] < 0.5 * min(buf[R.TILT_LIMIT, i], buf[R.NO_RETURN, i])
+def overshoot_of(buf: Table, i: int, new: Lean) -> float:
+    """Return an indicator that is positive if a step to `new` goes beyond an event."""
+    past = EVENTS[0].past(buf, i, new)
+    for event in EVENTS[1:]:
+        if PLANAR or not event.planar:
+            past = max(past, event.past(buf, i, new))
+    return past
 
 
-def remaining_step(buf: Table, i: int) -> float:
-    """Return the time from the end of an aimed step to its event."""
-    tilt, radial, h = buf[R.TILT, i], buf[R.RADIAL, i], buf[R.MADE, i]
-    bound = min(buf[R.TILT_LIMIT, i], buf[R.NO_RETURN, i])
-    further = 0.0
-    if meets_vertical(buf, i):
-        speed = buf[R.STATE + 1, i]
-        further = -buf[R.STATE, i] / speed if speed != 0.0 else 0.0
-    elif buf[R.BY_TILT, i] > 0.0:
-        further = (bound - tilt) * tilt / radial if radial > 0.0 else 0.0
-    else:
-        set_within(buf, i, 0.0)
-        x, y, vx, vy = lean_of_new(buf, i)
-        before = x * vx + y * vy
-        further = -radial * h / (radial - before) if radial != before else 0.0
-    return min(max(further, -0.5 * abs(h)), 0.5 * abs(h))
+def first_event(buf: Table, i: int, h: float, new: Lean) -> tuple[int, float]:
+    """Return the `Target` and the time of the first event within a step `h` to `new` that was held back.
+
+    Of several at the same time it is the one that the step passes furthest. If none is located, because the step only
+    just passes an event, that time is the end of the step.
+    """
+    target, ahead, furthest = int(EVENTS[0].target), h, -math.inf
+    for event in EVENTS:
+        if PLANAR or not event.planar:
+            time, past = event.ahead(buf, i, h, new), event.past(buf, i, new)
+            if time < ahead or (time == ahead and past > furthest):
+                target, ahead, furthest = int(event.target), time, past
+    return target, ahead
 
 
-def advance_briefly(buf: Table, i: int, h: float) -> None:
-    """Advance by a very short time, by the series of the step or by two Taylor terms."""
-    if SERIES:
-        set_within(buf, i, buf[R.MADE, i] + h)
-        set_state(buf, i, row_state(buf, i, R.NEW))
-    for j in range(0 if SERIES else ORDER):
-        slope = buf[R.SLOPE + j, i]
-        bend = (slope - buf[R.LAST_SLOPE + j, i]) / buf[R.MADE, i]
-        buf[R.STATE + j, i] += h * (slope + 0.5 * h * bend)
-    buf[R.TIME, i] += h
-    set_lean(buf, i)
+def time_left(buf: Table, i: int, before: Lean) -> float:
+    """Return the time from the end of an aimed step from `before` to its target; at most half of that step."""
+    target, half = buf[R.TARGET, i], 0.5 * abs(buf[R.MADE, i])
+    further = left_to_growth(buf, i, before) if target == Target.IMPACT else 0.0
+    for event in EVENTS:
+        if (PLANAR or not event.planar) and target == event.target:
+            further = event.left(buf, i, before)
+    return min(max(further, -half), half)
 
 
-def handle_held_step(buf: Table, i: int, table: Table, pieces: Table) -> int:
-    """Aim at the event within the step that was held back."""
-    h = buf[R.TRIED, i]
-    buf[R.HELD_STEP, i] = h
-    ahead = event_ahead(buf, i)
-    if ahead <= 0.0:  # a swing too short to be resolved within the step
-        buf[R.STATE, i] = 0.0
-        return settle(buf, i, table, pieces, buf[R.TIME, i])
-    aim(buf, i, ahead)
-    return Status.WAITING
+def status_at_target(buf: Table, i: int) -> int:
+    """Return the status with which the run ends at the target of the aimed steps; WAITING if the motion goes on."""
+    status = int(Status.WAITING)
+    for event in EVENTS:
+        if buf[R.TARGET, i] == event.target:
+            status = int(event.status)
+    return status
 
 
-def aim(buf: Table, i: int, ahead: float) -> None:
-    """Let the next step end at the event at the time `ahead`."""
-    # The condition of overturning that is met last: tilt, or growth of the tilt. A lossy passage, −1, is located as the
-    # latter, at the minimum tilt.
-    buf[R.BY_TILT, i] = 1.0 if buf[R.TILT, i] < min(buf[R.TILT_LIMIT, i], buf[R.NO_RETURN, i]) else 0.0
-    buf[R.H, i] = ahead
-    buf[R.AIMED, i] = 1.0
+def limit_passed(buf: Table, i: int) -> int:
+    """Return the status with which a run ends at its start because of a limit, or WAITING."""
+    now, status = present_lean(buf, i), int(Status.WAITING)
+    for event in LIMITS:
+        if event.margin(buf, i, now) < 0.0:  # type: ignore[misc]
+            status = int(event.status)
+    return status
 
 
-def approach_event(buf: Table, i: int, table: Table, pieces: Table) -> int:
-    """Make another step towards the targeted event, or handle the event if it is reached."""
-    further = remaining_step(buf, i)
-    short = abs(further) < SHORT_AIM * min(1.0, buf[R.LONGEST_STEP, i])
-    if not short and buf[R.AIMED, i] < MOST_AIMS:
-        buf[R.H, i] = further
-        buf[R.AIMED, i] += 1.0
-        return Status.WAITING
-    advance_briefly(buf, i, further)
-    buf[R.AIMED, i] = 0.0
-    if buf[R.TILT, i] > buf[R.PEAK_TILT, i]:
-        buf[R.PEAK_TILT, i] = buf[R.TILT, i]
-        buf[R.PEAK_AT, i] = buf[R.TIME, i]
-    if meets_vertical(buf, i):
-        return cross_vertical(buf, i, table, pieces)
-    if CAN_LOSE and buf[R.BY_TILT, i] < 0.0:
-        return apply_impact(buf, i, table, pieces)
-    return Status.LIMIT if buf[R.TILT_LIMIT, i] <= buf[R.NO_RETURN, i] else Status.OVERTURNED
-
-
-def handle_near_vertical(buf: Table, i: int, table: Table) -> float:
-    """Handle a three-dimensional passage near the vertical; return the time at which the column rests, or NaN."""
-    if CAN_LOSE and loses_energy(buf, i):
-        aim(buf, i, -max(closest_within(buf, i), SHORTEST_AIM * buf[R.MADE, i]))
-        buf[R.BY_TILT, i] = -1.0
-        return math.nan
-    if CAN_REST and buf[R.REST_ENERGY, i] > 0.0 and buf[R.LOW, i] < buf[R.SLOW, i] * buf[R.REST_TILT, i]:
-        rest = rest_within_step(buf, i)
-        if not math.isnan(rest):
-            return rest
-    if CAN_PASS and nears_vertical(buf, i):
-        pass_analytically(buf, i, table)
-    return math.nan
-
-
-def handle(buf: Table, i: int, table: Table, pieces: Table) -> int:
-    """Handle the event of a lane; return the final status if the run ends, else WAITING."""
-    if buf[R.HELD, i] > 0.0:
-        return handle_held_step(buf, i, table, pieces)
-    if buf[R.GO, i] == 0.0:
-        return Status.STEP_TOO_SMALL
-    if buf[R.PEAK, i] > 0.0:
-        ahead = measure_peak(buf, i)
-        if ahead > 0.0 and buf[R.AIMED, i] == 0.0:  # only the peak within the step exceeds the limit
-            undo_step(buf, i)
-            remove_trace_entry(buf, i)
-            aim(buf, i, ahead)
-            return Status.WAITING
-    if buf[R.AIMED, i] > 0.0:
-        return approach_event(buf, i, table, pieces)
-    if buf[R.STEPS, i] >= buf[R.MOST_STEPS, i]:
-        return Status.STEP_LIMIT
-    if not PLANAR:
-        rest = handle_near_vertical(buf, i, table)
-        if not math.isnan(rest):
-            return settle(buf, i, table, pieces, rest)
-        if buf[R.AIMED, i] > 0.0:
-            return Status.WAITING
-    t = buf[R.TIME, i]
-    if t >= buf[R.STOP, i]:
-        status = meet_stop(buf, i, table, pieces, t)
-        if status != Status.WAITING:
-            return status
-    set_next_stop(buf, i)
-    return Status.WAITING
+def margins_of_limits(buf: Table, i: int, now: Lean) -> tuple[float, ...]:
+    """Return the margins of the limits, which fall below zero there."""
+    return tuple(event.margin(buf, i, now) for event in LIMITS)  # type: ignore[misc]

@@ -1,4 +1,4 @@
-"""Guards and reset maps of models that change between kinds of contact."""
+"""Guards and reset maps of models that change between kinds of contact, and the end of a contact within a step."""
 
 import math
 
@@ -7,6 +7,8 @@ from stylobate.engine.dop853 import STAGES
 from stylobate.engine.kernel.bound import (
     FLYING,
     GUARDS,
+    LAST,
+    LIMIT,
     ORDER,
     ROLLING,
     SLIDING,
@@ -21,8 +23,9 @@ from stylobate.engine.kernel.bound import (
     project,
     reset_map,
 )
-from stylobate.engine.kernel.driver.equations import State, lean_of, numbers, row_state
-from stylobate.engine.kernel.driver.push import Accelerations, accelerations
+from stylobate.engine.kernel.driver.equations import Accelerations, State, accelerations, lean_of, numbers, row_state
+from stylobate.engine.kernel.driver.events import LIMITS, lean, margins_of_limits
+from stylobate.engine.kernel.driver.stages import dense_state
 from stylobate.engine.kernel.layout import Table
 from stylobate.engine.kernel.shape import GUARD_PLACES
 
@@ -36,15 +39,10 @@ def guards_under(buf: Table, i: int, state: State, push: Accelerations) -> tuple
     return guards(*state, *push, buf[R.REST_ENERGY, i], buf[R.PASSAGE_TILT, i], *numbers(buf, i))
 
 
-def limit_guard(buf: Table, i: int, state: State) -> float:
-    """Return the tilt limit minus the tilt of a state."""
-    x, y, _, _ = lean_of(buf, i, state)
-    return buf[R.TILT_LIMIT, i] - math.sqrt(x * x + y * y)
-
-
 def guards_at(buf: Table, i: int, t: float, state: State) -> tuple[float, ...]:
-    """Return the guards of the model, followed by the guard of the tilt limit."""
-    return *guards_under(buf, i, state, accelerations(buf, i, t)), limit_guard(buf, i, state)
+    """Return the guards of the model, followed by the margins of the limits."""
+    guards = guards_under(buf, i, state, accelerations(buf, i, t))
+    return *guards, *margins_of_limits(buf, i, lean(*lean_of(buf, i, state)))
 
 
 def model_reset(
@@ -124,11 +122,14 @@ def evaluate_guards_within(buf: Table, share: float) -> None:
 
 @fast
 def mark_broken_guards(buf: Table, share: float) -> None:
-    """Mark the lanes with a broken guard, or with a tilt beyond its limit, at this fraction of the step."""
+    """Mark the lanes with a broken guard, or beyond a limit, at this fraction of the step."""
     for i in lanes(WIDTH):
         state = row_state(buf, i, R.STAGE)
         margins = guards_under(buf, i, state, accelerations(buf, i, buf[R.TIME, i] + share * buf[R.H, i]))
-        least = limit_guard(buf, i, state)
+        limits = margins_of_limits(buf, i, lean(*lean_of(buf, i, state)))
+        least = limits[0]
+        for limit in limits[1:]:
+            least = min(least, limit)
         for k in range(GUARDS - 1):
             least = min(least, margins[k])
         # The last guard counts only if it falls through zero.
@@ -152,3 +153,87 @@ def project_states(buf: Table) -> None:
         buf[R.LAST_GUARD, i] = kept
         buf[R.GUARD_NOW, i] = kept
         buf[R.BROKEN, i] = 0.0
+
+
+# Times closer than this are equal [units of the larger of 1 and the time].
+ROUNDING = 4e-15
+# A guard counts as broken below this value, because reset maps have their own rounding errors.
+LEAST_MARGIN = -1e-14
+# Maximum number of secant steps before bisection, and of all steps.
+SECANTS, MOST_LOOKS = 20, 100
+# A guard below this value is nearly broken.
+NEARLY_BROKEN = 1e-8
+
+
+def guards_within(buf: Table, i: int, elapsed: float) -> tuple[float, ...]:
+    """Return the guards at a time within the step that was held back, from its dense output."""
+    return guards_at(buf, i, buf[R.TIME, i] + elapsed, dense_state(buf, i, elapsed / buf[R.TRIED, i]))
+
+
+def first_broken_guard(buf: Table, i: int) -> tuple[float, int]:
+    """Return the time into the step held back at which a guard first breaks, and its index; −1 for none."""
+    h = buf[R.TRIED, i]
+    past, before = 0.0, guards_within(buf, i, 0.0)
+    for place in range(1, GUARD_PLACES + 1):
+        now = h if place == GUARD_PLACES else h * place / GUARD_PLACES
+        guards = guards_within(buf, i, now)
+        first, number = math.inf, -1
+        for k in range(LIMIT + len(LIMITS)):
+            if guards[k] < LEAST_MARGIN and (before[k] >= LEAST_MARGIN or k != LAST):
+                end = (
+                    past
+                    if before[k] <= LEAST_MARGIN
+                    else crossing_of(buf, i, k, past, now, before[k] - LEAST_MARGIN, guards[k] - LEAST_MARGIN)
+                )
+                if end < first:
+                    first, number = end, k
+        if number >= 0:
+            return first, number
+        past, before = now, guards
+    return h, -1
+
+
+def crossing_of(buf: Table, i: int, number: int, low: float, high: float, at_low: float, at_high: float) -> float:
+    """Return the earliest time, up to rounding, at which a guard is broken, by the Illinois method.
+
+    `at_low` and `at_high` are the guard minus LEAST_MARGIN at both ends.
+    """
+    rounding = ROUNDING * max(1.0, buf[R.TIME, i] + high)
+    side = 0
+    for look in range(MOST_LOOKS):
+        if high - low <= 2.0 * rounding:
+            break
+        guess = (low * at_high - high * at_low) / (at_high - at_low) if look < SECANTS else 0.5 * (low + high)
+        guess = min(max(guess, low + rounding), high - rounding)
+        value = guards_within(buf, i, guess)[number] - LEAST_MARGIN
+        if value < 0.0:
+            high, at_high = guess, value
+            at_low = 0.5 * at_low if side < 0 else at_low
+            side = -1
+        else:
+            low, at_low = guess, value
+            at_high = 0.5 * at_high if side > 0 else at_high
+            side = 1
+    return high
+
+
+def broken_now(buf: Table, i: int) -> int:
+    """Return the first guard that is broken at the start of a kind of contact, or −1; store the last guard."""
+    guards = guards_at(buf, i, buf[R.TIME, i], row_state(buf, i, R.STATE))
+    buf[R.LAST_GUARD, i] = guards[LAST]
+    buf[R.GUARD_NOW, i] = guards[LAST]
+    buf[R.BROKEN, i] = 0.0
+    for k in range(LIMIT + len(LIMITS)):
+        if guards[k] < LEAST_MARGIN and k != LAST:
+            return k
+    return -1
+
+
+def nearly_broken(buf: Table, i: int) -> int:
+    """Return the guard that is too close to zero for any step, as when slip has nearly ended, or −1."""
+    guards = guards_at(buf, i, buf[R.TIME, i], row_state(buf, i, R.STATE))
+    least = 0
+    for k in range(1, LAST):
+        if guards[k] < guards[least]:
+            least = k
+    return least if guards[least] < NEARLY_BROKEN else -1

@@ -1,21 +1,47 @@
-"""Implicit step of a lane by Radau IIA: E. Hairer, G. Wanner, "Solving Ordinary Differential Equations II", IV.8.
-
-The unknowns `change` are the changes of the state from the start of the step to each of three nodes, node by node. The
-last node is the end of the step.
-"""
+"""Implicit step of a lane by Radau IIA."""
 
 import math
 
 import numpy as np
 
-from stylobate.engine import radau
+from stylobate.engine.elementary import NewtonRoom, factor, solve
 from stylobate.engine.kernel.bound import CHANGES, ORDER, SLIP_X, SLIP_Y, R
 from stylobate.engine.kernel.driver.equations import rates_at, row_state
 from stylobate.engine.kernel.driver.stages import dense_state
 from stylobate.engine.kernel.layout import Row, Table
-from stylobate.engine.kernel.linear_equations import NewtonRoom, factor, solve
 from stylobate.engine.kernel.shape import DENSE_TERMS
 from stylobate.engine.tolerances import SLIP_SHARE
+
+_ROOT = math.sqrt(6.0)
+
+STAGES = 3
+
+NODES = np.array([(4.0 - _ROOT) / 10.0, (4.0 + _ROOT) / 10.0, 1.0])
+"""Fractions of a step at which the equations hold."""
+
+
+def _slopes() -> tuple[tuple[float, ...], ...]:
+    """Return the slopes at the nodes of cubics that are 0 at the start and 1 at one node (barycentric formula)."""
+    places = [0.0, *NODES.tolist()]
+    weights = [1.0 / math.prod(x - other for other in places if other != x) for x in places]
+    return tuple(
+        tuple(
+            sum(1.0 / (x - other) for other in places if other != x) if j == i else weights[j] / weights[i] / (x - y)
+            for j, y in enumerate(places[1:], 1)
+        )
+        for i, x in enumerate(places[1:], 1)
+    )
+
+
+SLOPES = np.array(_slopes())
+"""A⁻¹: maps the changes from the start to the nodes to the slopes of their cubic at the nodes, in units of 1/h."""
+
+EIGENVECTOR = np.array([0.09443876248897524, 0.25021312296533332, 1.0])
+"""Eigenvector of A⁻¹ for its real eigenvalue γ₀⁻¹ = 3 + 3^⅔ − 3^⅓."""
+
+ERROR = np.array([-(13.0 + 7.0 * _ROOT) / 3.0, -(13.0 - 7.0 * _ROOT) / 3.0, -1.0 / 3.0])
+"""Weights of the changes at the nodes in the error estimate of order 3."""
+
 
 # Difference step of a state as a fraction of the slip velocity, with whose direction the rates rotate; its maximum;
 # and its minimum for states that are not slip velocities, whose rounding makes rates jump.
@@ -100,27 +126,27 @@ def set_matrix(h: float, room: NewtonRoom) -> None:
     for row in range(CHANGES):
         for column in range(CHANGES):
             matrix[row, column] = 0.0
-    for stage in range(radau.STAGES):
+    for stage in range(STAGES):
         first = stage * ORDER
         for j in range(ORDER):
             for k in range(ORDER):
                 matrix[first + j, first + k] = -jacobian[j, k]
-            for other in range(radau.STAGES):
-                matrix[first + j, other * ORDER + j] += radau.SLOPES[stage, other] / h
+            for other in range(STAGES):
+                matrix[first + j, other * ORDER + j] += SLOPES[stage, other] / h
 
 
 def set_defect(buf: Table, i: int, h: float, change: Row, defect: Row) -> None:
     """Set the differences between the rates at the nodes and the slopes of the cubic through these changes."""
     t = buf[R.TIME, i]
-    for stage in range(radau.STAGES):
+    for stage in range(STAGES):
         first = stage * ORDER
         for j in range(ORDER):
             buf[R.NEW + j, i] = buf[R.STATE + j, i] + change[first + j]
-        rates = rates_at(buf, i, t + radau.NODES[stage] * h, row_state(buf, i, R.NEW))
+        rates = rates_at(buf, i, t + NODES[stage] * h, row_state(buf, i, R.NEW))
         for j in range(ORDER):
             slope = 0.0
-            for other in range(radau.STAGES):
-                slope += radau.SLOPES[stage, other] * change[other * ORDER + j]
+            for other in range(STAGES):
+                slope += SLOPES[stage, other] * change[other * ORDER + j]
             defect[first + j] = rates[j] - slope / h
 
 
@@ -134,7 +160,7 @@ def size_of_correction(buf: Table, i: int, correction: Row) -> float:
     total = 0.0
     for j in range(ORDER):
         scale = absolute_tolerance(buf, i, j) + buf[R.RTOL, i] * abs(buf[R.STATE + j, i])
-        for stage in range(radau.STAGES):
+        for stage in range(STAGES):
             part = correction[stage * ORDER + j] / scale
             total += part * part
     return math.sqrt(total / CHANGES)
@@ -149,10 +175,10 @@ def error_of_changes(buf: Table, i: int, h: float, slopes: tuple[float, ...], ro
     _, matrix, pivots, change, correction = room
     for j in range(ORDER):
         defect = slopes[j]
-        for stage in range(radau.STAGES):
-            defect += radau.ERROR[stage] * change[stage * ORDER + j] / h
-        for stage in range(radau.STAGES):
-            correction[stage * ORDER + j] = radau.EIGENVECTOR[stage] * defect
+        for stage in range(STAGES):
+            defect += ERROR[stage] * change[stage * ORDER + j] / h
+        for stage in range(STAGES):
+            correction[stage * ORDER + j] = EIGENVECTOR[stage] * defect
     solve(matrix, pivots, correction)
     total, last = 0.0, CHANGES - ORDER
     for j in range(ORDER):
@@ -173,7 +199,7 @@ def damped_error(buf: Table, i: int, h: float, room: NewtonRoom) -> float:
 
 def set_cubic(buf: Table, i: int, change: Row) -> None:
     """Set the dense output of a step to the cubic through its changes; see `dense_state` for the form."""
-    c0, c1 = radau.NODES[0], radau.NODES[1]
+    c0, c1 = NODES[0], NODES[1]
     for j in range(ORDER):
         whole = change[2 * ORDER + j]
         first = (change[j] / c0 - whole) / (1.0 - c0)
@@ -190,7 +216,7 @@ def guess_changes(buf: Table, i: int, ratio: float, change: Row) -> None:
     """Extrapolate the changes from the cubic of the previous step, by the `ratio` of the lengths; 0 means no step."""
     for n in range(CHANGES):
         change[n] = 0.0
-    for stage in range(radau.STAGES if ratio > 0.0 else 0):
-        ahead = dense_state(buf, i, 1.0 + radau.NODES[stage] * ratio)
+    for stage in range(STAGES if ratio > 0.0 else 0):
+        ahead = dense_state(buf, i, 1.0 + NODES[stage] * ratio)
         for j in range(ORDER):
             change[stage * ORDER + j] = ahead[j] - (buf[R.STATE + j, i] + buf[R.DENSE + j, i])

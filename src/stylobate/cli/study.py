@@ -1,0 +1,300 @@
+"""Commands of studies: made from the declaration of each; computed with progress, to the end or to Ctrl-C, and written.
+
+`study_command` makes the command of a declared study; the other functions serve commands that do more.
+"""
+
+import sys
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from stylobate import config, studies
+from stylobate.cli.command import Argument, Command
+from stylobate.cli.interrupts import INTERRUPTED
+from stylobate.cli.options import Options, merge, overlay, read_source, with_axes
+from stylobate.cli.output import (
+    STORE,
+    axes_of,
+    check_writable,
+    deliver,
+    open_saved,
+    print_table,
+    provenance_of,
+    study_summary,
+)
+from stylobate.config.study import Study, own_options, study_of
+from stylobate.errors import FileError, Interrupted, ParameterError, StylobateError
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from stylobate.config import Setup
+    from stylobate.studies import Dask, Threads
+
+# Options that do not change the runs.
+_HOW = ("source", "figure", "output", "as_json", "resume", "executor", "threads")
+
+
+def study_command(function: Callable[..., "xr.Dataset"]) -> Command:
+    """Make the command of a declared study."""
+    study = study_of(function)
+    return Command(
+        lambda options: _run(function, study, options),
+        study.help,
+        Argument(text=study.source),
+        own_options(function),
+        tuple(study.groups),
+    )
+
+
+def _run(function: Callable[..., "xr.Dataset"], study: Study, options: Options) -> None:
+    kind = config.study_config(function)
+    source = options["source"]
+    saved = open_saved(source)
+    if saved is not None and study.kinds and saved.attrs["kind"] not in study.kinds:
+        raise FileError(f"{source}: no result of {study.name} (got a {saved.attrs['kind']}). {study.remedy}")
+
+    def completed(saved: "xr.Dataset") -> "xr.Dataset":
+        def setup() -> "Setup":
+            return kind.of_saved(provenance_of(saved), axes_of(saved)).build()
+
+        try:
+            return study.completed(saved, setup, options)
+        except FileError as error:
+            raise FileError(f"{source}: {error}") from None
+
+    def prepared(saved: "xr.Dataset | None") -> "tuple[Callable[..., xr.Dataset], Setup]":
+        values = study_values(saved, options, kind, study.usual)
+        if study.starts:
+            values = _with_sample(values, study.name, options)
+        if study.axes:
+            values = with_axes(values, options, study.name)
+            if "y?" in study.axes and not values.get(study.name):
+                raise ParameterError(
+                    f"{study.name}.x is missing. State what varies: --x acceleration 2 30 29, or "
+                    "--x acceleration 9 9 1 for one run."
+                )
+        merge(values, study.name, options.pick(*(one.name for one in own_options(function))))
+        setup = kind.parse(values).build()
+        if study.axes:
+            check_axes(study.name, setup, starts=study.starts)
+        return function, setup
+
+    result, complete = run_study(options, saved, completed, prepared)
+    finish(
+        result,
+        options,
+        lambda result: study_summary(result, **study.summary(result)),
+        lambda result: _show(study, result),
+        complete=complete,
+    )
+
+
+def _show(study: Study, result: "xr.Dataset") -> None:
+    table = study.table(result)
+    print_table(table.title, table.rows, table.header)
+    for remark in table.remarks:
+        print(remark)
+
+
+def _with_sample(values: dict[str, Any], name: str, options: Options) -> dict[str, Any]:
+    """Lay the random sample that options state over the values; it replaces a grid in the file."""
+    table = values.get(name, {})
+    if not isinstance(table, Mapping):
+        return values
+    sample = options.pick("random")
+    ranges = {name: [low, high] for name, low, high in options["over"] or ()}
+    if sample or table.get("random") is not None:
+        sample |= options.pick("seed")  # a grid has no seed
+    if "random" in sample:
+        table = {place: value for place, value in table.items() if place not in ("x", "y")}
+    if ranges:
+        sample["over"] = ranges
+    return {**values, name: {**table, **sample}} if sample else values
+
+
+def is_to_compute(saved: "xr.Dataset | None", options: Options, *, shown_with: Sequence[str] = ("confidence",)) -> bool:
+    """Return whether there are runs to compute: `saved` results are only shown unless options change them.
+
+    Parameters
+    ----------
+    saved
+        The results, or None.
+    options
+        Options of the command.
+    shown_with
+        Names of options that change the output of saved results, and not the runs.
+
+    Raises
+    ------
+    ConfigError
+        If results are only shown and an option concerns their computation.
+    """
+    changes = any(name not in (*_HOW, *shown_with) for name in options.flags)
+    if saved is None or changes or options["resume"] or _is_store(options["output"]):
+        return True
+    options.use(*shown_with)
+    options.refuse_unused(f"to show {options['source']}, for which it computes nothing")
+    return False
+
+
+def check_outputs(options: Options) -> None:
+    """Raise an error before the computation for an output that is not writable; see `check_writable`."""
+    check_writable(options["figure"], options["output"], stores=True)
+
+
+def run_study(
+    options: Options,
+    saved: "xr.Dataset | None",
+    show_saved: Callable[["xr.Dataset"], "xr.Dataset"],
+    prepare: Callable[["xr.Dataset | None"], "tuple[Callable[..., xr.Dataset], Setup]"],
+) -> "tuple[xr.Dataset, bool]":
+    """Compute a study, or show a saved one if no option changes it.
+
+    Parameters
+    ----------
+    options
+        Options of the command.
+    saved
+        The saved study, or None.
+    show_saved
+        Function that completes the saved study.
+    prepare
+        Function that returns the function of the study, and its arguments as a setup.
+
+    Returns
+    -------
+    tuple
+        The result, and whether it was computed to its end: False after Ctrl-C.
+    """
+    check_outputs(options)
+    if not is_to_compute(saved, options):
+        assert saved is not None
+        return show_saved(saved), True
+    study, setup = prepare(saved)
+    return computed(study, setup, options)
+
+
+def study_values(
+    saved: "xr.Dataset | None", options: Options, kind: Any, usual: Mapping[str, Any] | None = None, **of_saved: Any
+) -> dict[str, Any]:
+    """Override the values of a file or of a saved study by the options.
+
+    Parameters
+    ----------
+    saved
+        The saved study, or None.
+    options
+        Options of the command.
+    kind
+        Class of the configuration.
+    usual
+        Values that a file may leave out.
+    of_saved
+        Further arguments of `kind.of_saved`.
+    """
+    if saved is None:
+        values = {**(usual or {}), **read_source(options)}
+    else:
+        values = kind.of_saved(provenance_of(saved), axes_of(saved), **of_saved).values()
+    return overlay(values, options, kind.model_fields)
+
+
+def finish(
+    result: "xr.Dataset",
+    options: Options,
+    summary: Callable[["xr.Dataset"], Any],
+    show: Callable[["xr.Dataset"], None],
+    *,
+    complete: bool,
+) -> None:
+    """Write and print a result; end with status 130 if it was interrupted."""
+    deliver(result, options, save, summary, show)
+    end(result, options, complete=complete)
+
+
+def check_axes(section: str, setup: "Setup", *, starts: bool = False) -> None:
+    """Raise ParameterError for an impossible quantity or value along an axis; the message names the axis."""
+    from stylobate.studies.checks import require_starts
+    from stylobate.studies.sweeps.quantities import check_quantities, checked_values
+
+    drawn = "count" in setup.options
+    for place, (name, values) in zip(("over",) * 9 if drawn else "xy", setup.options["over"].items(), strict=False):
+        where = f"{section}.{place}"
+        if starts:
+            require_starts(where, {name: None})
+        else:
+            check_quantities(where, setup.model, [name], setup.motion)
+            checked_values(where, name, values)
+
+
+def computed(study: Callable[..., "xr.Dataset"], setup: "Setup", options: Options) -> "tuple[xr.Dataset, bool]":
+    """Compute a study; return the result, and whether it is complete: False after Ctrl-C.
+
+    Raises
+    ------
+    StylobateError
+        If the options contradict each other, an option is unused, or the store or an argument is invalid.
+    click.exceptions.Exit
+        After Ctrl-C before the first run is complete: there is nothing to write.
+    """
+    store, resume = _store(options), options["resume"]
+    executor = executor_of(options)
+    options.refuse_unused()
+    try:
+        result = study(setup.model, setup.motion, **setup.options, store=store, executor=executor, resume=resume)
+    except Interrupted as stop:
+        if stop.partial is None or (store is None and not (stop.partial["outcome"] >= 0).any()):
+            print("stylobate: no run is complete, and nothing is written", file=sys.stderr)
+            raise click.exceptions.Exit(INTERRUPTED) from None
+        return stop.partial, False
+    except StylobateError as error:
+        raise StylobateError(str(error).replace("resume=True", "--resume")) from None
+    return result, True
+
+
+def save(result: "xr.Dataset", output: Path) -> None:
+    """Write a result into a netCDF file; a store already holds its result."""
+    if not _is_store(output):
+        from stylobate.results import write_netcdf
+
+        write_netcdf(result, output)
+
+
+def end(result: "xr.Dataset", options: Options, *, complete: bool) -> None:
+    """End the command with status 130 if it was interrupted, and report the number of completed runs."""
+    if complete:
+        return
+    store = _store(options)
+    remedy = f"{store} continues with --resume" if store else "with --output NAME.zarr, --resume could continue"
+    print(f"stylobate: {int(result['computed'])} of {result['outcome'].size} runs are done; {remedy}", file=sys.stderr)
+    raise click.exceptions.Exit(INTERRUPTED)
+
+
+def _is_store(path: Path | None) -> bool:
+    return path is not None and path.suffix == STORE
+
+
+def _store(options: Options) -> Path | None:
+    if _is_store(options["output"]):
+        return options["output"]  # type: ignore[no-any-return]  # options by name
+    if not options["resume"]:
+        return None
+    if _is_store(options["source"]):
+        return options["source"]  # type: ignore[no-any-return]
+    message = "--resume: the store to continue is missing. Add --output NAME.zarr."
+    raise ParameterError(message)
+
+
+def executor_of(options: Options) -> "Threads | Dask":
+    """Return the executor that the options choose."""
+    text, threads = options["executor"], options["threads"]
+    if text in (None, "threads"):
+        return studies.Threads(threads)
+    chosen = studies.executor_from(str(text))
+    if threads is not None:
+        message = f"--threads: the workers of {text} have one thread each (got {threads}). Remove it."
+        raise ParameterError(message)
+    return chosen

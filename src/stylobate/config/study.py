@@ -1,0 +1,166 @@
+"""What a study of many runs declares of itself: its description in files, its options, and how its result is shown.
+
+From it follow the description (`study_config`) and the command (`stylobate.cli.study`).
+"""
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, get_args, get_origin
+
+from stylobate.config.options import (
+    AXES,
+    COLUMN,
+    COMPUTING,
+    EARLY_END,
+    MODEL,
+    MOTION,
+    OUTPUT_OR_STORE,
+    RECORD,
+    Group,
+    Option,
+    run_numbers,
+    text_of,
+)
+from stylobate.errors import ParameterError
+from stylobate.quantities import Parameter, parameters_of
+from stylobate.run_arguments import SharedByRuns
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from stylobate.results.tables import Table
+
+
+Complete = Callable[["xr.Dataset", Callable[[], Any], Mapping[str, Any]], "xr.Dataset"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Study:
+    """The declaration of a study; its own numbers are those that the signature of its function declares.
+
+    Parameters
+    ----------
+    name
+        Name of the command, and of the table of the study in a description.
+    source, help
+        Help of the positional argument of the command, and of the command.
+    table, summary
+        Functions that return a result as a table, and the study's own part of it as plain values for JSON.
+    axes
+        Places of the axes in the table: "x" and "y"; "y?" can be left out.
+    starts
+        Whether only initial conditions vary, on the grid of the axes, or drawn at random.
+    early
+        Whether runs can end early once they have converged to steady rolling.
+    numbers
+        A group of further numbers of all runs, such as `Stroboscopic`.
+    without
+        Arguments of all runs that the study sets itself, each with the reason and the remedy.
+    usual
+        Values that a description can leave out.
+    model, motion
+        Options of the model and of the base motion.
+    records
+        Whether the base motion can be a record.
+    kinds, remedy
+        Kinds of saved results that the command shows, by default all; and the remedy for another one.
+    completed
+        Function that completes a saved result, such as the bare runs of a store. Its arguments are the result, a
+        function that builds its description, and the options of the command.
+    arguments
+        Function that completes the keyword arguments of the study from the description and the built objects.
+    repeated
+        Function that completes the values that repeat a saved result, from its provenance.
+    """
+
+    name: str
+    source: str
+    help: str
+    table: "Callable[[xr.Dataset], Table]"
+    summary: "Callable[[xr.Dataset], dict[str, Any]]"
+    axes: tuple[str, ...] = ()
+    starts: bool = False
+    early: bool = False
+    numbers: type | None = None
+    without: Mapping[str, str] = field(default_factory=dict)
+    usual: Mapping[str, Any] = field(default_factory=dict)
+    model: Group = MODEL
+    motion: Group = MOTION
+    records: bool = True
+    kinds: tuple[str, ...] = ()
+    remedy: str = ""
+    completed: Complete = lambda saved, *_: saved
+    arguments: Callable[[Any, Any], Mapping[str, Any]] = lambda *_: {}
+    repeated: Callable[[Mapping[str, Any], dict[str, Any]], dict[str, Any]] = lambda _, values: values
+
+    @property
+    def places(self) -> tuple[str, ...]:
+        """The places of the axes."""
+        return tuple(place.rstrip("?") for place in self.axes)
+
+    @property
+    def groups(self) -> Iterator[Group]:
+        """The options that the study shares with others."""
+        if self.places:
+            yield AXES
+        if self.starts:
+            yield RANDOM
+        yield run_numbers(SharedByRuns).without(*self.without)
+        if self.numbers is not None:
+            yield run_numbers(self.numbers)
+        if self.early:
+            yield EARLY_END
+        yield from (COLUMN, self.model, self.motion)
+        if self.records:
+            yield RECORD
+        yield from (COMPUTING, OUTPUT_OR_STORE)
+
+
+RANDOM = Group.of(
+    "Initial conditions",
+    Option("random", "number of initial conditions to draw in the ranges --over", int),
+    Option("seed", "seed of the draw; 0 by default", int),
+    Option(
+        "over",
+        "range of an initial condition that is drawn; repeat it",
+        list[tuple[str, str, str]],
+        metavar="NAME LOW HIGH",
+    ),
+)
+
+
+def study_of(function: Callable[..., Any]) -> Study:
+    """Return the declaration of a study.
+
+    Raises
+    ------
+    ParameterError
+        If the function is no declared study.
+    """
+    found = getattr(function, "study", None)
+    if not isinstance(found, Study):
+        raise ParameterError(
+            f"study: no study with a description (got {function!r}). Name one such as overturning_map."
+        )
+    return found
+
+
+def own_numbers(function: Callable[..., Any]) -> Mapping[str, Parameter]:
+    """Return the numbers that a study declares in its signature, by name, such as a tolerance."""
+    return parameters_of(function)
+
+
+def own_options(function: Callable[..., Any]) -> list[Option]:
+    """Make the options of the numbers that a study declares."""
+    return [
+        Option(name, text_of(one), _kind(one), unit=one.quantity.unit) for name, one in own_numbers(function).items()
+    ]
+
+
+def several(number: Parameter) -> bool:
+    """Return whether an argument takes any number of values."""
+    return any(get_origin(kind) is Sequence for kind in (number.annotation, *get_args(number.annotation)))
+
+
+def _kind(number: Parameter) -> Any:
+    return list[float] if several(number) else int if number.whole else float

@@ -1,0 +1,225 @@
+"""The description of a study of many runs in a file, made from what the study declares of itself."""
+
+from collections.abc import Callable, Mapping, Sequence
+from functools import cache
+from typing import Annotated, Any, ClassVar, Self
+
+from pydantic import Field, create_model, field_validator
+
+from stylobate.config.axis import Axis
+from stylobate.config.description import Config, built
+from stylobate.config.many_runs import ManyRuns, common_values, name_of, refuse_design, with_numbers_that_vary
+from stylobate.config.run_numbers import fields_of
+from stylobate.config.simulation import Setup
+from stylobate.config.study import Study, own_numbers, several, study_of
+from stylobate.errors import LARGEST_SEED, MOST_RUNS, require_whole
+from stylobate.parameter_quantities import quantity_of
+from stylobate.quantities import Parameter
+from stylobate.units import read_all
+
+
+class StudyConfig(ManyRuns):
+    """A study of many runs: `column`, `model`, `motion`, the arguments of all runs, and the table of the study."""
+
+    study: ClassVar[Study]
+
+    @classmethod
+    def parse(cls, values: Mapping[str, Any]) -> Self:
+        """Validate these `values`; a motion may omit a number that varies."""
+        values = {**cls.study.usual, **values}
+        table = values.get(cls.study.name)
+        if cls.study.axes and not cls.study.starts:
+            axes = table if isinstance(table, Mapping) else {}
+            values = with_numbers_that_vary(values, tuple(name_of(axes.get(place)) for place in cls.study.places))
+        return super().parse(values)
+
+    @classmethod
+    def of_saved(cls, provenance: Mapping[str, Any], axes: Mapping[str, Sequence[float]]) -> Self:
+        """Make the description that repeats a saved result.
+
+        Parameters
+        ----------
+        provenance
+            Provenance of the result.
+        axes
+            Coordinates of a grid: its names with their values, x first.
+
+        Raises
+        ------
+        UnsupportedError
+            If descriptions do not support the model or base motion of the runs.
+        ParameterError
+            If the values of the runs follow another design.
+        """
+        table: dict[str, Any] = {}
+        if cls.study.axes:
+            design = refuse_design(provenance, *(("grid", "random") if cls.study.starts else ("grid",)))
+            if design["kind"] == "random":
+                table = {"random": design["count"], "seed": design["seed"], "over": design["values"]}
+            else:
+                listed = ({"name": name, "values": list(values)} for name, values in axes.items())
+                table = dict(zip(cls.study.places, listed, strict=False))
+        table |= {name: one for name, one in dict(provenance.get(cls.study.name, {})).items() if one is not None}
+        return cls.parse(cls.study.repeated(provenance, {**common_values(provenance), cls.study.name: table}))
+
+    def build(self) -> Setup:
+        """Build model and motion; the options are the keyword arguments of the study.
+
+        Raises
+        ------
+        ConfigError
+            With one line for each invalid part.
+        """
+        study, problems = self.study, list[str]()
+        table = getattr(self, study.name)
+        arguments = table.arguments(study, problems)
+        names = () if study.starts else tuple(arguments.get("over", ()))
+        problems += [
+            f"{name}: {why}"
+            for name, why in study.without.items()
+            if (getattr(self, name) or None) not in (None, type(self).model_fields[name].default)
+        ]
+        if "duration" not in study.without:
+            problems += self.problems_of_the_length(names)
+        model, motion, options = self.common(problems, names)
+        for name in study.without:
+            del options[name]
+        for name in getattr(study.numbers, "__annotations__", ()):
+            if getattr(self, name) is not None:
+                options[name] = getattr(self, name)
+        if study.early and self.end_converged:
+            options["end_converged"] = True
+        setup = Setup(model, motion, arguments | options)
+        setup.options.update(study.arguments(self, setup))
+        return setup
+
+
+class StudyTable(Config):
+    """The table of a study: its axes, and its own numbers."""
+
+    def arguments(self, study: Study, problems: list[str]) -> dict[str, Any]:
+        """Make the arguments of the study; add a line to `problems` for each mistake."""
+        return ({"over": self.grid(study, problems)} if study.axes else {}) | self.model_dump(exclude={*study.places})
+
+    def grid(self, study: Study, problems: list[str]) -> dict[str, Any]:
+        """Make the values along the axes, by name; add a line to `problems` for each mistake."""
+        axes = {place: axis for place in study.places if (axis := getattr(self, place)) is not None}
+        over = {axis.name: built(f"{study.name}.{place}", axis.build, problems) for place, axis in axes.items()}
+        if len(over) < len(axes):
+            problems.append(f"{study.name}.x and {study.name}.y must differ, got {axes['x'].name!r} in both")
+        return over
+
+
+class _StartsTable(StudyTable):
+    """Initial conditions on a grid of two of them, or drawn at random.
+
+    Parameters
+    ----------
+    x, y
+        Values of an initial condition on a grid: a table as below.
+    random
+        Number of initial conditions to draw, in place of a grid.
+    seed
+        Seed of the draw.
+    over
+        Range of each initial condition that is drawn: minimum and maximum.
+    """
+
+    x: Axis | None = None
+    y: Axis | None = None
+    random: int | None = None
+    seed: int = 0
+    over: dict[str, tuple[float, float]] = Field(default_factory=dict)
+
+    @field_validator("over")
+    @classmethod
+    def _written_as_in_python(cls, over: dict[str, tuple[float, float]]) -> dict[str, tuple[float, float]]:
+        return {name.replace("-", "_"): bounds for name, bounds in over.items()}
+
+    @field_validator("over", mode="before")
+    @classmethod
+    def _read_units(cls, over: Any) -> Any:
+        """Read bounds with a unit, such as "5 deg"."""
+        if not isinstance(over, Mapping):
+            return over
+        return {name: read_all(one, quantity_of(str(name).replace("-", "_")).unit) for name, one in over.items()}
+
+    def arguments(self, study: Study, problems: list[str]) -> dict[str, Any]:
+        """Make the arguments of the study: a grid over two names, or the ranges and number of a random sample."""
+        name = study.name
+        axes = [place for place in study.places if getattr(self, place) is not None]
+        if self.random is None:
+            problems += _problems_of_the_grid(name, axes, self)
+            return {"over": self.grid(study, [] if problems else problems)}
+        if axes:
+            problems.append(
+                f"{name}.{f' and {name}.'.join(axes)}: random initial conditions have ranges (over) and no grid"
+            )
+        if not self.over:
+            problems.append(f"{name}.over is missing: the ranges of random initial conditions, by name")
+        built(name, lambda: require_whole("random", self.random or 0, least=1, most=MOST_RUNS), problems)
+        built(name, lambda: require_whole("seed", self.seed, least=0, most=LARGEST_SEED), problems)
+        return {"over": dict(self.over), "count": self.random, "rng": self.seed}
+
+
+def _problems_of_the_grid(name: str, axes: Sequence[str], table: _StartsTable) -> list[str]:
+    if table.over:
+        return [f"{name}.random is missing: the number of initial conditions to draw in the ranges over"]
+    if not axes:
+        return [f"{name}: x and y are missing (a grid of initial conditions), or random and over (a random sample)"]
+    return [f"{name}.{place} is missing" for place in "xy" if place not in axes]
+
+
+@cache
+def study_config(function: Callable[..., Any]) -> type[StudyConfig]:
+    """Make the class that describes a study, such as `stylobate.studies.overturning_map`, in files.
+
+    Raises
+    ------
+    ParameterError
+        If the function is no study with a description.
+    """
+    study = study_of(function)
+    fields: dict[str, Any] = {
+        place.rstrip("?"): (Axis | None, None) if "?" in place else (Axis, ...) for place in study.axes
+    }
+    numbers_of_study = own_numbers(function)
+    numbers = {name: (Annotated[_type_of(one), one.quantity], one.default) for name, one in numbers_of_study.items()}
+    room = "".join(map(str.title, study.name.split("_")))
+    make: Any = create_model
+    about = {"__doc__": (function.__doc__ or "").partition("\n")[0], "__module__": __name__}
+    made: type[StudyTable] = make(
+        f"{room}Table",
+        __base__=_StartsTable if study.starts else StudyTable,
+        __doc__=_about(study, numbers_of_study),
+        __module__=__name__,
+        **({} if study.starts else fields),
+        **numbers,
+    )
+    required = any(one.is_required() for one in made.model_fields.values())
+    of_runs = () if study.numbers is None else (fields_of(study.numbers),)
+    early = {"end_converged": (bool, False)} if study.early else {}
+    found: type[StudyConfig] = make(
+        f"{room}Config",
+        __base__=(*of_runs, StudyConfig),
+        **about,
+        **{study.name: (made, ... if required else made())},
+        **early,
+    )
+    found.study = study
+    return found
+
+
+def _about(study: Study, numbers: Mapping[str, Parameter]) -> str:
+    """Write the docstring of the table of a study: the meaning of each of its keys."""
+    if study.starts:
+        return str(_StartsTable.__doc__)
+    axes = dict.fromkeys(study.places, "Values of a quantity: a table as above.")
+    said = axes | {name: f"{one.quantity.text[:1].upper()}{one.quantity.text[1:]}." for name, one in numbers.items()}
+    lines = "".join(f"    {name}\n        {text}\n" for name, text in said.items())
+    return f"The table `{study.name}`.\n\n    Parameters\n    ----------\n{lines}    "
+
+
+def _type_of(number: Any) -> Any:
+    kind = tuple[Annotated[float, number.quantity], ...] if several(number) else number.annotation
+    return kind | None if number.optional else kind

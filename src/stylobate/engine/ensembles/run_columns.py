@@ -1,0 +1,507 @@
+"""Columns of the table of a batch that describe the models and base motions of the runs."""
+
+import cmath
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from stylobate.base_motions import BaseMotion, Delayed, Harmonic, Rotated, Scaled, Sum
+from stylobate.base_motions.combined import members_of
+from stylobate.base_motions.declared import is_pulse, numbers_of, stated_numbers
+from stylobate.engine.ensembles.polynomials import Table, one_after_another, tabulated, tabulated_alike
+from stylobate.engine.forcing import least_rest_energy
+from stylobate.engine.kernel.columns import Tabulated
+from stylobate.engine.kernel.shape import Harmonics, KernelForcing, Polynomials
+from stylobate.engine.parameters import OFFSETS, changed_model, changed_motion, declared_names, peak_acceleration, split
+from stylobate.engine.verdict import remaining_acceleration
+from stylobate.models import Model
+
+Floats = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class ModelColumns:
+    """Arrays over the runs of shape (n,), except `slope`, (n, 3), `states`, (n, number of states), and `parameters`.
+
+    `length` is the height of the centre of mass [m].
+    """
+
+    time_scale: Floats
+    gravity: Floats
+    length: Floats
+    slenderness: Floats
+    capacity: Floats
+    comes_to_rest: npt.NDArray[np.bool_]
+    loss_tilt: Floats
+    slope: Floats
+    states: Floats
+    parameters: Floats
+    kinds: "Kinds"
+
+    @classmethod
+    def of(
+        cls, model: Model, values: Mapping[str, Floats], tilt: Floats, tilt_rate: Floats, spin: Floats
+    ) -> "ModelColumns":
+        """Return the columns for runs with these initial values, `tilt` and `tilt_rate` of shape (n, 2), and `values`.
+
+        Raises
+        ------
+        ParameterError
+            If a value is out of range.
+        """
+        count = len(tilt)
+        own, _ = split(model, values)
+        numbers = np.empty((6, count))
+        comes_to_rest, slope = np.empty(count, dtype=bool), np.empty((count, 3))
+        states = np.empty((count, len(model.state_names)))
+        parameters = np.empty((count, len(model.parameters)))
+        kinds = _distinct(model, own, count)
+        for changed, runs in kinds:
+            column = changed.column
+            numbers[:, runs] = np.array(
+                [
+                    changed.time_scale,
+                    column.gravity,
+                    column.mass_height,
+                    column.slenderness,
+                    changed.rest_capacity,
+                    changed.loss_tilt,
+                ]
+            )[:, np.newaxis]
+            slope[runs] = changed.slope
+            comes_to_rest[runs] = changed.comes_to_rest
+            parameters[runs] = changed.parameters
+            vectors = (*tilt[runs].T, *tilt_rate[runs].T)
+            start = changed.start((vectors[0], vectors[1]), (vectors[2], vectors[3]))
+            for j, part in enumerate(start):
+                states[runs, j] = part
+            if model.spin_state is not None:
+                states[runs, model.spin_state] = spin[runs] * changed.time_scale
+        time_scale, gravity, length, slenderness, capacity, loss_tilt = numbers
+        lengths = (length, slenderness)
+        return cls(time_scale, gravity, *lengths, capacity, comes_to_rest, loss_tilt, slope, states, parameters, kinds)
+
+
+Kinds = list[tuple[Model, slice | npt.NDArray[np.int64]]]
+
+
+def _distinct(model: Model, values: Mapping[str, Floats], count: int) -> Kinds:
+    """Return the distinct models, each with its runs."""
+    if not values or count == 0:
+        return [(model, slice(None))]
+    table = np.stack(list(values.values()), axis=1)
+    kinds, which = np.unique(table, axis=0, return_inverse=True)
+    order = np.argsort(which.ravel(), kind="stable")
+    ends = np.cumsum(np.bincount(which.ravel(), minlength=len(kinds)))
+    runs = np.split(order, ends[:-1])
+    return [
+        (changed_model(model, dict(zip(values, kind.tolist(), strict=True))), chosen)
+        for kind, chosen in zip(kinds, runs, strict=True)
+    ]
+
+
+_COPIES = (Scaled, Rotated, Delayed)
+
+
+@dataclass(frozen=True, slots=True)
+class Term:
+    """Acceleration Re(amplitude e^{i(ω(t − shift) + start_phase)}) after `onset`, with a rise over `ramp` from `shift`.
+
+    Parameters
+    ----------
+    angular_frequency
+        ω [rad/s].
+    amplitude
+        Complex amplitudes along x, y, z [m/s²].
+    start_phase
+        [rad].
+    shift, onset, ramp
+        [s].
+    """
+
+    angular_frequency: float
+    amplitude: tuple[complex, complex, complex]
+    start_phase: float
+    shift: float
+    onset: float
+    ramp: float
+
+
+def terms_of(motion: BaseMotion) -> tuple[Term, ...] | None:
+    """Return the harmonic terms of `motion`, or None if it is not a sum of harmonic motions."""
+    if type(motion) is Harmonic:
+        amplitudes = tuple(cmath.rect(a, phase) for a, phase in zip(motion.amplitude, motion.phase, strict=True))
+        x, y, z = amplitudes
+        return (Term(motion.angular_frequency, (x, y, z), motion.start_phase, 0.0, -math.inf, motion.ramp),)
+    if type(motion) is Sum:
+        parts = [terms_of(part) for part in motion.motions]
+        return None if None in parts else tuple(term for part in parts for term in part or ())
+    if not isinstance(motion, _COPIES) or type(motion) not in _COPIES:  # a subclass can differ
+        return None
+    inner = terms_of(motion.motion)
+    return None if inner is None else tuple(_transformed(motion, term) for term in inner)
+
+
+def _transformed(motion: Scaled | Rotated | Delayed, term: Term) -> Term:
+    if isinstance(motion, Delayed):
+        begins = motion.delay if motion.delay > 0.0 else -math.inf
+        return replace(term, shift=term.shift + motion.delay, onset=max(begins, term.onset + motion.delay))
+    return replace(term, amplitude=motion.changed(*term.amplitude))
+
+
+@dataclass(frozen=True, slots=True)
+class Terms:
+    """Terms of the motions of n runs: arrays of shape (n, terms), amplitudes (n, terms, 3), in SI units."""
+
+    angular_frequency: Floats
+    amplitude: npt.NDArray[np.complex128]
+    start_phase: Floats
+    shift: Floats
+    onset: Floats
+    ramp: Floats
+
+    @classmethod
+    def of(
+        cls,
+        terms: Sequence[tuple[Term, ...]],
+        which: npt.NDArray[np.intp],
+        values: Mapping[str, Floats],
+        base_acceleration: Floats,
+    ) -> "Terms":
+        """Return the terms of each run, with the parameters of `values` changed.
+
+        Parameters
+        ----------
+        terms
+            Terms of each of some motions, all of the same number.
+        which
+            Index of the motion of each run, shape (n,).
+        values
+            Parameters that change, each of shape (n,).
+        base_acceleration
+            Peak horizontal acceleration of each run before the change [m/s²].
+        """
+        shape = (len(terms), len(terms[0]))
+
+        def of_runs(get: Callable[[Term], float]) -> Floats:
+            numbers = [get(term) for motion in terms for term in motion]
+            return np.array(numbers, dtype=float).reshape(shape)[which]
+
+        amplitudes = [term.amplitude for motion in terms for term in motion]
+        made = cls(
+            of_runs(lambda term: term.angular_frequency),
+            np.array(amplitudes, dtype=complex).reshape(*shape, 3)[which],
+            of_runs(lambda term: term.start_phase),
+            of_runs(lambda term: term.shift),
+            of_runs(lambda term: term.onset),
+            of_runs(lambda term: term.ramp),
+        )
+        return made._with(values, base_acceleration)
+
+    def _with(self, values: Mapping[str, Floats], base_acceleration: Floats) -> "Terms":
+        frequency, amplitude, start_phase = self.angular_frequency, self.amplitude, self.start_phase
+        shift, onset = self.shift, self.onset
+        if "angular_frequency" in values:
+            frequency = np.broadcast_to(values["angular_frequency"][:, np.newaxis], frequency.shape)
+        if "start_phase" in values:
+            start_phase = np.broadcast_to(values["start_phase"][:, np.newaxis], frequency.shape)
+        ramp = np.broadcast_to(values["ramp"][:, np.newaxis], frequency.shape) if "ramp" in values else self.ramp
+        factor = factors(values, base_acceleration)
+        if factor is not None:
+            amplitude = amplitude * factor[:, np.newaxis, np.newaxis]
+        if "rotation" in values:
+            cos, sin = (part(values["rotation"])[:, np.newaxis] for part in (np.cos, np.sin))
+            x, y, z = np.moveaxis(amplitude, -1, 0)
+            amplitude = np.stack([cos * x - sin * y, sin * x + cos * y, z], axis=-1)
+        if "delay" in values:
+            delay = values["delay"][:, np.newaxis]
+            shift = shift + delay
+            onset = np.maximum(np.where(delay > 0.0, delay, -np.inf), onset + delay)
+        return Terms(frequency, amplitude, start_phase, shift, onset, ramp)
+
+    @property
+    def phase_at_start(self) -> Floats:
+        """Phase of each term at t = 0 [rad], shape (n, terms)."""
+        return self.start_phase - self.angular_frequency * self.shift
+
+    def breaks(self) -> Floats:
+        """Return the increasing times of non-smooth acceleration [s], shape (n, breaks), padded with inf."""
+        ramped = np.where(self.ramp > 0.0, self.shift + self.ramp, np.inf)
+        times = np.concatenate([self.onset, ramped], axis=1)
+        times = np.sort(np.where(times > 0.0, times, np.inf), axis=1)
+        return times[:, np.any(np.isfinite(times), axis=0)]
+
+    def columns(self, time_scale: Floats, gravity: Floats, *, windowed: bool) -> Floats:
+        """Return the columns of a kernel, those of `Wave` for each term."""
+        scale = time_scale[:, np.newaxis]
+        phase = np.angle(self.amplitude) + self.phase_at_start[..., np.newaxis]
+        parts = [self.angular_frequency * scale / (2.0 * math.pi)]
+        for axis in range(3):
+            parts += [np.abs(self.amplitude[..., axis]) / gravity[:, np.newaxis], _turns(phase[..., axis])]
+        if windowed:
+            # The end of the rise is exactly the break at which the kernel begins the next leg.
+            parts += [self.onset / scale, self.shift / scale, (self.shift + self.ramp) / scale]
+        return np.stack(parts, axis=-1).reshape(len(scale), -1)
+
+
+def factors(values: Mapping[str, Floats], base_acceleration: Floats) -> Floats | None:
+    """Return the factor of the motion of each run from `acceleration` and `scale`, or None for 1."""
+    factor = None
+    if "acceleration" in values:
+        factor = values["acceleration"] / base_acceleration
+    if "scale" in values:
+        factor = values["scale"] if factor is None else factor * values["scale"]
+    return factor
+
+
+def _turns(angle: Floats) -> Floats:
+    turns = angle / (2.0 * math.pi)
+    return turns - np.floor(turns + 0.5)
+
+
+_NO_PIECES = np.zeros((1, 5))
+
+
+@dataclass(frozen=True, slots=True)
+class MotionPlan:
+    """Evaluation method of the base motion of an ensemble, the same for all runs.
+
+    Each run has one of the motions `members`. If declared parameters of a tabulated motion vary, there is one member
+    for each combination: `names` are these parameters, `levels` the increasing values of each, and `combinations` the
+    joint indices of the values of each member. The same holds if numbers of a named constructor vary, such as a
+    stroke. `terms` are those of each member, None for tabulated motions. `table` holds these one after another; each
+    begins at its index in `first` and has its number of pieces in `lengths`.
+    """
+
+    motion: BaseMotion
+    members: tuple[BaseMotion, ...]
+    names: tuple[str, ...]
+    levels: tuple[Floats, ...]
+    combinations: npt.NDArray[np.intp]
+    terms: tuple[tuple[Term, ...], ...] | None
+    table: Table | None
+    first: npt.NDArray[np.intp]
+    lengths: npt.NDArray[np.intp]
+    windowed: bool
+    vertical: bool
+    base_acceleration: Floats
+
+    @classmethod
+    def of(cls, motion: BaseMotion, values: Mapping[str, Floats], duration: Floats) -> "MotionPlan":
+        """Return the plan for runs that change these `values` of the motion.
+
+        Raises
+        ------
+        ParameterError
+            If a parameter of the motion is out of range, or a chosen motion does not exist.
+        UnsupportedError
+            If the motion lacks a parameter in `values`, or cannot be tabulated.
+        """
+        declared = declared_names(motion, values)
+        for name, own in declared.items():
+            for value in (values[name].min(initial=math.inf), values[name].max(initial=-math.inf)):
+                if math.isfinite(value):
+                    numbers_of(motion)[own].quantity.checked(name, float(value))
+        for number in np.unique(values["motion"]) if "motion" in values else ():
+            changed_motion(motion, {"motion": float(number)})
+        stated = tuple(name for name, own in declared.items() if own in stated_numbers(motion))
+        is_plain = all(name == own for name, own in declared.items() if name not in stated)
+        is_plain &= not any(name in values for name in OFFSETS)
+        harmonic = is_plain and terms_of(motion) is not None
+        names = () if not len(duration) else stated if harmonic else tuple(declared)
+        if names and "motion" in values:
+            names = ("motion", *names)
+        levels, combinations = _combined([values[name] for name in names])
+        members = members_of(motion) if "motion" in values else (motion,)
+        if names:
+            places = np.unravel_index(combinations, tuple(map(len, levels)))
+            chosen = np.stack([level[place] for level, place in zip(levels, places, strict=True)], axis=1)
+            changes = (dict(zip(names, numbers, strict=True)) for numbers in chosen.tolist())
+            members = tuple(changed_motion(motion, change) for change in changes)
+        scaled = "acceleration" in values
+        base = np.array([peak_acceleration(member) if scaled else 1.0 for member in members])
+        terms = tuple(terms_of(member) or () for member in members) if harmonic else None
+        vertical = any(bound != 0.0 for member in members for bound in member.vertical_range(0.0))
+        nowhere = np.zeros(1, dtype=np.intp)
+        varied = (names, levels, combinations)
+        if terms is not None:
+            each_term = [term for one in terms for term in one]
+            windowed = "delay" in values or any(term.ramp > 0.0 or term.onset > 0.0 for term in each_term)
+            vertical = any(term.amplitude[2] != 0.0 for term in each_term)
+            return cls(motion, members, *varied, terms, None, nowhere, nowhere, windowed, vertical, base)
+        least_delay = values["delay"].min(initial=0.0) if "delay" in values else 0.0
+        end = float(duration.max(initial=1e-300)) - float(least_delay)
+        alike = names == ("angular_frequency",) and is_pulse(motion)
+        tables = tabulated_alike(members, end) if alike else [tabulated(member, end) for member in members]
+        lengths = np.array([len(table.rows) for table in tables])
+        table = one_after_another(tables)
+        first = np.cumsum(lengths) - lengths
+        return cls(motion, members, *varied, None, table, first, lengths, False, vertical, base)
+
+    def member(self, values: Mapping[str, Floats], count: int) -> npt.NDArray[np.intp]:
+        """Return the index in `members` of the motion of each of `count` runs."""
+        if self.names:
+            places = [np.searchsorted(level, values[name]) for name, level in zip(self.names, self.levels, strict=True)]
+            return np.searchsorted(self.combinations, _combination(self.levels, places))
+        return values["motion"].astype(np.intp) if "motion" in values else np.zeros(count, dtype=np.intp)
+
+    def source(self, *, planar: bool) -> KernelForcing:
+        """Return the kind of base motion for the kernels."""
+        components = (*(("ah",) if planar else ("ax", "ay")), *(("az",) if self.vertical else ()))
+        if self.terms is not None:
+            return Harmonics(len(self.terms[0]), self.windowed, components)
+        assert self.table is not None
+        return Polynomials(self.table.degree, components)
+
+    @property
+    def pieces(self) -> Floats:
+        """Table of pieces for the kernels; without content for harmonic motion."""
+        return _NO_PIECES if self.table is None else self.table.rows
+
+
+@dataclass(frozen=True, slots=True)
+class MotionColumns:
+    """Arrays over the runs in model units, of shape (n,) except `directions` (n, vectors, 2), `breaks`, `columns`.
+
+    `duration` is the time after which the base motion has ended [s], and `remaining` the bound of the horizontal
+    acceleration afterwards [g], that of a base out of level. `phase` is the phase of the forcing at t = 0 [turns].
+    `forward` and `backward` are the azimuths [rad] at t = 0 of its anticlockwise and clockwise components, NaN for more
+    than one frequency.
+    """
+
+    columns: Floats
+    breaks: Floats
+    frequency: Floats
+    mean_frequency: Floats
+    least_rest_energy: Floats
+    duration: Floats
+    period: Floats
+    phase: Floats
+    largest: Floats
+    remaining: Floats
+    minimum_vertical: Floats
+    maximum_vertical: Floats
+    directions: Floats
+    forward: Floats
+    backward: Floats
+
+    @classmethod
+    def of(cls, plan: MotionPlan, values: Mapping[str, Floats], models: ModelColumns) -> "MotionColumns":
+        """Return the columns for runs of these `models` that change these `values`."""
+        count = len(models.gravity)
+        which = plan.member(values, count)
+
+        def each(get: Callable[[BaseMotion], Any]) -> Floats:
+            return np.array([get(member) for member in plan.members], dtype=float)[which]
+
+        factor = factors(values, plan.base_acceleration[which])
+        factor = np.ones(count) if factor is None else factor
+        per_gravity = factor / models.gravity
+        bounds = per_gravity * each(lambda motion: motion.vertical_range(0.0)).T
+        rotation = values.get("rotation", np.zeros(count))
+        offset = np.stack([values.get(name, np.zeros(count)) for name in OFFSETS], axis=-1)
+        pushed = np.hypot(*offset.T) / models.gravity
+        if plan.terms is not None:
+            terms = Terms.of(plan.terms, which, values, plan.base_acceleration[which])
+            columns = terms.columns(models.time_scale, models.gravity, windowed=plan.windowed)
+            breaks = terms.breaks() if plan.windowed else np.empty((count, 0))
+            frequency, phase, forward, backward = _single_frequency(terms, plan.motion)
+            mean_frequency = frequency
+        else:
+            columns = _table_columns(plan, values, factor, rotation, offset, models)
+            breaks = np.empty((count, 0))
+            frequency = each(lambda motion: motion.highest_frequency)
+            mean_frequency = each(lambda motion: motion.mean_frequency)
+            phase = np.zeros(count)
+            forward = backward = np.full(count, np.nan)
+        lasts = each(lambda motion: motion.duration)
+        period = each(lambda motion: motion.period or 0.0)
+        if "angular_frequency" in values and plan.terms is not None:
+            period = 2.0 * math.pi / values["angular_frequency"]
+        return cls(
+            columns=columns,
+            breaks=breaks / models.time_scale[:, np.newaxis],
+            frequency=frequency * models.time_scale,
+            mean_frequency=mean_frequency * models.time_scale,
+            least_rest_energy=each(least_rest_energy),
+            duration=np.where(lasts > 0.0, np.maximum(0.0, lasts + values.get("delay", 0.0)), 0.0),
+            period=period / models.time_scale,
+            phase=phase,
+            largest=np.abs(per_gravity) * each(lambda motion: motion.peak_horizontal(0.0)) + pushed,
+            remaining=np.abs(per_gravity) * each(remaining_acceleration) + pushed,
+            minimum_vertical=bounds.min(axis=0),
+            maximum_vertical=bounds.max(axis=0),
+            directions=_directions(plan.members, which, factor, rotation, offset),
+            forward=forward,
+            backward=backward,
+        )
+
+
+def _combined(values: Sequence[Floats]) -> tuple[tuple[Floats, ...], npt.NDArray[np.intp]]:
+    """Return the distinct values of each parameter in increasing order, and the combinations that occur."""
+    levels = tuple(np.unique(one) for one in values)
+    places = [np.searchsorted(level, one) for level, one in zip(levels, values, strict=True)]
+    return levels, np.unique(_combination(levels, places)) if levels else np.zeros(0, dtype=np.intp)
+
+
+def _combination(levels: Sequence[Floats], places: Sequence[npt.NDArray[np.intp]]) -> npt.NDArray[np.intp]:
+    return np.asarray(np.ravel_multi_index(tuple(places), tuple(map(len, levels))), dtype=np.intp)
+
+
+def _single_frequency(terms: Terms, motion: BaseMotion) -> tuple[Floats, Floats, Floats, Floats]:
+    """Return the highest frequency of each run, its phase at t = 0, and the azimuths of its circular components."""
+    count = len(terms.angular_frequency)
+    nothing = np.full(count, np.nan)
+    if terms.angular_frequency.shape[1] == 0:
+        return np.full(count, motion.highest_frequency), np.zeros(count), nothing, nothing
+    frequency = terms.angular_frequency.max(axis=1)
+    if terms.angular_frequency.shape[1] > 1:
+        return frequency, np.zeros(count), nothing, nothing
+    phase = terms.phase_at_start[:, 0]
+    x, y, _ = np.moveaxis(terms.amplitude[:, 0] * np.exp(1j * phase)[:, np.newaxis], -1, 0)
+    forward = np.angle(0.5 * (x + 1j * y))
+    backward = np.angle(0.5 * (x.conj() + 1j * y.conj()))
+    return frequency, phase / (2.0 * math.pi), forward, backward
+
+
+def _directions(
+    members: Sequence[BaseMotion], which: npt.NDArray[np.intp], factor: Floats, rotation: Floats, offset: Floats
+) -> Floats:
+    spanning = [member.directions() for member in members]
+    vectors = np.zeros((len(members), max(map(len, spanning)), 2))  # zero vectors are parallel to any line
+    for number, given in enumerate(spanning):
+        vectors[number, : len(given)] = np.array(given, dtype=float).reshape(-1, 2)
+    cos, sin = np.cos(rotation)[:, np.newaxis], np.sin(rotation)[:, np.newaxis]
+    x, y = np.moveaxis(vectors[which], -1, 0)
+    turned = np.stack([cos * x - sin * y, sin * x + cos * y], axis=-1)
+    return np.concatenate([factor[:, np.newaxis, np.newaxis] * turned, offset[:, np.newaxis]], axis=1)
+
+
+def _table_columns(
+    plan: MotionPlan,
+    values: Mapping[str, Floats],
+    factor: Floats,
+    rotation: Floats,
+    offset: Floats,
+    models: ModelColumns,
+) -> Floats:
+    count = len(factor)
+    scaled, which = factor / models.gravity, plan.member(values, count)
+    delay = values.get("delay", np.zeros(count))
+    first, number = plan.first[which], plan.lengths[which]
+    columns = {
+        Tabulated.FACTOR: scaled,
+        Tabulated.COS: np.cos(rotation),
+        Tabulated.SIN: np.sin(rotation),
+        Tabulated.VERTICAL: scaled,
+        Tabulated.DELAY: delay,
+        Tabulated.OFFSET_X: offset[:, 0] / models.gravity,
+        Tabulated.OFFSET_Y: offset[:, 1] / models.gravity,
+        Tabulated.FIRST: first,
+        Tabulated.COUNT: number,
+    }
+    return np.stack([columns[column] for column in Tabulated], axis=1)

@@ -1,0 +1,246 @@
+"""Files of strong-motion databases: AT2 of PEER, ASC of ESM and ITACA, and waveforms that ObsPy reads."""
+
+import io
+import re
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from stylobate.errors import FileError, UnsupportedError
+from stylobate.records.directions import Component, Direction
+from stylobate.records.text_files import SECOND, Text, is_number, time_unit_of, unit_of, unknown_unit
+
+# AT2: four lines of header, then the accelerations, several per line. The fourth line is
+# `NPTS=   4000, DT=   .0050 SEC` in newer files and `4000    0.0050    NPTS, DT` in older ones.
+_NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[EeDd][-+]?\d+)?"
+_NEW = re.compile(
+    rf"NPTS\s*=\s*(?P<count>\S+?)\s*,\s*DT\s*=\s*(?P<step>{_NUMBER})?\s*(?P<clock>[^\W\d_]*)", re.IGNORECASE
+)
+_OLD = re.compile(rf"\s*(?P<count>\d+)\s+(?P<step>{_NUMBER})?\s*(?P<clock>)NPTS\s*,\s*DT", re.IGNORECASE)
+_UNITS = re.compile(r"UNITS?\s+OF\s+(?P<unit>[^\s,.;]+)", re.IGNORECASE)
+_OTHERS = re.compile(r"^\s*(VELOCITY|DISPLACEMENT)\b", re.IGNORECASE)
+# The line with the count is the fourth; an additional blank or comment line is tolerated.
+_HEADER = 8
+_TIME_AND_ACCELERATION = 2
+
+
+def is_at2(text: Text) -> bool:
+    """Return whether the file has the header of an AT2 file."""
+    return _counting_line(text) is not None
+
+
+def is_wrapped(text: Text) -> bool:
+    """Return whether the numbers are laid out as in an AT2 file: several per line, fewer on the last line."""
+    rows = [row for row in map(str.split, text.lines[_first_row(text) :]) if row]
+    return bool(rows) and _TIME_AND_ACCELERATION < len(rows[0]) >= len(rows[-1])
+
+
+def read_at2(text: Text, step: float | None = None) -> Component:
+    """Read the component of an AT2 file.
+
+    Parameters
+    ----------
+    text
+        The file.
+    step
+        Time step [s], for a file whose header lacks the line with NPTS and DT.
+
+    Raises
+    ------
+    FileError
+        If the header or a number is wrong, or the count of numbers differs from the header.
+    """
+    last, count, clock = _counting_line(text), None, None
+    if last is not None:
+        found = _NEW.search(text.lines[last]) or _OLD.match(text.lines[last])
+        assert found is not None
+        if found["step"] is None:
+            raise text.fault(last, "the time step DT is missing. State it in the header, in s")
+        count, clock = text.count(last, "NPTS", found["count"]), time_unit_of(found["clock"])
+        step = (clock or SECOND).in_seconds(text.number(last, found["step"].upper().replace("D", "E")))
+        if step <= 0.0:
+            raise text.fault(last, f"the time step DT must be positive, got {step!r}. Correct the header")
+    else:
+        last = _first_row(text) - 1
+        if step is None or not is_wrapped(text):
+            state = "incomplete header" if last >= 0 else "no header"
+            remedy = "Restore it, or state step, in s, and units"
+            raise text.fault(0, f"{state} of an AT2 file: the line with NPTS and DT is missing. {remedy}")
+    header = text.lines[: last + 1]
+    # the second line ends with the component: "Loma Prieta, 10/18/1989, Corralitos, 90"
+    title = header[1] if len(header) > 1 else ""
+    return Component(
+        samples=text.series(last, count),
+        step=step,
+        unit=_unit_of_at2(text, header),
+        direction=Direction.parse(title.rsplit(",", maxsplit=1)[-1]) if "," in title else None,
+        title=title.strip(),
+        states_time_unit=clock is not None,
+    )
+
+
+def _counting_line(text: Text) -> int | None:
+    found = (at for at, line in enumerate(text.lines[:_HEADER]) if _NEW.search(line) or _OLD.match(line))
+    return next(found, None)
+
+
+def _first_row(text: Text) -> int:
+    """Return the index of the first line that holds only numbers."""
+    rows = (at for at, line in enumerate(text.lines) if line.strip() and all(map(is_number, line.split())))
+    return next(rows, len(text.lines))
+
+
+def _unit_of_at2(text: Text, header: tuple[str, ...]) -> str | None:
+    for index, line in enumerate(header):
+        if _OTHERS.match(line):
+            what = line.split()[0].lower()
+            raise text.fault(index, f"the file holds {what}, not acceleration. Read the .AT2 file of this component")
+        if found := _UNITS.search(line):
+            unit = unit_of(found["unit"])
+            if unit is None:
+                raise text.fault(index, unknown_unit(found["unit"]))
+            return unit
+    return None
+
+
+# ASC, with headers of DYNA 1.x: lines `KEY: value` such as `SAMPLING_INTERVAL_S: 0.005000`, then one acceleration per
+# line. L. Luzi et al., "The engineering strong-motion database: a platform to access pan-European accelerometric data",
+# Seismol. Res. Lett. 87, 2016.
+_KEY = re.compile(r"(?P<key>[A-Z][A-Z0-9_/^.%]*)\s*:\s*(?P<value>.*?)\s*")
+_STEP, _COUNT = "SAMPLING_INTERVAL_S", "NDATA"
+_KNOWN = {_STEP, _COUNT, "DATA_TYPE", "STREAM", "UNITS", "HEADER_FORMAT"}
+
+
+def is_asc(text: Text) -> bool:
+    """Return whether the file begins with the header of an ASC file, complete or not."""
+    return len(_KNOWN & _asc_header(text).keys()) > 1
+
+
+def read_asc(text: Text) -> Component:
+    """Read the component of an ASC file.
+
+    Raises
+    ------
+    FileError
+        If the header or a number is wrong, the count of numbers differs from the header, or the data are no
+        acceleration.
+    """
+    header = _asc_header(text)
+    places = {key: at for key, (at, _) in header.items()}
+    values = dict.fromkeys(_KNOWN, "") | {key: value for key, (_, value) in header.items()}
+    for key in (_STEP, _COUNT):
+        if not values[key]:
+            what = f"incomplete header of an ASC file: {key} is missing. Restore it"
+            raise text.fault(places.get(key, 0), what)
+    kind = values["DATA_TYPE"].lower()
+    if kind not in ("", "acceleration"):
+        what = f"the file holds {kind}, not acceleration. Read the file of this component with ACC in its name"
+        raise text.fault(places["DATA_TYPE"], what)
+    step = text.number(places[_STEP], values[_STEP])
+    if step <= 0.0:
+        raise text.fault(places[_STEP], f"{_STEP} must be positive, got {step!r}. Correct the header")
+    count = text.count(places[_COUNT], _COUNT, values[_COUNT])
+    unit = unit_of(values["UNITS"])
+    if values["UNITS"] and unit is None:
+        raise text.fault(places["UNITS"], unknown_unit(values["UNITS"]))
+    return Component(
+        samples=text.series(max(places.values()), count),
+        step=step,
+        unit=unit,
+        direction=direction_of_channel(values["STREAM"]),
+        title=_title(values),
+    )
+
+
+def direction_of_channel(code: str) -> Direction | None:
+    """Return the direction of a channel such as HNE from its code or the last letter of its code, or None.
+
+    >>> direction_of_channel("HNE").azimuth, direction_of_channel("HGZ").vertical, direction_of_channel("HN3")
+    (90.0, 1, None)
+    """
+    return Direction.parse(code) or (Direction.parse(code[-1:]) if code[-1:].isalpha() else None)
+
+
+def _asc_header(text: Text) -> dict[str, tuple[int, str]]:
+    """Return the values of the header by their keys, each with the index of its line."""
+    header: dict[str, tuple[int, str]] = {}
+    for at, line in enumerate(text.lines):
+        found = _KEY.fullmatch(line)
+        if found is None and line.strip():
+            break
+        if found is not None:
+            header[found["key"]] = at, found["value"]
+    return header
+
+
+def _title(values: dict[str, str]) -> str:
+    """Return event, date, station and component, in the order of the second line of an AT2 file."""
+    event = values.get("EVENT_NAME") or values.get("EVENT_ID", "")
+    station = ".".join(filter(None, (values.get("NETWORK"), values.get("STATION_CODE"))))
+    date, time = values.get("EVENT_DATE_YYYYMMDD", ""), values.get("EVENT_TIME_HHMMSS", "")
+    when = f"{date[:4]}-{date[4:6]}-{date[6:]} {time}".strip(" -")
+    return ", ".join(filter(None, (event, when, station, values["STREAM"])))
+
+
+# ObsPy's calibration of these formats is in m/s².
+_IN_SI = ("KNET",)
+
+
+def read_waveform(path: Path, content: bytes) -> Component:
+    """Read the component in a waveform file with ObsPy.
+
+    Raises
+    ------
+    UnsupportedError
+        If ObsPy is not installed.
+    FileError
+        If ObsPy cannot read the file, or the file holds no trace or several.
+
+    Notes
+    -----
+    Samples are counts times the calibration in the header (`trace.stats.calib`); the instrument's response is not
+    removed.
+    """
+    try:
+        import obspy
+    except ImportError:
+        message = (
+            f'{path}: no text. To read a waveform such as miniSEED, install ObsPy: pip install "stylobate[records]"'
+        )
+        raise UnsupportedError(message) from None
+    try:
+        stream = obspy.read(io.BytesIO(content))
+    except Exception as error:  # ObsPy's readers raise exceptions of any type; their texts name temporary files
+        message = (
+            f"{path}: ObsPy cannot read it: its format is unknown or its content damaged. Download the file again, or "
+            "export the record as text or miniSEED"
+        )
+        raise FileError(message) from error
+    if len(stream) != 1:
+        remedy = "Write each trace to a file of its own, and fill its gaps"
+        message = f"{path}: the file must hold one trace without gaps, got {len(stream)} traces. {remedy}"
+        raise FileError(message)
+    (trace,) = stream
+    stats = trace.stats
+    samples = np.ma.filled(np.ma.asarray(trace.data, dtype=float), np.nan) * float(stats.calib)
+    if len(samples) < 2 or not np.all(np.isfinite(samples)):  # noqa: PLR2004  a step has two ends
+        remedy = "Download the file again, or fill its gaps"
+        message = f"{path}: the trace must have at least two finite samples without gaps. {remedy}"
+        raise FileError(message)
+    return Component(
+        samples=samples,
+        step=float(stats.delta),
+        unit="m/s²" if stats.get("_format") in _IN_SI else None,
+        direction=_direction_of_trace(stats),
+        title=f"{trace.id} {stats.starttime}",
+    )
+
+
+def _direction_of_trace(stats: Any) -> Direction | None:
+    sac = stats.get("sac", {})
+    if "cmpaz" in sac and "cmpinc" in sac:
+        if float(sac["cmpinc"]) == 0.0:
+            return Direction(vertical=1)
+        return Direction.of(float(sac["cmpaz"]))
+    return direction_of_channel(str(stats.channel))

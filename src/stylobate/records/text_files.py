@@ -1,0 +1,241 @@
+"""Text files of records: decoding, numbers and units; error messages name file and line."""
+
+import gzip
+import math
+import re
+import zlib
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from stylobate.column import STANDARD_GRAVITY
+from stylobate.errors import FileError, ParameterError
+
+Floats = npt.NDArray[np.float64]
+
+REMARKS = ("#", "%", "!", "//")
+"""Prefixes of comment lines."""
+
+_GZIP = b"\x1f\x8b"
+_UTF_16 = (b"\xff\xfe", b"\xfe\xff")
+_EXCEL = b"\xd0\xcf\x11\xe0"
+# First bytes of archives and documents that may hold records, but not as text.
+_PACKED = {
+    b"PK\x03\x04": "a zip archive. Unpack it and read the files in it",
+    b"Rar!": "a rar archive. Unpack it and read the files in it",
+    b"7z\xbc\xaf": "a 7z archive. Unpack it and read the files in it",
+    _EXCEL: "an Excel workbook. Save its sheet as CSV and read that",
+    b"%PDF": "a PDF document. Save its numbers as text and read that",
+}
+_WORKBOOK = b"xl/workbook"
+_WHOLE = re.compile(r"[0-9]{1,12}")
+_DECIMAL_COMMA = re.compile(r"[-+]?\d*[.,]?\d*,\d+([EeDd][-+]?\d+)?")
+
+
+def read_bytes(path: Path) -> bytes:
+    """Read the bytes of a file; decompress gzip.
+
+    Raises
+    ------
+    FileError
+        If it cannot be read, is empty, or is an archive or a workbook.
+    """
+    try:
+        content = path.read_bytes()
+        content = gzip.decompress(content) if content.startswith(_GZIP) else content
+    except (OSError, EOFError, zlib.error) as error:
+        reason = getattr(error, "strerror", None) or str(error)
+        several = path.is_dir() or "*" in path.name
+        damaged = isinstance(error, (EOFError, zlib.error, gzip.BadGzipFile))
+        remedy = ". Read folders and patterns with read_records" if several else ". Download the file again" * damaged
+        message = f"{path}: cannot be read: {reason}{remedy}"
+        raise FileError(message) from error
+    if not content.strip():
+        message = f"{path}: the file is empty. Download or export it again"
+        raise FileError(message)
+    for begin, what in _PACKED.items():
+        if content.startswith(begin):
+            message = f"{path}: {_PACKED[_EXCEL] if _WORKBOOK in content else what}"
+            raise FileError(message)
+    return content.decode("utf-16", errors="replace").encode() if content.startswith(_UTF_16) else content
+
+
+def is_binary(content: bytes) -> bool:
+    """Return whether the content has bytes that no text file holds."""
+    return any(byte < 0x20 and byte not in b"\t\n\r\f\x1a" for byte in content[:4096])  # noqa: PLR2004  a space
+
+
+def is_number(token: str) -> bool:
+    """Return whether a token is a number, finite or not."""
+    try:
+        float(token)
+    except ValueError:
+        return False
+    return True
+
+
+def begins_with_a_number(line: str) -> bool:
+    """Return whether a line without leading blanks is neither a comment nor column names."""
+    return line[:1].isdigit() or line.startswith(("+", "-", "."))
+
+
+@dataclass(frozen=True, slots=True)
+class Text:
+    """Lines of a text file without line ends; line numbers in messages begin at 1."""
+
+    path: Path
+    lines: tuple[str, ...]
+
+    @classmethod
+    def of(cls, path: Path, content: bytes) -> "Text":
+        """Decode `content` to lines: UTF-8, otherwise Latin-1, with any line ends."""
+        try:
+            text = content.decode("utf-8-sig")
+        except UnicodeDecodeError:
+            text = content.decode("latin-1")
+        return cls(path, tuple(text.rstrip("\x1a\x00").replace("\r\n", "\n").replace("\r", "\n").split("\n")))
+
+    def fault(self, index: int, what: str) -> FileError:
+        """Return a FileError that names the file and the line at `index`."""
+        return FileError(f"{self.path}, line {index + 1}: {what}")
+
+    def number(self, index: int, token: str) -> float:
+        """Parse a token of the line at `index` as a finite number."""
+        try:
+            value = float(token)
+        except ValueError:
+            remedy = "Write decimal points" if _DECIMAL_COMMA.fullmatch(token) else "Correct or remove it"
+            raise self.fault(index, f"not a number: {token!r}. {remedy}") from None
+        if not math.isfinite(value):
+            raise self.fault(
+                index,
+                f"not a finite number: {token!r}. Replace it by a number, or trim the file to the samples without gaps",
+            )
+        return value
+
+    def count(self, index: int, name: str, token: str) -> int:
+        """Parse a token of the line at `index` as a number of samples, at least two."""
+        if not _WHOLE.fullmatch(token):
+            raise self.fault(index, f"{name} must be a whole number, got {token!r}. Correct the header")
+        if int(token) < 2:  # noqa: PLR2004  a step has two ends
+            raise self.fault(index, f"{name} must be at least 2 samples, got {token}. Correct the header")
+        return int(token)
+
+    def rows(self, tokens: Sequence[tuple[int, list[str]]]) -> Floats:
+        """Parse rows of equally many tokens, each with its line index, to numbers of shape (rows, columns)."""
+        try:
+            values = np.array([row for _, row in tokens], dtype=float)
+        except ValueError:
+            values = np.array([np.nan])
+        if not np.all(np.isfinite(values)):
+            for index, row in tokens:
+                for token in row:
+                    self.number(index, token)
+        return values
+
+    def series(self, after: int, count: int | None) -> Floats:
+        """Parse all numbers below the line at index `after`, `count` of them if given.
+
+        Raises
+        ------
+        FileError
+            If a token is no finite number, or the count differs.
+        """
+        tokens = [(at, line.split()) for at, line in enumerate(self.lines[after + 1 :], start=after + 1)]
+        tokens = [(at, row) for at, row in tokens if row]
+        found = sum(len(row) for _, row in tokens)
+        values = self.rows([(at, [token]) for at, row in tokens for token in row]) if found else np.empty((0, 1))
+        if count is not None and found != count:
+            last = tokens[-1][0] if tokens else after
+            remedy = "Download the file again, or correct the count in the header"
+            raise self.fault(last, f"the header states {count} samples, the file has {found}. {remedy}")
+        return values[:, 0]
+
+
+_FACTORS = {"g": STANDARD_GRAVITY, "m/s²": 1.0, "cm/s²": 0.01, "mm/s²": 0.001}
+KNOWN = '"g", "m/s²" (m/s2), "cm/s²" (cm/s2, gal) or "mm/s²"'
+"""List of the units for messages."""
+
+_SPELLINGS = {
+    "g": "g",
+    "m/s2": "m/s²",
+    "m/s/s": "m/s²",
+    "ms-2": "m/s²",
+    "cm/s2": "cm/s²",
+    "cm/s/s": "cm/s²",
+    "cms-2": "cm/s²",
+    "gal": "cm/s²",
+    "gals": "cm/s²",
+    "mm/s2": "mm/s²",
+    "mm/s/s": "mm/s²",
+}
+
+
+class TimeUnit(NamedTuple):
+    """Unit of the times in a file: its symbol, and its length [s]."""
+
+    symbol: str
+    seconds: float
+
+    def in_seconds(self, time: float) -> float:
+        """Convert a time in this unit to s, without the last digits of the product: 35 ms are 0.035 s."""
+        return time if self.seconds == 1.0 else float(f"{time * self.seconds:.14g}")
+
+
+SECOND = TimeUnit("s", 1.0)
+_TIME_SPELLINGS = {
+    SECOND: "s sec secs second seconds sek sekunde sekunden seconde secondes secondi seg segundo segundos",
+    TimeUnit("ms", 1e-3): "ms msec msecs millisecond milliseconds",
+    TimeUnit("µs", 1e-6): "µs us µsec usec microsecond microseconds",
+    TimeUnit("min", 60.0): "min mins minute minutes",
+}
+_TIME_UNITS = {spelling: unit for unit, spellings in _TIME_SPELLINGS.items() for spelling in spellings.split()}
+_GREEK_MU, _MICRO_SIGN = "μ", "µ"
+
+
+def unit_of(text: str) -> str | None:
+    """Parse a unit to "g", "m/s²", "cm/s²" or "mm/s²", or None.
+
+    >>> unit_of("CM/SEC**2"), unit_of("gal"), unit_of("volt")
+    ('cm/s²', 'cm/s²', None)
+    """
+    plain = text.strip().lower().replace(" ", "").replace("sec", "s").replace("²", "2").replace("⁻", "-")
+    return _SPELLINGS.get(plain.replace("**", "").replace("^", ""))
+
+
+def time_unit_of(text: str) -> TimeUnit | None:
+    """Parse a unit of time: s, ms, µs or min; None for other units.
+
+    >>> time_unit_of("Sec."), time_unit_of("ms"), time_unit_of("samples")
+    (TimeUnit(symbol='s', seconds=1.0), TimeUnit(symbol='ms', seconds=0.001), None)
+    """
+    return _TIME_UNITS.get(text.strip().lower().replace(_GREEK_MU, _MICRO_SIGN).rstrip("."))
+
+
+def unknown_unit(text: str) -> str:
+    """Describe, for a message, a unit in a file that `unit_of` does not know."""
+    return f"unknown unit {text!r}. Give accelerations in {KNOWN}, and state that unit"
+
+
+def require_unit(text: str) -> str:
+    """Parse a unit, or raise ParameterError.
+
+    Raises
+    ------
+    ParameterError
+        If the unit is unknown.
+    """
+    unit = unit_of(text) if isinstance(text, str) else None
+    if unit is None:
+        message = f"units must be {KNOWN}, got {text!r}"
+        raise ParameterError(message)
+    return unit
+
+
+def in_si(unit: str) -> float:
+    """Return the factor from a `unit` of `unit_of` to m/s²; g is standard gravity, 9.80665 m/s²."""
+    return _FACTORS[unit]

@@ -1,0 +1,118 @@
+"""Studies of many runs: each is a function that returns a sweep and the labelling of its runs.
+
+The decorator `study` adds what they share: the arguments of runs, store, executor, resumption and progress.
+"""
+
+import inspect
+from functools import wraps
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, ParamSpec, TypedDict, cast, get_args
+
+from stylobate.config.study import Study
+from stylobate.progress import Progress, shows_progress
+from stylobate.run_arguments import Argument, RunOptions, defaults_of, takes
+from stylobate.studies.sweeps.executors import Executor
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    import xarray as xr
+
+    from stylobate.studies.sweeps.labelled import Label
+    from stylobate.studies.sweeps.sweep import Sweep
+
+_P = ParamSpec("_P")
+
+
+class Computing(TypedDict, total=False):
+    """How the runs of a study are computed."""
+
+    store: Annotated[
+        str | Path | None,
+        Argument(None, 'Folder of a Zarr store of the runs, such as "map.zarr"; None keeps them in memory.'),
+    ]
+    executor: Annotated[Executor | None, Argument(None, "`Threads()`, the default, or `Dask(…)`.")]
+    resume: Annotated[
+        bool, Argument(default=False, says="Continue the store if it exists: only missing runs are computed.")
+    ]
+    progress: Annotated[
+        Progress,
+        Argument(
+            None,
+            "A function that is called with the number of runs done and of all runs, or False. By default a bar "
+            "appears after two seconds if stderr is a terminal, or in a notebook.",
+        ),
+    ]
+
+
+class Lengths(TypedDict, total=False):
+    """How long runs last."""
+
+    duration: Annotated[float | None, Argument(None, "Duration of each run [s].")]
+    periods: Annotated[
+        float | None, Argument(None, "Duration of each run in periods of the base motion, in place of `duration`.")
+    ]
+
+
+class Described(Lengths, RunOptions, total=False):
+    """The arguments that describe the runs of a sweep."""
+
+
+class Runs(Described, Computing, total=False):
+    """The arguments of a study of many runs besides its own."""
+
+
+class PeriodicRuns(RunOptions, Computing, total=False):
+    """The arguments of a study whose runs last a number of periods that is an argument of its own."""
+
+
+def described(run: Runs) -> Described:
+    """Return the arguments that describe the runs, without those of their computation."""
+    how = defaults_of(Computing)
+    return cast("Described", {name: value for name, value in run.items() if name not in how})
+
+
+def options_of(run: PeriodicRuns) -> RunOptions:
+    """Return the options of the runs, without the arguments of their computation."""
+    return cast("RunOptions", described(cast("Runs", run)))
+
+
+_OPTIONS = f"""    **options
+        Arguments of all runs, as in `simulate` and `simulate_ensemble`: {", ".join(defaults_of(RunOptions))}; see
+        `RunOptions`.
+"""
+
+
+def study(
+    word: str, declared: Study | None = None
+) -> "Callable[[Callable[_P, tuple[Sweep, Label]]], Callable[_P, xr.Dataset]]":
+    """Make a study of a function that returns its sweep, and the function that labels the runs; a decorator.
+
+    The function takes `**run: Unpack[Runs]`, or another group in place of `Runs`, and gets all arguments of the group.
+
+    Parameters
+    ----------
+    word
+        Name of the computation beside the bar.
+    declared
+        Description in files and command of the study.
+    """
+
+    def decorated(function: "Callable[_P, tuple[Sweep, Label]]") -> "Callable[_P, xr.Dataset]":
+        (group,) = get_args(inspect.signature(function).parameters["run"].annotation)
+        how = defaults_of(Computing)
+
+        @wraps(function)
+        def computed(*arguments: _P.args, **named: _P.kwargs) -> "xr.Dataset":
+            from stylobate.studies.sweeps.labelled import labelled_sweep
+
+            sweep, label = function(*arguments, **named)
+            return labelled_sweep(sweep, label, **{name: named[name] for name in how})  # type: ignore[arg-type]
+
+        computed.__doc__ = (function.__doc__ or "").replace("    **run\n", f"    **run\n{_OPTIONS}")
+        groups = (Lengths, Computing) if "duration" in group.__annotations__ else (Computing,)
+        made = shows_progress(word)(takes(group, described=groups)(computed))
+        made.study = declared  # type: ignore[attr-defined]  # read by `study_of`
+        return made
+
+    return decorated

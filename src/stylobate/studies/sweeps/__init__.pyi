@@ -1,0 +1,8 @@
+from .dask_executor import Dask
+from .executors import Executor, Threads
+from .named_executors import executor_from
+from .running import run_sweep
+from .store import open_sweep
+from .sweep import Sweep
+
+__all__ = ["Dask", "Executor", "Sweep", "Threads", "executor_from", "open_sweep", "run_sweep"]
