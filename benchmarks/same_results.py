@@ -85,7 +85,7 @@ def studies() -> Iterator[tuple[str, Callable[[], xr.Dataset]]]:
     steady = {"tilt": (0.04, 0.0), "tilt_rate": (0.0, 0.2)}
     scales = np.linspace(0.4, 2.0, 9)
     yield "map", partial(sb.studies.overturning_map, SLENDER, CIRCLE, over=AXES, periods=30)
-    yield "map with contact", partial(sb.conveying.contact_map, SLIDING, CIRCLE, over=AXES, periods=6)
+    yield "map with contact", partial(sb.studies.overturning_map, SLIDING, CIRCLE, over=AXES, periods=6)
     yield "basins", partial(sb.studies.basins, SLENDER, CIRCLE, over=STARTS, periods=60)
     yield "integrity", partial(sb.studies.integrity, SLENDER, CIRCLE, over=STARTS, periods=30)
     yield "attractors", partial(sb.studies.attractors, SLENDER, CIRCLE, over=BOX, count=64, periods=60)

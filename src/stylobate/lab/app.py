@@ -32,6 +32,7 @@ from stylobate.lab.pages import page_routes
 from stylobate.lab.pool import OUT_OF_MEMORY, Broken, BusyError, Finished, Lost, Pool, Refused
 from stylobate.lab.requests import Description, Uploads, described, json_body, problems_of_numbers
 from stylobate.lab.runs import column_numbers, snippets
+from stylobate.lab.tasks import JOBS
 
 
 def create_app(
@@ -194,12 +195,12 @@ class Api:
         """Begin a job."""
         body = await json_body(request, self.limits.body)
         kind, values = body.get("kind"), body.get("description")
-        if not isinstance(kind, str) or kind not in openapi.JOBS:
-            raise RefusedError(422, [f"kind must be one of {', '.join(openapi.JOBS)}, got {kind!r}"])
+        if not isinstance(kind, str) or kind not in JOBS:
+            raise RefusedError(422, [f"kind must be one of {', '.join(JOBS)}, got {kind!r}"])
         if not isinstance(values, dict):
             raise RefusedError(422, ["description is missing: the plain values of a description"])
         given = described(values, self.uploads, self.limits)
-        await to_thread.run_sync(openapi.JOBS[kind].parse, given.values)
+        await to_thread.run_sync(JOBS[kind].parse, given.values)
         return _answer(answers.Begun(id=self.jobs.begin(kind, given.values)), 202)
 
     @openapi.endpoint(

@@ -13,7 +13,6 @@ from pydantic import BaseModel
 
 from stylobate import config, studies
 from stylobate.base_motions.declared import MOTIONS, composite_kinds, kinds_with_response, motion_quantities
-from stylobate.config.description import Config
 from stylobate.config.motions import is_to_end
 from stylobate.errors import LARGEST, SMALLEST
 from stylobate.lab import answers
@@ -22,6 +21,7 @@ from stylobate.lab.curves import StartConfig
 from stylobate.lab.limits import Limits
 from stylobate.lab.options import NUMBERS, presets
 from stylobate.lab.requests import RecordRequest
+from stylobate.lab.tasks import JOBS
 from stylobate.models.declared import column_quantities, model_quantities
 from stylobate.quantities import Quantity
 from stylobate.results import OutcomeRules
@@ -29,20 +29,12 @@ from stylobate.run_arguments import run_numbers
 
 _F = TypeVar("_F", bound=Callable[..., Any])
 
-JOBS: Mapping[str, type[Config]] = {
-    "exact": config.ResponseConfig,
-    "map": config.study_config(studies.overturning_map),
-    "basin": config.study_config(studies.basins),
-    "animation": config.SimulationConfig,
-}
-"""The description of each kind of job; `stylobate.lab.answers.Job` has its kind and its result."""
-
 _REQUESTS: Mapping[str, type[BaseModel]] = {
     "Simulation": config.SimulationConfig,
     "Response": config.ResponseConfig,
     "SteadyRollingStart": StartConfig,
-    "Map": JOBS["map"],
-    "Basin": JOBS["basin"],
+    "Map": config.study_config(studies.overturning_map),
+    "Basin": config.study_config(studies.basins),
     "Record": RecordRequest,
 }
 """The components of requests."""

@@ -5,7 +5,8 @@ from collections.abc import Callable, Mapping
 from importlib import import_module
 from typing import Any
 
-from stylobate import config, engine
+from stylobate import config, engine, studies
+from stylobate.config.description import Config
 from stylobate.lab.pool import Emit, Progress
 from stylobate.lab.requests import Description
 from stylobate.lab.runs import answered_run, record_contents, remarks
@@ -66,6 +67,14 @@ def warm_up() -> None:
     values = {"column": {"shape": "dimensionless", "slenderness": 0.1}, "tilt": [0.02, 0.0], "duration": 1.0}
     run(Description(values, values), lambda _: None)
 
+
+JOBS: Mapping[str, type[Config]] = {
+    "exact": config.ResponseConfig,
+    "map": config.study_config(studies.overturning_map),
+    "basin": config.study_config(studies.basins),
+    "animation": config.SimulationConfig,
+}
+"""The description of each kind of job; `stylobate.lab.answers.Job` has its kind and its result."""
 
 _TASKS = {
     "run": "tasks:run",
