@@ -234,9 +234,10 @@ def case_map(
     ConfigError, ParameterError
         If an axis has an impossible value.
     """
-    options = {name: value for name, value in setup.options.items() if name != "over"}
+    options = {name: value for name, value in setup.options.items() if name not in ("over", "least_share")}
     sweep = Sweep.points(_without_height(setup.model), setup.motion, at=_at(values, setup.options["over"]), **options)
-    return labelled_sweep(sweep, labelled, executor=executor, progress=progress)
+    label = partial(labelled, least_share=setup.options.get("least_share"))
+    return labelled_sweep(sweep, label, executor=executor, progress=progress)
 
 
 def _without_height(model: Model) -> Model:
