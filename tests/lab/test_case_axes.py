@@ -9,7 +9,7 @@ import stylobate as sb
 from stylobate.config import SimulationConfig
 from stylobate.errors import Outcome
 from stylobate.lab.grids import overturning_plane
-from stylobate.lab.pool import Found
+from stylobate.lab.messages import Found
 
 BOTTLE = {
     "column": {"shape": "solid", "radius": 0.03, "height": 0.2, "density": 1000.0},

@@ -10,7 +10,8 @@ import anyio
 import pytest
 
 from stylobate.lab import pool as pool_module
-from stylobate.lab.pool import Finished, Lost, Pool
+from stylobate.lab.messages import Finished, Lost
+from stylobate.lab.pool import Pool
 from stylobate.lab.requests import Description
 
 VALUES = {"column": {"shape": "dimensionless", "slenderness": 0.1}, "tilt": [0.02, 0.0], "duration": 1.0}

@@ -27,9 +27,10 @@ from stylobate.lab.curves import response
 from stylobate.lab.guards import Guard
 from stylobate.lab.jobs import Jobs, broken
 from stylobate.lab.limits import Limits, RefusedError
+from stylobate.lab.messages import OUT_OF_MEMORY, Broken, Finished, Lost, Refused
 from stylobate.lab.options import about
 from stylobate.lab.pages import page_routes
-from stylobate.lab.pool import OUT_OF_MEMORY, Broken, BusyError, Finished, Lost, Pool, Refused
+from stylobate.lab.pool import BusyError, Pool
 from stylobate.lab.requests import Description, Uploads, described, json_body, problems_of_numbers
 from stylobate.lab.runs import column_numbers, snippets
 from stylobate.lab.tasks import JOBS

@@ -13,7 +13,7 @@ from stylobate.config.response import SteadyCase
 from stylobate.config.simulation import built_parts
 from stylobate.errors import NoOrbitError, ParameterError, UnsupportedError
 from stylobate.lab import answers
-from stylobate.lab.pool import Emit, Note
+from stylobate.lab.messages import Emit, Note
 from stylobate.models import Model
 from stylobate.orbits.saving import SUPERCRITICAL_OF
 from stylobate.run_arguments import Start as RunStart

@@ -15,8 +15,8 @@ from stylobate import config, studies
 from stylobate.engine.parameters import COLUMN_NAMES, present_value
 from stylobate.errors import Outcome, ParameterError, UnsupportedError
 from stylobate.lab import answers
+from stylobate.lab.messages import Emit, Found, Progress
 from stylobate.lab.options import CASE_NUMBERS
-from stylobate.lab.pool import Emit, Found, Progress
 from stylobate.models import Model
 from stylobate.parameter_quantities import attributes_of
 from stylobate.progress import Report

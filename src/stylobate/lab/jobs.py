@@ -11,7 +11,7 @@ from typing import Any
 import anyio
 from anyio.abc import TaskGroup
 
-from stylobate.lab import pool
+from stylobate.lab import messages, pool
 from stylobate.lab.answers import Job, JobState
 from stylobate.lab.limits import Limits, RefusedError
 from stylobate.text import plural
@@ -37,28 +37,28 @@ class Work:
     asked_at: float = field(default_factory=time.monotonic)
     scope: anyio.CancelScope = field(default_factory=anyio.CancelScope)
 
-    def heard(self, message: pool.Message) -> None:
+    def heard(self, message: messages.Message) -> None:
         """Process a message during the computation."""
         self.state = "running"
         match message:
-            case pool.Found(value):
+            case messages.Found(value):
                 self.events.append(value)
-            case pool.Progress(done, total):
+            case messages.Progress(done, total):
                 self.done, self.total = done, total
-            case pool.Note(line):
+            case messages.Note(line):
                 self.note = line
 
-    def end(self, answer: pool.Answer) -> None:
+    def end(self, answer: messages.Answer) -> None:
         """Process the answer at the end of the task."""
         self.note = ""
         match answer:
-            case pool.Finished(result):
+            case messages.Finished(result):
                 self.state, self.result = "done", result
-            case pool.Refused(problems):
+            case messages.Refused(problems):
                 self.state, self.problems = "failed", problems
-            case pool.Lost():
+            case messages.Lost():
                 self.state, self.problems = "failed", (answer.problem,)
-            case pool.Broken(trace):
+            case messages.Broken(trace):
                 self.state, self.problems = "failed", (broken(trace),)
 
 
@@ -136,7 +136,7 @@ class Jobs:
             try:
                 answer = await self.processes.perform(job.kind, values, job.heard)
             except Exception:  # noqa: BLE001  a mistake in one job must not end the others
-                answer = pool.Broken(traceback.format_exc())
+                answer = messages.Broken(traceback.format_exc())
             job.end(answer)
 
 

@@ -22,6 +22,17 @@ from weakref import WeakSet
 import anyio
 from anyio.abc import TaskGroup
 
+from stylobate.lab.messages import (
+    OUT_OF_MEMORY,
+    Answer,
+    Broken,
+    Emit,
+    Finished,
+    Lost,
+    Note,
+    Ready,
+    Refused,
+)
 from stylobate.processes import end_when_closed
 
 if TYPE_CHECKING:
@@ -40,83 +51,6 @@ GRACE = 1.5
 
 A new process takes longer to start than most runs take to end.
 """
-
-OUT_OF_MEMORY = "out of memory: make the record, the duration or the grid smaller"
-
-# Messages during a computation
-
-
-@dataclass(frozen=True, slots=True)
-class Ready:
-    """The process has started and waits for tasks."""
-
-
-@dataclass(frozen=True, slots=True)
-class Found:
-    """A partial result."""
-
-    value: Any
-
-
-@dataclass(frozen=True, slots=True)
-class Progress:
-    """Number of completed runs, and of all runs."""
-
-    done: int
-    total: int
-
-
-@dataclass(frozen=True, slots=True)
-class Note:
-    """One line about the state of the computation, such as the compilation of a kernel."""
-
-    line: str
-
-
-Message = Found | Progress | Note
-Emit = Callable[[Message], None]
-
-# Answers
-
-
-@dataclass(frozen=True, slots=True)
-class Finished:
-    """The task is done."""
-
-    result: Any
-
-
-@dataclass(frozen=True, slots=True)
-class Refused:
-    """The task is refused, with one line for each reason."""
-
-    problems: tuple[str, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class Broken:
-    """The task failed because of an internal error; the traceback is for developers."""
-
-    trace: str
-
-
-@dataclass(frozen=True, slots=True)
-class Lost:
-    """The process ended before its answer, with this exit code, if known; a signal's number is negative."""
-
-    exit_code: int | None = None
-
-    @property
-    def problem(self) -> str:
-        """One line with the problem and the remedy."""
-        how = f" by signal {-self.exit_code}" if self.exit_code is not None and self.exit_code < 0 else ""
-        return (
-            f"the worker process was ended{how} from outside before it answered, possibly because memory ran out. "
-            "Make the record, the duration or the grid smaller, or try again."
-        )
-
-
-Answer = Finished | Refused | Broken | Lost
 
 
 class BusyError(Exception):

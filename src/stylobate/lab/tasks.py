@@ -7,7 +7,7 @@ from typing import Any
 
 from stylobate import config, engine, studies
 from stylobate.config.description import Config
-from stylobate.lab.pool import Emit, Progress
+from stylobate.lab.messages import Emit, Progress
 from stylobate.lab.requests import Description
 from stylobate.lab.runs import answered_run, record_contents, remarks
 
