@@ -14,7 +14,7 @@ import stylobate
 from stylobate.cli.commands import COMMANDS
 from stylobate.earthquakes.config import spreads
 from stylobate.run_arguments import RunOptions
-from stylobate.studies.hierarchy.models import HierarchyArguments
+from stylobate.studies.hierarchy_study import HierarchyArguments
 
 DOCS = Path(__file__).parents[1] / "docs"
 PAGES = {page.name: page.read_text(encoding="utf-8") for page in (DOCS / "reference").glob("*.md")}

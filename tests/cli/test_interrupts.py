@@ -46,7 +46,7 @@ def test_before_any_run_is_done_no_file_is_written(tmp_path, capsys, monkeypatch
         del arguments, options
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("stylobate.studies.sweeps.computing.simulate_ensemble", stop)
+    monkeypatch.setattr("stylobate.studies.sweeps.chunks.simulate_ensemble", stop)
     path = tmp_path / "map.nc"
     options = "--slenderness 0.1 --motion circular --x angular-frequency 1 2 3 --y acceleration 0.1 0.2 3 --periods 5"
     assert run(["map", *options.split(), "--output", str(path)]) == INTERRUPTED

@@ -59,7 +59,7 @@ def test_a_saved_map_is_shown_without_computing(name, tmp_path, capsys, monkeypa
         message = "nothing is to be computed"
         raise AssertionError(message)
 
-    monkeypatch.setattr("stylobate.studies.sweeps.labelled.run_sweep", refuse)
+    monkeypatch.setattr("stylobate.studies.sweeps.running.run_sweep", refuse)
     assert run(["map", str(path), "--figure", str(drawn), "--json"]) == 0
     assert json.loads(capsys.readouterr().out) == first
     assert b"</svg>" in drawn.read_bytes()

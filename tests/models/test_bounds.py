@@ -9,8 +9,8 @@ from stylobate.errors import LARGEST, ParameterError, UnsupportedError
 from stylobate.lab import Limits, openapi
 from stylobate.models.declared import MODELS, model_quantities
 from stylobate.quantities import parameters_of
-from stylobate.studies.ranges import require_bounds, require_values
-from stylobate.studies.sweeps.quantities import checked_values
+from stylobate.studies.checks import require_bounds, require_parameters
+from stylobate.studies.sweeps.designs import checked_values
 
 COLUMN = sb.Column.dimensionless(0.1)
 QUANTITIES = model_quantities()
@@ -49,14 +49,14 @@ def test_a_model_accepts_what_its_bounds_say_and_nothing_outside(model, name):
 def test_studies_sweeps_and_the_schema_have_the_bounds_of_the_models(name):
     low, high = inside(name)
     checked_values("over", name, [low, high])
-    require_values([low, high], name)
+    require_parameters([low, high], name)
     require_bounds((low, high), name)
     for value in outside(name):
         with pytest.raises(ParameterError, match=name):
             checked_values("over", name, [value])
         if math.isfinite(value):
             with pytest.raises(ParameterError, match=name):
-                require_values([value], name)
+                require_parameters([value], name)
             with pytest.raises(ParameterError, match=name):
                 require_bounds(sorted((value, 0.5 * (low + high))), name)
     quantity, bounds = QUANTITIES[name], openapi._bounds(Limits())[name]

@@ -8,19 +8,22 @@ import xarray as xr
 
 import stylobate as sb
 from stylobate.errors import Outcome, ParameterError
-from stylobate.studies.maps.attractor_continuation import follow_branches
-from stylobate.studies.maps.attractor_search import UNSETTLED, Attractor, Found, find_attractors, with_turns
-from stylobate.studies.maps.attractors import shares
-from stylobate.studies.maps.orbit_paths import turns_of_paths
-from stylobate.studies.maps.stroboscopic import (
+from stylobate.studies.attractor_search import (
+    UNSETTLED,
+    Attractor,
     AttractorRules,
+    Found,
     OrbitScales,
     cycle_distance,
+    find_attractors,
     group_cycles,
     is_flat,
     repeating_periods,
+    with_strobes,
+    with_turns,
 )
-from stylobate.studies.maps.stroboscopic_count import with_strobes
+from stylobate.studies.attractors import shares, turns_of_paths
+from stylobate.studies.basin_fractions import follow_branches
 from stylobate.studies.proportions import wilson_interval
 from stylobate.studies.sweeps import Sweep
 

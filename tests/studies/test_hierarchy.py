@@ -10,7 +10,7 @@ import stylobate as sb
 from stylobate.errors import ParameterError
 from stylobate.models.declared import dissipation_of
 from stylobate.run_arguments import Accuracy
-from stylobate.studies.hierarchy.models import Case, HierarchyArguments
+from stylobate.studies.hierarchy_study import Case, HierarchyArguments
 
 COLUMN = sb.Column.dimensionless(slenderness=0.1)
 CIRCLE = sb.Harmonic.circular(acceleration=0.065, angular_frequency=1.8)

@@ -218,7 +218,7 @@ def finish(
 def check_axes(section: str, setup: "Setup", *, starts: bool = False) -> None:
     """Raise ParameterError for an impossible quantity or value along an axis; the message names the axis."""
     from stylobate.studies.checks import require_starts
-    from stylobate.studies.sweeps.quantities import check_quantities, checked_values
+    from stylobate.studies.sweeps.designs import check_quantities, checked_values
 
     drawn = "count" in setup.options
     for place, (name, values) in zip(("over",) * 9 if drawn else "xy", setup.options["over"].items(), strict=False):

@@ -20,7 +20,7 @@ from stylobate.quantities import parameters_of
 from stylobate.run_arguments import RunOptions
 from stylobate.studies.proportions import require_confidence
 from stylobate.studies.sweeps import Executor
-from stylobate.studies.sweeps.quantities import checked_values
+from stylobate.studies.sweeps.designs import checked_values
 from stylobate.text import plural
 from stylobate.theory import BlockPhase, block_cycle, mean_block_speed
 

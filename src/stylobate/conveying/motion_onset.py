@@ -11,7 +11,7 @@ from stylobate.errors import ParameterError, UnsupportedError, require_finite
 from stylobate.models import Model, Sliding
 from stylobate.provenance import provenance_of_run
 from stylobate.results.outcomes import flag_attributes
-from stylobate.studies.sweeps.quantities import checked_values
+from stylobate.studies.sweeps.designs import checked_values
 from stylobate.theory import FirstMotion, start_of_motion
 
 Floats = npt.NDArray[np.float64]

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
     from stylobate.studies.sweeps import Sweep
-    from stylobate.studies.sweeps.labelled import Label
+    from stylobate.studies.sweeps.running import Label
 
 Floats = npt.NDArray[np.float64]
 
@@ -217,7 +217,7 @@ def upright(
     """
     from stylobate.studies.checks import remark_on_knife_edge, require_no_tilt_limit
     from stylobate.studies.sweeps import Sweep
-    from stylobate.studies.sweeps.quantities import checked_values
+    from stylobate.studies.sweeps.designs import checked_values
 
     require_conveyor(model, motion, "posture")
     require_no_tilt_limit(options_of(run))
@@ -274,7 +274,7 @@ def upright(
 
 
 def _tilts(given: npt.ArrayLike) -> Floats:
-    from stylobate.studies.sweeps.quantities import checked_values
+    from stylobate.studies.sweeps.designs import checked_values
 
     values = np.unique(checked_values("tilts", "tilt_x", given, scalar=True))
     if not values.size or values[0] < 0.0:

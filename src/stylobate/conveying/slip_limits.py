@@ -20,9 +20,9 @@ from stylobate.models.inheritance import closed_form_of
 from stylobate.parameter_quantities import attributes_of
 from stylobate.provenance import provenance_of_run
 from stylobate.results.outcomes import flag_attributes
-from stylobate.studies.ranges import require_rising_frequencies
-from stylobate.studies.responses.rolling_frame import RollingFrame
-from stylobate.studies.sweeps.quantities import checked_values
+from stylobate.studies.checks import require_rising_frequencies
+from stylobate.studies.known_rolling import RollingFrame
+from stylobate.studies.sweeps.designs import checked_values
 from stylobate.theory.averaging import circular_components
 
 Floats = npt.NDArray[np.float64]

@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
     from stylobate.studies.sweeps import Executor, Sweep
-    from stylobate.studies.sweeps.labelled import Label
+    from stylobate.studies.sweeps.running import Label
 
 Floats = npt.NDArray[np.float64]
 
@@ -463,7 +463,7 @@ class _Case:
         sliding down the slope [m/s²], which is not positive within the friction angle.
         """
         from stylobate.engine.parameters import with_parameters
-        from stylobate.studies.sweeps.quantities import OF_A_RUN
+        from stylobate.studies.sweeps.designs import OF_A_RUN
 
         names = [str(dim) for dim in runs["outcome"].dims]
         varied = [name for name in runs.coords if name not in OF_A_RUN and set(runs[name].dims) <= set(names)]

@@ -12,7 +12,7 @@ import xarray as xr
 from stylobate.base_motions import BaseMotion, OneOf
 from stylobate.earthquakes.crossing import crossed, unfolded
 from stylobate.earthquakes.following import tail_of
-from stylobate.earthquakes.fragility import limit_states
+from stylobate.earthquakes.fragility.limit_states import limit_states
 from stylobate.earthquakes.intensities import Intensity, IntensityMeasure, SpectralAcceleration
 from stylobate.earthquakes.named_records import Records, named_records
 from stylobate.engine.parameters import changed_model
@@ -24,10 +24,10 @@ from stylobate.records import HorizontalComponent
 from stylobate.results.outcomes import NOT_COMPUTED
 from stylobate.run_arguments import RunOptions
 from stylobate.studies.checks import remark_on_lengths, require_no_tilt_limit
-from stylobate.studies.maps.safe_distance import UNRESOLVED
+from stylobate.studies.integrity import UNRESOLVED
 from stylobate.studies.sweeps import Executor, Sweep
-from stylobate.studies.sweeps.labelled import labelled_sweep
-from stylobate.studies.sweeps.quantities import Floats, checked_values
+from stylobate.studies.sweeps.designs import Floats, checked_values
+from stylobate.studies.sweeps.running import labelled_sweep
 
 _SET_BY_ARGUMENTS = {
     "motion": "records",

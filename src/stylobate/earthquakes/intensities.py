@@ -14,7 +14,7 @@ from stylobate.engine.forcing import common_line
 from stylobate.errors import ParameterError, UnsupportedError, require_not_negative, require_positive
 from stylobate.records import HorizontalComponent, response_spectra
 from stylobate.records.intensities import horizontal_peak as peak_of_record
-from stylobate.studies.sweeps.quantities import Floats
+from stylobate.studies.sweeps.designs import Floats
 
 # Number of samples of a velocity between breaks, and in a period of the highest frequency.
 _BETWEEN_BREAKS, _PER_PERIOD = 8, 100

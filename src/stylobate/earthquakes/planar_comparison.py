@@ -18,7 +18,7 @@ from stylobate.models import Model, PlanarRocking
 from stylobate.progress import Progress, Report, report_of, shows_progress
 from stylobate.run_arguments import RunOptions
 from stylobate.studies.sweeps import Executor
-from stylobate.studies.sweeps.quantities import Floats, checked_values
+from stylobate.studies.sweeps.designs import Floats, checked_values
 
 AXES = (0.0, 0.5 * math.pi)
 """The directions of the two horizontal components [rad]."""

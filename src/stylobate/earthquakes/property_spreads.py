@@ -12,7 +12,7 @@ from stylobate.engine.parameters import COLUMN_NAMES, check_names, model_names, 
 from stylobate.errors import ParameterError, require_not_negative, require_positive, require_whole
 from stylobate.models import Model
 from stylobate.results.random_numbers import Rng, generator_of
-from stylobate.studies.sweeps.quantities import Floats
+from stylobate.studies.sweeps.designs import Floats
 
 
 class Spread(Protocol):

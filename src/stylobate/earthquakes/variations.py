@@ -15,7 +15,7 @@ from stylobate.errors import ParameterError
 from stylobate.models import Model
 from stylobate.models.declared import dissipation_of
 from stylobate.results import verdict
-from stylobate.studies.sweeps.quantities import Floats
+from stylobate.studies.sweeps.designs import Floats
 from stylobate.text import did_you_mean
 
 _ANY: Final = -math.inf

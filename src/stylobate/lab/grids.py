@@ -20,11 +20,11 @@ from stylobate.lab.options import CASE_NUMBERS
 from stylobate.models import Model
 from stylobate.parameter_quantities import attributes_of
 from stylobate.progress import Report
-from stylobate.studies.maps.overturning import labelled
+from stylobate.studies.overturning_map import labelled
 from stylobate.studies.sweeps import Executor, Sweep
-from stylobate.studies.sweeps.computing import Arrays, Computed, Task
+from stylobate.studies.sweeps.chunks import Arrays, Computed, Task
 from stylobate.studies.sweeps.executors import Work
-from stylobate.studies.sweeps.labelled import labelled_sweep
+from stylobate.studies.sweeps.running import labelled_sweep
 
 Cells = npt.NDArray[np.int64]
 Floats = npt.NDArray[np.float64]

@@ -58,7 +58,7 @@ def plot_basins(found: xr.Dataset) -> Figure:
     Parameters
     ----------
     found
-        Result of `stylobate.studies.maps.basins` or `attractors`, finished or not.
+        Result of `stylobate.studies.basins` or `attractors`, finished or not.
     """
     dims = found["attractor"].dims if "attractor" in found else ()
     if len(dims) == 2:  # noqa: PLR2004  a plane

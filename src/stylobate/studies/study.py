@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     import xarray as xr
 
-    from stylobate.studies.sweeps.labelled import Label
+    from stylobate.studies.sweeps.running import Label
     from stylobate.studies.sweeps.sweep import Sweep
 
 _P = ParamSpec("_P")
@@ -104,7 +104,7 @@ def study(
 
         @wraps(function)
         def computed(*arguments: _P.args, **named: _P.kwargs) -> "xr.Dataset":
-            from stylobate.studies.sweeps.labelled import labelled_sweep
+            from stylobate.studies.sweeps.running import labelled_sweep
 
             sweep, label = function(*arguments, **named)
             return labelled_sweep(sweep, label, **{name: named[name] for name in how})  # type: ignore[arg-type]

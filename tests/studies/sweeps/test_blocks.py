@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from stylobate.studies.sweeps.blocks import Blocks, usual_size
+from stylobate.studies.sweeps.chunks import Blocks, usual_size
 
 SHAPES = st.lists(st.integers(0, 9), min_size=1, max_size=3).map(tuple)
 

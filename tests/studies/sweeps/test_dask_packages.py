@@ -13,7 +13,7 @@ import pytest
 import stylobate
 from stylobate.errors import StylobateError
 from stylobate.studies.sweeps import Dask, run_sweep
-from stylobate.studies.sweeps.dask_tasks import package_identity, source_digest
+from stylobate.studies.sweeps.dask_executor import package_identity, source_digest
 
 PACKAGE = Path(stylobate.__file__).parent
 

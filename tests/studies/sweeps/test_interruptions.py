@@ -9,8 +9,7 @@ import sys
 import pytest
 
 from stylobate.studies.sweeps import Threads, run_sweep
-from stylobate.studies.sweeps.blocks import Blocks
-from stylobate.studies.sweeps.chunks import Chunks, State
+from stylobate.studies.sweeps.chunks import Blocks, Chunks, State
 
 DRIVER = """
 import os, signal, sys, time

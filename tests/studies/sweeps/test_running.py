@@ -158,7 +158,7 @@ def test_a_run_that_ctrl_c_left_complete_is_not_computed_again(grid, tmp_path, m
         asked.append(len(tilt))
         return sb.simulate_ensemble(model, motion, tilt=tilt, **options)
 
-    monkeypatch.setattr("stylobate.studies.sweeps.computing.simulate_ensemble", counted)
+    monkeypatch.setattr("stylobate.studies.sweeps.chunks.simulate_ensemble", counted)
     run_sweep(grid, store=path, resume=True)
     assert sum(asked) == left
 

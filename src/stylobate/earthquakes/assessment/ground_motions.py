@@ -13,7 +13,7 @@ from stylobate.earthquakes.assessment.parts import Parts, identities
 from stylobate.earthquakes.intensities import has_two_components, horizontal_peak
 from stylobate.progress import Report
 from stylobate.records import HorizontalComponent, response_spectra
-from stylobate.studies.sweeps.quantities import Floats
+from stylobate.studies.sweeps.designs import Floats
 
 ROTD50, ONE_COMPONENT = HorizontalComponent.ROTD50.value, "one component"
 """Definitions of a horizontal intensity: the median over all directions; the only component of a record."""

@@ -18,8 +18,8 @@ from stylobate.errors import ParameterError, require_not_negative, require_posit
 from stylobate.models import Model
 from stylobate.provenance import provenance_of_run
 from stylobate.run_arguments import RunOptions
+from stylobate.studies.sweeps.designs import Floats
 from stylobate.studies.sweeps.fingerprint import identity_of
-from stylobate.studies.sweeps.quantities import Floats
 
 CENTRAL = "central"
 NO_VERTICAL = "central, no vertical"

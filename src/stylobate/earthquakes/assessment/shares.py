@@ -11,7 +11,7 @@ from stylobate.earthquakes.verdict_study import contact_laws, verdict
 from stylobate.progress import Report
 from stylobate.results.verdict import Verdict
 from stylobate.studies.sweeps import Executor
-from stylobate.studies.sweeps.quantities import Floats
+from stylobate.studies.sweeps.designs import Floats
 
 _OF_RUNS = ("demands", "recheck")
 _QUANTILES = {"tilt_ratio_low": 0.05, "tilt_ratio_median": 0.5, "tilt_ratio_high": 0.95}

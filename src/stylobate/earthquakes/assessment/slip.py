@@ -9,7 +9,7 @@ from stylobate.base_motions import BaseMotion
 from stylobate.column import Column
 from stylobate.earthquakes.assessment.inputs import CENTRAL, NO_VERTICAL, Inputs
 from stylobate.earthquakes.incremental import without_vertical
-from stylobate.studies.sweeps.quantities import Floats
+from stylobate.studies.sweeps.designs import Floats
 
 # Samples in the shortest period of a motion that is not linear between its breaks: sup |a| is 5e-4 low at most.
 _SAMPLES = 100

@@ -19,7 +19,7 @@ from stylobate.parameter_quantities import attributes_of
 from stylobate.run_arguments import RunOptions
 from stylobate.studies.checks import remark_on_lengths, require_values
 from stylobate.studies.sweeps import Sweep
-from stylobate.studies.sweeps.quantities import OF_A_RUN, Floats, check_quantities, checked_values
+from stylobate.studies.sweeps.designs import OF_A_RUN, Floats, check_quantities, checked_values
 
 Integers = npt.NDArray[np.int64]
 

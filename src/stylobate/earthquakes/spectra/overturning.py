@@ -22,7 +22,7 @@ from stylobate.results.outcomes import NOT_COMPUTED
 from stylobate.run_arguments import RunOptions
 from stylobate.studies.checks import require_no_tilt_limit
 from stylobate.studies.sweeps import Executor, run_sweep
-from stylobate.studies.sweeps.quantities import Floats, checked_values
+from stylobate.studies.sweeps.designs import Floats, checked_values
 
 # Scales that differ by less than this fraction count as equal.
 _SAME_SCALE = 1e-9

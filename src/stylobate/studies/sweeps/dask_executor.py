@@ -1,5 +1,6 @@
-"""Executor with Dask workers: on this machine, on a cluster with a scheduler, or through a given client."""
+"""Tasks for Dask workers: each carries the version and source digest of stylobate, and a worker compares them."""
 
+import hashlib
 import logging
 import pickle
 import signal
@@ -8,7 +9,9 @@ from collections.abc import Generator, Iterable, Iterator
 from concurrent.futures import CancelledError
 from contextlib import ExitStack
 from dataclasses import dataclass, field
+from functools import cache, lru_cache
 from itertools import islice
+from pathlib import Path
 from queue import Empty, SimpleQueue
 from time import monotonic
 from typing import TYPE_CHECKING, Any
@@ -22,13 +25,81 @@ from stylobate.errors import (
     require_whole,
 )
 from stylobate.progress import Report
-from stylobate.studies.sweeps.computing import Computed, Task
-from stylobate.studies.sweeps.dask_tasks import SealedTask, package_identity
+from stylobate.studies.sweeps.chunks import Computed, Task
+from stylobate.studies.sweeps.executors import Threads
 
 if TYPE_CHECKING:
     from types import ModuleType
 
     from stylobate.studies.sweeps.executors import Work
+
+
+@dataclass(frozen=True, slots=True)
+class PackageIdentity:
+    """Version of stylobate and digest of its source: equal on two machines only if both compute the same."""
+
+    version: str
+    source: str
+
+    def __str__(self) -> str:
+        return f"stylobate {self.version} (source {self.source[:8]})"
+
+
+@cache
+def package_identity() -> PackageIdentity:
+    """Return the identity of the package in this process, computed once."""
+    from stylobate import __version__
+
+    return PackageIdentity(__version__, source_digest(Path(__file__).parents[2]))
+
+
+def source_digest(package: Path) -> str:
+    """Return a digest of the paths and contents of all Python files in a package, whatever ends their lines."""
+    digest = hashlib.sha256()
+    for path in sorted(package.rglob("*.py"), key=lambda path: path.relative_to(package).parts):
+        digest.update("/".join(path.relative_to(package).parts).encode() + b"\0")
+        digest.update(path.read_bytes().replace(b"\r\n", b"\n") + b"\0")
+    return digest.hexdigest()
+
+
+class SealedTask:
+    """A task that becomes its result when it is loaded with `pickle.loads`.
+
+    Loading imports stylobate inside the task, so that a worker without the package raises ImportError there and
+    the scheduler needs no package. What the task computes is opened only after `perform` has compared the packages.
+    """
+
+    def __init__(self, package: PackageIdentity, work: bytes, task: Task) -> None:
+        self.parts = (package.version, package.source, work, pickle.dumps(task))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return perform, self.parts
+
+
+def perform(version: str, source: str, work: bytes, task: bytes) -> Computed:
+    """Compute a task on one thread.
+
+    Raises
+    ------
+    StylobateError
+        If version or source of the package differ from those of the process that made the task.
+    """
+    theirs, here = PackageIdentity(version, source), package_identity()
+    if here != theirs:
+        message = (
+            f"a Dask worker has {here}, but this process has {theirs}. "
+            "Install the same version for both, and start the workers again."
+        )
+        raise StylobateError(message)
+    return _opened(work)(pickle.loads(task), threads=1, progress=None)  # noqa: S301  as below
+
+
+@lru_cache(maxsize=1)
+def _opened(work: bytes) -> "Work":
+    """Return the function of a sweep, the same object for all its tasks, so that what it has prepared is kept."""
+    function: Work = pickle.loads(work)  # noqa: S301  from the scheduler, which can run any code
+    return function
+
 
 # Number of tasks that wait for each thread of the workers, so that no thread is idle.
 _AHEAD = 2
@@ -223,3 +294,41 @@ def _distributed() -> "ModuleType":
         message = 'Dask needs the package dask.distributed: pip install "stylobate[cluster]"'
         raise UnsupportedError(message) from None
     return distributed
+
+
+def executor_from(text: str) -> Threads | Dask:
+    """Return the executor that `text` names.
+
+    Parameters
+    ----------
+    text
+        `threads`; `dask://` for workers on this machine; `dask://host:port` for a scheduler. `?wait=600` after the port
+        sets the time [s] to wait for workers.
+
+    Raises
+    ------
+    ParameterError
+        If `text` names no executor.
+
+    Examples
+    --------
+    >>> executor_from("dask://10.0.0.1:8786")
+    Dask(address='tcp://10.0.0.1:8786', workers=None, wait=10.0)
+    """
+    if text == "threads":
+        return Threads()
+    scheme, separator, place = text.partition("://")
+    if scheme == "dask" and separator:
+        place, asks, wait = place.partition("?wait=")
+        address = f"tcp://{place}" if place else None
+        return Dask(address=address, wait=_seconds(wait)) if asks else Dask(address=address)
+    message = f'executor must be "threads", "dask://" or "dask://host:port", got {text!r}'
+    raise ParameterError(message)
+
+
+def _seconds(text: str) -> float:
+    try:
+        return float(text)
+    except ValueError:
+        message = f"wait: not a number of seconds (got {text!r}). Write dask://host:port?wait=600."
+        raise ParameterError(message) from None

@@ -9,7 +9,7 @@ from stylobate.progress import Report
 if TYPE_CHECKING:
     from collections.abc import Generator, Iterable
 
-    from stylobate.studies.sweeps.computing import Computed, Task
+    from stylobate.studies.sweeps.chunks import Computed, Task
 
 
 class Work(Protocol):

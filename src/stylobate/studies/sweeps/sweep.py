@@ -18,12 +18,9 @@ from stylobate.results import OutcomeRules
 from stylobate.results.random_numbers import Rng
 from stylobate.run_arguments import RunOptions, defaults_of
 from stylobate.studies.known_rolling import require_closed_form
-from stylobate.studies.sweeps.blocks import Blocks
-from stylobate.studies.sweeps.designs import Box, Design, Grid, Points
+from stylobate.studies.sweeps.chunks import Blocks, Layout, Recipe, bytes_on_disk, layout_of
+from stylobate.studies.sweeps.designs import OF_A_RUN, Box, Design, Grid, Points, check_quantities
 from stylobate.studies.sweeps.fingerprint import identity_of
-from stylobate.studies.sweeps.layout import Layout, bytes_on_disk, layout_of
-from stylobate.studies.sweeps.quantities import OF_A_RUN, check_quantities
-from stylobate.studies.sweeps.recipe import Recipe
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

@@ -18,10 +18,9 @@ from stylobate.orbits.multipliers import is_stable
 from stylobate.parameter_quantities import attributes_of
 from stylobate.progress import Progress, report_of, shows_progress
 from stylobate.provenance import provenance_of_run
-from stylobate.studies.ranges import require_rising_frequencies, require_values
-from stylobate.studies.responses.first_orbit import first_orbit
-from stylobate.studies.responses.orbit_families import between_bifurcations
-from stylobate.studies.responses.response_curves import response_curves
+from stylobate.studies.checks import require_parameters, require_rising_frequencies
+from stylobate.studies.exact_response import between_bifurcations, first_orbit
+from stylobate.studies.response_curves import response_curves
 from stylobate.text import plural
 
 Floats = npt.NDArray[np.float64]
@@ -71,7 +70,7 @@ def averaging_map(
         On Ctrl-C; `partial` has the values of the parameter that were done.
     """
     require_subject(model, motion)
-    frequencies, chosen = require_rising_frequencies(angular_frequency), require_values(values, parameter)
+    frequencies, chosen = require_rising_frequencies(angular_frequency), require_parameters(values, parameter)
     shape = (chosen.size, frequencies.size)
     exact, averaged = (np.full(shape, _NONE, dtype=np.int8) for _ in range(2))
     error, swing = np.full(shape, np.nan), np.full(shape, np.nan)

@@ -20,7 +20,7 @@ from stylobate.provenance import provenance_of_run
 from stylobate.results import OutcomeRules
 from stylobate.results.outcomes import NOT_COMPUTED, outcome_attributes
 from stylobate.run_arguments import Accuracy, defaults_of
-from stylobate.studies.sweeps.quantities import Floats, checked_values
+from stylobate.studies.sweeps.designs import Floats, checked_values
 
 # Samples per period for the mean tilt.
 _SAMPLES = 64

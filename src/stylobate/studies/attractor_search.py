@@ -1,26 +1,249 @@
-"""Search for attractors in the runs of one column under one base motion, without a list in advance."""
+"""Periodic orbits in stroboscopic samples: detection of repetition, period and identical orbits."""
 
 import json
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from typing import Self
 
 import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from stylobate.errors import Outcome, ParameterError
+from stylobate.base_motions import BaseMotion
+from stylobate.errors import Outcome, ParameterError, require_positive, require_whole
+from stylobate.models import Model
 from stylobate.results import OutcomeRules
 from stylobate.results.outcomes import NOT_COMPUTED
-from stylobate.studies.maps.stroboscopic import (
-    AttractorRules,
-    Complexes,
-    Floats,
-    Integers,
-    OrbitScales,
-    group_cycles,
-    is_flat,
-    repeating_periods,
-)
+from stylobate.studies.sweeps import Sweep
+from stylobate.studies.sweeps.designs import whole
+
+Complexes = npt.NDArray[np.complex128]
+Floats = npt.NDArray[np.float64]
+Integers = npt.NDArray[np.int64]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AttractorRules:
+    """Tolerances by which attractors are identified from stroboscopic samples.
+
+    The first two are fractions of the tilt c/(1 + ν²) and the tilt rate cν/(1 + ν²) of free rolling (5) at the
+    frequency ratio ν of the forcing. This is the size of the motions at every frequency.
+
+    Parameters
+    ----------
+    repeat_tolerance
+        A run repeats every k periods if all its samples differ from the last k by less than this.
+    match_tolerance
+        Two runs are on the same orbit if their samples differ by less than this. Samples of one orbit must differ by
+        more. It must be well above `repeat_tolerance`: a slowly converging run is farther from its orbit than it moves
+        during the samples, and a run that spirals in must not count as an orbit of several periods.
+    branch_tolerance
+        Along a parameter, a periodic orbit continues one at an earlier value if their samples differ by less than
+        this. Otherwise it begins a branch. Increase it if the values are far apart.
+
+    Raises
+    ------
+    ParameterError
+        If a tolerance is not positive.
+    """
+
+    repeat_tolerance: float = 1e-3
+    match_tolerance: float = 3e-2
+    branch_tolerance: float = 0.5
+
+    def __post_init__(self) -> None:
+        for name in self.__slots__:
+            object.__setattr__(self, name, require_positive(f"attractor_rules.{name}", getattr(self, name)))
+
+
+@dataclass(frozen=True, slots=True)
+class OrbitScales:
+    """Units for comparing stroboscopic samples: `tilt` [rad], `tilt_rate` [rad/s]; and the forcing's `period` [s]."""
+
+    tilt: float
+    tilt_rate: float
+    period: float | None
+
+    @classmethod
+    def of(cls, model: Model, motion: BaseMotion | None) -> Self:
+        """Return the tilt and rate of free rolling (5) at the frequency of `motion`; c and cω0 without a frequency."""
+        c, scale = model.column.slenderness, 1.0 / model.time_scale
+        period = None if motion is None else motion.period
+        if period is None:
+            return cls(c, c * scale, None)
+        nu = 2.0 * np.pi / (period * scale)
+        return cls(c / (1.0 + nu**2), c * nu * scale / (1.0 + nu**2), period)
+
+    def states(self, tilt: Floats, tilt_rate: Floats) -> Complexes:
+        """Return vectors (..., 2) of tilt and rate as dimensionless states (..., 2): tilt and rate, each x + iy."""
+        return np.stack(
+            [
+                (tilt[..., 0] + 1j * tilt[..., 1]) / self.tilt,
+                (tilt_rate[..., 0] + 1j * tilt_rate[..., 1]) / self.tilt_rate,
+            ],
+            axis=-1,
+        )
+
+    def vectors(self, states: Complexes) -> tuple[Floats, Floats]:
+        """Return the vectors of tilt [rad] and rate [rad/s] of dimensionless `states`: the inverse of `states`."""
+        parts = np.stack([states.real, states.imag], axis=-1)
+        return parts[..., 0, :] * self.tilt, parts[..., 1, :] * self.tilt_rate
+
+
+def repeating_periods(strobes: Complexes, rules: AttractorRules) -> tuple[Integers, Floats]:
+    """Determine the number of periods after which stroboscopic samples repeat.
+
+    Parameters
+    ----------
+    strobes
+        Dimensionless states of n runs in m successive samples, shape (n, m, 2), the newest last.
+    rules
+        Maximum difference from the last samples, and minimum difference between samples of an orbit.
+
+    Returns
+    -------
+    tuple
+        The smallest such number up to m/2, shape (n,), 0 if there is none, and the remaining difference.
+    """
+    runs, window = strobes.shape[:2]
+    periods, left = np.zeros(runs, dtype=np.int64), np.full(runs, np.inf)
+    place = np.arange(window) - window
+    for k in range(1, window // 2 + 1):
+        open_runs = periods == 0
+        # The last k states, repeated backwards through the window; NaN (no sample) never repeats.
+        difference = np.abs(strobes[open_runs] - strobes[open_runs][:, window - k + place % k]).max(axis=(1, 2))
+        repeats = difference < rules.repeat_tolerance
+        for divisor in (d for d in range(1, k) if k % d == 0):
+            cycle = strobes[open_runs][:, -k:]
+            apart = np.abs(cycle - np.roll(cycle, divisor, axis=1)).max(axis=(1, 2))
+            repeats &= apart > rules.match_tolerance
+        found = np.flatnonzero(open_runs)[repeats]
+        periods[found], left[found] = k, difference[repeats]
+    return periods, left
+
+
+def is_flat(cycle: Complexes, tolerance: float) -> bool:
+    """Return whether an orbit is planar: no angular momentum about the vertical at any sample.
+
+    Parameters
+    ----------
+    cycle
+        Dimensionless states, shape (k, 2).
+    tolerance
+        Tolerance of the angular momentum, as a fraction of the peak tilt times the peak rate.
+    """
+    tilt, rate = cycle.T
+    return bool(np.abs(np.imag(np.conj(tilt) * rate)).max() < tolerance * np.abs(tilt).max() * np.abs(rate).max())
+
+
+def cycle_distance(cycles: Complexes, cycle: Complexes) -> Floats:
+    """Return the distances of orbits of k states from another orbit, shape (n,), for any first state.
+
+    Parameters
+    ----------
+    cycles
+        Shape (n, k, 2).
+    cycle
+        Shape (k, 2).
+    """
+    shifted = [np.abs(cycles - np.roll(cycle, shift, axis=0)).max(axis=(1, 2)) for shift in range(len(cycle))]
+    return np.asarray(np.min(shifted, axis=0))
+
+
+def group_cycles(cycles: Complexes, left: Floats, tolerance: float) -> tuple[Integers, Integers]:
+    """Gather orbits of k states into groups.
+
+    The leader of each group is the run that repeats best among the remaining runs, and the group holds all runs closer
+    to the leader than `tolerance`: the order of the runs does not matter.
+
+    Parameters
+    ----------
+    cycles
+        Shape (n, k, 2).
+    left
+        Remaining difference of each run from repetition, shape (n,).
+
+    Returns
+    -------
+    tuple
+        The group of each run, shape (n,), and the leader of each group.
+    """
+    flat = cycles.reshape(len(cycles), -1)
+    # If runs repeat equally well, the state decides, not the order.
+    order = np.lexsort((*flat.real.T, *flat.imag.T, left))
+    groups, leaders = np.full(len(cycles), -1, dtype=np.int64), list[int]()
+    for candidate in order:
+        if groups[candidate] < 0:
+            open_runs = np.flatnonzero(groups < 0)
+            close = cycle_distance(cycles[open_runs], cycles[candidate]) < tolerance
+            groups[open_runs[close]] = len(leaders)
+            leaders.append(int(candidate))
+    return groups, np.array(leaders, dtype=np.int64)
+
+
+USUAL_STROBES = 32
+"""Default number of stroboscopic samples."""
+
+# Samples that identify an orbit of two periods: it repeats after half as many. Period one needs two samples.
+_FOR_TWO_PERIODS, _FOR_ONE = 4, 2
+# Tolerance for rounding of the number of periods, in periods.
+_ROUNDING = 1e-9
+
+
+def with_strobes(sweep: Sweep, asked: int | None) -> Sweep:
+    """Return `sweep` with the number of samples `asked` for, else 32, else half of the periods of its shortest run.
+
+    The first half of a run shorter than 32 periods serves for settling. Without a periodic base motion there are no
+    samples, and only rest and overturning are identified.
+
+    Raises
+    ------
+    ParameterError
+        If the shortest run has fewer periods than `asked`, or fewer than 8, whose second half identifies orbits of one
+        and two periods; or if `asked` is below two, which identifies nothing.
+    """
+    chosen = USUAL_STROBES if asked is None else require_whole("strobes", asked, least=_FOR_ONE)
+    held = _whole_periods(sweep)
+    if held is not None:
+        needed = 2 * _FOR_TWO_PERIODS if asked is None else chosen
+        if held < needed:
+            remedy = "follow them longer" if asked is None else "follow them longer or ask for fewer strobes"
+            message = (
+                f"runs must last at least {needed} periods of the base motion to identify attractors, got {held} "
+                f"(duration {_shortest(sweep):g} s); {remedy}"
+            )
+            raise ParameterError(message)
+        chosen = chosen if held >= chosen else held // 2
+    return replace(sweep, options={**sweep.options, "strobes": chosen})
+
+
+def _whole_periods(sweep: Sweep) -> int | None:
+    """Return the number of whole periods of the shortest run; None if the base motion has no period."""
+    values = sweep.design.coordinates(whole(sweep.design))
+    if not all(array.size for array in values.values()):
+        return None
+    if sweep.periods is not None:
+        return math.floor(sweep.periods + _ROUNDING)
+    if "angular_frequency" in values:
+        longest: float | None = 2.0 * math.pi / float(np.min(values["angular_frequency"]))
+    else:
+        longest = sweep.motion.period
+    return None if longest is None else math.floor(_shortest(sweep) / longest + _ROUNDING)
+
+
+def _shortest(sweep: Sweep) -> float:
+    values = sweep.design.coordinates(whole(sweep.design))
+    if "duration" in values:
+        return float(np.min(values["duration"]))
+    if sweep.duration is not None:
+        return sweep.duration
+    assert sweep.periods is not None  # a sweep has one of these
+    if "angular_frequency" in values:
+        return sweep.periods * 2.0 * math.pi / float(np.max(values["angular_frequency"]))
+    assert sweep.motion.period is not None  # a sweep refuses periods of a motion without one
+    return sweep.periods * sweep.motion.period
+
 
 UNSETTLED = -2
 """The label of a run that has not reached an attractor by its end."""

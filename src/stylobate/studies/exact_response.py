@@ -1,24 +1,227 @@
-"""Frequency response with exact periodic orbits, compared with theory."""
+"""First orbit for a continuation within a range of frequencies."""
 
 import json
-from collections.abc import Sequence
+import logging
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 import xarray as xr
 
-from stylobate.base_motions import BaseMotion
+from stylobate.base_motions import BaseMotion, as_harmonic
 from stylobate.engine import with_parameters
+from stylobate.engine.flow.integration import Status
 from stylobate.engine.parameters import present_value
-from stylobate.errors import Interrupted, ParameterError, UnsupportedError, require_whole
+from stylobate.errors import Interrupted, NoOrbitError, ParameterError, UnsupportedError, require_whole
 from stylobate.models import Model
-from stylobate.orbits import PeriodicOrbit, StepControl, continue_branch
+from stylobate.orbits import (
+    Bifurcation,
+    Branch,
+    End,
+    Kind,
+    PeriodicOrbit,
+    StepControl,
+    continue_branch,
+    periodic_orbit,
+    switch_branch,
+)
+from stylobate.orbits.arclength import Family, Point, corrected
 from stylobate.orbits.arguments import require_orbit, require_subject
+from stylobate.orbits.bifurcations import orbit_at
+from stylobate.orbits.shooting import arcs_of, shots
 from stylobate.progress import Progress, at_value, shows_progress
 from stylobate.provenance import provenance_of_run
-from stylobate.studies.ranges import require_frequencies
-from stylobate.studies.responses.first_orbit import first_orbit
-from stylobate.studies.responses.orbit_families import Followed, between_bifurcations, born
-from stylobate.studies.responses.response_curves import response_curves
+from stylobate.studies.checks import require_frequencies
+from stylobate.studies.response_curves import response_curves
+
+_log = logging.getLogger("stylobate")
+
+_TRIES = 24
+# Start of the message of a search without a guess.
+_ASKED = "guess must be given: "
+
+
+def first_orbit(
+    model: Model, motion: BaseMotion, angular_frequency: tuple[float, float], sense: int | None
+) -> PeriodicOrbit:
+    """Find a rolling orbit from theory, at the highest frequency of the range [rad/s] at which the search succeeds.
+
+    Raises
+    ------
+    NoOrbitError
+        If no orbit is found at the frequencies that were tried.
+    UnsupportedError
+        If theory has no rolling of this model under this motion.
+    """
+    low, high = angular_frequency
+    reason: Exception | None = None
+    for frequency in np.geomspace(high, max(low, 1e-3 * high), _TRIES):
+        _log.info("searching for a first orbit at %.4g rad/s", frequency)
+        changed = with_parameters(model, motion, angular_frequency=float(frequency))
+        try:
+            return periodic_orbit(*changed, sense=sense)
+        except NoOrbitError as error:
+            reason = error
+        except UnsupportedError as error:
+            reason_given = _unknown(model, motion) if str(error).startswith("guess must be given") else str(error)
+            message = f"no orbit is known to begin with: {reason_given}"
+            raise UnsupportedError(message) from None
+    message = (
+        f"no orbit was found between {low!r} and {high!r} rad/s: {_sentence(reason)}. Widen the range, or "
+        "increase the acceleration"
+    )
+    raise NoOrbitError(message)
+
+
+def _unknown(model: Model, motion: BaseMotion) -> str:
+    """Describe the model and motion without rolling in theory, and the remedy, without the long repr of a motion."""
+    harmonic = as_harmonic(motion)
+    if harmonic is None:
+        under = f"under {type(motion).__name__} motion"
+    else:
+        under = "with a vertical amplitude" if harmonic.amplitude[2] != 0.0 else "under horizontal motion"
+    return (
+        f"theory has no steady rolling of this {model.name} model {under}; give orbits.periodic_orbit a run as guess, "
+        "and follow its orbit by orbits.continue_branch"
+    )
+
+
+def _sentence(reason: Exception | None) -> str:
+    return str(reason).removeprefix(_ASKED)
+
+
+_BORN = (Kind.PITCHFORK, Kind.PERIOD_DOUBLING, Kind.BRANCH_POINT)
+# Two orbits are related by symmetry if their tilts agree to this fraction of c, and the sums of their multipliers to
+# this relative tolerance. Orbits are known much better, and different orbits differ by much more.
+_ALIKE, _ALIKE_MULTIPLIERS = 1e-6, 1e-3
+# Number of points of a known family that starts at a bifurcation.
+_PROBED = 8
+
+
+@dataclass(frozen=True, slots=True)
+class Followed:
+    """A family with its name."""
+
+    name: str
+    branch: Branch
+
+
+def born(
+    branch: Branch,
+    bounds: tuple[float, float],
+    generations: int,
+    control: StepControl | None,
+    progress: Progress = None,
+) -> Iterator[Followed]:
+    """Continue the bifurcating branches of a branch; a pair related by symmetry, or by both ends, is continued once."""
+    if generations <= 0:
+        return
+    siblings: list[Branch] = []
+    for one in branch.bifurcations:
+        if one.kind not in _BORN:
+            continue
+        try:
+            probe = switch_branch(one, bounds=bounds, control=replace(control or StepControl(), most=_PROBED))
+            if any(_meet(probe, other) for other in siblings):
+                continue
+            whole = switch_branch(one, bounds=bounds, control=control, progress=progress)
+        except NoOrbitError:
+            continue
+        siblings.append(whole)
+        family = _from_birth_to_death(whole, one, branch.bifurcations)
+        name = "asymmetric" if one.kind is Kind.PITCHFORK else f"period {family.path[0].family.periods}"
+        yield Followed(f"{name}, from {one.parameter:.6g} rad/s", family)
+        yield from born(family, bounds, generations - 1, control, progress)
+
+
+def between_bifurcations(branch: Branch) -> Branch:
+    """Return the branch with an additional orbit between any two bifurcations without one.
+
+    Stability changes only at bifurcations: an orbit between each two shows the stability everywhere.
+    """
+    located = {id(one.point) for one in branch.bifurcations}
+    path = list(branch.path[:1])
+    for first, second in pairwise(branch.path):
+        if id(first) in located and id(second) in located:
+            middle = _middle(first, second)
+            path += [] if middle is None else [middle]
+        path.append(second)
+    return replace(branch, path=tuple(path))
+
+
+def _middle(first: Point, second: Point) -> Point | None:
+    chord = second.u - first.u
+    length = float(np.linalg.norm(chord))
+    if length == 0.0:
+        return None
+    found = corrected(first.family, first.u + 0.5 * chord, chord / length)
+    return None if isinstance(found, Status) else found[0]
+
+
+def _meet(probe: Branch, other: Branch) -> bool:
+    """Return whether an orbit of one family is in the other, up to a shift in time by half periods or a mirror image.
+
+    Orbits related by such symmetries have the same tilts and multipliers.
+    """
+    if probe.path[0].family.periods != other.path[0].family.periods:
+        return False
+    for index, point in enumerate(probe.path):
+        orbit = probe.orbit(index)
+        scale = orbit.system.scale
+        for candidate in other.orbits_at(point.value):
+            tilts = (candidate.minimum_tilt - orbit.minimum_tilt, candidate.peak_tilt - orbit.peak_tilt)
+            traces = complex(candidate.multipliers.sum()), complex(orbit.multipliers.sum())
+            same = abs(traces[0] - traces[1]) <= _ALIKE_MULTIPLIERS * max(1.0, abs(traces[1]))
+            if same and max(map(abs, tilts)) <= _ALIKE * scale:
+                return True
+    return False
+
+
+def _from_birth_to_death(family: Branch, birth: Bifurcation, known: tuple[Bifurcation, ...]) -> Branch:
+    """Return a family from the orbit of its parent branch up to the orbit at which it ends, if it ends.
+
+    Beyond an orbit of half its length, a family repeats the same orbits, shifted by half their length.
+    """
+    path, found, ends = list(family.path), family.bifurcations, family.ends
+    death: tuple[Point, ...] = ()
+    gaps = [_halves_apart(point) for point in path] if birth.kind is Kind.PERIOD_DOUBLING else []
+    last = next((k for k, (one, after) in enumerate(pairwise(gaps)) if float(one @ after) < 0.0), None)
+    if last is not None:
+        path = path[: last + 1]
+        inside = {id(point) for point in path}
+        found = tuple(one for one in found if id(one.point) in inside)
+        ends = (End.BEGUN, End.MERGED)
+    if ends[1] is End.MERGED:
+        death = _at(_nearest(path[-1], [one for one in known if one.kind is birth.kind]), family)
+    return replace(family, path=(*_at(birth, family), *path, *death), bifurcations=found, ends=ends)
+
+
+def _nearest(point: Point, known: list[Bifurcation]) -> Bifurcation:
+    family = point.family
+
+    def distance(one: Bifurcation) -> float:
+        states = np.abs(one.state - point.chain.states[0]).max() / family.system.scale
+        return float(states + abs(one.parameter - point.value) / family.span)
+
+    return min(known, key=distance)
+
+
+def _halves_apart(point: Point) -> np.ndarray[tuple[int, ...], np.dtype[np.float64]]:
+    """Return the difference of an orbit from itself half its length later; zero for an orbit of half the length."""
+    states = point.chain.states
+    return np.asarray(states[0] - states[len(states) // 2])
+
+
+def _at(bifurcation: Bifurcation, of: Branch) -> tuple[Point, ...]:
+    """Return the orbit of a bifurcation as a point of the bifurcating branch; empty if that is impossible."""
+    family: Family = of.path[0].family
+    system = family.at(bifurcation.parameter)
+    states = arcs_of(system, orbit_at(bifurcation.point).state, family.periods, len(of.path[0].chain.states))
+    change = family.system.derivative(family.name, bifurcation.parameter)
+    chain = shots(system, states, family.covered, sense=family.sense, change=change)
+    return (Point(family, bifurcation.parameter, chain),) if chain.status is Status.DONE else ()
+
 
 _AVERAGED_POINTS = 400
 # Two base motions, or two models, are equal if their numbers agree to this fraction of the largest number.

@@ -1,6 +1,7 @@
-"""Basin fractions along a parameter: how often random initial conditions reach each attractor."""
+"""Continuation of attractors along a parameter: matching between successive values."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import Unpack
@@ -8,6 +9,7 @@ from typing import Unpack
 import numpy as np
 import numpy.typing as npt
 import xarray as xr
+from scipy.optimize import linear_sum_assignment
 
 from stylobate.base_motions import BASE_AT_REST, BaseMotion
 from stylobate.engine import with_parameters
@@ -18,16 +20,94 @@ from stylobate.progress import Progress, shows_progress
 from stylobate.results.outcomes import NOT_COMPUTED
 from stylobate.results.random_numbers import Rng
 from stylobate.run_arguments import RunOptions
+from stylobate.studies.attractor_search import (
+    KINDS,
+    NOT_SETTLED,
+    REMEDY,
+    Attractor,
+    AttractorRules,
+    Found,
+    OrbitScales,
+    cycle_distance,
+    find_attractors,
+    with_strobes,
+)
+from stylobate.studies.attractors import attractor_table, rule_attributes
 from stylobate.studies.checks import SYSTEM_STARTS, one_parameter, require_starts
-from stylobate.studies.maps.attractor_continuation import Branches, follow_branches
-from stylobate.studies.maps.attractor_search import NOT_SETTLED, REMEDY, Found, find_attractors
-from stylobate.studies.maps.attractors import attractor_table, rule_attributes
-from stylobate.studies.maps.stroboscopic import AttractorRules, OrbitScales
-from stylobate.studies.maps.stroboscopic_count import with_strobes
 from stylobate.studies.proportions import fraction_interval, require_confidence
 from stylobate.studies.sweeps import Executor, Sweep
 from stylobate.studies.sweeps.designs import Box, whole
-from stylobate.studies.sweeps.labelled import labelled_sweep
+from stylobate.studies.sweeps.running import labelled_sweep
+
+
+@dataclass(frozen=True, slots=True)
+class Branches:
+    """Branches of attractors along a parameter: the `last` attractor of each branch, and the branches by attractor.
+
+    `places` holds, for each value of the parameter, the index of the branch of each attractor.
+    """
+
+    last: tuple[Attractor, ...]
+    places: tuple[tuple[int, ...], ...]
+
+
+def follow_branches(along: Sequence[Sequence[Attractor]], tolerance: float) -> Branches:
+    """Match the attractors at successive values of a parameter to branches.
+
+    Attractors are matched to the last attractors of branches of the same kind and period, so that the sum of the
+    distances of their dimensionless stroboscopic samples is minimal. An attractor that is farther from every branch
+    than the `tolerance`, or left over, begins a branch; a branch that reappears keeps its index. Attractors without a
+    period are matched by their kind alone: one sample of many does not locate them.
+
+    Parameters
+    ----------
+    along
+        The attractors at each value, in the order of the parameter.
+    tolerance
+        Maximum distance between the dimensionless stroboscopic samples of an orbit and of its branch.
+
+    Returns
+    -------
+    Branches
+        Branches by kind and period, then in the order of their appearance.
+    """
+    last: list[Attractor] = []
+    places = [_matched(attractors, last, tolerance) for attractors in along]
+    order = sorted(range(len(last)), key=lambda branch: (KINDS.index(last[branch].kind), last[branch].period, branch))
+    place = {branch: new for new, branch in enumerate(order)}
+    return Branches(
+        tuple(last[branch] for branch in order), tuple(tuple(place[branch] for branch in row) for row in places)
+    )
+
+
+def _matched(attractors: Sequence[Attractor], last: list[Attractor], tolerance: float) -> list[int]:
+    """Return the branch of each of `attractors`, and record the attractors in `last`."""
+    chosen = [-1] * len(attractors)
+    distances = np.array([[_distance(found, branch, tolerance) for branch in last] for found in attractors])
+    if distances.size:
+        for place, branch in zip(*linear_sum_assignment(distances), strict=True):
+            if distances[place, branch] < _APART:
+                chosen[int(place)] = int(branch)
+    for i, found in enumerate(attractors):
+        if chosen[i] < 0:
+            chosen[i] = len(last)
+            last.append(found)
+        else:
+            last[chosen[i]] = found
+    return chosen
+
+
+# Replaces an infinite distance, which the assignment does not accept; states are of order one.
+_APART = 1e9
+
+
+def _distance(found: Attractor, branch: Attractor, tolerance: float) -> float:
+    if (found.kind, found.period) != (branch.kind, branch.period):
+        return _APART
+    if not found.period:
+        return 0.0
+    distance = float(cycle_distance(found.states[np.newaxis], branch.states)[0])
+    return distance if distance < tolerance else _APART
 
 
 @shows_progress("basin fractions")

@@ -24,10 +24,9 @@ from stylobate.orbits.multipliers import is_stable
 from stylobate.parameter_quantities import attributes_of, quantity_of
 from stylobate.progress import Progress, report_of, shows_progress
 from stylobate.provenance import provenance_of_run
-from stylobate.studies.ranges import require_bounds, require_frequencies
-from stylobate.studies.responses.first_orbit import first_orbit
-from stylobate.studies.responses.orbit_families import between_bifurcations
-from stylobate.studies.responses.response_curves import response_curves
+from stylobate.studies.checks import require_bounds, require_frequencies
+from stylobate.studies.exact_response import between_bifurcations, first_orbit
+from stylobate.studies.response_curves import response_curves
 from stylobate.text import plural
 
 _THEORY_POINTS = 201

@@ -1,8 +1,10 @@
-"""Comparison of all models of the hierarchy in one case: the effect of each assumption."""
+"""Models of the hierarchy, and a case for all of them."""
 
 import json
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from enum import Enum
 from typing import Any, Unpack
 
 import numpy as np
@@ -11,16 +13,276 @@ import xarray as xr
 
 from stylobate.base_motions import BASE_AT_REST, BaseMotion
 from stylobate.column import Column
-from stylobate.errors import ParameterError, as_numbers, require_finite, require_positive, require_vector, require_whole
-from stylobate.models import Rolling
+from stylobate.engine import simulate
+from stylobate.engine.forcing import common_line
+from stylobate.errors import (
+    Outcome,
+    ParameterError,
+    as_numbers,
+    require_finite,
+    require_positive,
+    require_vector,
+    require_whole,
+)
+from stylobate.models import Model, PlanarRocking, Rolling, Slender, SlenderRolling, Wobbling
 from stylobate.models.declared import dissipation_of
 from stylobate.models.model import require_column
+from stylobate.progress import Progress, shows_progress
 from stylobate.provenance import provenance_of_run
 from stylobate.results import Response
-from stylobate.results.outcomes import outcome_attributes
-from stylobate.run_arguments import Accuracy
-from stylobate.studies.hierarchy.models import Case, HierarchyArguments
-from stylobate.studies.hierarchy.runs import Course, Floats, largest_distance
+from stylobate.results.outcomes import NOT_COMPUTED, flag_attributes, outcome_attributes
+from stylobate.run_arguments import Accuracy, RunOptions
+from stylobate.studies.overturning_map import overturning_map
+from stylobate.studies.sweeps import Executor
+
+
+class HierarchyArguments(Accuracy, total=False):
+    """Arguments that all models of a comparison share; each model uses the dissipation parameters that it declares.
+
+    They are `damping`, `spin_damping`, `rolling_resistance`, `restitution`, and `rtol`, `atol`, `tilt_limit`,
+    `rest_energy`, `max_steps` and `rules` as in `simulate`.
+    """
+
+    damping: float
+    spin_damping: float
+    rolling_resistance: float
+    restitution: float | None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Case:
+    """A column with its dissipation, a base motion and an initial state.
+
+    Parameters
+    ----------
+    column, motion
+        The column and its base motion.
+    dissipation
+        Dissipation parameters by name; each model uses the parameters that it declares. None selects the default.
+    tilt, tilt_rate, spin
+        Initial conditions [rad], [rad/s], [rad/s].
+    """
+
+    column: Column
+    motion: BaseMotion
+    dissipation: Mapping[str, float | None]
+    tilt: tuple[float, float]
+    tilt_rate: tuple[float, float]
+    spin: float
+
+    def scaled_to(self, slenderness: float) -> "Case":
+        """Return the case that is equivalent for small tilts: tilt, tilt rate and base motion are proportional to c.
+
+        Height, transverse inertia and spin stay constant, and with them ω0 and κ.
+        """
+        factor = slenderness / self.column.slenderness
+        return Case(
+            column=self.column.with_slenderness(slenderness),
+            motion=self.motion.scaled(factor),
+            dissipation=self.dissipation,
+            tilt=(factor * self.tilt[0], factor * self.tilt[1]),
+            tilt_rate=(factor * self.tilt_rate[0], factor * self.tilt_rate[1]),
+            spin=self.spin,
+        )
+
+    @property
+    def in_a_plane(self) -> bool:
+        """Whether initial conditions and base motion are planar, without spin."""
+        directions = (self.tilt, self.tilt_rate, *self.motion.directions())
+        moving = any(any(direction) for direction in directions)
+        return self.spin == 0.0 and (not moving or common_line(*directions) is not None)
+
+    def models(self) -> tuple[Model, ...]:
+        """Return the models, the simplest first; planar rocking is last, if the motion is planar."""
+        models = (Slender, SlenderRolling, Wobbling, Rolling, *((PlanarRocking,) if self.in_a_plane else ()))
+        return tuple(self._model(model) for model in models)
+
+    def _model(self, model: Callable[..., Model]) -> Model:
+        declared = dissipation_of(model)
+        stated = {name: value for name, value in self.dissipation.items() if name in declared and value is not None}
+        return model(self.column, **stated)
+
+    def run(
+        self, model: Model, duration: float, friction_coefficient: float | None, arguments: Mapping[str, Any]
+    ) -> Response:
+        """Run one model; a model without spin starts without spin."""
+        return simulate(
+            model,
+            self.motion,
+            tilt=self.tilt,
+            tilt_rate=self.tilt_rate,
+            spin=0.0 if model.spin_state is None else self.spin,
+            duration=duration,
+            friction_coefficient=friction_coefficient,
+            **arguments,
+        )
+
+
+Floats = npt.NDArray[np.float64]
+
+# Late part of the run, as a fraction; for a periodic base motion, the whole periods that it contains.
+_LATE = 0.2
+
+# Number of times for means.
+_TIMES_COMPARED = 400
+
+
+@dataclass(frozen=True, slots=True)
+class Course:
+    """A run and its requested duration [s]; a run that came to rest early stands until the end."""
+
+    run: Response
+    duration: float
+
+    def history(self, time: Floats) -> tuple[Floats, Floats]:
+        """Return tilt vectors [rad], shape (n, 2), and spin [rad/s] at `time`; NaN after the end or without a spin."""
+        end = float(self.run.data["time"][-1])
+        known = time <= end
+        tilt, spin = np.full((time.size, 2), np.nan), np.full(time.size, np.nan)
+        sampled = self.run.sample(time[known])
+        tilt[known] = sampled["tilt"]
+        if "spin" in sampled:
+            spin[known] = sampled["spin"]
+        if self.run.outcome is Outcome.AT_REST:
+            tilt[~known] = 0.0
+            spin[~known] = spin[known][-1] if known.any() else np.nan
+        return tilt, spin
+
+    def late_means(self, motion: BaseMotion) -> dict[str, float]:
+        """Return the mean tilt angle [rad] and spin [rad/s] late in the run; NaN if it ended before."""
+        window = _LATE * self.duration
+        if motion.period is not None and motion.period <= window:
+            window = motion.period * math.floor(window / motion.period)
+        start = self.duration - window
+        tilt, spin = self.history(start + window * np.arange(_TIMES_COMPARED) / _TIMES_COMPARED)
+        return {"mean_late_tilt": float(np.hypot(*tilt.T).mean()), "mean_late_spin": float(spin.mean())}
+
+
+def largest_distance(first: xr.DataArray, second: xr.DataArray) -> float:
+    """Return the maximum distance of two histories of the tilt vector while both are known [rad]."""
+    return float(np.nanmax(np.hypot(*(first.to_numpy() - second.to_numpy()).T)))
+
+
+class Comparison(Enum):
+    """Comparison of the outcomes of two models, in the order of the codes."""
+
+    BOTH_STAY = "overturns in neither"
+    ONLY_FIRST = "overturns in the first only"
+    ONLY_SECOND = "overturns in the second only"
+    BOTH_OVERTURN = "overturns in both"
+    UNDECIDED = "undecided"
+    """A run failed, or lifted off, or was stopped by a tilt limit."""
+
+
+@shows_progress("outcome differences")
+def outcome_differences(
+    first: Model,
+    second: Model,
+    motion: BaseMotion | None = None,
+    *,
+    over: Mapping[str, npt.ArrayLike],
+    duration: float | None = None,
+    periods: float | None = None,
+    executor: Executor | None = None,
+    progress: Progress = None,
+    **options: Unpack[RunOptions],
+) -> xr.Dataset:
+    """Compare, over two parameters, whether a column overturns in two models.
+
+    If the models differ in one assumption, such as `Slender` and `SlenderRolling`, the map shows where this assumption
+    decides the outcome.
+
+    Parameters
+    ----------
+    first, second
+        The models, usually of one column.
+    motion, over, duration, periods, executor, progress, **options
+        As in `overturning_map`; `over` names parameters of both models.
+
+    Returns
+    -------
+    xarray.Dataset
+        Of kind "outcome differences": over the two names `comparison`, codes of `Comparison`; `first_outcome`,
+        `second_outcome`, and `first_peak_tilt`, `second_peak_tilt` [rad], with demands=True also the contact demands of
+        both; `count` and `share` over `comparison_name`.
+
+    Raises
+    ------
+    ParameterError
+        If an argument is out of range.
+    Interrupted
+        After Ctrl-C; `partial` is the overturning map of the model that was interrupted.
+
+    Examples
+    --------
+    >>> import stylobate as sb
+    >>> column = sb.Column.dimensionless(slenderness=0.1)
+    >>> held, free = sb.Slender(column, damping=0.1), sb.SlenderRolling(column, damping=0.1, spin_damping=0.1)
+    >>> motion = sb.Harmonic.circular(acceleration=0.13, angular_frequency=3.0)
+    >>> over = {"angular_frequency": [2.0, 3.0], "acceleration": [0.12, 0.13]}
+    >>> found = sb.studies.outcome_differences(held, free, motion, over=over, periods=60.0)
+    >>> print(found["comparison"].dims, int(found["count"].sum()))
+    ('angular_frequency', 'acceleration') 4
+    """
+    maps = [
+        overturning_map(
+            model,
+            motion,
+            over=over,
+            duration=duration,
+            periods=periods,
+            executor=executor,
+            progress=progress,
+            **options,
+        )
+        for model in (first, second)
+    ]
+    codes = _compared_pair(*(found["outcome"].to_numpy() for found in maps))
+    return _dataset(maps, codes, (first, second))
+
+
+def _compared_pair(first: npt.NDArray[np.int8], second: npt.NDArray[np.int8]) -> npt.NDArray[np.int8]:
+    fallen = Outcome.OVERTURNED
+    places = {one: code for code, one in enumerate(Comparison)}
+    codes = np.where(first == fallen, places[Comparison.ONLY_FIRST], places[Comparison.BOTH_STAY])
+    codes = np.where(second == fallen, codes + places[Comparison.ONLY_SECOND], codes)
+    unclear = [Outcome.FAILED, Outcome.LIFTED_OFF, Outcome.LIMIT_REACHED]
+    codes = np.where(np.isin(first, unclear) | np.isin(second, unclear), places[Comparison.UNDECIDED], codes)
+    return np.where((first == NOT_COMPUTED) | (second == NOT_COMPUTED), NOT_COMPUTED, codes).astype(np.int8)
+
+
+# Variables of each model's runs in the result; demands only if they were computed.
+_COMPARED = ("outcome", "peak_tilt", "peak_friction_demand", "peak_pivoting_demand", "minimum_normal_force")
+
+
+def _dataset(maps: list[xr.Dataset], codes: npt.NDArray[np.int8], models: tuple[Model, Model]) -> xr.Dataset:
+    dims = maps[0]["outcome"].dims
+    names = [one.value for one in Comparison]
+    meanings = ["NOT_COMPUTED", *(one.name for one in Comparison)]
+    about = flag_attributes("comparison of the two models", meanings, first=NOT_COMPUTED)
+    count = np.array([np.count_nonzero(codes == code) for code in range(len(names))], dtype=np.int64)
+    variables: dict[str, Any] = {
+        "comparison": (dims, codes, about),
+        "count": ("comparison_name", count, {"units": "1", "long_name": "runs compared so"}),
+        "share": ("comparison_name", count / max(codes.size, 1), {"units": "1", "long_name": "share of the runs"}),
+    }
+    for place, found in zip(("first", "second"), maps, strict=True):
+        shared = [name for name in _COMPARED if name in found]
+        variables |= {f"{place}_{name}": found[name].variable for name in shared}
+    provenance = {
+        place: json.loads(found.attrs["provenance"]) for place, found in zip(("first", "second"), maps, strict=True)
+    }
+    return xr.Dataset(
+        variables,
+        coords={**{dim: maps[0][dim] for dim in dims}, "comparison_name": names},
+        attrs={
+            "kind": "outcome differences",
+            "first": models[0].name,
+            "second": models[1].name,
+            "provenance": json.dumps(provenance),
+        },
+    )
+
 
 # Number of times at which models are compared, unless the user requests histories of another length.
 _TIMES = 2001

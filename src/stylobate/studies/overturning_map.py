@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
     from stylobate.studies.sweeps import Sweep
-    from stylobate.studies.sweeps.labelled import Label
+    from stylobate.studies.sweeps.running import Label
 
 _PLANE = 2
 _LEAST_SHARE = 1e-3

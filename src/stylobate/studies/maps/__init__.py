@@ -1,1 +1,0 @@
-"""Maps over two or more numbers: outcomes, basins and attractors, integrity and uncertainty."""

@@ -1,0 +1,333 @@
+"""Frequency response of steady rolling, from theory, in SI units."""
+
+import json
+import math
+from collections.abc import Sequence
+from typing import TypedDict
+
+import numpy as np
+import numpy.typing as npt
+import xarray as xr
+from scipy.integrate import solve_ivp
+
+from stylobate import theory
+from stylobate.base_motions import BaseMotion, Harmonic, as_harmonic
+from stylobate.errors import ParameterError, UnsupportedError, as_numbers, require_positive, require_vector
+from stylobate.models import Model, Slender
+from stylobate.models.closed_form import ClosedForm, RollingLaw
+from stylobate.models.declared import name_by_symbol
+from stylobate.models.inheritance import closed_form_of
+from stylobate.orbits.steady import rolling_form_of, steady_rolling_of
+from stylobate.provenance import provenance_of_run
+from stylobate.studies.known_rolling import RollingFrame
+from stylobate.theory.averaging import circular_components
+from stylobate.theory.rotating_frame import rotating_frame_rates
+
+
+def response_curves(
+    model: Model, motion: BaseMotion, *, angular_frequency: npt.ArrayLike | Sequence[float]
+) -> xr.Dataset:
+    """Compute amplitude and phase of steady rolling over the frequency of a harmonic base motion.
+
+    For circular motion the solution (8) is exact. For elliptic and straight motion it is the averaged solution (10)
+    with the two circular components of the ellipse, one for each sense of rolling.
+
+    Parameters
+    ----------
+    model
+        The slender model.
+    motion
+        A horizontal harmonic motion; its acceleration amplitudes are kept, its frequency is replaced.
+    angular_frequency
+        Frequencies, shape (n,) [rad/s].
+
+    Returns
+    -------
+    xarray.Dataset
+        `amplitude` [rad], `phase` [rad], `stable` over (sense, branch, angular_frequency); `backbone` (5) and the
+        critical frequency of each sense [rad/s]. NaN where there is no solution.
+
+    Raises
+    ------
+    ParameterError
+        If a frequency is not positive, or the motion is not horizontal.
+    UnsupportedError
+        If the model has no closed form.
+
+    Examples
+    --------
+    >>> import stylobate as sb
+    >>> model = sb.Slender(sb.Column.dimensionless(slenderness=0.1), damping=0.1)
+    >>> motion = sb.Harmonic.circular(acceleration=0.065, angular_frequency=1.0)
+    >>> curves = sb.studies.response_curves(model, motion, angular_frequency=[1.0, 2.0])
+    >>> curves["stable"].sel(sense="anticlockwise", branch="upper").values
+    array([False,  True])
+    """
+    eta, column = _damping(model), model.column
+    frequency = _frequencies(angular_frequency)
+    a1, a2, phase = _amplitudes(motion, column.gravity)
+    c, scale = column.slenderness, column.frequency_scale
+    steady = theory.averaged_rolling(frequency / scale, a1, a2, phase, c=c, eta=eta)
+    p, q = (abs(part) for part in circular_components(a1, a2, phase))
+    largest = max(p, q)
+    senses = [
+        (name, branches, size)
+        for name, branches, size in (("anticlockwise", steady.forward, p), ("clockwise", steady.backward, q))
+        if size > _NO_PART * largest
+    ]
+    if not senses:
+        message = f"motion: its acceleration is negligible beside gravity (got {motion!r}). Increase it."
+        raise ParameterError(message)
+    dims = ("sense", "branch", "angular_frequency")
+    stacked = {
+        field: np.stack([[getattr(s.upper, field), getattr(s.lower, field)] for _, s, _ in senses])
+        for field in ("amplitude", "phase", "stable")
+    }
+    critical = [scale * float(theory.critical_frequency(size, c=c, eta=eta)) for _, _, size in senses]
+    return xr.Dataset(
+        {
+            "amplitude": (dims, stacked["amplitude"], {"units": "rad", "long_name": "tilt angle"}),
+            "phase": (
+                dims,
+                stacked["phase"],
+                {"units": "rad", "long_name": "phase of the lean to the base acceleration"},
+            ),
+            "stable": (dims, stacked["stable"], {"long_name": "stable"}),
+            "backbone": (dims[-1:], theory.rolling_backbone(frequency / scale, c), {"units": "rad"}),
+            "critical_frequency": ("sense", critical, {"units": "rad s-1", "long_name": "critical frequency"}),
+        },
+        coords={
+            "sense": [name for name, _, _ in senses],
+            "branch": ["upper", "lower"],
+            "angular_frequency": ("angular_frequency", frequency, {"units": "rad s-1"}),
+        },
+        attrs={
+            "kind": "response curves",
+            "averaged": int(len(senses) > 1),
+            "provenance": json.dumps(provenance_of_run(model, motion)),
+        },
+    )
+
+
+# A circular component smaller than this fraction of the other is rounding: the base motion is circular.
+_NO_PART = 1e-12
+
+
+def _damping(model: Model) -> float:
+    """Return η of a model with the equations of the slender model, or raise an error."""
+    form = rolling_form_of(model)
+    if form is None or form.law is not RollingLaw.SLENDER:
+        message = f"response_curves needs the slender model, which has a closed form; got {model.name}"
+        if form is not None:
+            message += f". Use theory.{form.law.value} for its steady rolling, or orbits.continue_branch for its orbits"
+        raise UnsupportedError(message)
+    return form.eta
+
+
+def _frequencies(angular_frequency: npt.ArrayLike) -> npt.NDArray[np.float64]:
+    angular_frequency = as_numbers("angular_frequency", angular_frequency, "rad/s")
+    frequency = np.atleast_1d(np.asarray(angular_frequency, dtype=float))
+    if frequency.ndim != 1 or not np.all(np.isfinite(frequency) & (frequency > 0.0)):
+        message = f"angular_frequency must be a list of positive numbers [rad/s], got {angular_frequency!r}"
+        raise ParameterError(message)
+    return frequency
+
+
+def _amplitudes(motion: BaseMotion, gravity: float) -> tuple[float, float, float]:
+    harmonic = as_harmonic(motion)
+    if harmonic is None:
+        message = f"motion must be a Harmonic motion, got {motion!r}"
+        raise ParameterError(message)
+    a1, a2, a3 = harmonic.amplitude
+    if a3 != 0.0:
+        message = f"motion must be horizontal for the closed form, got a vertical amplitude of {a3!r} m/s²"
+        raise ParameterError(message)
+    if a1 == a2 == 0.0:
+        message = "motion must have a horizontal amplitude above zero, got 0 m/s²"
+        raise ParameterError(message)
+    return a1 / gravity, a2 / gravity, harmonic.phase[1] - harmonic.phase[0]
+
+
+def averaged_motion(
+    model: Slender,
+    motion: Harmonic,
+    *,
+    tilt: tuple[float, float],
+    tilt_rate: tuple[float, float] = (0.0, 0.0),
+    duration: float,
+    sense: int | None = None,
+    samples: int = 1001,
+    rtol: float = 1e-9,
+) -> xr.Dataset:
+    """Integrate the averaged equations (10) from an initial condition of the full motion.
+
+    Parameters
+    ----------
+    model
+        The slender model.
+    motion
+        A horizontal harmonic motion without ramp. For circular motion the flow is exact.
+    tilt, tilt_rate
+        Initial condition, as for `simulate` [rad], [rad/s]; the tilt must not be zero.
+    duration
+        Duration [s].
+    sense
+        Sense of rolling about which to average, +1 or −1; by default that of the larger circular component.
+    samples
+        Number of samples.
+    rtol
+        Relative tolerance of the integration.
+
+    Returns
+    -------
+    xarray.Dataset
+        `amplitude`, `azimuth` and `phase` [rad] over `time` [s]. It ends early if the averaged tilt passes through
+        zero or exceeds a hundred times c.
+
+    Raises
+    ------
+    ParameterError
+        If an argument is out of range.
+    UnsupportedError
+        If the model is not `Slender`, or is a subclass with equations of its own.
+
+    Examples
+    --------
+    >>> import stylobate as sb
+    >>> model = sb.Slender(sb.Column.dimensionless(slenderness=0.1), damping=0.1)
+    >>> motion = sb.Harmonic.straight(acceleration=0.04, angular_frequency=3.0)
+    >>> start = sb.studies.steady_start(model, motion)
+    >>> slow = sb.studies.averaged_motion(model, motion, **start, duration=20.0)
+    >>> round(float(slow["amplitude"].max() - slow["amplitude"].min()), 9)
+    0.0
+    """
+    form = closed_form_of(model)
+    if form is None or form.law is not RollingLaw.SLENDER:
+        message = f"model: averaged_motion holds for Slender only (got {type(model).__name__}). Pass Slender(column)."
+        raise UnsupportedError(message)
+    frame = RollingFrame.of(model, motion, sense)
+    x, y = require_vector("tilt", tilt, 2, "rad")
+    vx, vy = require_vector("tilt_rate", tilt_rate, 2, "rad/s")
+    end = require_positive("duration", duration, "s") / frame.time_scale
+    c, eta = model.column.slenderness, form.eta
+
+    def rates(_: float, state: np.ndarray) -> np.ndarray:
+        return rotating_frame_rates(state, frame.nu, frame.drive, c=c, eta=eta)
+
+    def leaves(_: float, state: np.ndarray) -> float:
+        return float(min(state[2] - _SMALLEST * c, _LARGEST * c - state[2]))
+
+    leaves.terminal = True  # type: ignore[attr-defined]
+    start = frame.from_tilt((x, y), (vx, vy))
+    tau = np.linspace(0.0, end, samples)
+    flow = solve_ivp(
+        rates, (0.0, end), start, method="DOP853", t_eval=tau, events=leaves, rtol=rtol, atol=1e-3 * rtol * c
+    )
+    _, _, amplitude, psi = flow.y
+    return xr.Dataset(
+        {
+            "amplitude": ("time", amplitude, {"units": "rad", "long_name": "averaged tilt angle"}),
+            "phase": ("time", psi, {"units": "rad", "long_name": "averaged phase"}),
+            "azimuth": ("time", frame.sense * (frame.nu * flow.t + psi) + frame.offset, {"units": "rad"}),
+        },
+        coords={"time": ("time", flow.t * frame.time_scale, {"units": "s", "long_name": "time"})},
+    )
+
+
+# The averaged motion ends if the tilt is below or above these [units of c].
+_SMALLEST, _LARGEST = 1e-6, 100.0
+
+
+_BRANCHES = ("upper", "lower")
+
+
+class Start(TypedDict):
+    """Initial condition of a run, as keyword arguments of `simulate`."""
+
+    tilt: tuple[float, float]
+    tilt_rate: tuple[float, float]
+
+
+class TurningStart(Start):
+    """Initial condition of a column with axial rotation (spin)."""
+
+    spin: float
+
+
+def steady_start(model: Model, motion: Harmonic, *, branch: str = "upper", sense: int | None = None) -> Start:
+    """Compute the initial condition of steady rolling under a harmonic motion without ramp.
+
+    It is exact for circular motion and averaged for elliptic and straight motion: (8) for the slender model, and
+    `free_twist_rolling`, `wobbling_rolling` and `full_rolling` for the others.
+
+    Parameters
+    ----------
+    model
+        Slender, slender rolling, wobbling or rolling, without rolling resistance.
+    motion
+        A horizontal harmonic motion.
+    branch
+        "upper" or "lower". At finite tilt "upper" is the stable branch, or the one with a phase near 0 if none is
+        stable. Slender rolling has the upper branch only.
+    sense
+        +1 anticlockwise or −1 clockwise; by default that of the larger circular component of the motion.
+
+    Returns
+    -------
+    Start
+        `tilt` [rad], `tilt_rate` [rad/s]. For a model with a spin a `TurningStart`, which also has `spin` [rad/s].
+
+    Raises
+    ------
+    ParameterError
+        If there is no such solution.
+    UnsupportedError
+        If there is no closed form for the model.
+
+    Examples
+    --------
+    >>> import stylobate as sb
+    >>> model = sb.Slender(sb.Column.dimensionless(slenderness=0.1), damping=0.1)
+    >>> motion = sb.Harmonic.circular(acceleration=0.065, angular_frequency=1.8)
+    >>> start = sb.studies.steady_start(model, motion)
+    >>> sb.simulate(model, motion, **start, duration=50.0).outcome
+    <Outcome.ROLLING: 'rolling'>
+    """
+    if branch not in _BRANCHES:
+        message = f'branch must be "upper" or "lower", got {branch!r}'
+        raise ParameterError(message)
+    form = _closed_form(model, branch)
+    frame = RollingFrame.of(model, motion, sense)
+    tilt, psi, spin = steady_rolling_of(form, model.column, frame.nu, frame.drive, branch)
+    if not math.isfinite(tilt):
+        message = f"motion has no steady rolling on the {branch} branch at {motion.angular_frequency!r} rad/s"
+        raise ParameterError(message)
+    vector, rate = frame.to_tilt(tilt, psi, 0.0, frame.nu)
+    if model.spin_state is None:
+        return {"tilt": vector, "tilt_rate": rate}
+    return TurningStart(tilt=vector, tilt_rate=rate, spin=frame.sense * spin / frame.time_scale)
+
+
+def _closed_form(model: Model, branch: str) -> ClosedForm:
+    """Return the closed form of steady rolling of a model; raise an error if it does not apply."""
+    form = rolling_form_of(model)
+    if form is None:
+        message = (
+            "steady_start needs a closed form of steady rolling, as of slender, slender rolling, wobbling and rolling; "
+            f"got model {getattr(model, 'name', model)!s}, whose class {type(model).__name__} states none"
+        )
+        raise UnsupportedError(message)
+    if form.requires is not None:
+        name, value = form.requires
+        message = f"{name} must be {value!r} for a closed form of steady rolling, got {getattr(model, name)!r}"
+        raise UnsupportedError(message)
+    if form.law is RollingLaw.FREE_TWIST and branch != "upper":
+        message = f'branch must be "upper" for slender rolling, whose closed form has no other; got {branch!r}'
+        raise ParameterError(message)
+    if form.law in (RollingLaw.FREE_TWIST, RollingLaw.FULL) and form.eta > 0.0 and form.zeta == 0.0:
+        message = (
+            f"{name_by_symbol(type(model), 'ζ')} must be above zero if there is damping, got 0.0: without it the "
+            "spin grows without bound, and there is no steady rolling"
+        )
+        raise ParameterError(message)
+    return form

@@ -1,1 +1,0 @@
-"""Steady responses, their stability and their bifurcations."""
