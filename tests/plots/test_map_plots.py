@@ -23,8 +23,8 @@ from stylobate.plots.cells import (
 )
 from stylobate.plots.labels import axis_label
 from stylobate.plots.style import new_figure
-from stylobate.studies.attractor_search import KINDS
-from stylobate.studies.uncertainty_exponent import exponent_of
+from stylobate.studies.maps.attractor_search import KINDS
+from stylobate.studies.maps.uncertainty_exponent import exponent_of
 
 MODEL = sb.Slender(sb.Column.dimensionless(0.1), damping=0.1)
 REST, OVERTURNED, ROLLING = (one for one in (Outcome.AT_REST, Outcome.OVERTURNED, Outcome.ROLLING))

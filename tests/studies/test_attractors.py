@@ -8,7 +8,7 @@ import xarray as xr
 
 import stylobate as sb
 from stylobate.errors import Outcome, ParameterError
-from stylobate.studies.attractor_search import (
+from stylobate.studies.maps.attractor_search import (
     UNSETTLED,
     Attractor,
     AttractorRules,
@@ -22,8 +22,8 @@ from stylobate.studies.attractor_search import (
     with_strobes,
     with_turns,
 )
-from stylobate.studies.attractors import shares, turns_of_paths
-from stylobate.studies.basin_fractions import follow_branches
+from stylobate.studies.maps.attractors import shares, turns_of_paths
+from stylobate.studies.maps.basin_fractions import follow_branches
 from stylobate.studies.proportions import wilson_interval
 from stylobate.studies.sweeps import Sweep
 

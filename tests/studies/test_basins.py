@@ -7,8 +7,8 @@ import pytest
 
 import stylobate as sb
 from stylobate.errors import Interrupted, ParameterError
-from stylobate.studies.attractor_search import OrbitScales
-from stylobate.studies.basin_fractions import scales_at
+from stylobate.studies.maps.attractor_search import OrbitScales
+from stylobate.studies.maps.basin_fractions import scales_at
 
 MODEL = sb.Slender(sb.Column.dimensionless(0.1), damping=0.1)
 STRAIGHT = sb.Harmonic.straight(acceleration=0.04, angular_frequency=1.8)

@@ -6,7 +6,7 @@ import xarray as xr
 
 import stylobate as sb
 from stylobate.errors import Outcome, ParameterError
-from stylobate.studies.integrity import Metric, distance_to_overturning
+from stylobate.studies.maps.integrity import Metric, distance_to_overturning
 
 FREE = sb.Slender(sb.Column.dimensionless(0.1))
 OVERTURNED, SAFE = Outcome.OVERTURNED, Outcome.AT_REST

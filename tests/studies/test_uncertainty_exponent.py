@@ -6,8 +6,8 @@ import xarray as xr
 
 import stylobate as sb
 from stylobate.errors import Outcome, ParameterError
-from stylobate.studies.attractor_search import UNSETTLED
-from stylobate.studies.uncertainty_exponent import exponent_of, fit_power_law, overturned_or_not, shifted_starts
+from stylobate.studies.maps.attractor_search import UNSETTLED
+from stylobate.studies.maps.uncertainty_exponent import exponent_of, fit_power_law, overturned_or_not, shifted_starts
 
 SMOOTH = np.geomspace(1e-4, 1e-2, 6)
 

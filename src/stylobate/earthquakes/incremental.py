@@ -24,7 +24,7 @@ from stylobate.records import HorizontalComponent
 from stylobate.results.outcomes import NOT_COMPUTED
 from stylobate.run_arguments import RunOptions
 from stylobate.studies.checks import remark_on_lengths, require_no_tilt_limit
-from stylobate.studies.integrity import UNRESOLVED
+from stylobate.studies.maps.integrity import UNRESOLVED
 from stylobate.studies.sweeps import Executor, Sweep
 from stylobate.studies.sweeps.designs import Floats, checked_values
 from stylobate.studies.sweeps.running import labelled_sweep

@@ -52,10 +52,10 @@ from stylobate.results.outcomes import NOT_COMPUTED
 from stylobate.results.verdict import CONTACT_LAW, KIND, Verdict
 from stylobate.run_arguments import RunOptions, defaults_of
 from stylobate.studies.checks import require_no_tilt_limit
+from stylobate.studies.maps.uncertainty_exponent import overturned_or_not
 from stylobate.studies.proportions import fraction_interval, require_confidence
 from stylobate.studies.sweeps import Executor, Sweep, run_sweep
 from stylobate.studies.sweeps.designs import Floats
-from stylobate.studies.uncertainty_exponent import overturned_or_not
 from stylobate.text import did_you_mean, plural
 
 # A rim that carries no twisting moment, and one that keeps a column from turning about its axis.

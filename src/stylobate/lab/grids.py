@@ -20,7 +20,7 @@ from stylobate.lab.options import CASE_NUMBERS
 from stylobate.models import Model
 from stylobate.parameter_quantities import attributes_of
 from stylobate.progress import Report
-from stylobate.studies.overturning_map import labelled
+from stylobate.studies.maps.overturning import labelled
 from stylobate.studies.sweeps import Executor, Sweep
 from stylobate.studies.sweeps.chunks import Arrays, Computed, Task
 from stylobate.studies.sweeps.executors import Work

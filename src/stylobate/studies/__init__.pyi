@@ -1,21 +1,18 @@
-from .hierarchy.outcomes import Comparison, outcome_differences
-from .hierarchy.study import model_hierarchy
+from .hierarchy_study import Comparison, model_hierarchy, outcome_differences
 from .loading import load
+from .maps.attractor_search import AttractorRules
 from .maps.attractors import attractors, label_attractors
 from .maps.basin_fractions import basin_fractions
 from .maps.basins import basins
 from .maps.integrity import erosion, integrity
 from .maps.overturning import overturning_map
-from .maps.stroboscopic import AttractorRules
 from .maps.uncertainty_exponent import uncertainty_exponent
 from .responses.after_bifurcation import after_bifurcation
-from .responses.averaged_motion import averaged_motion
 from .responses.averaging_map import averaging_map
 from .responses.exact_response import exact_response
-from .responses.initial_conditions import steady_start
 from .responses.lyapunov import lyapunov_exponents
 from .responses.poincare_sections import poincare_section
-from .responses.response_curves import response_curves
+from .responses.response_curves import averaged_motion, response_curves, steady_start
 from .responses.slow_sweep import slow_sweep
 from .responses.stability_boundary import stability_boundary
 from .sweeps import Dask, Sweep, Threads, executor_from, open_sweep, run_sweep

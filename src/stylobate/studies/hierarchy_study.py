@@ -32,7 +32,7 @@ from stylobate.provenance import provenance_of_run
 from stylobate.results import Response
 from stylobate.results.outcomes import NOT_COMPUTED, flag_attributes, outcome_attributes
 from stylobate.run_arguments import Accuracy, RunOptions
-from stylobate.studies.overturning_map import overturning_map
+from stylobate.studies.maps.overturning import overturning_map
 from stylobate.studies.sweeps import Executor
 
 

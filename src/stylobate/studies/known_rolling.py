@@ -113,7 +113,7 @@ def require_closed_form(model: Model, motion: BaseMotion, names: Sequence[str]) 
     """Raise UnsupportedError unless steady rolling has a closed form while numbers of these `names` vary."""
     form = rolling_form_of(model)
     harmonic = as_harmonic(motion)
-    remedy = "Leave out end_converged, or pass `orbits` to stylobate.studies.basins."
+    remedy = "Leave out end_converged, or pass `orbits` to stylobate.studies.maps.basins."
     if form is None or form.requires is not None:
         message = f"end_converged: the model must state a closed form of steady rolling (got {model!r}). {remedy}"
         raise UnsupportedError(message)

@@ -13,8 +13,8 @@ from stylobate.earthquakes.incremental import tilt_ratios, without_vertical
 from stylobate.earthquakes.spectra import overturning_intervals
 from stylobate.models import Model
 from stylobate.progress import Report
+from stylobate.studies.maps.uncertainty_exponent import overturned_or_not
 from stylobate.studies.sweeps import Executor
-from stylobate.studies.uncertainty_exponent import overturned_or_not
 
 FINE_SCALES = 2000
 """Scales over the range of the scan that are run below the smallest overturning scale."""

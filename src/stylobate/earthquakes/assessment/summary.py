@@ -8,7 +8,7 @@ import numpy.typing as npt
 import xarray as xr
 
 from stylobate.earthquakes.assessment.inputs import CENTRAL, OTHER_LAW
-from stylobate.studies.uncertainty_exponent import overturned_or_not
+from stylobate.studies.maps.uncertainty_exponent import overturned_or_not
 
 _ACTS = "with"
 

@@ -9,7 +9,7 @@ import xarray as xr
 from stylobate.earthquakes.fragility.observations import LIMIT_STATE, NOT_KNOWN
 from stylobate.errors import Outcome, ParameterError, require_positive
 from stylobate.results.outcomes import NOT_COMPUTED, flag_attributes
-from stylobate.studies.integrity import UNRESOLVED
+from stylobate.studies.maps.integrity import UNRESOLVED
 
 
 def limit_states(

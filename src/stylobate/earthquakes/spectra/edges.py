@@ -7,8 +7,8 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
+from stylobate.studies.maps.uncertainty_exponent import overturned_or_not
 from stylobate.studies.sweeps.designs import Floats
-from stylobate.studies.uncertainty_exponent import overturned_or_not
 
 Integers = npt.NDArray[np.int64]
 Flags = npt.NDArray[np.bool_]

@@ -19,9 +19,9 @@ from stylobate.progress import Progress, shows_progress
 from stylobate.results.outcomes import NOT_COMPUTED
 from stylobate.run_arguments import RunOptions
 from stylobate.studies.checks import require_no_tilt_limit
+from stylobate.studies.maps.uncertainty_exponent import overturned_or_not
 from stylobate.studies.sweeps import Executor
 from stylobate.studies.sweeps.running import labelled_sweep
-from stylobate.studies.uncertainty_exponent import overturned_or_not
 
 _SAMPLES = 2001
 # Histories; the result keeps only the peak rate of them.

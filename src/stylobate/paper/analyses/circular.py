@@ -10,7 +10,7 @@ from stylobate.base_motions import Harmonic
 from stylobate.engine import simulate
 from stylobate.paper.analyses.setting import CIRCULAR_AMPLITUDES, DAMPING, SLENDERNESS, judged, paper_model
 from stylobate.results import ClaimStatus, Finding, Section
-from stylobate.studies.response_curves import steady_start
+from stylobate.studies.responses.response_curves import steady_start
 from stylobate.theory.rotating_frame import rotating_frame_rates
 
 _PARAMETERS = {"c": SLENDERNESS, "eta": DAMPING}

@@ -11,8 +11,8 @@ from stylobate.orbits import Bifurcation, Branch, Kind, continue_branch, periodi
 from stylobate.paper.analyses.setting import DAMPING, SLENDERNESS, judged, paper_model
 from stylobate.paper.analyses.straight import AMPLITUDES
 from stylobate.results import ClaimStatus, Finding, Section
-from stylobate.studies.exact_response import exact_response
-from stylobate.studies.stability_boundary import stability_boundary
+from stylobate.studies.responses.exact_response import exact_response
+from stylobate.studies.responses.stability_boundary import stability_boundary
 from stylobate.theory.averaging import circular_components
 
 _C = SLENDERNESS

@@ -13,7 +13,7 @@ from stylobate.engine import simulate
 from stylobate.errors import Outcome
 from stylobate.paper.analyses.setting import CIRCULAR_AMPLITUDES, DAMPING, SLENDERNESS, judged, paper_model
 from stylobate.results import ClaimStatus, Finding, Section
-from stylobate.studies.response_curves import steady_start
+from stylobate.studies.responses.response_curves import steady_start
 
 _C = SLENDERNESS
 _A0 = CIRCULAR_AMPLITUDES[1]

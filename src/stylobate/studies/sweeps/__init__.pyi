@@ -1,6 +1,5 @@
-from .dask_executor import Dask
+from .dask_executor import Dask, executor_from
 from .executors import Executor, Threads
-from .named_executors import executor_from
 from .running import run_sweep
 from .store import open_sweep
 from .sweep import Sweep

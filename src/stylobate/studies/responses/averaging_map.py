@@ -19,8 +19,8 @@ from stylobate.parameter_quantities import attributes_of
 from stylobate.progress import Progress, report_of, shows_progress
 from stylobate.provenance import provenance_of_run
 from stylobate.studies.checks import require_parameters, require_rising_frequencies
-from stylobate.studies.exact_response import between_bifurcations, first_orbit
-from stylobate.studies.response_curves import response_curves
+from stylobate.studies.responses.exact_response import between_bifurcations, first_orbit
+from stylobate.studies.responses.response_curves import response_curves
 from stylobate.text import plural
 
 Floats = npt.NDArray[np.float64]

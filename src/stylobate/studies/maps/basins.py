@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
     from stylobate.orbits import PeriodicOrbit
-    from stylobate.studies.attractor_search import AttractorRules
+    from stylobate.studies.maps.attractor_search import AttractorRules
     from stylobate.studies.sweeps import Sweep
     from stylobate.studies.sweeps.running import Label
 
@@ -51,7 +51,7 @@ def _attractor(one: "xr.Dataset") -> dict[str, Any]:
 
 
 def _table(result: "xr.Dataset") -> Table:
-    from stylobate.studies.attractor_search import REMEDY
+    from stylobate.studies.maps.attractor_search import REMEDY
 
     rows = [
         (
@@ -72,8 +72,8 @@ def _table(result: "xr.Dataset") -> Table:
 
 def _completed(saved: "xr.Dataset", setup: Callable[[], Any], options: Mapping[str, Any]) -> "xr.Dataset":
     """Return saved basins with intervals of the confidence level; add to the runs of a store the attractor of each."""
-    from stylobate.studies.attractor_search import NOT_SETTLED
-    from stylobate.studies.attractors import label_attractors
+    from stylobate.studies.maps.attractor_search import NOT_SETTLED
+    from stylobate.studies.maps.attractors import label_attractors
     from stylobate.studies.proportions import fraction_interval
 
     confidence = options.get("confidence")
@@ -175,9 +175,9 @@ def basins(
     >>> found["attractor_name"].values.tolist(), found["count"].values.tolist()
     (['at rest', 'overturned'], [4, 2])
     """
-    from stylobate.studies.attractor_search import with_strobes
     from stylobate.studies.checks import require_starts, require_values
     from stylobate.studies.known_rolling import known_orbit_of
+    from stylobate.studies.maps.attractor_search import with_strobes
     from stylobate.studies.sweeps import Sweep
 
     require_starts("over", over)
@@ -201,7 +201,7 @@ def basins(
 def _basins_of(
     runs: "xr.Dataset", model: Model, motion: BaseMotion | None, rules: "AttractorRules | None", confidence: float
 ) -> "xr.Dataset":
-    from stylobate.studies.attractors import label_attractors
+    from stylobate.studies.maps.attractors import label_attractors
 
     labelled = label_attractors(runs, model, motion, rules=rules, confidence=confidence)
     return labelled.assign_attrs(kind="basins")

@@ -33,7 +33,7 @@ from stylobate.orbits.shooting import arcs_of, shots
 from stylobate.progress import Progress, at_value, shows_progress
 from stylobate.provenance import provenance_of_run
 from stylobate.studies.checks import require_frequencies
-from stylobate.studies.response_curves import response_curves
+from stylobate.studies.responses.response_curves import response_curves
 
 _log = logging.getLogger("stylobate")
 

@@ -17,7 +17,8 @@ from stylobate.progress import Progress, shows_progress
 from stylobate.results.outcomes import NOT_COMPUTED, flag_attributes
 from stylobate.results.random_numbers import Rng
 from stylobate.run_arguments import RunOptions
-from stylobate.studies.attractor_search import (
+from stylobate.studies.checks import require_starts
+from stylobate.studies.maps.attractor_search import (
     NOT_SETTLED,
     REMEDY,
     Attractor,
@@ -30,7 +31,6 @@ from stylobate.studies.attractor_search import (
     with_strobes,
     with_turns,
 )
-from stylobate.studies.checks import require_starts
 from stylobate.studies.proportions import fraction_interval
 from stylobate.studies.sweeps import Executor, Sweep
 from stylobate.studies.sweeps.running import labelled_sweep

@@ -20,7 +20,8 @@ from stylobate.progress import Progress, shows_progress
 from stylobate.results.outcomes import NOT_COMPUTED
 from stylobate.results.random_numbers import Rng
 from stylobate.run_arguments import RunOptions
-from stylobate.studies.attractor_search import (
+from stylobate.studies.checks import SYSTEM_STARTS, one_parameter, require_starts
+from stylobate.studies.maps.attractor_search import (
     KINDS,
     NOT_SETTLED,
     REMEDY,
@@ -32,8 +33,7 @@ from stylobate.studies.attractor_search import (
     find_attractors,
     with_strobes,
 )
-from stylobate.studies.attractors import attractor_table, rule_attributes
-from stylobate.studies.checks import SYSTEM_STARTS, one_parameter, require_starts
+from stylobate.studies.maps.attractors import attractor_table, rule_attributes
 from stylobate.studies.proportions import fraction_interval, require_confidence
 from stylobate.studies.sweeps import Executor, Sweep
 from stylobate.studies.sweeps.designs import Box, whole

@@ -14,7 +14,7 @@ from stylobate.parameter_quantities import attributes_of, quantity_of
 from stylobate.progress import Progress, report_of, shows_progress
 from stylobate.provenance import provenance_of_run
 from stylobate.results.random_numbers import Rng, seed_of
-from stylobate.studies.attractors import label_attractors
+from stylobate.studies.maps.attractors import label_attractors
 from stylobate.text import plural
 
 

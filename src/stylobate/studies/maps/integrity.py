@@ -17,8 +17,8 @@ from stylobate.parameter_quantities import quantity_of
 from stylobate.progress import Progress, shows_progress
 from stylobate.results.outcomes import NOT_COMPUTED
 from stylobate.run_arguments import RunOptions
-from stylobate.studies.attractor_search import Floats
 from stylobate.studies.checks import SYSTEM_STARTS, one_parameter, require_no_tilt_limit, require_starts, require_values
+from stylobate.studies.maps.attractor_search import Floats
 from stylobate.studies.sweeps import Executor, Sweep
 from stylobate.studies.sweeps.designs import STARTS, checked_values
 from stylobate.studies.sweeps.running import labelled_sweep

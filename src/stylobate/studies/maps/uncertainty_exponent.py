@@ -21,7 +21,8 @@ from stylobate.progress import Progress, shows_progress
 from stylobate.results.outcomes import NOT_COMPUTED
 from stylobate.results.random_numbers import Rng
 from stylobate.run_arguments import RunOptions
-from stylobate.studies.attractor_search import (
+from stylobate.studies.checks import require_no_tilt_limit, require_starts
+from stylobate.studies.maps.attractor_search import (
     UNSETTLED,
     AttractorRules,
     Floats,
@@ -30,8 +31,7 @@ from stylobate.studies.attractor_search import (
     find_attractors,
     with_strobes,
 )
-from stylobate.studies.checks import require_no_tilt_limit, require_starts
-from stylobate.studies.integrity import UNRESOLVED
+from stylobate.studies.maps.integrity import UNRESOLVED
 from stylobate.studies.proportions import require_confidence, wilson_interval
 from stylobate.studies.sweeps import Executor, Sweep
 from stylobate.studies.sweeps.designs import Box, checked_values, whole

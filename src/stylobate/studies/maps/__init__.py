@@ -1,0 +1,1 @@
+"""Maps over two or more numbers: outcomes, basins and attractors, integrity and uncertainty."""

@@ -1,0 +1,1 @@
+"""Steady responses, their stability and their bifurcations."""
