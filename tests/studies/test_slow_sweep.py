@@ -189,7 +189,7 @@ def test_an_interrupted_sweep_hands_over_the_steps_that_were_done(monkeypatch):
             raise Interrupted(message, None)
         return sb.simulate_ensemble(*args, **kwargs)
 
-    monkeypatch.setattr(sys.modules["stylobate.studies.slow_sweep"], "simulate_ensemble", interrupting)
+    monkeypatch.setattr(sys.modules["stylobate.studies.responses.slow_sweep"], "simulate_ensemble", interrupting)
     start = sb.studies.steady_start(MODEL, CIRCULAR)
     with pytest.raises(Interrupted) as caught:
         sb.studies.slow_sweep(

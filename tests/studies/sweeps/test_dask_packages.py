@@ -77,7 +77,7 @@ def test_a_worker_without_the_package_is_reported_within_ten_seconds(points, cli
         (tmp_path / "stylobate.py").write_text(text)
     else:  # a version from before these tasks
         changed_package(tmp_path)
-        (tmp_path / "stylobate" / "studies" / "sweeps" / "dask_tasks.py").unlink()
+        (tmp_path / "stylobate" / "studies" / "sweeps" / "dask_executor.py").unlink()
     with worker_with(tmp_path, client):
         begin = monotonic()
         with pytest.raises(

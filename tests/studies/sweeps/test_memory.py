@@ -11,7 +11,7 @@ import resource, sys
 import numpy as np
 import xarray as xr
 import stylobate as sb
-from stylobate.studies.sweeps import Sweep, computing, run_sweep
+from stylobate.studies.sweeps import Sweep, chunks, run_sweep
 
 model = sb.Slender(sb.Column.dimensionless(slenderness=0.1), damping=0.1)
 motion = sb.Harmonic.circular(acceleration=0.15, angular_frequency=1.0)
@@ -21,7 +21,7 @@ before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
 def repeated(model, motion, *, tilt, **options):
     return one.isel(run=np.zeros(len(tilt), int))
 
-computing.simulate_ensemble = repeated
+chunks.simulate_ensemble = repeated
 over = {"angular_frequency": np.linspace(0.5, 5.0, 1000), "acceleration": np.linspace(0.05, 0.5, int(sys.argv[1]))}
 data = run_sweep(Sweep.grid(model, motion, over=over, periods=20.0), store=sys.argv[2] if sys.argv[2:] else None)
 assert data["outcome"].size == 1000 * int(sys.argv[1]) and int(data["outcome"].min()) >= 0
