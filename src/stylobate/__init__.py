@@ -26,6 +26,7 @@ def __getattr__(name: str) -> Any:
     if name not in __all__:
         from stylobate.text import did_you_mean
 
-        message = f"module {__name__!r} has no attribute {name!r}; {did_you_mean(name, __all__)}".rstrip("; ")
-        raise AttributeError(message)
+        raise AttributeError(
+            f"module {__name__!r} has no attribute {name!r}; {did_you_mean(name, __all__)}".rstrip("; ")
+        )
     return _import_name(name)

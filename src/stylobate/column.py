@@ -121,8 +121,7 @@ class Column(Declared):
         """
         if (density is None) == (mass is None):
             got = "neither" if density is None else f"{density!r} kg/m³ and {mass!r} kg"
-            message = f"density or mass: a solid column needs one of them (got {got}). State one."
-            raise ParameterError(message)
+            raise ParameterError(f"density or mass: a solid column needs one of them (got {got}). State one.")
         if density is None:
             assert mass is not None
             density = mass / (math.pi * radius**2 * height)
@@ -150,8 +149,7 @@ class Column(Declared):
         The tube tips over its outer rim, as a solid cylinder does.
         """
         if inner_radius >= radius:
-            message = f"inner_radius must be below radius = {radius!r} m, got {inner_radius!r} m"
-            raise ParameterError(message)
+            raise ParameterError(f"inner_radius must be below radius = {radius!r} m, got {inner_radius!r} m")
         mass = density * math.pi * (radius - inner_radius) * (radius + inner_radius) * height
         squares = radius**2 + inner_radius**2
         return cls(
@@ -229,17 +227,15 @@ class Column(Declared):
         ratio = require_positive("inertia_ratio", inertia_ratio)
         axial_ratio = require_positive("axial_ratio", axial_ratio)
         if ratio >= 1.0:
-            message = f"inertia_ratio must be below 1 (a point mass has 1), got {inertia_ratio!r}"
-            raise ParameterError(message)
+            raise ParameterError(f"inertia_ratio must be below 1 (a point mass has 1), got {inertia_ratio!r}")
         radius = c * ratio
         # I_a ≤ 2 I_t with I_t = κ(1 − κ), I_a = axial_ratio (cκ)².
         most = 2.0 * (1.0 - ratio) / (c**2 * ratio)
         if axial_ratio > most * (1.0 + _ROUNDING):
-            message = (
+            raise ParameterError(
                 f"axial_ratio must be at most {most!r} for a body of revolution with slenderness {c!r} and "
                 f"inertia_ratio {ratio!r}, got {axial_ratio!r}"
             )
-            raise ParameterError(message)
         return cls(
             radius=radius,
             mass_height=ratio,
@@ -361,8 +357,7 @@ class Column(Declared):
         [0.117, 0.08, 0.064]
         """
         if not 0.0 < as_float("amplitude", amplitude) < 1.0:
-            message = f"amplitude: must lie between 0 and 1 (got {amplitude!r}). Give it in tipping angles."
-            raise ParameterError(message)
+            raise ParameterError(f"amplitude: must lie between 0 and 1 (got {amplitude!r}). Give it in tipping angles.")
         points, weights = np.polynomial.legendre.leggauss(_POINTS)
         root = np.append(0.5 + 0.5 * points, 0.0)
         peak = amplitude * self.tipping_angle
@@ -375,24 +370,23 @@ class Column(Declared):
     def _check_inertias(self) -> None:
         # I_t = I_a/2 + ∫ z² dm for every body of revolution, z from the centre of mass.
         if self.axial_inertia > 2.0 * self.transverse_inertia * (1.0 + _ROUNDING):
-            message = (
+            raise ParameterError(
                 f"axial_inertia must be at most twice transverse_inertia = {self.transverse_inertia!r} kg m² "
                 f"for a body of revolution, got {self.axial_inertia!r} kg m²"
             )
-            raise ParameterError(message)
 
     def _check_height(self, height: float) -> None:
         if self.mass_height >= height:
-            message = f"mass_height must lie inside the body, below height = {height!r} m, got {self.mass_height!r} m"
-            raise ParameterError(message)
+            raise ParameterError(
+                f"mass_height must lie inside the body, below height = {height!r} m, got {self.mass_height!r} m"
+            )
         # No distribution of mass over 0…H with its mean at h spreads wider than two points at the ends.
         spread = self.mass * self.mass_height * (height - self.mass_height)
         if self.transverse_inertia - self.axial_inertia / 2.0 > spread * (1.0 + _ROUNDING):
-            message = (
+            raise ParameterError(
                 f"transverse_inertia must be at most {spread + self.axial_inertia / 2.0!r} kg m² for a body of "
                 f"height {height!r} m, got {self.transverse_inertia!r} kg m²"
             )
-            raise ParameterError(message)
 
 
 SHAPES: Mapping[str, Callable[..., Column]] = {

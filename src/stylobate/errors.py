@@ -226,8 +226,9 @@ def refuse_unknown_arguments(function: Callable[..., Any], names: Iterable[str])
     for name in names:
         if known and name not in known:
             question = did_you_mean(name, known)
-            message = f"{function.__qualname__}() got an unexpected keyword argument {name!r}; {question}".rstrip("; ")
-            raise TypeError(message)
+            raise TypeError(
+                f"{function.__qualname__}() got an unexpected keyword argument {name!r}; {question}".rstrip("; ")
+            )
 
 
 @cache
@@ -242,8 +243,7 @@ def require_finite(name: str, value: float, unit: str = "") -> float:
     """Return `value` as a float, or raise ParameterError unless it is a finite real number."""
     number = as_float(name, value, unit)
     if not math.isfinite(number):
-        message = f"{name} must be finite, got {_quantity(number, unit)}"
-        raise ParameterError(message)
+        raise ParameterError(f"{name} must be finite, got {_quantity(number, unit)}")
     require_size(name, number, unit)
     return number
 
@@ -252,8 +252,7 @@ def require_positive(name: str, value: float, unit: str = "") -> float:
     """Return `value` as a float, or raise ParameterError unless it is finite and above zero."""
     number = as_float(name, value, unit)
     if not (math.isfinite(number) and number > 0.0):
-        message = f"{name} must be positive, got {_quantity(number, unit)}"
-        raise ParameterError(message)
+        raise ParameterError(f"{name} must be positive, got {_quantity(number, unit)}")
     require_size(name, number, unit, zero=False)
     return number
 
@@ -262,8 +261,7 @@ def require_not_negative(name: str, value: float, unit: str = "") -> float:
     """Return `value` as a float, or raise ParameterError unless it is finite and zero or above."""
     number = as_float(name, value, unit)
     if not (math.isfinite(number) and number >= 0.0):
-        message = f"{name} must be zero or positive, got {_quantity(number, unit)}"
-        raise ParameterError(message)
+        raise ParameterError(f"{name} must be zero or positive, got {_quantity(number, unit)}")
     require_size(name, number, unit)
     return number
 
@@ -276,8 +274,7 @@ def require_vector(name: str, value: Sequence[float], length: int, unit: str = "
     except TypeError:
         numbers = ()
     if len(numbers) != length:
-        message = f"{name} must have {length} numbers, got {value!r}"
-        raise ParameterError(message)
+        raise ParameterError(f"{name} must have {length} numbers, got {value!r}")
     return tuple(require_finite(f"{name}[{i}]", number, unit) for i, number in enumerate(numbers))
 
 
@@ -285,11 +282,9 @@ def require_whole(name: str, value: int, *, least: int, most: Most = MOST_NUMBER
     """Return `value` as an int, or raise ParameterError unless it is a whole number from `least` to `most`."""
     number = as_float(name, value)
     if not (number >= least and number.is_integer()):
-        message = f"{name} must be a whole number of at least {least}, got {value!r}"
-        raise ParameterError(message)
+        raise ParameterError(f"{name} must be a whole number of at least {least}, got {value!r}")
     if number > most.number:
-        message = f"{name}: too large (got {value!r}). Give at most {most.number}: {most.reason}."
-        raise ParameterError(message)
+        raise ParameterError(f"{name}: too large (got {value!r}). Give at most {most.number}: {most.reason}.")
     return int(value)
 
 
@@ -300,8 +295,9 @@ def require_size(name: str, number: float, unit: str = "", *, zero: bool = True)
         return
     problem, limit = ("too large", f"at most {high:g}") if abs(number) > high else ("too small", f"at least {low:g}")
     of = f" {unit}" if unit else ""
-    message = f"{name}: {problem} to compute with (got {_quantity(number, unit)}). Give {limit}{of}; check the unit."
-    raise ParameterError(message)
+    raise ParameterError(
+        f"{name}: {problem} to compute with (got {_quantity(number, unit)}). Give {limit}{of}; check the unit."
+    )
 
 
 def as_float(name: str, value: Any, unit: str = "") -> float:
@@ -315,8 +311,7 @@ def as_float(name: str, value: Any, unit: str = "") -> float:
         # The sum rejects strings, even those that spell a number.
         return float(value + 0.0)
     except (TypeError, ValueError, OverflowError):
-        message = f"{name} must be a real number, got {value!r}"
-        raise ParameterError(message) from None
+        raise ParameterError(f"{name} must be a real number, got {value!r}") from None
 
 
 def as_numbers(name: str, value: Any, unit: str = "") -> Any:
@@ -330,8 +325,7 @@ def as_numbers(name: str, value: Any, unit: str = "") -> Any:
     try:
         return units.in_unit(value, unit)
     except units.UnitError as error:
-        message = f"{name} {error}"
-        raise ParameterError(message) from None
+        raise ParameterError(f"{name} {error}") from None
 
 
 def _quantity(value: float, unit: str) -> str:

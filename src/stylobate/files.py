@@ -75,19 +75,16 @@ def written_aside(path: str | Path) -> Iterator[Path]:
             if beside != target:
                 _remove(beside)
     except OSError as error:
-        message = f"cannot write {path}: {error.strerror or error}"
-        raise FileError(message) from None
+        raise FileError(f"cannot write {path}: {error.strerror or error}") from None
 
 
 def _target(path: str | Path) -> Path:
     try:
         target = Path(os.path.realpath(path))
     except (OSError, ValueError) as error:  # a ValueError: a name with a null character
-        message = f"cannot write {path}: {getattr(error, 'strerror', None) or error}"
-        raise FileError(message) from None
+        raise FileError(f"cannot write {path}: {getattr(error, 'strerror', None) or error}") from None
     if not target.name:
-        message = f"cannot write {path}: it is a folder"
-        raise FileError(message)
+        raise FileError(f"cannot write {path}: it is a folder")
     return target
 
 
@@ -143,21 +140,17 @@ def read_sealed(path: str | Path) -> tuple[bytes, bool]:
     path = Path(path)
     try:
         if not path.is_file():
-            message = f"cannot read {path}: {'it is a folder' if path.is_dir() else 'there is no such file'}"
-            raise FileError(message)
+            raise FileError(f"cannot read {path}: {'it is a folder' if path.is_dir() else 'there is no such file'}")
         whole = path.read_bytes()
     except (OSError, ValueError) as error:  # a ValueError: a name with a null character
-        message = f"cannot read {path}: {getattr(error, 'strerror', None) or error}"
-        raise FileError(message) from error
+        raise FileError(f"cannot read {path}: {getattr(error, 'strerror', None) or error}") from error
     content, seal = whole[:-_SEAL_LENGTH], whole[-_SEAL_LENGTH:]
     if not _looks_like_a_seal(seal):
         if _LABEL in whole:
-            message = f"{path} is damaged: bytes follow its checksum, or are missing. {_RESTORE}"
-            raise FileError(message)
+            raise FileError(f"{path} is damaged: bytes follow its checksum, or are missing. {_RESTORE}")
         return whole, False
     if sealed(content)[-_SEAL_LENGTH:] != seal:
-        message = f"{path} is damaged: its checksum differs. {_RESTORE}"
-        raise FileError(message)
+        raise FileError(f"{path} is damaged: its checksum differs. {_RESTORE}")
     return content, True
 
 

@@ -56,8 +56,7 @@ class Kinds(Mapping[str, Callable[..., Any]]):
         if isinstance(owner, type) and issubclass(owner, loaded(self.base)):
             return found
         base = loaded(self.base).__name__
-        message = f"{self.what}.kind: no {self.what} (got {str(kind)!r}). Name a subclass of {base}."
-        raise ParameterError(message)
+        raise ParameterError(f"{self.what}.kind: no {self.what} (got {str(kind)!r}). Name a subclass of {base}.")
 
     def __iter__(self) -> Iterator[str]:
         """Iterate over the names of the package's kinds."""
@@ -102,11 +101,10 @@ def loaded(place: str) -> Any:
         for name in names.split("."):
             found = getattr(found, name)
     except Exception as error:
-        message = (
+        raise ParameterError(
             f"kind: cannot load {str(place)!r} (got {type(error).__name__}: {error}). "
             "Write file.py:Class or package.module:Class."
-        )
-        raise ParameterError(message) from error
+        ) from error
     return found
 
 

@@ -113,8 +113,9 @@ def never() -> None:
 @contextmanager
 def _report(what: str, read: Callable[..., News], progress: object) -> Iterator[Report]:
     if not (callable(progress) or progress is None or isinstance(progress, bool)):
-        message = f"progress: no function (got {progress!r}). Pass one, False for no progress, or leave it out."
-        raise ParameterError(message)
+        raise ParameterError(
+            f"progress: no function (got {progress!r}). Pass one, False for no progress, or leave it out."
+        )
     if threading.current_thread() is not threading.main_thread():
         yield report_of(progress)
         return
@@ -128,8 +129,7 @@ def _report(what: str, read: Callable[..., News], progress: object) -> Iterator[
     except KeyboardInterrupt as stop:
         if isinstance(stop, Interrupted) or not outermost:
             raise
-        message = f"{what}: interrupted, and nothing is kept; `partial` is None"
-        raise Interrupted(message, None) from stop
+        raise Interrupted(f"{what}: interrupted, and nothing is kept; `partial` is None", None) from stop
     finally:
         _running.pop()
         if bar is not None:

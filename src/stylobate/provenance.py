@@ -49,8 +49,7 @@ def values_of_model(model: Model) -> dict[str, Any]:
     kind = MODELS.name_of(make)
     if kind and is_declared(make, "column"):
         return {"kind": kind, **_plain({name: getattr(model, name) for name in parameters_of(make)})}
-    message = f"a model of class {make.__name__} has no description; results keep its repr only"
-    raise UnsupportedError(message)
+    raise UnsupportedError(f"a model of class {make.__name__} has no description; results keep its repr only")
 
 
 def values_of_motion(motion: BaseMotion) -> dict[str, Any]:
@@ -70,16 +69,16 @@ def values_of_motion(motion: BaseMotion) -> dict[str, Any]:
     if own and is_declared(make, "motion") and hasattr(motion, "motion"):
         arguments = {"motion": motion.motion, **arguments}
     if not kind or (kind not in MOTIONS and not is_declared(make, *arguments)):
-        message = f"a motion of class {type(motion).__name__} has no description; results keep its repr only"
-        raise UnsupportedError(message)
+        raise UnsupportedError(
+            f"a motion of class {type(motion).__name__} has no description; results keep its repr only"
+        )
     defaults = {name: one.default for name, one in parameters_of(make).items() if not one.required}
     return {"kind": kind, **_plain({**defaults, **arguments})}
 
 
 def _values_of_record(record: Record) -> dict[str, Any]:
     if record.origin is None:
-        message = f"the record {record.name!r} was not read from files; results keep its repr only"
-        raise UnsupportedError(message)
+        raise UnsupportedError(f"the record {record.name!r} was not read from files; results keep its repr only")
     reading = {name: value for name, value in record.origin.reading.items() if name != "kind"}
     return {"kind": "record", **_plain({**reading, "processing": record.origin.processing})}
 

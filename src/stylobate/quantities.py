@@ -257,8 +257,7 @@ class Parameter:
             if value in self.choices:
                 return self.choices[self.choices.index(value)]
             remedy = f": {quantity.text}" if quantity.choices else ""
-            message = f"{self.name} must be {' or '.join(map(repr, self.choices))}, got {value!r}{remedy}"
-            raise ParameterError(message)
+            raise ParameterError(f"{self.name} must be {' or '.join(map(repr, self.choices))}, got {value!r}{remedy}")
         if quantity.components > 1:
             numbers = require_vector(self.name, value, quantity.components, quantity.unit)
             return tuple(quantity.checked(f"{self.name}[{i}]", number) for i, number in enumerate(numbers))
@@ -535,8 +534,7 @@ def _member(kind: type[StrEnum], name: str, value: Any) -> StrEnum:
     try:
         return kind(value)
     except ValueError:
-        message = f"{name} must be one of {', '.join(kind)}, got {value!r}"
-        raise ParameterError(message) from None
+        raise ParameterError(f"{name} must be one of {', '.join(kind)}, got {value!r}") from None
 
 
 def _declared(annotation: Any) -> Quantity | None:

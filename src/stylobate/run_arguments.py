@@ -302,8 +302,7 @@ class Declaration:
         if self.kind is bool:
             return bool(value)
         if OutcomeRules in get_args(self.kind) and not isinstance(value, OutcomeRules | None):
-            message = f"{self.name} must be OutcomeRules(...) or None, got {value!r}"
-            raise ParameterError(message)
+            raise ParameterError(f"{self.name} must be OutcomeRules(...) or None, got {value!r}")
         return value
 
 

@@ -103,8 +103,7 @@ def read(text: str, unit: str) -> float:
     try:
         return float(number)
     except ValueError:
-        message = f"must be {'a number, with or without a unit' if unit else 'a number'}, got {text!r}"
-        raise UnitError(message) from None
+        raise UnitError(f"must be {'a number, with or without a unit' if unit else 'a number'}, got {text!r}") from None
 
 
 def split(text: str) -> tuple[str, str]:
@@ -157,8 +156,7 @@ def in_unit(value: Any, unit: str) -> Any:
         return _converted(value, unit)
     inside: Any = type(getattr(value, "data", None))
     if _is_quantity(inside) or hasattr(getattr(value, "dtype", None), "units"):
-        message = f"must not be a labelled array with a unit. Convert it to plain numbers in {unit or 'no unit'}"
-        raise UnitError(message)
+        raise UnitError(f"must not be a labelled array with a unit. Convert it to plain numbers in {unit or 'no unit'}")
     return value
 
 
@@ -206,8 +204,7 @@ def _converted(value: Any, unit: str) -> Any:
     try:
         array = np.asarray(numbers, dtype=float)
     except (TypeError, ValueError):
-        message = f"must be real numbers, got {got}"
-        raise UnitError(message) from None
+        raise UnitError(f"must be real numbers, got {got}") from None
     if ratio != 1:
         exact = [_product(repr(number), ratio) for number in array.ravel().tolist()]
         array = np.array(exact, dtype=float).reshape(array.shape)
@@ -228,8 +225,7 @@ def _ratio(given: str, unit: str, got: str, *, in_text: bool = False) -> Fractio
     similar = get_close_matches(given, _usual(unit), n=1, cutoff=_LIKENESS) if found is None else ()
     question = f". Did you mean {similar[0]}?" if similar else ""
     wanted = "a number without unit" if unit in ("", "1") else f"in {listed(unit)}"
-    message = f"must be {wanted}, got {got}{question}"
-    raise UnitError(message)
+    raise UnitError(f"must be {wanted}, got {got}{question}")
 
 
 def _product(number: str, ratio: Fraction) -> float:

@@ -52,8 +52,7 @@ def boundary(options: Options) -> None:
     check_writable(options["figure"], options["output"])
     if options["bounds"] is None:
         name = options["parameter"]
-        message = f"--bounds: missing. Give the lowest and the highest {name}: --bounds LOW HIGH."
-        raise ParameterError(message)
+        raise ParameterError(f"--bounds: missing. Give the lowest and the highest {name}: --bounds LOW HIGH.")
     values = overlay(read_source(options), options, config.ResponseConfig.model_fields)
     setup = config.ResponseConfig.parse(values).build()
     parameter = options["parameter"].replace("-", "_")

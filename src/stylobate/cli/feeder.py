@@ -56,8 +56,7 @@ def feeder(options: Options) -> None:
     source, output = options["source"], options["output"]
     if output is not None:
         if output.suffix not in (NETCDF, _CSV):
-            message = f"--output must end with {NETCDF} or {_CSV}, got {str(output)!r}"
-            raise ParameterError(message)
+            raise ParameterError(f"--output must end with {NETCDF} or {_CSV}, got {str(output)!r}")
         check_place(output)
     result = _shown(source, options) if source is not None and source.suffix == NETCDF else _computed(options)
     if output is not None:
@@ -75,8 +74,7 @@ def _shown(source: Path, options: Options) -> "xr.Dataset":
     options.refuse_unused(f"to show {source}, for which it computes nothing")
     saved = read_dataset(source)
     if saved.attrs.get("kind") != _KIND:
-        message = f"{source}: no feeder sheet (got a {saved.attrs.get('kind')})."
-        raise FileError(message)
+        raise FileError(f"{source}: no feeder sheet (got a {saved.attrs.get('kind')}).")
     return saved
 
 

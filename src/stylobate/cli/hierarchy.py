@@ -55,12 +55,12 @@ def hierarchy(options: Options) -> None:
     stylobate hierarchy run.toml --scaled-to 0.05 --scaled-to 0.1 --scaled-to 0.2
     """
     if options["model"] is not None:
-        message = f"--model: hierarchy runs all models (got {options['model']!r}). Remove it."
-        raise ParameterError(message)
+        raise ParameterError(f"--model: hierarchy runs all models (got {options['model']!r}). Remove it.")
     scaled_to = options["scaled_to"] or ()
     if any(not 0.0 < c < math.inf for c in scaled_to):
-        message = f"--scaled-to must be followed by a positive slenderness, got {', '.join(map(str, scaled_to))}"
-        raise ParameterError(message)
+        raise ParameterError(
+            f"--scaled-to must be followed by a positive slenderness, got {', '.join(map(str, scaled_to))}"
+        )
     check_writable(options["figure"], options["output"])
     values = overlay(read_source(options), options, config.HierarchyConfig.model_fields)
     merge(values, "hierarchy", _compared(options))

@@ -144,8 +144,7 @@ def read_source(options: Options, source: Path | None = None) -> dict[str, Any]:
     if source is None:
         return {}
     if not source.is_file():
-        message = f"cannot read {source}: No such file or directory"
-        raise FileError(message)
+        raise FileError(f"cannot read {source}: No such file or directory")
     if source.suffix == ".nc":
         saved = studies.load(source)
         loaded = saved if isinstance(saved, results.Verdict) else results.Response.load(source)
@@ -259,11 +258,10 @@ def _column(values: dict[str, Any], options: Options, problems: list[str]) -> li
     if shape is None and isinstance(table, Mapping):
         shape = table.get("shape", implied_shape(table) or "solid")
         if shape == "given" or implied not in (None, shape):
-            message = (
+            raise ParameterError(
                 f"column: the file describes another shape (got {shape!r}). "
                 f"To replace it, add --shape {implied or 'solid'} and all of its numbers."
             )
-            raise ParameterError(message)
     shape = shape or implied or "solid"
     numbers, names = _numbers(part, shape, options, problems)
     merge(values, "column", {**numbers, "shape": shape}, tag="shape")
@@ -307,11 +305,10 @@ def _motion(values: dict[str, Any], options: Options, problems: list[str]) -> li
     before = table.get("kind") if isinstance(table, Mapping) else None
     kind = options.chosen.kinds.get("motion", options["motion"]) if options["motion"] else None
     if kind in kinds_in_files() and before != kind:
-        message = (
+        raise ParameterError(
             f"--motion: no options state the numbers of this motion (got {options['motion']}). "
             f'Describe it in a file: [motion], kind = "{kind}".'
         )
-        raise ParameterError(message)
     record = _record(table if isinstance(table, Mapping) else {}, options) if kind in (None, "record") else {}
     if kind is None and ("path" in record or "sample" in record):
         kind = "record"

@@ -103,16 +103,17 @@ def check_writable(figure: Path | None, output: Path | None = None, *, stores: b
         If the path is a folder, or its parent folder is missing.
     """
     if figure is not None and figure.suffix.lower() not in FIGURES:
-        message = f"cannot draw into {figure}: --figure must end with {', '.join(FIGURES[:-1])} or {FIGURES[-1]}"
-        raise ParameterError(message)
+        raise ParameterError(
+            f"cannot draw into {figure}: --figure must end with {', '.join(FIGURES[:-1])} or {FIGURES[-1]}"
+        )
     if figure is not None and figure.suffix.lower() == PAGE and find_spec("plotly") is None:
-        message = f"cannot draw into {figure}: interactive figures need Plotly (pip install stylobate[interactive])"
-        raise ParameterError(message)
+        raise ParameterError(
+            f"cannot draw into {figure}: interactive figures need Plotly (pip install stylobate[interactive])"
+        )
     if output is not None:
         endings = (NETCDF, STORE) if stores else (NETCDF,)
         if output.suffix not in endings:
-            message = f"--output must end with {' or '.join(endings)}, got {str(output)!r}"
-            raise ParameterError(message)
+            raise ParameterError(f"--output must end with {' or '.join(endings)}, got {str(output)!r}")
         if output.suffix == STORE and output.is_dir():  # to continue; nothing is written if the store is complete
             output = None
     for path in (figure, output):
@@ -142,8 +143,7 @@ def check_place(path: Path) -> None:
     folder = path.parent
     if path.is_dir() or not folder.is_dir() or not os.access(path if path.exists() else folder, os.W_OK):
         reason = "it is a folder" if path.is_dir() else f"{folder} is not a writable folder"
-        message = f"cannot write {path}: {reason}"
-        raise FileError(message)
+        raise FileError(f"cannot write {path}: {reason}")
 
 
 def save_plot(result: Any, path: Path, label: str | None = None) -> None:
@@ -183,8 +183,7 @@ def save_figure(figure: "Figure", path: Path) -> None:
     try:
         figure.savefig(drawn, format=path.suffix.removeprefix(".").lower(), dpi=180)
     except ValueError as error:
-        message = f"cannot draw into {path}: {error}"
-        raise FileError(message) from None
+        raise FileError(f"cannot draw into {path}: {error}") from None
     write_whole(path, drawn.getvalue())
 
 
@@ -213,16 +212,14 @@ def open_saved(source: Path | None) -> "xr.Dataset | None":
     if source is None or source.suffix not in (NETCDF, STORE):
         return None
     if not source.exists():
-        message = f"cannot read {source}: No such file or directory"
-        raise FileError(message)
+        raise FileError(f"cannot read {source}: No such file or directory")
     if source.suffix == STORE:
         return relocated(studies.open_sweep(source, load=True), source)
     from stylobate.results import read_dataset
 
     data = read_dataset(source)
     if "outcome" not in data.data_vars or "provenance" not in data.attrs or "format" in data.attrs:
-        message = f"{source} holds no map or basins saved by stylobate"
-        raise FileError(message)
+        raise FileError(f"{source} holds no map or basins saved by stylobate")
     return relocated(data, source)
 
 
@@ -246,12 +243,10 @@ def open_study(source: Path | None, kinds: Collection[str], *, lacks: str, store
         If the source is a store or of another kind, or cannot be read.
     """
     if source is not None and source.suffix == STORE:
-        message = f"{source} is {store}"
-        raise FileError(message)
+        raise FileError(f"{source} is {store}")
     saved = open_saved(source)
     if saved is not None and saved.attrs["kind"] not in kinds:
-        message = f"{source}: no {lacks} (got a {saved.attrs['kind']})."
-        raise FileError(message)
+        raise FileError(f"{source}: no {lacks} (got a {saved.attrs['kind']}).")
     return saved
 
 

@@ -108,12 +108,12 @@ def _described(sources: Sequence[str], options: Options) -> dict[str, Any]:
     if not studies:
         return {"source": tuple(sources)}
     if len(sources) > 1:
-        message = f"SOURCE: a study must stand alone (got {', '.join(sources)}). List its records by themselves"
-        raise ParameterError(message)
+        raise ParameterError(
+            f"SOURCE: a study must stand alone (got {', '.join(sources)}). List its records by themselves"
+        )
     values = read_source(options, Path(studies[0]))
     if "records" not in values:
-        message = f"{studies[0]}: the study has no records. Add a table [records], or name files"
-        raise FileError(message)
+        raise FileError(f"{studies[0]}: the study has no records. Add a table [records], or name files")
     described = values["records"]
     return dict(described) if isinstance(described, Mapping) else {"source": described}
 
@@ -122,8 +122,7 @@ def _check_table(output: Path | None) -> None:
     if output is None:
         return
     if output.suffix != ".csv":
-        message = f"--output must end with .csv, got {str(output)!r}"
-        raise ParameterError(message)
+        raise ParameterError(f"--output must end with .csv, got {str(output)!r}")
     check_place(output)
 
 
@@ -139,8 +138,7 @@ def _draw(listed: Sequence["Record"], damping: float, figure: Path) -> None:
 
     moving = [record for record in listed if record.axes]
     if not moving:
-        message = "--figure: no record accelerates, so there is nothing to draw. Check the files"
-        raise ParameterError(message)
+        raise ParameterError("--figure: no record accelerates, so there is nothing to draw. Check the files")
     spectra = {record.name: response_spectra(record, np.geomspace(*_PERIODS), damping=damping) for record in moving}
     save_figure(earthquakes.plot_records(moving, spectra), figure)
 

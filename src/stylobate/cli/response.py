@@ -44,8 +44,9 @@ def response(options: Options) -> None:
     check_writable(options["figure"], options["output"])
     exact = options["exact"]
     if exact and options["points"] is not None:
-        message = f"--points: --exact chooses its own frequencies (got {options['points']}). Remove one of them."
-        raise ParameterError(message)
+        raise ParameterError(
+            f"--points: --exact chooses its own frequencies (got {options['points']}). Remove one of them."
+        )
     values = overlay(read_source(options), options, config.ResponseConfig.model_fields)
     setup = config.ResponseConfig.parse(values).build()
     options.refuse_unused()

@@ -284,8 +284,7 @@ def _store(options: Options) -> Path | None:
         return None
     if _is_store(options["source"]):
         return options["source"]  # type: ignore[no-any-return]
-    message = "--resume: the store to continue is missing. Add --output NAME.zarr."
-    raise ParameterError(message)
+    raise ParameterError("--resume: the store to continue is missing. Add --output NAME.zarr.")
 
 
 def executor_of(options: Options) -> "Threads | Dask":
@@ -295,6 +294,5 @@ def executor_of(options: Options) -> "Threads | Dask":
         return studies.Threads(threads)
     chosen = studies.executor_from(str(text))
     if threads is not None:
-        message = f"--threads: the workers of {text} have one thread each (got {threads}). Remove it."
-        raise ParameterError(message)
+        raise ParameterError(f"--threads: the workers of {text} have one thread each (got {threads}). Remove it.")
     return chosen

@@ -46,8 +46,7 @@ class Axis(Config):
         """Refuse values with a unit of an unknown quantity, which has no unit to convert them to."""
         name = str(values.get("name", "")).replace("-", "_") if isinstance(values, Mapping) else ""
         if name and name not in known_names() and any(map(has_unit, values.values())):
-            message = f"{name} is not known here, so its unit cannot be converted; {_remedy(name)}"
-            raise ValueError(message)
+            raise ValueError(f"{name} is not known here, so its unit cannot be converted; {_remedy(name)}")
         return values
 
     @field_validator("first", "last", "listed", mode="before")
@@ -75,14 +74,14 @@ class Axis(Config):
             return self._listed(self.listed)
         if self.listed is not None or missing:
             got = [name for name, value in {**spaced, "values": self.listed}.items() if value is not None]
-            message = f"{self.name} needs from, to and number, or values; got {', '.join(got) or 'none of them'}"
-            raise ParameterError(message)
+            raise ParameterError(
+                f"{self.name} needs from, to and number, or values; got {', '.join(got) or 'none of them'}"
+            )
         return self._spaced()
 
     def _listed(self, values: tuple[float, ...]) -> npt.NDArray[np.float64]:
         if not values:
-            message = f"{self.name} must have at least one value, got none"
-            raise ParameterError(message)
+            raise ParameterError(f"{self.name} must have at least one value, got none")
         return np.array([require_finite("values", value) for value in values])
 
     def _spaced(self) -> npt.NDArray[np.float64]:

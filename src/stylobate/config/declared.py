@@ -86,8 +86,9 @@ def number_or_word(quantity: Quantity) -> Any:
         try:
             return _NUMBER.validate_python(value)
         except ValidationError:
-            message = f"must be a number or {' or '.join(map(repr, words))}"
-            raise PydanticCustomError("number_or_word", message) from None
+            raise PydanticCustomError(
+                "number_or_word", f"must be a number or {' or '.join(map(repr, words))}"
+            ) from None
 
     return Annotated[float | Literal[words], WrapValidator(read)]
 

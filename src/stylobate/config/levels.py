@@ -36,18 +36,16 @@ def levels_by_column(dissipation: Dissipation, columns: Collection[str]) -> dict
     for name in own:
         if name not in columns:
             remedy = did_you_mean(name, columns) or f"Use {', '.join(columns)}."
-            message = f"dissipation: {name!r} is no column; {remedy}"
-            raise ParameterError(message)
+            raise ParameterError(f"dissipation: {name!r} is no column; {remedy}")
     found = {name: own.get(name, shared) for name in columns}
     first = next(iter(found))
     for name, levels in found.items():
         missing = [level for level in dict.fromkeys((*LEVELS, *found[first])) if level not in levels]
         if missing:
-            message = (
+            raise ParameterError(
                 f"dissipation: {' and '.join(missing)} must be stated too{f' for {name!r}' if own else ''}. "
                 "State it for low, central and high, such as low = {damping = 0.04}"
             )
-            raise ParameterError(message)
     return {name: {level: levels[level] for level in found[first]} for name, levels in found.items()}
 
 

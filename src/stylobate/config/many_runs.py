@@ -157,6 +157,7 @@ def refuse_design(provenance: Mapping[str, Any], *known: str) -> Mapping[str, An
     """Return the design of a saved sweep, or raise ParameterError if its kind is not among those `known`."""
     design: Mapping[str, Any] = provenance.get("design") or {"kind": "ensemble"}
     if design["kind"] not in known:
-        message = f"the runs belong to a design {design['kind']!r}; only {' and '.join(known)} can be repeated"
-        raise ParameterError(message)
+        raise ParameterError(
+            f"the runs belong to a design {design['kind']!r}; only {' and '.join(known)} can be repeated"
+        )
     return design

@@ -91,8 +91,7 @@ class Option:
         texts = value if count else value[1:3] if self.type is _AXIS else ()
         if not all(map(is_number, texts)):
             wanted = f"{count} numbers" if count else self.metavar
-            message = f"{self.written_flag} must be followed by {wanted}; one of them is not a number"
-            raise ParameterError(message)
+            raise ParameterError(f"{self.written_flag} must be followed by {wanted}; one of them is not a number")
         return tuple(map(self._number, value)) if count else value
 
     def _number(self, text: Any) -> Any:
@@ -102,8 +101,7 @@ class Option:
             return read(text, self.unit)
         except UnitError as error:
             problem = f"must be a number or {listed(self.words)}, got {text!r}" if self.words else str(error)
-            message = f"{self.written_flag} {problem}"
-            raise ParameterError(message) from None
+            raise ParameterError(f"{self.written_flag} {problem}") from None
 
 
 def numbers_in(kind: Any) -> int:
@@ -241,8 +239,7 @@ def readable(paths: list[Path] | None) -> list[Path] | None:
     """Raise FileError at once for a file that is missing: the code that reads it takes seconds to import."""
     for path in paths or ():
         if not path.is_file():
-            message = f"cannot read {path}: No such file or directory"
-            raise FileError(message)
+            raise FileError(f"cannot read {path}: No such file or directory")
     return paths
 
 

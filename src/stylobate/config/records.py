@@ -167,28 +167,24 @@ class RecordMotion(Reading):
     def _checked_files(self) -> None:
         """Raise ParameterError if no files are named, or a file has changed."""
         if (self.path is None) == (self.sample is None):
-            message = "either path (one file, or the files of one event) or sample must be given"
-            raise ParameterError(message)
+            raise ParameterError("either path (one file, or the files of one event) or sample must be given")
         if self.path is not None and not 1 <= len(self.paths) <= _LONGEST_EVENT:
-            message = f"path must name one to three files of one event, got {len(self.paths)}"
-            raise ParameterError(message)
+            raise ParameterError(f"path must name one to three files of one event, got {len(self.paths)}")
         digests = [self._sha256(path) for path in self.paths]
         for path, found in zip(self.paths, digests, strict=True):
             was = self.file_sha256.get(path, found)
             if was != found:
-                message = (
+                raise ParameterError(
                     f"{path} has changed since the result was saved: its SHA-256 was {was[:12]}…, is {found[:12]}…; "
                     "put the old file back, or describe the run again"
                 )
-                raise ParameterError(message)
 
     def _sha256(self, path: str) -> str:
         try:
             return hashlib.sha256(Path(path).read_bytes()).hexdigest()
         except OSError as error:
             remedy = "; the result was made with it: put it there or beside the result" if self.file_sha256 else ""
-            message = f"cannot read {path}: {error.strerror or error}{remedy}"
-            raise FileError(message) from None
+            raise FileError(f"cannot read {path}: {error.strerror or error}{remedy}") from None
 
     def _read(self) -> Record:
         if self.sample is not None:
@@ -206,18 +202,16 @@ class RecordMotion(Reading):
         if isinstance(self.directions, dict):
             return self.directions
         if self.directions and len(self.directions) != len(self.paths):
-            message = (
+            raise ParameterError(
                 f"directions: one for each file is needed (got {len(self.directions)} for {len(self.paths)} files). "
                 'List azimuths [degrees] or names such as "up", in the order of the files'
             )
-            raise ParameterError(message)
         return {Path(path).name: way for path, way in zip(self.paths, self.directions, strict=False)}
 
     def _refuse(self, names: Iterable[str], what: str) -> None:
         for name in names:
             if getattr(self, name):
-                message = f"{name} does not belong to {what}; leave it out"
-                raise ParameterError(message)
+                raise ParameterError(f"{name} does not belong to {what}; leave it out")
 
 
 def anchored(values: Any, folder: Path) -> Any:

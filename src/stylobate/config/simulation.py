@@ -47,8 +47,9 @@ class OneColumn(Config):
         """Refuse units, except of angles, in the case of a dimensionless column: its numbers have other ones."""
         if isinstance(values, Mapping) and is_dimensionless(values.get("column")):
             for place, text in _texts_with_units(values):
-                message = f"{place}: the numbers of a dimensionless column have no unit (got {text!r}). {_SCALED}"
-                raise ValueError(message)
+                raise ValueError(
+                    f"{place}: the numbers of a dimensionless column have no unit (got {text!r}). {_SCALED}"
+                )
         return values
 
 
@@ -173,14 +174,11 @@ def read_config(path: str | Path, values: Mapping[str, Any] | None = None) -> di
     try:
         values = tomllib.loads(Path(path).read_text(encoding="utf-8")) if values is None else values
     except OSError as error:
-        message = f"cannot read {path}: {error.strerror or error}"
-        raise FileError(message) from None
+        raise FileError(f"cannot read {path}: {error.strerror or error}") from None
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        message = f"{path} is not a TOML file: {error}"
-        raise FileError(message) from None
+        raise FileError(f"{path} is not a TOML file: {error}") from None
     except RecursionError:
-        message = f"{path}: nested too deeply to be read. Describe it with at most {DEEPEST} levels."
-        raise FileError(message) from None
+        raise FileError(f"{path}: nested too deeply to be read. Describe it with at most {DEEPEST} levels.") from None
     check_file_values(values)
     folder = Path(path).parent
     found: dict[str, Any] = anchored(with_places(values, folder), folder)
@@ -192,8 +190,7 @@ def built_rules(rules: Mapping[str, Any]) -> OutcomeRules:
     known = {field.name for field in fields(OutcomeRules)}
     unknown = [name for name in rules if name not in known]
     if unknown:
-        message = f"{unknown[0]} is not known here; the rules are {', '.join(sorted(known))}"
-        raise ParameterError(message)
+        raise ParameterError(f"{unknown[0]} is not known here; the rules are {', '.join(sorted(known))}")
     return OutcomeRules(**rules)
 
 
@@ -214,10 +211,10 @@ def refuse_own_classes(provenance: Mapping[str, Any]) -> None:
     for name in ("model", "motion"):
         if provenance[name].get("kind") == "other":
             if "record" in provenance[name]:
-                message = (
+                raise UnsupportedError(
                     f"the run was under the record {provenance[name]['record']!r}, made from samples that are not "
                     f"kept. Write the record to a file (sb.records.write_at2) and read it to repeat such a run."
                 )
-                raise UnsupportedError(message)
-            message = f"the run used a {name} of its own, of which only the repr is kept: {provenance[name]['repr']}"
-            raise UnsupportedError(message)
+            raise UnsupportedError(
+                f"the run used a {name} of its own, of which only the repr is kept: {provenance[name]['repr']}"
+            )

@@ -124,11 +124,11 @@ def sheet(
     harmonic = as_harmonic(motion)
     if not isinstance(model, Sliding):
         got = getattr(model, "name", model)
-        message = f"model: a feeder sheet needs a part that can slide (got {got!s}). Pass Sliding(column)."
-        raise UnsupportedError(message)
+        raise UnsupportedError(
+            f"model: a feeder sheet needs a part that can slide (got {got!s}). Pass Sliding(column)."
+        )
     if harmonic is None:
-        message = f"motion: a feeder sheet needs a harmonic base motion (got {named(motion)}). {PERIODIC}"
-        raise UnsupportedError(message)
+        raise UnsupportedError(f"motion: a feeder sheet needs a harmonic base motion (got {named(motion)}). {PERIODIC}")
     given = model.friction_coefficient if friction is None else friction
     frictions = checked_values("friction", "friction_coefficient", given, scalar=True)
     tolerance, confidence = require_positive("tolerance", tolerance), require_confidence(confidence)

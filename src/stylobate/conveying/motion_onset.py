@@ -99,8 +99,9 @@ def start_boundary(
     ['ROCK', 'SLIDE']
     """
     if type(model) is not Sliding:
-        message = f"model {getattr(model, 'name', model)!s} does not slide: a start boundary needs Sliding(column)"
-        raise UnsupportedError(message)
+        raise UnsupportedError(
+            f"model {getattr(model, 'name', model)!s} does not slide: a start boundary needs Sliding(column)"
+        )
     phase = require_finite("vertical_phase", vertical_phase, "rad")
     given = {
         "slenderness": slenderness,
@@ -136,6 +137,5 @@ def _values(name: str, given: npt.ArrayLike) -> Floats:
     """Return the values of a parameter, one or more, or raise ParameterError."""
     values = checked_values(name, name, given, scalar=True)
     if not values.size:
-        message = f"{name} must have at least one value, got none"
-        raise ParameterError(message)
+        raise ParameterError(f"{name} must have at least one value, got none")
     return values

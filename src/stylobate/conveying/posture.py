@@ -232,8 +232,9 @@ def upright(
     azimuth = None if azimuth is None else require_finite("azimuth", azimuth, "rad")
     frictions = None if friction is None else checked_values("friction", "friction_coefficient", friction, scalar=True)
     if frictions is not None and not frictions.size:
-        message = f"friction: must be at least one number (got {friction!r}). Leave it out for that of the model."
-        raise ParameterError(message)
+        raise ParameterError(
+            f"friction: must be at least one number (got {friction!r}). Leave it out for that of the model."
+        )
     remark_on_knife_edge("friction", model, {} if frictions is None else {"friction_coefficient": frictions})
     turns = np.arange(count, dtype=float)
     angles = 2.0 * math.pi * turns / count
@@ -278,8 +279,9 @@ def _tilts(given: npt.ArrayLike) -> Floats:
 
     values = np.unique(checked_values("tilts", "tilt_x", given, scalar=True))
     if not values.size or values[0] < 0.0:
-        message = f"tilts: must be one or more angles from 0 to below π/2 rad (got {given!r}). Give their magnitudes."
-        raise ParameterError(message)
+        raise ParameterError(
+            f"tilts: must be one or more angles from 0 to below π/2 rad (got {given!r}). Give their magnitudes."
+        )
     return values
 
 

@@ -189,8 +189,9 @@ class _Case:
         """Create the case, or raise an error unless the theory covers steady rolling with slip of the model."""
         form = _closed_form(model)
         if not isinstance(motion, Harmonic) or not _is_circle(motion):
-            message = f"motion must be a horizontal circular motion, such as Harmonic.circular(...), got {motion!r}"
-            raise UnsupportedError(message)
+            raise UnsupportedError(
+                f"motion must be a horizontal circular motion, such as Harmonic.circular(...), got {motion!r}"
+            )
         column = model.column
         return cls(
             RollingFrame.of(model, motion).drive,
@@ -223,22 +224,19 @@ def _closed_form(model: Model) -> ClosedForm:
     """Return the closed form of steady rolling with slip for a model, or raise an error if none applies."""
     form = closed_form_of(model)
     if form is None or form.law not in (RollingLaw.SLIPPING, RollingLaw.FULL):
-        message = (
+        raise UnsupportedError(
             'steady rolling with slip is known of Sliding, Rolling and Wobbling(constraint="rubber"), got model '
             f"{getattr(model, 'name', model)!s}"
         )
-        raise UnsupportedError(message)
     if form.requires is not None:
         name, value = form.requires
-        message = (
+        raise UnsupportedError(
             f"{name} must be {value!r} for a closed form of steady rolling with slip, got {getattr(model, name)!r}"
         )
-        raise UnsupportedError(message)
     for symbol, value in (("η", form.eta), ("ζ", form.zeta)):
         if not value > 0.0:
             name = name_by_symbol(type(model), symbol)
-            message = f"{name} must be above zero, got {value!r}: without it no steady rolling is decided"
-            raise ParameterError(message)
+            raise ParameterError(f"{name} must be above zero, got {value!r}: without it no steady rolling is decided")
     return form
 
 
@@ -251,8 +249,7 @@ def _is_circle(motion: Harmonic) -> bool:
 def _rising_frictions(given: npt.ArrayLike) -> Floats:
     values = checked_values("friction_coefficient", "friction_coefficient", given, scalar=True)
     if not values.size or np.any(np.diff(values) <= 0.0):
-        message = f"friction_coefficient must be one or more rising numbers, got {given!r}"
-        raise ParameterError(message)
+        raise ParameterError(f"friction_coefficient must be one or more rising numbers, got {given!r}")
     return values
 
 

@@ -275,13 +275,11 @@ def drift(
 
     require_conveyor(model, motion, "drift", varied=over)
     if not isinstance(over, Mapping) or not 1 <= len(over) <= _MOST_NAMES:
-        message = f'over must name one or two parameters, such as "friction_coefficient"; got {over!r}'
-        raise ParameterError(message)
+        raise ParameterError(f'over must name one or two parameters, such as "friction_coefficient"; got {over!r}')
     late = require_whole("late", late, least=1)
     periods = require_positive("periods", periods)
     if not periods >= late + 1:
-        message = f"periods must be at least one more than late, which is {late}; got {periods!r}"
-        raise ParameterError(message)
+        raise ParameterError(f"periods must be at least one more than late, which is {late}; got {periods!r}")
     require_values("over", over)
     remark_on_knife_edge("over", model, over)
     settings: Any = {
@@ -335,11 +333,11 @@ def drift_of_runs(
 def require_conveyor(model: Model, motion: BaseMotion, study: str, *, varied: Collection[str] = ()) -> None:
     """Raise UnsupportedError unless the contact of the model changes and the base motion has a period."""
     if not model.switches:
-        message = f"model {model.name} assumes permanent contact without slip. A {study} needs Sliding(column)."
-        raise UnsupportedError(message)
+        raise UnsupportedError(
+            f"model {model.name} assumes permanent contact without slip. A {study} needs Sliding(column)."
+        )
     if not isinstance(motion, BaseMotion) or (motion.period is None and "angular_frequency" not in varied):
-        message = f"motion: a {study} needs a periodic base motion (got {named(motion)}). {PERIODIC}"
-        raise UnsupportedError(message)
+        raise UnsupportedError(f"motion: a {study} needs a periodic base motion (got {named(motion)}). {PERIODIC}")
 
 
 PERIODIC = "Pass one such as Harmonic.stroke; on the command line --motion stroke."

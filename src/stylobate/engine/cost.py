@@ -91,11 +91,10 @@ def require_memory(size: float, runs: int, remedy: str) -> None:
     """
     there = memory_of_the_machine()
     if size > there:
-        message = (
+        raise ParameterError(
             f"the results of {runs:.6g} runs take {size / _GIB:.3g} GiB of memory, of which this machine has "
             f"{there / _GIB:.3g} GiB. {remedy}."
         )
-        raise ParameterError(message)
 
 
 _GIB = 2.0**30

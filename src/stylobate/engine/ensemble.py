@@ -194,8 +194,7 @@ def simulate_ensemble(
 
     if _followed(plan, runs, arrays, threads, report_of(progress)) and _rechecked(plan, runs, arrays, threads):
         return result()
-    message = "interrupted; `partial` has the finished runs"
-    raise Interrupted(message, result())
+    raise Interrupted("interrupted; `partial` has the finished runs", result())
 
 
 def _options(model: Model, run: Mapping[str, Any], *, with_orbits: bool, with_friction: bool) -> Options:
@@ -211,13 +210,13 @@ def _options(model: Model, run: Mapping[str, Any], *, with_orbits: bool, with_fr
         options = {**options, "demands": True}
     if options["demands"] and model.contact is None:
         asked = "friction_coefficient" if with_friction else "demands"
-        message = f"model {model.name} has no forces of its contact. Give it `contact`, or leave out {asked}."
-        raise UnsupportedError(message)
+        raise UnsupportedError(
+            f"model {model.name} has no forces of its contact. Give it `contact`, or leave out {asked}."
+        )
     if model.switches and (options["demands"] or with_orbits or options["method"] != "dop853"):
         other = "known_orbits" if with_orbits else f"method {options['method']!r}"
         asked = "demands" if options["demands"] else other
-        message = f"model {model.name} changes between kinds of contact: leave out {asked}"
-        raise UnsupportedError(message)
+        raise UnsupportedError(f"model {model.name} changes between kinds of contact: leave out {asked}")
     return options
 
 
@@ -253,8 +252,7 @@ def _check_own_model(model: Model, runs: Runs) -> None:
 
 def _named(parameters: Mapping[str, ArrayLike] | None) -> dict[str, ArrayLike]:
     if parameters is not None and not isinstance(parameters, Mapping):
-        message = f'parameters must name what differs, such as {{"acceleration": […]}}, got {parameters!r}'
-        raise ParameterError(message)
+        raise ParameterError(f'parameters must name what differs, such as {{"acceleration": […]}}, got {parameters!r}')
     return dict(parameters or {})
 
 

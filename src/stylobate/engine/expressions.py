@@ -64,8 +64,9 @@ class Expression:
 
     def __pow__(self, exponent: Number) -> Expression:
         if isinstance(exponent, Expression):
-            message = "an exponent must be a number for its power to be differentiated; use math.exp and math.log"
-            raise UnsupportedError(message)
+            raise UnsupportedError(
+                "an exponent must be a number for its power to be differentiated; use math.exp and math.log"
+            )
         if self.operation == "constant":
             return self.record.known(self.value**exponent)
         if exponent == int(exponent) and 0 <= exponent <= _LARGEST_POWER:
@@ -82,11 +83,10 @@ class Expression:
         return self.record.applied("fabs", self)
 
     def __lt__(self, other: object) -> bool:
-        message = (
+        raise UnsupportedError(
             "equations that choose between cases by a comparison cannot be differentiated automatically; "
             "give the model a `jacobian`"
         )
-        raise UnsupportedError(message)
 
     __le__ = __gt__ = __ge__ = __eq__ = __ne__ = __lt__
     __hash__ = object.__hash__
@@ -95,11 +95,10 @@ class Expression:
         return self < 0.0
 
     def __float__(self) -> float:
-        message = (
+        raise UnsupportedError(
             "equations that use a function that cannot be recorded cannot be differentiated automatically; use "
             f"{', '.join(FUNCTIONS)} of math, or give the model a `jacobian`"
         )
-        raise UnsupportedError(message)
 
     def __mod__(self, other: object) -> float:
         return float(self)
@@ -315,8 +314,9 @@ def recorded(function: Function, arguments: tuple[Any, ...]) -> Any:
     try:
         return _for_expressions(function)(*arguments)
     except TypeError as error:  # such as an array of NumPy
-        message = f"the equations cannot be differentiated: {error}; write them with numbers and functions of math"
-        raise UnsupportedError(message) from error
+        raise UnsupportedError(
+            f"the equations cannot be differentiated: {error}; write them with numbers and functions of math"
+        ) from error
 
 
 def _for_expressions(function: Function) -> Function:

@@ -188,8 +188,9 @@ def check_kinds(motion: BaseMotion) -> None:
             try:
                 convert(value)
             except (TypeError, ValueError):
-                message = f"{type(own).__name__}.{name}: not of the right kind (got {value!r}). Return {wanted}."
-                raise ParameterError(message) from None
+                raise ParameterError(
+                    f"{type(own).__name__}.{name}: not of the right kind (got {value!r}). Return {wanted}."
+                ) from None
 
 
 def _vectors(value: Any, count: int | None, size: int) -> None:
@@ -247,20 +248,21 @@ def _check_bound(name: str, motion: BaseMotion, time: Floats) -> Floats:
     """Return the accelerations, shape (3, n), or raise ParameterError unless they are finite and within the bound."""
     parts = motion.derivative(time, ACCELERATION)
     if len(parts) != _COMPONENTS or any(np.shape(part) != time.shape for part in parts):
-        message = f"{name}.derivative must return three arrays of the shape of time, got {parts!r}"
-        raise ParameterError(message)
+        raise ParameterError(f"{name}.derivative must return three arrays of the shape of time, got {parts!r}")
     found = np.stack(parts)
     broken = ~np.isfinite(found).all(axis=0)
     if broken.any():
-        message = f"{name} must have a finite acceleration, got {parts[0][broken][0]!r} at t = {time[broken][0]!r} s"
-        raise ParameterError(message)
+        raise ParameterError(
+            f"{name} must have a finite acceleration, got {parts[0][broken][0]!r} at t = {time[broken][0]!r} s"
+        )
     largest, bound = float(np.hypot(found[0], found[1]).max()), motion.peak_horizontal(0.0)
     # Large phases of two components have different rounding errors.
     frequency = motion.highest_frequency if math.isfinite(motion.highest_frequency) else 0.0
     unresolved = _PHASES_APART * np.finfo(float).eps * frequency * float(time[-1])
     if not largest <= bound * (1.0 + _ROUNDING + unresolved):
-        message = f"{name}.peak_horizontal must bound |a_h|, got {bound!r} m/s² although |a_h| reaches {largest!r}"
-        raise ParameterError(message)
+        raise ParameterError(
+            f"{name}.peak_horizontal must bound |a_h|, got {bound!r} m/s² although |a_h| reaches {largest!r}"
+        )
     return found
 
 
@@ -276,8 +278,7 @@ def _check_own(motion: BaseMotion, duration: float) -> None:
         or _problem_of_resolution(motion, duration)
     )
     if problem:
-        message = f"{name}.{problem}"
-        raise ParameterError(message)
+        raise ParameterError(f"{name}.{problem}")
 
 
 def _problem_of_bounds(motion: BaseMotion, time: Floats, found: Floats) -> str:

@@ -55,8 +55,7 @@ def history(
     def sampler(time: npt.ArrayLike) -> "xr.Dataset":
         t = np.atleast_1d(np.asarray(as_numbers("time", time, "s"), dtype=float))
         if t.size and not (t.min() >= 0.0 and t.max() <= end * (1.0 + 1e-12)):
-            message = f"time must lie within the run, 0 to {end!r} s, got {t.min()!r} to {t.max()!r} s"
-            raise ParameterError(message)
+            raise ParameterError(f"time must lie within the run, 0 to {end!r} s, got {t.min()!r} to {t.max()!r} s")
         return _samples(model, motion, trajectory, t).as_dataset()
 
     def spread(count: int) -> Samples:

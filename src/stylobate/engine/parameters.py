@@ -101,8 +101,7 @@ def declared_names(motion: BaseMotion, values: Mapping[str, object]) -> dict[str
     names = {name: name.removeprefix(_OWN) for name in values if name not in changes}
     for name, own in names.items():
         if own not in numbers_of(motion):
-            message = f"{name}: the base motion has no such number {_own_numbers(motion)}"
-            raise UnsupportedError(message)
+            raise UnsupportedError(f"{name}: the base motion has no such number {_own_numbers(motion)}")
     _check_path(motion, values, names)
     return names
 
@@ -114,14 +113,12 @@ def _check_path(motion: BaseMotion, values: Mapping[str, object], names: Mapping
         unit = stated[own].quantity.unit if own in stated else ""
         if unit in _OF_A_PATH and "angular_frequency" in values:
             remedy = next(one for one, declared in stated.items() if declared.quantity.unit in _RATES)
-            message = (
+            raise ParameterError(
                 f"{name}: angular_frequency keeps the acceleration, not the path (got both). "
                 f"Vary {remedy} in place of angular_frequency."
             )
-            raise ParameterError(message)
         if unit == "m" and "acceleration" in values:
-            message = f"{name}: acceleration sets the amplitude too (got both). Leave one of them out."
-            raise ParameterError(message)
+            raise ParameterError(f"{name}: acceleration sets the amplitude too (got both). Leave one of them out.")
 
 
 def check_names(
@@ -154,13 +151,11 @@ def check_names(
     for name in names:
         if name not in known:
             remedy = did_you_mean(name, known) or f"known are {', '.join(known)}"
-            message = f"{where}: {name} is not known here; {remedy}"
-            raise ParameterError(message)
+            raise ParameterError(f"{where}: {name} is not known here; {remedy}")
     for name, changed in _CONTRADICTING.items():
         for other in changed:
             if name in names and other in names:
-                message = f"{where}: {name} changes the {other}, which is given too; leave one of them out"
-                raise ParameterError(message)
+                raise ParameterError(f"{where}: {name} changes the {other}, which is given too; leave one of them out")
 
 
 def with_parameters(model: Model, motion: BaseMotion, /, **values: float) -> tuple[Model, BaseMotion]:
@@ -247,8 +242,7 @@ def changed_motion(motion: BaseMotion, values: Mapping[str, float]) -> BaseMotio
 def _one_of(motion: BaseMotion, number: float) -> BaseMotion:
     chosen = with_choice(motion, number)
     if chosen is None:
-        message = f"motion can be chosen in a OneOf only; {_got(motion)}"
-        raise UnsupportedError(message)
+        raise UnsupportedError(f"motion can be chosen in a OneOf only; {_got(motion)}")
     return chosen
 
 
@@ -262,8 +256,9 @@ def peak_acceleration(motion: BaseMotion) -> float:
     """
     largest = motion.peak_horizontal(0.0)
     if not largest > 0.0:
-        message = f"acceleration cannot be changed: the motion has no horizontal acceleration; {_got(motion)}"
-        raise UnsupportedError(message)
+        raise UnsupportedError(
+            f"acceleration cannot be changed: the motion has no horizontal acceleration; {_got(motion)}"
+        )
     return largest
 
 
@@ -278,8 +273,7 @@ def harmonic_part(motion: BaseMotion, name: str) -> Harmonic:
     if isinstance(motion, Transformed):
         return harmonic_part(motion.motion, name)
     if type(motion) is not Harmonic:
-        message = f"{name} can be changed in a Harmonic motion only; {_got(motion)}"
-        raise UnsupportedError(message)
+        raise UnsupportedError(f"{name} can be changed in a Harmonic motion only; {_got(motion)}")
     return motion
 
 
@@ -326,8 +320,7 @@ def present_value(model: Model, motion: BaseMotion, name: str) -> float:
         return value_of(motion, declared_names(motion, {name: None})[name])
     value = getattr(model.column if name in COLUMN_NAMES else model, name)
     if value is None:
-        message = f"parameter {name} has no value in model {model.name}; give it one"
-        raise ParameterError(message)
+        raise ParameterError(f"parameter {name} has no value in model {model.name}; give it one")
     return float(value)
 
 

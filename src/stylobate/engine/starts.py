@@ -44,17 +44,16 @@ class Turning:
         refuse_spin(model, spin, standing=standing)
         if not model.carried_names and not model.switches and (twist or x or y):
             name, value = ("twist", twist) if twist else ("position", (x, y))
-            message = f"{name} must be left out: model {model.name} does not compute it, got {value!r}"
-            raise ParameterError(message)
+            raise ParameterError(f"{name} must be left out: model {model.name} does not compute it, got {value!r}")
         if not model.switches and (vx or vy or vz or clearance):
             name, found = ("clearance", clearance) if clearance else ("velocity", (vx, vy, vz))
-            message = (
+            raise ParameterError(
                 f"{name} must be left out: in model {model.name} the contact neither slips nor opens, got {found!r}"
             )
-            raise ParameterError(message)
         if vz < 0.0 and clearance == 0.0:
-            message = f"velocity must not lead into the plane if the clearance is 0, got {vz!r} m/s along its normal"
-            raise ParameterError(message)
+            raise ParameterError(
+                f"velocity must not lead into the plane if the clearance is 0, got {vz!r} m/s along its normal"
+            )
         return cls(spin, twist, (x, y), (vx, vy, vz), clearance)
 
     def carried(self, model: Model) -> tuple[float, ...]:
@@ -103,8 +102,9 @@ class Start:
 def refuse_friction(model: Model, friction_coefficient: object) -> None:
     """Raise ParameterError if a friction coefficient is given besides a `model` that has its own."""
     if friction_coefficient is not None and model.switches:
-        message = f"friction_coefficient must be given to model {model.name} itself, got {friction_coefficient!r} here"
-        raise ParameterError(message)
+        raise ParameterError(
+            f"friction_coefficient must be given to model {model.name} itself, got {friction_coefficient!r} here"
+        )
 
 
 def require_below_level(tilt: Floats) -> None:
@@ -120,11 +120,11 @@ def refuse_spin(model: Model, spin: float, *, standing: bool) -> None:
     if spin == 0.0:
         return
     if model.spin_state is None:
-        message = f"spin must be left out: the column of model {model.name} cannot turn, got {spin!r} rad/s"
-        raise ParameterError(message)
+        raise ParameterError(f"spin must be left out: the column of model {model.name} cannot turn, got {spin!r} rad/s")
     if standing and not model.switches:
-        message = f"spin must be 0 for a column that stands flat on its base, got {spin!r} rad/s; give it a tilt"
-        raise ParameterError(message)
+        raise ParameterError(
+            f"spin must be 0 for a column that stands flat on its base, got {spin!r} rad/s; give it a tilt"
+        )
 
 
 def require_plane(model: Model, motion: BaseMotion, tilt: tuple[float, float], tilt_rate: tuple[float, float]) -> None:
@@ -149,12 +149,12 @@ def out_of_plane(model: Model, tilt: Sequence[float], tilt_rate: Sequence[float]
 def require_nouns(model: Model, motion: BaseMotion | None) -> None:
     """Raise ParameterError if an argument has the wrong type."""
     if not isinstance(model, Model):
-        message = f"model must be a model such as Slender(column), got {reprlib.repr(model)}"
-        raise ParameterError(message)
+        raise ParameterError(f"model must be a model such as Slender(column), got {reprlib.repr(model)}")
     check_once(model)
     if motion is not None and not isinstance(motion, BaseMotion):
-        message = f"motion must be a base motion such as Harmonic.circular(...) or None, got {reprlib.repr(motion)}"
-        raise ParameterError(message)
+        raise ParameterError(
+            f"motion must be a base motion such as Harmonic.circular(...) or None, got {reprlib.repr(motion)}"
+        )
     if motion is not None:
         check_kinds(motion)
 

@@ -64,14 +64,15 @@ class EventFunction:
 
     def __post_init__(self) -> None:
         if not isinstance(self.name, str) or not self.name:
-            message = f"name: must be a text that is not empty (got {self.name!r}). Name the event."
-            raise ParameterError(message)
+            raise ParameterError(f"name: must be a text that is not empty (got {self.name!r}). Name the event.")
         if not callable(self.function):
-            message = f"function: not callable (got {self.function!r}). Provide a function of time and state."
-            raise ParameterError(message)
+            raise ParameterError(
+                f"function: not callable (got {self.function!r}). Provide a function of time and state."
+            )
         if math.isnan(as_float("direction", self.direction)):
-            message = f"direction: must be a number (got {self.direction!r}). Use 1, −1, or 0 for both directions."
-            raise ParameterError(message)
+            raise ParameterError(
+                f"direction: must be a number (got {self.direction!r}). Use 1, −1, or 0 for both directions."
+            )
         require_whole("terminal", self.terminal, least=0)
 
 
@@ -84,14 +85,16 @@ def checked_events(events: Sequence[EventFunction | Callable[..., float]]) -> tu
         If a function is not callable, or two events have the same name.
     """
     if isinstance(events, EventFunction) or not isinstance(events, Sequence):
-        message = f"events: must be a list of event functions (got {events!r}). Put a single one in brackets."
-        raise ParameterError(message)
+        raise ParameterError(
+            f"events: must be a list of event functions (got {events!r}). Put a single one in brackets."
+        )
     checked = tuple(_checked(f"events[{place}]", one) for place, one in enumerate(events))
     taken = set(EVENT_KINDS)
     for place, one in enumerate(checked):
         if one.name in taken:
-            message = f"events[{place}]: its name is taken (got {one.name!r}). Use EventFunction with another name."
-            raise ParameterError(message)
+            raise ParameterError(
+                f"events[{place}]: its name is taken (got {one.name!r}). Use EventFunction with another name."
+            )
         taken.add(one.name)
     return checked
 
@@ -100,8 +103,9 @@ def _checked(where: str, given: object) -> EventFunction:
     if isinstance(given, EventFunction):
         return given
     if not callable(given):
-        message = f"{where}: not callable (got {given!r}). Provide an EventFunction, or a function of time and state."
-        raise ParameterError(message)
+        raise ParameterError(
+            f"{where}: not callable (got {given!r}). Provide an EventFunction, or a function of time and state."
+        )
     name = getattr(given, "__name__", type(given).__name__)
     return EventFunction(name, given, getattr(given, "direction", 0.0), getattr(given, "terminal", False))
 
@@ -124,8 +128,7 @@ class _State(dict[str, Any]):
     def __missing__(self, name: str) -> Any:
         self.update({key: output.values[0] for key, output in self._outputs().items()})
         if name not in self:
-            message = f"events: no variable {name!r} in the state. Use one of {', '.join(self)}."
-            raise ParameterError(message)
+            raise ParameterError(f"events: no variable {name!r} in the state. Use one of {', '.join(self)}.")
         return self[name]
 
 
@@ -207,12 +210,14 @@ class EventRecorder:
         one = self.functions[number]
         found = one.function(tau * self.model.time_scale, state)
         if isinstance(found, bool | np.bool_):
-            message = f"events: {one.name!r} must return a number (got {found}). Return a − b for a condition a > b."
-            raise ParameterError(message)
+            raise ParameterError(
+                f"events: {one.name!r} must return a number (got {found}). Return a − b for a condition a > b."
+            )
         value = as_float(f"events: the value of {one.name!r}", found)
         if math.isnan(value):
-            message = f"events: {one.name!r} is NaN at {tau * self.model.time_scale:.6g} s. Return a number there."
-            raise ParameterError(message)
+            raise ParameterError(
+                f"events: {one.name!r} is NaN at {tau * self.model.time_scale:.6g} s. Return a number there."
+            )
         return value
 
 

@@ -31,8 +31,7 @@ def duration_of(duration: float | None, model: Model, motion: BaseMotion) -> flo
         return require_positive("duration", duration, "s")
     if not 0.0 < motion.duration < math.inf:
         what = "a base at rest" if motion.duration == 0.0 else "a base motion that never ends"
-        message = f"duration must be given, in s, with {what}, such as duration=60.0; got None"
-        raise ParameterError(message)
+        raise ParameterError(f"duration must be given, in s, with {what}, such as duration=60.0; got None")
     return duration_with_tail(motion.duration, model.column.frequency_parameter)
 
 

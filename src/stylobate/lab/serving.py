@@ -55,8 +55,7 @@ def serve(
         If the server cannot listen on the port, for example because it is in use.
     """
     if not 0 <= port <= _HIGHEST_PORT:
-        message = f"port must lie between 0 and {_HIGHEST_PORT}, got {port!r}"
-        raise ParameterError(message)
+        raise ParameterError(f"port must lie between 0 and {_HIGHEST_PORT}, got {port!r}")
     with listening(host, port) as place:
         # Heavy imports wait until the socket listens.
         from stylobate.lab.app import create_app
@@ -105,8 +104,9 @@ def listening(host: str, port: int) -> socket.socket:
         place.listen()
     except OSError as error:
         place.close()
-        message = f"cannot listen on {host}:{port}: {error.strerror or error}. Give another --port, or 0 for any."
-        raise FileError(message) from None
+        raise FileError(
+            f"cannot listen on {host}:{port}: {error.strerror or error}. Give another --port, or 0 for any."
+        ) from None
     return place
 
 

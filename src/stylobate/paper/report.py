@@ -187,8 +187,7 @@ def paper_report(check: PaperCheck, folder: str | Path) -> Path:
         report = target / "report.html"
         write_whole(report, page(_TITLE, [*_INTRODUCTION, check.summary], _sections(check, pictures)))
     except OSError as error:
-        message = f"cannot write into {target}: {error.strerror or error}"
-        raise FileError(message) from error
+        raise FileError(f"cannot write into {target}: {error.strerror or error}") from error
     return report
 
 

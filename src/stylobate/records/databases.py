@@ -131,12 +131,13 @@ def read_asc(text: Text) -> Component:
     values = dict.fromkeys(_KNOWN, "") | {key: value for key, (_, value) in header.items()}
     for key in (_STEP, _COUNT):
         if not values[key]:
-            what = f"incomplete header of an ASC file: {key} is missing. Restore it"
-            raise text.fault(places.get(key, 0), what)
+            raise text.fault(places.get(key, 0), f"incomplete header of an ASC file: {key} is missing. Restore it")
     kind = values["DATA_TYPE"].lower()
     if kind not in ("", "acceleration"):
-        what = f"the file holds {kind}, not acceleration. Read the file of this component with ACC in its name"
-        raise text.fault(places["DATA_TYPE"], what)
+        raise text.fault(
+            places["DATA_TYPE"],
+            f"the file holds {kind}, not acceleration. Read the file of this component with ACC in its name",
+        )
     step = text.number(places[_STEP], values[_STEP])
     if step <= 0.0:
         raise text.fault(places[_STEP], f"{_STEP} must be positive, got {step!r}. Correct the header")

@@ -98,11 +98,9 @@ class Assessment(ByContent):
         tree = read_tree(path)
         require_this_version(path, tree.attrs.get("format"), _FORMAT)
         if tree.attrs.get("format") != _FORMAT:
-            message = f"{path} holds no assessment saved by stylobate"
-            raise FileError(message)
+            raise FileError(f"{path} holds no assessment saved by stylobate")
         data = {str(name): child.to_dataset() for name, child in tree.children.items()}
         try:
             return cls(data=data, setting=json.loads(tree.attrs["setting"]))
         except (KeyError, TypeError, ValueError) as error:
-            message = f"{path} is damaged: {error}. Compute it again"
-            raise FileError(message) from error
+            raise FileError(f"{path} is damaged: {error}. Compute it again") from error

@@ -63,8 +63,9 @@ class KnownOrbit:
         for name in self.__slots__:
             values = _numbers(name, getattr(self, name))
             if np.isinf(values).any():
-                message = f"known_orbits: {name} must be finite, or NaN for a run without the orbit; got inf"
-                raise ParameterError(message)
+                raise ParameterError(
+                    f"known_orbits: {name} must be finite, or NaN for a run without the orbit; got inf"
+                )
         _require("multiplier", self.multiplier, "lie between 0 and 1, for an orbit that is stable", _between_0_and_1)
         _require("mean_tilt", self.mean_tilt, "be positive", _positive)
         _require("turns", self.turns, "be -1 or 1 for rolling, 0 for rocking", _whole_turns)
@@ -136,11 +137,9 @@ def as_orbits(given: KnownOrbits | None) -> tuple[KnownOrbit, ...]:
     """
     orbits = () if given is None else (given,) if isinstance(given, KnownOrbit) else given
     if not isinstance(orbits, Sequence) or not all(isinstance(one, KnownOrbit) for one in orbits):
-        message = f"known_orbits must be a KnownOrbit(...) or a list of them, got {given!r}"
-        raise ParameterError(message)
+        raise ParameterError(f"known_orbits must be a KnownOrbit(...) or a list of them, got {given!r}")
     if len(orbits) > MOST_ORBITS:
-        message = f"known_orbits must be {MOST_ORBITS} at most, got {len(orbits)}. Leave out some of them."
-        raise ParameterError(message)
+        raise ParameterError(f"known_orbits must be {MOST_ORBITS} at most, got {len(orbits)}. Leave out some of them.")
     return tuple(orbits)
 
 
@@ -149,8 +148,7 @@ def _numbers(name: str, value: Any) -> Floats:
     try:
         return np.asarray(value, dtype=float)
     except (TypeError, ValueError):
-        message = f"known_orbits: {name} must be a number or an array of numbers, got {value!r}"
-        raise ParameterError(message) from None
+        raise ParameterError(f"known_orbits: {name} must be a number or an array of numbers, got {value!r}") from None
 
 
 def _between_0_and_1(values: Floats) -> npt.NDArray[np.bool_]:
@@ -170,5 +168,4 @@ def _require(name: str, value: Any, bounds: str, holds: Callable[[Floats], npt.N
     known = values[~np.isnan(values)]
     broken = known[~holds(known)]
     if broken.size:
-        message = f"known_orbits: {name} must {bounds}, got {float(broken.flat[0])!r}"
-        raise ParameterError(message)
+        raise ParameterError(f"known_orbits: {name} must {bounds}, got {float(broken.flat[0])!r}")

@@ -23,8 +23,7 @@ class ByName(dict[str, _T]):
 
     def __missing__(self, name: object) -> Never:
         remedy = did_you_mean(str(name), self) or f"its names are {', '.join(self) or 'none'}"
-        message = f"the result has no such name (got {name!r}); {remedy}"
-        raise UnknownNameError(message)
+        raise UnknownNameError(f"the result has no such name (got {name!r}); {remedy}")
 
 
 def plain_numbers(values: npt.ArrayLike, digits: int) -> list[Any]:

@@ -37,21 +37,19 @@ class DesignSpectrum:
 
     def __post_init__(self) -> None:
         if len(self.period) < _ENDS or len(self.period) != len(self.acceleration):
-            message = (
+            raise ParameterError(
                 "design_spectrum: at least two points are needed, each with a period and an acceleration "
                 f"(got {len(self.period)} periods, {len(self.acceleration)} accelerations). Add points."
             )
-            raise ParameterError(message)
         for period, acceleration in zip(self.period, self.acceleration, strict=True):
             require_not_negative("design_spectrum: period", period, "s")
             require_not_negative("design_spectrum: acceleration", acceleration, "m/s²")
         require_positive("design_spectrum: damping", self.damping)
         for before, after in zip(self.period, self.period[1:], strict=False):
             if after <= before:
-                message = (
+                raise ParameterError(
                     f"design_spectrum: periods must increase (got {after:g} s after {before:g} s). Sort the points."
                 )
-                raise ParameterError(message)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -135,8 +135,9 @@ class Response(ByContent):
             If a time lies outside the run.
         """
         if self.sampler is None:
-            message = "sample needs a run made in this process: a loaded result has the samples in .data only"
-            raise UnsupportedError(message)
+            raise UnsupportedError(
+                "sample needs a run made in this process: a loaded result has the samples in .data only"
+            )
         return self.sampler(time)
 
     def to_dataframe(self) -> "pd.DataFrame":

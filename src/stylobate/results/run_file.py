@@ -43,23 +43,23 @@ def fields_of(path: str | Path) -> dict[str, Any]:
     data = read_dataset(path)
     attributes: dict[str, Any] = dict(data.attrs)
     if "format" not in attributes and "kind" in attributes:
-        message = (
+        raise FileError(
             f"{path} holds the result of a study of kind {attributes['kind']!r}, not a run; stylobate.load reads it"
         )
-        raise FileError(message)
     kind = str(attributes.get("format", "")).removeprefix(OWN_FORMATS).partition(" ")[0]
     if kind in _OF_ORBITS:
-        message = f"{path} holds an object of stylobate.orbits of kind {kind!r}, not a run; stylobate.load reads it"
-        raise FileError(message)
+        raise FileError(
+            f"{path} holds an object of stylobate.orbits of kind {kind!r}, not a run; stylobate.load reads it"
+        )
     require_this_version(path, attributes.get("format"), _FORMAT)
     if attributes.get("format") != _FORMAT:
-        message = f"{path} is not a run saved by stylobate: its format is {attributes.get('format')!r}, not {_FORMAT!r}"
-        raise FileError(message)
+        raise FileError(
+            f"{path} is not a run saved by stylobate: its format is {attributes.get('format')!r}, not {_FORMAT!r}"
+        )
     try:
         return _fields(data, attributes)
     except (KeyError, TypeError, ValueError) as error:
-        message = f"{path} is damaged: {error}. Compute it again"
-        raise FileError(message) from error
+        raise FileError(f"{path} is damaged: {error}. Compute it again") from error
 
 
 def _fields(data: xr.Dataset, attributes: dict[str, Any]) -> dict[str, Any]:

@@ -74,8 +74,9 @@ def require_this_version(path: str | Path, written: object, known: str) -> None:
     if written_kind != kind or other == number or not other.isdecimal():
         return
     age, remedy = ("later", "Update stylobate") if int(other) > int(number) else ("earlier", "Compute it again")
-    message = f"{path}: written by a {age} version of stylobate (got the format {written!r}, not {known!r}). {remedy}"
-    raise FileError(message)
+    raise FileError(
+        f"{path}: written by a {age} version of stylobate (got the format {written!r}, not {known!r}). {remedy}"
+    )
 
 
 def _without_a_cluster() -> AbstractContextManager[Any]:
@@ -92,15 +93,13 @@ def _read(open_file: Callable[..., _Data], path: str | Path) -> _Data:
         with open_file(BytesIO(content), engine="h5netcdf", decode_times=False) as stored:
             data = stored.load()
     except Exception as error:  # HDF5 and the layers above it raise many classes of errors for damaged files
-        message = (
+        raise FileError(
             f"cannot read {path}: it is not a netCDF file, or damaged ({' '.join(str(error).split())}). "
             "Give another file, or compute it again"
-        )
-        raise FileError(message) from error
+        ) from error
     written = str(data.attrs.get("format", ""))
     if not is_sealed and written.startswith(OWN_FORMATS):
-        message = f"{path} is damaged, or another program changed it: its checksum is missing. Compute it again"
-        raise FileError(message)
+        raise FileError(f"{path} is damaged, or another program changed it: its checksum is missing. Compute it again")
     require_this_version(path, written, _TABLE)
     if written == _TABLE:
         del data.attrs["format"]

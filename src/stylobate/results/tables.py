@@ -130,8 +130,7 @@ def _rows_of(data: "xr.Dataset", over: str | Sequence[str] | None) -> tuple[Hash
     for dim in dims:
         if dim not in data.sizes:
             remedy = did_you_mean(dim, map(str, data.sizes)) or f"Its dimensions are {', '.join(map(str, data.sizes))}."
-            message = f"over: the Dataset has no such dimension (got {dim!r}). {remedy}"
-            raise ParameterError(message)
+            raise ParameterError(f"over: the Dataset has no such dimension (got {dim!r}). {remedy}")
     return dims
 
 

@@ -176,10 +176,9 @@ class Verdict(ByContent):
 
         data = read_dataset(path)
         if data.attrs.get("kind") != KIND:
-            message = (
+            raise FileError(
                 f"{path} holds no verdict (got the kind {data.attrs.get('kind')!r}). stylobate.load reads any result"
             )
-            raise FileError(message)
         return cls(data)
 
 
@@ -238,6 +237,5 @@ def require_variations(count: int) -> int:
     """
     checked = require_whole("variations", count, least=0, most=MOST_RUNS)
     if checked == 1:
-        message = "variations: must be 0 or at least 2 (got 1). Pass a few hundred, or 0 for none."
-        raise ParameterError(message)
+        raise ParameterError("variations: must be 0 or at least 2 (got 1). Pass a few hundred, or 0 for none.")
     return checked

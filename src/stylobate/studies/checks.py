@@ -22,12 +22,12 @@ SYSTEM_STARTS = (*STARTS, "start_phase")
 def require_starts(where: str, over: Mapping[str, object]) -> None:
     """Raise ParameterError unless `over` names only initial conditions, which do not change column and base motion."""
     if not isinstance(over, Mapping) or not over:
-        message = f'{where} must name starts, such as {where}={{"tilt_x": …, "tilt_rate_x": …}}; got {over!r}'
-        raise ParameterError(message)
+        raise ParameterError(
+            f'{where} must name starts, such as {where}={{"tilt_x": …, "tilt_rate_x": …}}; got {over!r}'
+        )
     for name in over:
         if name not in SYSTEM_STARTS:
-            message = f"{where} must name starts of one system, {', '.join(SYSTEM_STARTS)}; got {name!r}"
-            raise ParameterError(message)
+            raise ParameterError(f"{where} must name starts of one system, {', '.join(SYSTEM_STARTS)}; got {name!r}")
 
 
 def require_values(where: str, over: Mapping[str, npt.ArrayLike], own: Own = None) -> None:
@@ -45,12 +45,12 @@ def one_parameter(model: Model, along: Mapping[str, npt.ArrayLike], over: Mappin
         If there are more names, no values, or the name is also in `over` or cannot vary.
     """
     if not isinstance(along, Mapping) or len(along) != 1:
-        message = f'along must name one parameter with its values, such as {{"acceleration": […]}}; got {along!r}'
-        raise ParameterError(message)
+        raise ParameterError(
+            f'along must name one parameter with its values, such as {{"acceleration": […]}}; got {along!r}'
+        )
     ((name, given),) = along.items()
     if name in over:
-        message = f"along and over must differ, got {name!r} in both"
-        raise ParameterError(message)
+        raise ParameterError(f"along and over must differ, got {name!r} in both")
     if name not in SYSTEM_STARTS:
         check_quantities("along", model, [name])
     values = checked_values("along", name, given)
@@ -78,16 +78,16 @@ _LENGTHS, _OF_THE_BODY = (
 
 def _require_some(where: str, name: str, values: Floats) -> None:
     if not values.size:
-        message = f"{where}[{name!r}] must have at least one value, got none"
-        raise ParameterError(message)
+        raise ParameterError(f"{where}[{name!r}] must have at least one value, got none")
 
 
 def require_no_tilt_limit(options: Mapping[str, object]) -> None:
     """Raise ParameterError if `options` name a tilt limit: for a run stopped there, overturning is undecided."""
     if options.get("tilt_limit") is not None:
         given = options["tilt_limit"]
-        message = f"tilt_limit must be left out: a run stopped at it is not known to overturn or not; got {given!r} rad"
-        raise ParameterError(message)
+        raise ParameterError(
+            f"tilt_limit must be left out: a run stopped at it is not known to overturn or not; got {given!r} rad"
+        )
 
 
 def remark_on_knife_edge(where: str, model: Model, over: Mapping[str, npt.ArrayLike]) -> None:
@@ -114,8 +114,7 @@ def require_frequencies(ends: Sequence[float]) -> tuple[float, float]:
     """Return the lowest and highest frequency [rad/s]; raise ParameterError unless positive and increasing."""
     low, high = _two("angular_frequency", as_numbers("angular_frequency", ends, "rad/s"), "rad/s")
     if not 0.0 < low < high < math.inf:
-        message = f"angular_frequency must rise from above zero, got {low!r} to {high!r} rad/s"
-        raise ParameterError(message)
+        raise ParameterError(f"angular_frequency must rise from above zero, got {low!r} to {high!r} rad/s")
     require_positive("angular_frequency", low, "rad/s")
     require_positive("angular_frequency", high, "rad/s")
     return low, high
@@ -125,8 +124,7 @@ def require_bounds(ends: Sequence[float], parameter: str) -> tuple[float, float]
     """Return the lowest and highest value of a parameter; raise ParameterError unless they are valid and increasing."""
     low, high = _two("bounds", as_numbers("bounds", ends, quantity_of(parameter).unit), parameter)
     if not -math.inf < low < high < math.inf:
-        message = f"bounds must rise from one number to another, got {low!r} to {high!r}"
-        raise ParameterError(message)
+        raise ParameterError(f"bounds must rise from one number to another, got {low!r} to {high!r}")
     require_size(f"bounds of {parameter}", low)
     require_size(f"bounds of {parameter}", high)
     _require_inside("bounds", (low, high), parameter)
@@ -137,8 +135,7 @@ def require_parameters(values: Sequence[float], parameter: str) -> npt.NDArray[n
     """Return the values of a parameter as an array; raise ParameterError unless the parameter can have these values."""
     found = _numbers("values", values, quantity_of(parameter).unit)
     if found.size == 0:
-        message = f"values must hold a value of {parameter} at least, got {values!r}"
-        raise ParameterError(message)
+        raise ParameterError(f"values must hold a value of {parameter} at least, got {values!r}")
     _require_inside("values", found, parameter)
     return found
 
@@ -147,18 +144,16 @@ def _require_inside(name: str, values: Sequence[float] | npt.NDArray[np.float64]
     known = quantity_of(parameter)
     outside = [float(value) for value in values if not known.accepts(value)]
     if outside:
-        message = f"{name}: values of {parameter} must {known.demand} (got {outside[0]!r}). Leave them out."
-        raise ParameterError(message)
+        raise ParameterError(f"{name}: values of {parameter} must {known.demand} (got {outside[0]!r}). Leave them out.")
 
 
 def require_rising_frequencies(frequencies: Sequence[float]) -> npt.NDArray[np.float64]:
     """Return frequencies [rad/s] as an array; raise ParameterError unless two or more, positive and increasing."""
     found = _numbers("angular_frequency", frequencies, "rad/s")
     if found.size < _LEAST or found[0] <= 0.0 or np.any(np.diff(found) <= 0.0):
-        message = (
+        raise ParameterError(
             f"angular_frequency must be two or more frequencies that rise from above zero [rad/s], got {frequencies!r}"
         )
-        raise ParameterError(message)
     return found
 
 
@@ -172,8 +167,7 @@ def _numbers(name: str, values: Sequence[float], unit: str) -> npt.NDArray[np.fl
     except (TypeError, ValueError):
         found = np.full(1, np.nan)
     if found.ndim != 1 or not np.all(np.isfinite(found)):
-        message = f"{name} must be a list of finite numbers, got {values!r}"
-        raise ParameterError(message)
+        raise ParameterError(f"{name} must be a list of finite numbers, got {values!r}")
     return found
 
 
@@ -182,6 +176,5 @@ def _two(name: str, ends: Sequence[float], of: str) -> tuple[float, float]:
         low, high = (float(end) for end in ends)
     except (TypeError, ValueError):
         shown = f"{len(ends)} values" if isinstance(ends, np.ndarray) else repr(ends)
-        message = f"{name} must be two numbers, the lowest and the highest ({of}), got {shown}"
-        raise ParameterError(message) from None
+        raise ParameterError(f"{name} must be two numbers, the lowest and the highest ({of}), got {shown}") from None
     return low, high

@@ -364,8 +364,9 @@ def model_hierarchy(
     strange = [name for name in arguments if name not in (*_OF_SIMULATE, *shared)]
     if strange:
         known = ", ".join((*shared, *_OF_SIMULATE))
-        message = f"{strange[0]} is no argument of model_hierarchy. Besides those of its signature use {known}."
-        raise ParameterError(message)
+        raise ParameterError(
+            f"{strange[0]} is no argument of model_hierarchy. Besides those of its signature use {known}."
+        )
     moved = BASE_AT_REST if motion is None else motion
     given: dict[str, Any] = {**arguments}
     dissipation = {name: given.pop(name) for name in shared if name in given}
@@ -373,8 +374,7 @@ def model_hierarchy(
     duration = require_positive("duration", duration, "s")
     models = [model.name for model in case.models()]
     if reference not in models:
-        message = f"reference must be a model of this case, {', '.join(models)}; got {reference!r}"
-        raise ParameterError(message)
+        raise ParameterError(f"reference must be a model of this case, {', '.join(models)}; got {reference!r}")
     time = np.linspace(0.0, duration, _TIMES if samples is None else require_whole("samples", samples, least=2))
 
     def compared(one: Case) -> xr.Dataset:
@@ -419,8 +419,7 @@ def _case(
 ) -> Case:
     require_column(column)
     if not isinstance(motion, BaseMotion):
-        message = f"motion must be a base motion such as Harmonic.circular(...) or None, got {motion!r}"
-        raise ParameterError(message)
+        raise ParameterError(f"motion must be a base motion such as Harmonic.circular(...) or None, got {motion!r}")
     x, y = require_vector("tilt", tilt, 2, "rad")
     vx, vy = require_vector("tilt_rate", tilt_rate, 2, "rad/s")
     return Case(
@@ -436,8 +435,7 @@ def _case(
 def _slendernesses(given: npt.ArrayLike) -> Floats:
     values = np.atleast_1d(np.asarray(as_numbers("slenderness", given), dtype=float))
     if values.ndim != 1 or not values.size or not np.all(np.isfinite(values) & (values > 0.0)):
-        message = f"slenderness must be a list of positive numbers, got {given!r}"
-        raise ParameterError(message)
+        raise ParameterError(f"slenderness must be a list of positive numbers, got {given!r}")
     return values
 
 
@@ -448,16 +446,14 @@ def _scaled(case: Case, slendernesses: Floats) -> list[Case]:
         try:
             one = case.scaled_to(float(c))
         except ParameterError as error:
-            message = f"the column cannot be scaled to slenderness {c:.6g}: {error}"
-            raise ParameterError(message) from None
+            raise ParameterError(f"the column cannot be scaled to slenderness {c:.6g}: {error}") from None
         found.append(one)
         if math.hypot(*one.tilt) >= 0.5 * math.pi:
-            message = (
+            raise ParameterError(
                 f"tilt {case.tilt!r} rad at slenderness {case.column.slenderness:.6g} becomes "
                 f"({one.tilt[0]:.6g}, {one.tilt[1]:.6g}) rad at slenderness {c:.6g}, and must be below π/2 in length. "
                 "Scale to a smaller slenderness, or tilt less"
             )
-            raise ParameterError(message)
     return found
 
 

@@ -57,11 +57,9 @@ class RollingFrame:
             If the motion is not a horizontal harmonic motion, or the sense neither +1 nor −1.
         """
         if not isinstance(motion, Harmonic) or motion.amplitude[2] != 0.0:
-            message = f"motion must be a horizontal Harmonic motion, got {motion!r}"
-            raise ParameterError(message)
+            raise ParameterError(f"motion must be a horizontal Harmonic motion, got {motion!r}")
         if sense not in (None, 1, -1):
-            message = f"sense must be +1 (anticlockwise) or -1 (clockwise), got {sense!r}"
-            raise ParameterError(message)
+            raise ParameterError(f"sense must be +1 (anticlockwise) or -1 (clockwise), got {sense!r}")
         (a1, a2, _), (phi1, phi2, _) = motion.amplitude, motion.phase
         p, q = (complex(part) for part in circular_components(a1, a2, phi2 - phi1))
         turning = (1 if abs(p) >= abs(q) else -1) if sense is None else sense
@@ -91,8 +89,7 @@ class RollingFrame:
         (x, y), (vx, vy) = tilt, tilt_rate
         size = math.hypot(x, y)
         if size == 0.0:
-            message = f"tilt must differ from zero in the frame of rolling, got {tilt!r} rad"
-            raise ParameterError(message)
+            raise ParameterError(f"tilt must differ from zero in the frame of rolling, got {tilt!r} rad")
         psi = self.sense * (math.atan2(y, x) - self.offset)
         mu = (x * vx + y * vy) / size * self.time_scale
         omega = self.sense * (x * vy - y * vx) / size**2 * self.time_scale
@@ -115,16 +112,17 @@ def require_closed_form(model: Model, motion: BaseMotion, names: Sequence[str]) 
     harmonic = as_harmonic(motion)
     remedy = "Leave out end_converged, or pass `orbits` to stylobate.studies.maps.basins."
     if form is None or form.requires is not None:
-        message = f"end_converged: the model must state a closed form of steady rolling (got {model!r}). {remedy}"
-        raise UnsupportedError(message)
+        raise UnsupportedError(
+            f"end_converged: the model must state a closed form of steady rolling (got {model!r}). {remedy}"
+        )
     if harmonic is None or harmonic.ramp or not _is_circular(harmonic):
-        message = f"end_converged: the base motion must be circular, without ramp (got {motion!r}). {remedy}"
-        raise UnsupportedError(message)
+        raise UnsupportedError(
+            f"end_converged: the base motion must be circular, without ramp (got {motion!r}). {remedy}"
+        )
     _, of_motion = split(model, dict.fromkeys(names, 0.0))
     unknown = [name for name in of_motion if name not in _OF_CIRCLES]
     if unknown:
-        message = f"end_converged: {unknown[0]} must not vary (got it among {', '.join(names)}). {remedy}"
-        raise UnsupportedError(message)
+        raise UnsupportedError(f"end_converged: {unknown[0]} must not vary (got it among {', '.join(names)}). {remedy}")
 
 
 def known_rolling(model: Model, motion: BaseMotion, values: Mapping[str, Floats], count: int) -> KnownOrbit:
@@ -246,15 +244,14 @@ def known_orbit_of(orbit: PeriodicOrbit, model: Model, motion: BaseMotion) -> Kn
         If the orbit has another model or base motion, or is unstable, longer than one period or planar.
     """
     if not isinstance(orbit, PeriodicOrbit):
-        message = f"orbits must be periodic orbits, as of stylobate.orbits.periodic_orbit (got {orbit!r})"
-        raise ParameterError(message)
+        raise ParameterError(f"orbits must be periodic orbits, as of stylobate.orbits.periodic_orbit (got {orbit!r})")
     if orbit.model != model or _without_phase(orbit.motion) != _without_phase(motion):
-        message = f"orbits: each must be one of the model and base motion of the study (got {orbit!r})"
-        raise ParameterError(message)
+        raise ParameterError(f"orbits: each must be one of the model and base motion of the study (got {orbit!r})")
     modulus = float(np.abs(orbit.multipliers[0]))
     if orbit.planar or orbit.periods != 1 or not 0.0 < modulus < 1.0:
-        message = f"orbits: each must be stable, of one period and not planar (got {orbit!r}). Leave it out."
-        raise ParameterError(message)
+        raise ParameterError(
+            f"orbits: each must be stable, of one period and not planar (got {orbit!r}). Leave it out."
+        )
     start_phase = getattr(as_harmonic(orbit.motion), "start_phase", 0.0)
     until = -start_phase / (2.0 * math.pi) % 1.0
     state = orbit.system.carry(orbit.state, 0.0, until).end if until > 0.0 else orbit.state

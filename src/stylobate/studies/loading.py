@@ -36,8 +36,7 @@ def load(path: str | Path) -> Result:
     try:
         path = Path(path)
     except TypeError:
-        message = f"path: no name of a file (got {path!r}). Pass the path of a saved result."
-        raise ParameterError(message) from None
+        raise ParameterError(f"path: no name of a file (got {path!r}). Pass the path of a saved result.") from None
     if path.is_dir():
         return open_sweep(path)
     data = results.read_dataset(path)
@@ -51,6 +50,7 @@ def load(path: str | Path) -> Result:
     if data.attrs.get("kind") == KIND:
         return results.Verdict(data)
     if "kind" not in data.attrs:
-        message = f"{path}: not saved by stylobate (got the variables {list(data.variables)}). Read it with xarray."
-        raise FileError(message)
+        raise FileError(
+            f"{path}: not saved by stylobate (got the variables {list(data.variables)}). Read it with xarray."
+        )
     return data

@@ -56,8 +56,7 @@ def require_confidence(confidence: float) -> float:
     """Return `confidence`, or raise ParameterError unless it lies between 0 and 1."""
     value = require_positive("confidence", confidence)
     if value >= 1.0:
-        message = f"confidence must lie between 0 and 1, got {confidence!r}; 0.95 is usual"
-        raise ParameterError(message)
+        raise ParameterError(f"confidence must lie between 0 and 1, got {confidence!r}; 0.95 is usual")
     return value
 
 

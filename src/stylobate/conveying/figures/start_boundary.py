@@ -54,11 +54,10 @@ def plot_start_boundary(found: xr.Dataset) -> Figure:
     found = found.expand_dims(chosen)
     cases = found.stack(case=("vertical_ratio", "incline"))
     if cases.sizes["case"] > _MOST or cases.sizes["friction_coefficient"] > _MOST:
-        message = (
+        raise ParameterError(
             f"a figure of the start of motion has up to {_MOST} frictions, and {_MOST} panels for ratios and inclines; "
             f"got {cases.sizes['friction_coefficient']} and {cases.sizes['case']}: choose some by found.sel(...)"
         )
-        raise ParameterError(message)
     figure = new_figure(_HEIGHT)
     panels = figure.subplots(1, cases.sizes["case"], sharex=True, sharey=True, squeeze=False)[0]
     for place, axes in enumerate(panels):

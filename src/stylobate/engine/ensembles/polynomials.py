@@ -77,8 +77,9 @@ def tabulated(motion: BaseMotion, end: float) -> Table:
     longest = math.pi / frequency if frequency > 0.0 else math.inf
     edges = [0.0, *(time for time in motion.breaks if 0.0 < time < end)]
     if len(edges) + end / longest > _MOST_PIECES:
-        message = f"motion is too long to tabulate: {end!r} s in pieces of {longest!r} s; shorten the duration"
-        raise UnsupportedError(message)
+        raise UnsupportedError(
+            f"motion is too long to tabulate: {end!r} s in pieces of {longest!r} s; shorten the duration"
+        )
     size = max(motion.peak_horizontal(0.0), *map(abs, motion.vertical_range(0.0)))
     pieces: list[tuple[float, float, Floats]] = []
     after = next((time for time in motion.breaks if time >= end), math.inf)
@@ -136,8 +137,9 @@ def _fitted(
             coefficients[axis, : powers.size] = powers
         return [(start, end, coefficients)]
     if halvings == 0:
-        message = f"motion must be smooth between its breaks, but is not near t = {middle!r} s; list the time in breaks"
-        raise UnsupportedError(message)
+        raise UnsupportedError(
+            f"motion must be smooth between its breaks, but is not near t = {middle!r} s; list the time in breaks"
+        )
     first = _fitted(motion, start, middle, size, halvings - 1)
     return first + _fitted(motion, middle, end, size, halvings - 1)
 

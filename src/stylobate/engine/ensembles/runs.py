@@ -145,8 +145,9 @@ def _numbers(name: str, value: ArrayLike) -> "xr.DataArray":
         return _as_float(name, value)
     array = _array(name, value)
     if array.ndim > 1:
-        message = f"{name} must be a number, a list or a DataArray with named dimensions, got shape {array.shape}"
-        raise ParameterError(message)
+        raise ParameterError(
+            f"{name} must be a number, a list or a DataArray with named dimensions, got shape {array.shape}"
+        )
     return xr.DataArray(array, dims=(RUN,) * array.ndim)
 
 
@@ -156,13 +157,11 @@ def _vectors(name: str, value: ArrayLike, axis: str = AXIS) -> "xr.DataArray":
     size = _COMPONENTS[axis]
     if isinstance(value, xr.DataArray):
         if value.sizes.get(axis) != size:
-            message = f'{name} must have a dimension "{axis}" of length {size}, got {dict(value.sizes)}'
-            raise ParameterError(message)
+            raise ParameterError(f'{name} must have a dimension "{axis}" of length {size}, got {dict(value.sizes)}')
         return _as_float(name, value).drop_vars(axis, errors="ignore")
     array = _array(name, value)
     if array.ndim not in (1, 2) or array.shape[-1] != size:
-        message = f"{name} must have shape ({size},) or (n, {size}), got {array.shape}"
-        raise ParameterError(message)
+        raise ParameterError(f"{name} must have shape ({size},) or (n, {size}), got {array.shape}")
     return xr.DataArray(array, dims=(*((RUN,) * (array.ndim - 1)), axis))
 
 
@@ -170,8 +169,7 @@ def _array(name: str, value: Any) -> Floats:
     try:
         return np.asarray(value, dtype=float)
     except (TypeError, ValueError):
-        message = f"{name} must be a number or an array of numbers, got {value!r}"
-        raise ParameterError(message) from None
+        raise ParameterError(f"{name} must be a number or an array of numbers, got {value!r}") from None
 
 
 def _as_float(name: str, value: "xr.DataArray") -> "xr.DataArray":
@@ -184,8 +182,7 @@ def _common(given: Mapping[str, "xr.DataArray"]) -> tuple[tuple[str, ...], tuple
         for dim in set(array.dims) & set(array.coords):
             other, index = labels.setdefault(str(dim), (name, array[dim]))
             if array.sizes[dim] == index.size and not np.array_equal(array[dim].to_numpy(), index.to_numpy()):
-                message = f"{name} must have the same labels along {dim} as {other}; align them first"
-                raise ParameterError(message)
+                raise ParameterError(f"{name} must have the same labels along {dim} as {other}; align them first")
     sizes: dict[str, int] = {}
     first: dict[str, str] = {}
     for name, array in given.items():
@@ -193,8 +190,9 @@ def _common(given: Mapping[str, "xr.DataArray"]) -> tuple[tuple[str, ...], tuple
             if dim in _COMPONENTS:
                 continue
             if sizes.setdefault(str(dim), size) != size:
-                message = f"{name} must have {sizes[str(dim)]} values along {dim} as {first[str(dim)]}, got {size}"
-                raise ParameterError(message)
+                raise ParameterError(
+                    f"{name} must have {sizes[str(dim)]} values along {dim} as {first[str(dim)]}, got {size}"
+                )
             first.setdefault(str(dim), name)
     return tuple(sizes), tuple(sizes.values())
 
@@ -215,13 +213,11 @@ def _check(flat: Mapping[str, Floats]) -> None:
         if broken.any():
             run = int(np.flatnonzero(broken.reshape(len(array), -1).any(axis=1))[0])
             where = f" in run {run}" if len(array) > 1 else ""
-            message = f"{name} must be finite, got {float(array[broken][0])!r}{where}"
-            raise ParameterError(message)
+            raise ParameterError(f"{name} must be finite, got {float(array[broken][0])!r}{where}")
         require_size(name, float(np.abs(array).max(initial=0.0)), "kg" if name in _MASS_NAMES else "")
     require_below_level(flat["tilt"])
     if np.any(flat["duration"] <= 0.0):
-        message = f"duration must be positive, got {float(flat['duration'].min())!r} s"
-        raise ParameterError(message)
+        raise ParameterError(f"duration must be positive, got {float(flat['duration'].min())!r} s")
 
 
 TIMES_OF_CONTACTS = tuple(column for column in Change if column.name.startswith("TIME_"))

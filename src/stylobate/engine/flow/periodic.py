@@ -36,8 +36,7 @@ def flow_of(model: type[Model], states: int, numbers: int, *, planar: bool) -> C
     """
     rates = model.planar_rates if planar else model.rates
     if rates is None:
-        message = f"model {model.name} has no equations of planar motion"
-        raise UnsupportedError(message)
+        raise UnsupportedError(f"model {model.name} has no equations of planar motion")
     loses = planar and model.impact_map is not None
     needed = ["impact_map", "from_plane", "tilt_of"] if loses else [] if planar else ["tilt_of"]
     functions: dict[str, Callable[..., Any]] = {"rates": rates, **{name: getattr(model, name) for name in needed}}
@@ -333,13 +332,11 @@ def require_periodic(motion: BaseMotion) -> float:
     """
     period = motion.period
     if period is None:
-        message = f"periodic orbits need a base motion with a period, got {motion!r}"
-        raise UnsupportedError(message)
+        raise UnsupportedError(f"periodic orbits need a base motion with a period, got {motion!r}")
     if motion.breaks:
-        message = (
+        raise UnsupportedError(
             f"periodic orbits need a base motion that is periodic from t = 0, without ramp or delay; got {motion!r}"
         )
-        raise UnsupportedError(message)
     return period
 
 
@@ -377,11 +374,10 @@ def _sampled_rows(motion: BaseMotion, period: float) -> list[tuple[float, Floats
     series = np.fft.rfft(motion.acceleration(time), axis=0) / _SAMPLES
     size = np.abs(series).max(axis=1)
     if size[_SAMPLES // 4 :].max() > _LEFT_OUT * size.max():
-        message = (
+        raise UnsupportedError(
             "periodic orbits need a smooth base motion: the Fourier series of this one is not below 1e-12 of its "
             f"largest term after {_SAMPLES // 4}; got {motion!r}"
         )
-        raise UnsupportedError(message)
     chosen = np.nonzero(size > 1e-16 * size.max())[0]
     chosen = chosen[chosen < _SAMPLES // 4]
     factor = np.where(chosen == 0, 1.0, 2.0)[:, np.newaxis]

@@ -43,8 +43,9 @@ class Series:
             if expression.name in moving or any(self._moves(operand) for operand in expression.operands):
                 self._moving.add(id(expression))
             if self._moves(expression) and expression.operation not in _KNOWN:
-                message = f"no recurrence is implemented for the Taylor coefficients of {expression.operation}"
-                raise UnsupportedError(message)
+                raise UnsupportedError(
+                    f"no recurrence is implemented for the Taylor coefficients of {expression.operation}"
+                )
             self._names[id(expression)] = expression.name or f"v{len(self._names)}"
 
     def lines(self, k: int) -> list[str]:
@@ -246,11 +247,10 @@ def series_integrals(model: type[Model], states: int, parameters: int, *, vertic
     try:
         return Expansion(model, states, parameters, vertical=vertical).integrals
     except UnsupportedError as error:
-        message = (
+        raise UnsupportedError(
             f"the equations of model {model.name} hold more than sums, products, quotients and square roots, for which "
             "Taylor series are written; use method='dop853'"
-        )
-        raise UnsupportedError(message) from error
+        ) from error
 
 
 def expand_source(model: type[Model], shape: Shape) -> str:
@@ -267,11 +267,10 @@ def expand_source(model: type[Model], shape: Shape) -> str:
     vertical = "az" in shape.forcing.components
     expansion = Expansion(model, shape.states, shape.parameters, vertical=vertical)
     if expansion.integrals != shape.series:
-        message = (
+        raise UnsupportedError(
             f"the equations of model {model.name} have another structure since values that they read have changed; "
             "start again, or use method='dop853'"
         )
-        raise UnsupportedError(message)
     states, orders = range(shape.states), range(SERIES_ORDER + 1)
     lines = [f"s{j}_0 = start[{j}]" for j in states]
     lines += [f"s{integral}_1 = s{j}_0" for j, integral in enumerate(shape.series) if integral != j]

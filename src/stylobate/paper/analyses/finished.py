@@ -54,13 +54,11 @@ class FinishedAnalyses:
             for earlier in self.folder.glob(f"{_slug(heading)}-*.nc"):
                 earlier.unlink()
         except OSError as error:
-            message = f"cannot write into {self.folder}: {error.strerror or error}"
-            raise FileError(message) from None
+            raise FileError(f"cannot write into {self.folder}: {error.strerror or error}") from None
         write_netcdf(tree, self._file(heading))
         kept = self.read(heading)
         if kept is None:
-            message = f"cannot read {self._file(heading)}, which has just been written. Check the disk"
-            raise FileError(message)
+            raise FileError(f"cannot read {self._file(heading)}, which has just been written. Check the disk")
         return kept
 
     def _file(self, heading: str) -> Path:

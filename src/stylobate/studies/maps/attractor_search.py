@@ -209,11 +209,10 @@ def with_strobes(sweep: Sweep, asked: int | None) -> Sweep:
         needed = 2 * _FOR_TWO_PERIODS if asked is None else chosen
         if held < needed:
             remedy = "follow them longer" if asked is None else "follow them longer or ask for fewer strobes"
-            message = (
+            raise ParameterError(
                 f"runs must last at least {needed} periods of the base motion to identify attractors, got {held} "
                 f"(duration {_shortest(sweep):g} s); {remedy}"
             )
-            raise ParameterError(message)
         chosen = chosen if held >= chosen else held // 2
     return replace(sweep, options={**sweep.options, "strobes": chosen})
 
@@ -347,10 +346,9 @@ def find_attractors(runs: xr.Dataset, scales: OrbitScales, rules: AttractorRules
         If the runs have no stroboscopic samples, or all moving runs are too short for them.
     """
     if "strobe_tilt" not in runs:
-        message = (
+        raise ParameterError(
             "runs must have stroboscopic samples, from which attractors are identified. Follow them with strobes=32"
         )
-        raise ParameterError(message)
     shape, flat = runs["outcome"].shape, _Flat.of(runs, scales)
     labels = np.full(flat.outcome.shape, UNSETTLED)
     labels[flat.outcome == NOT_COMPUTED] = NOT_COMPUTED
@@ -393,11 +391,10 @@ class _Flat:
         moving = np.isin(self.outcome, outcomes)
         if moving.any() and np.isnan(self.strobes[moving]).any(axis=(1, 2)).all():
             count = self.strobes.shape[1]
-            message = (
+            raise ParameterError(
                 f"runs must last as many periods of the base motion as they have strobes, {count}, got shorter ones; "
                 "follow them longer or with fewer strobes"
             )
-            raise ParameterError(message)
 
 
 def _periods_of_mean(runs: xr.Dataset) -> int:

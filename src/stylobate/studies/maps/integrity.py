@@ -56,15 +56,15 @@ class Metric:
         """
         axes = {name: _increasing(name, values) for name, values in over.items() if name in STARTS}
         if not axes:
-            message = f"over must name at least one of {', '.join(STARTS)}; got {', '.join(over) or 'nothing'}"
-            raise ParameterError(message)
+            raise ParameterError(
+                f"over must name at least one of {', '.join(STARTS)}; got {', '.join(over) or 'nothing'}"
+            )
         c = model.column.slenderness
         units = {name: c / model.time_scale if "rate" in name else c for name in axes}
         chosen = dict(reference or {})
         for name in chosen:
             if name not in axes:
-                message = f"reference must name starts of the grid, {', '.join(axes)}; got {name!r}"
-                raise ParameterError(message)
+                raise ParameterError(f"reference must name starts of the grid, {', '.join(axes)}; got {name!r}")
         return cls(axes, units, {name: _within(name, chosen.get(name, 0.0), axis) for name, axis in axes.items()})
 
     @property
@@ -145,16 +145,16 @@ def distance_to_overturning(outcome: xr.DataArray, metric: Metric) -> xr.Dataset
 def _increasing(name: str, values: npt.ArrayLike) -> Floats:
     axis = checked_values("over", name, values)
     if axis.size < 2 or not np.all(np.diff(axis) > 0.0):  # noqa: PLR2004
-        message = f"over[{name!r}] must be two or more increasing values, got {values!r}"
-        raise ParameterError(message)
+        raise ParameterError(f"over[{name!r}] must be two or more increasing values, got {values!r}")
     return axis
 
 
 def _within(name: str, value: float, axis: Floats) -> float:
     value = require_finite(f"reference[{name!r}]", value, quantity_of(name).unit)
     if not axis[0] <= value <= axis[-1]:
-        message = f"reference[{name!r}] must lie within the grid, {axis[0]:g} to {axis[-1]:g}; got {value!r}"
-        raise ParameterError(message)
+        raise ParameterError(
+            f"reference[{name!r}] must lie within the grid, {axis[0]:g} to {axis[-1]:g}; got {value!r}"
+        )
     return value
 
 
@@ -308,6 +308,7 @@ def _metric_attributes(metric: Metric) -> dict[str, float]:
 def _leaves_units(model: Model, name: str) -> str:
     own = {field.name for field in fields(model.column)} | {"slenderness", "size"}
     if name in own or name in SYSTEM_STARTS:
-        message = f"along must name a parameter of the model or the base motion, which leave the units; got {name!r}"
-        raise ParameterError(message)
+        raise ParameterError(
+            f"along must name a parameter of the model or the base motion, which leave the units; got {name!r}"
+        )
     return name

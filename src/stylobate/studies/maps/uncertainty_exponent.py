@@ -362,13 +362,11 @@ def _compared(states: npt.NDArray[np.integer]) -> tuple[npt.NDArray[np.bool_], n
 
 def _shifts(shifts: npt.ArrayLike | None, over: Mapping[str, Sequence[float]], shifted: str) -> Floats:
     if shifted not in over:
-        message = f"shifted must be one of {', '.join(over)}, got {shifted!r}"
-        raise ParameterError(message)
+        raise ParameterError(f"shifted must be one of {', '.join(over)}, got {shifted!r}")
     if shifts is None:
         low, high = checked_values("over", shifted, over[shifted])[[0, -1]]
         return np.asarray(_USUAL_SHIFTS * (high - low))
     epsilon = checked_values("shifts", shifted, shifts)
     if epsilon.size < 2 or not (epsilon[0] > 0.0 and np.all(np.diff(epsilon) > 0.0)):  # noqa: PLR2004
-        message = f"shifts must be at least two positive numbers, increasing; got {shifts!r}"
-        raise ParameterError(message)
+        raise ParameterError(f"shifts must be at least two positive numbers, increasing; got {shifts!r}")
     return epsilon

@@ -65,8 +65,7 @@ def after_bifurcation(
     values = as_numbers("values", values, quantity_of(bifurcation.point.family.name).unit)
     chosen = np.asarray(values, dtype=float)
     if chosen.ndim != 1 or chosen.size == 0 or not np.all(np.isfinite(chosen)):
-        message = f"values must be a list of numbers, got {values!r}"
-        raise ParameterError(message)
+        raise ParameterError(f"values must be a list of numbers, got {values!r}")
     count, size = require_whole("count", count, least=1), require_positive("size", size)
     orbit, name = bifurcation.orbit, bifurcation.point.family.name
     c, scale = orbit.model.column.slenderness, orbit.model.time_scale
@@ -106,8 +105,7 @@ def after_bifurcation(
         },
     )
     if stopped:
-        message = f"stopped after {len(counted)} of {plural(chosen.size, 'value')}, which `partial` has"
-        raise Interrupted(message, found)
+        raise Interrupted(f"stopped after {len(counted)} of {plural(chosen.size, 'value')}, which `partial` has", found)
     return found
 
 

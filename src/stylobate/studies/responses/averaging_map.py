@@ -116,8 +116,7 @@ def averaging_map(
         },
     )
     if stopped:
-        message = f"stopped after {done} of {plural(chosen.size, 'value')}, which `partial` has"
-        raise Interrupted(message, found)
+        raise Interrupted(f"stopped after {done} of {plural(chosen.size, 'value')}, which `partial` has", found)
     return found
 
 

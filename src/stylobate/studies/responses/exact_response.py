@@ -65,13 +65,11 @@ def first_orbit(
             reason = error
         except UnsupportedError as error:
             reason_given = _unknown(model, motion) if str(error).startswith("guess must be given") else str(error)
-            message = f"no orbit is known to begin with: {reason_given}"
-            raise UnsupportedError(message) from None
-    message = (
+            raise UnsupportedError(f"no orbit is known to begin with: {reason_given}") from None
+    raise NoOrbitError(
         f"no orbit was found between {low!r} and {high!r} rad/s: {_sentence(reason)}. Widen the range, or "
         "increase the acceleration"
     )
-    raise NoOrbitError(message)
 
 
 def _unknown(model: Model, motion: BaseMotion) -> str:
@@ -321,8 +319,7 @@ def exact_response(
             families.append(Followed(name, stop.partial))
         if not families:
             raise
-        message = "interrupted; `partial` has the branches so far"
-        raise Interrupted(message, result()) from None
+        raise Interrupted("interrupted; `partial` has the branches so far", result()) from None
     return result()
 
 
@@ -331,18 +328,17 @@ def _require_of(orbit: PeriodicOrbit, model: Model, motion: BaseMotion, bounds: 
     require_orbit(orbit)
     numbers, own = ((*one.parameters, one.column.slenderness, one.time_scale) for one in (model, orbit.model))
     if type(orbit.model) is not type(model) or not np.allclose(own, numbers, rtol=_SAME, atol=0.0):
-        message = f"orbit must be one of the model {model!r}, got one of {orbit.model!r}"
-        raise ParameterError(message)
+        raise ParameterError(f"orbit must be one of the model {model!r}, got one of {orbit.model!r}")
     frequency = present_value(orbit.model, orbit.motion, "angular_frequency")
     if not bounds[0] <= frequency <= bounds[1]:
-        message = f"angular_frequency must enclose that of the orbit, {frequency!r} rad/s, got {bounds!r}"
-        raise ParameterError(message)
+        raise ParameterError(f"angular_frequency must enclose that of the orbit, {frequency!r} rad/s, got {bounds!r}")
     _, at = with_parameters(model, motion, angular_frequency=frequency)
     times = np.arange(_PHASES) / _PHASES * float(orbit.motion.period or 1.0)
     wanted, given = (one.acceleration(times) for one in (at, orbit.motion))
     if np.abs(wanted - given).max() > _SAME * np.abs(wanted).max():
-        message = f"orbit must be an orbit under {motion!r} at any frequency, got one under {orbit.motion!r}"
-        raise ParameterError(message)
+        raise ParameterError(
+            f"orbit must be an orbit under {motion!r} at any frequency, got one under {orbit.motion!r}"
+        )
 
 
 def _joined(families: Sequence[Followed]) -> xr.Dataset:

@@ -141,8 +141,10 @@ def lyapunov_exponents(
         provenance=json.dumps(provenance_of_run(model, motion, **kept)),
     )
     if stopped:
-        message = f"stopped after {len(growths)} of {plural(periods, 'period')}; `partial` has the estimates from these"
-        raise Interrupted(message, found)
+        raise Interrupted(
+            f"stopped after {len(growths)} of {plural(periods, 'period')}; `partial` has the estimates from these",
+            found,
+        )
     return found
 
 
@@ -185,8 +187,7 @@ def _start(
         state = np.array([x * line[0] + y * line[1], vx * line[0] + vy * line[1]])
     number = system.order if count is None else require_whole("count", count, least=1)
     if number > system.order:
-        message = f"count must be at most {system.order}, the order of the equations, got {number}"
-        raise ParameterError(message)
+        raise ParameterError(f"count must be at most {system.order}, the order of the equations, got {number}")
     # Directions that are not eigenvectors of the equations.
     first = np.linalg.qr(np.vander(np.arange(1.0, system.order + 1.0), increasing=True))[0][:, :number]
     return _Frame(system, state, 0.0, first, np.zeros(number))

@@ -81,13 +81,11 @@ def poincare_section(
     skip = require_whole("skip", skip, least=0)
     periods = require_whole("periods", periods, least=1)
     if skip > periods:
-        message = f"skip must be at most periods ({periods}), got {skip}"
-        raise ParameterError(message)
+        raise ParameterError(f"skip must be at most periods ({periods}), got {skip}")
     if motion.period is None or motion.breaks:
-        message = (
+        raise UnsupportedError(
             f"poincare_section needs a base motion that is periodic from t = 0, without ramp or delay; got {motion!r}"
         )
-        raise UnsupportedError(message)
     points = periods - skip + 1
     # Samples at equal times, one per period, without those of the skipped periods. Stroboscopic samples have phase
     # zero of the base motion, which is t = 0 only for a start phase of zero.

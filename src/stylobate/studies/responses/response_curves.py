@@ -76,8 +76,7 @@ def response_curves(
         if size > _NO_PART * largest
     ]
     if not senses:
-        message = f"motion: its acceleration is negligible beside gravity (got {motion!r}). Increase it."
-        raise ParameterError(message)
+        raise ParameterError(f"motion: its acceleration is negligible beside gravity (got {motion!r}). Increase it.")
     dims = ("sense", "branch", "angular_frequency")
     stacked = {
         field: np.stack([[getattr(s.upper, field), getattr(s.lower, field)] for _, s, _ in senses])
@@ -128,23 +127,19 @@ def _frequencies(angular_frequency: npt.ArrayLike) -> npt.NDArray[np.float64]:
     angular_frequency = as_numbers("angular_frequency", angular_frequency, "rad/s")
     frequency = np.atleast_1d(np.asarray(angular_frequency, dtype=float))
     if frequency.ndim != 1 or not np.all(np.isfinite(frequency) & (frequency > 0.0)):
-        message = f"angular_frequency must be a list of positive numbers [rad/s], got {angular_frequency!r}"
-        raise ParameterError(message)
+        raise ParameterError(f"angular_frequency must be a list of positive numbers [rad/s], got {angular_frequency!r}")
     return frequency
 
 
 def _amplitudes(motion: BaseMotion, gravity: float) -> tuple[float, float, float]:
     harmonic = as_harmonic(motion)
     if harmonic is None:
-        message = f"motion must be a Harmonic motion, got {motion!r}"
-        raise ParameterError(message)
+        raise ParameterError(f"motion must be a Harmonic motion, got {motion!r}")
     a1, a2, a3 = harmonic.amplitude
     if a3 != 0.0:
-        message = f"motion must be horizontal for the closed form, got a vertical amplitude of {a3!r} m/s²"
-        raise ParameterError(message)
+        raise ParameterError(f"motion must be horizontal for the closed form, got a vertical amplitude of {a3!r} m/s²")
     if a1 == a2 == 0.0:
-        message = "motion must have a horizontal amplitude above zero, got 0 m/s²"
-        raise ParameterError(message)
+        raise ParameterError("motion must have a horizontal amplitude above zero, got 0 m/s²")
     return a1 / gravity, a2 / gravity, harmonic.phase[1] - harmonic.phase[0]
 
 
@@ -203,8 +198,9 @@ def averaged_motion(
     """
     form = closed_form_of(model)
     if form is None or form.law is not RollingLaw.SLENDER:
-        message = f"model: averaged_motion holds for Slender only (got {type(model).__name__}). Pass Slender(column)."
-        raise UnsupportedError(message)
+        raise UnsupportedError(
+            f"model: averaged_motion holds for Slender only (got {type(model).__name__}). Pass Slender(column)."
+        )
     frame = RollingFrame.of(model, motion, sense)
     x, y = require_vector("tilt", tilt, 2, "rad")
     vx, vy = require_vector("tilt_rate", tilt_rate, 2, "rad/s")
@@ -294,14 +290,14 @@ def steady_start(model: Model, motion: Harmonic, *, branch: str = "upper", sense
     <Outcome.ROLLING: 'rolling'>
     """
     if branch not in _BRANCHES:
-        message = f'branch must be "upper" or "lower", got {branch!r}'
-        raise ParameterError(message)
+        raise ParameterError(f'branch must be "upper" or "lower", got {branch!r}')
     form = _closed_form(model, branch)
     frame = RollingFrame.of(model, motion, sense)
     tilt, psi, spin = steady_rolling_of(form, model.column, frame.nu, frame.drive, branch)
     if not math.isfinite(tilt):
-        message = f"motion has no steady rolling on the {branch} branch at {motion.angular_frequency!r} rad/s"
-        raise ParameterError(message)
+        raise ParameterError(
+            f"motion has no steady rolling on the {branch} branch at {motion.angular_frequency!r} rad/s"
+        )
     vector, rate = frame.to_tilt(tilt, psi, 0.0, frame.nu)
     if model.spin_state is None:
         return {"tilt": vector, "tilt_rate": rate}
@@ -312,22 +308,22 @@ def _closed_form(model: Model, branch: str) -> ClosedForm:
     """Return the closed form of steady rolling of a model; raise an error if it does not apply."""
     form = rolling_form_of(model)
     if form is None:
-        message = (
+        raise UnsupportedError(
             "steady_start needs a closed form of steady rolling, as of slender, slender rolling, wobbling and rolling; "
             f"got model {getattr(model, 'name', model)!s}, whose class {type(model).__name__} states none"
         )
-        raise UnsupportedError(message)
     if form.requires is not None:
         name, value = form.requires
-        message = f"{name} must be {value!r} for a closed form of steady rolling, got {getattr(model, name)!r}"
-        raise UnsupportedError(message)
+        raise UnsupportedError(
+            f"{name} must be {value!r} for a closed form of steady rolling, got {getattr(model, name)!r}"
+        )
     if form.law is RollingLaw.FREE_TWIST and branch != "upper":
-        message = f'branch must be "upper" for slender rolling, whose closed form has no other; got {branch!r}'
-        raise ParameterError(message)
+        raise ParameterError(
+            f'branch must be "upper" for slender rolling, whose closed form has no other; got {branch!r}'
+        )
     if form.law in (RollingLaw.FREE_TWIST, RollingLaw.FULL) and form.eta > 0.0 and form.zeta == 0.0:
-        message = (
+        raise ParameterError(
             f"{name_by_symbol(type(model), 'ζ')} must be above zero if there is damping, got 0.0: without it the "
             "spin grows without bound, and there is no steady rolling"
         )
-        raise ParameterError(message)
     return form

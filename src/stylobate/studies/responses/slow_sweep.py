@@ -148,8 +148,7 @@ def slow_sweep(
         try:
             found = hold.followed(at[moving], periods[step][moving], state[0][moving], state[1][moving])
         except KeyboardInterrupt:
-            message = "interrupted; `partial` has the steps that were done"
-            raise Interrupted(message, result()) from None
+            raise Interrupted("interrupted; `partial` has the steps that were done", result()) from None
         for name, column in found.items():
             table[name][step, moving] = column
         state = table["end_tilt"][step], table["end_tilt_rate"][step]
@@ -227,18 +226,19 @@ def _together(
     """Return values, shape (n, m), and tilt and rate, shape (m, 2), of the sweeps."""
     steps = _array("values", values, quantity_of(parameter).unit)
     if steps.ndim not in (1, _PLANE) or not steps.size:
-        message = f"values must have the shape (n,), or (n, m) for m sweeps, and not be empty; got {steps.shape}"
-        raise ParameterError(message)
+        raise ParameterError(
+            f"values must have the shape (n,), or (n, m) for m sweeps, and not be empty; got {steps.shape}"
+        )
     steps = checked_values("values", parameter, steps.ravel()).reshape(len(steps), -1)
     vectors = [_array("tilt", tilt, "rad"), _array("tilt_rate", tilt_rate, "rad/s")]
     for name, vector in zip(("tilt", "tilt_rate"), vectors, strict=True):
         if vector.ndim not in (1, _PLANE) or vector.shape[-1] != _AXES:
-            message = f"{name} must have the shape (2,), or (m, 2) for m sweeps; got {vector.shape}"
-            raise ParameterError(message)
+            raise ParameterError(f"{name} must have the shape (2,), or (m, 2) for m sweeps; got {vector.shape}")
     counts = {steps.shape[1], *(np.atleast_2d(vector).shape[0] for vector in vectors)}
     if len(counts - {1}) > 1:
-        message = f"values, tilt and tilt_rate must be of one number of sweeps, or of one each; got {sorted(counts)}"
-        raise ParameterError(message)
+        raise ParameterError(
+            f"values, tilt and tilt_rate must be of one number of sweeps, or of one each; got {sorted(counts)}"
+        )
     many = max(counts)
     first, second = (np.broadcast_to(vector, (many, _AXES)).copy() for vector in vectors)
     return np.broadcast_to(steps, (len(steps), many)).copy(), (first, second)
@@ -249,8 +249,7 @@ def _array(name: str, values: npt.ArrayLike, unit: str) -> Floats:
     try:
         return np.asarray(values, dtype=float)
     except (TypeError, ValueError):
-        message = f"{name} must be an array of numbers, got {values!r}"
-        raise ParameterError(message) from None
+        raise ParameterError(f"{name} must be an array of numbers, got {values!r}") from None
 
 
 def _periods(hold: _Hold, steps: Floats) -> Floats:
@@ -259,10 +258,9 @@ def _periods(hold: _Hold, steps: Floats) -> Floats:
     for value in np.unique(steps):
         _, changed = with_parameters(hold.model, hold.motion, **{hold.parameter: float(value)})
         if changed.period is None or changed.breaks:
-            message = (
+            raise UnsupportedError(
                 f"slow_sweep needs a base motion that is periodic from t = 0, without ramp or delay; got {changed!r}"
             )
-            raise UnsupportedError(message)
         periods[steps == value] = changed.period
     return periods
 

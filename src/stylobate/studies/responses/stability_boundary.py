@@ -108,8 +108,7 @@ def stability_boundary(
     values = as_numbers("values", values, quantity_of(parameter).unit)
     chosen = np.linspace(low, high, 5) if values is None else np.asarray(values, dtype=float)
     if chosen.size == 0 or not np.all((chosen >= low) & (chosen <= high)):
-        message = f"values must lie between the bounds {(low, high)!r}, got {values!r}"
-        raise ParameterError(message)
+        raise ParameterError(f"values must lie between the bounds {(low, high)!r}, got {values!r}")
     curves: list[BifurcationCurve] = []
     looked_at: set[bool] = set()
     reason: Exception | None = None
@@ -141,8 +140,9 @@ def stability_boundary(
         except KeyboardInterrupt:
             if not curves:
                 raise
-            message = f"stopped after {done} of {plural(chosen.size, 'value')}; `partial` has the curves so far"
-            raise Interrupted(message, result()) from None
+            raise Interrupted(
+                f"stopped after {done} of {plural(chosen.size, 'value')}; `partial` has the curves so far", result()
+            ) from None
     if not looked_at and reason is not None:
         raise NoOrbitError(str(reason))
     return result()
@@ -195,11 +195,10 @@ def _require_damping(model: Model, parameter: str, least: float) -> None:
     if parameter == "damping":
         require_positive("bounds: damping", least)
     elif not model.comes_to_rest:
-        message = (
+        raise ParameterError(
             "damping must be above zero, got 0.0: without damping rolling is neutrally stable at best, and has no "
             "stability boundary"
         )
-        raise ParameterError(message)
 
 
 def _everywhere(stable: set[bool]) -> str:

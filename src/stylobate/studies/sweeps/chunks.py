@@ -436,8 +436,7 @@ def _checked(content: bytes) -> tuple[bytes, bytes]:
     """Return the data and the checksum of a chunk file, or raise ValueError if they do not match."""
     data, end = content[:-_CHECKSUM], content[-_CHECKSUM:]
     if _crc(data) != end:
-        message = "the checksum differs"
-        raise ValueError(message)
+        raise ValueError("the checksum differs")
     return data, end
 
 

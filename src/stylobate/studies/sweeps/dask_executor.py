@@ -86,11 +86,10 @@ def perform(version: str, source: str, work: bytes, task: bytes) -> Computed:
     """
     theirs, here = PackageIdentity(version, source), package_identity()
     if here != theirs:
-        message = (
+        raise StylobateError(
             f"a Dask worker has {here}, but this process has {theirs}. "
             "Install the same version for both, and start the workers again."
         )
-        raise StylobateError(message)
     return _opened(work)(pickle.loads(task), threads=1, progress=None)  # noqa: S301  as below
 
 
@@ -149,8 +148,7 @@ class Dask:
             object.__setattr__(self, "workers", require_whole("workers", self.workers, least=1, most=MOST_THREADS))
         given = [name for name in ("address", "workers", "client") if getattr(self, name) is not None]
         if len(given) > 1:
-            message = f"Dask takes one of address, workers and client, got {' and '.join(given)}"
-            raise ParameterError(message)
+            raise ParameterError(f"Dask takes one of address, workers and client, got {' and '.join(given)}")
 
     def results(
         self, work: "Work", tasks: Iterable[Task], progress: Report | None = None
@@ -172,8 +170,9 @@ class Dask:
             try:
                 yield from _flow(distributed, client, work, iter(tasks), self.wait)
             except (distributed.comm.CommClosedError, CancelledError) as error:
-                message = f"the Dask scheduler was lost ({error}). Continue a sweep with a store by resume=True"
-                raise StylobateError(message) from error
+                raise StylobateError(
+                    f"the Dask scheduler was lost ({error}). Continue a sweep with a store by resume=True"
+                ) from error
 
     def _client(self, distributed: "ModuleType", stack: ExitStack) -> Any:
         if self.client is not None:
@@ -183,8 +182,7 @@ class Dask:
         try:
             return stack.enter_context(distributed.Client(self.address, timeout=self.wait))
         except (OSError, ValueError) as error:
-            message = f"no Dask scheduler answers at {self.address}: {error}"
-            raise StylobateError(message) from error
+            raise StylobateError(f"no Dask scheduler answers at {self.address}: {error}") from error
 
 
 def _local_client(distributed: Any, workers: int | None, stack: ExitStack) -> Any:
@@ -260,30 +258,27 @@ def _finished(client: Any, finished: "SimpleQueue[Any]", wait: float | None) -> 
             seen = now
         elif wait is not None and now - seen > wait:
             address = client.scheduler.address
-            message = (
+            raise StylobateError(
                 f"the Dask scheduler at {address} has had no workers for {wait:g} s. Start some by "
                 f'"dask worker {address}", or wait longer by Dask(…, wait=3600); with a store, continue by resume=True.'
             )
-            raise StylobateError(message)
 
 
 def _result(distributed: "ModuleType", future: Any, task: Task) -> Computed:
     try:
         result: Computed = future.result()
     except distributed.KilledWorker as error:
-        message = (
+        raise StylobateError(
             f"{error.allowed_failures + 1} workers died on chunk {task.block.index} of {task.block.size} runs. "
             "Give them more memory, or reduce chunk_size"
-        )
-        raise StylobateError(message) from error
+        ) from error
     except (ImportError, AttributeError) as error:
         if SealedTask.__module__ not in str(error) and getattr(error, "name", None) != "stylobate":
             raise
-        message = (
+        raise StylobateError(
             f"a Dask worker lacks {package_identity()} ({error}). "
             "Install this version for the workers, and start them again."
-        )
-        raise StylobateError(message) from error
+        ) from error
     return result
 
 
@@ -291,8 +286,7 @@ def _distributed() -> "ModuleType":
     try:
         import distributed
     except ImportError:
-        message = 'Dask needs the package dask.distributed: pip install "stylobate[cluster]"'
-        raise UnsupportedError(message) from None
+        raise UnsupportedError('Dask needs the package dask.distributed: pip install "stylobate[cluster]"') from None
     return distributed
 
 
@@ -322,13 +316,13 @@ def executor_from(text: str) -> Threads | Dask:
         place, asks, wait = place.partition("?wait=")
         address = f"tcp://{place}" if place else None
         return Dask(address=address, wait=_seconds(wait)) if asks else Dask(address=address)
-    message = f'executor must be "threads", "dask://" or "dask://host:port", got {text!r}'
-    raise ParameterError(message)
+    raise ParameterError(f'executor must be "threads", "dask://" or "dask://host:port", got {text!r}')
 
 
 def _seconds(text: str) -> float:
     try:
         return float(text)
     except ValueError:
-        message = f"wait: not a number of seconds (got {text!r}). Write dask://host:port?wait=600."
-        raise ParameterError(message) from None
+        raise ParameterError(
+            f"wait: not a number of seconds (got {text!r}). Write dask://host:port?wait=600."
+        ) from None

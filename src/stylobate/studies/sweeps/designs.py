@@ -62,11 +62,9 @@ def checked_values(where: str, name: str, values: npt.ArrayLike, own: Own = None
     try:
         array = np.array(values, dtype=np.float64, ndmin=int(scalar))  # a copy: a sweep is immutable
     except (TypeError, ValueError):
-        message = f"{argument} must be a list of numbers, got {values!r}"
-        raise ParameterError(message) from None
+        raise ParameterError(f"{argument} must be a list of numbers, got {values!r}") from None
     if array.ndim != 1:
-        message = f"{argument} must be a list of numbers, got an array of shape {array.shape}"
-        raise ParameterError(message)
+        raise ParameterError(f"{argument} must be a list of numbers, got an array of shape {array.shape}")
     refused = ~quantity.accepts(array)
     if refused.any():
         number = require_finite(argument, float(array[refused][0]), quantity.unit)
@@ -251,8 +249,7 @@ class Points:
         (first, length), *others = [(name, values.size) for name, values in columns.items()]
         for name, size in others:
             if size != length:
-                message = f"at[{name!r}] must have as many values as at[{first!r}], {length}, got {size}"
-                raise ParameterError(message)
+                raise ParameterError(f"at[{name!r}] must have as many values as at[{first!r}], {length}, got {size}")
         return cls(columns)
 
     @property
@@ -303,14 +300,14 @@ def digest(values: Floats) -> dict[str, Any]:
 
 def _require_names(where: str, given: object) -> None:
     if not isinstance(given, Mapping) or not given:
-        message = f'{where} must name what varies, such as {where}={{"angular_frequency": …}}, got {given!r}'
-        raise ParameterError(message)
+        raise ParameterError(
+            f'{where} must name what varies, such as {where}={{"angular_frequency": …}}, got {given!r}'
+        )
 
 
 def _bounds(name: str, pair: Sequence[float], own: Own) -> tuple[float, float]:
     values = checked_values("over", name, pair, own)
     if values.size != 2 or not values[0] <= values[1]:  # noqa: PLR2004
-        message = f"over[{name!r}] must be a lower and an upper bound, got {pair!r}"
-        raise ParameterError(message)
+        raise ParameterError(f"over[{name!r}] must be a lower and an upper bound, got {pair!r}")
     low, high = (float(value) for value in values)
     return low, high

@@ -143,8 +143,7 @@ class _ComputeAndStore:
             return self._stored(task, threads, progress)
         except (OSError, FileError) as error:
             reason = getattr(error, "strerror", None) or error
-            message = f"cannot write {self.chunks.path}: {reason}. Continue it with resume=True"
-            raise FileError(message) from error
+            raise FileError(f"cannot write {self.chunks.path}: {reason}. Continue it with resume=True") from error
 
     def _stored(self, task: Task, threads: int | None, progress: Report | None) -> Computed:
         state = self.chunks.state(task.block.index)
@@ -228,14 +227,12 @@ def run_sweep(
     array([0, 4], dtype=int8)
     """
     if not isinstance(sweep, Sweep):
-        message = f"sweep must be a Sweep, such as Sweep.grid(...), got {sweep!r}"
-        raise ParameterError(message)
+        raise ParameterError(f"sweep must be a Sweep, such as Sweep.grid(...), got {sweep!r}")
     if executor is not None and not hasattr(executor, "results"):
-        message = (
+        raise ParameterError(
             f"executor must be Threads(...) or Dask(...), got {executor!r}. "
             'Make one from a text by executor_from("dask://host:port")'
         )
-        raise ParameterError(message)
     if chunk_size is not None:
         chunk_size = require_whole("chunk_size", chunk_size, least=1, most=MOST_RUNS)
     sink = _sink(sweep, _folder(store), chunk_size, resume=resume)
@@ -252,8 +249,7 @@ def _folder(store: str | Path | None) -> Path | None:
     if store is None:
         return None
     if not isinstance(store, (str, Path)) or not Path(store).name:
-        message = f'store must name the folder of a store, such as "map.zarr", or be None; got {store!r}'
-        raise ParameterError(message)
+        raise ParameterError(f'store must name the folder of a store, such as "map.zarr", or be None; got {store!r}')
     return Path(store)
 
 
@@ -262,8 +258,7 @@ def _sink(sweep: Sweep, path: Path | None, chunk_size: int | None, *, resume: bo
     blocks = Blocks.of(sweep.shape, chunk_size)
     if path is None:
         if resume:
-            message = "resume needs the store to continue, got store=None"
-            raise ParameterError(message)
+            raise ParameterError("resume needs the store to continue, got store=None")
         return InMemory(sweep, layout, blocks)
     if not (resume and path.exists()):
         try:
@@ -328,5 +323,4 @@ def labelled_sweep(
     except Interrupted:
         raise
     except KeyboardInterrupt:
-        message = "interrupted during the labelling; `partial` has all runs, without labels"
-        raise Interrupted(message, runs) from None
+        raise Interrupted("interrupted during the labelling; `partial` has all runs, without labels", runs) from None

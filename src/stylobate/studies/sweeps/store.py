@@ -112,8 +112,7 @@ def create_store(path: Path, sweep: Sweep, layout: Layout, blocks: Blocks) -> Ch
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        message = f"cannot write {path}: {error.strerror or error}"
-        raise FileError(message) from error
+        raise FileError(f"cannot write {path}: {error.strerror or error}") from error
     _require_room(path, bytes_on_disk(layout, sweep.design, blocks))
     try:
         with written_aside(path) as beside, _every_chunk_written():
@@ -128,8 +127,7 @@ def create_store(path: Path, sweep: Sweep, layout: Layout, blocks: Blocks) -> Ch
 
 def _require_new(path: Path) -> None:
     if path.exists():
-        message = f"{path} exists. Continue it with resume=True, or give another store"
-        raise FileError(message)
+        raise FileError(f"{path} exists. Continue it with resume=True, or give another store")
 
 
 def continue_store(path: Path, sweep: Sweep, layout: Layout, chunk_size: int | None) -> tuple[Chunks, frozenset[int]]:
@@ -146,14 +144,12 @@ def continue_store(path: Path, sweep: Sweep, layout: Layout, chunk_size: int | N
     found = differences(json.loads(attributes["provenance"]), json.loads(json.dumps(sweep.describe())))
     if found or attributes["variables"] != _described(layout.variables):
         found = found or ["its variables differ"]
-        message = (
+        raise FileError(
             f"{path} cannot be continued: {'; '.join(found)}. Give another store, or the sweep that began this one"
         )
-        raise FileError(message)
     blocks = Blocks(sweep.shape, tuple(attributes["chunks"]))
     if chunk_size is not None and Blocks.of(sweep.shape, chunk_size) != blocks:
-        message = f"{path} has chunks of {list(blocks.edges)} runs, not of {chunk_size}. Leave chunk_size out"
-        raise FileError(message)
+        raise FileError(f"{path} has chunks of {list(blocks.edges)} runs, not of {chunk_size}. Leave chunk_size out")
     chunks = Chunks(path, blocks, layout.variables)
     states = chunks.states()
     _compute_again(chunks, [index for index, state in states.items() if state is State.DAMAGED])
@@ -172,8 +168,7 @@ def _compute_again(chunks: Chunks, damaged: list[int]) -> None:
             if chunks.state(index) is State.DAMAGED:  # another process may have computed it in the meantime
                 chunks.forget(index)
     except OSError as error:
-        message = f"cannot write {chunks.path}: {error.strerror or error}. Begin another store"
-        raise FileError(message) from error
+        raise FileError(f"cannot write {chunks.path}: {error.strerror or error}. Begin another store") from error
 
 
 def open_sweep(path: str | Path, *, load: bool = False) -> xr.Dataset:
@@ -202,16 +197,14 @@ def open_sweep(path: str | Path, *, load: bool = False) -> xr.Dataset:
     chunks = Chunks(path, Blocks(tuple(attributes["shape"]), tuple(attributes["chunks"])), _variables(attributes))
     states = chunks.states()
     if damaged := sum(chunks.blocks[index].size for index, state in states.items() if state is State.DAMAGED):
-        message = f"{path} is damaged: {plural(damaged, 'run')} cannot be read. Continue it with resume=True"
-        raise FileError(message)
+        raise FileError(f"{path} is damaged: {plural(damaged, 'run')} cannot be read. Continue it with resume=True")
     runs_done = sum(chunks.blocks[index].size for index, state in states.items() if state is State.DONE)
     try:
         data: xr.Dataset = xr.open_zarr(
             path, chunks=None, consolidated=False, zarr_format=3, decode_cf=False, drop_variables=SEAL.name
         )
     except Exception as error:  # of any class, for example for another array that was added to the store
-        message = f"cannot read {path}: {' '.join(str(error).split())}. Begin another store"
-        raise FileError(message) from error
+        raise FileError(f"cannot read {path}: {' '.join(str(error).split())}. Begin another store") from error
     for variable in data.variables.values():
         variable.attrs.pop("_FillValue", None)
         if "flag_values" in variable.attrs:
@@ -299,17 +292,16 @@ def _read_attributes(path: Path) -> dict[str, Any]:
         attributes = dict(metadata["attributes"])
     except (OSError, ValueError, KeyError, TypeError, RecursionError) as error:
         reason = "it is no store of a sweep" if path.is_dir() else getattr(error, "strerror", None) or error
-        message = f"cannot read {path}: {reason}. Give another folder"
-        raise FileError(message) from error
+        raise FileError(f"cannot read {path}: {reason}. Give another folder") from error
     written = attributes.get("format")
     require_this_version(path, written, _FORMAT)
     if written != _FORMAT:
-        message = f"{path} is no store of a sweep: its format is {written!r}, not {_FORMAT!r}. Give another folder"
-        raise FileError(message)
+        raise FileError(
+            f"{path} is no store of a sweep: its format is {written!r}, not {_FORMAT!r}. Give another folder"
+        )
     seal = attributes.pop(_SEAL, None)
     if seal is None or seal != _digest(path, metadata):
-        message = f"{path} is damaged: its metadata or axes are not as they were written. Begin another store"
-        raise FileError(message)
+        raise FileError(f"{path} is damaged: its metadata or axes are not as they were written. Begin another store")
     return attributes
 
 
@@ -358,11 +350,10 @@ def _every_chunk_written() -> Iterator[None]:
 def _require_room(path: Path, needed: int) -> None:
     free = shutil.disk_usage(path.parent).free
     if needed > free:
-        message = (
+        raise FileError(
             f"the sweep needs up to {_size(needed)} at {path} and the disk has {_size(free)} free. "
             "Choose another disk, fewer runs, or fewer samples and strobes"
         )
-        raise FileError(message)
 
 
 def _size(count: int) -> str:

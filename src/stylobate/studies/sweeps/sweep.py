@@ -72,18 +72,17 @@ class Sweep:
 
     def __post_init__(self) -> None:
         if not isinstance(self.model, Model):
-            message = f"model must be a model such as Slender(column), got {self.model!r}"
-            raise ParameterError(message)
+            raise ParameterError(f"model must be a model such as Slender(column), got {self.model!r}")
         if not isinstance(self.motion, BaseMotion):
-            message = f"motion must be a base motion such as Harmonic.circular(...) or None, got {self.motion!r}"
-            raise ParameterError(message)
+            raise ParameterError(
+                f"motion must be a base motion such as Harmonic.circular(...) or None, got {self.motion!r}"
+            )
         check_quantities(self.design.argument, self.model, self.design.names, self.motion)
         self._check_duration()
         defaults = defaults_of(RunOptions)
         unknown = [name for name in self.options if name not in defaults]
         if unknown:
-            message = f"{unknown[0]} is no option of a sweep; the options are {', '.join(defaults)}"
-            raise ParameterError(message)
+            raise ParameterError(f"{unknown[0]} is no option of a sweep; the options are {', '.join(defaults)}")
         options = {**defaults, **self.options}
         for name, unit in (("tilt", "rad"), ("tilt_rate", "rad/s")):
             options[name] = require_vector(name, options[name], 2, unit)
@@ -217,13 +216,11 @@ class Sweep:
             given.append("duration among what varies")
         if len(given) != 1:
             got = " and ".join(given) or "none of them"
-            message = f"a sweep needs one of duration [s], periods, or a duration that varies; got {got}"
-            raise ParameterError(message)
+            raise ParameterError(f"a sweep needs one of duration [s], periods, or a duration that varies; got {got}")
         if self.duration is not None:
             object.__setattr__(self, "duration", require_positive("duration", self.duration, "s"))
         if self.periods is not None:
             object.__setattr__(self, "periods", require_positive("periods", self.periods))
             varied = "angular_frequency" in self.design.names and not is_pulse(self.motion)
             if not varied and self.motion.period is None:
-                message = f"periods needs a periodic base motion; give duration [s] for {self.motion!r}"
-                raise ParameterError(message)
+                raise ParameterError(f"periods needs a periodic base motion; give duration [s] for {self.motion!r}")
