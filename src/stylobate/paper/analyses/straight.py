@@ -14,7 +14,7 @@ from stylobate.paper.analyses.setting import DAMPING, SLENDERNESS, judged, paper
 from stylobate.results import ClaimStatus, Finding, Response, Section
 from stylobate.studies.responses.averaged_motion import averaged_motion
 from stylobate.studies.responses.initial_conditions import steady_start
-from stylobate.theory.high_frequency import high_frequency_rates
+from stylobate.theory.averaging import high_frequency_rates
 
 _C = SLENDERNESS
 AMPLITUDES = (0.04, 0.13)

@@ -7,10 +7,9 @@ from scipy.integrate import solve_ivp
 from stylobate.base_motions import Harmonic
 from stylobate.errors import UnsupportedError, require_positive, require_vector
 from stylobate.models import Slender
-from stylobate.models.closed_form import RollingLaw
-from stylobate.models.inheritance import closed_form_of
+from stylobate.models.model import RollingLaw, closed_form_of
 from stylobate.studies.responses.rolling_frame import RollingFrame
-from stylobate.theory.rotating_frame import rotating_frame_rates
+from stylobate.theory.averaging import rotating_frame_rates
 
 
 def averaged_motion(

@@ -12,7 +12,7 @@ from stylobate.engine.parameters import present_value
 from stylobate.errors import Interrupted, ParameterError, UnsupportedError, require_whole
 from stylobate.models import Model
 from stylobate.orbits import PeriodicOrbit, StepControl, continue_branch
-from stylobate.orbits.arguments import require_orbit, require_subject
+from stylobate.orbits.orbit import require_orbit, require_subject
 from stylobate.progress import Progress, at_value, shows_progress
 from stylobate.provenance import provenance_of_run
 from stylobate.studies.ranges import require_frequencies

@@ -6,9 +6,9 @@ from typing import TypedDict
 from stylobate.base_motions import Harmonic
 from stylobate.errors import ParameterError, UnsupportedError
 from stylobate.models import Model
-from stylobate.models.closed_form import ClosedForm, RollingLaw
 from stylobate.models.declared import name_by_symbol
-from stylobate.orbits.steady import rolling_form_of, steady_rolling_of
+from stylobate.models.model import ClosedForm, RollingLaw
+from stylobate.orbits.finding import rolling_form_of, steady_rolling_of
 from stylobate.studies.responses.rolling_frame import RollingFrame
 
 _BRANCHES = ("upper", "lower")

@@ -11,8 +11,8 @@ from stylobate import theory
 from stylobate.base_motions import BaseMotion, as_harmonic
 from stylobate.errors import ParameterError, UnsupportedError, as_numbers
 from stylobate.models import Model
-from stylobate.models.closed_form import RollingLaw
-from stylobate.orbits.steady import rolling_form_of
+from stylobate.models.model import RollingLaw
+from stylobate.orbits.finding import rolling_form_of
 from stylobate.provenance import provenance_of_run
 from stylobate.theory.averaging import circular_components
 
