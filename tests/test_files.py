@@ -14,12 +14,11 @@ import h5py
 import numpy as np
 import pytest
 import xarray as xr
-from stylobate.cli.saved import open_saved
 
 import stylobate as sb
 from stylobate import orbits
 from stylobate.cli.main import run as run_command
-from stylobate.cli.output import check_writable
+from stylobate.cli.output import check_writable, open_saved
 from stylobate.earthquakes import incremental_dynamic_analysis
 from stylobate.errors import FileError
 from stylobate.files import read_sealed, sealed, write_whole

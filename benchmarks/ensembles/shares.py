@@ -19,9 +19,9 @@ import numpy as np
 import xarray as xr
 
 from stylobate.compiler.programs import Bound, Functions, text_of
+from stylobate.compiler.sources import written_module
 from stylobate.compiler.unit import ArrayArgument
 from stylobate.compiler.values import Kind
-from stylobate.compiler.written import written_module
 from stylobate.engine.kernel.driver import loop
 from stylobate.engine.kernel.kernels import Kernel
 

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from stylobate.compiler import over_rows as module
-from stylobate.compiler.over_rows import over_rows
+from stylobate.compiler import compiled as module
+from stylobate.compiler.compiled import over_rows
 
 ROWS = np.random.default_rng(2).normal(size=(200, 2))
 

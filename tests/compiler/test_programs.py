@@ -6,7 +6,7 @@ import types
 import pytest
 
 from stylobate.compiler.programs import Bound, Unbound, Written
-from stylobate.compiler.refusal import CompileError
+from stylobate.compiler.sources import CompileError
 from stylobate.compiler.unit import ArrayArgument, Unit
 
 LAW = """

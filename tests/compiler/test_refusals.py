@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from stylobate.compiler.marks import lanes
-from stylobate.compiler.refusal import CompileError
+from stylobate.compiler.sources import CompileError
 
 from .calling import text_of
 

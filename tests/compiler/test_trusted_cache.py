@@ -8,7 +8,7 @@ import stat
 import filelock
 import pytest
 
-from stylobate.compiler.trusted_cache import TrustedCache
+from stylobate.compiler.kept import TrustedCache
 from stylobate.errors import FileError
 
 NAME, DATA = "kernel.code", b"machine code " * 40

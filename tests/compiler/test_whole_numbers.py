@@ -6,9 +6,9 @@ import math
 import numpy as np
 import pytest
 
-from stylobate.compiler import machine
+from stylobate.compiler import kept
 from stylobate.compiler.marks import lanes
-from stylobate.compiler.refusal import CompileError
+from stylobate.compiler.sources import CompileError
 from stylobate.compiler.unit import ArrayArgument, Unit
 
 X = np.array([0.7, -1.3, 2.0, 0.0, -0.0, 1e-300, 3.5, -2.5])
@@ -22,7 +22,7 @@ def compiled(function, width=8):
     """Compile a function of two rows of eight numbers as that of a model."""
     unit = Unit(lanes=width)
     unit.export(function, "exported", [ArrayArgument((8,))] * 2)
-    engine = machine.linked(machine.object_code(unit.module.text(machine.attributes())))
+    engine = kept.linked(kept.object_code(unit.module.text(kept.attributes())))
     call = ctypes.CFUNCTYPE(ctypes.c_int64, ctypes.c_void_p, ctypes.c_void_p)(engine.get_function_address("exported"))
     return lambda x, out: (call(x.ctypes.data, out.ctypes.data), engine)[0]
 

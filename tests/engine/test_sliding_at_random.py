@@ -6,7 +6,7 @@ import pytest
 import stylobate as sb
 from stylobate.models import finite_tilt
 from stylobate.models.sliding import Contact
-from stylobate.models.sliding.phases import State
+from stylobate.models.sliding.balance import State
 
 from .sliding_at_random import COLUMN, LASTS, MOTIONS, random_runs
 

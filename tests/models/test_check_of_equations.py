@@ -10,8 +10,8 @@ import pytest
 
 import stylobate as sb
 from stylobate.errors import ModelError
-from stylobate.models.closed_form import RollingLaw
-from stylobate.models.consistency import check_once, compiled
+from stylobate.models.consistency import check_once, equations
+from stylobate.models.model import RollingLaw
 
 COLUMN = sb.Column.dimensionless(0.1)
 STOUT = sb.Column.solid(radius=0.4, height=1.2, density=2700.0)
@@ -285,9 +285,9 @@ def test_compiled_code_of_other_equations_is_refused(monkeypatch):
         _, _, bx, by = slender_rates(x, y, vx, vy, ax, ay, az, c, eta, kappa)
         return vx, vy, bx, by * (1.0 + 1e-9)
 
-    program = compiled._program
+    program = equations._program
     changed = {Own.rates: wrong}
-    monkeypatch.setattr(compiled, "_program", lambda function, *rest: program(changed.get(function, function), *rest))
+    monkeypatch.setattr(equations, "_program", lambda function, *rest: program(changed.get(function, function), *rest))
     with pytest.raises(ModelError, match=r"^Own\.rates: compiled code gives other results than Python") as caught:
         check_once(Own(COLUMN, damping=0.1))
     assert caught.value.problems == problems_of(Own(COLUMN, damping=0.1))

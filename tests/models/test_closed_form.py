@@ -9,9 +9,8 @@ import pytest
 
 import stylobate as sb
 from stylobate.errors import UnsupportedError
-from stylobate.models.closed_form import RollingLaw
-from stylobate.models.inheritance import closed_form_of
-from stylobate.orbits.steady import rolling_form_of, steady_rolling_of
+from stylobate.models.model import RollingLaw, closed_form_of
+from stylobate.orbits.finding import rolling_form_of, steady_rolling_of
 
 COLUMN = sb.Column.dimensionless(slenderness=0.2)
 NU, A0, ETA, ZETA = 1.8, 0.13, 0.1, 0.3

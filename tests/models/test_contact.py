@@ -6,12 +6,10 @@ import numpy as np
 import pytest
 
 import stylobate as sb
-from stylobate.compiler import over_rows
+from stylobate.compiler import compiled
 from stylobate.models.contact import contact_loads, per_normal_force
-from stylobate.models.sliding.balance import balance
-from stylobate.models.sliding.forces_along import forces_along
-from stylobate.models.sliding.phases import State
-from stylobate.models.sliding.posture import forces
+from stylobate.models.sliding.balance import State, balance, forces_along
+from stylobate.models.sliding.equations import forces
 
 C, ETA, A0, NU = 0.1, 0.1, 0.065, 3.0
 COLUMN = sb.Column.dimensionless(C)
@@ -96,7 +94,7 @@ def test_loads_along_a_run_are_those_of_each_moment_and_are_compiled(name):
     np.testing.assert_array_equal(loads.friction, per_normal_force(friction, normal))
     np.testing.assert_array_equal(loads.pivoting, per_normal_force(moment, normal))
     arguments = len(states) + 3 + len(model.parameters)
-    assert over_rows._compiled(model.contact, arguments, 3, model.name)._code()
+    assert compiled._compiled(model.contact, arguments, 3, model.name)._code()
 
 
 def test_the_forces_of_a_column_that_slides_are_those_of_each_moment_and_are_compiled():
@@ -108,4 +106,4 @@ def test_the_forces_of_a_column_that_slides_are_those_of_each_moment_and_are_com
         for state, now in zip(states.T.tolist(), push.T.tolist(), strict=True)
     ]
     np.testing.assert_array_equal(forces_along(states, push, model.numbers), np.transpose(expected))
-    assert over_rows._compiled(balance, 26, 16, "sliding")._code()
+    assert compiled._compiled(balance, 26, 16, "sliding")._code()

@@ -8,7 +8,7 @@ from scipy.integrate import solve_ivp
 
 import stylobate as sb
 from stylobate import theory
-from stylobate.models.sliding.friction import even
+from stylobate.models.sliding.balance import even
 from stylobate.theory import BlockPhase, FirstMotion
 
 # c above μ: it never tips. m = g = ω0 = 1, h = κ.

@@ -8,8 +8,7 @@ import pytest
 import stylobate as sb
 from stylobate.models.finite_tilt import FADING
 from stylobate.models.sliding import Contact, State
-from stylobate.models.sliding.equations import JAM
-from stylobate.models.sliding.posture import forces
+from stylobate.models.sliding.equations import JAM, forces
 
 from .constrained_body import TURNING, VELOCITY
 from .sliding_body import SlidingBody

@@ -7,7 +7,7 @@ import pytest
 
 import stylobate as sb
 from stylobate.models.sliding.equations import STILL
-from stylobate.models.sliding.impacts import REST_SPEED
+from stylobate.models.sliding.rim_and_base import REST_SPEED
 
 from .sliding_events import follow
 from .sliding_starts import place_and_motion, place_and_motion_told, random_start

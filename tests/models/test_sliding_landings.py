@@ -7,7 +7,7 @@ import pytest
 
 import stylobate as sb
 from stylobate.models.sliding import Contact, State
-from stylobate.models.sliding.impacts import REST_SPEED
+from stylobate.models.sliding.rim_and_base import REST_SPEED
 
 from .constrained_body import PLACE, TURNING, VELOCITY
 from .sliding_body import SlidingBody

@@ -7,7 +7,7 @@ import pytest
 
 import stylobate as sb
 from stylobate import theory
-from stylobate.models.sliding.friction import sense_of
+from stylobate.models.sliding.balance import sense_of
 
 COLUMN = sb.Column.dimensionless(slenderness=0.15, inertia_ratio=0.72, axial_ratio=0.6)
 # No friction of either kind is ever all used by this.

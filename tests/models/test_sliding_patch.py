@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from stylobate.models.sliding.friction import TWISTING, per_normal
+from stylobate.models.sliding.balance import TWISTING, per_normal
 
 ALONG_X = (1.0, 0.0, 0.0)
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(200)

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 import stylobate as sb
-from stylobate.models.sliding import equations, impacts, on_base, on_rim, onset, posture
+from stylobate.models.sliding import equations, rim_and_base
 
 # The numbers below which something counts as nothing, and where they are looked up.
 SMALL = ("STILL", "REST_SPEED", "JAM")
-HOMES = (equations, impacts, on_base, on_rim, onset, posture)
+HOMES = (equations, rim_and_base)
 COLUMN = sb.Column.dimensionless(slenderness=0.2)
 
 
@@ -73,6 +73,8 @@ def test_halving_what_counts_as_nothing_changes_nothing(monkeypatch):
         again, other = random_end(seed)
         assert again is outcome
         # Bounces end REST_SPEED earlier or later, which moves by as much at most what falls as e^τ.
-        np.testing.assert_allclose(other, end, rtol=0.0, atol=impacts.REST_SPEED * math.exp(2.5), err_msg=str(seed))
+        np.testing.assert_allclose(
+            other, end, rtol=0.0, atol=rim_and_base.REST_SPEED * math.exp(2.5), err_msg=str(seed)
+        )
         changes += np.abs(other - end).max()
     assert changes > 0.0  # the numbers were others

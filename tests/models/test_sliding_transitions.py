@@ -8,10 +8,8 @@ from scipy.optimize import brentq
 
 import stylobate as sb
 from stylobate.models.sliding import Contact, State
-from stylobate.models.sliding.lift_off import lifted, opens
-from stylobate.models.sliding.on_rim import held
-from stylobate.models.sliding.onset import STARTS, load_direction, slip_rate
-from stylobate.models.sliding.posture import energy_of, forces, height_of, rates_of
+from stylobate.models.sliding.equations import energy_of, forces, height_of, rates_of
+from stylobate.models.sliding.rim_and_base import STARTS, held, lifted, load_direction, opens, slip_rate
 
 COLUMN = sb.Column.dimensionless(slenderness=0.3)
 FRICTION, SUPPORT, REST = (sb.Sliding.guard_names.index(name) for name in ("friction", "support", "rest"))

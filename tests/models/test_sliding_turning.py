@@ -12,7 +12,7 @@ from scipy.integrate import solve_ivp
 
 import stylobate as sb
 from stylobate.models.sliding import Contact, State
-from stylobate.models.sliding.lift_off import lifted
+from stylobate.models.sliding.rim_and_base import lifted
 
 COLUMN = sb.Column.dimensionless(slenderness=0.3)
 CIRCLE = sb.Harmonic.circular(acceleration=1.0, angular_frequency=3.0)

@@ -7,7 +7,7 @@ import pytest
 
 import stylobate as sb
 from stylobate.orbits import Kind, continue_branch, periodic_orbit
-from stylobate.theory.rotating_frame import rotating_frame_jacobian
+from stylobate.theory.averaging import rotating_frame_jacobian
 
 C = 0.1
 

@@ -8,7 +8,7 @@ import pytest
 from stylobate.engine.flow.integration import Status
 from stylobate.orbits import arclength
 from stylobate.orbits.arclength import Family, corrected
-from stylobate.orbits.conditions import branching, complex_pairs, conditions_between, neimark_sacker
+from stylobate.orbits.bifurcations import branching, complex_pairs, conditions_between, neimark_sacker
 
 ALONG = np.array([1.0])
 

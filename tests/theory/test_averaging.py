@@ -8,9 +8,7 @@ from scipy.integrate import quad, solve_ivp
 
 from stylobate.errors import ParameterError
 from stylobate.theory import averaged_rolling, high_frequency_rolling, steady_rolling
-from stylobate.theory.averaging import circular_components
-from stylobate.theory.high_frequency import high_frequency_rates
-from stylobate.theory.rotating_frame import rotating_frame_rates
+from stylobate.theory.averaging import circular_components, high_frequency_rates, rotating_frame_rates
 
 C, ETA = 0.1, 0.1
 amplitude = st.floats(-1.0, 1.0)

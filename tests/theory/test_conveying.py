@@ -11,7 +11,7 @@ from numpy.polynomial.legendre import leggauss
 from stylobate import theory
 from stylobate.errors import ParameterError
 from stylobate.theory import BlockPhase, SlidingRegime, block_cycle, hopping_speed, horizontal_sliding, mean_block_speed
-from stylobate.theory.harmonic_force import HarmonicForce
+from stylobate.theory.block_motion import HarmonicForce
 
 EPS = float(np.finfo(float).eps)
 TURN = 2.0 * math.pi

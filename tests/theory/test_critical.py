@@ -16,9 +16,9 @@ from stylobate.theory import (
     steady_rolling,
     undamped_critical_frequency,
 )
+from stylobate.theory.averaging import rotating_frame_jacobian
 from stylobate.theory.lyapunov import _Expansion
 from stylobate.theory.rolling import rolling_gap
-from stylobate.theory.rotating_frame import rotating_frame_jacobian
 
 C = 0.1
 

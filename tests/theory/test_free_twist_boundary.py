@@ -11,7 +11,7 @@ from scipy.optimize import brentq
 from stylobate import theory
 from stylobate.errors import ParameterError
 from stylobate.theory import free_twist_critical_frequency, free_twist_upper_frequency
-from stylobate.theory.free_twist_stability import DampedColumn, characteristic
+from stylobate.theory.free_twist import DampedColumn, characteristic
 
 C = 0.1
 EPS = float(np.finfo(float).eps)

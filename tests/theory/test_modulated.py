@@ -6,8 +6,8 @@ from scipy.integrate import solve_ivp
 
 from stylobate.errors import ParameterError
 from stylobate.theory import critical_frequency, crossing_frequency, modulated_rolling, steady_rolling
-from stylobate.theory.rotating_frame import rotating_frame_jacobian, rotating_frame_rates
-from stylobate.theory.spectral import differentiation_matrix, interpolated
+from stylobate.theory.averaging import rotating_frame_jacobian, rotating_frame_rates
+from stylobate.theory.modulated import differentiation_matrix, interpolated
 
 A0, C, ETA = 0.065, 0.1, 0.1
 

@@ -6,7 +6,7 @@ from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 
 from stylobate.theory import planar_backbone, planar_forced_response, planar_free_motion
-from stylobate.theory.planar_forced import planar_kick_slope
+from stylobate.theory.planar import planar_kick_slope
 
 C = 0.1
 CASES = [(3.0, 0.13, 0.1), (1.5, 0.05, 0.1), (1.0, 0.02, 0.1), (6.0, 0.2, 0.3), (0.5, 0.08, 0.0), (2.0, 0.01, 0.0)]

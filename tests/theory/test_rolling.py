@@ -7,8 +7,8 @@ from scipy.integrate import solve_ivp
 
 from stylobate.errors import ParameterError
 from stylobate.theory import rolling_backbone, steady_rolling
+from stylobate.theory.averaging import rotating_frame_jacobian, rotating_frame_rates
 from stylobate.theory.rolling import rolling_gap
-from stylobate.theory.rotating_frame import rotating_frame_jacobian, rotating_frame_rates
 
 C = 0.1
 NU = np.linspace(0.05, 10.0, 300)[:, np.newaxis, np.newaxis]

@@ -12,9 +12,9 @@ from tests.theory.turning_frame import slipping_rolling_rates
 import stylobate as sb
 from stylobate.errors import ParameterError
 from stylobate.theory import critical_frequency, full_rolling, steady_rolling
-from stylobate.theory.rolling_friction import rolling_required_friction
+from stylobate.theory.free_twist import rolling_required_friction
+from stylobate.theory.slipping_balance import EASED, EXPONENT, SLOWED, TWISTING
 from stylobate.theory.slipping_rolling import slipping_rolling
-from stylobate.theory.slipping_rolling_rates import EASED, EXPONENT, SLOWED, TWISTING
 
 from ..models.constrained_body import TURNING, UP, VELOCITY  # noqa: TID252
 from ..models.sliding_body import SlidingBody  # noqa: TID252

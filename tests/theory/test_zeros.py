@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from stylobate.theory.zeros import zeros
+from stylobate.theory.finite_tilt import zeros
 
 PLACES = np.array([[0.2, 0.5, 0.7], [0.1, 0.30001, 0.30002], [0.4, 0.6, 0.60000001]])
 

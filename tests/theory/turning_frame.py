@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from stylobate.theory import full_rolling_rates as full
-from stylobate.theory import slipping_rolling_rates as slipping
+from stylobate.theory import finite_tilt as full
+from stylobate.theory import slipping_balance as slipping
 from stylobate.theory import wobbling
 from stylobate.theory.rigid_body import RigidBody
 

@@ -2,8 +2,8 @@
 
 The compiler reads the source of a function, finds the functions that it calls by name, and compiles them together, once
 for each structure of arguments. It writes text for LLVM (`unit`, `body`, `expressions`); llvmlite compiles the text to
-machine code (`machine`), which is stored on disk and loaded from there (`kept`, `compiled`). Without compilation the
-same functions are plain Python.
+machine code, which is stored on disk and loaded from there (`kept`, `compiled`). Without compilation the same functions
+are plain Python.
 
 The accepted language
 ---------------------
@@ -26,7 +26,7 @@ All other code is refused with file, line and a remedy (`CompileError`).
 
 Whole numbers have 64 bits, and nothing is checked while compiled code runs. In functions of models each whole number
 has bounds that are known when it is compiled, and code that may leave 2^53, an array or a tuple is refused
-(`whole_numbers`). Functions of the package itself are trusted: indices that are not known count from 0.
+(`values`). Functions of the package itself are trusted: indices that are not known count from 0.
 
 Results equal those of Python to the bit, with these differences:
 

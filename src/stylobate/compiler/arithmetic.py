@@ -13,10 +13,10 @@ from dataclasses import replace
 from enum import Enum
 from typing import Any
 
-from stylobate.compiler import whole_numbers
-from stylobate.compiler.refusal import LanesRefusal, Refusal
+from stylobate.compiler.sources import LanesRefusal, Refusal
 from stylobate.compiler.text import FunctionText, ModuleText
 from stylobate.compiler.values import (
+    ANY,
     BEYOND_FLOATS,
     Array,
     Bounds,
@@ -24,8 +24,11 @@ from stylobate.compiler.values import (
     LaneIndex,
     Number,
     Value,
+    after,
+    bounds_of,
     constant,
     is_known_number,
+    joined,
     kind_of,
     rebuilt,
     type_of,
@@ -86,7 +89,7 @@ class Arithmetic:
         self.flags = FAST if fast else ""
         self.lanes = 0
         self.checked = False
-        """Whether whole numbers must have bounds, see `whole_numbers`."""
+        """Whether whole numbers must have bounds, see `values`."""
 
     @contextmanager
     def checking(self, checked: bool) -> Iterator[None]:
@@ -110,23 +113,19 @@ class Arithmetic:
         if isinstance(value, Number):
             return value if kind is None or value.kind is kind else self._converted(value, kind)
         if not is_known_number(value):
-            message = f"expected a number, got {_described(value)}"
-            raise Refusal(message)
+            raise Refusal(f"expected a number, got {_described(value)}")
         own = kind_of(value)
         if own is Kind.INTEGER and abs(value) >= _BEYOND:
-            message = f"whole numbers have 64 bits, {value} has more"
-            raise Refusal(message)
+            raise Refusal(f"whole numbers have 64 bits, {value} has more")
         if kind is not None and kind < own and kind is Kind.INTEGER:
-            message = f"expected a whole number, got {value}"
-            raise Refusal(message)
+            raise Refusal(f"expected a whole number, got {value}")
         return constant(value, own if kind is None else kind)
 
     def _converted(self, number: Number, kind: Kind) -> Number:
         if kind is Kind.BOOLEAN:
             return self.number(self.compared(ast.NotEq(), number, 0))
         if kind < number.kind:
-            message = "expected a whole number, got one with a fraction; write int(...)"
-            raise Refusal(message)
+            raise Refusal("expected a whole number, got one with a fraction; write int(...)")
         instruction = "sitofp" if number.kind is Kind.INTEGER else "uitofp" if kind is Kind.FLOAT else "zext"
         text = self.text.value(f"{instruction} {number.operand} to {type_of(kind, number.lanes)}")
         return Number(kind, text, number.lanes, (0, 1) if kind is Kind.INTEGER else None)
@@ -161,8 +160,7 @@ class Arithmetic:
     def binary(self, operation: ast.operator, a: Value, b: Value) -> Value:
         """Return the result of a binary operation."""
         if type(operation) not in _BINARY:
-            message = f"{type(operation).__name__} is not compiled; write it with +, -, *, /, //, % and **"
-            raise Refusal(message)
+            raise Refusal(f"{type(operation).__name__} is not compiled; write it with +, -, *, /, //, % and **")
         if isinstance(a, LaneIndex) or isinstance(b, LaneIndex):
             return _moved(operation, a, b)
         if isinstance(a, tuple) and isinstance(b, tuple) and isinstance(operation, ast.Add):
@@ -179,15 +177,14 @@ class Arithmetic:
                 return replace(self._divided(operation, x, y), bounds=bounds)
         names = _FLOAT if x.kind is Kind.FLOAT else _INTEGER
         if type(operation) not in names:
-            message = f"{type(operation).__name__} of numbers with a fraction; write a - b * math.floor(a / b)"
-            raise Refusal(message)
+            raise Refusal(f"{type(operation).__name__} of numbers with a fraction; write a - b * math.floor(a / b)")
         flags = self.flags if x.kind is Kind.FLOAT else ""
         text = self.text.value(f"{names[type(operation)]} {flags}{x.operand}, {y.text}")
         return Number(x.kind, text, x.lanes, bounds)
 
     @staticmethod
     def _bounds(operation: ast.operator, x: Number, y: Number) -> Bounds:
-        return whole_numbers.after(operation, whole_numbers.bounds_of(x), whole_numbers.bounds_of(y))
+        return after(operation, bounds_of(x), bounds_of(y))
 
     def _kind(self, value: Value) -> Kind:
         return self.number(value).kind
@@ -208,8 +205,9 @@ class Arithmetic:
         whole = is_known_number(exponent) and exponent == int(exponent) and 0 < exponent <= MOST_FACTORS
         if not whole:
             if isinstance(exponent, Number) and max(kind_of(base), kind_of(exponent)) < Kind.FLOAT and self.checked:
-                message = "a power of whole numbers is a whole number or not, as the exponent is; write float(a) ** b"
-                raise Refusal(message)
+                raise Refusal(
+                    "a power of whole numbers is a whole number or not, as the exponent is; write float(a) ** b"
+                )
             return self.called("llvm.pow", base, exponent)
         base = self.number(base, max(kind_of(base), kind_of(exponent), Kind.INTEGER))
         left, square, result = int(exponent), base, None
@@ -250,8 +248,7 @@ class Arithmetic:
             _refuse_own_laws(a, b)
             return _KNOWN[type(operation)](a, b)
         if type(operation) not in _COMPARED:
-            message = f"{type(operation).__name__} of numbers; write == or !="
-            raise Refusal(message)
+            raise Refusal(f"{type(operation).__name__} of numbers; write == or !=")
         least = Kind.BOOLEAN if isinstance(operation, ast.Eq | ast.NotEq) else Kind.INTEGER  # of one bit, 1 is below 0
         x, y = self.alike(a, b, kind=max(least, kind_of(a), kind_of(b)))
         of_floats, of_integers = _COMPARED[type(operation)]
@@ -263,8 +260,7 @@ class Arithmetic:
 
     def _compared_tuples(self, operation: ast.cmpop, a: tuple[Value, ...], b: tuple[Value, ...]) -> Value:
         if not isinstance(operation, ast.Eq | ast.NotEq):
-            message = "tuples are compared by == and != only"
-            raise Refusal(message)
+            raise Refusal("tuples are compared by == and != only")
         equal: Value = len(a) == len(b)
         for one, other in zip(a, b, strict=False):
             equal = self.both(equal, self.compared(ast.Eq(), one, other))
@@ -292,14 +288,13 @@ class Arithmetic:
             return a if truth_of_known(condition) else b
         if isinstance(a, tuple) or isinstance(b, tuple):
             if type(a) is not type(b) or len(a) != len(b):
-                message = "a choice between two tuples of different length or class; use tuples of one structure"
-                raise Refusal(message)
+                raise Refusal("a choice between two tuples of different length or class; use tuples of one structure")
             made = [self.chosen(condition, *pair) for pair in zip(a, b, strict=True)]
             return type(a)(*made) if hasattr(a, "_fields") else tuple(made)
         x, y = self.alike(a, b)
         bounds = None
         if x.kind is Kind.INTEGER and self.checked:
-            bounds = whole_numbers.joined(whole_numbers.bounds_of(x), whole_numbers.bounds_of(y))
+            bounds = joined(bounds_of(x), bounds_of(y))
         condition = self.truth(condition)
         if condition.lanes:
             x, y = self.wide(x), self.wide(y)
@@ -357,7 +352,7 @@ class Arithmetic:
             result = self.text.value(f"insertelement {kind} {result}, {value.operand}, i32 {lane}")
         bounds = None
         if first.kind is Kind.INTEGER and self.checked:
-            bounds = whole_numbers.joined(*map(whole_numbers.bounds_of, values))
+            bounds = joined(*map(bounds_of, values))
         return Number(first.kind, result, len(values), bounds)
 
     def whole(self, value: Value) -> Value:
@@ -367,8 +362,7 @@ class Arithmetic:
         if value.kind is not Kind.FLOAT:
             return self.number(value, Kind.INTEGER)
         if not self.checked and value.lanes:
-            message = "int(...) in a loop over lanes; write math.floor"
-            raise LanesRefusal(message)
+            raise LanesRefusal("int(...) in a loop over lanes; write math.floor")
         kind, suffix = type_of(Kind.INTEGER, value.lanes), f"v{value.lanes}" if value.lanes else ""
         function = self.module.declared(f"llvm.fptosi.sat.{suffix}i64.{suffix}f64", kind, [value.type])
         text = self.text.value(f"call {kind} {function}({value.operand})")
@@ -378,13 +372,12 @@ class Arithmetic:
             function = self.module.declared(f"{name}.{suffix}i64", kind, [kind, kind])
             limit = constant(end, Kind.INTEGER, value.lanes)
             text = self.text.value(f"call {kind} {function}({kind} {text}, {limit.operand})")
-        return Number(Kind.INTEGER, text, value.lanes, whole_numbers.ANY)
+        return Number(Kind.INTEGER, text, value.lanes, ANY)
 
 
 def _refuse_lanes(*values: Value) -> None:
     if any(isinstance(value, LaneIndex) for value in values):
-        message = "a condition on the index of a loop over lanes; keep it in a row of the array"
-        raise Refusal(message)
+        raise Refusal("a condition on the index of a loop over lanes; keep it in a row of the array")
 
 
 def truth_of_known(value: Value) -> bool:
@@ -397,15 +390,15 @@ def _refuse_own_laws(*values: Value) -> None:
     """Refuse objects whose class decides when they are true or equal."""
     for value in values:
         if not (is_known_number(value) or value is None or isinstance(value, _COMPARABLE) or callable(value)):
-            message = f"{value!r} is compared, or is a condition, by a law of its class; use its numbers"
-            raise Refusal(message)
+            raise Refusal(f"{value!r} is compared, or is a condition, by a law of its class; use its numbers")
 
 
 def _moved(operation: ast.operator, a: Value, b: Value) -> LaneIndex:
     index, step = (a, b) if isinstance(a, LaneIndex) else (b, a)
     if not isinstance(operation, ast.Add) or not isinstance(step, int):
-        message = "the index of a loop over lanes may only be added to known whole numbers, to find its place in a row"
-        raise Refusal(message)
+        raise Refusal(
+            "the index of a loop over lanes may only be added to known whole numbers, to find its place in a row"
+        )
     return LaneIndex(index.first, index.offset + step)
 
 

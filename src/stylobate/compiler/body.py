@@ -1,19 +1,199 @@
-"""Compilation of statements: the body of one function."""
+"""Compilation of statements: names and assignments to them, and the body of one function."""
 
 import ast
 from collections.abc import Callable, Iterable, Mapping
+from functools import cache
 from typing import Any, Protocol
 
-from stylobate.compiler import arrays, marks, slots
+from stylobate.compiler import marks, memory
 from stylobate.compiler.arithmetic import Arithmetic
-from stylobate.compiler.names import Names, assigned_in
+from stylobate.compiler.expressions import Expressions
+from stylobate.compiler.memory import Need, has_array
 from stylobate.compiler.reads import Reads
-from stylobate.compiler.refusal import LanesRefusal, Refusal, at_its_place
-from stylobate.compiler.slots import Need, has_array
-from stylobate.compiler.sources import Source
+from stylobate.compiler.sources import LanesRefusal, Refusal, Source, at_its_place
 from stylobate.compiler.text import Block
-from stylobate.compiler.values import Bounds, Kind, LaneIndex, Number, Value, constant
-from stylobate.compiler.whole_numbers import bounds_of
+from stylobate.compiler.values import Array, Bounds, Kind, LaneIndex, Number, Value, bounds_of, constant
+
+_NOTHING = object()
+"""Marks a name that no longer has a value."""
+
+
+class Names(Expressions):
+    """Names that a function assigns to, and names of its module.
+
+    A name that a run-time condition or loop assigns to has a slot in memory, from the start of the condition or loop
+    until its next assignment outside. All other names directly have their value.
+
+    Parameters
+    ----------
+    source
+        The function.
+    arithmetic
+        Writer of its instructions.
+    reads
+        Log of the values that it reads.
+    needs
+        What the slot of each name needs to hold, besides the first value.
+    """
+
+    def __init__(self, source: Source, arithmetic: Arithmetic, reads: Reads, needs: Mapping[str, Need]) -> None:
+        super().__init__(arithmetic, reads, followed=reads.logs(source.function))
+        self.source, self._needs = source, needs
+        self._bound: dict[str, Value] = {}
+        self._slots: dict[str, Value] = {}
+        self._wider: dict[str, Need] = {}
+        """Bounds that the slots of names turned out to need."""
+        self._chosen = _assigned_by_control_flow(source.body)
+        self._own = assigned_in(source.body) | set(source.signature.parameters)
+        self._depth = 0
+        """Depth of run-time conditions and loops."""
+
+    def read(self, name: str) -> Value:
+        """Return the value of a name."""
+        value = self._bound.get(name, _NOTHING)
+        if value is not _NOTHING:
+            return value
+        if name in self._slots and name not in self._bound:
+            if name not in self.text.block.assigned:
+                raise Refusal(
+                    f"{name} is not assigned on every path to its use; assign it before the condition or loop"
+                )
+            return memory.load_slot(self.arithmetic, self._slots[name])
+        if name in self._own:
+            raise Refusal(f"{name} has no value here; a loop over a tuple or over lanes does not keep its names")
+        try:
+            found = self.source.find(name)
+        except (LookupError, ValueError):
+            raise Refusal(f"{name} is not defined") from None
+        self.reads.log(self.source.function, "name", name, found)
+        return found
+
+    def assign(self, name: str, value: Value) -> None:
+        """Assign a value to a name."""
+        if self.arithmetic.lanes or name not in self._chosen or not self._depth:
+            self._bound[name] = value
+            return
+        self._bound.pop(name, None)
+        self.put(name, value)
+
+    def settle(self, node: ast.AST) -> None:
+        """Store known values in slots if a condition or loop can assign to their names.
+
+        Raises
+        ------
+        Refusal
+            If a value cannot be stored, so that it cannot be chosen at run time.
+        """
+        for name in assigned_in([node]) & self._bound.keys():
+            if self._bound[name] is _NOTHING:
+                continue
+            value = self._bound.pop(name)
+            if not memory.can_be_stored(value):
+                raise Refusal(f"{name} means {value!r}, and control flow assigns to it; begin with a number")
+            self.put(name, value)
+
+    def forget(self, node: ast.AST) -> None:
+        """Remove the values of the names that `node` assigns to: vectorised passes do not share values."""
+        for name in assigned_in([node]):
+            self._bound[name] = _NOTHING
+
+    def put(self, name: str, value: Value) -> None:
+        """Store a value in the slot of a name."""
+        if name not in self._slots:
+            self._slots[name] = memory.slot_for(self.arithmetic, value, self._needs.get(name, Need()))
+        try:
+            memory.store_slot(self.arithmetic, self._slots[name], value)
+            self.text.block.assigned.add(name)
+        except memory.WiderKindError as error:
+            raise memory.WiderSlotError({name: Need(error.kind)}) from error
+        bounds = memory.bounds_beyond(self._slots[name], value) if self.arithmetic.checked else None
+        if bounds is not None:
+            self._wider[name] = Need(bounds=bounds).together(self._wider.get(name, Need()))
+
+    def generated(self, node: ast.GeneratorExp) -> tuple[Value, ...]:
+        """Return the values of a generator as a tuple; its names do not exist outside."""
+        if len(node.generators) > 1:
+            raise Refusal("a generator with two loops; write one in the other")
+        one = node.generators[0]
+        outside, out = dict(self._bound), []
+        for item in self.items(self.value(one.iter)):
+            self._bind(one.target, item)
+            conditions = [self.condition(test) for test in one.ifs]
+            if any(isinstance(condition, Number) for condition in conditions):
+                raise Refusal("the conditions of a generator must be known at compile time")
+            if all(conditions):
+                out.append(self.value(node.elt))
+        self._bound = outside
+        return tuple(out)
+
+    def _bind(self, target: ast.expr, item: Value) -> None:
+        """Assign the parts of an item to the names of a generator."""
+        if isinstance(target, ast.Name):
+            self._bound[target.id] = item
+            return
+        assert isinstance(target, ast.Tuple)
+        for part, value in zip(target.elts, self.items(item), strict=True):
+            self._bind(part, value)
+
+    def assign_to(self, target: ast.expr, value: Value) -> None:
+        """Assign a value to the target of an assignment."""
+        match target:
+            case ast.Name():
+                self.assign(target.id, value)
+            case ast.Tuple() | ast.List():
+                items = self.items(value)
+                if len(items) != len(target.elts):
+                    raise Refusal(f"{ast.unparse(target)} needs {len(target.elts)} values, not {len(items)}")
+                for part, item in zip(target.elts, items, strict=True):
+                    self.assign_to(part, item)
+            case ast.Subscript():
+                self._put_into_array(target, value)
+            case _:
+                raise Refusal(f"{ast.unparse(target)} cannot be assigned to")
+
+    def _put_into_array(self, target: ast.Subscript, value: Value) -> None:
+        if isinstance(value, Array):
+            memory.copy(self.arithmetic, memory.view(self.arithmetic, self._array(target), self.indices(target)), value)
+        else:
+            memory.store_element(self.arithmetic, *self.place(target), value)
+
+    def _array(self, target: ast.Subscript) -> Array:
+        owner = self.value(target.value)
+        if not isinstance(owner, Array):
+            raise Refusal(f"{ast.unparse(target.value)} is not an array")
+        return owner
+
+    def place(self, target: ast.Subscript) -> tuple[Array, int]:
+        """Return the element of an assignment, see `arrays.place`."""
+        owner, indices = self._array(target), self.indices(target)
+        if len(indices) != len(owner.shape) or any(map(_is_slice, indices)):
+            raise Refusal(f"{ast.unparse(target)} is not a single element of an array; write a loop")
+        return memory.place(self.arithmetic, owner, indices)
+
+
+def _is_slice(index: Value) -> bool:
+    return isinstance(index, slice)
+
+
+def assigned_in(statements: Iterable[ast.AST]) -> set[str]:
+    """Return the names that statements assign to, without the names inside generators."""
+    return set().union(*map(_assigned_by, statements))
+
+
+@cache
+def _assigned_by(statement: ast.AST) -> frozenset[str]:
+    parts = list(ast.walk(statement))
+    inner = {id(name) for part in parts if isinstance(part, ast.comprehension) for name in ast.walk(part.target)}
+    return frozenset(
+        part.id
+        for part in parts
+        if isinstance(part, ast.Name) and isinstance(part.ctx, ast.Store) and id(part) not in inner
+    )
+
+
+def _assigned_by_control_flow(statements: Iterable[ast.stmt]) -> set[str]:
+    return assigned_in(statement for statement in statements if isinstance(statement, ast.If | ast.While | ast.For))
+
 
 RESULT = "return"
 """Name of the slot of the result of a function."""
@@ -89,7 +269,7 @@ class Body(Names):
             message = "some paths return a value, others do not"
             raise at_its_place(message, self._at, self.source.file, self.source.name)
         if self._wider:
-            raise slots.WiderSlotError(self._wider)
+            raise memory.WiderSlotError(self._wider)
         self.text.jump(self.exit)
         self.text.begin(self.exit)
 
@@ -135,16 +315,14 @@ class Body(Names):
             case ast.For(orelse=[]):
                 self._for(node)
             case ast.While() | ast.For():
-                message = (
+                raise Refusal(
                     "else after a loop is not compiled; set a truth value before break and test it behind the loop"
                 )
-                raise Refusal(message)
             case ast.Break() | ast.Continue():
                 self._outside_lanes("break and continue within lanes; write a if condition else b")
                 self.text.jump(self._loops[-1][isinstance(node, ast.Break)])
             case _:
-                message = f"{type(node).__name__} is not compiled; write it with loops, conditions and calls"
-                raise Refusal(message)
+                raise Refusal(f"{type(node).__name__} is not compiled; write it with loops, conditions and calls")
 
     def _change(self, node: ast.AugAssign) -> None:
         if not isinstance(node.target, ast.Subscript):
@@ -152,31 +330,28 @@ class Body(Names):
             self.assign_to(node.target, self.arithmetic.binary(node.op, old, self.value(node.value)))
             return
         element, lanes = self.place(node.target)
-        old = arrays.load(self.arithmetic, element, lanes)
+        old = memory.load_element(self.arithmetic, element, lanes)
         new = self.arithmetic.binary(node.op, old, self.value(node.value))
-        arrays.store(self.arithmetic, element, lanes, new)
+        memory.store_element(self.arithmetic, element, lanes, new)
 
     def _return(self, value: Value) -> None:
         if self._over:
-            message = "return within lanes"
-            raise Refusal(message)
+            raise Refusal("return within lanes")
         if self.arithmetic.lanes:
             self.result, self._returned = value, True
             return
         self._results.add(value is None)
         if len(self._results) > 1:
-            message = "some paths return a value, others do not"
-            raise Refusal(message)
+            raise Refusal("some paths return a value, others do not")
         if has_array(value):
-            message = "arrays are not returned; pass one in which the results are put"
-            raise Refusal(message)
+            raise Refusal("arrays are not returned; pass one in which the results are put")
         if value is not None:
             self.put(RESULT, value)
         self.text.jump(self.exit)
 
     def finished(self) -> Value:
         """Return the result after the last instruction of the function."""
-        return self.result if self.arithmetic.lanes else slots.load(self.arithmetic, self._slots.get(RESULT))
+        return self.result if self.arithmetic.lanes else memory.load_slot(self.arithmetic, self._slots.get(RESULT))
 
     def _if(self, node: ast.If) -> None:
         condition = self.condition(node.test)
@@ -237,8 +412,7 @@ class Body(Names):
                 return
         items = self.value(node.iter)
         if not isinstance(items, tuple):
-            message = f"{ast.unparse(node.iter)} is neither a range nor a tuple"
-            raise Refusal(message)
+            raise Refusal(f"{ast.unparse(node.iter)} is neither a range nor a tuple")
         self._unrolled(node, items)
 
     def _over_range(self, node: ast.For, ends: list[Value]) -> None:
@@ -250,8 +424,7 @@ class Body(Names):
         self.settle(node)
         start, stop, *step = ends if len(ends) > 1 else [0, *ends]
         if step and step != [1]:
-            message = "a range whose step is not 1; write a while loop"
-            raise Refusal(message)
+            raise Refusal("a range whose step is not 1; write a while loop")
         counter = self.text.allocated("i64")
         end = self.arithmetic.number(stop, Kind.INTEGER)
         self.text.line(f"store {self.arithmetic.number(start, Kind.INTEGER).operand}, ptr {counter}")
@@ -314,7 +487,7 @@ class Body(Names):
         if not name or name in assigned_in(node.body) or self.arithmetic.lanes:
             self.assign_to(node.target, item)
             return
-        if slots.can_be_stored(item):
+        if memory.can_be_stored(item):
             self.put(name, item)
         self._bound[name] = item
 
@@ -343,8 +516,7 @@ class Body(Names):
         width = self.callees.lanes
         whole = count % width == 0 if isinstance(count, int) else isinstance(count, Number)
         if self.arithmetic.lanes or not whole or not isinstance(node.target, ast.Name):
-            message = f"a loop over lanes cannot be inside another one and must have a multiple of {width} passes"
-            raise Refusal(message)
+            raise Refusal(f"a loop over lanes cannot be inside another one and must have a multiple of {width} passes")
         end = self.arithmetic.number(count, Kind.INTEGER)
         head, done = self.text.new_block(), self.text.new_block()
         self.text.jump(head)

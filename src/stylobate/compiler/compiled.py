@@ -4,14 +4,16 @@ import ctypes
 import types
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cache
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
-from stylobate.compiler import kept, machine
-from stylobate.compiler.programs import Program
+from stylobate.compiler import kept
+from stylobate.compiler.programs import Program, Written
 from stylobate.compiler.reads import Reads, Watch
-from stylobate.compiler.refusal import CompileError
+from stylobate.compiler.sources import CompileError
 from stylobate.compiler.unit import ArrayArgument, Unit
 from stylobate.compiler.values import Element, Kind
 from stylobate.errors import UnsupportedError
@@ -83,7 +85,7 @@ class Compiled:
     def unit(self, *, exact: bool = False, reads: Reads | None = None) -> Unit:
         """Return a new unit for functions of the module."""
         fast = [function for name, function in self.functions.items() if name in self.fast]
-        return Unit(lanes=machine.lanes(), fast=fast, exact=exact, reads=reads, trusted=True)
+        return Unit(lanes=kept.lanes(), fast=fast, exact=exact, reads=reads, trusted=True)
 
     @property
     def _words(self) -> str:
@@ -102,17 +104,16 @@ class Compiled:
         def write(reads: Reads) -> str:
             unit = self.unit(reads=reads)
             unit.export(getattr(self._module_of(program), self.name), self.name, self.arguments)
-            return unit.module.text(machine.attributes())
+            return unit.module.text(kept.attributes())
 
         try:
             parts = [repr((self.name, self.arguments, self.fast)), *program.texts]
             logged = None if self.brief else self.description
             engine, watch = kept.code_of(self._words, parts, self.functions, write, logged)
         except CompileError as error:
-            message = (
+            raise UnsupportedError(
                 f"model {self.model} cannot be compiled; `simulate` computes single runs without compilation: {error}"
-            )
-            raise UnsupportedError(message) from error
+            ) from error
         kinds = [kind for argument in self.arguments for kind in _types_of(argument)]
         function = ctypes.CFUNCTYPE(ctypes.c_int64, *kinds)(engine.get_function_address(self.name))
         vars(function)["engine"] = engine  # keeps the code alive
@@ -136,3 +137,60 @@ def _types_of(argument: ArrayArgument | Kind) -> list[Any]:
     if isinstance(argument, Kind):
         return [ctypes.c_double if argument is Kind.FLOAT else ctypes.c_int64]
     return [ctypes.c_void_p, *[ctypes.c_int64] * argument.shape.count(None)]
+
+
+Floats = npt.NDArray[np.float64]
+
+# Minimum number of rows for compilation.
+_FEW = 64
+
+
+def over_rows(function: Callable[..., Any], rows: Floats, *, name: str) -> Floats:
+    """Evaluate `function` for each row of numbers; return shape (n, results).
+
+    Parameters
+    ----------
+    function
+        Function of floats that returns a tuple of floats. It is called as plain Python if it cannot be compiled.
+    rows
+        Arguments, shape (n, arguments).
+    name
+        Name for messages, such as that of the model.
+    """
+    if not len(rows):
+        return np.empty((0, 0))
+    results = len(function(*rows[0].tolist()))
+    if len(rows) >= _FEW:
+        out = np.empty((len(rows), results))
+        try:
+            _compiled(function, rows.shape[1], results, name)(np.ascontiguousarray(rows), out)
+        except UnsupportedError:
+            pass
+        else:
+            return out
+    return np.array([function(*row) for row in rows.tolist()], dtype=float)
+
+
+@cache
+def _compiled(function: Callable[..., Any], arguments: int, results: int, name: str) -> Compiled:
+    program = Written(_text(arguments, results))
+    return Compiled(
+        name="over_rows",
+        program=lambda: program,
+        functions={"function": function},
+        arguments=(ArrayArgument((None, arguments)), ArrayArgument((None, results))),
+        model=name,
+        description=f"{name}, {getattr(function, '__name__', 'function')} along runs",
+        brief=True,
+    )
+
+
+def _text(arguments: int, results: int) -> str:
+    numbers = ", ".join(f"rows[k, {j}]" for j in range(arguments))
+    lines = [
+        "def over_rows(rows, out):",
+        "    for k in range(len(rows)):",
+        f"        found = function({numbers})",
+        *(f"        out[k, {j}] = found[{j}]" for j in range(results)),
+    ]
+    return "\n".join(lines) + "\n"

@@ -1,23 +1,196 @@
 """Compilation of expressions: known values are evaluated, all others become instructions."""
 
 import ast
+import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import replace
+from enum import EnumType
 from functools import cache
 from typing import Any
 
 import numpy as np
 
-from stylobate.compiler import arrays, marks, mathematics, slots
+from stylobate.compiler import marks, memory
 from stylobate.compiler.arithmetic import Arithmetic, truth_of_known
 from stylobate.compiler.reads import Reads, is_plain
-from stylobate.compiler.refusal import Refusal
-from stylobate.compiler.values import Array, Kind, LaneIndex, Number, Value, kind_of
-from stylobate.compiler.whole_numbers import bounds_of, joined
+from stylobate.compiler.sources import Refusal
+from stylobate.compiler.values import Array, Kind, LaneIndex, Number, Value, bounds_of, is_known_number, joined, kind_of
+
+_OF_LLVM = (
+    *("sqrt", "fabs", "sin", "cos", "exp", "exp2", "log", "log2", "log10", "pow", "copysign", "floor", "ceil", "trunc"),
+    *("rint", "minimum", "maximum"),
+)
+_OF_C_LIBRARY = (
+    *("tan", "asin", "acos", "atan", "atan2", "sinh", "cosh", "tanh", "asinh", "acosh", "atanh"),
+    *("hypot", "expm1", "log1p", "cbrt", "erf", "erfc", "fmod"),
+)
+_NAMES_OF_NUMPY = {
+    "arcsin": "asin",
+    "arccos": "acos",
+    "arctan": "atan",
+    "arctan2": "atan2",
+    "arcsinh": "asinh",
+    "arccosh": "acosh",
+    "arctanh": "atanh",
+    "power": "pow",
+    "absolute": "fabs",
+}
+_WHOLE_IN_PYTHON = ("floor", "ceil", "trunc")
+
+
+def is_mathematics(function: Any) -> bool:
+    """Return whether the compiler supports this function."""
+    return _name_of(function) is not None
+
+
+def call(arithmetic: Arithmetic, function: Callable[..., Any], values: list[Value]) -> Value:
+    """Return the result of a mathematical function, see `is_mathematics`."""
+    if function is len:
+        return _length(values[0])
+    if all(is_known_number(value) for value in values):
+        return function(*values)
+    name = _name_of(function) or ""
+    own = _OWN.get(name)
+    if own is not None:
+        return own(arithmetic, *values)
+    if name in _OF_C_LIBRARY:
+        return arithmetic.called_in_library(name, *values)
+    result = arithmetic.called(f"llvm.{name}", *values)
+    if name in _WHOLE_IN_PYTHON and not isinstance(function, np.ufunc) and (arithmetic.checked or not result.lanes):
+        return arithmetic.whole(result)
+    return result
+
+
+def _name_of(function: Any) -> str | None:
+    """Return the name of a function in the compiler, or None."""
+    own = getattr(function, "__name__", "")
+    if isinstance(function, np.ufunc):
+        name = _NAMES_OF_NUMPY.get(own, own)
+        return name if name in _OF_LLVM or name in _OF_C_LIBRARY or name in ("square", "sign") else None
+    if function in (np.where, np.clip):
+        return str(own)
+    if getattr(math, own, None) is function:
+        return own if own in _OF_LLVM or own in _OF_C_LIBRARY or own in _OWN else None
+    return own if function in _OF_PYTHON else None
+
+
+def _length(value: Value) -> Value:
+    if isinstance(value, Array):
+        return value.shape[0]
+    if isinstance(value, tuple | list | range | str | EnumType):
+        return len(value)
+    raise Refusal("len(...) needs an array, or a value that is known at compile time")
+
+
+def _absolute(arithmetic: Arithmetic, value: Value) -> Value:
+    number = arithmetic.number(value)
+    if number.kind is Kind.FLOAT:
+        return arithmetic.called("llvm.fabs", number)
+    negative = arithmetic.compared(ast.Lt(), number, 0)
+    result = arithmetic.chosen(negative, arithmetic.negative(number), arithmetic.number(number, Kind.INTEGER))
+    low, high = bounds_of(number)
+    return replace(result, bounds=(max(low, -high, 0), max(-low, high))) if arithmetic.checked else result
+
+
+def _extreme(comparison: ast.cmpop, extreme: Callable[..., int]) -> Callable[..., Value]:
+    def found(arithmetic: Arithmetic, *values: Value) -> Value:
+        if len(values) == 1:
+            (values,) = values
+        if not isinstance(values, tuple) or not values:
+            raise Refusal("min and max need two numbers, or a tuple of numbers")
+        result, *others = values
+        for value in others:
+            before = result
+            result = arithmetic.chosen(arithmetic.compared(comparison, value, before), value, before)
+            if arithmetic.checked and isinstance(result, Number) and result.kind is Kind.INTEGER:
+                low, high = map(extreme, bounds_of(value), bounds_of(before))
+                result = replace(result, bounds=(low, high))
+        return result
+
+    return found
+
+
+def _is_none(arithmetic: Arithmetic, value: Value) -> Value:
+    return arithmetic.compared(ast.NotEq(), value, value)
+
+
+def _is_infinite(arithmetic: Arithmetic, value: Value) -> Value:
+    return arithmetic.compared(ast.Eq(), _absolute(arithmetic, value), math.inf)
+
+
+def _is_finite(arithmetic: Arithmetic, value: Value) -> Value:
+    return arithmetic.compared(ast.Lt(), _absolute(arithmetic, value), math.inf)
+
+
+def _float(arithmetic: Arithmetic, value: Value) -> Number:
+    if isinstance(value, str):
+        raise Refusal(f"float({value!r}) is not compiled; write math.inf, math.nan or the number")
+    return arithmetic.number(value, Kind.FLOAT)
+
+
+def _scaled(factor: float) -> Callable[[Arithmetic, Value], Value]:
+    return lambda arithmetic, value: arithmetic.binary(ast.Mult(), value, factor)
+
+
+def _sum(arithmetic: Arithmetic, values: Value, start: Value = 0) -> Value:
+    for value in values:
+        start = arithmetic.binary(ast.Add(), start, value)
+    return start
+
+
+def _length_of_vector(arithmetic: Arithmetic, *values: Value) -> Value:
+    result, *others = values
+    for value in others:
+        result = arithmetic.called_in_library("hypot", result, value)
+    return result if others else _absolute(arithmetic, result)
+
+
+def _logarithm(arithmetic: Arithmetic, value: Value, base: Value = None) -> Value:
+    result = arithmetic.called("llvm.log", value)
+    return result if base is None else arithmetic.binary(ast.Div(), result, arithmetic.called("llvm.log", base))
+
+
+def _square(arithmetic: Arithmetic, value: Value) -> Value:
+    return arithmetic.binary(ast.Mult(), value, value)
+
+
+def _sign(arithmetic: Arithmetic, value: Value) -> Value:
+    negative, positive = (arithmetic.compared(operation, value, 0.0) for operation in (ast.Lt(), ast.Gt()))
+    # The sign of NaN is NaN, that of both zeros is 0.0.
+    neither = arithmetic.binary(ast.Mult(), _absolute(arithmetic, value), 0.0)
+    return arithmetic.chosen(positive, 1.0, arithmetic.chosen(negative, -1.0, neither))
+
+
+def _clipped(arithmetic: Arithmetic, value: Value, low: Value, high: Value) -> Value:
+    return arithmetic.called("llvm.minimum", arithmetic.called("llvm.maximum", value, low), high)
+
+
+_OF_PYTHON = (abs, min, max, sum, int, float, bool, len)
+_OWN: dict[str, Callable[..., Value]] = {
+    "sum": _sum,
+    "hypot": _length_of_vector,
+    "log": _logarithm,
+    "square": _square,
+    "sign": _sign,
+    "clip": _clipped,
+    "where": Arithmetic.chosen,
+    "abs": _absolute,
+    "min": _extreme(ast.Lt(), min),
+    "max": _extreme(ast.Gt(), max),
+    "int": Arithmetic.whole,
+    "float": _float,
+    "bool": Arithmetic.truth,
+    "isnan": _is_none,
+    "isinf": _is_infinite,
+    "isfinite": _is_finite,
+    "radians": _scaled(math.pi / 180.0),
+    "degrees": _scaled(180.0 / math.pi),
+}
+
 
 _OVER_TUPLES = (zip, enumerate, reversed, tuple)
-_OF_ARRAYS: dict[Any, Callable[..., Array]] = {marks.flat: arrays.flat, np.zeros: arrays.room}
+_OF_ARRAYS: dict[Any, Callable[..., Array]] = {marks.flat: memory.flat, np.zeros: memory.room}
 
 
 class Expressions(ABC):
@@ -82,8 +255,7 @@ class Expressions(ABC):
             case ast.GeneratorExp():
                 return self.generated(node)
             case _:
-                message = f"{type(node).__name__} is not compiled; write it with loops, conditions and calls"
-                raise Refusal(message)
+                raise Refusal(f"{type(node).__name__} is not compiled; write it with loops, conditions and calls")
 
     def indices(self, node: ast.Subscript) -> list[Value]:
         """Return the indices of a subscript."""
@@ -99,12 +271,10 @@ class Expressions(ABC):
     def _usable(self, value: Value) -> Value:
         if isinstance(value, np.ndarray):
             if value.dtype != np.float64:
-                message = f"arrays hold floats, not {value.dtype}; write np.array(..., dtype=float)"
-                raise Refusal(message)
-            return arrays.table(self.arithmetic, value)
+                raise Refusal(f"arrays hold floats, not {value.dtype}; write np.array(..., dtype=float)")
+            return memory.table(self.arithmetic, value)
         if isinstance(value, np.generic) and not isinstance(value, np.float64 | np.int64):
-            message = f"numbers of the type {value.dtype} follow rules of their own; write float(...) or int(...)"
-            raise Refusal(message)
+            raise Refusal(f"numbers of the type {value.dtype} follow rules of their own; write float(...) or int(...)")
         return value.item() if isinstance(value, np.generic) else value
 
     def _attribute(self, node: ast.Attribute) -> Value:
@@ -113,12 +283,10 @@ class Expressions(ABC):
             return owner.shape
         foreign = isinstance(owner, tuple) and node.attr not in getattr(owner, "_fields", ())
         if isinstance(owner, Array | Number | LaneIndex) or foreign or not hasattr(owner, node.attr):
-            message = f"{ast.unparse(node)} is not known at compile time"
-            raise Refusal(message)
+            raise Refusal(f"{ast.unparse(node)} is not known at compile time")
         value = getattr(owner, node.attr)
         if self.followed and not (isinstance(owner, tuple) or is_plain(owner) or self.reads.logs(owner)):
-            message = f"a change of {ast.unparse(node)} would not be noticed; keep it in a variable of the module"
-            raise Refusal(message)
+            raise Refusal(f"a change of {ast.unparse(node)} would not be noticed; keep it in a variable of the module")
         self.reads.log(owner, "attribute", node.attr, value)
         return self._usable(value)
 
@@ -134,17 +302,15 @@ class Expressions(ABC):
     def items(self, value: Value) -> tuple[Value, ...]:
         """Return the parts of a tuple, or the elements of a row of known length."""
         if isinstance(value, Array):
-            return arrays.elements(self.arithmetic, value)
+            return memory.elements(self.arithmetic, value)
         if not isinstance(value, tuple | range):
-            message = "expected a tuple whose length is known at compile time"
-            raise Refusal(message)
+            raise Refusal("expected a tuple whose length is known at compile time")
         return tuple(value)
 
     @staticmethod
     def _tuple(value: Value) -> Value:
         if not isinstance(value, tuple | list | range):
-            message = "only tuples are enumerated, zipped and reversed; write a loop over range(len(...))"
-            raise Refusal(message)
+            raise Refusal("only tuples are enumerated, zipped and reversed; write a loop over range(len(...))")
         return value
 
     def _unary(self, node: ast.UnaryOp) -> Value:
@@ -156,8 +322,7 @@ class Expressions(ABC):
             case ast.UAdd():
                 return self.value(node.operand)
             case _:
-                message = "bits of whole numbers are not compiled"
-                raise Refusal(message)
+                raise Refusal("bits of whole numbers are not compiled")
 
     def condition(self, node: ast.expr) -> Value:
         """Return the truth value of an expression; nonzero is true."""
@@ -165,8 +330,7 @@ class Expressions(ABC):
             return self._all_or_any(node, condition=True)
         value = self.value(node)
         if isinstance(value, Array | LaneIndex):
-            message = f"{ast.unparse(node)} is not a condition"
-            raise Refusal(message)
+            raise Refusal(f"{ast.unparse(node)} is not a condition")
         return self.arithmetic.truth(value) if isinstance(value, Number) else truth_of_known(value)
 
     def _all_or_any(self, node: ast.BoolOp, *, condition: bool) -> Value:
@@ -185,8 +349,9 @@ class Expressions(ABC):
     def _boolean(self, node: ast.expr, value: Value) -> Value:
         """Return an operand of `and` or `or` whose value is used; refuse numbers: Python returns them as they are."""
         if not (isinstance(value, bool) or (isinstance(value, Number) and value.kind is Kind.BOOLEAN)):
-            message = f"the value of and, or is used: {ast.unparse(node)} is no condition; write a if condition else b"
-            raise Refusal(message)
+            raise Refusal(
+                f"the value of and, or is used: {ast.unparse(node)} is no condition; write a if condition else b"
+            )
         return value
 
     def _in_turn(
@@ -245,33 +410,31 @@ class Expressions(ABC):
         end_of_yes = self.text.block
         self.text.begin(no)
         second = self.value(node.orelse)
-        slot = slots.slot_for(self.arithmetic, _wider(first, second))
-        slots.store(self.arithmetic, slot, second)
+        slot = memory.slot_for(self.arithmetic, _wider(first, second))
+        memory.store_slot(self.arithmetic, slot, second)
         self.text.jump(done)
         self.text.block = end_of_yes
-        slots.store(self.arithmetic, slot, first)
+        memory.store_slot(self.arithmetic, slot, first)
         self.text.jump(done)
         self.text.begin(done)
-        return slots.load(self.arithmetic, slot)
+        return memory.load_slot(self.arithmetic, slot)
 
     def _element(self, node: ast.Subscript) -> Value:
         owner, indices = self.value(node.value), self.indices(node)
         if isinstance(owner, tuple | range):
             return self._of_tuple(tuple(owner), indices[0])
         if not isinstance(owner, Array):
-            message = f"{ast.unparse(node)} is not an element of an array or a tuple"
-            raise Refusal(message)
+            raise Refusal(f"{ast.unparse(node)} is not an element of an array or a tuple")
         if len(indices) < len(owner.shape) or any(isinstance(index, slice) for index in indices):
-            return arrays.view(self.arithmetic, owner, indices)
-        return arrays.load(self.arithmetic, *arrays.place(self.arithmetic, owner, indices))
+            return memory.view(self.arithmetic, owner, indices)
+        return memory.load_element(self.arithmetic, *memory.place(self.arithmetic, owner, indices))
 
     def _of_tuple(self, items: tuple[Value, ...], index: Value) -> Value:
         if isinstance(index, LaneIndex):
-            message = "the index of a loop over lanes cannot select from a tuple"
-            raise Refusal(message)
+            raise Refusal("the index of a loop over lanes cannot select from a tuple")
         if not isinstance(index, Number):
             return items[index]
-        index = arrays.counted(self.arithmetic, index, len(items))
+        index = memory.counted(self.arithmetic, index, len(items))
         result = items[-1]
         for position, item in reversed(list(enumerate(items[:-1]))):
             result = self.arithmetic.chosen(self.arithmetic.compared(ast.Eq(), index, position), item, result)
@@ -281,14 +444,13 @@ class Expressions(ABC):
         function = self.value(node.func)
         values = self._items(node.args)
         keywords = {keyword.arg or "": self.value(keyword.value) for keyword in node.keywords}
-        if mathematics.is_mathematics(function) and not keywords:
-            return mathematics.call(self.arithmetic, function, values)
+        if is_mathematics(function) and not keywords:
+            return call(self.arithmetic, function, values)
         if _is_named_tuple(function):
             return function(*values, **keywords)
         if function in _OF_ARRAYS and not keywords:
             if function is np.zeros and self.in_loop:
-                message = "an array made in each pass of a loop; make one before it"
-                raise Refusal(message)
+                raise Refusal("an array made in each pass of a loop; make one before it")
             return _OF_ARRAYS[function](self.arithmetic, *values)
         if function is range and all(isinstance(value, int) for value in values):
             return range(*values)

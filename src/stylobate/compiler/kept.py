@@ -1,22 +1,223 @@
-"""Cache of machine code on disk: compiled once, loaded by later processes."""
+"""Machine code by LLVM, and its cache on disk: compiled once, loaded by later processes.
+
+The content of an entry is executed. Therefore a folder or file that belongs to another user, or that other users can
+write to, is never used, and a damaged file counts as missing. An entry is a name and bytes; the cache does not depend
+on the compiler.
+"""
 
 import hashlib
 import json
 import logging
 import os
+import stat
 import sys
 import threading
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
 from llvmlite import binding as llvm
 
-from stylobate.compiler import machine
 from stylobate.compiler.reads import NO_VALUE, Functions, Place, Reads, Watch
-from stylobate.compiler.refusal import CompileError, Refusal
-from stylobate.compiler.trusted_cache import VARIABLE, TrustedCache
+from stylobate.compiler.sources import CompileError, Refusal
 from stylobate.errors import FileError
+from stylobate.files import written_aside
+
+# Level 2 of the passes takes a third longer, and does not speed up code that is already vectorised.
+_PASSES, _CODE = 1, 2
+# Maximum size of functions that are inlined. The default of LLVM, 225, takes a tenth longer, and its code is as fast.
+_INLINED = 60
+_BITS = 64
+
+_compiling = threading.Lock()
+
+
+@cache
+def _target() -> llvm.TargetMachine:
+    return _new_target()
+
+
+def _new_target() -> llvm.TargetMachine:
+    llvm.initialize_native_target()
+    llvm.initialize_native_asmprinter()
+    features = llvm.get_host_cpu_features()
+    # LLVM prefers half registers on processors whose earlier models slowed down with full ones.
+    features["prefer-256-bit"] = False
+    target = llvm.Target.from_default_triple()
+    return target.create_target_machine(
+        cpu=llvm.get_host_cpu_name(), features=features.flatten(), opt=_CODE, reloc="pic", codemodel="default"
+    )
+
+
+@cache
+def vector_bits() -> int:
+    """Return the length of the vector registers of the processor [bits]."""
+    features = llvm.get_host_cpu_features()
+    return 512 if features.get("avx512f") else 256 if features.get("avx") else 128
+
+
+def lanes() -> int:
+    """Return the number of floats in a vector register."""
+    return vector_bits() // _BITS
+
+
+def attributes() -> str:
+    """Return the LLVM attributes of functions for this processor."""
+    width = vector_bits()
+    return f'nounwind "prefer-vector-width"="{width}" "min-legal-vector-width"="{width}"'
+
+
+def described() -> str:
+    """Return all properties of the machine and of LLVM on which machine code depends."""
+    machine = _target()
+    features = llvm.get_host_cpu_features().flatten()
+    return repr((machine.triple, llvm.get_host_cpu_name(), features, str(machine.target_data), llvm.llvm_version_info))
+
+
+def optimised(text: str) -> llvm.ModuleRef:
+    """Return the optimised LLVM module of a text."""
+    machine = _target()
+    module = llvm.parse_assembly(text)
+    module.triple, module.data_layout = machine.triple, str(machine.target_data)
+    module.verify()
+    options = llvm.create_pipeline_tuning_options(speed_level=_PASSES)
+    # The code is already vectorised; these passes would only cost time.
+    options.loop_vectorization = options.slp_vectorization = options.loop_unrolling = False
+    options.inlining_threshold = _INLINED
+    builder = llvm.create_pass_builder(machine, options)
+    builder.getModulePassManager().run(module, builder)
+    return module
+
+
+def object_code(text: str) -> bytes:
+    """Return the machine code of the module of a text."""
+    with _compiling:
+        return bytes(_target().emit_object(optimised(text)))
+
+
+def assembly(text: str) -> str:
+    """Return the assembly of the module of a text."""
+    with _compiling:
+        return str(_target().emit_assembly(optimised(text)))
+
+
+def linked(code: bytes) -> llvm.ExecutionEngine:
+    """Return an engine whose machine code can be called as long as the engine exists."""
+    with _compiling:
+        engine = llvm.create_mcjit_compiler(llvm.parse_assembly(""), _new_target())  # the engine owns its target
+        engine.add_object_file(llvm.ObjectFileRef.from_data(code))
+        engine.finalize_object()
+        return engine
+
+
+VARIABLE = "STYLOBATE_CACHE"
+"""Environment variable with the name of the folder."""
+
+
+_FORMAT = b"stylobate machine code 1\n"
+_DIGEST = hashlib.sha256().digest_size
+_CREATED = os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0)
+_WRITABLE_BY_OTHERS = stat.S_IWGRP | stat.S_IWOTH
+
+
+@dataclass(frozen=True, slots=True)
+class TrustedCache:
+    """Cache of entries by name in a folder of one user.
+
+    Parameters
+    ----------
+    folder
+        Folder; the first entry creates it if necessary, with access for its owner alone.
+
+    Raises
+    ------
+    FileError
+        If the folder belongs to another user, or other users can write to it.
+    """
+
+    folder: Path
+
+    def __post_init__(self) -> None:
+        try:
+            problem = _distrust(self.folder.stat())
+        except OSError:  # missing or inaccessible: entries are missing, and `write` raises the error
+            return
+        if problem:
+            raise FileError(
+                f"cache of compiled code: {problem} (got {self.folder}). "
+                f"Make it yours alone (chown, chmod go-w), or name another folder in ${VARIABLE}."
+            )
+
+    def read(self, name: str, *, quiet: bool = False) -> bytes | None:
+        """Return an entry, or None if it is missing; a damaged or untrusted one counts as missing.
+
+        A warning names a damaged or untrusted entry, unless `quiet`.
+        """
+        path = self.folder / name
+        try:
+            with path.open("rb") as file:
+                problem = _distrust(os.fstat(file.fileno()))
+                sealed = b"" if problem else file.read()
+        except FileNotFoundError:
+            return None
+        except OSError as error:
+            problem, sealed = f"it cannot be read: {error.strerror}", b""
+        data = sealed[len(_FORMAT) + _DIGEST :]
+        if not problem and sealed == _seal(name, data) + data:
+            return data
+        if not quiet:
+            _log.warning("%s is not used: %s; it is compiled again", path, problem or "it is damaged")
+        return None
+
+    def write(self, name: str, data: bytes) -> None:
+        """Write an entry completely or not at all.
+
+        Raises
+        ------
+        OSError, FileError
+            If the disk is full, the folder is read-only or the like; no partial file remains.
+        """
+        self.folder.mkdir(mode=stat.S_IRWXU, parents=True, exist_ok=True)
+        with (
+            written_aside(self.folder / name) as beside,
+            os.fdopen(os.open(beside, _CREATED, stat.S_IRUSR | stat.S_IWUSR), "wb") as file,
+        ):
+            file.write(_seal(name, data) + data)
+
+    @contextmanager
+    def held(self, name: str) -> Iterator[None]:
+        """Lock an entry, so that other processes that compute it wait; without file locks they do not wait."""
+        from filelock import FileLock
+
+        lock = FileLock(self.folder / f"{name}.lock")
+        try:
+            self.folder.mkdir(mode=stat.S_IRWXU, parents=True, exist_ok=True)
+            lock.acquire()
+        except (OSError, NotImplementedError):  # read-only, full, or a file system that cannot lock
+            yield
+            return
+        try:
+            yield
+        finally:
+            lock.release()
+
+
+def _seal(name: str, data: bytes) -> bytes:
+    return _FORMAT + hashlib.sha256(name.encode() + b"\0" + data).digest()
+
+
+def _distrust(status: os.stat_result) -> str:
+    """Return the reason not to trust a file or folder, or ""; the administrator is trusted."""
+    if not hasattr(os, "geteuid"):  # Windows separates the folders of users
+        return ""
+    if status.st_uid not in (os.geteuid(), 0):
+        return "it belongs to another user"
+    if status.st_mode & _WRITABLE_BY_OTHERS:
+        return "other users can write to it"
+    return ""
+
 
 PLAIN_VARIABLE = "STYLOBATE_PLAIN"
 """If this variable is 1, nothing is compiled: functions run as plain Python, slowly, also in a debugger."""
@@ -81,7 +282,7 @@ def code_of(
                     found = _compiled(write, Reads(functions))
                     _keep(folder, program, *found)
         code, watch = found
-        return machine.linked(code), watch
+        return linked(code), watch
 
 
 def _found(
@@ -105,7 +306,7 @@ def _compiled(write: Callable[[Reads], str], reads: Reads) -> tuple[bytes, Watch
         watch = reads.watch()
     except Refusal as refusal:
         raise CompileError(refusal) from refusal
-    return machine.object_code(text), watch
+    return object_code(text), watch
 
 
 def _lists(folder: TrustedCache, program: str) -> list[list[Place]]:
@@ -157,4 +358,4 @@ def _own_text() -> str:
 
 @cache
 def _machine_key() -> str:
-    return hashlib.sha256(machine.described().encode()).hexdigest()[:8]
+    return hashlib.sha256(described().encode()).hexdigest()[:8]

@@ -7,7 +7,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any, Protocol
 
-from stylobate.compiler.written import written_module
+from stylobate.compiler.sources import written_module
 
 Functions = Mapping[str, Callable[..., Any]]
 
@@ -56,8 +56,7 @@ def placeholders(module: str, declared: Mapping[str, Any]) -> Callable[[str], Un
     def placeholder(name: str) -> Unbound:
         if name in declared:
             return Unbound(name)
-        message = f"{module} declares no name {name}"
-        raise AttributeError(message)
+        raise AttributeError(f"{module} declares no name {name}")
 
     return placeholder
 

@@ -1,19 +1,72 @@
-"""Source of functions: their syntax trees, with the names that they use."""
+"""Source of functions: their syntax trees, with the names that they use, and errors that name the place."""
 
 import ast
 import builtins
 import copy
 import inspect
+import linecache
+import sys
 import textwrap
 import types
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cache
 from typing import Any
 
 from stylobate.compiler.marks import is_fast
-from stylobate.compiler.refusal import CompileError
-from stylobate.compiler.written import lines_of
+
+
+class CompileError(Exception):
+    """A function cannot be compiled; the message has location, reason and remedy."""
+
+
+class Refusal(Exception):  # noqa: N818  becomes a CompileError where the place is known
+    """A function contains unsupported code.
+
+    Parameters
+    ----------
+    reason
+        Reason and remedy.
+    """
+
+
+class LanesRefusal(Refusal):
+    """A function contains code that is unsupported only in loops over lanes."""
+
+
+def at_its_place(reason: object, node: ast.AST, file: str, function: str) -> CompileError:
+    """Return the error for a refusal, with file and line."""
+    return CompileError(f"{file}:{getattr(node, 'lineno', '?')}: in {function}: {reason}")
+
+
+PACKAGE = "stylobate_kernels"
+
+_texts: dict[str, list[str]] = {}
+"""Lines by virtual file name; a copy, since `linecache`, which tracebacks use, may drop them."""
+
+
+def written_module(name: str, text: str, functions: Mapping[str, Callable[..., Any]]) -> types.ModuleType:
+    """Return the module of a text, with the functions of a model under these names.
+
+    Its functions are plain Python; their lines are available to the compiler, tracebacks and debuggers.
+    """
+    module = types.ModuleType(f"{PACKAGE}.{name}")
+    module.__file__ = f"<{module.__name__}>"
+    vars(module).update(functions)
+    sys.modules[module.__name__] = module
+    _texts[module.__file__] = text.splitlines(keepends=True)
+    linecache.cache[module.__file__] = (len(text), None, _texts[module.__file__], module.__file__)
+    exec(compile(text, module.__file__, "exec"), vars(module))  # noqa: S102  our own text
+    return module
+
+
+def lines_of(file: str) -> list[str]:
+    """Return the lines of a generated module or of a file on disk."""
+    if file in _texts:
+        return _texts[file]
+    linecache.checkcache(file)
+    return linecache.getlines(file)
+
 
 _Cached = type(cache(len))
 _Node = ast.FunctionDef | ast.Lambda
@@ -124,11 +177,10 @@ def _node_of(code: types.CodeType) -> _Node:
     if not nodes:
         nodes, written = _within_other_text(lines, *place)
     if len(nodes) != 1 or written is None or not _is_same(written, code, exact=exact):
-        message = (
+        raise CompileError(
             f"the text of {code.co_name} cannot be found in {code.co_filename}; write it in a file, or in a cell of a "
             "notebook, one function to a line; if the file has changed since it was imported, start again"
         )
-        raise CompileError(message)
     return nodes[0]
 
 

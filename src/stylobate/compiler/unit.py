@@ -10,10 +10,9 @@ from typing import Any
 
 from stylobate.compiler.arithmetic import Arithmetic
 from stylobate.compiler.body import Body
+from stylobate.compiler.memory import Need, WiderSlotError
 from stylobate.compiler.reads import Reads
-from stylobate.compiler.refusal import CompileError, LanesRefusal, Refusal
-from stylobate.compiler.slots import Need, WiderSlotError
-from stylobate.compiler.sources import Source, plain_function, source_of
+from stylobate.compiler.sources import CompileError, LanesRefusal, Refusal, Source, plain_function, source_of
 from stylobate.compiler.text import FunctionText, ModuleText
 from stylobate.compiler.values import Array, Element, Kind, Number, Value, parts, rebuilt
 
@@ -86,8 +85,7 @@ class Unit:
         values = [_argument(arithmetic, argument, head) for argument in arguments]
         result = _called(arithmetic, self._specialised(plain_function(function), values, fast=False), values)
         if result is not None and not (isinstance(result, Number) and result.kind < Kind.FLOAT):
-            message = f"{name} returns a whole number, a condition or nothing when it is called from outside"
-            raise CompileError(message)
+            raise CompileError(f"{name} returns a whole number, a condition or nothing when it is called from outside")
         text.end("ret i64 0" if result is None else f"ret {arithmetic.number(result, Kind.INTEGER).operand}")
         self.module.define(f"i64 @{name}({', '.join(head)})", text.body())
 
@@ -165,8 +163,7 @@ class Unit:
     @contextmanager
     def _entered(self, function: FunctionType) -> Iterator[None]:
         if function in self._within:
-            message = f"{function.__name__} calls itself; write it as a loop"
-            raise Refusal(message)
+            raise Refusal(f"{function.__name__} calls itself; write it as a loop")
         self._within.append(function)
         try:
             yield
@@ -245,8 +242,7 @@ def _bound(reads: Reads, source: Source, values: list[Value], keywords: Mapping[
     try:
         bound = source.signature.bind(*values, **keywords)
     except TypeError as error:
-        message = f"{source.name}: {error}"
-        raise Refusal(message) from error
+        raise Refusal(f"{source.name}: {error}") from error
     given = set(bound.arguments)
     bound.apply_defaults()
     for name, value in bound.arguments.items():

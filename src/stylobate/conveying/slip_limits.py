@@ -14,9 +14,8 @@ from stylobate import theory
 from stylobate.base_motions import BaseMotion, Harmonic
 from stylobate.errors import Named, ParameterError, UnsupportedError
 from stylobate.models import Model
-from stylobate.models.closed_form import ClosedForm, RollingLaw
 from stylobate.models.declared import name_by_symbol
-from stylobate.models.inheritance import closed_form_of
+from stylobate.models.model import ClosedForm, RollingLaw, closed_form_of
 from stylobate.parameter_quantities import attributes_of
 from stylobate.provenance import provenance_of_run
 from stylobate.results.outcomes import flag_attributes

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from stylobate.compiler.fingerprint import global_names
+from stylobate.compiler.reads import global_names
 from stylobate.compiler.sources import plain_function
 from stylobate.errors import UnsupportedError
 

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from stylobate.base_motions import BaseMotion
-from stylobate.compiler.over_rows import over_rows
+from stylobate.compiler.compiled import over_rows
 from stylobate.engine.ensembles.runs import CONTACT_KINDS
 from stylobate.engine.forcing import Floats, Forcing
 from stylobate.engine.tolerances import SAMPLES_PER_PERIOD

@@ -6,7 +6,7 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from stylobate.compiler.over_rows import over_rows
+from stylobate.compiler.compiled import over_rows
 from stylobate.engine.kernel.columns import TRACE_TERMS, Trace
 from stylobate.engine.kernel.driver.events import TraceKind
 from stylobate.models import Model

@@ -12,7 +12,7 @@ from stylobate.engine.kernel.columns import LAGS, SLACK
 from stylobate.engine.trajectory import Trajectory
 from stylobate.errors import Outcome, ParameterError, require_positive
 from stylobate.models import Model
-from stylobate.models.inheritance import belongs_to_equations
+from stylobate.models.model import belongs_to_equations
 from stylobate.results import OutcomeRules
 from stylobate.run_arguments import RTOL_RANGE, duration_with_tail
 

@@ -16,7 +16,7 @@ from stylobate.column import Column
 from stylobate.errors import Outcome
 from stylobate.lab.limits import Limits
 from stylobate.models.declared import column_quantities
-from stylobate.models.sliding.phases import Contact
+from stylobate.models.sliding.balance import Contact
 from stylobate.plots.geometry import Shape
 from stylobate.quantities import Quantity, parameters_of
 from stylobate.results.outcomes import NUMERICALLY_UNCERTAIN

@@ -54,7 +54,7 @@ def contact_loads(model: Model, states: Floats, accelerations: Floats, resting: 
     model, states, accelerations, resting
         As for `contact_outputs`.
     """
-    from stylobate.compiler.over_rows import over_rows
+    from stylobate.compiler.compiled import over_rows
 
     assert model.contact is not None
     arguments = (*states[: len(model.state_names)], *accelerations, *model.parameters)

@@ -13,6 +13,7 @@ import numpy.typing as npt
 
 from stylobate.column import Column
 from stylobate.models.model import Balance, Push
+from stylobate.models.vertical import departing_lean
 
 Floats = npt.NDArray[np.float64]
 
@@ -119,7 +120,7 @@ def planar_acceleration(
     return side * acceleration, normal, swept
 
 
-def no_return_tilt(peak_horizontal: float, minimum_vertical: float, c: float) -> float:
+def no_return_tilt(peak_horizontal: float, minimum_vertical: float, c: float, *_: float) -> float:
     """Return the point of no return without spin, atan c + atan(sup|a_h|/(1 + inf a_z)) [rad].
 
     Beyond this tilt (1 + a_z)(sin θ − c cos θ) exceeds |a_h|(cos θ + c sin θ). The result is at most π/2, where the
@@ -136,6 +137,11 @@ def energy_at_rest(tilt: float, speed: float, vertical: float, c: float, kappa: 
     return 0.5 * (1.0 + kappa * c * c) * speed * speed + c * (1.0 + vertical) * tilt
 
 
+def rest_energy(tilt: float, speed: float, vertical: float, c: float, _eta: float, kappa: float, *_: float) -> float:
+    """Return ½K|α̇|² + c(1 + a_z)|α|, the energy above rest near the vertical; parameters begin with c, η, κ."""
+    return energy_at_rest(tilt, speed, vertical, c, kappa)
+
+
 def uplift_terms(push: Push, c: float, eta: float, kappa: float, resistance: float) -> tuple[float, float, float]:
     """Return damping, moment of inertia K and gain of K θ̈ = F − damping θ̇ + gain θ, linear about uplift.
 
@@ -144,6 +150,14 @@ def uplift_terms(push: Push, c: float, eta: float, kappa: float, resistance: flo
     inertia, weight = 1.0 + kappa * c * c, (push.acceleration - push.excess) / c
     normal = weight + kappa * c * push.excess / inertia
     return eta + c * resistance / FADING * normal, inertia, weight + c * push.acceleration
+
+
+def departure(
+    push: Push, elapsed: float, c: float, eta: float, kappa: float, resistance: float
+) -> tuple[float, float, float, float]:
+    """Return the state a short time after uplift."""
+    damping, inertia, gain = uplift_terms(push, c, eta, kappa, resistance)
+    return departing_lean(push, elapsed, damping, inertia, gain, 1.0)[:4]
 
 
 def potential(tilt: Floats, c: float) -> Floats:

@@ -4,7 +4,7 @@ import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from enum import IntEnum
+from enum import Enum, IntEnum
 from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
@@ -12,8 +12,43 @@ import numpy.typing as npt
 
 from stylobate.column import Column
 from stylobate.errors import ParameterError
-from stylobate.models.closed_form import ClosedForm
 from stylobate.quantities import Declared
+
+
+class RollingLaw(Enum):
+    """The closed forms of steady rolling, by the function of `theory` that computes each."""
+
+    SLENDER = "steady_rolling"
+    FREE_TWIST = "free_twist_rolling"
+    WOBBLING = "wobbling_rolling"
+    FULL = "full_rolling"
+    SLIPPING = "slipping_rolling"
+
+
+@dataclass(frozen=True, slots=True)
+class ClosedForm:
+    """The closed form of steady rolling of a model on a base that moves in a circle.
+
+    Parameters
+    ----------
+    law
+        The function that computes it.
+    eta, zeta
+        Damping η and spin damping ζ that it takes; ζ is infinite for a column that cannot turn about the vertical.
+    requires
+        Name of a number of the model that differs from the value that the closed form requires, and that value.
+    """
+
+    law: RollingLaw
+    eta: float
+    zeta: float = 0.0
+    requires: tuple[str, float | str] | None = None
+
+
+def zero(model: object, *names: str) -> tuple[str, float] | None:
+    """Return the name of the first of these numbers of `model` that is not zero, and 0; None if all are zero."""
+    return next(((name, 0) for name in names if getattr(model, name) != 0.0), None)
+
 
 Floats = npt.NDArray[np.float64]
 
@@ -338,5 +373,88 @@ class Model(Declared, ABC):
 def require_column(value: object) -> None:
     """Raise ParameterError if `value` is not a Column."""
     if not isinstance(value, Column):
-        message = f"column must be a Column, such as Column.solid(...), got {value!r}"
-        raise ParameterError(message)
+        raise ParameterError(f"column must be a Column, such as Column.solid(...), got {value!r}")
+
+
+_EQUATIONS = ("rates", "parameters")
+
+
+def owner_of(kind: type[Model], name: str) -> type:
+    """Return the class from which `kind` has its member `name`."""
+    return next(cls for cls in kind.__mro__ if name in vars(cls))
+
+
+def belongs_to_equations(kind: type[Model], name: str, *also: str) -> bool:
+    """Return whether the class that states `rates` and `parameters`, or a subclass of it, states `name`.
+
+    A subclass that replaces `rates` or `parameters` replaces the equations. An inherited claim about the equations,
+    such as the energy of the balance, is then void unless the subclass states it again.
+
+    Parameters
+    ----------
+    kind
+        The class of a model.
+    name
+        The member that makes the claim.
+    *also
+        Further members on which the claim depends, such as `energy`.
+    """
+    place = kind.__mro__.index(owner_of(kind, name))
+    return all(place <= kind.__mro__.index(owner_of(kind, other)) for other in (*_EQUATIONS, *also))
+
+
+def closed_form_of(model: object) -> ClosedForm | None:
+    """Return the closed form of steady rolling that a model states for its own equations; None without one."""
+    if not isinstance(model, Model) or not belongs_to_equations(type(model), "closed_form", "tilt_of", "start"):
+        return None
+    return model.closed_form
+
+
+LEAN = ("tilt_x", "tilt_y", "tilt_rate_x", "tilt_rate_y")
+"""Names of these states."""
+
+
+def tilt_of(x: Any, y: Any, vx: Any, vy: Any, *_: Any) -> tuple[Any, Any, Any, Any]:
+    """Return the tilt vector and its rate: the state itself."""
+    return x, y, vx, vy
+
+
+def from_plane(tilt: Any, rate: Any, ux: float, uy: float, *_: float) -> tuple[Any, ...]:
+    """Return the state of a motion along the unit vector (ux, uy)."""
+    return tilt * ux, tilt * uy, rate * ux, rate * uy
+
+
+def from_plane_without_spin(tilt: Any, rate: Any, ux: float, uy: float, *_: float) -> tuple[Any, ...]:
+    """Return the state of a motion along the unit vector (ux, uy), with zero spin."""
+    return tilt * ux, tilt * uy, rate * ux, rate * uy, 0.0 * tilt
+
+
+class TiltVectorModel(Model):
+    """A model whose state is the tilt vector and its rate."""
+
+    __slots__ = ()
+
+    state_names: ClassVar[tuple[str, ...]] = LEAN
+
+    tilt_of = staticmethod(tilt_of)
+    from_plane = staticmethod(from_plane)
+
+    def start(self, tilt: tuple[float, float], tilt_rate: tuple[float, float]) -> tuple[float, ...]:
+        """Return the state with this tilt vector [rad] and its rate [rad/s]."""
+        scale = self.time_scale
+        return tilt[0], tilt[1], tilt_rate[0] * scale, tilt_rate[1] * scale
+
+
+class SpinningModel(TiltVectorModel):
+    """A model with the spin as its fifth state."""
+
+    __slots__ = ()
+
+    state_names: ClassVar[tuple[str, ...]] = (*LEAN, "spin")
+    spin_state: ClassVar[int | None] = len(LEAN)
+
+    from_plane = staticmethod(from_plane_without_spin)
+
+    def start(self, tilt: tuple[float, float], tilt_rate: tuple[float, float]) -> tuple[float, ...]:
+        """Return the state with this tilt vector [rad] and its rate [rad/s], without spin."""
+        return *TiltVectorModel.start(self, tilt, tilt_rate), 0.0 * tilt[0]

@@ -10,12 +10,11 @@ import numpy.typing as npt
 
 from stylobate.column import STANDARD_GRAVITY, Column
 from stylobate.errors import require_positive
-from stylobate.models import finite_tilt, without_spin
+from stylobate.models import finite_tilt
 from stylobate.models.contact import contact_outputs, path_outputs
+from stylobate.models.declared import Damping, Restitution, RollingResistance
 from stylobate.models.finite_tilt import TINY, planar_acceleration
-from stylobate.models.model import Balance, Floats, Output, Push
-from stylobate.models.numbers import Damping, Restitution, RollingResistance
-from stylobate.models.tilt_vector import TiltVectorModel
+from stylobate.models.model import Balance, Floats, Output, Push, TiltVectorModel
 
 
 def rates(
@@ -83,7 +82,7 @@ def departure(
     push: Push, elapsed: float, c: float, eta: float, kappa: float, resistance: float, _restitution: float
 ) -> tuple[float, float, float, float]:
     """Return the state a short time after uplift."""
-    return without_spin.departure(push, elapsed, c, eta, kappa, resistance)
+    return finite_tilt.departure(push, elapsed, c, eta, kappa, resistance)
 
 
 def impact_map(
@@ -187,8 +186,8 @@ class PlanarRocking(TiltVectorModel):
     rates = staticmethod(rates)
     contact = staticmethod(contact)
     planar_rates = staticmethod(planar_rates)
-    rest_energy = staticmethod(without_spin.rest_energy)
-    no_return_tilt = staticmethod(without_spin.no_return_tilt)
+    rest_energy = staticmethod(finite_tilt.rest_energy)
+    no_return_tilt = staticmethod(finite_tilt.no_return_tilt)
     departure = staticmethod(departure)
     impact_map = staticmethod(impact_map)
 

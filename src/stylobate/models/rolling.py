@@ -9,13 +9,12 @@ import numpy as np
 import numpy.typing as npt
 
 from stylobate.column import Column
-from stylobate.models import finite_tilt, free_twist
-from stylobate.models.closed_form import ClosedForm, RollingLaw, zero
+from stylobate.models import finite_tilt
 from stylobate.models.contact import contact_outputs, path_outputs
+from stylobate.models.declared import Damping, PassageTilt, Restitution, RollingResistance, SpinDamping
 from stylobate.models.finite_tilt import TINY, cosine, planar_acceleration, sine_over_angle, tilt_acceleration
-from stylobate.models.model import Balance, Floats, Output, Push
-from stylobate.models.numbers import Damping, PassageTilt, Restitution, RollingResistance, SpinDamping
-from stylobate.models.tilt_vector import SpinningModel
+from stylobate.models.model import Balance, ClosedForm, Floats, Output, Push, RollingLaw, SpinningModel, zero
+from stylobate.models.vertical import departure_with_spin, passage_with_spin
 
 
 def balance(
@@ -174,7 +173,7 @@ def departure(
     _restitution: float,
 ) -> tuple[float, float, float, float, float]:
     """Return the state a short time after uplift."""
-    return free_twist.departing(
+    return departure_with_spin(
         push, elapsed, finite_tilt.uplift_terms(push, c, eta, kappa, resistance), c, kappa, axial
     )
 
@@ -196,7 +195,7 @@ def passage(
     *_: float,
 ) -> tuple[float, tuple[float, float, float, float, float]]:
     """Return the duration and the end state of a passage of the vertical; the spin bends the path."""
-    return free_twist.passing((x, y, vx, vy), spin, (ax, ay, az), 1.0 + kappa * c * c, c, eta, zeta, kappa, axial)
+    return passage_with_spin((x, y, vx, vy), spin, (ax, ay, az), 1.0 + kappa * c * c, c, eta, zeta, kappa, axial)
 
 
 def impact_map(

@@ -9,13 +9,10 @@ import numpy as np
 import numpy.typing as npt
 
 from stylobate.column import Column
-from stylobate.models.closed_form import ClosedForm, RollingLaw
 from stylobate.models.contact import contact_outputs, path_outputs
-from stylobate.models.departing import departing_lean
-from stylobate.models.model import Balance, Floats, Output, Push
-from stylobate.models.numbers import Damping
-from stylobate.models.passing import pass_vertical
-from stylobate.models.tilt_vector import TiltVectorModel
+from stylobate.models.declared import Damping
+from stylobate.models.model import Balance, ClosedForm, Floats, Output, Push, RollingLaw, TiltVectorModel
+from stylobate.models.vertical import departing_lean, pass_vertical
 
 # Keeps 1/|α| finite at the vertical, far below any resolved tilt.
 _TINY = 1e-300

@@ -9,12 +9,11 @@ import numpy as np
 import numpy.typing as npt
 
 from stylobate.column import Column
-from stylobate.models import free_twist, slender
-from stylobate.models.closed_form import ClosedForm, RollingLaw
+from stylobate.models import slender
 from stylobate.models.contact import contact_outputs, path_outputs
-from stylobate.models.model import Balance, Floats, Output, Push
-from stylobate.models.numbers import Damping, SpinDamping
-from stylobate.models.tilt_vector import SpinningModel
+from stylobate.models.declared import Damping, SpinDamping
+from stylobate.models.model import Balance, ClosedForm, Floats, Output, Push, RollingLaw, SpinningModel
+from stylobate.models.vertical import departure_with_spin, passage_with_spin
 from stylobate.quantities import Quantity
 
 # As in the slender model: keeps 1/|α| finite at the vertical.
@@ -117,7 +116,7 @@ def departure(
     push: Push, elapsed: float, c: float, eta: float, _zeta: float, kappa: float, axial: float, *_: float
 ) -> tuple[float, float, float, float, float]:
     """Return the state a short time after uplift."""
-    return free_twist.departing(push, elapsed, (eta, 1.0, (push.acceleration - push.excess) / c), c, kappa, axial)
+    return departure_with_spin(push, elapsed, (eta, 1.0, (push.acceleration - push.excess) / c), c, kappa, axial)
 
 
 def passage(
@@ -137,7 +136,7 @@ def passage(
     *_: float,
 ) -> tuple[float, tuple[float, float, float, float, float]]:
     """Return the duration and the end state of a passage of the vertical; the spin bends the path."""
-    return free_twist.passing((x, y, vx, vy), spin, (ax, ay, az), 1.0, c, eta, zeta, kappa, axial)
+    return passage_with_spin((x, y, vx, vy), spin, (ax, ay, az), 1.0, c, eta, zeta, kappa, axial)
 
 
 @dataclass(frozen=True, slots=True)

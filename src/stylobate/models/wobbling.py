@@ -9,14 +9,12 @@ import numpy as np
 import numpy.typing as npt
 
 from stylobate.column import Column
-from stylobate.models import finite_tilt, without_spin
-from stylobate.models.closed_form import ClosedForm, RollingLaw, zero
+from stylobate.models import finite_tilt
 from stylobate.models.contact import contact_outputs, path_outputs
+from stylobate.models.declared import Damping, PassageTilt, Restitution, RollingResistance
 from stylobate.models.finite_tilt import TINY, cosine, planar_acceleration, sine_over_angle, tilt_acceleration
-from stylobate.models.model import Balance, Floats, Output, Push
-from stylobate.models.numbers import Damping, PassageTilt, Restitution, RollingResistance
-from stylobate.models.passing import pass_vertical
-from stylobate.models.tilt_vector import TiltVectorModel
+from stylobate.models.model import Balance, ClosedForm, Floats, Output, Push, RollingLaw, TiltVectorModel, zero
+from stylobate.models.vertical import pass_vertical
 from stylobate.quantities import Quantity
 
 Constraint = Annotated[Literal["pure_tilt", "rubber"], Quantity(text="constraint on the axial rotation")]
@@ -174,7 +172,7 @@ def departure(
     _restitution: float,
 ) -> tuple[float, float, float, float]:
     """Return the state a short time after uplift."""
-    return without_spin.departure(push, elapsed, c, eta, kappa, resistance)
+    return finite_tilt.departure(push, elapsed, c, eta, kappa, resistance)
 
 
 def passage(
@@ -269,8 +267,8 @@ class Wobbling(TiltVectorModel):
     contact = staticmethod(contact)
     carried_rates = staticmethod(carried_rates)
     planar_rates = staticmethod(planar_rates)
-    rest_energy = staticmethod(without_spin.rest_energy)
-    no_return_tilt = staticmethod(without_spin.no_return_tilt)
+    rest_energy = staticmethod(finite_tilt.rest_energy)
+    no_return_tilt = staticmethod(finite_tilt.no_return_tilt)
     departure = staticmethod(departure)
     passage = staticmethod(passage)
     impact_map = staticmethod(impact_map)

@@ -1,11 +1,10 @@
+from .arclength import End, StepControl
 from .bifurcations import Bifurcation, Kind
-from .branch import Branch, continue_branch
+from .branch import Branch, continue_branch, switch_branch
 from .curves import BifurcationCurve, bifurcation_curve
 from .finding import periodic_orbit, periodic_orbits
 from .orbit import PeriodicOrbit
 from .storage import load_orbits
-from .switching import switch_branch
-from .tracing import End, StepControl
 
 __all__ = [
     "Bifurcation",

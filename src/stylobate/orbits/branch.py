@@ -1,4 +1,4 @@
-"""Branches: continuation of families of periodic orbits with their bifurcations."""
+"""Branches of periodic orbits: continued over a parameter, and begun at a bifurcation of another branch."""
 
 import json
 import math
@@ -16,14 +16,32 @@ from stylobate.engine.flow.integration import Status
 from stylobate.engine.parameters import present_value
 from stylobate.equality import ByContent
 from stylobate.errors import Interrupted, NoOrbitError, ParameterError, require_finite
-from stylobate.orbits.arclength import Family, Floats, Point, on_family
-from stylobate.orbits.arguments import control_of, enclosing, require_followed, require_orbit
-from stylobate.orbits.bifurcations import Bifurcation, between, orbit_at
-from stylobate.orbits.multipliers import is_stable
-from stylobate.orbits.orbit import PeriodicOrbit, range_of, system_sections
-from stylobate.orbits.saving import BRANCH, SUPERCRITICAL, file_attributes, write
-from stylobate.orbits.shooting import WHY_LOST, arcs_of
-from stylobate.orbits.tracing import End, StepControl, Stretch, trace
+from stylobate.orbits.arclength import (
+    End,
+    Family,
+    Floats,
+    Point,
+    StepControl,
+    Stretch,
+    control_of,
+    corrected,
+    enclosing,
+    on_family,
+    require_followed,
+    trace,
+)
+from stylobate.orbits.bifurcations import Bifurcation, Kind, between, orbit_at, require_bifurcation
+from stylobate.orbits.orbit import (
+    BRANCH,
+    SUPERCRITICAL,
+    PeriodicOrbit,
+    file_attributes,
+    range_of,
+    require_orbit,
+    system_sections,
+    write,
+)
+from stylobate.orbits.shooting import WHY_LOST, arcs_of, is_stable
 from stylobate.parameter_quantities import attributes_of, quantity_of
 from stylobate.progress import Progress, at_value, report_of, shows_progress
 from stylobate.provenance import provenance_of_run
@@ -65,8 +83,7 @@ class Branch(ByContent):
         """
         count = len(self.path)
         if not isinstance(index, (int, np.integer)) or not -count <= index < count:
-            message = f"index must be a whole number from {-count} to {count - 1}, got {index!r}"
-            raise ParameterError(message)
+            raise ParameterError(f"index must be a whole number from {-count} to {count - 1}, got {index!r}")
         return orbit_at(self.path[index])
 
     def orbits_at(self, value: float) -> tuple[PeriodicOrbit, ...]:
@@ -100,7 +117,7 @@ class Branch(ByContent):
             "mean_tilt": ([orbit.mean_tilt for orbit in orbits], "rad", "mean tilt angle"),
             "minimum_tilt": ([orbit.minimum_tilt for orbit in orbits], "rad", "minimum tilt angle"),
             "peak_tilt": ([orbit.peak_tilt for orbit in orbits], "rad", "peak tilt angle"),
-            "phase": ([phase_of(orbit) for orbit in orbits], "rad", "phase of the lean to the base acceleration"),
+            "phase": ([_phase_of(orbit) for orbit in orbits], "rad", "phase of the lean to the base acceleration"),
             "turns": ([orbit.turns for orbit in orbits], "1", "turns of the contact point per period"),
         }
         data = {
@@ -219,7 +236,7 @@ def _table_of(bifurcations: tuple[Bifurcation, ...]) -> dict[str, tuple[str, lis
     }
 
 
-def phase_of(orbit: PeriodicOrbit) -> float:
+def _phase_of(orbit: PeriodicOrbit) -> float:
     """Return the phase between lean and base acceleration [rad], from their components that turn once per period.
 
     The result is NaN if the contact point does not turn once per period, or the acceleration has no such component.
@@ -299,22 +316,21 @@ def continue_branch(
     control = control_of(control)
     value = present_value(orbit.model, orbit.motion, parameter)
     low, high = enclosing(orbit.system, bounds, parameter, value)
-    start = point_of(orbit, parameter, value, high - low)
+    start = _point_of(orbit, parameter, value, high - low)
     if isinstance(start, Status):
-        message = f"the continuation could not start at {parameter} = {value!r}: {WHY_LOST[start]}"
-        raise NoOrbitError(message)
+        raise NoOrbitError(f"the continuation could not start at {parameter} = {value!r}: {WHY_LOST[start]}")
     up = np.zeros_like(start.u)
     up[-1] = 1.0
-    return branch_through(start, up, (low, high), control, seen_by(progress), both_ways=both_ways)
+    return _branch_through(start, up, (low, high), control, _seen_by(progress), both_ways=both_ways)
 
 
-def seen_by(progress: Progress) -> Callable[[Point], None]:
+def _seen_by(progress: Progress) -> Callable[[Point], None]:
     """Return a callback for points that passes their parameter to `progress`."""
     report = report_of(progress)
     return lambda point: report(point.value)
 
 
-def point_of(orbit: PeriodicOrbit, parameter: str, value: float, span: float) -> Point | Status:
+def _point_of(orbit: PeriodicOrbit, parameter: str, value: float, span: float) -> Point | Status:
     """Return the orbit as a point of its family, which covers half the orbit if the orbit has the inversion."""
     states = orbit.chain.states
     if orbit.inversion:
@@ -326,7 +342,7 @@ def point_of(orbit: PeriodicOrbit, parameter: str, value: float, span: float) ->
     return on_family(Family(orbit.system, orbit.periods, parameter, span), states, value)
 
 
-def branch_through(
+def _branch_through(
     start: Point,
     direction: Floats,
     bounds: tuple[float, float],
@@ -366,3 +382,78 @@ def _joined(name: str, forward: Stretch, backward: Stretch | None) -> Branch:
         # The path has a point at each change of stability.
         path += [*(one.point for one in located), second]
     return Branch(name, tuple(path), tuple(found), (first_end, forward.end))
+
+
+# First step off the old family, in units of c, and maximum number of doublings if Newton's method falls back.
+_OFF, _DOUBLINGS = 2e-3, 5
+
+
+@shows_progress("branch", at_value)
+def switch_branch(
+    bifurcation: Bifurcation,
+    *,
+    bounds: tuple[float, float],
+    opposite: bool = False,
+    control: StepControl | None = None,
+    progress: Progress = None,
+) -> Branch:
+    """Continue the branch that begins at, or crosses, a bifurcation.
+
+    Parameters
+    ----------
+    bifurcation
+        A pitchfork, a period doubling or a branch point of a branch.
+    bounds
+        Minimum and maximum of the parameter.
+    opposite
+        At a pitchfork: continue the symmetry-related branch instead.
+    control, progress
+        As in `continue_branch`.
+
+    Raises
+    ------
+    ParameterError
+        If no branch of periodic orbits begins here: at a fold or a Neimark-Sacker point.
+    NoOrbitError
+        If no orbit of the new branch was reached.
+    Interrupted
+        On Ctrl-C; `partial` is the branch so far.
+    """
+    require_bifurcation(bifurcation)
+    control = control_of(control)
+    point, old = bifurcation.point, bifurcation.point.family
+    if bifurcation.kind in (Kind.FOLD, Kind.NEIMARK_SACKER):
+        raise ParameterError(
+            f"bifurcation must be a pitchfork, a period doubling or a branch point, got {bifurcation.kind.value}: "
+            "no other family of periodic orbits begins there"
+        )
+    bounds = enclosing(old.system, bounds, old.name, point.value)
+    periods = 2 * old.periods if bifurcation.kind is Kind.PERIOD_DOUBLING else old.periods
+    family = Family(old.at(point.value), periods, old.name, bounds[1] - bounds[0])
+    states = arcs_of(family.system, point.chain.states[0], periods, periods)
+    units = family.units(states.size)
+    sign = -1.0 if opposite else 1.0
+    disturbance = _arcs_of_disturbance(family, states, sign * bifurcation.critical_vector)
+    normal = np.append(disturbance.ravel(), 0.0) / units
+    normal /= np.linalg.norm(normal)
+    here = np.append(states.ravel(), point.value) / units
+    off = _OFF
+    for _ in range(_DOUBLINGS):
+        found = corrected(family, here + off * normal, normal)
+        # The old family meets the plane across the disturbance at zero distance.
+        if not isinstance(found, Status) and abs((found[0].u - here) @ normal) > 0.5 * off:
+            start = found[0]
+            return _branch_through(start, normal, bounds, control, _seen_by(progress), both_ways=False)
+        off *= 2.0
+    raise NoOrbitError(
+        f"no orbit of the branch from {old.name} = {point.value!r} was reached; give another bifurcation"
+    )
+
+
+def _arcs_of_disturbance(family: Family, states: np.ndarray, vector: np.ndarray) -> np.ndarray:
+    """Return a disturbance of the first state, carried to the beginning of each arc."""
+    carried = [vector]
+    for arc in range(len(states) - 1):
+        begin, end = (family.periods * k / len(states) for k in (arc, arc + 1))
+        carried.append(family.system.carry(states[arc], begin, end).by_start @ carried[-1])
+    return np.stack(carried)

@@ -17,13 +17,17 @@ from stylobate.engine.flow.periodic import Numbers, PeriodicSystem
 from stylobate.engine.parameters import present_value
 from stylobate.equality import ByContent
 from stylobate.errors import Interrupted, NoOrbitError, ParameterError, StylobateError
-from stylobate.orbits.arguments import control_of, enclosing, require_bifurcation, require_followed
-from stylobate.orbits.bifurcations import Bifurcation, Kind
-from stylobate.orbits.normal_forms import PeriodMap, neimark_sacker_coefficient, period_doubling_coefficient
-from stylobate.orbits.orbit import range_of, system_sections
-from stylobate.orbits.saving import CURVE, file_attributes, write
+from stylobate.orbits.arclength import ASTRAY, End, StepControl, control_of, enclosing, require_followed
+from stylobate.orbits.bifurcations import (
+    Bifurcation,
+    Kind,
+    PeriodMap,
+    neimark_sacker_coefficient,
+    period_doubling_coefficient,
+    require_bifurcation,
+)
+from stylobate.orbits.orbit import CURVE, file_attributes, range_of, system_sections, write
 from stylobate.orbits.shooting import Shots, shots
-from stylobate.orbits.tracing import ASTRAY, End, StepControl
 from stylobate.parameter_quantities import attributes_of, quantity_of
 from stylobate.progress import Progress, Report, at_value, report_of, shows_progress
 from stylobate.provenance import provenance_of_run
@@ -219,11 +223,11 @@ def bifurcation_curve(
     control = control_of(control)
     first = bifurcation.point.family.name
     if bifurcation.kind not in _CONDITIONS:
-        message = f"bifurcation must not be a branch point, which a second parameter breaks up; got {bifurcation!r}"
-        raise ParameterError(message)
+        raise ParameterError(
+            f"bifurcation must not be a branch point, which a second parameter breaks up; got {bifurcation!r}"
+        )
     if parameter == first:
-        message = f"parameter must differ from {first}, over which the bifurcation was found"
-        raise ParameterError(message)
+        raise ParameterError(f"parameter must differ from {first}, over which the bifurcation was found")
     system = bifurcation.orbit.system
     at = (bifurcation.parameter, present_value(system.model, system.motion, parameter))
     pairs = _pairs(bounds)
@@ -243,8 +247,7 @@ def bifurcation_curve(
     guess = np.concatenate([bifurcation.point.chain.states.ravel(), at])
     start = plane.corrected(guess / plane.units(guess.size - 2), None)
     if isinstance(start, End):
-        message = f"the curve could not start: {start.value}"
-        raise NoOrbitError(message)
+        raise NoOrbitError(f"the curve could not start: {start.value}")
     seen = report_of(progress)
     path, last = _followed(plane, start, 1.0, bounds, control, seen)
     begin: End = last if last is End.CLOSED else End.BEGUN
@@ -262,8 +265,9 @@ def _pairs(bounds: tuple[tuple[float, float], tuple[float, float]]) -> tuple[Seq
     try:
         first, second = bounds
     except (TypeError, ValueError):
-        message = f"bounds must be two pairs of numbers, of the first and of the second parameter; got {bounds!r}"
-        raise ParameterError(message) from None
+        raise ParameterError(
+            f"bounds must be two pairs of numbers, of the first and of the second parameter; got {bounds!r}"
+        ) from None
     return first, second
 
 

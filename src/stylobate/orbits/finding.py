@@ -1,26 +1,214 @@
-"""Search for periodic orbits from a guess, from theory, from a run, or from random initial conditions."""
+"""Find periodic orbits, from a guess, a run, random states, or steady rolling by theory.
 
+An elliptic motion is the sum of two circular motions of opposite sense. Steady rolling under one circular motion is
+known exactly; the continuation adds the other motion step by step.
+"""
+
+import cmath
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
 
-from stylobate.base_motions import BaseMotion
+from stylobate import theory
+from stylobate.base_motions import BaseMotion, Harmonic, as_harmonic
+from stylobate.column import Column
 from stylobate.engine.flow.integration import Status
 from stylobate.engine.flow.periodic import PeriodicSystem, plane_of, require_periodic
 from stylobate.engine.forcing import common_line
-from stylobate.errors import NoOrbitError, ParameterError, as_numbers, require_positive, require_whole
+from stylobate.errors import NoOrbitError, ParameterError, UnsupportedError, as_numbers, require_positive, require_whole
 from stylobate.models import Model
-from stylobate.orbits.arguments import require_subject
-from stylobate.orbits.opening import require_sense, rolling_by_theory
-from stylobate.orbits.orbit import PeriodicOrbit
+from stylobate.models.model import ClosedForm, RollingLaw, closed_form_of
+from stylobate.orbits.orbit import PeriodicOrbit, require_subject
 from stylobate.orbits.shooting import Shots, arcs_of, closed, damped, newton_step, shots
 from stylobate.results import Response
 from stylobate.results.random_numbers import Rng, seed_of
 
 Floats = npt.NDArray[np.float64]
+
+
+def rolling_form_of(model: Model) -> ClosedForm | None:
+    """Return the closed form of the steady rolling without slip of `model`, or None."""
+    form = closed_form_of(model)
+    return None if form is None or form.law is RollingLaw.SLIPPING else form
+
+
+def steady_rolling_of(
+    form: ClosedForm, column: Column, nu: float, acceleration: float, branch: str = "upper"
+) -> tuple[float, float, float]:
+    """Return tilt [rad], phase to the base acceleration [rad] and spin [ω0] of steady rolling; NaN without it.
+
+    Parameters
+    ----------
+    form
+        Result of `rolling_form_of` for a model that meets its requirement.
+    column
+        The column.
+    nu
+        Frequency of the base [ω0], which moves anticlockwise.
+    acceleration
+        Acceleration of the base [g].
+    branch
+        "upper" or "lower"; at finite tilt "upper" is the stable branch or, if none is, that of the phase nearest to 0.
+        For slender rolling only the upper branch is known.
+    """
+    c, eta, zeta = column.slenderness, form.eta, form.zeta
+    shape = {"inertia_ratio": column.inertia_ratio, "axial_ratio": column.axial_ratio}
+    if form.law is RollingLaw.SLENDER:
+        steady = theory.steady_rolling(nu, acceleration, c=c, eta=eta)
+        chosen = steady.upper if branch == "upper" else steady.lower
+        return float(chosen.amplitude), float(chosen.phase), 0.0
+    if form.law is RollingLaw.FREE_TWIST:
+        free = theory.free_twist_rolling(nu, acceleration, c=c, eta=eta, zeta=zeta, **shape)
+        return float(free.amplitude), float(free.phase), float(free.spin)
+    if form.law is RollingLaw.WOBBLING:
+        found = theory.wobbling_rolling(nu, acceleration, c=c, eta=eta, **shape)
+    else:
+        found = theory.full_rolling(nu, acceleration, c=c, eta=eta, zeta=zeta, **shape)
+    index = _index_of(found.phase, found.stable, found.exists, branch)
+    if index is None:
+        return math.nan, math.nan, math.nan
+    return float(found.amplitude[index]), float(found.phase[index]), float(found.spin[index])
+
+
+def _index_of(
+    phase: npt.NDArray[np.float64], stable: npt.NDArray[np.bool_], exists: npt.NDArray[np.bool_], branch: str
+) -> int | None:
+    """Return the index of a branch: upper, the stable one or that of the phase nearest to 0; lower, the farthest."""
+    order = sorted(np.flatnonzero(exists).tolist(), key=lambda index: (not stable[index], abs(phase[index])))
+    if branch == "upper":
+        return order[0] if order else None
+    return max(order[1:], key=lambda index: abs(phase[index]), default=None)
+
+
+_FIRST_PART, _LEAST_PART = 0.25, 1e-3
+_NO_PART = 1e-12
+_GIVE = "guess must be given, such as a run that has settled"
+
+
+@dataclass(frozen=True, slots=True)
+class _Circles:
+    """A horizontal harmonic motion x + iy = P e^{iΩt} + Q e^{−iΩt}."""
+
+    forward: complex
+    backward: complex
+    angular_frequency: float
+
+    @classmethod
+    def of(cls, motion: Harmonic) -> "_Circles":
+        x, y = (
+            cmath.rect(amplitude, motion.start_phase + phase)
+            for amplitude, phase in zip(motion.amplitude[:2], motion.phase[:2], strict=True)
+        )
+        return cls(0.5 * (x + 1j * y), 0.5 * (x.conjugate() + 1j * y.conjugate()), motion.angular_frequency)
+
+    def motion(self, part: float, sense: int) -> Harmonic:
+        """Return the motion with the circle against `sense` reduced to the fraction `part`."""
+        forward = self.forward * (1.0 if sense > 0 else part)
+        backward = self.backward * (part if sense > 0 else 1.0)
+        x, y = forward + backward.conjugate(), -1j * (forward - backward.conjugate())
+        return Harmonic(
+            amplitude=(abs(x), abs(y), 0.0),
+            phase=(cmath.phase(x), cmath.phase(y), 0.0),
+            angular_frequency=self.angular_frequency,
+        )
+
+
+def _rolling_by_theory(model: Model, motion: BaseMotion, sense: int | None) -> Floats:
+    """Return the state at t = 0 of rolling with the base motion in this sense, in units of the model.
+
+    The default sense is that of the larger of the two circles, anticlockwise if they are equal.
+
+    Raises
+    ------
+    UnsupportedError
+        If the model states no closed form of steady rolling, a parameter of the model lies outside the closed form, or
+        the motion is not a horizontal Harmonic.
+    NoOrbitError
+        If theory has no such motion, or the continuation to this base motion fails.
+    """
+    form = _form_of(model)
+    harmonic = as_harmonic(motion)
+    if harmonic is None or harmonic.amplitude[2] != 0.0:
+        raise UnsupportedError(
+            f"{_GIVE}: steady rolling has a closed form under horizontal Harmonic motion only, got {motion!r}"
+        )
+    _require_sense(sense)
+    circles = _Circles.of(harmonic)
+    if sense is None:
+        larger = abs(circles.backward) > (1.0 + _NO_PART) * abs(circles.forward)
+        sense = -1 if larger else 1
+    along, against = circles.forward, circles.backward
+    if sense < 0:
+        along, against = against, along
+    state = _on_the_circle(model, form, harmonic, along, sense)
+    if abs(against) <= _NO_PART * abs(along):
+        return state
+    done, step = 0.0, _FIRST_PART
+    while done < 1.0:
+        part = min(done + step, 1.0)
+        opened = _rolling(model, circles.motion(part, sense), state, sense)
+        if opened is None:
+            step *= 0.5
+            if step < _LEAST_PART:
+                raise NoOrbitError(
+                    f"{_GIVE}: rolling in the sense {sense:+d} was continued from its circle only up to {done:.3g} of "
+                    "the circle of opposite sense"
+                )
+            continue
+        done, state = part, opened
+    return state
+
+
+def _form_of(model: Model) -> ClosedForm:
+    """Return the closed form of the steady rolling of a model, or raise UnsupportedError without one."""
+    form = rolling_form_of(model)
+    if form is None:
+        raise UnsupportedError(
+            f"{_GIVE}: {type(model).__name__} states no closed form of steady rolling for its equations"
+        )
+    if form.requires is not None:
+        name, value = form.requires
+        raise UnsupportedError(
+            f"{_GIVE}: {name} must be {value!r} for the closed form of steady rolling, got {getattr(model, name)!r}"
+        )
+    return form
+
+
+def _require_sense(sense: int | None) -> None:
+    """Raise ParameterError unless `sense` is a sense of rolling, or None."""
+    if sense not in (1, -1, None):
+        raise ParameterError(f"sense must be +1, -1 or None, got {sense!r}")
+
+
+def _rolling(model: Model, motion: Harmonic, guess: Floats, sense: int) -> Floats | None:
+    """Return the orbit that Newton's method finds from `guess` if the orbit rolls in this sense, or None."""
+    try:
+        chain = closed(PeriodicSystem(model, motion), guess[np.newaxis], 1)
+    except NoOrbitError:
+        return None
+    return chain.states[0] if PeriodicOrbit(model, motion, 1, chain).turns == sense else None
+
+
+def _on_the_circle(model: Model, form: ClosedForm, motion: Harmonic, part: complex, sense: int) -> Floats:
+    nu = motion.angular_frequency / model.column.frequency_scale
+    amplitude, psi, spin = steady_rolling_of(form, model.column, nu, abs(part) / model.column.gravity)
+    if not amplitude > 0.0:
+        raise NoOrbitError(
+            "guess must be given: theory has no steady rolling in this sense at angular_frequency = "
+            f"{motion.angular_frequency!r} rad/s"
+        )
+    azimuth = cmath.phase(part) + sense * psi
+    x, y = amplitude * math.cos(azimuth), amplitude * math.sin(azimuth)
+    rate = sense * nu
+    state = np.array(model.start((x, y), (0.0, 0.0)), dtype=float)
+    state[2:4] = -rate * y, rate * x
+    if model.spin_state is not None:
+        state[model.spin_state] = sense * spin
+    return state
+
 
 _LEAN = 4
 # Two orbits are the same if their states differ by less than this fraction of c, at one of their possible phases.
@@ -91,11 +279,11 @@ def periodic_orbit(
     periods = require_whole("periods", periods, least=1)
     arcs = periods if arcs is None else require_whole("arcs", arcs, least=1)
     rtol = require_positive("rtol", rtol)
-    require_sense(sense)
+    _require_sense(sense)
     require_subject(model, motion)
     require_periodic(motion)
     if guess is None:
-        state, line = rolling_by_theory(model, motion, sense), None
+        state, line = _rolling_by_theory(model, motion, sense), None
     else:
         lean = _of_run(guess, model, motion) if isinstance(guess, Response) else _checked(guess, model)
         _require_moving(model, lean)
@@ -109,11 +297,10 @@ def _require_moving(model: Model, lean: Floats) -> None:
     """Raise NoOrbitError if the column stands upright at the guess and does not move."""
     size = np.hypot(*lean[:2]), np.hypot(*lean[2:_LEAN]) * model.time_scale
     if max(size) < _STANDING * model.column.slenderness:
-        message = (
+        raise NoOrbitError(
             "no periodic orbit was reached: at the guess the column stands upright and does not move, which is not an "
             "orbit. Give a tilt or a tilt rate of the motion, or a run that still moves."
         )
-        raise NoOrbitError(message)
 
 
 def _start(model: Model, motion: BaseMotion, lean: Floats) -> tuple[Floats, tuple[float, float] | None]:
@@ -264,15 +451,13 @@ def _ranges(system: PeriodicSystem, over: Mapping[str, Sequence[float]] | None) 
     }
     for name, values in (over or {}).items():
         if name not in ranges:
-            message = f"over: {name} is not known here; known are {', '.join(ranges)}"
-            raise ParameterError(message)
+            raise ParameterError(f"over: {name} is not known here; known are {', '.join(ranges)}")
         try:
             low, high = (float(value) for value in values)
         except (TypeError, ValueError):
             low = high = math.nan
         if not (math.isfinite(low) and math.isfinite(high) and low <= high):
-            message = f"over: {name} must be a range low ≤ high, got {values!r}"
-            raise ParameterError(message)
+            raise ParameterError(f"over: {name} must be a range low ≤ high, got {values!r}")
         ranges[name] = (low, high)
     return list(ranges.values())
 
@@ -286,8 +471,9 @@ def _checked(guess: npt.ArrayLike, model: Model) -> Floats:
     sizes = ((_LEAN,),) if model.spin_state is None else ((_LEAN,), (_LEAN + 1,))
     if lean.shape not in sizes or not np.all(np.isfinite(lean)):
         spin = "" if model.spin_state is None else ", and perhaps the spin [rad/s]"
-        message = f"guess must be four numbers, tilt x, y [rad] and their rates [rad/s]{spin}, got {guess!r}"
-        raise ParameterError(message)
+        raise ParameterError(
+            f"guess must be four numbers, tilt x, y [rad] and their rates [rad/s]{spin}, got {guess!r}"
+        )
     return lean
 
 
@@ -295,8 +481,9 @@ def _of_run(run: Response, model: Model, motion: BaseMotion) -> Floats:
     period = motion.period
     time = run.data["time"].to_numpy()
     if period is None or time[-1] < period:
-        message = f"guess: the run must last at least one period of the base motion, but ends at {time[-1]:.6g} s"
-        raise ParameterError(message)
+        raise ParameterError(
+            f"guess: the run must last at least one period of the base motion, but ends at {time[-1]:.6g} s"
+        )
     whole = math.floor(time[-1] / period * (1.0 + 1e-12)) * period
     at = run.sample(min(whole, time[-1])) if run.sampler is not None else run.data.interp(time=[whole], method="cubic")
     names = ["tilt", "tilt_rate"] + (["spin"] if model.spin_state is not None and "spin" in at else [])

@@ -1,25 +1,29 @@
-"""A periodic orbit and its properties."""
+"""Periodic orbits: their properties, their files, and checks of the arguments for them."""
 
 import cmath
+import json
+import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from stylobate.base_motions import BaseMotion
+from stylobate.base_motions import BASE_AT_REST, BaseMotion
 from stylobate.cards import Row, Section, card
 from stylobate.engine.flow.periodic import PeriodicSystem
 from stylobate.engine.forcing import common_line
 from stylobate.equality import ByContent
+from stylobate.errors import FileError, ParameterError, UnsupportedError
 from stylobate.models import Model
-from stylobate.orbits.multipliers import is_stable
-from stylobate.orbits.saving import ORBIT, file_attributes, write
-from stylobate.orbits.shooting import Shots
+from stylobate.models.consistency import check_once
+from stylobate.orbits.shooting import Shots, is_stable
+from stylobate.provenance import provenance_of_run
+from stylobate.results.storage import write_netcdf
 from stylobate.results.tables import to_dataframe
 from stylobate.text import four_digits, plural
 
@@ -262,3 +266,81 @@ def lean_of(system: PeriodicSystem, states: Floats) -> Floats:
         return np.stack([tilt * ux, tilt * uy, rate * ux, rate * uy])
     lean = model.tilt_of(*states, *model.parameters)
     return np.stack(np.broadcast_arrays(*lean)).astype(float)
+
+
+def require_subject(model: Model, motion: BaseMotion) -> None:
+    """Raise ParameterError unless these are a model and a base motion, ModelError if the model contradicts itself."""
+    if isinstance(model, BaseMotion) and isinstance(motion, Model):
+        raise ParameterError(
+            f"model must come before motion: got {type(model).__name__} as model, {type(motion).__name__} as motion"
+        )
+    if not isinstance(model, Model):
+        raise ParameterError(f"model must be a model such as Slender(column), got {model!r}")
+    if not isinstance(motion, BaseMotion) or motion == BASE_AT_REST:
+        raise ParameterError(f"motion must be a periodic base motion such as Harmonic.circular(...), got {motion!r}")
+    check_once(model)
+
+
+def require_orbit(orbit: PeriodicOrbit) -> None:
+    """Raise ParameterError unless `orbit` is a periodic orbit."""
+    if not isinstance(orbit, PeriodicOrbit):
+        raise ParameterError(f"orbit must be a PeriodicOrbit such as periodic_orbit(model, motion), got {orbit!r}")
+
+
+ORBIT, BRANCH, CURVE = "stylobate orbit 1", "stylobate branch 1", "stylobate bifurcation curve 1"
+"""Formats of the files of orbits, branches and curves."""
+
+SUPERCRITICAL = {True: 1, False: 0, None: -1}
+"""Code of a supercritical loss of stability in files and tables; −1 if undecided."""
+
+SUPERCRITICAL_OF = {code: supercritical for supercritical, code in SUPERCRITICAL.items()}
+"""Meaning of the code."""
+
+_SUFFIX = ".nc"
+
+
+def write(data: xr.Dataset, path: str | Path) -> Path:
+    """Write the data of an orbit, a branch or a curve to the netCDF file `path`.
+
+    Raises
+    ------
+    ParameterError
+        If the path does not end in .nc.
+    FileError
+        If the file cannot be written.
+    """
+    path = path_of(path)
+    if path.suffix != _SUFFIX:
+        raise ParameterError(f"path must end in {_SUFFIX}, the format of the file; got {str(path)!r}")
+    if not path.parent.is_dir():
+        raise FileError(f"cannot write {path}: there is no folder {path.parent}")
+    return write_netcdf(data, path)
+
+
+def path_of(path: str | Path) -> Path:
+    """Return `path`, or raise ParameterError if it is not the name of a file."""
+    try:
+        return Path(path)
+    except TypeError:
+        raise ParameterError(f"path must be the name of a file, got {path!r}") from None
+
+
+def file_attributes(system: PeriodicSystem, format_name: str, periods: int) -> dict[str, Any]:
+    """Return the attributes of a file: its format, the length of the orbit and the system.
+
+    Raises
+    ------
+    UnsupportedError
+        If model or motion is of a class of your own, which a file cannot hold.
+    """
+    provenance = provenance_of_run(system.model, system.motion)
+    for name in ("model", "motion"):
+        if provenance[name].get("kind") == "other":
+            raise UnsupportedError(f"an orbit of a {name} of your own cannot be saved: {provenance[name]['repr']}")
+    return {
+        "format": format_name,
+        "periods": periods,
+        "line": np.array(system.line if system.line is not None else (math.nan, math.nan)),
+        "rtol": system.rtol,
+        "provenance": json.dumps(provenance),
+    }

@@ -9,20 +9,16 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from stylobate.base_motions import BaseMotion
 from stylobate.config import config_of
 from stylobate.engine.flow.integration import Status
 from stylobate.engine.flow.periodic import PeriodicSystem
 from stylobate.errors import FileError
-from stylobate.models import Model
-from stylobate.orbits.arclength import Family, Point
+from stylobate.orbits.arclength import End, Family, Point
 from stylobate.orbits.bifurcations import Bifurcation, Kind, orbit_at
 from stylobate.orbits.branch import Branch
 from stylobate.orbits.curves import BifurcationCurve, CurvePoint, Plane
-from stylobate.orbits.orbit import PeriodicOrbit
-from stylobate.orbits.saving import BRANCH, CURVE, ORBIT, SUPERCRITICAL_OF, path_of
+from stylobate.orbits.orbit import BRANCH, CURVE, ORBIT, SUPERCRITICAL_OF, PeriodicOrbit, path_of
 from stylobate.orbits.shooting import shots
-from stylobate.orbits.tracing import End
 from stylobate.results.storage import read_dataset, require_this_version
 
 
@@ -41,13 +37,11 @@ def load_orbits(path: str | Path) -> PeriodicOrbit | Branch | BifurcationCurve:
         require_this_version(path, written, known)
     read = _READERS.get(str(written))
     if read is None:
-        message = f"{path} holds no orbit, branch or curve saved by stylobate, but {_content(data)}"
-        raise FileError(message)
+        raise FileError(f"{path} holds no orbit, branch or curve saved by stylobate, but {_content(data)}")
     try:
         return read(data)
     except (KeyError, TypeError, ValueError) as error:
-        message = f"{path} is damaged: {error}. Compute it again"
-        raise FileError(message) from error
+        raise FileError(f"{path} is damaged: {error}. Compute it again") from error
 
 
 def _content(data: xr.Dataset) -> str:
@@ -60,22 +54,16 @@ def _content(data: xr.Dataset) -> str:
 
 
 def _system(data: xr.Dataset) -> PeriodicSystem:
-    model, motion = _parts(json.loads(data.attrs["provenance"]))
+    setup = config_of({**json.loads(data.attrs["provenance"]), "duration": 1.0}).build()
     x, y = (float(number) for number in data.attrs["line"])
-    return PeriodicSystem(model, motion, None if math.isnan(x) else (x, y), float(data.attrs["rtol"]))
-
-
-def _parts(provenance: dict[str, Any]) -> tuple[Model, BaseMotion]:
-    setup = config_of({**provenance, "duration": 1.0}).build()
-    return setup.model, setup.motion
+    return PeriodicSystem(setup.model, setup.motion, None if math.isnan(x) else (x, y), float(data.attrs["rtol"]))
 
 
 def _read_orbit(data: xr.Dataset) -> PeriodicOrbit:
     system, periods = _system(data), int(data.attrs["periods"])
     chain = shots(system, np.ascontiguousarray(data["states"].to_numpy()), periods)
     if chain.status is not Status.DONE:
-        message = "its orbit cannot be recovered"
-        raise ValueError(message)
+        raise ValueError("its orbit cannot be recovered")
     return PeriodicOrbit(system.model, system.motion, periods, chain, system.line, system.rtol)
 
 
@@ -114,8 +102,7 @@ def _shot(family: Family, states: Any, value: float) -> Point:
     change = family.system.derivative(family.name, value)
     chain = shots(system, np.ascontiguousarray(states), family.covered, sense=family.sense, change=change)
     if chain.status is not Status.DONE:
-        message = f"its orbit at {family.name} = {value!r} cannot be recovered"
-        raise ValueError(message)
+        raise ValueError(f"its orbit at {family.name} = {value!r} cannot be recovered")
     return Point(family, value, chain)
 
 
@@ -130,8 +117,7 @@ def _read_curve(data: xr.Dataset) -> BifurcationCurve:
     for states, values, (real, imaginary) in zip(*columns, strict=True):
         chain = shots(plane.at(values), np.ascontiguousarray(states), covered, sense=sense)
         if chain.status is not Status.DONE:
-            message = f"its orbit at {first} = {values[0]!r}, {second} = {values[1]!r} cannot be recovered"
-            raise ValueError(message)
+            raise ValueError(f"its orbit at {first} = {values[0]!r}, {second} = {values[1]!r} cannot be recovered")
         path.append(CurvePoint((float(values[0]), float(values[1])), chain, complex(real, imaginary)))
     begin, end = (End[name] for name in json.loads(data.attrs["ends"]))
     return BifurcationCurve(kind, (first, second), tuple(path), (begin, end), plane)

@@ -13,10 +13,9 @@ from stylobate.base_motions import BaseMotion, Harmonic, as_harmonic
 from stylobate.engine.parameters import changed_model, split
 from stylobate.errors import ParameterError, UnsupportedError
 from stylobate.models import Model
-from stylobate.models.closed_form import RollingLaw
-from stylobate.models.inheritance import closed_form_of
+from stylobate.models.model import RollingLaw, closed_form_of
 from stylobate.orbits import PeriodicOrbit
-from stylobate.orbits.steady import rolling_form_of
+from stylobate.orbits.finding import rolling_form_of
 from stylobate.results import KnownOrbit
 from stylobate.theory.averaging import circular_components
 

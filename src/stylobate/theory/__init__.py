@@ -6,48 +6,60 @@ with the tipping angle α_c, and η the damping. Arguments are numbers or arrays
 numbers; arrays give arrays of the broadcast shape, with NaN (False in a truth value) where there is no solution.
 """
 
-from stylobate.theory.averaging import AveragedRolling, averaged_rolling
-from stylobate.theory.backbones import planar_backbone, rolling_backbone
+from stylobate.theory.averaging import AveragedRolling, HighFrequencyRolling, averaged_rolling, high_frequency_rolling
 from stylobate.theory.block_motion import BlockPhase, BlockSegment
-from stylobate.theory.conveying import BlockCycle, block_cycle, mean_block_speed
-from stylobate.theory.critical import (
-    critical_amplitude,
-    critical_frequency,
-    crossing_frequency,
-    undamped_critical_frequency,
-)
-from stylobate.theory.finite_tilt import FiniteTiltRolling
-from stylobate.theory.free_motion import FreeMotion, free_motion
-from stylobate.theory.free_rolling import FreeRolling, free_rolling, free_rolling_spin
+from stylobate.theory.conveying import BlockCycle, block_cycle, hopping_speed, mean_block_speed
+from stylobate.theory.finite_tilt import FiniteTiltRolling, full_rolling
+from stylobate.theory.free_motion import FreeMotion, angle_of_turn, free_motion, required_friction
 from stylobate.theory.free_twist import (
     FreeTwistRolling,
+    RollingFriction,
+    free_twist_critical_frequency,
     free_twist_rolling,
+    free_twist_upper_frequency,
+    rolling_required_friction,
 )
-from stylobate.theory.free_twist_boundary import free_twist_critical_frequency, free_twist_upper_frequency
-from stylobate.theory.full_rolling import full_rolling
-from stylobate.theory.high_frequency import HighFrequencyRolling, high_frequency_rolling
-from stylobate.theory.hopping import hopping_speed
-from stylobate.theory.impact import block_restitution, equivalent_viscous_damping, housner_restitution
-from stylobate.theory.lyapunov import first_lyapunov_coefficient
-from stylobate.theory.modulated import ModulatedRolling, modulated_rolling
-from stylobate.theory.near_upright import angle_of_turn, required_friction
-from stylobate.theory.planar_forced import (
-    PlanarForcedResponse,
-    PlanarOrbit,
-    planar_forced_response,
-)
-from stylobate.theory.planar_free import planar_free_motion, planar_free_period
-from stylobate.theory.pulse_overturning import (
+from stylobate.theory.impact import (
+    block_restitution,
+    equivalent_viscous_damping,
     half_sine_overturning,
+    housner_restitution,
     one_sine_overturning_after_impact,
     one_sine_overturning_without_impact,
 )
-from stylobate.theory.rolling import RollingBranch, SteadyRolling, rolling_gap, steady_rolling
-from stylobate.theory.rolling_friction import RollingFriction, rolling_required_friction
+from stylobate.theory.lyapunov import first_lyapunov_coefficient
+from stylobate.theory.modulated import ModulatedRolling, modulated_rolling
+from stylobate.theory.planar import (
+    PlanarForcedResponse,
+    PlanarOrbit,
+    planar_backbone,
+    planar_forced_response,
+    planar_free_motion,
+    planar_free_period,
+)
+from stylobate.theory.rigid_body import FreeRolling, free_rolling, free_rolling_spin
+from stylobate.theory.rolling import (
+    RollingBranch,
+    SteadyRolling,
+    critical_amplitude,
+    critical_frequency,
+    crossing_frequency,
+    rolling_backbone,
+    rolling_gap,
+    steady_rolling,
+    undamped_critical_frequency,
+)
 from stylobate.theory.sliding_block import HorizontalSliding, SlidingRegime, horizontal_sliding, sliding_amplitude
 from stylobate.theory.slipping_rolling import SlippingRolling, slipping_rolling
-from stylobate.theory.starting import FirstMotion, StartOfMotion, first_motion, start_of_motion
-from stylobate.theory.throwing import bounce_time, flight_throw_number, throw_number
+from stylobate.theory.starting import (
+    FirstMotion,
+    StartOfMotion,
+    bounce_time,
+    first_motion,
+    flight_throw_number,
+    start_of_motion,
+    throw_number,
+)
 from stylobate.theory.wobbling import wobbling_rolling
 
 __all__ = [

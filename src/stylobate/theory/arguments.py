@@ -87,5 +87,4 @@ def _floats(name: str, value: Real) -> FloatArray:
             return array.astype(np.float64)
     except ValueError:
         pass
-    message = f"{name} must be a real number or an array of them, got {value!r}"
-    raise ParameterError(message)
+    raise ParameterError(f"{name} must be a real number or an array of them, got {value!r}")

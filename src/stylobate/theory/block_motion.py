@@ -1,4 +1,4 @@
-"""Motion of a block that slides and flies on a vibrating, possibly inclined plane, as exact segments.
+"""Motion of a block on a harmonically vibrating plane over one period, piece by piece in closed form.
 
 The plane rises by `incline` = ι along x; its normal is z. With the base acceleration (ax cos τ, az cos(τ + φ)) in g,
 τ = Ωt, lengths in g/Ω² and velocities in g/Ω, a point mass at the distance s above the plane with the velocity u along
@@ -11,8 +11,8 @@ the plane obeys
     flight     s > 0              T = N = 0
     landing    at the speed v     Pn = (1 + e)v, |Pt| ≤ μk Pn, at most the impulse that stops the slip
 
-In every phase the forces are one harmonic and a constant, `stylobate.theory.harmonic_force`, so velocity and position
-are trigonometric functions and polynomials of τ. The next phase begins where a force changes its sign, in closed form,
+In every phase the forces are one harmonic and a constant (`HarmonicForce`), so velocity and position are trigonometric
+functions and polynomials of τ. The next phase begins where a force changes its sign, in closed form,
 or where u or s vanishes. Between the zeros of their derivatives, which are known, u and s are monotone: each root is
 bracketed and no root is missed. The motion is exact to rounding except for one rule. For e > 0 infinitely many landings
 can occur in a finite time. A landing with a rebound below `rest_speed` ends in contact if the plane then presses on the
@@ -28,9 +28,99 @@ from enum import IntEnum
 
 from stylobate.errors import Named, ParameterError
 from stylobate.theory.arguments import finite, not_negative, positive
-from stylobate.theory.harmonic_force import HarmonicForce, root
-from stylobate.theory.starting import steepness
-from stylobate.theory.throwing import below_elastic
+from stylobate.theory.starting import below_elastic, steepness
+
+# Instants closer than this [rad] to the previous one count as the same.
+_INSTANT = 1e-14
+# A zero this close before τ, by rounding, counts as a zero at τ.
+_BEHIND = 1e-12
+# Limit of the steps to a root: Newton needs about ten, bisection to rounding fewer than this limit.
+_STEPS = 120
+_ROUNDING = 4.0 * 2.0**-52
+
+
+@dataclass(frozen=True, slots=True)
+class HarmonicForce:
+    """The force constant + Re(swing exp iτ) on a unit mass.
+
+    Parameters
+    ----------
+    constant
+        Mean of the force.
+    swing
+        Complex amplitude of the harmonic part.
+    """
+
+    constant: float
+    swing: complex
+
+    @property
+    def angle(self) -> float:
+        """Phase of the harmonic part."""
+        return math.atan2(self.swing.imag, self.swing.real)
+
+    def at(self, tau: float) -> float:
+        """Evaluate the force at τ."""
+        return self.constant + (self.swing * cmath.exp(1j * tau)).real
+
+    def slope(self, tau: float) -> float:
+        """Evaluate the rate of change at τ."""
+        return -(self.swing * cmath.exp(1j * tau)).imag
+
+    def gain(self, tau: float, span: float) -> float:
+        """Compute the velocity gained between τ and τ + span."""
+        turned = self.swing * cmath.exp(1j * tau)
+        half = math.sin(0.5 * span)
+        return self.constant * span + turned.real * math.sin(span) - turned.imag * 2.0 * half * half
+
+    def travel(self, tau: float, span: float) -> float:
+        """Compute the distance gained between τ and τ + span, accurate to rounding of span² for short spans."""
+        turned = self.swing * cmath.exp(1j * tau)
+        half = math.sin(0.5 * span)
+        return (
+            0.5 * self.constant * span * span + turned.real * 2.0 * half * half - turned.imag * (span - math.sin(span))
+        )
+
+    def next_fall(self, tau: float) -> float:
+        """Compute the phase from τ to the next fall below zero: 0 if it falls now, infinite if it never falls."""
+        size = abs(self.swing)
+        if size <= abs(self.constant):
+            return math.inf
+        span = (math.acos(-self.constant / size) - self.angle - tau) % TURN
+        return 0.0 if span > TURN - _BEHIND else span
+
+    def zeros(self, tau: float, span: float) -> list[float]:
+        """Compute the phases from τ to the zeros within `span`, at most a period, in increasing order."""
+        size = abs(self.swing)
+        if size <= abs(self.constant):
+            return []
+        angle = math.acos(-self.constant / size)
+        places = ((sign * angle - self.angle - tau) % TURN for sign in (-1.0, 1.0))
+        return sorted(place for place in places if _INSTANT < place < span)
+
+
+def root(value: Callable[[float], float], slope: Callable[[float], float], low: float, high: float) -> float:
+    """Find the zero of a function that is monotone between `low` and `high` and changes its sign.
+
+    Newton steps while they stay in the bracket, bisection otherwise; accurate to rounding.
+    """
+    rises = value(high) > 0.0
+    x = 0.5 * (low + high)
+    for _ in range(_STEPS):
+        y, rate = value(x), slope(x)
+        if (y > 0.0) == rises:
+            high = x
+        else:
+            low = x
+        step = y / rate if rate != 0.0 else math.inf
+        newer = x - step
+        if not low < newer < high:
+            newer = 0.5 * (low + high)
+        if abs(newer - x) <= _ROUNDING * abs(newer):
+            return newer
+        x = newer
+    return x
+
 
 TURN = 2.0 * math.pi
 # Relative distance from its limit below which a force counts as at its limit.
@@ -118,8 +208,7 @@ class Block:
         mu_s = float(not_negative("static_friction", static_friction))
         mu_k = mu_s if kinetic_friction is None else float(not_negative("kinetic_friction", kinetic_friction))
         if mu_k > mu_s:
-            message = f"kinetic_friction must be at most static_friction = {mu_s!r}, got {mu_k!r}"
-            raise ParameterError(message)
+            raise ParameterError(f"kinetic_friction must be at most static_friction = {mu_s!r}, got {mu_k!r}")
         psi = float(steepness(incline))
         swing = float(finite("normal", normal)) * cmath.exp(1j * float(finite("phase", phase)))
         return cls(

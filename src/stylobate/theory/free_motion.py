@@ -1,11 +1,11 @@
-"""Free motion without damping between its turning points: the tilt oscillates while the contact point rolls on (11)."""
+"""Free motion without damping (11) between its turning points, and its passage near the vertical."""
 
 from dataclasses import dataclass
 
 import numpy as np
 
 from stylobate.theory.arguments import FloatArray, Real, Values, finite, plain_results, positive
-from stylobate.theory.quadrature import quarter_turn
+from stylobate.theory.rigid_body import below_one
 
 _NEWTON_STEPS = 64  # each step halves the distance to a double root: enough to go from 1 to rounding
 
@@ -149,3 +149,133 @@ def _period_and_advance(a1: FloatArray, a2: FloatArray) -> tuple[FloatArray, Flo
             half_advance = half_advance + weight * root(a, rise, fall)
     advance = np.where(upright, np.pi, 2.0 * np.sqrt(others / (a1 + a2)) * half_advance)
     return 2.0 * half_period, advance
+
+
+def quarter_turn(*, step: float = 1.0 / 24.0, reach: float = 3.6) -> list[tuple[float, float, float]]:
+    """Return nodes and weights of tanh–sinh quadrature over (0, π/2).
+
+    Parameters
+    ----------
+    step
+        Step in the double-exponential variable; halving it squares the error. The default leaves 1e-12.
+    reach
+        Largest double-exponential variable: at 3.6 the nearest node is 1e-25 from the end.
+
+    Returns
+    -------
+    list of tuple
+        sin φ, cos φ and the weight for each node φ, such that the integral of f is the sum of weight · f.
+
+    Notes
+    -----
+    The nodes approach both ends double-exponentially, so a layer of width 1e-10 needs no more points than a smooth
+    integrand. For double precision, sine and cosine are formed from the distance to the end at which they vanish.
+
+    References
+    ----------
+    H. Takahasi and M. Mori, Double exponential formulas for numerical integration, Publ. RIMS 9 (1974) 721-741.
+
+    Examples
+    --------
+    >>> print(round(sum(weight * sine for sine, cosine, weight in quarter_turn()), 12))
+    1.0
+    """
+    count = round(reach / step)
+    t = step * np.arange(-count, count + 1)
+    stretch = np.pi * np.sinh(t)
+    sine = np.sin(0.5 * np.pi / (1.0 + np.exp(-stretch)))
+    cosine = np.sin(0.5 * np.pi / (1.0 + np.exp(stretch)))
+    weight = step * 0.125 * np.pi**2 * np.cosh(t) / np.cosh(0.5 * stretch) ** 2
+    return list(zip(sine.tolist(), cosine.tolist(), weight.tolist(), strict=True))
+
+
+@plain_results
+def angle_of_turn(c: Real, *, inertia_ratio: Real = 0.75, spin_ratio: Real = 0.0) -> Values:
+    """Compute the angle of travel of the contact point round the rim in a passage near the vertical.
+
+    Parameters
+    ----------
+    c
+        Slenderness.
+    inertia_ratio
+        κ = m h²/J0; ¾ for a slender solid cylinder, as by default, and 1/(4/3 + c²/4) for one of slenderness c.
+    spin_ratio
+        Axial angular velocity w3 over the tilt rate |θ̇| on approach; positive if the contact point turns in the sense
+        of w3.
+
+    Returns
+    -------
+    numpy.ndarray
+        Angle |Δβ| [rad], of the broadcast shape, in the limit of zero distance from the vertical.
+
+    Raises
+    ------
+    ParameterError
+        If `c` is not positive, `inertia_ratio` not between 0 and 1, or `spin_ratio` not finite.
+
+    See Also
+    --------
+    required_friction : friction below which the contact slips in such a passage.
+
+    Notes
+    -----
+    Near the vertical ℓ = θ²β̇ and w3 are constant, and
+
+        K θ̈ = J0 ℓ²/θ³ − m h r w3 ℓ/θ²,
+
+    which is, for 1/θ as a function of β, a harmonic oscillator under a constant force. The solution gives
+
+        |Δβ| = [π + 2 atan(m h r w3 / (√(K J0) |θ̇|))] √(K/J0),   K/J0 = 1 + κc².
+
+    Without spin the angle is π for a slender column, which falls to the opposite side as in planar rocking. The angle
+    of a solid cylinder grows with its flatness, up to √5 π for a disk (Srinivasan and Ruina 2008). A disk has h = 0 and
+    no finite c: its K/J0 is the limit of large c and small κ.
+
+    Examples
+    --------
+    >>> c = np.array([0.1, 0.2, 1e6])
+    >>> print(np.degrees(angle_of_turn(c, inertia_ratio=1.0 / (4.0 / 3.0 + c**2 / 4.0))).round(3))
+    [180.672 182.66  402.492]
+    """
+    c, kappa, spin = np.broadcast_arrays(
+        positive("c", c), below_one("inertia_ratio", inertia_ratio), finite("spin_ratio", spin_ratio)
+    )
+    rim = np.sqrt(1.0 + kappa * c**2)  # √(K/J0)
+    return np.asarray((np.pi + 2.0 * np.arctan(kappa * c * spin / rim)) * rim)
+
+
+@plain_results
+def required_friction(c: Real, *, inertia_ratio: Real = 0.75) -> Values:
+    """Compute the friction coefficient that prevents slip of the rim near the vertical.
+
+    Parameters
+    ----------
+    c
+        Slenderness.
+    inertia_ratio
+        κ = m h²/J0; ¾ for a slender solid cylinder, as by default.
+
+    Returns
+    -------
+    numpy.ndarray
+        κc, of the broadcast shape.
+
+    Raises
+    ------
+    ParameterError
+        If `c` is not positive or `inertia_ratio` not between 0 and 1.
+
+    Notes
+    -----
+    m h r/J0 = κc is the ratio of the horizontal to the vertical force, or impulse, of the contact in three events on a
+    base at rest: release at a small tilt, when the column accelerates about the tangent of the rim; a passage close to
+    the vertical without spin, when the force turns with the contact point; and the planar impact on the other side of
+    the base. Uplift from rest by the base needs more: the base acceleration is then c g, so the friction coefficient
+    must be at least c.
+
+    Examples
+    --------
+    >>> print(required_friction([0.1, 0.2]).round(3))
+    [0.075 0.15 ]
+    """
+    return np.asarray(below_one("inertia_ratio", inertia_ratio) * positive("c", c))

@@ -9,9 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from stylobate.theory.arguments import ComplexArray, FloatArray, Real, Values, not_negative, plain_results, positive
-from stylobate.theory.critical import critical_frequency, crossing_frequency
-from stylobate.theory.rolling import steady_rolling
-from stylobate.theory.rotating_frame import rotating_frame_jacobian
+from stylobate.theory.averaging import rotating_frame_jacobian
+from stylobate.theory.rolling import critical_frequency, crossing_frequency, steady_rolling
 
 
 @plain_results

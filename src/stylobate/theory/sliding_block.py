@@ -167,8 +167,9 @@ def _never_sticks(mu_s: FloatArray, mu_k: FloatArray) -> FloatArray:
 
 def _require_ordered(mu_s: FloatArray, mu_k: FloatArray) -> None:
     if np.any(mu_k > mu_s):
-        message = f"kinetic_friction must be at most static_friction, got up to {float(np.max(mu_k - mu_s))!r} more"
-        raise ParameterError(message)
+        raise ParameterError(
+            f"kinetic_friction must be at most static_friction, got up to {float(np.max(mu_k - mu_s))!r} more"
+        )
 
 
 def _slip_duration(onset: FloatArray, kinetic: FloatArray) -> FloatArray:

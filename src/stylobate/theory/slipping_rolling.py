@@ -15,11 +15,9 @@ from stylobate.theory.arguments import (
     plain_results,
     positive,
 )
-from stylobate.theory.finite_tilt import eigenvalues
+from stylobate.theory.finite_tilt import Rows, eigenvalues
 from stylobate.theory.rigid_body import Numbers, RigidBody
-from stylobate.theory.slipping_balance import Forced, solutions
-from stylobate.theory.slipping_rolling_rates import STATES, Resistances, rates
-from stylobate.theory.zeros import Rows
+from stylobate.theory.slipping_balance import STATES, Forced, Resistances, rates, solutions
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -9,13 +9,13 @@ import numpy as np
 from stylobate.theory.arguments import FloatArray, Real, not_negative, plain_results, positive
 from stylobate.theory.finite_tilt import (
     FiniteTiltRolling,
+    Rows,
     eigenvalues,
     no_deviation_grows,
     on_branches,
     steady_tilts,
 )
 from stylobate.theory.rigid_body import Numbers, RigidBody
-from stylobate.theory.zeros import Rows
 
 
 @plain_results

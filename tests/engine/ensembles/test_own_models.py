@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import stylobate as sb
-from stylobate.compiler.fingerprint import fingerprint
+from stylobate.compiler.reads import fingerprint
 from stylobate.engine.flow.periodic import PeriodicSystem
 from stylobate.errors import UnsupportedError
 

@@ -8,7 +8,7 @@ import pytest
 import stylobate as sb
 from stylobate.engine.kernel.columns import Trace
 from stylobate.engine.kernel.driver.events import TraceKind
-from stylobate.models.sliding.phases import Contact
+from stylobate.models.sliding.balance import Contact
 
 SLENDER = sb.Slender(sb.Column.dimensionless(0.1))
 SLIDING = sb.Sliding(sb.Column.solid(radius=0.5, height=3.0, density=2700.0))

@@ -9,33 +9,39 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from stylobate.errors import ModelError, ParameterError
-from stylobate.models.consistency.compiled import compilation, problems_of_compilation
-from stylobate.models.consistency.derivatives import problems_of_derivatives
-from stylobate.models.consistency.dissipation import dissipation, problems_of_coming_to_rest
-from stylobate.models.consistency.forces import problems_of_forces
-from stylobate.models.consistency.kinematics import (
+from stylobate.models.consistency.claims import (
+    balance_of,
+    dissipation,
+    loss_of_speed,
+    problems_of_balance,
+    problems_of_closed_form,
+    problems_of_coming_to_rest,
+    problems_of_departure,
+    problems_of_loss,
+    problems_of_no_return,
+    problems_of_passage,
+    problems_of_rest,
+    steady_rolling,
+)
+from stylobate.models.consistency.equations import (
+    compilation,
     lean_under_push,
+    problems_in_planes,
+    problems_of_compilation,
+    problems_of_derivatives,
+    problems_of_forces,
     problems_of_lift,
+    problems_of_maps,
     problems_of_push,
     problems_of_tilt_rate,
     weight_under_lift,
 )
-from stylobate.models.consistency.near_vertical import (
-    loss_of_speed,
-    problems_of_departure,
-    problems_of_loss,
-    problems_of_passage,
-    problems_of_rest,
-)
-from stylobate.models.consistency.overturning import balance_of, problems_of_balance, problems_of_no_return
-from stylobate.models.consistency.plane import problems_in_planes, problems_of_maps
-from stylobate.models.consistency.samples import Subject
-from stylobate.models.consistency.signatures import (
+from stylobate.models.consistency.samples import (
+    Subject,
     problems_of_lengths,
     problems_of_members,
     problems_of_signatures,
 )
-from stylobate.models.consistency.steady_rolling import problems_of_closed_form, steady_rolling
 from stylobate.models.model import Model
 
 
@@ -151,8 +157,7 @@ def check(model: Model) -> CheckReport:
     rates: if the base accelerates to +x, the column leans to −x
     """
     if not isinstance(model, Model):
-        message = f"model: must be a model such as Slender(column) (got {model!r}). Pass an instance."
-        raise ParameterError(message)
+        raise ParameterError(f"model: must be a model such as Slender(column) (got {model!r}). Pass an instance.")
     subject = Subject(model, _numbers(model), thorough=True)
     _refuse(model, _problems(subject))
     laws = (*(law for stage in _STAGES for law in stage), *_laws(subject))

@@ -11,11 +11,9 @@ import numpy.typing as npt
 
 from stylobate.column import Column
 from stylobate.errors import ParameterError
-from stylobate.models import finite_tilt, tilt_vector
-from stylobate.models.closed_form import ClosedForm, RollingLaw, zero
+from stylobate.models import finite_tilt
 from stylobate.models.contact import path_outputs, per_normal_force
-from stylobate.models.model import RELEASE_MARGIN, Floats, Model, Output
-from stylobate.models.numbers import (
+from stylobate.models.declared import (
     Damping,
     FrictionCoefficient,
     NormalRestitution,
@@ -24,11 +22,11 @@ from stylobate.models.numbers import (
     SpinDamping,
     StaticFrictionCoefficient,
 )
+from stylobate.models.model import RELEASE_MARGIN, ClosedForm, Floats, Model, Output, RollingLaw, tilt_of, zero
+from stylobate.models.sliding.balance import Contact, Numbers, State, forces_along
 from stylobate.models.sliding.equations import GUARDS, STRAIGHT, contact_loads, guards, rates
-from stylobate.models.sliding.forces_along import forces_along
-from stylobate.models.sliding.lift_off import lifted
-from stylobate.models.sliding.phases import Contact, Numbers, State
-from stylobate.models.sliding.reactions import project, reset_map
+from stylobate.models.sliding.rim_and_base import lifted
+from stylobate.models.sliding.transitions import project, reset_map
 from stylobate.quantities import Quantity
 
 
@@ -118,11 +116,12 @@ class Sliding(Model):
         """Raise ParameterError if the static coefficient of friction is below the kinetic one."""
         static, kinetic = self.static_friction_coefficient, self.friction_coefficient
         if static is not None and static < kinetic:
-            message = f"static_friction_coefficient must not be below the kinetic {kinetic!r}, got {static!r}"
-            raise ParameterError(message)
+            raise ParameterError(
+                f"static_friction_coefficient must not be below the kinetic {kinetic!r}, got {static!r}"
+            )
 
     rates = staticmethod(rates)
-    tilt_of = staticmethod(tilt_vector.tilt_of)
+    tilt_of = staticmethod(tilt_of)
     contact = staticmethod(contact_loads)
     guards = staticmethod(guards)
     reset_map = staticmethod(reset_map)

@@ -11,7 +11,7 @@ from stylobate.engine import simulate
 from stylobate.paper.analyses.setting import CIRCULAR_AMPLITUDES, DAMPING, SLENDERNESS, judged, paper_model
 from stylobate.results import ClaimStatus, Finding, Section
 from stylobate.studies.responses.response_curves import steady_start
-from stylobate.theory.rotating_frame import rotating_frame_rates
+from stylobate.theory.averaging import rotating_frame_rates
 
 _PARAMETERS = {"c": SLENDERNESS, "eta": DAMPING}
 _PERIODS = 50

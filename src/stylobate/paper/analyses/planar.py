@@ -10,7 +10,7 @@ from stylobate.base_motions import Harmonic
 from stylobate.engine import simulate
 from stylobate.paper.analyses.setting import DAMPING, SLENDERNESS, judged, paper_model
 from stylobate.results import ClaimStatus, Finding, Section
-from stylobate.theory.planar_forced import planar_kick_slope
+from stylobate.theory.planar import planar_kick_slope
 
 _C = SLENDERNESS
 _NU, _A1 = 3.0, 0.13

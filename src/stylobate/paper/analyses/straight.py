@@ -13,7 +13,7 @@ from stylobate.errors import Outcome
 from stylobate.paper.analyses.setting import DAMPING, SLENDERNESS, judged, paper_model
 from stylobate.results import ClaimStatus, Finding, Response, Section
 from stylobate.studies.responses.response_curves import averaged_motion, steady_start
-from stylobate.theory.high_frequency import high_frequency_rates
+from stylobate.theory.averaging import high_frequency_rates
 
 _C = SLENDERNESS
 AMPLITUDES = (0.04, 0.13)

@@ -9,7 +9,7 @@ import xarray as xr
 from stylobate.engine import simulate_ensemble
 from stylobate.errors import Interrupted, ParameterError, as_numbers, require_positive, require_whole
 from stylobate.orbits import Bifurcation
-from stylobate.orbits.arguments import require_bifurcation
+from stylobate.orbits.bifurcations import require_bifurcation
 from stylobate.parameter_quantities import attributes_of, quantity_of
 from stylobate.progress import Progress, report_of, shows_progress
 from stylobate.provenance import provenance_of_run

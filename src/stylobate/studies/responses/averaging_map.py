@@ -13,8 +13,8 @@ from stylobate.engine import with_parameters
 from stylobate.errors import Interrupted, NoOrbitError
 from stylobate.models import Model
 from stylobate.orbits import Branch, continue_branch
-from stylobate.orbits.arguments import require_subject
-from stylobate.orbits.multipliers import is_stable
+from stylobate.orbits.orbit import require_subject
+from stylobate.orbits.shooting import is_stable
 from stylobate.parameter_quantities import attributes_of
 from stylobate.progress import Progress, report_of, shows_progress
 from stylobate.provenance import provenance_of_run

@@ -27,8 +27,8 @@ from stylobate.orbits import (
     switch_branch,
 )
 from stylobate.orbits.arclength import Family, Point, corrected
-from stylobate.orbits.arguments import require_orbit, require_subject
 from stylobate.orbits.bifurcations import orbit_at
+from stylobate.orbits.orbit import require_orbit, require_subject
 from stylobate.orbits.shooting import arcs_of, shots
 from stylobate.progress import Progress, at_value, shows_progress
 from stylobate.provenance import provenance_of_run

@@ -12,7 +12,7 @@ from stylobate.engine.flow.integration import Status
 from stylobate.engine.flow.periodic import PeriodicSystem, plane_of
 from stylobate.errors import Interrupted, ParameterError, as_numbers, require_positive, require_vector, require_whole
 from stylobate.models import Model
-from stylobate.orbits.arguments import require_subject
+from stylobate.orbits.orbit import require_subject
 from stylobate.progress import Progress, report_of, shows_progress
 from stylobate.provenance import provenance_of_run
 from stylobate.text import plural

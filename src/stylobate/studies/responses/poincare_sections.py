@@ -11,7 +11,7 @@ from stylobate.engine import simulate_ensemble
 from stylobate.engine.ensembles.runs import ArrayLike
 from stylobate.errors import ParameterError, UnsupportedError, require_whole
 from stylobate.models import Model
-from stylobate.orbits.arguments import require_subject
+from stylobate.orbits.orbit import require_subject
 from stylobate.progress import Progress, shows_progress
 from stylobate.run_arguments import Accuracy
 

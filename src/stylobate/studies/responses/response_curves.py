@@ -14,14 +14,12 @@ from stylobate import theory
 from stylobate.base_motions import BaseMotion, Harmonic, as_harmonic
 from stylobate.errors import ParameterError, UnsupportedError, as_numbers, require_positive, require_vector
 from stylobate.models import Model, Slender
-from stylobate.models.closed_form import ClosedForm, RollingLaw
 from stylobate.models.declared import name_by_symbol
-from stylobate.models.inheritance import closed_form_of
-from stylobate.orbits.steady import rolling_form_of, steady_rolling_of
+from stylobate.models.model import ClosedForm, RollingLaw, closed_form_of
+from stylobate.orbits.finding import rolling_form_of, steady_rolling_of
 from stylobate.provenance import provenance_of_run
 from stylobate.studies.known_rolling import RollingFrame
-from stylobate.theory.averaging import circular_components
-from stylobate.theory.rotating_frame import rotating_frame_rates
+from stylobate.theory.averaging import circular_components, rotating_frame_rates
 
 
 def response_curves(

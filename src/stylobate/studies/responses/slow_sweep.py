@@ -13,7 +13,7 @@ from stylobate.base_motions import BaseMotion
 from stylobate.engine import simulate_ensemble, with_parameters
 from stylobate.errors import Interrupted, Outcome, ParameterError, UnsupportedError, as_numbers, require_whole
 from stylobate.models import Model
-from stylobate.orbits.arguments import require_subject
+from stylobate.orbits.orbit import require_subject
 from stylobate.parameter_quantities import attributes_of, quantity_of
 from stylobate.progress import Progress, report_of, shows_progress
 from stylobate.provenance import provenance_of_run

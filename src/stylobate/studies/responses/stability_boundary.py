@@ -19,8 +19,8 @@ from stylobate.orbits import (
     bifurcation_curve,
     continue_branch,
 )
-from stylobate.orbits.arguments import require_subject
-from stylobate.orbits.multipliers import is_stable
+from stylobate.orbits.orbit import require_subject
+from stylobate.orbits.shooting import is_stable
 from stylobate.parameter_quantities import attributes_of, quantity_of
 from stylobate.progress import Progress, report_of, shows_progress
 from stylobate.provenance import provenance_of_run

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from stylobate.compiler.fingerprint import fingerprint
+from stylobate.compiler.reads import fingerprint
 from stylobate.models import Model
 from stylobate.quantities import exact_repr
 

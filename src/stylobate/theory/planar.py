@@ -1,8 +1,8 @@
-"""Planar rocking under straight-line base motion: symmetric orbits of the forcing period, in closed form.
+"""Planar rocking of a slender column: free motion, backbones, and periodic motions on a shaking base.
 
-Between two passages of the vertical the equation (1) is linear. A motion that leaves the vertical at the speed v0,
-returns after half a forcing period T = π/ν at −v0 and repeats with the opposite sign obeys, with the rates d = (η +
-√(η² + 4))/2 of decay and 1/d of growth,
+On a shaking base, between two passages of the vertical the equation (1) is linear. A motion that leaves the vertical at
+the speed v0, returns after half a forcing period T = π/ν at −v0 and repeats with the opposite sign obeys, with the
+rates d = (η + √(η² + 4))/2 of decay and 1/d of growth,
 
     θ_f = c [tanh(dT/2) − d² tanh(T/2d)] / (1 + d²),                 the forced part of θ at the passage,
     v0 = cd [tanh(dT/2) + tanh(T/2d)] / (1 + d²) ± ν√(θ_a² − θ_f²),  θ_a = a1/√((1 + ν²)² + η²ν²).
@@ -22,10 +22,132 @@ from stylobate.theory.arguments import (
     Real,
     Truths,
     Values,
+    finite,
     not_negative,
     plain_results,
     positive,
 )
+
+
+@plain_results
+def planar_free_period(amplitude: Real, c: Real) -> Values:
+    """Compute the period of free planar rocking: two passages of the vertical.
+
+    Parameters
+    ----------
+    amplitude
+        Peak tilt angle θ0 [rad], positive.
+    c
+        Slenderness.
+
+    Returns
+    -------
+    numpy.ndarray
+        Period in the time τ, of the broadcast shape; NaN where θ0 ≥ c: the column does not return.
+
+    Raises
+    ------
+    ParameterError
+        If an argument is not positive.
+
+    Notes
+    -----
+    The inverse of the backbone (3): period = 4 arcosh[c / (c − θ0)] = 8 artanh √[θ0 / (2c − θ0)].
+
+    Examples
+    --------
+    >>> print(planar_free_period([0.05, 0.1], c=0.1).round(4))
+    [5.2678    nan]
+    """
+    amplitude, c = positive("amplitude", amplitude), positive("c", c)
+    ratio = amplitude / c
+    inside = ratio < 1.0
+    ratio = np.where(inside, ratio, 0.0)
+    return np.where(inside, 8.0 * np.arctanh(np.sqrt(ratio / (2.0 - ratio))), np.nan)
+
+
+@plain_results
+def planar_free_motion(tau: Real, amplitude: Real, c: Real) -> tuple[Values, Values]:
+    """Compute free planar rocking at any time, from its peak tilt on the positive side at τ = 0.
+
+    Parameters
+    ----------
+    tau
+        Time τ.
+    amplitude
+        Peak tilt angle θ0 [rad], positive.
+    c
+        Slenderness.
+
+    Returns
+    -------
+    tuple of numpy.ndarray
+        Signed tilt angle θ [rad] and its rate dθ/dτ, of the broadcast shape; NaN where θ0 ≥ c.
+
+    Raises
+    ------
+    ParameterError
+        If `tau` is not finite or another argument is not positive.
+
+    Notes
+    -----
+    (2): θ = c − (c − θ0) cosh τ for a quarter period on both sides of the peak tilt. The next half period has the same
+    arc with the opposite sign (the printed formula lacks that sign), and so on.
+
+    Examples
+    --------
+    >>> period = planar_free_period(0.05, c=0.1)
+    >>> alpha, rate = planar_free_motion([0.0, 0.5 * period, period], 0.05, c=0.1)
+    >>> print(alpha.round(12))
+    [ 0.05 -0.05  0.05]
+    """
+    tau = finite("tau", tau)
+    half_period = 0.5 * planar_free_period(amplitude, c)
+    amplitude, c = positive("amplitude", amplitude), positive("c", c)
+    turn = np.round(tau / half_period)
+    side = np.where(np.mod(turn, 2.0) == 0.0, 1.0, -1.0)
+    since_turn = tau - turn * half_period
+    alpha = side * (c - (c - amplitude) * np.cosh(since_turn))  # (2)
+    rate = -side * (c - amplitude) * np.sinh(since_turn)
+    return alpha, rate
+
+
+@plain_results
+def planar_backbone(omega: Real, c: Real) -> Values:
+    """Compute the amplitude of free planar rocking at the frequency ω.
+
+    Parameters
+    ----------
+    omega
+        Frequency ω = 2π / period of the rocking, positive.
+    c
+        Slenderness.
+
+    Returns
+    -------
+    numpy.ndarray
+        Peak tilt angle [rad], of the broadcast shape.
+
+    Raises
+    ------
+    ParameterError
+        If an argument is not positive.
+
+    Notes
+    -----
+    (3): θ0 = c [1 − 1/cosh(π/2ω)], written as c tanh x tanh(x/2) with x = π/2ω, which keeps its relative accuracy at
+    every frequency. Valid without damping and for motion confined to one plane; out of the plane this motion is
+    unstable.
+
+    Examples
+    --------
+    >>> print(planar_backbone([0.5, 1.0, 3.0], c=0.1).round(4))
+    [0.0914 0.0601 0.0123]
+    """
+    omega, c = positive("omega", omega), positive("c", c)
+    quarter_period = 0.5 * np.pi / omega
+    return c * np.tanh(quarter_period) * np.tanh(0.5 * quarter_period)  # (3)
+
 
 _NODES = 256  # Chebyshev intervals over half a period; dense where the exponentials vary
 _BISECTIONS = 60
