@@ -151,8 +151,9 @@ def _saved(source: Path | None) -> "xr.Dataset | None":
 
 def _description(saved: "xr.Dataset", source: Path | None) -> dict[str, Any]:
     if "description" not in saved.attrs:
-        message = f"{source}: saved without its description. Fit it in Python: sb.earthquakes.fragility_of_runs(runs)."
-        raise FileError(message)
+        raise FileError(
+            f"{source}: saved without its description. Fit it in Python: sb.earthquakes.fragility_of_runs(runs)."
+        )
     description: dict[str, Any] = json.loads(saved.attrs["description"])
     return description
 
@@ -207,8 +208,7 @@ def _table(values: Mapping[str, Any], options: Options) -> Any:
     table |= spacing(table, "scales", options)
     if options["vertical"] is not None:
         if options["vertical"] not in _VERTICAL:
-            message = f"--vertical must be on, off or both, got {options['vertical']!r}"
-            raise ParameterError(message)
+            raise ParameterError(f"--vertical must be on, off or both, got {options['vertical']!r}")
         table["vertical"] = _VERTICAL[options["vertical"]]
     if options["spread"]:
         table["spreads"] = dict(_spread(text) for text in options["spread"])
@@ -235,8 +235,9 @@ def _site(text: str) -> int | list[float]:
     try:
         return [float(part) for part in text.split(",")] if "," in text else int(text)
     except ValueError:
-        message = f"--hazard-site: no number and no LON,LAT (got {text!r}). Give one of them, such as 0 or 22.35,37.95."
-        raise ParameterError(message) from None
+        raise ParameterError(
+            f"--hazard-site: no number and no LON,LAT (got {text!r}). Give one of them, such as 0 or 22.35,37.95."
+        ) from None
 
 
 def _spread(text: str) -> tuple[str, dict[str, Any]]:
@@ -244,8 +245,7 @@ def _spread(text: str) -> tuple[str, dict[str, Any]]:
     try:
         return name.strip().replace("-", "_"), {"kind": "lognormal", "dispersion": float(dispersion)}
     except ValueError:
-        message = f"--spread must be a name and a dispersion, such as damping=0.4, got {text!r}"
-        raise ParameterError(message) from None
+        raise ParameterError(f"--spread must be a name and a dispersion, such as damping=0.4, got {text!r}") from None
 
 
 def _computed(study: "FragilityStudy", options: Options) -> "tuple[xr.Dataset, bool]":

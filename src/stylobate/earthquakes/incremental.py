@@ -191,8 +191,7 @@ class Plan:
             "property_sample": not any(np.ndim(values) for values in (parameters or {}).values()),
         }
         if not angles.size:
-            message = "rotations must hold at least one angle, got none"
-            raise ParameterError(message)
+            raise ParameterError("rotations must hold at least one angle, got none")
         return cls(
             model=model,
             records=named,
@@ -314,35 +313,32 @@ def positive_values(name: str, values: npt.ArrayLike) -> Floats:
     bad = array[~(array > 0.0)]
     if bad.size or not array.size:
         got = repr(float(bad[0])) if bad.size else "none"
-        message = f"{name} must hold at least one number, all positive, got {got}; use record.inverted() to reverse one"
-        raise ParameterError(message)
+        raise ParameterError(
+            f"{name} must hold at least one number, all positive, got {got}; use record.inverted() to reverse one"
+        )
     return array
 
 
 def _choices(vertical: bool | Sequence[bool]) -> tuple[bool, ...]:
     given = (vertical,) if isinstance(vertical, (bool, np.bool_)) else tuple(vertical)
     if not given or len(set(given)) < len(given) or not all(isinstance(one, (bool, np.bool_)) for one in given):
-        message = f"vertical must be True, False or (True, False), got {vertical!r}"
-        raise ParameterError(message)
+        raise ParameterError(f"vertical must be True, False or (True, False), got {vertical!r}")
     return tuple(bool(one) for one in given)
 
 
 def _samples(parameters: Mapping[str, npt.ArrayLike] | None) -> dict[str, Floats]:
     """Return the parameters of the property samples, as arrays of equal length."""
     if parameters is not None and not isinstance(parameters, Mapping):
-        message = f'parameters must map names to values, such as {{"damping": […]}}, got {parameters!r}'
-        raise ParameterError(message)
+        raise ParameterError(f'parameters must map names to values, such as {{"damping": […]}}, got {parameters!r}')
     given = {name: as_numbers(name, value, quantity_of(name).unit) for name, value in (parameters or {}).items()}
     for name in given:
         if name in _SET_BY_ARGUMENTS:
-            message = f"parameters cannot name {name}: use the argument {_SET_BY_ARGUMENTS[name]}"
-            raise ParameterError(message)
+            raise ParameterError(f"parameters cannot name {name}: use the argument {_SET_BY_ARGUMENTS[name]}")
     remark_on_lengths("parameters", given)
     several = {name: checked_values("parameters", name, values) for name, values in given.items() if np.ndim(values)}
     sizes = {name: values.size for name, values in several.items()}
     if len(set(sizes.values())) > 1 or 0 in sizes.values():
-        message = f"parameters must have equal numbers of values, one for each property sample, got {sizes}"
-        raise ParameterError(message)
+        raise ParameterError(f"parameters must have equal numbers of values, one for each property sample, got {sizes}")
     count = next(iter(sizes.values()), 1)
     same = {name: np.full(count, require_finite(name, value)) for name, value in given.items() if name not in several}
     return {name: {**several, **same}[name] for name in given}

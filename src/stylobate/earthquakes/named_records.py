@@ -25,17 +25,14 @@ def named_records(records: Records) -> dict[str, BaseMotion]:
     elif isinstance(records, Sequence) and not isinstance(records, (str, bytes)):
         pairs = [(_own_name(motion, place), motion) for place, motion in enumerate(records)]
     else:
-        message = f"records must be a base motion, a sequence or a mapping of them, got {records!r}"
-        raise ParameterError(message)
+        raise ParameterError(f"records must be a base motion, a sequence or a mapping of them, got {records!r}")
     if not pairs:
-        message = "records must hold at least one base motion, got none"
-        raise ParameterError(message)
+        raise ParameterError("records must hold at least one base motion, got none")
     named: dict[str, BaseMotion] = {}
     for name, motion in pairs:
         _require_ending(name, motion)
         if name in named:
-            message = f"records must differ in name, got {name!r} twice; give a mapping of names to records"
-            raise ParameterError(message)
+            raise ParameterError(f"records must differ in name, got {name!r} twice; give a mapping of names to records")
         named[name] = motion
     return named
 
@@ -46,8 +43,6 @@ def _own_name(motion: object, place: int) -> str:
 
 def _require_ending(name: str, motion: object) -> None:
     if not isinstance(motion, BaseMotion):
-        message = f"records must be base motions, such as those of read_records, got {motion!r} as {name!r}"
-        raise ParameterError(message)
+        raise ParameterError(f"records must be base motions, such as those of read_records, got {motion!r} as {name!r}")
     if not 0.0 < motion.duration < math.inf:
-        message = f"records must end after t = 0, got {name!r} with a duration of {motion.duration!r} s"
-        raise ParameterError(message)
+        raise ParameterError(f"records must end after t = 0, got {name!r} with a duration of {motion.duration!r} s")

@@ -105,14 +105,12 @@ def planar_bias(
     [[0.0, 0.0]]
     """
     if not isinstance(model, Model) or model.planar_only:
-        message = (
+        raise UnsupportedError(
             f"model must be three-dimensional to compare with a planar one (got {model!r}). Use one such as Wobbling."
         )
-        raise UnsupportedError(message)
     angles = checked_values("directions", "rotation", directions, scalar=True)
     if not angles.size:
-        message = "directions must hold at least one angle, got none"
-        raise ParameterError(message)
+        raise ParameterError("directions must hold at least one angle, got none")
     named = named_records(records)
     common: dict[str, Any] = {"scales": scales, "tail": tail, "executor": executor, **options}
     runs = np.size(scales) * len(named)

@@ -70,8 +70,7 @@ class NormalSpread:
     def __post_init__(self) -> None:
         require_positive("deviation", self.deviation)
         if not self.least < self.most:
-            message = f"least must be below most, got {self.least!r} and {self.most!r}"
-            raise ParameterError(message)
+            raise ParameterError(f"least must be below most, got {self.least!r} and {self.most!r}")
 
     def draw(self, nominal: float, shares: Floats) -> Floats:
         """Return the quantiles of these `shares`."""
@@ -90,8 +89,7 @@ class UniformSpread:
 
     def __post_init__(self) -> None:
         if not self.least <= self.most:
-            message = f"least must not lie above most, got {self.least!r} and {self.most!r}"
-            raise ParameterError(message)
+            raise ParameterError(f"least must not lie above most, got {self.least!r} and {self.most!r}")
 
     def draw(self, nominal: float, shares: Floats) -> Floats:
         """Return the quantiles of these `shares`."""
@@ -108,8 +106,9 @@ class LogUniformSpread:
 
     def __post_init__(self) -> None:
         if not 0.0 < require_positive("least", self.least) <= require_positive("most", self.most):
-            message = f"least: must not lie above most (got {self.least!r} and {self.most!r}). Exchange them."
-            raise ParameterError(message)
+            raise ParameterError(
+                f"least: must not lie above most (got {self.least!r} and {self.most!r}). Exchange them."
+            )
 
     def draw(self, nominal: float, shares: Floats) -> Floats:
         """Return the quantiles of these `shares`."""
@@ -126,8 +125,7 @@ class Choice:
     def __post_init__(self) -> None:
         object.__setattr__(self, "among", tuple(float(value) for value in self.among))
         if not self.among or any(np.isnan(value) for value in self.among):
-            message = f"among: must be one number or more (got {self.among!r}). Name each value once."
-            raise ParameterError(message)
+            raise ParameterError(f"among: must be one number or more (got {self.among!r}). Name each value once.")
 
     def draw(self, nominal: float, shares: Floats) -> Floats:
         """Return the quantiles of these `shares`, in the order of `among`."""
@@ -172,17 +170,16 @@ def property_samples(model: Model, spreads: Mapping[str, Spread], *, count: int,
     0.020 0.020
     """
     if not isinstance(spreads, Mapping) or not spreads:
-        message = f'spreads must name properties, such as {{"damping": LognormalSpread(0.4)}}, got {spreads!r}'
-        raise ParameterError(message)
+        raise ParameterError(
+            f'spreads must name properties, such as {{"damping": LognormalSpread(0.4)}}, got {spreads!r}'
+        )
     number = require_whole("count", count, least=1)
     check_names(model, None, spreads, where="spreads")
     for name, spread in spreads.items():
         if name not in (*COLUMN_NAMES, *model_names(model)):
-            message = f"spreads cannot name {name}: it belongs to the base motion"
-            raise ParameterError(message)
+            raise ParameterError(f"spreads cannot name {name}: it belongs to the base motion")
         if not hasattr(spread, "draw"):
-            message = f"spreads[{name!r}] must be a spread such as LognormalSpread(0.4), got {spread!r}"
-            raise ParameterError(message)
+            raise ParameterError(f"spreads[{name!r}] must be a spread such as LognormalSpread(0.4), got {spread!r}")
     shares = generator_of(rng).random((number, len(spreads)))
     return {
         name: spread.draw(present_value(model, BASE_AT_REST, name), shares[:, place])

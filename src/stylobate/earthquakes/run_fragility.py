@@ -5,7 +5,8 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from stylobate.earthquakes.fragility import Counting, fit_fragility
+from stylobate.earthquakes.fragility.fit import fit_fragility
+from stylobate.earthquakes.fragility.observations import Counting
 from stylobate.errors import ParameterError
 from stylobate.results.random_numbers import Rng
 
@@ -58,8 +59,7 @@ def fragility_of_runs(
     """
     if not isinstance(runs, xr.Dataset) or runs.attrs.get("kind") != "incremental dynamic analysis":
         got = runs.attrs.get("kind") if isinstance(runs, xr.Dataset) else repr(runs)
-        message = f"runs must be an incremental dynamic analysis, got {got}"
-        raise ParameterError(message)
+        raise ParameterError(f"runs must be an incremental dynamic analysis, got {got}")
     reached: Any = runs["reached"]
     series = [name for name in _SERIES if name in reached.dims]
     sample = xr.DataArray(0)

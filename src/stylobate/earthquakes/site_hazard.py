@@ -28,15 +28,15 @@ def site_hazard(points: HazardPoints, intensity: IntensityMeasure) -> HazardCurv
         named = (
             f"Name it in the first line of {points.source}, such as {_FIRST_LINE}, or give" if points.source else "Give"
         )
-        message = f'fragility.hazard: intensity measure not stated. {named} measure, such as "PGA" or "SA(0.5 s)".'
-        raise ParameterError(message)
+        raise ParameterError(
+            f'fragility.hazard: intensity measure not stated. {named} measure, such as "PGA" or "SA(0.5 s)".'
+        )
     measure = points.measure + (_DAMPING if points.measure.startswith("spectral") else "")
     if measure and measure != quantity.value:
-        message = (
+        raise ParameterError(
             f"fragility.hazard uses {measure!r}, but the fragility uses {quantity.value!r}. Provide both for "
             "the same intensity measure."
         )
-        raise ParameterError(message)
     common: dict[str, Any] = {"units": quantity.units, "quantity": quantity.value, "component": points.component}
     try:
         require_same_component(intensity.component.value, points.component)
@@ -45,8 +45,9 @@ def site_hazard(points: HazardPoints, intensity: IntensityMeasure) -> HazardCurv
         time = points.investigation_time
         return HazardCurve.of_probabilities(points.intensity, points.exceedance, investigation_time=time, **common)
     except ParameterError as error:
-        message = f"fragility.{error}" if str(error).startswith("hazard:") else f"fragility.hazard: {error}"
-        raise ParameterError(message) from None
+        raise ParameterError(
+            f"fragility.{error}" if str(error).startswith("hazard:") else f"fragility.hazard: {error}"
+        ) from None
 
 
 def _require_unit(points: HazardPoints, intensity: IntensityMeasure) -> None:
@@ -56,10 +57,8 @@ def _require_unit(points: HazardPoints, intensity: IntensityMeasure) -> None:
     if points.units is None:
         where = f"name it in the first line of {points.source}, such as" if points.source else "give units, such as"
         example = f"{_FIRST_LINE}, or give units" if points.source else 'units = "g"'
-        message = f"fragility.hazard does not state the unit of its intensity; {where} {example}"
-        raise ParameterError(message)
-    message = (
+        raise ParameterError(f"fragility.hazard does not state the unit of its intensity; {where} {example}")
+    raise ParameterError(
         f"fragility.hazard uses an intensity in {_UNITS[points.units]}, but the fragility uses {name!r} in "
         f"{_UNITS[units]}. Provide both for the same intensity measure."
     )
-    raise ParameterError(message)

@@ -90,17 +90,15 @@ def chosen_variations(changes: Mapping[str, Spread | None] | None) -> dict[str, 
         If `changes` does not map names to distributions.
     """
     if changes is not None and not isinstance(changes, Mapping):
-        message = (
+        raise ParameterError(
             f'variations: must map names to distributions (got {changes!r}). Pass {{"scale": LognormalSpread(0.05)}}.'
         )
-        raise ParameterError(message)
     for name, spread in (changes or {}).items():
         if spread is not None and not hasattr(spread, "draw"):
-            message = (
+            raise ParameterError(
                 f"variations[{name!r}]: must be a distribution or None (got {spread!r}). Pass one such as "
                 "LognormalSpread(0.05)."
             )
-            raise ParameterError(message)
     return {name: spread for name, spread in {**VARIATIONS, **(changes or {})}.items() if spread is not None}
 
 
@@ -110,8 +108,7 @@ def check_variations(models: tuple[Model, ...], variations: Mapping[str, Spread]
         known = [{*_NEUTRAL, *COLUMN_NAMES, *model_names(model)} for model in models]
         if not any(name in some for some in known):
             remedy = did_you_mean(name, set().union(*known)) or f"use one of {', '.join((*VARIATIONS, 'damping'))} …"
-            message = f"variations: {name} is no variation of a {models[0].name} column; {remedy}"
-            raise ParameterError(message)
+            raise ParameterError(f"variations: {name} is no variation of a {models[0].name} column; {remedy}")
 
 
 def drawn(name: str, spread: Spread, model: Model, *, runs: int, seed: int) -> Floats:

@@ -21,7 +21,7 @@ STATED, STANDS, OVERTURNS = "stated", "stands", "overturns"
 """The runs under a governing record: at the stated scale nearest to 1; the last survival below the margin, and the
 first overturning."""
 
-_SAMPLES = 2001
+_HISTORY_SAMPLES = 2001
 _OF_RUNS = ("strobes", "demands", "samples")
 _DEMANDS = {
     "peak_friction_demand": "friction_demand",
@@ -138,11 +138,11 @@ def _history(inputs: Inputs, column: str, record: str, shown: _Shown, *, contact
     motion = (without_vertical(recorded) if shown.case == NO_VERTICAL else recorded).scaled(shown.scale)
     options: dict[str, Any] = {name: value for name, value in inputs.options.items() if name not in _OF_RUNS}
     duration = motion.duration + tail_of(model.column, inputs.tail)
-    runs = simulate_ensemble(model, motion, duration=[duration], samples=_SAMPLES, demands=contact, **options)
-    return _as_dataset(runs.isel(run=0), motion, model.column.tipping_angle)
+    runs = simulate_ensemble(model, motion, duration=[duration], samples=_HISTORY_SAMPLES, demands=contact, **options)
+    return _table_of_histories(runs.isel(run=0), motion, model.column.tipping_angle)
 
 
-def _as_dataset(run: xr.Dataset, motion: BaseMotion, alpha: float) -> xr.Dataset:
+def _table_of_histories(run: xr.Dataset, motion: BaseMotion, alpha: float) -> xr.Dataset:
     times, tilt = run["sample_time"].to_numpy(), run["sampled_tilt"].to_numpy() / alpha
     size = np.hypot(tilt[:, 0], tilt[:, 1])
     largest = int(np.nanargmax(size))

@@ -101,8 +101,7 @@ class Inputs:
     ) -> Self:
         """Check the arguments of an assessment; raise ParameterError for an invalid one."""
         if not isinstance(columns, Mapping) or not columns:
-            message = f"columns must map names to models, at least one, got {columns!r}"
-            raise ParameterError(message)
+            raise ParameterError(f"columns must map names to models, at least one, got {columns!r}")
         levels = checked_dissipation(dissipation, columns)
         stated = _rising("scales", scales, least=1)
         scan = _rising("margin_scales", margin_scales, least=2)
@@ -196,8 +195,7 @@ def checked_dissipation(
     """
     remedy = "State it for low, central and high, such as low = {damping = 0.04}"
     if not isinstance(dissipation, Mapping) or not dissipation:
-        message = f"dissipation is missing: it decides the outcome of a three-dimensional column. {remedy}"
-        raise ParameterError(message)
+        raise ParameterError(f"dissipation is missing: it decides the outcome of a three-dimensional column. {remedy}")
     return {
         name: _checked_levels(at_levels(levels, _three_dimensional(name, columns[name]).column), remedy)
         for name, levels in levels_by_column(dissipation, columns).items()
@@ -208,12 +206,12 @@ def _checked_levels(levels: Mapping[str, Mapping[str, Any]], remedy: str) -> dic
     names = set(levels[CENTRAL])
     if not names or any(set(level) != names for level in levels.values()):
         given = ", ".join(f"{level} {' and '.join(sorted(numbers)) or 'nothing'}" for level, numbers in levels.items())
-        message = f"dissipation must state the same parameters at each level, got {given}. {remedy}"
-        raise ParameterError(message)
+        raise ParameterError(f"dissipation must state the same parameters at each level, got {given}. {remedy}")
     unknown = sorted(names.difference(OF_DISSIPATION))
     if unknown:
-        message = f"dissipation: {unknown[0]} is no parameter of dissipation. Use one of {', '.join(OF_DISSIPATION)}"
-        raise ParameterError(message)
+        raise ParameterError(
+            f"dissipation: {unknown[0]} is no parameter of dissipation. Use one of {', '.join(OF_DISSIPATION)}"
+        )
     return {
         level: {name: require_not_negative(f"dissipation.{level}.{name}", value) for name, value in numbers.items()}
         for level, numbers in levels.items()
@@ -222,33 +220,33 @@ def _checked_levels(levels: Mapping[str, Mapping[str, Any]], remedy: str) -> dic
 
 def _three_dimensional(name: str, model: Model) -> Model:
     if not isinstance(model, Model) or model.planar_only:
-        message = f"columns: {name!r} must be a three-dimensional model (got {model!r}). Use one such as Wobbling."
-        raise ParameterError(message)
+        raise ParameterError(
+            f"columns: {name!r} must be a three-dimensional model (got {model!r}). Use one such as Wobbling."
+        )
     return model
 
 
 def _at_levels(model: Model, levels: Mapping[str, Mapping[str, float]]) -> dict[str, Model]:
     lacking = [number for number in levels[CENTRAL] if number not in model_names(model)]
     if lacking:
-        message = f"dissipation: the model {model.name} has no {lacking[0]}; leave it out or choose another model"
-        raise ParameterError(message)
+        raise ParameterError(
+            f"dissipation: the model {model.name} has no {lacking[0]}; leave it out or choose another model"
+        )
     return {level: changed_model(model, numbers) for level, numbers in levels.items()}
 
 
 def _frictions(given: float | Mapping[str, float] | None, columns: Sequence[str]) -> dict[str, float]:
     if given is None:
-        message = (
+        raise ParameterError(
             "friction_coefficient is missing: the friction between column and base. State one number such as 0.6, or "
             "one for each column."
         )
-        raise ParameterError(message)
     if not isinstance(given, Mapping):
         return dict.fromkeys(columns, require_positive("friction_coefficient", given))
     for name in (*given, *columns):
         if (name in given) != (name in columns):
             what = "is no column" if name in given else "has none; state one for each column"
-            message = f"friction_coefficient: {name!r} {what}"
-            raise ParameterError(message)
+            raise ParameterError(f"friction_coefficient: {name!r} {what}")
     return {name: require_positive(f"friction_coefficient.{name}", given[name]) for name in columns}
 
 
@@ -258,8 +256,7 @@ def _rising(name: str, values: npt.ArrayLike, *, least: int) -> Floats:
     except (TypeError, ValueError):
         array = np.empty(0)
     if array.ndim != 1 or array.size < least or not np.all(np.isfinite(array) & (array > 0.0)):
-        message = f"{name} must be positive numbers, {least} or more, got {values!r}"
-        raise ParameterError(message)
+        raise ParameterError(f"{name} must be positive numbers, {least} or more, got {values!r}")
     return np.unique(array)
 
 

@@ -124,7 +124,7 @@ def _intervals(
 
     def compute(progress: Report) -> xr.Dataset:
         found = _found(inputs, model, motions, contact, executor, progress)
-        return _as_dataset(found, list(inputs.records), inputs.width)
+        return _table_of_margins(found, list(inputs.records), inputs.width)
 
     identity = {
         **inputs.identity(column, model),
@@ -161,7 +161,7 @@ def _found(
     )
 
 
-def _as_dataset(found: xr.Dataset, names: list[str], width: float) -> xr.Dataset:
+def _table_of_margins(found: xr.Dataset, names: list[str], width: float) -> xr.Dataset:
     plain = found.rename(motion="record", scale="margin_scale")
     plain = plain.drop_vars([name for name in plain.coords if name != "margin_scale"]).assign_coords(record=names)
     demand = plain.get("peak_friction_demand", xr.full_like(plain["peak_tilt"], np.nan))

@@ -108,6 +108,5 @@ def _keep(data: xr.Dataset, path: Path) -> None:
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        message = f"cannot write {path}: {error.strerror or error}"
-        raise FileError(message) from None
+        raise FileError(f"cannot write {path}: {error.strerror or error}") from None
     write_netcdf(data, path)

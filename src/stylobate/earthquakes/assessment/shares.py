@@ -64,7 +64,7 @@ def _shares_at(inputs: Inputs, column: str, scale: float, parts: Parts, executor
                     **options,  # type: ignore[arg-type]
                 )
             )
-        return _as_dataset(found, list(inputs.records))
+        return _table_of_shares(found, list(inputs.records))
 
     identity = {
         **inputs.identity(column),
@@ -93,7 +93,7 @@ def _over_the_levels(inputs: Inputs, column: str) -> dict[str, Spread | None]:
     return found
 
 
-def _as_dataset(found: list[Verdict], records: list[str]) -> xr.Dataset:
+def _table_of_shares(found: list[Verdict], records: list[str]) -> xr.Dataset:
     shares = np.array([(one.share, *one.interval) for one in found])
     states = [one.data["overturned"].to_numpy() for one in found]
     ratios = [one.data["tilt_ratio"].to_numpy()[state >= 0] for one, state in zip(found, states, strict=True)]

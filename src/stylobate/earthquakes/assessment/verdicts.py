@@ -50,7 +50,7 @@ def verdicts_on(inputs: Inputs, column: str, parts: Parts, *, contact: bool, exe
             progress=progress,
             **options,
         )
-        return _as_dataset(runs.expand_dims("vertical") if len(vertical) == 1 else runs)
+        return _table_of_verdicts(runs.expand_dims("vertical") if len(vertical) == 1 else runs)
 
     count = len(inputs.records) * len(levels) * len(vertical) * inputs.scales.size
     identity = {**inputs.identity(column), "scales": inputs.scales.tolist(), "contact": contact}
@@ -63,7 +63,7 @@ def verdict_runs(inputs: Inputs) -> int:
     return len(inputs.records) * len(inputs.levels) * (2 if inputs.has_vertical else 1) * inputs.scales.size
 
 
-def _as_dataset(runs: xr.Dataset) -> xr.Dataset:
+def _table_of_verdicts(runs: xr.Dataset) -> xr.Dataset:
     plain = runs.rename(property_sample="dissipation")
     plain = plain.drop_vars([name for name in plain.coords if name not in ("record", "scale", LIMIT_STATE)])
     found = {

@@ -51,20 +51,20 @@ class DesignSpectrumConfig(Config):
             If the file cannot be read.
         """
         if (self.file is None) == (not self.points):
-            message = "design_spectrum: give either points or file."
-            raise ParameterError(message)
+            raise ParameterError("design_spectrum: give either points or file.")
         points, stated = (self.points, None) if self.file is None else _read(self.file)
         given = None if self.units is None else unit_of(self.units)
         if self.units is not None and given is None:
-            message = f"design_spectrum.units: unknown unit (got {self.units!r}). Use {KNOWN}."
-            raise ParameterError(message)
+            raise ParameterError(f"design_spectrum.units: unknown unit (got {self.units!r}). Use {KNOWN}.")
         if given and stated and given != stated:
-            message = f"design_spectrum.units: {given!r} contradicts {stated!r} in {self.file}. Remove one of them."
-            raise ParameterError(message)
+            raise ParameterError(
+                f"design_spectrum.units: {given!r} contradicts {stated!r} in {self.file}. Remove one of them."
+            )
         units = given or stated
         if units is None:
-            message = 'design_spectrum.units: the unit of the accelerations is missing. Add units = "g" or "m/s²".'
-            raise ParameterError(message)
+            raise ParameterError(
+                'design_spectrum.units: the unit of the accelerations is missing. Add units = "g" or "m/s²".'
+            )
         return DesignSpectrum(
             period=tuple(float(period) for period, _ in points),
             acceleration=tuple(float(value) * in_si(units) for _, value in points),

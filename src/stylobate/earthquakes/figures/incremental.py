@@ -43,8 +43,9 @@ def plot_incremental(found: xr.Dataset) -> Figure:
         If the runs have no dimension `scale`.
     """
     if "scale" not in found.dims:
-        message = "found must have the dimension scale to be drawn over the intensity; take runs.isel(scale=[0])"
-        raise ParameterError(message)
+        raise ParameterError(
+            "found must have the dimension scale to be drawn over the intensity; take runs.isel(scale=[0])"
+        )
     names, level, tilt = _series(found)
     order = list(dict.fromkeys(names))
     figure = new_figure(_HEIGHT)

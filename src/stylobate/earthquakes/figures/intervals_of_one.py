@@ -1,7 +1,6 @@
 """Figure of the overturning intervals of one column along the amplitude, with the peak tilts of surviving runs."""
 
 import numpy as np
-import numpy.typing as npt
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -12,6 +11,7 @@ from stylobate.earthquakes.figures.interval_regions import (
     UNKNOWN,
     UNRESOLVED,
     WEAKEST,
+    Floats,
     Regions,
     amplitude_ends,
     amplitude_label,
@@ -24,9 +24,7 @@ from stylobate.plots.cells import is_geometric, set_scale
 from stylobate.plots.style import BLACK, new_figure, styled
 from stylobate.results.outcomes import NOT_COMPUTED
 
-Floats = npt.NDArray[np.float64]
-
-_HEIGHT, _DOT = 3.8, 3.2
+_HEIGHT_OF_ONE, _DOT = 3.8, 3.2
 
 
 @styled
@@ -38,7 +36,7 @@ def plot_intervals_of_one(found: xr.Dataset) -> Figure:
     found
         Overturning intervals of one case: `interval_from` … over `interval`, `outcome` and `peak_tilt` over the scale.
     """
-    figure = new_figure(_HEIGHT)
+    figure = new_figure(_HEIGHT_OF_ONE)
     axes = figure.subplots()
     ratio = float(found["acceleration_ratio"])
     factor = ratio if is_normalized(found) else 1.0

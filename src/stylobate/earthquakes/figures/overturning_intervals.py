@@ -3,7 +3,6 @@
 from dataclasses import dataclass, field
 
 import numpy as np
-import numpy.typing as npt
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -13,6 +12,7 @@ from stylobate.earthquakes.figures.interval_regions import (
     UNKNOWN,
     UNRESOLVED,
     WEAKEST,
+    Floats,
     Regions,
     amplitude_ends,
     amplitude_label,
@@ -27,8 +27,6 @@ from stylobate.plots.kinds import figure_of
 from stylobate.plots.labels import axis_label
 from stylobate.plots.style import new_figure, styled
 from stylobate.results.outcomes import NOT_COMPUTED
-
-Floats = npt.NDArray[np.float64]
 
 _HEIGHT, _MOST_PANELS = 4.4, 4
 # Minimum and maximum size of the dot on an uncertain run, and width of all panels [points].

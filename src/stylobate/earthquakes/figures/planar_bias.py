@@ -1,22 +1,20 @@
 """Figures of three-dimensional and planar (Housner) columns: peak tilts, and overturning by direction."""
 
 import numpy as np
-import numpy.typing as npt
 import xarray as xr
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.projections.polar import PolarAxes
 from matplotlib.ticker import MaxNLocator
 
+from stylobate.earthquakes.figures.incremental import Floats
 from stylobate.errors import ParameterError
 from stylobate.plots.kinds import figure_of
 from stylobate.plots.result_figure import beside_or_below
 from stylobate.plots.style import BLACK, BLUE, DASHES, GREY, VERMILION, new_figure, styled
 from stylobate.text import plural
 
-Floats = npt.NDArray[np.float64]
-
-_HEIGHT, _POLAR_HEIGHT = 5.4, 3.4
+_BIAS_HEIGHT, _POLAR_HEIGHT = 5.4, 3.4
 _MOST_PANELS = 3
 # Distance of the marks of overturned columns beyond the end of the axis, as a fraction of the axis.
 _MARGIN = 0.07
@@ -30,7 +28,7 @@ def plot_planar_bias(found: xr.Dataset) -> Figure:
     Each record and scale has a point. Points in the margins are overturned columns: the planar column on the right, the
     three-dimensional column at the top, both in the corner. Above the diagonal the planar column is unconservative.
     """
-    figure = new_figure(_HEIGHT, width=6.4)
+    figure = new_figure(_BIAS_HEIGHT, width=6.4)
     axes = figure.subplots()
     flat, space = (found[name].to_numpy().ravel() for name in ("worst_planar_tilt_ratio", "tilt_ratio"))
     scale = found["scale"].broadcast_like(found["tilt_ratio"]).transpose(*found["tilt_ratio"].dims).to_numpy().ravel()
@@ -93,15 +91,13 @@ def plot_directions(found: xr.Dataset) -> Figure:
     turned = "planar_tilt_ratio" not in found
     name = "rotation" if turned else "direction"
     if name not in found.dims:
-        message = f"found must have the dimension {name}, got {', '.join(map(str, found.dims))}"
-        raise ParameterError(message)
+        raise ParameterError(f"found must have the dimension {name}, got {', '.join(map(str, found.dims))}")
     found = found if "record" in found.dims else found.expand_dims("record")
     if found.sizes["record"] > _MOST_PANELS:
-        message = (
+        raise ParameterError(
             f"a figure over directions has up to {_MOST_PANELS} records, got {found.sizes['record']}: "
             "choose some by found.sel(record=[...])"
         )
-        raise ParameterError(message)
     figure = new_figure(_POLAR_HEIGHT)
     panels = figure.subplots(1, found.sizes["record"], subplot_kw={"projection": "polar"}, squeeze=False)[0]
     for place, axes in enumerate(panels):

@@ -14,7 +14,7 @@ from stylobate.plots.labels import literal
 from stylobate.plots.result_figure import WIDTH
 from stylobate.plots.style import new_figure, styled
 
-_HEIGHT = 2.1
+_HEIGHT_OF_RECORD = 2.1
 
 
 @styled
@@ -28,7 +28,7 @@ def plot_records(records: Sequence[Record], spectra: Mapping[str, xr.Dataset]) -
     spectra
         Spectra from `response_spectra`, by name of the record.
     """
-    figure = new_figure(_HEIGHT * len(records) + 0.4, width=1.3 * WIDTH)
+    figure = new_figure(_HEIGHT_OF_RECORD * len(records) + 0.4, width=1.3 * WIDTH)
     grid = figure.subplots(len(records), 2, squeeze=False, width_ratios=(2, 1))
     for (left, right), record in zip(grid, records, strict=True):
         _history(left, record)

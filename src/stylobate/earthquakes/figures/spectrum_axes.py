@@ -36,11 +36,10 @@ def split(found: xr.Dataset, dims: list[str], most: int, what: str) -> tuple[str
     """
     ordered = sorted(dims, key=lambda dim: -found.sizes[dim])
     if len(ordered) > _PLANE or (len(ordered) == _PLANE and found.sizes[ordered[1]] > most):
-        message = (
+        raise ParameterError(
             f"a figure of {what} has one dimension, or two with up to {most} values along one of them; got "
             f"{ {dim: found.sizes[dim] for dim in dims} }: choose some by found.sel(...) or found.isel(...)"
         )
-        raise ParameterError(message)
     return (ordered[0] if ordered else None), (ordered[1] if len(ordered) == _PLANE else None)
 
 

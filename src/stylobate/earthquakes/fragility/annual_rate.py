@@ -202,15 +202,16 @@ def _edges(hazard: HazardCurve, count: int) -> Floats:
 
 def _require_fragility(fragility: xr.Dataset, hazard: HazardCurve) -> None:
     if not isinstance(fragility, xr.Dataset) or fragility.attrs.get("kind") != "fragility":
-        message = f"fragility must come from fit_fragility or lognormal_fragility, got {type(fragility).__name__}"
-        raise ParameterError(message)
+        raise ParameterError(
+            f"fragility must come from fit_fragility or lognormal_fragility, got {type(fragility).__name__}"
+        )
     if not isinstance(hazard, HazardCurve):
-        message = f"hazard must be a HazardCurve, got {type(hazard).__name__}"
-        raise ParameterError(message)
+        raise ParameterError(f"hazard must be a HazardCurve, got {type(hazard).__name__}")
     unit = fragility["median"].attrs.get("units", "1")
     if unit != hazard.units:
-        message = f"hazard must have the unit of the fragility, {unit!r}, got {hazard.units!r}; convert one of them"
-        raise ParameterError(message)
+        raise ParameterError(
+            f"hazard must have the unit of the fragility, {unit!r}, got {hazard.units!r}; convert one of them"
+        )
     require_same_component(fragility["median"].attrs.get("component"), hazard.component)
 
 

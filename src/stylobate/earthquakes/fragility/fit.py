@@ -120,11 +120,11 @@ def _replicates(seen: Observations, draws: int, rng: Rng | None) -> list[Replica
     if not draws:
         return []
     if seen.record is None or seen.record.max() < 1:
-        message = f"resamples: requires two or more records (got {draws} resamples). Add records, or pass resamples=0."
-        raise ParameterError(message)
+        raise ParameterError(
+            f"resamples: requires two or more records (got {draws} resamples). Add records, or pass resamples=0."
+        )
     if rng is None:
-        message = "rng: required to resample the records (got None). Pass a seed, for example rng=0."
-        raise ParameterError(message)
+        raise ParameterError("rng: required to resample the records (got None). Pass a seed, for example rng=0.")
     return resampled(seen, draws, generator_of(rng))
 
 

@@ -58,8 +58,9 @@ def limit_states(
     """
     for name in ("outcome", "peak_tilt"):
         if name not in runs:
-            message = f"runs must hold the variable {name}, got {', '.join(map(str, runs.data_vars)) or 'none'}"
-            raise ParameterError(message)
+            raise ParameterError(
+                f"runs must hold the variable {name}, got {', '.join(map(str, runs.data_vars)) or 'none'}"
+            )
     critical = np.arctan(_slenderness(runs, slenderness))
     codes, tilt = runs["outcome"], runs["peak_tilt"]
     fallen = codes == Outcome.OVERTURNED
@@ -82,18 +83,16 @@ def limit_states(
 def _slenderness(runs: xr.Dataset, given: npt.ArrayLike | xr.DataArray | None) -> xr.DataArray:
     if given is None:
         if "slenderness" not in runs.coords:
-            message = "slenderness must be given if runs have no coordinate of that name, got None"
-            raise ParameterError(message)
+            raise ParameterError("slenderness must be given if runs have no coordinate of that name, got None")
         return runs["slenderness"]
     if isinstance(given, xr.DataArray):
         values = given
     else:
         array = np.asarray(given, dtype=float)
         if array.ndim and array.shape != runs["outcome"].shape:
-            message = (
+            raise ParameterError(
                 f"slenderness must be a number or have the shape of runs, {runs['outcome'].shape}; got {array.shape}"
             )
-            raise ParameterError(message)
         values = xr.DataArray(array, dims=runs["outcome"].dims if array.ndim else ())
     numbers = values.to_numpy()
     bad = numbers[~(np.isfinite(numbers) & (numbers > 0.0))]

@@ -81,8 +81,9 @@ class Observations:
             parts = xr.broadcast(shaped, levels, *(one for one in named if one is not None))
             states = states.broadcast_like(parts[0]).transpose(LIMIT_STATE, *parts[0].dims)
         except ValueError as error:
-            message = f"intensity, reached and record must have one shape or share named dimensions: {error}"
-            raise ParameterError(message) from None
+            raise ParameterError(
+                f"intensity, reached and record must have one shape or share named dimensions: {error}"
+            ) from None
         values = parts[1].to_numpy().ravel()
         known, number = (None, None) if named[0] is None else _numbered(parts[2])
         series = number
@@ -110,8 +111,9 @@ class Observations:
         if counting is Counting.AS_COMPUTED:
             return self
         if self.series is None:
-            message = "counting must be Counting.AS_COMPUTED if no record is named, got Counting.FIRST; give record"
-            raise ParameterError(message)
+            raise ParameterError(
+                "counting must be Counting.AS_COMPUTED if no record is named, got Counting.FIRST; give record"
+            )
         reached = self.reached.copy()
         for state in reached:
             for one in range(self.series.max() + 1):
@@ -143,8 +145,9 @@ def _labelled(name: str, values: Data, dims: tuple[str, ...], shape: tuple[int, 
     if not dims:
         return xr.DataArray(array, dims=[f"run_{place}" if place else "run" for place in range(array.ndim)])
     if array.shape != shape:
-        message = f"{name} must have the shape of reached, {shape}, or named dimensions; got shape {array.shape}"
-        raise ParameterError(message)
+        raise ParameterError(
+            f"{name} must have the shape of reached, {shape}, or named dimensions; got shape {array.shape}"
+        )
     return xr.DataArray(array, dims=dims)
 
 
@@ -165,22 +168,20 @@ def _numbered(values: xr.DataArray) -> tuple[npt.NDArray[Any], Integers]:
 
 def _positive(given: npt.NDArray[Any]) -> Floats:
     if given.size and given.dtype.kind not in "iuf":
-        message = f"intensity must hold real numbers, got {given[0]!r}"
-        raise ParameterError(message)
+        raise ParameterError(f"intensity must hold real numbers, got {given[0]!r}")
     values = given.astype(np.float64)
     if not values.size:
-        message = "intensity must hold at least one run, got none"
-        raise ParameterError(message)
+        raise ParameterError("intensity must hold at least one run, got none")
     bad = values[~(np.isfinite(values) & (values > 0.0))]
     if bad.size:
-        message = f"intensity must be positive and finite, got {float(bad[0])!r}; leave out runs without base motion"
-        raise ParameterError(message)
+        raise ParameterError(
+            f"intensity must be positive and finite, got {float(bad[0])!r}; leave out runs without base motion"
+        )
     return values
 
 
 def _codes(values: npt.NDArray[Any]) -> Integers:
     bad = values[~np.isin(values, (NOT_KNOWN, 0, 1))]
     if bad.size:
-        message = f"reached must hold True or False (or 1, 0, and -1 for not known), got {bad.flat[0]!r}"
-        raise ParameterError(message)
+        raise ParameterError(f"reached must hold True or False (or 1, 0, and -1 for not known), got {bad.flat[0]!r}")
     return np.asarray(values, dtype=np.int64)

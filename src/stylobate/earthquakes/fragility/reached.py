@@ -49,8 +49,7 @@ def reached_intervals(scale: Data, reached: Data, *, record: Data | None = None)
     """
     seen = Observations.of(scale, reached, record)
     if len(seen.names) > 1:
-        message = f"reached must have one limit state, got {', '.join(seen.names)}; choose one with .sel"
-        raise ParameterError(message)
+        raise ParameterError(f"reached must have one limit state, got {', '.join(seen.names)}; choose one with .sel")
     groups = np.zeros(seen.intensity.size, dtype=np.int64) if seen.record is None else seen.record
     state = seen.reached[0]
     names = seen.records or ("all",)
@@ -72,11 +71,10 @@ def _intervals_of(scale: Floats, state: Integers, name: str) -> list[Interval]:
     hits = np.bincount(where, weights=state, minlength=x.size)
     torn = np.flatnonzero((hits > 0.0) & (hits < runs))
     if torn.size:
-        message = (
+        raise ParameterError(
             f"reached must agree between runs of one record at one scale, got both at {float(x[torn[0]])!r} "
             f"of record {name}; compute intervals for each property sample separately"
         )
-        raise ParameterError(message)
     if not x.size:
         return []
     edges = np.flatnonzero(np.diff(hits > 0.0)) + 1

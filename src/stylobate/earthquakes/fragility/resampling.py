@@ -89,8 +89,7 @@ def resampled(seen: Observations, count: int, rng: np.random.Generator) -> list[
     """Fit `count` resamples for each limit state; all limit states share the drawn records."""
     record = seen.record
     if record is None:
-        message = "record: resampling needs the record of each run. Pass `record=`."
-        raise AssertionError(message)
+        raise AssertionError("record: resampling needs the record of each run. Pass `record=`.")
     records = int(record.max()) + 1
     u, place = np.unique(np.log(seen.intensity), return_inverse=True)
     drawn = rng.multinomial(records, np.full(records, 1.0 / records), size=count).astype(float)

@@ -75,11 +75,9 @@ class Cases:
             If the motion lacks a number that is to vary.
         """
         if not isinstance(model, Model):
-            message = f"model must be a model such as Slender(column), got {model!r}"
-            raise ParameterError(message)
+            raise ParameterError(f"model must be a model such as Slender(column), got {model!r}")
         if not isinstance(motion, BaseMotion):
-            message = f"motion must be a base motion such as Pulse.one_sine(...), got {motion!r}"
-            raise ParameterError(message)
+            raise ParameterError(f"motion must be a base motion such as Pulse.one_sine(...), got {motion!r}")
         over = _checked_names(model, motion, {} if over is None else over, scaled=scaled)
         own = own_numbers(model, motion)
         axes = {name: checked_values("over", name, values, own) for name, values in over.items()}
@@ -110,8 +108,9 @@ class Cases:
         usual = TAIL / self.numbers["frequency_parameter"]
         ends = self.numbers["motion_end"] + (usual if tail is None else require_positive("tail", tail, "s"))
         if not np.all(np.isfinite(ends)):
-            message = f"duration must be given, in s, for a base motion that never ends; got None with {self.motion!r}"
-            raise ParameterError(message)
+            raise ParameterError(
+                f"duration must be given, in s, for a base motion that never ends; got None with {self.motion!r}"
+            )
         return ends
 
     def sweep(self, case: Integers, durations: Floats, scale: Floats | None, **options: Unpack[RunOptions]) -> Sweep:
@@ -140,13 +139,11 @@ def _checked_names(
     model: Model, motion: BaseMotion, over: Mapping[str, npt.ArrayLike], *, scaled: bool
 ) -> Mapping[str, npt.ArrayLike]:
     if not isinstance(over, Mapping):
-        message = f'over must name parameters with their values, such as {{"size": […]}}; got {over!r}'
-        raise ParameterError(message)
+        raise ParameterError(f'over must name parameters with their values, such as {{"size": […]}}; got {over!r}')
     refused = {"duration": "give duration or tail", **({} if scaled else {"scale": "give scales"})}
     for name, remedy in refused.items():
         if name in over:
-            message = f"over cannot name {name}: {remedy}"
-            raise ParameterError(message)
+            raise ParameterError(f"over cannot name {name}: {remedy}")
     if over:
         check_quantities("over", model, over, motion)
     require_values("over", over)

@@ -276,13 +276,13 @@ def _resolution(step: float, span: float, fine_scales: int) -> str:
 def _checked_scales(scales: npt.ArrayLike) -> Floats:
     values = checked_values("scales", "scale", scales)
     if values.size < 2 or not (values[0] > 0.0 and np.all(np.diff(values) > 0.0)):  # noqa: PLR2004  an interval
-        message = f"scales must be two or more positive numbers, increasing; got {values.tolist()}"
-        raise ParameterError(message)
+        raise ParameterError(f"scales must be two or more positive numbers, increasing; got {values.tolist()}")
     return values
 
 
 def _checked_width(width: float) -> float:
     if require_positive("width", width) < _NARROWEST:
-        message = f"width must be at least {_NARROWEST:g}, because rounding errors are larger; got {width!r}"
-        raise ParameterError(message)
+        raise ParameterError(
+            f"width must be at least {_NARROWEST:g}, because rounding errors are larger; got {width!r}"
+        )
     return float(width)

@@ -1,9 +1,8 @@
 """Peak tilt rate of a run, from samples of its history."""
 
 import numpy as np
-import numpy.typing as npt
 
-Floats = npt.NDArray[np.float64]
+from stylobate.studies.sweeps.quantities import Floats
 
 
 def peak_tilt_rate(time: Floats, tilt: Floats, tilt_rate: Floats) -> Floats:

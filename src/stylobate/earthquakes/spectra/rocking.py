@@ -85,8 +85,7 @@ def rocking_spectrum(
     require_no_tilt_limit(options)
     cases = Cases.of(model, motion, over, scaled=True)
     if not cases.axes:
-        message = f'over must name a parameter with its values, such as {{"size": […]}}; got {over!r}'
-        raise ParameterError(message)
+        raise ParameterError(f'over must name a parameter with its values, such as {{"size": […]}}; got {over!r}')
     options["samples"] = require_whole("samples", options.get("samples") or _SAMPLES, least=2)
     durations = cases.durations(duration, tail)
     sweep = cases.sweep(np.arange(cases.count), durations, None, **options)

@@ -69,8 +69,7 @@ def assessment_report(assessment: Assessment, folder: str | Path, *, progress: P
         text = page(title, [document, verdicts], report_sections(assessment, tables, pictures))
         write_whole(report, text.replace("</style>", f"{_STYLE}</style>", 1))
     except OSError as error:
-        message = f"cannot write into {target}: {error.strerror or error}"
-        raise FileError(message) from error
+        raise FileError(f"cannot write into {target}: {error.strerror or error}") from error
     assessment.save(target / "assessment.nc")
     return report
 

@@ -13,14 +13,14 @@ from stylobate.results.assessment import Assessment
 RECORDS_A_FIGURE = 6
 """Number of records in one figure of components."""
 # Height of a row and of the frame [inches]; largest number of records that have a colour each.
-_ROW, _FRAME, _COLOURED = 0.85, 0.75, 6
+_RECORD_ROW, _RECORD_FRAME, _COLOURED = 0.85, 0.75, 6
 
 
 @styled
 def records_figure(assessment: Assessment, records: Sequence[str]) -> Figure:
     """Draw the components of records against time, one row for each record."""
     own = assessment.data["ground_motions"]
-    figure = new_figure(_FRAME + _ROW * len(records))
+    figure = new_figure(_RECORD_FRAME + _RECORD_ROW * len(records))
     grid = figure.subplots(len(records), 3, squeeze=False, sharey="row", sharex="row")
     for row, name in zip(grid, records, strict=True):
         one = own.sel(record=name)
