@@ -1,5 +1,6 @@
 """Incremental dynamic analysis: each record at many scales, up to overturning and beyond."""
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -10,11 +11,9 @@ import numpy.typing as npt
 import xarray as xr
 
 from stylobate.base_motions import BaseMotion, OneOf
-from stylobate.earthquakes.crossing import crossed, unfolded
-from stylobate.earthquakes.following import tail_of
-from stylobate.earthquakes.fragility import limit_states
+from stylobate.earthquakes.fragility.observations import limit_states
 from stylobate.earthquakes.intensities import Intensity, IntensityMeasure, SpectralAcceleration
-from stylobate.earthquakes.named_records import Records, named_records
+from stylobate.earthquakes.study_inputs import Records, named_records, tail_of
 from stylobate.engine.parameters import changed_model
 from stylobate.errors import Outcome, ParameterError, as_numbers, require_finite
 from stylobate.models import Model
@@ -28,6 +27,29 @@ from stylobate.studies.maps.safe_distance import UNRESOLVED
 from stylobate.studies.sweeps import Executor, Sweep
 from stylobate.studies.sweeps.labelled import labelled_sweep
 from stylobate.studies.sweeps.quantities import Floats, checked_values
+
+Places = npt.NDArray[np.intp]
+
+
+def crossed(lengths: Mapping[str, int]) -> dict[str, Places]:
+    """Return flat arrays of the indices of each named choice over all combinations; the last choice varies fastest."""
+    grids = np.indices(tuple(lengths.values()))
+    return {name: grid.ravel() for name, grid in zip(lengths, grids, strict=True)}
+
+
+def unfolded(runs: xr.Dataset, lengths: Mapping[str, int]) -> xr.Dataset:
+    """Reshape `runs` from the dimension `run` to the dimensions of `crossed` choices; drop coordinates over `run`."""
+    shape = tuple(lengths.values())
+    assert runs.sizes["run"] == math.prod(shape)
+    variables = {}
+    for name, variable in runs.data_vars.items():
+        ordered = variable.transpose("run", ...)
+        values = ordered.to_numpy()
+        dims = (*lengths, *ordered.dims[1:])
+        variables[name] = xr.Variable(dims, values.reshape(*shape, *values.shape[1:]), variable.attrs)
+    kept = {name: coordinate for name, coordinate in runs.coords.items() if "run" not in coordinate.dims}
+    return xr.Dataset(variables, coords=kept, attrs=runs.attrs)
+
 
 _SET_BY_ARGUMENTS = {
     "motion": "records",

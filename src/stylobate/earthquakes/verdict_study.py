@@ -16,19 +16,18 @@ from scipy.special import fdtrc
 
 from stylobate.base_motions import BaseMotion, OneOf, Record
 from stylobate.config import config_of
-from stylobate.earthquakes.config.spreads import described_spread
-from stylobate.earthquakes.config.verdict import VerdictConfig
-from stylobate.earthquakes.following import tail_of
+from stylobate.earthquakes.config.verdict import VerdictConfig, described_spread
 from stylobate.earthquakes.incremental import tilt_ratios
-from stylobate.earthquakes.property_spreads import Spread
-from stylobate.earthquakes.variations import (
+from stylobate.earthquakes.property_spreads import (
     VARIATIONS,
+    Spread,
     check_variations,
     chosen_variations,
     drawn,
     scaled_dissipation,
     shares_of,
 )
+from stylobate.earthquakes.study_inputs import tail_of
 from stylobate.engine.parameters import COLUMN_NAMES, model_names
 from stylobate.errors import (
     LARGEST_SEED,

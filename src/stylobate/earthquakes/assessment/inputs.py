@@ -1,25 +1,127 @@
-"""Checked arguments of an assessment: columns with dissipation and friction, records by name, and options."""
+"""Checked arguments of an assessment, and the store of its parts."""
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+import hashlib
+import json
+import logging
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from importlib.metadata import version
-from typing import Any, Self
+from pathlib import Path
+from typing import Any, Self, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
+import xarray as xr
 
-from stylobate.base_motions import BASE_AT_REST, BaseMotion
+from stylobate.base_motions import BASE_AT_REST, BaseMotion, Record
 from stylobate.config.levels import OF_DISSIPATION, Dissipation, at_levels, levels_by_column
-from stylobate.earthquakes.assessment.parts import identities
-from stylobate.earthquakes.named_records import Records, named_records
+from stylobate.earthquakes.study_inputs import Records, named_records
 from stylobate.earthquakes.verdict_study import has_other_contact_law, with_other_contact_law
 from stylobate.engine.parameters import changed_model, model_names
-from stylobate.errors import ParameterError, require_not_negative, require_positive
+from stylobate.errors import FileError, ParameterError, require_not_negative, require_positive
 from stylobate.models import Model
+from stylobate.progress import Report
 from stylobate.provenance import provenance_of_run
+from stylobate.quantities import exact_repr
+from stylobate.results.storage import read_dataset, write_netcdf
 from stylobate.run_arguments import RunOptions
 from stylobate.studies.sweeps.fingerprint import identity_of
 from stylobate.studies.sweeps.quantities import Floats
+
+_log = logging.getLogger("stylobate")
+
+Announce: TypeAlias = Callable[[str, int, int], None]
+"""Called with the name of the part, the runs done and the total number of runs."""
+
+
+@dataclass(frozen=True, slots=True)
+class Parts:
+    """Parts of an assessment, computed or read from the folder `store`.
+
+    Parameters
+    ----------
+    store
+        Folder of the parts; None stores nothing.
+    total
+        Approximate number of runs of all parts.
+    announce
+        Called with the progress while a part is computed; runs of stored parts count as done.
+    """
+
+    store: Path | None
+    total: int
+    announce: Announce
+    _done: list[int] = field(default_factory=list, init=False)
+    _known: list[str] = field(default_factory=list, init=False)
+
+    def get(
+        self, name: str, runs: int, identity: Mapping[str, Any], compute: Callable[[Report], xr.Dataset]
+    ) -> xr.Dataset:
+        """Return the part `name` of about `runs` runs; compute it if the store has none of the same `identity`.
+
+        Raises
+        ------
+        FileError
+            If the store cannot be written.
+        """
+        before = sum(self._done)
+        path = None if self.store is None else self.store / f"{_digest({'part': name, **identity})}.nc"
+        found = None if path is None else _kept(path)
+        if found is not None:
+            self._known.append(name)
+        else:
+            self._report_what_is_reused()
+            self.announce(name, before, self.total)
+            found = compute(
+                lambda done, total: self.announce(name, before + round(runs * done / max(total, 1)), self.total)
+            )
+            if path is not None:
+                _keep(found, path)
+            self.announce(name, before + runs, self.total)
+        self._done.append(runs)
+        return found
+
+    def report(self) -> None:
+        """Log the number of parts that were read from the store, if any."""
+        if self._known:
+            _log.info(
+                "%d of %d parts were read from %s and not computed again", len(self._known), len(self._done), self.store
+            )
+
+    def _report_what_is_reused(self) -> None:
+        """Log the number of stored parts before the first part is computed."""
+        if self._known and len(self._known) == len(self._done):
+            _log.info("%d parts were read from %s; the assessment resumes there", len(self._known), self.store)
+
+
+def identities(motions: Mapping[str, BaseMotion]) -> dict[str, Any]:
+    """Return the identities of motions, by name."""
+    return {
+        name: motion.digest if isinstance(motion, Record) else identity_of(motion) for name, motion in motions.items()
+    }
+
+
+def _digest(identity: Mapping[str, Any]) -> str:
+    return hashlib.sha256(json.dumps(identity, sort_keys=True, default=exact_repr).encode()).hexdigest()[:24]
+
+
+def _kept(path: Path) -> xr.Dataset | None:
+    if not path.exists():
+        return None
+    try:
+        return read_dataset(path)
+    except FileError as error:
+        _log.warning("%s; it is computed again", error)
+        return None
+
+
+def _keep(data: xr.Dataset, path: Path) -> None:
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise FileError(f"cannot write {path}: {error.strerror or error}") from None
+    write_netcdf(data, path)
+
 
 CENTRAL = "central"
 NO_VERTICAL = "central, no vertical"

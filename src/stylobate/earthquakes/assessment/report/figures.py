@@ -1,6 +1,8 @@
-"""Figures of an assessment: margins, tilts, contact, small variations, and histories under the governing record."""
+"""Figures of an assessment, each with its caption: records, margins, tilts, contact, small variations, histories."""
 
 import math
+from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -11,10 +13,15 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import FuncFormatter, NullFormatter
 
-from stylobate.earthquakes.assessment.report.wording import number
-from stylobate.earthquakes.figures.interval_regions import UNDECIDED, undecided_label, undecided_reasons
+from stylobate.column import STANDARD_GRAVITY
+from stylobate.earthquakes.assessment.report.column_verdict import rises
+from stylobate.earthquakes.assessment.report.wording import SMALLEST_TILT, number
+from stylobate.earthquakes.figures.fragility import plot_fragility
+from stylobate.earthquakes.figures.overturning_intervals import UNDECIDED, undecided_label, undecided_reasons
 from stylobate.plots.cells import fill_options
-from stylobate.plots.style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION, new_figure, styled
+from stylobate.plots.labels import literal, with_literal_names
+from stylobate.plots.page import Picture
+from stylobate.plots.style import BLACK, BLUE, GREEN, GREY, ORANGE, PALETTE, PURPLE, SKY, VERMILION, new_figure, styled
 from stylobate.results.assessment import Assessment
 from stylobate.results.verdict import CLEAR
 
@@ -254,3 +261,144 @@ def _plain(axes: Axes) -> None:
     axes.set_xticks(ticks)
     axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     axes.xaxis.set_minor_formatter(NullFormatter())
+
+
+RECORDS_A_FIGURE = 6
+"""Number of records in one figure of components."""
+# Height of a row and of the frame [inches]; largest number of records that have a colour each.
+_RECORD_ROW, _RECORD_FRAME, _COLOURED = 0.85, 0.75, 6
+
+
+@styled
+def records_figure(assessment: Assessment, records: Sequence[str]) -> Figure:
+    """Draw the components of records against time, one row for each record."""
+    own = assessment.data["ground_motions"]
+    figure = new_figure(_RECORD_FRAME + _RECORD_ROW * len(records))
+    grid = figure.subplots(len(records), 3, squeeze=False, sharey="row", sharex="row")
+    for row, name in zip(grid, records, strict=True):
+        one = own.sel(record=name)
+        for axes, axis in zip(row, ("x", "y", "z"), strict=True):
+            acceleration = one["acceleration"].sel(axis=axis) / STANDARD_GRAVITY
+            axes.plot(one["time"], acceleration, color=BLACK, linewidth=0.4)
+            if not bool((acceleration != 0.0).where(one["time"].notnull()).any()):
+                axes.text(0.5, 0.6, "none", transform=axes.transAxes, color=GREY, ha="center", fontsize="small")
+            axes.tick_params(labelsize=7.5)
+        row[0].set_title(name, fontsize="small", pad=2.0)
+    for axes, title in zip(grid[-1], ("along x", "along y", "up"), strict=True):
+        axes.set_xlabel(f"{title}: time [s]", fontsize="small")
+    figure.supylabel("ground acceleration [g]", fontsize="small")
+    return figure
+
+
+@styled
+def spectra_figure(assessment: Assessment) -> Figure:
+    """Draw the response spectra of the records, their mean, and the design spectrum if it is given."""
+    own = assessment.data["spectra"]["spectral_acceleration"].transpose("record", "period") / STANDARD_GRAVITY
+    period = own["period"].to_numpy()
+    figure = new_figure(3.3)
+    axes = figure.subplots()
+    few = own.sizes["record"] <= _COLOURED
+    for place, name in enumerate(own["record"].to_numpy()):
+        look = {"color": PALETTE[place], "label": str(name)} if few else {"color": GREY, "alpha": 0.6}
+        axes.plot(period, own.sel(record=name), linewidth=0.9, **look)
+    if own.sizes["record"] > 1:
+        axes.plot(period, own.mean("record"), color=BLACK, linewidth=2.2, label="mean of the records")
+    design = assessment.setting.get("details", {}).get("design_spectrum")
+    if design:
+        axes.plot(
+            design["period"],
+            np.array(design["acceleration"]) / STANDARD_GRAVITY,
+            color=VERMILION,
+            linestyle="--",
+            linewidth=2.2,
+            label=literal(str(design["name"])),
+        )
+    axes.set(xlim=(0.0, float(period[-1])), ylim=(0.0, None), xlabel="natural period [s]", ylabel="Sa [g]")
+    axes.legend(loc="upper right", fontsize="small")
+    axes.set_title("Response spectra, 5 % damping, records as recorded (scale 1)")
+    return figure
+
+
+Pictures = dict[str, Picture]
+
+
+def report_pictures(assessment: Assessment) -> Pictures:
+    """Return the pictures by file name; each name begins with the name of the section."""
+    drawn = replace(assessment, data={name: with_literal_names(data) for name, data in assessment.data.items()})
+    found = _of_records(drawn)
+    names = (assessment.data["columns"]["column"], drawn.data["columns"]["column"])
+    for place, (name, column) in enumerate(zip(*(one.to_numpy() for one in names), strict=True)):
+        found |= _of_column(drawn, str(column), str(name), place + 1)
+    return found
+
+
+def _of_records(assessment: Assessment) -> Pictures:
+    if "ground_motions" not in assessment.data:
+        return {}
+    names = [str(name) for name in assessment.data["ground_motions"]["record"].to_numpy()]
+    found = {}
+    for first in range(0, len(names), RECORDS_A_FIGURE):
+        some = names[first : first + RECORDS_A_FIGURE]
+        found[f"records-{first // RECORDS_A_FIGURE + 1}"] = Picture(
+            records_figure(assessment, some), "Ground accelerations as recorded (scale 1) along x, y and up."
+        )
+    design = assessment.setting.get("details", {}).get("design_spectrum")
+    over = f" Dashed: {design['name']}, {100.0 * design['damping']:g} % damping." if design else ""
+    found["spectra-1"] = Picture(
+        spectra_figure(assessment),
+        "Pseudo-acceleration spectra of the records and their mean. They are RotD50; the spectrum of a record along "
+        f"one axis is that of its component.{over}",
+    )
+    return found
+
+
+def _of_column(assessment: Assessment, column: str, called: str, place: int) -> Pictures:
+    """Return the pictures of a `column`, which is `called` otherwise outside figures."""
+    found = {}
+    if bool((assessment.data["margins"]["intervals"].sel(column=column) > 0).any()):
+        found[f"margins-{place}"] = Picture(
+            margins_figure(assessment, column),
+            f"{called}: scale factors of each record at which it overturned (hatched) or did not, at each dissipation. "
+            "An interval narrower than the step of the scan may have been missed.",
+        )
+    if bool((assessment.data["histories"]["peak_tilt_ratio"].sel(column=column) > SMALLEST_TILT).any()):
+        found[f"history-{place}"] = Picture(
+            history_figure(assessment, column),
+            f"{called} under its governing record. Left: tilt and base acceleration against time. Right: path of the "
+            "tilt. Dashed: the tipping angle α_c, at which the centre of mass stands above the rim.",
+        )
+    if bool((assessment.data["verdicts"]["friction_demand"].sel(column=column) > 0.0).any()):
+        found[f"contact-{place}"] = Picture(
+            contact_figure(assessment, column),
+            f"{called}: friction needed in each run. Dashed: the stated coefficient.",
+        )
+    with_vertical = any(rises(assessment, str(name)) for name in assessment.data["records"]["record"].to_numpy())
+    vertical = " (vertical component included)" if with_vertical else ""
+    for scale in assessment.setting["scales"]:
+        if not _rocked(assessment, column, scale):
+            continue
+        found[f"tilts-{place}-scale-{scale:g}"] = Picture(
+            tilts_figure(assessment, column, scale),
+            f"{called} at scale {scale:g}: peak tilts at each dissipation{vertical}, and those of the planar column if "
+            "it was computed.",
+        )
+        if "variations" in assessment.data:
+            found[f"variations-{place}-scale-{scale:g}"] = Picture(
+                shares_figure(assessment, column, scale),
+                f"{called} at scale {scale:g}: share of small variations that overturn it, with its 90 % sampling "
+                "interval (bar), and share of the scales within 10 % that do so (marks, one for each case). Between "
+                "the dashed limits the case is undecided.",
+            )
+    if "fragility" in assessment.data:
+        found[f"fragility-{place}"] = Picture(_fragility(assessment, column), f"{called}: fragility.")
+    return found
+
+
+def _rocked(assessment: Assessment, column: str, scale: float) -> bool:
+    """Return whether any run at a scale tilted the column, or was not decided."""
+    runs = assessment.data["verdicts"].sel(column=column, scale=scale)
+    return bool(np.any((runs["tilt_ratio"].to_numpy() > SMALLEST_TILT) | (runs["overturned"].to_numpy() != 0)))
+
+
+def _fragility(assessment: Assessment, column: str) -> Figure:
+    return plot_fragility(assessment.data["fragility"].sel(column=column))
