@@ -31,14 +31,14 @@ from stylobate.studies.sweeps.quantities import Floats, checked_values
 Places = npt.NDArray[np.intp]
 
 
-def crossed(lengths: Mapping[str, int]) -> dict[str, Places]:
+def _crossed(lengths: Mapping[str, int]) -> dict[str, Places]:
     """Return flat arrays of the indices of each named choice over all combinations; the last choice varies fastest."""
     grids = np.indices(tuple(lengths.values()))
     return {name: grid.ravel() for name, grid in zip(lengths, grids, strict=True)}
 
 
-def unfolded(runs: xr.Dataset, lengths: Mapping[str, int]) -> xr.Dataset:
-    """Reshape `runs` from the dimension `run` to the dimensions of `crossed` choices; drop coordinates over `run`."""
+def _unfolded(runs: xr.Dataset, lengths: Mapping[str, int]) -> xr.Dataset:
+    """Reshape `runs` from the dimension `run` to the dimensions of `_crossed` choices; drop coordinates over `run`."""
     shape = tuple(lengths.values())
     assert runs.sizes["run"] == math.prod(shape)
     variables = {}
@@ -150,7 +150,7 @@ def incremental_dynamic_analysis(
     )
 
     def label(runs: xr.Dataset) -> xr.Dataset:
-        return plan.labelled(unfolded(runs, plan.lengths))
+        return plan.labelled(_unfolded(runs, plan.lengths))
 
     sweep = Sweep.points(model, plan.motion, at=plan.points, **options)
     return labelled_sweep(sweep, label, store=store, executor=executor, resume=resume, progress=progress)
@@ -202,7 +202,7 @@ class Plan:
     ) -> Self:
         """Check the arguments of `incremental_dynamic_analysis`; raise ParameterError for an invalid one."""
         named = named_records(records)
-        factors = positive_values("scales", scales)
+        factors = _positive_values("scales", scales)
         angles = checked_values("rotations", "rotation", rotations, scalar=True)
         chosen = _choices(vertical)
         samples = _samples(parameters)
@@ -270,7 +270,7 @@ class Plan:
     @property
     def points(self) -> dict[str, npt.ArrayLike]:
         """The values of the runs, flat."""
-        at = crossed(self.lengths)
+        at = _crossed(self.lengths)
         return {
             "motion": at["record"] * len(self.vertical) + at["vertical"],
             "scale": self.scales[at["scale"]],
@@ -329,7 +329,7 @@ def without_vertical(motion: BaseMotion) -> BaseMotion:
     return motion.scaled(1.0, vertical=0.0)
 
 
-def positive_values(name: str, values: npt.ArrayLike) -> Floats:
+def _positive_values(name: str, values: npt.ArrayLike) -> Floats:
     """Check for at least one positive number; return an array, or raise ParameterError."""
     array = checked_values(name, "scale", values, scalar=True)
     bad = array[~(array > 0.0)]

@@ -55,7 +55,7 @@ def in_one_direction(motion: BaseMotion, direction: float) -> BaseMotion:
     return turned.changed(note, samples=turned.samples * [1.0, 0.0, 1.0])
 
 
-AXES = (0.0, 0.5 * math.pi)
+_AXES = (0.0, 0.5 * math.pi)
 """The directions of the two horizontal components [rad]."""
 
 # Minimum number of records for a bias: one record has no scatter.
@@ -68,7 +68,7 @@ def planar_bias(
     records: Records,
     *,
     scales: npt.ArrayLike,
-    directions: Sequence[float] = AXES,
+    directions: Sequence[float] = _AXES,
     planar: PlanarRocking | None = None,
     tail: float | None = None,
     intensity: str | Intensity | SpectralAcceleration = Intensity.PEAK_ACCELERATION,

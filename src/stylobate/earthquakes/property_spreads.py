@@ -292,7 +292,7 @@ def drawn(name: str, spread: Spread, model: Model, *, runs: int, seed: int) -> F
     The values depend on the name, its distribution and the seed only: a further variation changes no other, and more
     runs begin with the same.
     """
-    return spread.draw(nominal_of(model, name), shares_of(name, runs=runs, seed=seed))
+    return spread.draw(_nominal_of(model, name), shares_of(name, runs=runs, seed=seed))
 
 
 def shares_of(name: str, *, runs: int, seed: int) -> Floats:
@@ -300,7 +300,7 @@ def shares_of(name: str, *, runs: int, seed: int) -> Floats:
     return np.random.default_rng([seed, zlib.crc32(name.encode())]).random(runs)
 
 
-def nominal_of(model: Model, name: str) -> float:
+def _nominal_of(model: Model, name: str) -> float:
     """Return the value of a variation in the given case; NaN for a parameter that the model does not have."""
     if name in _NEUTRAL:
         return _NEUTRAL[name]

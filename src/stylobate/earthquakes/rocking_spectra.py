@@ -32,7 +32,7 @@ from stylobate.studies.sweeps.quantities import OF_A_RUN, Floats, check_quantiti
 
 Integers = npt.NDArray[np.int64]
 
-TAIL = 40.0
+_TAIL = 40.0
 """Free-vibration time after the end of the base motion, over 1/p.
 
 Near the edge of an overturning interval a column stays near its unstable equilibrium, and leaves it as e^(pt). After
@@ -114,7 +114,7 @@ class Cases:
         """
         if duration is not None:
             return np.full(self.count, require_positive("duration", duration, "s"))
-        usual = TAIL / self.numbers["frequency_parameter"]
+        usual = _TAIL / self.numbers["frequency_parameter"]
         ends = self.numbers["motion_end"] + (usual if tail is None else require_positive("tail", tail, "s"))
         if not np.all(np.isfinite(ends)):
             raise ParameterError(

@@ -222,7 +222,7 @@ def assess(
     if len(inputs.records) >= inputs.least_records:
         peaks = data["records"]["median_peak_acceleration"]
         data["fragility"] = _over_columns(
-            [fragility_of(one["reached"].isel(margin_scale=inputs.scanned), peaks) for one in margins], names
+            [_fragility_of(one["reached"].isel(margin_scale=inputs.scanned), peaks) for one in margins], names
         )
     governing = [governing_record(one, other, inputs.as_recorded) for one, other in zip(verdicts, margins, strict=True)]
     runs = [
@@ -313,7 +313,7 @@ _RESAMPLES = 200
 _SEED = 0
 
 
-def fragility_of(reached: xr.DataArray, peak_acceleration: xr.DataArray) -> xr.Dataset:
+def _fragility_of(reached: xr.DataArray, peak_acceleration: xr.DataArray) -> xr.Dataset:
     """Fit the fragility of one column over the peak ground acceleration.
 
     Parameters

@@ -204,7 +204,7 @@ class Inputs:
         """Check the arguments of an assessment; raise ParameterError for an invalid one."""
         if not isinstance(columns, Mapping) or not columns:
             raise ParameterError(f"columns must map names to models, at least one, got {columns!r}")
-        levels = checked_dissipation(dissipation, columns)
+        levels = _checked_dissipation(dissipation, columns)
         stated = _rising("scales", scales, least=1)
         scan = _rising("margin_scales", margin_scales, least=2)
         return cls(
@@ -285,7 +285,7 @@ class Inputs:
         }
 
 
-def checked_dissipation(
+def _checked_dissipation(
     dissipation: Dissipation | None, columns: Mapping[str, Model]
 ) -> dict[str, dict[str, dict[str, float]]]:
     """Check the dissipation parameters of each column at each level; words become the numbers of the column.

@@ -65,7 +65,7 @@ def standing_slip(inputs: Inputs, column: str, cases: list[str]) -> xr.DataArray
     return xr.DataArray(values, dims=("case", "record"), attrs=about)
 
 
-FINE_SCALES = 2000
+_FINE_SCALES = 2000
 """Scales over the range of the scan that are run below the smallest overturning scale."""
 
 _INTERVAL = ("interval_from", "interval_to", "safe_below", "safe_above")
@@ -180,7 +180,7 @@ def _intervals(
         "vertical": case != NO_VERTICAL,
         "scales": inputs.margin_scales.tolist(),
         "width": inputs.width,
-        "fine scales": FINE_SCALES,
+        "fine scales": _FINE_SCALES,
         "contact": contact,
     }
     return parts.get(f"{column}: margins, {case}", _scan_runs(inputs), identity, compute)
@@ -202,7 +202,7 @@ def _found(
         over={"motion": np.arange(len(motions))},
         scales=inputs.margin_scales,
         width=inputs.width,
-        fine_scales=FINE_SCALES,
+        fine_scales=_FINE_SCALES,
         tail=tail_of(model.column, inputs.tail),
         executor=executor,
         progress=progress,
@@ -240,7 +240,7 @@ def _table_of_margins(found: xr.Dataset, names: list[str], width: float) -> xr.D
     )
 
 
-STATED, STANDS, OVERTURNS = "stated", "stands", "overturns"
+_STATED, _STANDS, _OVERTURNS = "stated", "stands", "overturns"
 """The runs under a governing record: at the stated scale nearest to 1; the last survival below the margin, and the
 first overturning."""
 
@@ -307,9 +307,9 @@ def _shown(inputs: Inputs, record: str, margins: xr.Dataset) -> list[_Shown]:
         known = own["margin_scale"].to_numpy()[np.isfinite(tilt)]
         stands = float(known[-1]) if known.size else math.nan
     return [
-        _Shown(STATED, float(inputs.scales[inputs.as_recorded]), CENTRAL),
-        _Shown(STANDS, stands, case),
-        _Shown(OVERTURNS, overturns, case),
+        _Shown(_STATED, float(inputs.scales[inputs.as_recorded]), CENTRAL),
+        _Shown(_STANDS, stands, case),
+        _Shown(_OVERTURNS, overturns, case),
     ]
 
 

@@ -113,7 +113,7 @@ def shares_of(inputs: Inputs, column: str, parts: Parts, *, executor: Executor |
             data_vars="all",
             join="override",
         )
-        for some in some_at_a_time(inputs)
+        for some in _some_at_a_time(inputs)
     ]
     joined: xr.Dataset = xr.concat(few, dim="record", data_vars="all", join="override")
     return joined
@@ -153,7 +153,7 @@ def _shares_at(inputs: Inputs, column: str, scale: float, parts: Parts, executor
     }
     runs = len(inputs.records) * inputs.variations
     what = f"small variations, scale {scale:g}, {runs} runs"
-    return parts.get(part_name(column, what, inputs), runs, identity, compute)
+    return parts.get(_part_name(column, what, inputs), runs, identity, compute)
 
 
 def share_runs(inputs: Inputs) -> int:
@@ -206,13 +206,13 @@ _COUNTS = ("only_space", "only_planar")
 _TOGETHER = 4
 
 
-def some_at_a_time(inputs: Inputs) -> list[Inputs]:
+def _some_at_a_time(inputs: Inputs) -> list[Inputs]:
     """Split the records into groups that are computed and stored together."""
     names = list(inputs.records)
     return [inputs.with_records(names[at : at + _TOGETHER]) for at in range(0, len(names), _TOGETHER)]
 
 
-def part_name(column: str, what: str, inputs: Inputs) -> str:
+def _part_name(column: str, what: str, inputs: Inputs) -> str:
     """Return the name of the part of a group of records."""
     first, last = next(iter(inputs.records)), list(inputs.records)[-1]
     return f"{column}: {what}, {first}" + (f" to {last}" if last != first else "")
@@ -228,7 +228,7 @@ def planar_of(inputs: Inputs, column: str, parts: Parts, *, executor: Executor |
         overturns, and `log_ratio` of the tilts if both columns rock; over `scale` `bias`, `standard_error`,
         `compared`, `only_space`, `only_planar`.
     """
-    few = [_planar_at(some, column, parts, executor) for some in some_at_a_time(inputs)]
+    few = [_planar_at(some, column, parts, executor) for some in _some_at_a_time(inputs)]
     records = xr.concat([one.drop_vars(_COUNTS) for one in few], dim="record", join="override")
     counts = xr.concat([one[list(_COUNTS)] for one in few], dim="part").sum("part", keep_attrs=True)
     return records.assign({**counts.data_vars, **bias_of(records["log_ratio"])})
@@ -250,7 +250,7 @@ def _planar_at(inputs: Inputs, column: str, parts: Parts, executor: Executor | N
 
     identity = {**inputs.identity(column, inputs.columns[column][CENTRAL]), "scales": inputs.scales.tolist()}
     runs = len(inputs.records) * inputs.scales.size * (1 + _AXES)
-    return parts.get(part_name(column, "planar", inputs), runs, identity, compute)
+    return parts.get(_part_name(column, "planar", inputs), runs, identity, compute)
 
 
 def planar_runs(inputs: Inputs) -> int:

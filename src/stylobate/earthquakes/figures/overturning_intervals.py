@@ -28,10 +28,10 @@ Box = tuple[float, float, float, float]
 """Left, right, lowest and highest amplitude."""
 Boxes = list[Box]
 
-UNRESOLVED = [Outcome.FAILED, Outcome.LIFTED_OFF, Outcome.LIMIT_REACHED]
-UNCERTAIN: dict[str, Any] = {"marker": "o", "mfc": "white", "mec": BLACK, "mew": 0.5, "linestyle": "none"}
-UNKNOWN: dict[str, Any] = {"marker": "x", "color": VERMILION, "linestyle": "none"}
-WEAKEST: dict[str, Any] = {"color": BLUE, "linestyle": "--", "linewidth": 1.2}
+_UNRESOLVED = [Outcome.FAILED, Outcome.LIFTED_OFF, Outcome.LIMIT_REACHED]
+_UNCERTAIN: dict[str, Any] = {"marker": "o", "mfc": "white", "mec": BLACK, "mew": 0.5, "linestyle": "none"}
+_UNKNOWN: dict[str, Any] = {"marker": "x", "color": VERMILION, "linestyle": "none"}
+_WEAKEST: dict[str, Any] = {"color": BLUE, "linestyle": "--", "linewidth": 1.2}
 """Line below which the peak acceleration is less than c g."""
 
 _SAFE, _AGAIN, _FALLEN = Look("#ffffff"), Look("#DCEBF5", "////", BLUE), OUTCOME_LOOKS[Outcome.OVERTURNED]
@@ -67,7 +67,7 @@ class Regions:
         geometric
             Whether the axis of amplitudes is logarithmic.
         """
-        scales, ends = one["scale"].to_numpy(), amplitude_ends(one, factor)
+        scales, ends = one["scale"].to_numpy(), _amplitude_ends(one, factor)
         boxes: dict[Look, Boxes] = {_EDGE: [], _AGAIN: [], _FALLEN: [], UNDECIDED: [], UNFINISHED: []}
         for place, (left, right) in enumerate(edges.tolist()):
             unit = float(factor[place])
@@ -131,23 +131,23 @@ def _finite(low: Floats, high: Floats) -> list[tuple[float, float]]:
 _THIN: dict[str, Any] = {"color": VERMILION, "linewidth": _THINNEST, "solid_capstyle": "butt", "zorder": 2.5}
 
 
-def amplitude_ends(one: xr.Dataset, factor: Floats) -> tuple[float, float]:
+def _amplitude_ends(one: xr.Dataset, factor: Floats) -> tuple[float, float]:
     """Return the lowest and the highest amplitude of the scan of any case."""
     scales = one["scale"].to_numpy()
     return float((scales[0] * factor).min()), float((scales[-1] * factor).max())
 
 
-def is_normalized(found: xr.Dataset) -> bool:
+def _is_normalized(found: xr.Dataset) -> bool:
     """Return whether the amplitude is the peak base acceleration over c g, as in the literature."""
     return "frequency_ratio" in found.coords and bool((found["acceleration_ratio"] > 0.0).all())
 
 
-def amplitude_label(found: xr.Dataset) -> str:
+def _amplitude_label(found: xr.Dataset) -> str:
     """Return the axis label of the amplitudes."""
-    return r"peak base acceleration $a/(c\,g)$" if is_normalized(found) else axis_label(found["scale"])
+    return r"peak base acceleration $a/(c\,g)$" if _is_normalized(found) else axis_label(found["scale"])
 
 
-def interval_legend(found: xr.Dataset, *, hairlines: int, edges: bool) -> list[Patch | Line2D]:
+def _interval_legend(found: xr.Dataset, *, hairlines: int, edges: bool) -> list[Patch | Line2D]:
     """Return the legend entries for the overturning intervals `found`."""
     entries: list[Patch | Line2D] = [
         Patch(label=name, **fill_options(look))
@@ -158,18 +158,18 @@ def interval_legend(found: xr.Dataset, *, hairlines: int, edges: bool) -> list[P
         entries.append(Line2D([], [], **_THIN, label=label))
     if bool(found["undecided_from"].notnull().any()):
         entries.append(Patch(label=undecided_label(found["outcome"]), **fill_options(UNDECIDED)))
-    if np.unique(found["acceleration_ratio"]).size > 1 and is_normalized(found):
+    if np.unique(found["acceleration_ratio"]).size > 1 and _is_normalized(found):
         entries.append(Patch(label="not computed", **fill_options(UNFINISHED)))
     if edges:
         entries.append(Patch(label="edge, not resolved", **fill_options(_EDGE)))
-    if not is_normalized(found) and bool((found["acceleration_ratio"] > 0.0).all()):
-        entries.append(Line2D([], [], **WEAKEST, label=r"peak acceleration $c\,g$"))
+    if not _is_normalized(found) and bool((found["acceleration_ratio"] > 0.0).all()):
+        entries.append(Line2D([], [], **_WEAKEST, label=r"peak acceleration $c\,g$"))
     return entries
 
 
-def run_legend(counts: Sequence[int], markersize: float) -> list[Line2D]:
+def _run_legend(counts: Sequence[int], markersize: float) -> list[Line2D]:
     """Return the legend entries for uncertain and undecided runs, with their `counts`."""
-    looks = zip(counts, ("uncertain", "not decided"), (UNCERTAIN, UNKNOWN), strict=True)
+    looks = zip(counts, ("uncertain", "not decided"), (_UNCERTAIN, _UNKNOWN), strict=True)
     return [
         Line2D([], [], label=f"{name}: {plural(count, 'run')}", markersize=markersize, **look)
         for count, name, look in looks
@@ -194,7 +194,7 @@ def undecided_label(outcomes: xr.DataArray) -> str:
 def undecided_reasons(outcomes: xr.DataArray) -> list[str]:
     """Return the reasons for undecided runs among these outcomes, each once."""
     codes = set(np.unique(outcomes.to_numpy()).tolist())
-    reasons = [one.label for one in Outcome if one in codes.intersection(UNRESOLVED)]
+    reasons = [one.label for one in Outcome if one in codes.intersection(_UNRESOLVED)]
     return [*reasons, "not computed"] if NOT_COMPUTED in codes else reasons
 
 
@@ -217,7 +217,7 @@ _HEIGHT_OF_ONE, _DOT = 3.8, 3.2
 
 
 @styled
-def plot_intervals_of_one(found: xr.Dataset) -> Figure:
+def _plot_intervals_of_one(found: xr.Dataset) -> Figure:
     """Draw the overturning intervals of one column, and its peak tilts between them.
 
     Parameters
@@ -228,36 +228,36 @@ def plot_intervals_of_one(found: xr.Dataset) -> Figure:
     figure = new_figure(_HEIGHT_OF_ONE)
     axes = figure.subplots()
     ratio = float(found["acceleration_ratio"])
-    factor = ratio if is_normalized(found) else 1.0
+    factor = ratio if _is_normalized(found) else 1.0
     scales = found["scale"].to_numpy()
     one, factors = found.expand_dims(case=1), np.array([factor])
     regions = Regions.of(one, factors, np.array([[0.0, 1.0]]), geometric=is_geometric(scales))
     regions.draw(axes, along_x=True)
-    if not is_normalized(found) and ratio > 0.0:
-        axes.axvline(1.0 / ratio, **WEAKEST)
+    if not _is_normalized(found) and ratio > 0.0:
+        axes.axvline(1.0 / ratio, **_WEAKEST)
     counts = _draw_runs(axes, found, factor * scales)
     set_scale(axes, "x", scales)
-    axes.set(xlim=amplitude_ends(one, factors), xlabel=amplitude_label(found), ylabel=r"peak tilt $\theta/\alpha_c$")
+    axes.set(xlim=_amplitude_ends(one, factors), xlabel=_amplitude_label(found), ylabel=r"peak tilt $\theta/\alpha_c$")
     axes.set_ylim(bottom=0.0)
     axes.grid(visible=False)
     axes.set_title(_title(found), fontsize="small")
     tilts = Line2D([], [], color=BLACK, marker=".", markersize=4.0, linewidth=0.9, label="peak tilt where it survives")
-    handles = interval_legend(found, hairlines=len(regions.hairlines), edges=regions.edges)
-    figure.legend(handles=[*handles, tilts, *run_legend(counts, _DOT)], loc="outside lower center", ncols=3)
+    handles = _interval_legend(found, hairlines=len(regions.hairlines), edges=regions.edges)
+    figure.legend(handles=[*handles, tilts, *_run_legend(counts, _DOT)], loc="outside lower center", ncols=3)
     return figure
 
 
 def _draw_runs(axes: Axes, found: xr.Dataset, amplitude: Floats) -> tuple[int, int]:
     """Draw the peak tilts of surviving runs; mark and count uncertain and undecided runs."""
     codes, tilt = found["outcome"].to_numpy(), found["peak_tilt"].to_numpy() / float(found["tipping_angle"])
-    unknown = np.isin(codes, UNRESOLVED)
+    unknown = np.isin(codes, _UNRESOLVED)
     uncertain = found["uncertain"].to_numpy() & (codes != NOT_COMPUTED)
     stands = ~unknown & (codes != Outcome.OVERTURNED)
     shown = np.where(stands, tilt, np.nan)
     axes.plot(amplitude, shown, color=BLACK, marker=".", markersize=4.0, linewidth=0.9)
     # Runs without a peak tilt are marked at the lower edge.
     height = np.where(stands, shown, 0.0)
-    for chosen, look in ((uncertain, UNCERTAIN), (unknown, UNKNOWN)):
+    for chosen, look in ((uncertain, _UNCERTAIN), (unknown, _UNKNOWN)):
         if chosen.any():
             axes.plot(amplitude[chosen], height[chosen], **look, markersize=_DOT, clip_on=False, zorder=4)
     return int(uncertain.sum()), int(unknown.sum())
@@ -266,7 +266,7 @@ def _draw_runs(axes: Axes, found: xr.Dataset, amplitude: Floats) -> tuple[int, i
 def _title(found: xr.Dataset) -> str:
     size, tangent = 2.0 * float(found["rim_distance"]), float(np.tan(found["tipping_angle"]))
     parts = [f"one column: size $2R$ = {size:.3g} m, $c$ = {tangent:.3g}"]
-    parts += [f"ω / p = {float(found['frequency_ratio']):.3g}"] if is_normalized(found) else []
+    parts += [f"ω / p = {float(found['frequency_ratio']):.3g}"] if _is_normalized(found) else []
     return ", ".join(parts)
 
 
@@ -309,7 +309,7 @@ def plot_overturning_intervals(found: xr.Dataset) -> Figure:
     dims = [str(dim) for dim in found["intervals"].dims]
     along, panel = split(found, dims, _MOST_PANELS, "overturning intervals")
     if along is None or found.sizes[along] == 1:
-        return plot_intervals_of_one(found.squeeze(dims))
+        return _plot_intervals_of_one(found.squeeze(dims))
     count = 1 if panel is None else found.sizes[panel]
     figure = new_figure(_HEIGHT)
     rows = figure.subplots(1, count, sharey=True, squeeze=False)[0]
@@ -320,17 +320,17 @@ def plot_overturning_intervals(found: xr.Dataset) -> Figure:
         _draw(axes, one, _horizontal(one, along), marks)
         if panel is not None:
             axes.set_title(named(found, panel, place))
-    rows[0].set_ylabel(amplitude_label(found))
-    handles = interval_legend(found, hairlines=marks.hairlines, edges=marks.edges)
+    rows[0].set_ylabel(_amplitude_label(found))
+    handles = _interval_legend(found, hairlines=marks.hairlines, edges=marks.edges)
     columns = 3 if marks.hairlines else 4
-    figure.legend(handles=[*handles, *run_legend(marks.counts, _DOTS[1])], loc="outside lower center", ncols=columns)
+    figure.legend(handles=[*handles, *_run_legend(marks.counts, _DOTS[1])], loc="outside lower center", ncols=columns)
     return figure
 
 
 def _horizontal(one: xr.Dataset, along: str) -> Horizontal:
     if along == "motion":
         return motion_names(one)
-    if is_normalized(one) and along in _OF_THE_RATIO:
+    if _is_normalized(one) and along in _OF_THE_RATIO:
         return Horizontal(one["frequency_ratio"].to_numpy(), "ω / p")
     if along == "size":
         return Horizontal(2.0 * one["rim_distance"].to_numpy(), "size 2R [m]")
@@ -339,7 +339,7 @@ def _horizontal(one: xr.Dataset, along: str) -> Horizontal:
 
 def _draw(axes: Axes, one: xr.Dataset, along: Horizontal, marks: _Marks) -> None:
     scales, ratio = one["scale"].to_numpy(), np.broadcast_to(one["acceleration_ratio"].to_numpy(), along.values.shape)
-    factor = ratio if is_normalized(one) else np.ones(ratio.shape)
+    factor = ratio if _is_normalized(one) else np.ones(ratio.shape)
     order = np.argsort(along.values)
     edges = np.empty((along.values.size, 2))
     sides = cell_edges(along.values[order])
@@ -349,12 +349,12 @@ def _draw(axes: Axes, one: xr.Dataset, along: Horizontal, marks: _Marks) -> None
     marks.hairlines += len(regions.hairlines)
     marks.edges |= regions.edges
     _mark(axes, one, along, factor, marks)
-    if not is_normalized(one) and np.all(ratio > 0.0):
-        axes.step(edges.T.ravel("F"), np.repeat(1.0 / ratio, 2), **WEAKEST)
+    if not _is_normalized(one) and np.all(ratio > 0.0):
+        axes.step(edges.T.ravel("F"), np.repeat(1.0 / ratio, 2), **_WEAKEST)
     finish(axes, along)
     set_scale(axes, "y", scales)
     axes.set_xlim(edges.min(), edges.max())
-    axes.set_ylim(amplitude_ends(one, factor))
+    axes.set_ylim(_amplitude_ends(one, factor))
     axes.grid(visible=False)
 
 
@@ -363,8 +363,8 @@ def _mark(axes: Axes, one: xr.Dataset, along: Horizontal, factor: Floats, marks:
     codes, scales = one["outcome"].to_numpy(), one["scale"].to_numpy()
     size = float(np.clip(_WIDTH / marks.panels / max(codes.shape) / 2.0, *_DOTS))
     uncertain = one["uncertain"].to_numpy() & (codes != NOT_COMPUTED)
-    unknown = one["outcome"].isin(UNRESOLVED).to_numpy()
-    for kind, (chosen, look) in enumerate(((uncertain, UNCERTAIN), (unknown, UNKNOWN))):
+    unknown = one["outcome"].isin(_UNRESOLVED).to_numpy()
+    for kind, (chosen, look) in enumerate(((uncertain, _UNCERTAIN), (unknown, _UNKNOWN))):
         rows, columns = np.nonzero(chosen)
         marks.counts[kind] += rows.size
         if rows.size <= _MOST_MARKED * chosen.size:

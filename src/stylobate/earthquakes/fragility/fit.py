@@ -28,7 +28,7 @@ _MOST_STRIPES = 25
 _BINS = 10
 
 
-def observed_shares(seen: Observations, confidence: float) -> xr.Dataset:
+def _observed_shares(seen: Observations, confidence: float) -> xr.Dataset:
     """Compute fractions over `stripe`: runs of one intensity, or bins with equal numbers of runs.
 
     Each stripe has the geometric mean `stripe_intensity` of its intensities, and their range.
@@ -68,7 +68,7 @@ def _bins(intensity: Floats) -> Integers:
     return np.asarray(np.unique(_BINS * first // intensity.size, return_inverse=True)[1], dtype=np.int64)
 
 
-CURVE_POINTS = 121
+_CURVE_POINTS = 121
 # Half-width of a curve without data, in dispersions.
 _REACH = 3.5
 
@@ -129,7 +129,7 @@ def lognormal_fragility(
     3.0
     """
     m, beta = require_positive("median", median), require_positive("dispersion", dispersion)
-    x = m * np.exp(np.linspace(-_REACH * beta, _REACH * beta, CURVE_POINTS))
+    x = m * np.exp(np.linspace(-_REACH * beta, _REACH * beta, _CURVE_POINTS))
     definition = {} if component is None else {"component": HorizontalComponent.named(component).value}
     about = {"units": units, "long_name": ", ".join(["intensity", *definition.values()]), **definition}
     return xr.Dataset(
@@ -151,7 +151,7 @@ def _status_attributes() -> dict[str, object]:
     return flag_attributes("status of the fit", [status.name for status in FitStatus], dtype=np.int64)
 
 
-def curves_table(seen: Observations, x: Floats, curves: list[Curve]) -> xr.Dataset:
+def _curves_table(seen: Observations, x: Floats, curves: list[Curve]) -> xr.Dataset:
     """Collect the fits of all limit states, and their curves at intensities `x`."""
     about: dict[str, object] = {
         name: seen.attributes[name] for name in ("units", "component") if name in seen.attributes
@@ -276,12 +276,12 @@ def fit_fragility(
     seen = given.counted(counting)
     non_monotone = given.non_monotone()
     replicates = _replicates(seen, draws, rng)
-    x = np.geomspace(seen.intensity.min(), seen.intensity.max(), CURVE_POINTS)
+    x = np.geomspace(seen.intensity.min(), seen.intensity.max(), _CURVE_POINTS)
     curves = [
         _curve(seen, place, x, level, replicates[place] if replicates else None) for place in range(len(seen.names))
     ]
     return (
-        xr.merge([curves_table(seen, x, curves), observed_shares(seen, level)], combine_attrs="override")
+        xr.merge([_curves_table(seen, x, curves), _observed_shares(seen, level)], combine_attrs="override")
         .assign(
             non_monotone_records=(
                 LIMIT_STATE,

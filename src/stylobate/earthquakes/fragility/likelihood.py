@@ -9,10 +9,10 @@ is concave in (a, b), so Newton's method finds its only maximum. No maximum exis
 misses (Albert and Anderson, "On the existence of maximum likelihood estimates in logistic regression models",
 Biometrika 71, 1984).
 
-Profile likelihood: an interval contains each value that a likelihood-ratio test does not reject, that is, whose log-
-likelihood, maximized over the other parameter, is less than half the quantile of χ² with one degree of freedom below
-the maximum. A maximum need not exist: if the data do not bound the median or the dispersion on one side, that end is 0
-or infinite.
+Profile likelihood: an interval contains each value that a likelihood-ratio test does not reject, that is, whose
+log-likelihood, maximized over the other parameter, is less than half the quantile of χ² with one degree of freedom
+below the maximum. A maximum need not exist: if the data do not bound the median or the dispersion on one side, that end
+is 0 or infinite.
 
 Resampling: a cluster bootstrap over records, because runs of one record are dependent. Field and Welsh, "Bootstrapping
 clustered data", J. R. Stat. Soc. B 69 (2007). The percentiles are corrected for the median bias of the resamples
@@ -119,7 +119,7 @@ def log_likelihood(intercept: Floats, slope: Floats, u: Floats, hits: Floats, mi
     return np.asarray((hits * log_ndtr(eta) + misses * log_ndtr(-eta)).sum(axis=-1))
 
 
-def score(eta: Floats, hits: Floats, misses: Floats) -> Floats:
+def _score(eta: Floats, hits: Floats, misses: Floats) -> Floats:
     """Compute dℓ/dη of each run."""
     return np.asarray(hits * _mills(eta) - misses * _mills(-eta))
 
@@ -244,7 +244,7 @@ class Likelihood:
         z = self.u - log_median
 
         def rises(slope: float) -> float:
-            return float(np.sum(score(slope * z, self.hits, self.misses) * z))
+            return float(np.sum(_score(slope * z, self.hits, self.misses) * z))
 
         slope = _zero(rises, 0.0, 1.0 / self.range, _STEP / self.range)
         return self.at(-slope * log_median, slope)
@@ -253,7 +253,7 @@ class Likelihood:
         """Maximize the log-likelihood of a dispersion 1/slope over the median."""
 
         def rises(intercept: float) -> float:
-            return float(np.sum(score(intercept + slope * self.u, self.hits, self.misses)))
+            return float(np.sum(_score(intercept + slope * self.u, self.hits, self.misses)))
 
         low = -slope * float(self.u.max()) - 1.0
         high = -slope * float(self.u.min()) + 1.0

@@ -120,7 +120,7 @@ _APART = 2.0
 def verdict_table(assessment: Assessment) -> Table:
     """Tabulate the verdict on each column in one line, at the scale nearest to 1."""
     rows = []
-    for name in columns_of(assessment):
+    for name in _columns_of(assessment):
         found = column_verdict(assessment, name, recorded_scale(assessment))
         margin = f" {least_overturning_scale(assessment, name)}" if found.describes else ""
         sentence = f"{found.sentence[0].upper()}{found.sentence[1:]}{margin}{_levels_remark(assessment, name)}"
@@ -147,13 +147,13 @@ def column_findings(assessment: Assessment, name: str) -> Table:
 def summary_text(assessment: Assessment, heads: Sequence[Table]) -> str:
     """Write the summary as plain text: the tables `heads`, the findings on each column, and a guide to them."""
     blocks = ["\n".join(": ".join(row) for row in table.rows) for table in heads]
-    for name in columns_of(assessment):
+    for name in _columns_of(assessment):
         findings = column_findings(assessment, name)
         blocks.append("\n".join([findings.header[0], *(": ".join(row) for row in findings.rows)]))
-    return "\n\n".join([str(assessment.setting["title"]), *blocks, how_to_read(assessment)]) + "\n"
+    return "\n\n".join([str(assessment.setting["title"]), *blocks, _how_to_read(assessment)]) + "\n"
 
 
-def columns_of(assessment: Assessment) -> list[str]:
+def _columns_of(assessment: Assessment) -> list[str]:
     """Return the names of the columns."""
     return [str(name) for name in assessment.data["columns"]["column"].to_numpy()]
 
@@ -298,7 +298,7 @@ def _stated_scales(assessment: Assessment) -> str:
     return f"scale {scales[0]:g}" if len(scales) == 1 else "the stated scales"
 
 
-def how_to_read(assessment: Assessment) -> str:
+def _how_to_read(assessment: Assessment) -> str:
     """Explain the meaning and the limits of a verdict."""
     repeated = (
         "Verdicts were therefore repeated under small variations: read their shares, not single runs."
@@ -344,7 +344,7 @@ def report_sections(
         Section("Verdicts", [*shown("verdicts"), Table(("class of verdict", "meaning"), VERDICT_CLASSES)]),
         Section(
             "The columns one by one",
-            [*(column_findings(assessment, name) for name in columns_of(assessment)), how_to_read(assessment)],
+            [*(column_findings(assessment, name) for name in _columns_of(assessment)), _how_to_read(assessment)],
         ),
         Section("Records", [_record_text(assessment), *shown("events"), *drawn("records"), *drawn("spectra")]),
         Section("Intensities of the records", [_intensity_text(assessment), *shown("records", "spectra")]),

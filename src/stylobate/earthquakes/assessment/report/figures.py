@@ -146,7 +146,7 @@ def _placed(values: np.ndarray) -> np.ndarray:
 
 
 @styled
-def contact_figure(assessment: Assessment, column: str) -> Figure:
+def _contact_figure(assessment: Assessment, column: str) -> Figure:
     """Draw the friction that the runs of each record needed, and the stated coefficient."""
     own = assessment.data["verdicts"]["friction_demand"].sel(column=column)
     records = [str(name) for name in own["record"].to_numpy()]
@@ -263,14 +263,14 @@ def _plain(axes: Axes) -> None:
     axes.xaxis.set_minor_formatter(NullFormatter())
 
 
-RECORDS_A_FIGURE = 6
+_RECORDS_A_FIGURE = 6
 """Number of records in one figure of components."""
 # Height of a row and of the frame [inches]; largest number of records that have a colour each.
 _RECORD_ROW, _RECORD_FRAME, _COLOURED = 0.85, 0.75, 6
 
 
 @styled
-def records_figure(assessment: Assessment, records: Sequence[str]) -> Figure:
+def _records_figure(assessment: Assessment, records: Sequence[str]) -> Figure:
     """Draw the components of records against time, one row for each record."""
     own = assessment.data["ground_motions"]
     figure = new_figure(_RECORD_FRAME + _RECORD_ROW * len(records))
@@ -337,10 +337,10 @@ def _of_records(assessment: Assessment) -> Pictures:
         return {}
     names = [str(name) for name in assessment.data["ground_motions"]["record"].to_numpy()]
     found = {}
-    for first in range(0, len(names), RECORDS_A_FIGURE):
-        some = names[first : first + RECORDS_A_FIGURE]
-        found[f"records-{first // RECORDS_A_FIGURE + 1}"] = Picture(
-            records_figure(assessment, some), "Ground accelerations as recorded (scale 1) along x, y and up."
+    for first in range(0, len(names), _RECORDS_A_FIGURE):
+        some = names[first : first + _RECORDS_A_FIGURE]
+        found[f"records-{first // _RECORDS_A_FIGURE + 1}"] = Picture(
+            _records_figure(assessment, some), "Ground accelerations as recorded (scale 1) along x, y and up."
         )
     design = assessment.setting.get("details", {}).get("design_spectrum")
     over = f" Dashed: {design['name']}, {100.0 * design['damping']:g} % damping." if design else ""
@@ -369,7 +369,7 @@ def _of_column(assessment: Assessment, column: str, called: str, place: int) -> 
         )
     if bool((assessment.data["verdicts"]["friction_demand"].sel(column=column) > 0.0).any()):
         found[f"contact-{place}"] = Picture(
-            contact_figure(assessment, column),
+            _contact_figure(assessment, column),
             f"{called}: friction needed in each run. Dashed: the stated coefficient.",
         )
     with_vertical = any(rises(assessment, str(name)) for name in assessment.data["records"]["record"].to_numpy())

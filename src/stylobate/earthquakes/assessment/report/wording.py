@@ -51,7 +51,7 @@ def tilt(value: float) -> str:
 def least_scale(margins: xr.Dataset) -> str:
     """State the smallest overturning scale of one column, case and record, and the next smaller run that survived."""
     if int(margins["intervals"]) == 0:
-        if undecided := undecided_scales(margins):
+        if undecided := _undecided_scales(margins):
             return f"none found; {undecided}"
         return f"none up to {number(float(margins['margin_scale'][-1]))}"
     found, below = float(margins["least_overturning"]), float(margins["largest_below"])
@@ -75,11 +75,11 @@ def intervals(margins: xr.Dataset) -> str:
         words = ends[0] if ends[0] == ends[1] else " to ".join(ends)
         words += " and below" * bool(below and not unknown_below) + " and beyond" * bool(above and not unknown_above)
         found.append(words)
-    undecided = undecided_scales(margins)
+    undecided = _undecided_scales(margins)
     return "; ".join([*(found or ["none found" if undecided else "none"]), *([undecided] if undecided else [])])
 
 
-def undecided_scales(margins: xr.Dataset) -> str:
+def _undecided_scales(margins: xr.Dataset) -> str:
     """List the undecided scales of one column, case and record, with the reasons; empty if there are none."""
     pairs = zip(margins["undecided_from"].to_numpy(), margins["undecided_to"].to_numpy(), strict=True)
     stretches = [f"{number(low, 4)} to {number(high, 4)}" for low, high in pairs if not math.isnan(low)]
