@@ -26,7 +26,9 @@ def named_records(records: Records) -> dict[str, BaseMotion]:
     if isinstance(records, Mapping):
         pairs = [(str(name), motion) for name, motion in records.items()]
     elif isinstance(records, Sequence) and not isinstance(records, (str, bytes)):
-        pairs = [(_own_name(motion, place), motion) for place, motion in enumerate(records)]
+        pairs = [
+            (str(getattr(motion, "name", "") or f"motion {place + 1}"), motion) for place, motion in enumerate(records)
+        ]
     else:
         raise ParameterError(f"records must be a base motion, a sequence or a mapping of them, got {records!r}")
     if not pairs:
@@ -38,10 +40,6 @@ def named_records(records: Records) -> dict[str, BaseMotion]:
             raise ParameterError(f"records must differ in name, got {name!r} twice; give a mapping of names to records")
         named[name] = motion
     return named
-
-
-def _own_name(motion: object, place: int) -> str:
-    return str(getattr(motion, "name", "") or f"motion {place + 1}")
 
 
 def _require_ending(name: str, motion: object) -> None:

@@ -232,24 +232,16 @@ def assess(
     data["histories"] = _over_columns(runs, names)
     data["summary"] = summary_of(data, governing)
     parts.report()
-    more = {
+    more: dict[str, Any] = {
         "title": title,
         "notes": list(notes),
         "contact": contact,
         "sliding": sliding,
         "resolution": margins[0].attrs["resolution"],
     }
-    return Assessment(data=data, setting={**_setting(inputs), **more, "details": _dated(details)})
-
-
-def _dated(details: ReportDetails) -> dict[str, Any]:
-    return {**details.values(), "date": details.date or dt.datetime.now().astimezone().date().isoformat()}
-
-
-def _software() -> dict[str, str]:
-    """Return the versions of stylobate and its numerical packages, and the machine."""
-    packages = {name: version(name) for name in _PACKAGES}
-    return {**packages, "Python": platform.python_version(), "machine": f"{platform.system()} {platform.machine()}"}
+    today = dt.datetime.now().astimezone().date().isoformat()
+    more["details"] = {**details.values(), "date": details.date or today}
+    return Assessment(data=data, setting={**_setting(inputs), **more})
 
 
 def _runs(inputs: Inputs, *, planar: bool, sliding: bool) -> int:
@@ -274,7 +266,11 @@ def _setting(inputs: Inputs) -> dict[str, Any]:
     """Return the settings of the assessment as plain values."""
     return {
         "version": version("stylobate"),
-        "software": _software(),
+        "software": {
+            **{name: version(name) for name in _PACKAGES},
+            "Python": platform.python_version(),
+            "machine": f"{platform.system()} {platform.machine()}",
+        },
         "columns": {
             name: {
                 part: provenance_of_run(levels[CENTRAL], motion)[part]

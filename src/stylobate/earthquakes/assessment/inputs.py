@@ -70,7 +70,8 @@ class Parts:
         if found is not None:
             self._known.append(name)
         else:
-            self._report_what_is_reused()
+            if self._known and len(self._known) == len(self._done):  # the first part that is computed
+                _log.info("%d parts were read from %s; the assessment resumes there", len(self._known), self.store)
             self.announce(name, before, self.total)
             found = compute(
                 lambda done, total: self.announce(name, before + round(runs * done / max(total, 1)), self.total)
@@ -87,11 +88,6 @@ class Parts:
             _log.info(
                 "%d of %d parts were read from %s and not computed again", len(self._known), len(self._done), self.store
             )
-
-    def _report_what_is_reused(self) -> None:
-        """Log the number of stored parts before the first part is computed."""
-        if self._known and len(self._known) == len(self._done):
-            _log.info("%d parts were read from %s; the assessment resumes there", len(self._known), self.store)
 
 
 def identities(motions: Mapping[str, BaseMotion]) -> dict[str, Any]:

@@ -59,7 +59,9 @@ def plot_fragility(found: xr.Dataset) -> Figure:
     axes = figure.subplots()
     handles = [_draw_state(axes, found.isel(limit_state=place), place) for place in range(found.sizes["limit_state"])]
     if "stripe_share" in found:
-        handles.append(_interval_mark(found))
+        look: dict[str, Any] = {"color": GREY, "marker": "|", "markersize": 9, "linestyle": "none"}
+        percent = 100.0 * float(found.attrs["confidence"])
+        handles.append(Line2D([], [], **look, label=f"{percent:g} % intervals"))
     if not np.isfinite(axes.dataLim.minposx):  # no run is decided: without data, an axis has no logarithm
         axes.set_xlim(0.1, 10.0)
     axes.set(xscale="log", ylim=(-0.02, 1.02), ylabel="probability of reaching the limit state")
@@ -130,11 +132,6 @@ def _between(low: float, high: float) -> str:
     if low > 0.0:
         return f"above {low:.3g}"
     return f"below {high:.3g}" if np.isfinite(high) else "open"
-
-
-def _interval_mark(found: xr.Dataset) -> Line2D:
-    percent = 100.0 * float(found.attrs["confidence"])
-    return Line2D([], [], color=GREY, marker="|", markersize=9, linestyle="none", label=f"{percent:g} % intervals")
 
 
 def _title_lines(found: xr.Dataset) -> list[str]:

@@ -18,6 +18,7 @@ from stylobate.earthquakes.assessment.report.wording import (
     near_share,
     number,
     records,
+    stated_friction,
 )
 from stylobate.errors import Outcome
 from stylobate.results.assessment import Assessment
@@ -96,6 +97,7 @@ def cases_of(assessment: Assessment, column: str, scale: float) -> Cases:
     fallen = runs["overturned"] == 1
     at_other = _levels(fallen.sel(vertical=_ACTS), overturned)
     others = runs["overturned"]
+    varied, variations_open, settled = _under_variations(assessment, column, scale)
     return Cases(
         records=_names(runs),
         overturned=overturned,
@@ -106,11 +108,11 @@ def cases_of(assessment: Assessment, column: str, scale: float) -> Cases:
         undecided_elsewhere=tuple(name for name in _where(_any(others < 0)) if name not in undecided),
         with_other_law=_with_other_law(assessment, column, scale, (*overturned, *at_other)),
         in_band=_in_band(assessment, column, scale),
-        varied=_varied(assessment, column, scale),
-        variations_open=_variations_open(assessment, column, scale),
+        varied=varied,
+        variations_open=variations_open,
         borderline=_where(_any(runs["uncertain"] > 0)),
-        settled=_settled(assessment, column, scale),
-        slipping=_slipping(runs, float(assessment.setting["friction_coefficient"][column])),
+        settled=settled,
+        slipping=_above(runs["friction_demand"].max(_EXTRA), stated_friction(assessment, column)),
     )
 
 
@@ -173,29 +175,19 @@ def _in_band(assessment: Assessment, column: str, scale: float) -> dict[str, flo
     return {name: float(share.sel(record=name)) for name in found}
 
 
-def _varied(assessment: Assessment, column: str, scale: float) -> dict[str, float]:
+def _under_variations(
+    assessment: Assessment, column: str, scale: float
+) -> tuple[dict[str, float], tuple[str, ...], tuple[str, ...]]:
+    """Return `varied`, `variations_open` and `settled` of `Cases`, all empty if nothing was varied."""
     if "variations" not in assessment.data:
-        return {}
-    shares = assessment.data["variations"]["share"].sel(column=column, scale=scale)
-    return {name: float(one) for name, one in zip(_names(shares), shares.to_numpy(), strict=True) if one > 0.0}
+        return {}, (), ()
+    own = assessment.data["variations"].sel(column=column, scale=scale)
+    return _above(own["share"], 0.0), _where(own["open"] > 0), _where(own["word"] == VerdictWord.STANDS.value)
 
 
-def _variations_open(assessment: Assessment, column: str, scale: float) -> tuple[str, ...]:
-    if "variations" not in assessment.data:
-        return ()
-    return _where(assessment.data["variations"]["open"].sel(column=column, scale=scale) > 0)
-
-
-def _settled(assessment: Assessment, column: str, scale: float) -> tuple[str, ...]:
-    if "variations" not in assessment.data:
-        return ()
-    words = assessment.data["variations"]["word"].sel(column=column, scale=scale)
-    return _where(words == VerdictWord.STANDS.value)
-
-
-def _slipping(runs: xr.Dataset, stated: float) -> dict[str, float]:
-    need = runs["friction_demand"].max([dim for dim in runs["friction_demand"].dims if dim in _EXTRA])
-    return {name: float(one) for name, one in zip(_names(need), need.to_numpy(), strict=True) if one > stated}
+def _above(values: xr.DataArray, limit: float) -> dict[str, float]:
+    """Map the records whose value lies above `limit` to their values."""
+    return {name: float(one) for name, one in zip(_names(values), values.to_numpy(), strict=True) if one > limit}
 
 
 # Factor of the highest scale within 10 %, less rounding.

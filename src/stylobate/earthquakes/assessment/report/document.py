@@ -17,22 +17,24 @@ from stylobate.earthquakes.assessment.report.column_verdict import (
 )
 from stylobate.earthquakes.assessment.report.figures import Pictures, report_pictures
 from stylobate.earthquakes.assessment.report.tables import assessment_tables, drifting, margin_intensities
-from stylobate.earthquakes.assessment.report.texts import (
+from stylobate.earthquakes.assessment.report.wording import (
     ASSUMPTIONS,
+    CENTRAL,
+    INTENSITIES,
     NOT_COVERED,
     PLANAR,
     REFERENCES,
     SLIP_AND_FLIGHT,
-    VERDICT_CLASSES,
-)
-from stylobate.earthquakes.assessment.report.wording import (
-    CENTRAL,
     SMALLEST_TILT,
+    TILT,
+    VERDICT_CLASSES,
     at_most,
+    labels,
     listed,
     number,
     records,
     scales,
+    stated_friction,
     tilt_words,
 )
 from stylobate.errors import FileError
@@ -120,7 +122,7 @@ _APART = 2.0
 def verdict_table(assessment: Assessment) -> Table:
     """Tabulate the verdict on each column in one line, at the scale nearest to 1."""
     rows = []
-    for name in _columns_of(assessment):
+    for name in labels(assessment.data["columns"], "column"):
         found = column_verdict(assessment, name, recorded_scale(assessment))
         margin = f" {least_overturning_scale(assessment, name)}" if found.describes else ""
         sentence = f"{found.sentence[0].upper()}{found.sentence[1:]}{margin}{_levels_remark(assessment, name)}"
@@ -147,15 +149,10 @@ def column_findings(assessment: Assessment, name: str) -> Table:
 def summary_text(assessment: Assessment, heads: Sequence[Table]) -> str:
     """Write the summary as plain text: the tables `heads`, the findings on each column, and a guide to them."""
     blocks = ["\n".join(": ".join(row) for row in table.rows) for table in heads]
-    for name in _columns_of(assessment):
+    for name in labels(assessment.data["columns"], "column"):
         findings = column_findings(assessment, name)
         blocks.append("\n".join([findings.header[0], *(": ".join(row) for row in findings.rows)]))
     return "\n\n".join([str(assessment.setting["title"]), *blocks, _how_to_read(assessment)]) + "\n"
-
-
-def _columns_of(assessment: Assessment) -> list[str]:
-    """Return the names of the columns."""
-    return [str(name) for name in assessment.data["columns"]["column"].to_numpy()]
 
 
 def _tilt(assessment: Assessment, name: str, scale: float) -> str:
@@ -226,11 +223,13 @@ def _contact(assessment: Assessment, name: str, own: xr.Dataset) -> str:
     need = float(own["friction_demand"].max())
     if math.isnan(need):
         return ""
-    stated = float(assessment.setting["friction_coefficient"][name])
+    stated = stated_friction(assessment, name)
     law = str(assessment.setting["columns"][name]["model"].get("kind", "the given model"))
     if need <= stated:
+        scales = assessment.setting["scales"]
+        where = f"scale {scales[0]:g}" if len(scales) == 1 else "the stated scales"
         at_stated = (
-            f"The runs at {_stated_scales(assessment)} with {law} needed a friction coefficient of up to "
+            f"The runs at {where} with {law} needed a friction coefficient of up to "
             f"{number(need)}; the stated coefficient is {number(stated)}."
         )
     else:
@@ -293,11 +292,6 @@ def _levels_remark(assessment: Assessment, name: str) -> str:
     return remark
 
 
-def _stated_scales(assessment: Assessment) -> str:
-    scales = assessment.setting["scales"]
-    return f"scale {scales[0]:g}" if len(scales) == 1 else "the stated scales"
-
-
 def _how_to_read(assessment: Assessment) -> str:
     """Explain the meaning and the limits of a verdict."""
     repeated = (
@@ -340,14 +334,19 @@ def report_sections(
     def shown(*names: str) -> list[Part]:
         return [tables[name] for name in names if name in tables]
 
+    columns = labels(assessment.data["columns"], "column")
+    planar = PLANAR if "planar" in assessment.data else ["Not computed (planar = false)."]
     found = [
         Section("Verdicts", [*shown("verdicts"), Table(("class of verdict", "meaning"), VERDICT_CLASSES)]),
         Section(
             "The columns one by one",
-            [*(column_findings(assessment, name) for name in _columns_of(assessment)), _how_to_read(assessment)],
+            [
+                *(column_findings(assessment, name) for name in columns),
+                _how_to_read(assessment),
+            ],
         ),
         Section("Records", [_record_text(assessment), *shown("events"), *drawn("records"), *drawn("spectra")]),
-        Section("Intensities of the records", [_intensity_text(assessment), *shown("records", "spectra")]),
+        Section("Intensities of the records", [INTENSITIES, *shown("records", "spectra")]),
         Section(
             "Margins",
             [
@@ -355,7 +354,7 @@ def report_sections(
                 *(*shown("margin-intensities", "governing"), *drawn("margins"), *drawn("history"), *shown("margins")),
             ],
         ),
-        Section("Tilt and displacement", [_tilt_text(), *drawn("tilts"), *shown("tilts")]),
+        Section("Tilt and displacement", [TILT, *drawn("tilts"), *shown("tilts")]),
         Section(
             "Dissipation and vertical component",
             [_verdict_text(assessment), *shown("summary", "verdicts-by-record")],
@@ -368,7 +367,7 @@ def report_sections(
             "Small variations and near scales",
             [_variations_text(assessment), *drawn("variations"), *shown("variations", "near-scales")],
         ),
-        Section("Comparison with the planar calculation", [*_planar_text(assessment), *shown("planar", "planar-bias")]),
+        Section("Comparison with the planar calculation", [*planar, *shown("planar", "planar-bias")]),
         Section("Fragility", [_fragility_text(assessment), *drawn("fragility"), *shown("fragility")]),
         Section("Columns and damping", [_model_text(assessment), *shown("columns", "dissipation")]),
         Section("Assumptions", [_assumptions(assessment)]),
@@ -395,16 +394,6 @@ def _record_text(assessment: Assessment) -> str:
     )
 
 
-def _intensity_text(assessment: Assessment) -> str:
-    del assessment
-    return (
-        "PGA, PGV and Sa (5 % damping) are RotD50: the median, over all horizontal directions, of the peak along a "
-        "direction (Boore 2010). For a record along one axis they are the values of that component. “Vector” is the "
-        "peak of the horizontal vector, which is never below RotD50. Compare hazard curves and design spectra with "
-        "RotD50. A record drifts if its velocity at the end exceeds 5 % of its PGV along x, y or z."
-    )
-
-
 def _margin_text(assessment: Assessment) -> str:
     low, high, count = assessment.setting["margin_scales"]
     resolution = assessment.setting["resolution"]
@@ -420,15 +409,6 @@ def _margin_text(assessment: Assessment) -> str:
         f"{resolution[0].upper()}{resolution[1:]}. “Governs” marks the record whose runs are "
         "drawn. “>” marks a record that overturned the column at no scale; its values are those at the largest decided "
         "scale."
-    )
-
-
-def _tilt_text() -> str:
-    return (
-        "The tipping angle α_c = arctan(r/h) is the tilt at which the centre of mass stands above the rim. The "
-        "displacement is horizontal and relative to the base: H sin θ + r (1 − cos θ) for a tilt θ and a point of the "
-        "axis at the height H, with the contact point at rest. H is the height of the column, or the height of the "
-        "centre of mass if only that is known. The edge of a wide top can move farther."
     )
 
 
@@ -482,10 +462,6 @@ def _variations_text(assessment: Assessment) -> str:
         "stands if the interval of the share of overturning lies below 5 %, overturns if it lies above 95 %, and is "
         f"undecided otherwise. {near}"
     )
-
-
-def _planar_text(assessment: Assessment) -> list[str]:
-    return list(PLANAR) if "planar" in assessment.data else ["Not computed (planar = false)."]
 
 
 def _fragility_text(assessment: Assessment) -> str:

@@ -15,7 +15,7 @@ from matplotlib.ticker import FuncFormatter, NullFormatter
 
 from stylobate.column import STANDARD_GRAVITY
 from stylobate.earthquakes.assessment.report.column_verdict import rises
-from stylobate.earthquakes.assessment.report.wording import SMALLEST_TILT, number
+from stylobate.earthquakes.assessment.report.wording import SMALLEST_TILT, labels, number, stated_friction
 from stylobate.earthquakes.figures.fragility import plot_fragility
 from stylobate.earthquakes.figures.overturning_intervals import UNDECIDED, undecided_label, undecided_reasons
 from stylobate.plots.cells import fill_options
@@ -46,19 +46,19 @@ _UNDECIDED_MARK: dict[str, Any] = {"marker": "x", "linestyle": "none", "markersi
 def margins_figure(assessment: Assessment, column: str) -> Figure:
     """Draw the overturning intervals of each record for a column, one line for each case."""
     own = assessment.data["margins"].sel(column=column)
-    cases, records = ([str(name) for name in own[dim].to_numpy()] for dim in ("case", "record"))
+    cases, records = labels(own, "case"), labels(own)
     lines = len(records) * (len(cases) + 1)
     figure = new_figure(min(_FRAME + _ROW * lines, _TALLEST))
     axes = figure.subplots()
     low, high, _ = assessment.setting["margin_scales"]
-    heights, labels = [], []
+    heights, lines_of = [], []
     for place, record in enumerate(records):
         for line, case in enumerate(cases):
             height = place * (len(cases) + 1) + line
             _interval_line(axes, own.sel(record=record, case=case), height, (low, high))
             heights.append(height)
-            labels.append(f"{record} · {case}" if line == 0 else case)
-    axes.set_yticks(heights, labels, fontsize="small")
+            lines_of.append(f"{record} · {case}" if line == 0 else case)
+    axes.set_yticks(heights, lines_of, fontsize="small")
     axes.set(xscale="log", xlim=(low, high), xlabel="scale factor of the record [1]", ylim=(lines - 0.5, -1.0))
     _plain(axes)
     axes.grid(visible=False, axis="y")
@@ -103,19 +103,18 @@ def _bars(axes: Axes, low: xr.DataArray, high: xr.DataArray, height: float, look
 def tilts_figure(assessment: Assessment, column: str, scale: float) -> Figure:
     """Draw the peak tilts of a column under each record at each dissipation, and those of the planar column."""
     own = assessment.data["verdicts"]["tilt_ratio"].sel(column=column, scale=scale)
-    records = [str(name) for name in own["record"].to_numpy()]
+    records = labels(own)
     figure, axes = _rows_figure(records)
     heights = np.arange(len(records), dtype=float)
     handles, undecided = [], False
-    levels = [str(name) for name in own["dissipation"].to_numpy()]
+    levels = labels(own, "dissipation")
     for place, level in enumerate(levels):
         values = own.sel(dissipation=level, vertical="with").to_numpy()
         undecided |= bool(np.isnan(values).any())
-        look: dict[str, Any] = {"marker": _MARKS[place % len(_MARKS)], "color": _COLOURS[place % len(_COLOURS)]}
-        axes.plot(_placed(values), heights + 0.18 * (place - 1), linestyle="none", markersize=5.5, **look)
-        axes.plot(
-            *_undecided_marks(values, heights + 0.18 * (place - 1)), **{**_UNDECIDED_MARK, "color": look["color"]}
-        )
+        look, beside = _look(place), heights + 0.18 * (place - 1)
+        axes.plot(_placed(values), beside, linestyle="none", markersize=5.5, **look)
+        unknown = beside[np.isnan(values)]
+        axes.plot(np.full(unknown.size, _UNKNOWN), unknown, **{**_UNDECIDED_MARK, "color": look["color"]})
         handles.append(Line2D([], [], linestyle="none", label=f"{level} dissipation", **look))
     if "planar" in assessment.data:
         flat = assessment.data["planar"]["planar_tilt_ratio"].sel(column=column, scale=scale).to_numpy()
@@ -134,10 +133,8 @@ def tilts_figure(assessment: Assessment, column: str, scale: float) -> Figure:
     return figure
 
 
-def _undecided_marks(values: np.ndarray, heights: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the coordinates of the marks of undecided runs, beyond those of overturned runs."""
-    chosen = np.isnan(values)
-    return np.full(int(chosen.sum()), _UNKNOWN), heights[chosen]
+def _look(place: int) -> dict[str, Any]:
+    return {"marker": _MARKS[place % len(_MARKS)], "color": _COLOURS[place % len(_COLOURS)]}
 
 
 def _placed(values: np.ndarray) -> np.ndarray:
@@ -149,17 +146,17 @@ def _placed(values: np.ndarray) -> np.ndarray:
 def _contact_figure(assessment: Assessment, column: str) -> Figure:
     """Draw the friction that the runs of each record needed, and the stated coefficient."""
     own = assessment.data["verdicts"]["friction_demand"].sel(column=column)
-    records = [str(name) for name in own["record"].to_numpy()]
+    records = labels(own)
     figure, axes = _rows_figure(records)
     scales = own["scale"].to_numpy()
     handles = []
     for place, scale in enumerate(scales):
         values = own.sel(scale=scale).stack(run=("dissipation", "vertical")).transpose("record", "run").to_numpy()
-        look: dict[str, Any] = {"marker": _MARKS[place % len(_MARKS)], "color": _COLOURS[place % len(_COLOURS)]}
+        look = _look(place)
         heights = np.repeat(np.arange(len(records)), values.shape[1]) + 0.15 * (place - 0.5 * (scales.size - 1))
         axes.plot(values.ravel(), heights, linestyle="none", markersize=4.5, **look)
         handles.append(Line2D([], [], linestyle="none", label=f"scale {scale:g}, each run", **look))
-    stated = float(assessment.setting["friction_coefficient"][column])
+    stated = stated_friction(assessment, column)
     axes.axvline(stated, color=VERMILION, linestyle="--", linewidth=1.6)
     handles.append(Line2D([], [], color=VERMILION, linestyle="--", label=f"stated coefficient {stated:g}"))
     axes.set(xlim=(0.0, None), xlabel="friction force needed / normal force [1]")
@@ -173,7 +170,7 @@ def shares_figure(assessment: Assessment, column: str, scale: float) -> Figure:
     """Draw the share of small variations that overturn a column under each record, and that of the near scales."""
     own = assessment.data["variations"].sel(column=column, scale=scale)
     band = assessment.data["margins"]["band_share"].sel(column=column, scale=scale).transpose("record", "case")
-    records = [str(name) for name in own["record"].to_numpy()]
+    records = labels(own)
     figure, axes = _rows_figure(records)
     heights = np.arange(len(records), dtype=float)
     low, share, high = (100.0 * own[name].to_numpy() for name in ("share_low", "share", "share_high"))
@@ -335,7 +332,7 @@ def report_pictures(assessment: Assessment) -> Pictures:
 def _of_records(assessment: Assessment) -> Pictures:
     if "ground_motions" not in assessment.data:
         return {}
-    names = [str(name) for name in assessment.data["ground_motions"]["record"].to_numpy()]
+    names = labels(assessment.data["ground_motions"])
     found = {}
     for first in range(0, len(names), _RECORDS_A_FIGURE):
         some = names[first : first + _RECORDS_A_FIGURE]
@@ -372,7 +369,7 @@ def _of_column(assessment: Assessment, column: str, called: str, place: int) -> 
             _contact_figure(assessment, column),
             f"{called}: friction needed in each run. Dashed: the stated coefficient.",
         )
-    with_vertical = any(rises(assessment, str(name)) for name in assessment.data["records"]["record"].to_numpy())
+    with_vertical = any(rises(assessment, name) for name in labels(assessment.data["records"]))
     vertical = " (vertical component included)" if with_vertical else ""
     for scale in assessment.setting["scales"]:
         if not _rocked(assessment, column, scale):
@@ -390,7 +387,9 @@ def _of_column(assessment: Assessment, column: str, called: str, place: int) -> 
                 "the dashed limits the case is undecided.",
             )
     if "fragility" in assessment.data:
-        found[f"fragility-{place}"] = Picture(_fragility(assessment, column), f"{called}: fragility.")
+        found[f"fragility-{place}"] = Picture(
+            plot_fragility(assessment.data["fragility"].sel(column=column)), f"{called}: fragility."
+        )
     return found
 
 
@@ -398,7 +397,3 @@ def _rocked(assessment: Assessment, column: str, scale: float) -> bool:
     """Return whether any run at a scale tilted the column, or was not decided."""
     runs = assessment.data["verdicts"].sel(column=column, scale=scale)
     return bool(np.any((runs["tilt_ratio"].to_numpy() > SMALLEST_TILT) | (runs["overturned"].to_numpy() != 0)))
-
-
-def _fragility(assessment: Assessment, column: str) -> Figure:
-    return plot_fragility(assessment.data["fragility"].sel(column=column))

@@ -21,14 +21,18 @@ from stylobate.earthquakes.assessment.report.wording import (
     TILT_HEADER,
     at_most,
     cells,
+    counts,
     degrees,
     in_g,
     intervals,
+    labels,
     least_scale,
     listed,
     near_share,
     number,
+    numbers,
     shown_point,
+    stated_friction,
     tilt,
     tilt_cells,
     verdict,
@@ -92,9 +96,8 @@ def _summary(assessment: Assessment) -> Table:
     )
     rows = []
     for where, one in cells(own, "column", "scale"):
-        counts = (f"{int(one[name])}" for name in (*names, *optional))
         tilted = tilt_cells(float(one["peak_tilt_ratio"]), assessment.data["columns"].sel(column=where[0]))
-        rows.append((*where, *counts, *tilted, number(float(one["friction_demand"]))))
+        rows.append((*where, *counts(one, *names, *optional), *tilted, number(float(one["friction_demand"]))))
     return Table(header, rows)
 
 
@@ -102,7 +105,7 @@ def _events(assessment: Assessment) -> Table:
     """Tabulate event, station and files of each record."""
     about = assessment.setting.get("details", {}).get("about_records", {})
     rows = []
-    for name in _record_names(assessment):
+    for name in labels(assessment.data["records"]):
         lines = assessment.setting["records"][name]["processing"]
         read = [found for found in map(_READ.fullmatch, lines) if found]
         titles = list(dict.fromkeys(_without_component(found["title"]) for found in read if found["title"]))
@@ -128,7 +131,7 @@ def _intensities(assessment: Assessment) -> Table:
         *("velocity at the end [m/s]", "drift"),
     )
     rows = []
-    for name in _record_names(assessment):
+    for name in labels(assessment.data["records"]):
         one = own.sel(record=name)
         in_g_too = [f"peak_acceleration{which}" for which in ("", "_x", "_y", "_z")]
         rows.append(
@@ -136,12 +139,11 @@ def _intensities(assessment: Assessment) -> Table:
                 name,
                 str(one["definition"].item()),
                 in_g(float(one["median_peak_acceleration"])),
-                number(float(one["median_peak_acceleration"])),
-                number(float(one["median_peak_velocity"])),
+                *numbers(one, "median_peak_acceleration", "median_peak_velocity"),
                 in_g(spectral.get(name, math.nan)),
                 *(in_g(float(one[which])) for which in in_g_too[:-1]),
                 in_g(float(one[in_g_too[-1]])) if rises(assessment, name) else NO_COMPONENT,
-                *(number(float(one[which])) for which in ("peak_velocity", "length", "step", "residual_velocity")),
+                *numbers(one, "peak_velocity", "length", "step", "residual_velocity"),
                 "yes" if name in drifting(assessment) else "no",
             )
         )
@@ -158,12 +160,12 @@ def _spectra(assessment: Assessment) -> Table:
     own = assessment.data["spectra"]["spectral_acceleration"]
     design = assessment.setting.get("details", {}).get("design_spectrum")
     alike = design is not None and math.isclose(design["damping"], _DAMPING)
-    each = _record_names(assessment) if own.sizes["record"] <= _FEW else ["smallest", "largest"]
+    each = labels(assessment.data["records"]) if own.sizes["record"] <= _FEW else ["smallest", "largest"]
     header = ["period [s]", *(f"{name} [g]" for name in each), "mean [g]"]
     header += [f"{design['name']} [g]", "mean / design"] if design else []
     rows = []
     for period in sorted({*_SHOWN_PERIODS, _period(assessment)}):
-        values = np.array([_at(own.sel(record=name), period) for name in _record_names(assessment)])
+        values = np.array([_at(own.sel(record=name), period) for name in labels(assessment.data["records"])])
         shown = values if len(each) == values.size else (values.min(), values.max())
         row = [f"{period:g}", *map(in_g, shown), in_g(values.mean())]
         if design:
@@ -197,7 +199,7 @@ def margin_intensities(assessment: Assessment) -> Table:
     rows = []
     for column in assessment.data["columns"]["column"].to_numpy():
         governing = str(assessment.data["summary"]["governing"].sel(column=column).item())
-        for name in _record_names(assessment):
+        for name in labels(assessment.data["records"]):
             one = least.sel(column=column, record=name)
             scales = {CENTRAL: float(one.sel(case=CENTRAL))}
             if bool(one.min() < scales[CENTRAL]) or (math.isnan(scales[CENTRAL]) and bool(one.notnull().any())):
@@ -300,13 +302,9 @@ def _friction_by_record(assessment: Assessment) -> Table:
     """Tabulate the largest friction that the runs under each record needed."""
     header, rows = (*_PLACES, "largest friction needed, given contact law", "stated friction", "sufficient"), []
     for where, one in cells(assessment.data["summary"], *_PLACES) if assessment.setting["contact"] else ():
-        need, stated = float(one["friction_by_record"]), _stated_friction(assessment, where[0])
+        need, stated = float(one["friction_by_record"]), stated_friction(assessment, where[0])
         rows.append((*where, number(need), number(stated), _enough(need, stated)))
     return Table(header, rows)
-
-
-def _stated_friction(assessment: Assessment, column: str) -> float:
-    return float(assessment.setting["friction_coefficient"][column])
 
 
 def _enough(need: float, stated: float) -> str:
@@ -324,7 +322,7 @@ def _friction_to_margin(assessment: Assessment) -> Table:
         need, slipping = (float(one[name]) for name in ("friction_to_margin", "least_slipping"))
         if not acts_in(assessment, *where[1:]) or (math.isnan(need) and math.isnan(slipping)):
             continue
-        stated = float(assessment.setting["friction_coefficient"][where[0]])
+        stated = stated_friction(assessment, where[0])
         first = "none that was run" if math.isnan(slipping) else number(slipping)
         rows.append((*where, least_scale(one), number(need), number(stated), first))
     return Table(header, rows)
@@ -374,7 +372,7 @@ def _small_variations(assessment: Assessment) -> Table:
 def _near_scales(assessment: Assessment) -> Table:
     """Tabulate the share of overturning scales within 10 % of each stated scale, by case."""
     own = assessment.data["margins"][["band_share"]]
-    cases = [str(case) for case in own["case"].to_numpy()]
+    cases = labels(own, "case")
     rows = [
         (*where, *(percent(float(one["band_share"].sel(case=case))) for case in cases))
         for where, one in cells(own, *_PLACES)
@@ -410,10 +408,10 @@ def _planar_bias(assessment: Assessment) -> Table:
         return Table(header, [])
     rows = []
     for where, one in cells(assessment.data["planar"], "column", "scale"):
-        counts = (f"{int(one[name])}" for name in ("compared", "only_space", "only_planar"))
         mean = float(one["bias"])
         words = "too few records" if math.isnan(mean) else number(mean)
-        rows.append((*where, words, number(float(one["standard_error"])), *counts))
+        compared = counts(one, "compared", "only_space", "only_planar")
+        rows.append((*where, words, *numbers(one, "standard_error"), *compared))
     return Table(header, rows)
 
 
@@ -424,18 +422,13 @@ def _fragility(assessment: Assessment) -> Table:
     )
     if "fragility" not in assessment.data:
         return Table(header, [])
-    numbers = ("median", "median_low", "median_high", "dispersion", "dispersion_low", "dispersion_high")
+    fitted = ("median", "median_low", "median_high", "dispersion", "dispersion_low", "dispersion_high")
+    seen = ("runs", "runs_reached", "non_monotone_records")
     rows = []
     for where, one in cells(assessment.data["fragility"], "column", "limit_state"):
-        counts = (f"{int(one[name])}" for name in ("runs", "runs_reached", "non_monotone_records"))
-        column, state = where
-        rows.append((column, _limit_state(state), *(number(float(one[name])) for name in numbers), *counts))
+        column, state = where[0], where[1].replace("α", "α_c")  # the symbol of the report
+        rows.append((column, state, *numbers(one, *fitted), *counts(one, *seen)))
     return Table(header, rows)
-
-
-def _limit_state(name: str) -> str:
-    """Return a limit state such as "tilt 0.5 α" with the symbol α_c of the report."""
-    return name.replace("α", "α_c")
 
 
 def _columns(assessment: Assessment) -> Table:
@@ -459,8 +452,8 @@ def _dissipation(assessment: Assessment) -> Table:
     rows = [
         (column, level, name, number(value, 4))
         for column, levels in assessment.setting["dissipation"].items()
-        for level, numbers in levels.items()
-        for name, value in numbers.items()
+        for level, stated in levels.items()
+        for name, value in stated.items()
     ]
     own = assessment.data["columns"]
     rows += [
@@ -498,8 +491,8 @@ def _every_run(assessment: Assessment) -> Table:
         if not acts_in(assessment, record, case_name(level, acts)):
             continue
         need = float(one["friction_demand"])
-        friction = (number(need), _enough(need, _stated_friction(assessment, column)))
-        more = (number(float(one[name])) for name in ("pivoting_demand", "minimum_normal_force"))
+        friction = (number(need), _enough(need, stated_friction(assessment, column)))
+        more = numbers(one, "pivoting_demand", "minimum_normal_force")
         tilted = tilt_cells(float(one["tilt_ratio"]), assessment.data["columns"].sel(column=column))
         vertical = ("yes" if acts == _ACTS else "no") if rises(assessment, record) else NO_COMPONENT
         state = (vertical, verdict(float(one["overturned"])))
@@ -530,7 +523,7 @@ def _spectral(assessment: Assessment) -> dict[str, float]:
     if "spectra" not in assessment.data:
         return {}
     own = assessment.data["spectra"]["spectral_acceleration"]
-    return {name: _at(own.sel(record=name), _period(assessment)) for name in _record_names(assessment)}
+    return {name: _at(own.sel(record=name), _period(assessment)) for name in labels(assessment.data["records"])}
 
 
 def _at(spectrum: xr.DataArray, period: float) -> float:
