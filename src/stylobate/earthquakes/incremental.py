@@ -31,26 +31,6 @@ from stylobate.studies.sweeps.quantities import Floats, checked_values
 Places = npt.NDArray[np.intp]
 
 
-def _crossed(lengths: Mapping[str, int]) -> dict[str, Places]:
-    """Return flat arrays of the indices of each named choice over all combinations; the last choice varies fastest."""
-    grids = np.indices(tuple(lengths.values()))
-    return {name: grid.ravel() for name, grid in zip(lengths, grids, strict=True)}
-
-
-def _unfolded(runs: xr.Dataset, lengths: Mapping[str, int]) -> xr.Dataset:
-    """Reshape `runs` from the dimension `run` to the dimensions of `_crossed` choices; drop coordinates over `run`."""
-    shape = tuple(lengths.values())
-    assert runs.sizes["run"] == math.prod(shape)
-    variables = {}
-    for name, variable in runs.data_vars.items():
-        ordered = variable.transpose("run", ...)
-        values = ordered.to_numpy()
-        dims = (*lengths, *ordered.dims[1:])
-        variables[name] = xr.Variable(dims, values.reshape(*shape, *values.shape[1:]), variable.attrs)
-    kept = {name: coordinate for name, coordinate in runs.coords.items() if "run" not in coordinate.dims}
-    return xr.Dataset(variables, coords=kept, attrs=runs.attrs)
-
-
 _SET_BY_ARGUMENTS = {
     "motion": "records",
     "scale": "scales",
@@ -364,3 +344,23 @@ def _samples(parameters: Mapping[str, npt.ArrayLike] | None) -> dict[str, Floats
     count = next(iter(sizes.values()), 1)
     same = {name: np.full(count, require_finite(name, value)) for name, value in given.items() if name not in several}
     return {name: {**several, **same}[name] for name in given}
+
+
+def _crossed(lengths: Mapping[str, int]) -> dict[str, Places]:
+    """Return flat arrays of the indices of each named choice over all combinations; the last choice varies fastest."""
+    grids = np.indices(tuple(lengths.values()))
+    return {name: grid.ravel() for name, grid in zip(lengths, grids, strict=True)}
+
+
+def _unfolded(runs: xr.Dataset, lengths: Mapping[str, int]) -> xr.Dataset:
+    """Reshape `runs` from the dimension `run` to the dimensions of `_crossed` choices; drop coordinates over `run`."""
+    shape = tuple(lengths.values())
+    assert runs.sizes["run"] == math.prod(shape)
+    variables = {}
+    for name, variable in runs.data_vars.items():
+        ordered = variable.transpose("run", ...)
+        values = ordered.to_numpy()
+        dims = (*lengths, *ordered.dims[1:])
+        variables[name] = xr.Variable(dims, values.reshape(*shape, *values.shape[1:]), variable.attrs)
+    kept = {name: coordinate for name, coordinate in runs.coords.items() if "run" not in coordinate.dims}
+    return xr.Dataset(variables, coords=kept, attrs=runs.attrs)

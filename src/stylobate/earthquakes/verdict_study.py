@@ -165,8 +165,9 @@ def verdict(
     require_no_tilt_limit(options)
     _check_motion(motion)
     _check_options(options)
+    one_law = isinstance(variations, Mapping) and variations.get(CONTACT_LAW, "") is None
     case = _Case(
-        models=contact_laws([models] if _one_law(variations) and isinstance(models, Model) else models),
+        models=contact_laws([models] if one_law and isinstance(models, Model) else models),
         motion=motion,
         variations=chosen_variations(variations),
         runs=require_whole("runs", runs, least=2, most=MOST_RUNS),
@@ -195,11 +196,6 @@ def undamped(model: Model, variations: Mapping[str, Spread]) -> str:
         "damping: the column loses no energy while it rocks, and the variation `dissipation` changes nothing (got 0). "
         f"Housner's impacts lose as much as {yardstick}: pass damping=column.housner_damping() or a measured value"
     )
-
-
-def _one_law(variations: object) -> bool:
-    """Return whether the variation between contact laws is left out."""
-    return isinstance(variations, Mapping) and variations.get(CONTACT_LAW, "") is None
 
 
 def _check_motion(motion: BaseMotion) -> None:

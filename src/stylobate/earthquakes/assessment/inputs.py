@@ -28,97 +28,6 @@ from stylobate.run_arguments import RunOptions
 from stylobate.studies.sweeps.fingerprint import identity_of
 from stylobate.studies.sweeps.quantities import Floats
 
-_log = logging.getLogger("stylobate")
-
-Announce: TypeAlias = Callable[[str, int, int], None]
-"""Called with the name of the part, the runs done and the total number of runs."""
-
-
-@dataclass(frozen=True, slots=True)
-class Parts:
-    """Parts of an assessment, computed or read from the folder `store`.
-
-    Parameters
-    ----------
-    store
-        Folder of the parts; None stores nothing.
-    total
-        Approximate number of runs of all parts.
-    announce
-        Called with the progress while a part is computed; runs of stored parts count as done.
-    """
-
-    store: Path | None
-    total: int
-    announce: Announce
-    _done: list[int] = field(default_factory=list, init=False)
-    _known: list[str] = field(default_factory=list, init=False)
-
-    def get(
-        self, name: str, runs: int, identity: Mapping[str, Any], compute: Callable[[Report], xr.Dataset]
-    ) -> xr.Dataset:
-        """Return the part `name` of about `runs` runs; compute it if the store has none of the same `identity`.
-
-        Raises
-        ------
-        FileError
-            If the store cannot be written.
-        """
-        before = sum(self._done)
-        path = None if self.store is None else self.store / f"{_digest({'part': name, **identity})}.nc"
-        found = None if path is None else _kept(path)
-        if found is not None:
-            self._known.append(name)
-        else:
-            if self._known and len(self._known) == len(self._done):  # the first part that is computed
-                _log.info("%d parts were read from %s; the assessment resumes there", len(self._known), self.store)
-            self.announce(name, before, self.total)
-            found = compute(
-                lambda done, total: self.announce(name, before + round(runs * done / max(total, 1)), self.total)
-            )
-            if path is not None:
-                _keep(found, path)
-            self.announce(name, before + runs, self.total)
-        self._done.append(runs)
-        return found
-
-    def report(self) -> None:
-        """Log the number of parts that were read from the store, if any."""
-        if self._known:
-            _log.info(
-                "%d of %d parts were read from %s and not computed again", len(self._known), len(self._done), self.store
-            )
-
-
-def identities(motions: Mapping[str, BaseMotion]) -> dict[str, Any]:
-    """Return the identities of motions, by name."""
-    return {
-        name: motion.digest if isinstance(motion, Record) else identity_of(motion) for name, motion in motions.items()
-    }
-
-
-def _digest(identity: Mapping[str, Any]) -> str:
-    return hashlib.sha256(json.dumps(identity, sort_keys=True, default=exact_repr).encode()).hexdigest()[:24]
-
-
-def _kept(path: Path) -> xr.Dataset | None:
-    if not path.exists():
-        return None
-    try:
-        return read_dataset(path)
-    except FileError as error:
-        _log.warning("%s; it is computed again", error)
-        return None
-
-
-def _keep(data: xr.Dataset, path: Path) -> None:
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise FileError(f"cannot write {path}: {error.strerror or error}") from None
-    write_netcdf(data, path)
-
-
 CENTRAL = "central"
 NO_VERTICAL = "central, no vertical"
 """The case of margins in which the vertical component does not act."""
@@ -369,3 +278,94 @@ def _as_values(model: Model) -> dict[str, Any]:
     provenance = provenance_of_run(model, BASE_AT_REST)
     described = provenance["model"] if provenance["model"].get("kind") != "other" else identity_of(model)
     return {"column": provenance["column"], "model": described}
+
+
+_log = logging.getLogger("stylobate")
+
+Announce: TypeAlias = Callable[[str, int, int], None]
+"""Called with the name of the part, the runs done and the total number of runs."""
+
+
+@dataclass(frozen=True, slots=True)
+class Parts:
+    """Parts of an assessment, computed or read from the folder `store`.
+
+    Parameters
+    ----------
+    store
+        Folder of the parts; None stores nothing.
+    total
+        Approximate number of runs of all parts.
+    announce
+        Called with the progress while a part is computed; runs of stored parts count as done.
+    """
+
+    store: Path | None
+    total: int
+    announce: Announce
+    _done: list[int] = field(default_factory=list, init=False)
+    _known: list[str] = field(default_factory=list, init=False)
+
+    def get(
+        self, name: str, runs: int, identity: Mapping[str, Any], compute: Callable[[Report], xr.Dataset]
+    ) -> xr.Dataset:
+        """Return the part `name` of about `runs` runs; compute it if the store has none of the same `identity`.
+
+        Raises
+        ------
+        FileError
+            If the store cannot be written.
+        """
+        before = sum(self._done)
+        path = None if self.store is None else self.store / f"{_digest({'part': name, **identity})}.nc"
+        found = None if path is None else _kept(path)
+        if found is not None:
+            self._known.append(name)
+        else:
+            if self._known and len(self._known) == len(self._done):  # the first part that is computed
+                _log.info("%d parts were read from %s; the assessment resumes there", len(self._known), self.store)
+            self.announce(name, before, self.total)
+            found = compute(
+                lambda done, total: self.announce(name, before + round(runs * done / max(total, 1)), self.total)
+            )
+            if path is not None:
+                _keep(found, path)
+            self.announce(name, before + runs, self.total)
+        self._done.append(runs)
+        return found
+
+    def report(self) -> None:
+        """Log the number of parts that were read from the store, if any."""
+        if self._known:
+            _log.info(
+                "%d of %d parts were read from %s and not computed again", len(self._known), len(self._done), self.store
+            )
+
+
+def identities(motions: Mapping[str, BaseMotion]) -> dict[str, Any]:
+    """Return the identities of motions, by name."""
+    return {
+        name: motion.digest if isinstance(motion, Record) else identity_of(motion) for name, motion in motions.items()
+    }
+
+
+def _digest(identity: Mapping[str, Any]) -> str:
+    return hashlib.sha256(json.dumps(identity, sort_keys=True, default=exact_repr).encode()).hexdigest()[:24]
+
+
+def _kept(path: Path) -> xr.Dataset | None:
+    if not path.exists():
+        return None
+    try:
+        return read_dataset(path)
+    except FileError as error:
+        _log.warning("%s; it is computed again", error)
+        return None
+
+
+def _keep(data: xr.Dataset, path: Path) -> None:
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise FileError(f"cannot write {path}: {error.strerror or error}") from None
+    write_netcdf(data, path)

@@ -91,6 +91,22 @@ def _table_of_verdicts(runs: xr.Dataset) -> xr.Dataset:
     return xr.Dataset(ordered).assign_attrs(provenance=runs.attrs["provenance"])
 
 
+# Number of records in one stored part: enough to occupy the cores, few enough to lose at Ctrl-C.
+_TOGETHER = 4
+
+
+def _some_at_a_time(inputs: Inputs) -> list[Inputs]:
+    """Split the records into groups that are computed and stored together."""
+    names = list(inputs.records)
+    return [inputs.with_records(names[at : at + _TOGETHER]) for at in range(0, len(names), _TOGETHER)]
+
+
+def _part_name(column: str, what: str, inputs: Inputs) -> str:
+    """Return the name of the part of a group of records."""
+    first, last = next(iter(inputs.records)), list(inputs.records)[-1]
+    return f"{column}: {what}, {first}" + (f" to {last}" if last != first else "")
+
+
 _OF_RUNS = ("demands", "recheck")
 _QUANTILES = {"tilt_ratio_low": 0.05, "tilt_ratio_median": 0.5, "tilt_ratio_high": 0.95}
 
@@ -202,20 +218,6 @@ def _quantile(ratios: Floats, at: float) -> float:
 _AXES = 2
 # Variables that count records.
 _COUNTS = ("only_space", "only_planar")
-# Number of records in one stored part: enough to occupy the cores, few enough to lose at Ctrl-C.
-_TOGETHER = 4
-
-
-def _some_at_a_time(inputs: Inputs) -> list[Inputs]:
-    """Split the records into groups that are computed and stored together."""
-    names = list(inputs.records)
-    return [inputs.with_records(names[at : at + _TOGETHER]) for at in range(0, len(names), _TOGETHER)]
-
-
-def _part_name(column: str, what: str, inputs: Inputs) -> str:
-    """Return the name of the part of a group of records."""
-    first, last = next(iter(inputs.records)), list(inputs.records)[-1]
-    return f"{column}: {what}, {first}" + (f" to {last}" if last != first else "")
 
 
 def planar_of(inputs: Inputs, column: str, parts: Parts, *, executor: Executor | None) -> xr.Dataset:
@@ -249,8 +251,7 @@ def _planar_at(inputs: Inputs, column: str, parts: Parts, executor: Executor | N
         return kept.drop_vars([name for name in kept.coords if name not in ("record", "scale")])
 
     identity = {**inputs.identity(column, inputs.columns[column][CENTRAL]), "scales": inputs.scales.tolist()}
-    runs = len(inputs.records) * inputs.scales.size * (1 + _AXES)
-    return parts.get(_part_name(column, "planar", inputs), runs, identity, compute)
+    return parts.get(_part_name(column, "planar", inputs), planar_runs(inputs), identity, compute)
 
 
 def planar_runs(inputs: Inputs) -> int:

@@ -23,51 +23,6 @@ from stylobate.results.outcomes import flag_attributes
 from stylobate.results.random_numbers import Rng, generator_of
 from stylobate.studies.proportions import require_confidence, wilson_interval
 
-# Maximum number of separate intensities; more are grouped into bins with equal numbers of runs.
-_MOST_STRIPES = 25
-_BINS = 10
-
-
-def _observed_shares(seen: Observations, confidence: float) -> xr.Dataset:
-    """Compute fractions over `stripe`: runs of one intensity, or bins with equal numbers of runs.
-
-    Each stripe has the geometric mean `stripe_intensity` of its intensities, and their range.
-    """
-    bins = _bins(seen.intensity)
-    count = int(bins.max()) + 1
-    logs = np.log(seen.intensity)
-    mean = np.exp(np.bincount(bins, weights=logs) / np.bincount(bins))
-    ends = np.array([[part.min(), part.max()] for part in (seen.intensity[bins == one] for one in range(count))])
-    hits, decided = (
-        np.array([np.bincount(bins, weights=state, minlength=count) for state in chosen])
-        for chosen in (seen.reached == 1, seen.reached >= 0)
-    )
-    low, high = wilson_interval(hits, decided, confidence=confidence)
-    dims = (LIMIT_STATE, "stripe")
-    share = np.where(decided > 0.0, hits / np.maximum(decided, 1.0), np.nan)
-    return xr.Dataset(
-        {
-            "stripe_runs": (dims, decided.astype(np.int64), {"units": "1", "long_name": "runs"}),
-            "stripe_reached": (dims, hits.astype(np.int64), {"units": "1", "long_name": "runs that reached it"}),
-            "stripe_share": (dims, share, {"units": "1", "long_name": "share of runs that reached it"}),
-            "stripe_share_low": (dims, low, {"units": "1", "long_name": "lower end of its interval"}),
-            "stripe_share_high": (dims, high, {"units": "1", "long_name": "upper end of its interval"}),
-            "stripe_from": ("stripe", ends[:, 0], {**seen.attributes, "long_name": "least intensity"}),
-            "stripe_to": ("stripe", ends[:, 1], {**seen.attributes, "long_name": "largest intensity"}),
-        },
-        coords={"stripe_intensity": ("stripe", mean, seen.attributes), LIMIT_STATE: list(seen.names)},
-    )
-
-
-def _bins(intensity: Floats) -> Integers:
-    different, place = np.unique(intensity, return_inverse=True)
-    if different.size <= _MOST_STRIPES:
-        return np.asarray(place, dtype=np.int64)
-    # Runs of one intensity stay together.
-    first = np.searchsorted(np.sort(intensity), intensity)
-    return np.asarray(np.unique(_BINS * first // intensity.size, return_inverse=True)[1], dtype=np.int64)
-
-
 _CURVE_POINTS = 121
 # Half-width of a curve without data, in dispersions.
 _REACH = 3.5
@@ -90,114 +45,6 @@ class Curve:
     numbers: dict[str, float]
     covariance: Floats
     shares: dict[str, Floats]
-
-
-def lognormal_fragility(
-    median: float,
-    dispersion: float,
-    *,
-    name: str = "given",
-    units: str = "1",
-    component: str | HorizontalComponent | None = None,
-) -> xr.Dataset:
-    """Build a fragility from a known median and dispersion, without data or intervals.
-
-    Parameters
-    ----------
-    median
-        Intensity at which the limit state is reached with probability 1/2, in `units`.
-    dispersion
-        Standard deviation β of the logarithm of the capacity.
-    name, units
-        Name of the limit state, and unit of the intensity.
-    component
-        Definition of the horizontal component of the intensity, such as "RotD50"; None if it has none.
-
-    Returns
-    -------
-    xarray.Dataset
-        Of kind "fragility": `median`, `dispersion` and the curve.
-
-    Raises
-    ------
-    ParameterError
-        If a number is not positive, or the component is unknown.
-
-    Examples
-    --------
-    >>> lognormal_fragility(3.0, 0.4)["median"].item()
-    3.0
-    """
-    m, beta = require_positive("median", median), require_positive("dispersion", dispersion)
-    x = m * np.exp(np.linspace(-_REACH * beta, _REACH * beta, _CURVE_POINTS))
-    definition = {} if component is None else {"component": HorizontalComponent.named(component).value}
-    about = {"units": units, "long_name": ", ".join(["intensity", *definition.values()]), **definition}
-    return xr.Dataset(
-        {
-            "median": (LIMIT_STATE, [m], {**about, "long_name": f"median {about['long_name']}"}),
-            "dispersion": (LIMIT_STATE, [beta], {"units": "1", "long_name": "dispersion"}),
-            "status": (LIMIT_STATE, [int(FitStatus.FITTED)], _status_attributes()),
-            "probability": ((LIMIT_STATE, "curve"), ndtr(np.log(x / m) / beta)[np.newaxis], _PROBABILITY),
-        },
-        coords={LIMIT_STATE: [name], "curve_intensity": ("curve", x, about)},
-        attrs={"kind": "fragility", "intervals": "none"},
-    )
-
-
-_PROBABILITY = {"units": "1", "long_name": "probability of reaching the limit state"}
-
-
-def _status_attributes() -> dict[str, object]:
-    return flag_attributes("status of the fit", [status.name for status in FitStatus], dtype=np.int64)
-
-
-def _curves_table(seen: Observations, x: Floats, curves: list[Curve]) -> xr.Dataset:
-    """Collect the fits of all limit states, and their curves at intensities `x`."""
-    about: dict[str, object] = {
-        name: seen.attributes[name] for name in ("units", "component") if name in seen.attributes
-    }
-    names = {
-        "median": {**about, "long_name": f"median {seen.attributes['long_name']}"},
-        "median_low": {**about, "long_name": "lower end of the interval of the median"},
-        "median_high": {**about, "long_name": "upper end of the interval of the median"},
-        "dispersion": {"units": "1", "long_name": "dispersion"},
-        "dispersion_low": {"units": "1", "long_name": "lower end of the interval of the dispersion"},
-        "dispersion_high": {"units": "1", "long_name": "upper end of the interval of the dispersion"},
-        "status": _status_attributes(),
-        "log_likelihood": {"units": "1", "long_name": "log-likelihood"},
-        "runs": {"units": "1", "long_name": "runs decided for the limit state"},
-        "runs_reached": {"units": "1", "long_name": "runs that reached it"},
-        "runs_not_known": {"units": "1", "long_name": "undecided runs"},
-        "largest_safe": {**about, "long_name": "largest intensity that did not reach it"},
-        "least_reached": {**about, "long_name": "smallest intensity that reached it"},
-        "resamples_without_fit": {"units": "1", "long_name": "resamples without a fit"},
-    }
-    shares = {
-        "probability": _PROBABILITY,
-        "probability_low": {"units": "1", "long_name": "lower end of the interval of the probability"},
-        "probability_high": {"units": "1", "long_name": "upper end of the interval of the probability"},
-    }
-    parameters = ["log median", "log dispersion"]
-    return xr.Dataset(
-        {
-            **{name: (LIMIT_STATE, [one.numbers[name] for one in curves], attrs) for name, attrs in names.items()},
-            "covariance": (
-                (LIMIT_STATE, "parameter", "other_parameter"),
-                np.array([one.covariance for one in curves]),
-                {"units": "1", "long_name": "covariance of the logarithms of median and dispersion"},
-            ),
-            **{
-                name: ((LIMIT_STATE, "curve"), np.array([one.shares[name] for one in curves]), attrs)
-                for name, attrs in shares.items()
-            },
-        },
-        coords={
-            LIMIT_STATE: list(seen.names),
-            "parameter": parameters,
-            "other_parameter": parameters,
-            "curve_intensity": ("curve", x, seen.attributes),
-        },
-    )
 
 
 def fit_fragility(
@@ -373,6 +220,159 @@ def _band(fits: Fits, u: Floats, eta: Floats, confidence: float) -> tuple[Floats
     variance = np.einsum("in,ij,jn->n", design, np.linalg.inv(fits.information[0]), design)
     half = ndtri(0.5 + 0.5 * confidence) * np.sqrt(variance)
     return ndtr(eta - half), ndtr(eta + half)
+
+
+_PROBABILITY = {"units": "1", "long_name": "probability of reaching the limit state"}
+
+
+def _status_attributes() -> dict[str, object]:
+    return flag_attributes("status of the fit", [status.name for status in FitStatus], dtype=np.int64)
+
+
+def _curves_table(seen: Observations, x: Floats, curves: list[Curve]) -> xr.Dataset:
+    """Collect the fits of all limit states, and their curves at intensities `x`."""
+    about: dict[str, object] = {
+        name: seen.attributes[name] for name in ("units", "component") if name in seen.attributes
+    }
+    names = {
+        "median": {**about, "long_name": f"median {seen.attributes['long_name']}"},
+        "median_low": {**about, "long_name": "lower end of the interval of the median"},
+        "median_high": {**about, "long_name": "upper end of the interval of the median"},
+        "dispersion": {"units": "1", "long_name": "dispersion"},
+        "dispersion_low": {"units": "1", "long_name": "lower end of the interval of the dispersion"},
+        "dispersion_high": {"units": "1", "long_name": "upper end of the interval of the dispersion"},
+        "status": _status_attributes(),
+        "log_likelihood": {"units": "1", "long_name": "log-likelihood"},
+        "runs": {"units": "1", "long_name": "runs decided for the limit state"},
+        "runs_reached": {"units": "1", "long_name": "runs that reached it"},
+        "runs_not_known": {"units": "1", "long_name": "undecided runs"},
+        "largest_safe": {**about, "long_name": "largest intensity that did not reach it"},
+        "least_reached": {**about, "long_name": "smallest intensity that reached it"},
+        "resamples_without_fit": {"units": "1", "long_name": "resamples without a fit"},
+    }
+    shares = {
+        "probability": _PROBABILITY,
+        "probability_low": {"units": "1", "long_name": "lower end of the interval of the probability"},
+        "probability_high": {"units": "1", "long_name": "upper end of the interval of the probability"},
+    }
+    parameters = ["log median", "log dispersion"]
+    return xr.Dataset(
+        {
+            **{name: (LIMIT_STATE, [one.numbers[name] for one in curves], attrs) for name, attrs in names.items()},
+            "covariance": (
+                (LIMIT_STATE, "parameter", "other_parameter"),
+                np.array([one.covariance for one in curves]),
+                {"units": "1", "long_name": "covariance of the logarithms of median and dispersion"},
+            ),
+            **{
+                name: ((LIMIT_STATE, "curve"), np.array([one.shares[name] for one in curves]), attrs)
+                for name, attrs in shares.items()
+            },
+        },
+        coords={
+            LIMIT_STATE: list(seen.names),
+            "parameter": parameters,
+            "other_parameter": parameters,
+            "curve_intensity": ("curve", x, seen.attributes),
+        },
+    )
+
+
+# Maximum number of separate intensities; more are grouped into bins with equal numbers of runs.
+_MOST_STRIPES = 25
+_BINS = 10
+
+
+def _observed_shares(seen: Observations, confidence: float) -> xr.Dataset:
+    """Compute fractions over `stripe`: runs of one intensity, or bins with equal numbers of runs.
+
+    Each stripe has the geometric mean `stripe_intensity` of its intensities, and their range.
+    """
+    bins = _bins(seen.intensity)
+    count = int(bins.max()) + 1
+    logs = np.log(seen.intensity)
+    mean = np.exp(np.bincount(bins, weights=logs) / np.bincount(bins))
+    ends = np.array([[part.min(), part.max()] for part in (seen.intensity[bins == one] for one in range(count))])
+    hits, decided = (
+        np.array([np.bincount(bins, weights=state, minlength=count) for state in chosen])
+        for chosen in (seen.reached == 1, seen.reached >= 0)
+    )
+    low, high = wilson_interval(hits, decided, confidence=confidence)
+    dims = (LIMIT_STATE, "stripe")
+    share = np.where(decided > 0.0, hits / np.maximum(decided, 1.0), np.nan)
+    return xr.Dataset(
+        {
+            "stripe_runs": (dims, decided.astype(np.int64), {"units": "1", "long_name": "runs"}),
+            "stripe_reached": (dims, hits.astype(np.int64), {"units": "1", "long_name": "runs that reached it"}),
+            "stripe_share": (dims, share, {"units": "1", "long_name": "share of runs that reached it"}),
+            "stripe_share_low": (dims, low, {"units": "1", "long_name": "lower end of its interval"}),
+            "stripe_share_high": (dims, high, {"units": "1", "long_name": "upper end of its interval"}),
+            "stripe_from": ("stripe", ends[:, 0], {**seen.attributes, "long_name": "least intensity"}),
+            "stripe_to": ("stripe", ends[:, 1], {**seen.attributes, "long_name": "largest intensity"}),
+        },
+        coords={"stripe_intensity": ("stripe", mean, seen.attributes), LIMIT_STATE: list(seen.names)},
+    )
+
+
+def _bins(intensity: Floats) -> Integers:
+    different, place = np.unique(intensity, return_inverse=True)
+    if different.size <= _MOST_STRIPES:
+        return np.asarray(place, dtype=np.int64)
+    # Runs of one intensity stay together.
+    first = np.searchsorted(np.sort(intensity), intensity)
+    return np.asarray(np.unique(_BINS * first // intensity.size, return_inverse=True)[1], dtype=np.int64)
+
+
+def lognormal_fragility(
+    median: float,
+    dispersion: float,
+    *,
+    name: str = "given",
+    units: str = "1",
+    component: str | HorizontalComponent | None = None,
+) -> xr.Dataset:
+    """Build a fragility from a known median and dispersion, without data or intervals.
+
+    Parameters
+    ----------
+    median
+        Intensity at which the limit state is reached with probability 1/2, in `units`.
+    dispersion
+        Standard deviation β of the logarithm of the capacity.
+    name, units
+        Name of the limit state, and unit of the intensity.
+    component
+        Definition of the horizontal component of the intensity, such as "RotD50"; None if it has none.
+
+    Returns
+    -------
+    xarray.Dataset
+        Of kind "fragility": `median`, `dispersion` and the curve.
+
+    Raises
+    ------
+    ParameterError
+        If a number is not positive, or the component is unknown.
+
+    Examples
+    --------
+    >>> lognormal_fragility(3.0, 0.4)["median"].item()
+    3.0
+    """
+    m, beta = require_positive("median", median), require_positive("dispersion", dispersion)
+    x = m * np.exp(np.linspace(-_REACH * beta, _REACH * beta, _CURVE_POINTS))
+    definition = {} if component is None else {"component": HorizontalComponent.named(component).value}
+    about = {"units": units, "long_name": ", ".join(["intensity", *definition.values()]), **definition}
+    return xr.Dataset(
+        {
+            "median": (LIMIT_STATE, [m], {**about, "long_name": f"median {about['long_name']}"}),
+            "dispersion": (LIMIT_STATE, [beta], {"units": "1", "long_name": "dispersion"}),
+            "status": (LIMIT_STATE, [int(FitStatus.FITTED)], _status_attributes()),
+            "probability": ((LIMIT_STATE, "curve"), ndtr(np.log(x / m) / beta)[np.newaxis], _PROBABILITY),
+        },
+        coords={LIMIT_STATE: [name], "curve_intensity": ("curve", x, about)},
+        attrs={"kind": "fragility", "intervals": "none"},
+    )
 
 
 # For fixed values of these dimensions and a fixed record, the intensity depends on the scale only.
