@@ -12,7 +12,7 @@ import pytest
 
 import stylobate
 from stylobate.cli.commands import COMMANDS
-from stylobate.earthquakes.config import spreads
+from stylobate.earthquakes.config import verdict
 from stylobate.run_arguments import RunOptions
 from stylobate.studies.hierarchy_study import HierarchyArguments
 
@@ -152,7 +152,7 @@ def test_every_kind_and_number_is_on_the_page_of_the_files(part, extensions):
 
 
 def test_every_spread_has_its_table():
-    assert {f"earthquakes.config.spreads:{one.__name__}" for one in spreads._KINDS.values()} <= set(TABLES)
+    assert {f"earthquakes.config.verdict:{one.__name__}" for one in verdict._KINDS.values()} <= set(TABLES)
 
 
 def test_examples_of_the_extensions_hold(extensions):

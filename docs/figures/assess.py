@@ -14,12 +14,12 @@ from matplotlib.image import imread
 from saving import save
 
 import stylobate as sb
+from stylobate.earthquakes.assessment.report.document import summary_text, verdict_table
 from stylobate.earthquakes.assessment.report.figures import (
     margins_figure,
     shares_figure,
+    spectra_figure,
 )
-from stylobate.earthquakes.assessment.report.record_figures import spectra_figure
-from stylobate.earthquakes.assessment.report.summary import summary_text, verdict_table
 from stylobate.results import Assessment
 
 ROOT = Path(__file__).parents[2]

@@ -10,7 +10,7 @@ from filelock import FileLock
 from stylobate import earthquakes
 from stylobate.cli.main import run
 from stylobate.earthquakes.assessment.report import document
-from stylobate.earthquakes.assessment.report.pictures import report_pictures
+from stylobate.earthquakes.assessment.report.figures import report_pictures
 from stylobate.results.assessment import Assessment
 
 STUDY = """

@@ -7,7 +7,7 @@ import pytest
 import xarray as xr
 
 import stylobate as sb
-from stylobate.cli.fragility_table import describe_parts
+from stylobate.cli.fragility import describe_parts
 from stylobate.cli.main import run
 from stylobate.earthquakes import (
     Counting,

@@ -12,14 +12,13 @@ import xarray as xr
 
 import stylobate as sb
 from stylobate.earthquakes import LogUniformSpread, UniformSpread, assess, incremental_dynamic_analysis
-from stylobate.earthquakes.assessment import planar
-from stylobate.earthquakes.assessment.governing import governing_record
+from stylobate.earthquakes.assessment import verdicts as planar
 from stylobate.earthquakes.assessment.inputs import Inputs
-from stylobate.earthquakes.assessment.margins import _in_band
-from stylobate.earthquakes.assessment.properties import record_properties
+from stylobate.earthquakes.assessment.margins import _in_band, governing_record
+from stylobate.earthquakes.assessment.records import record_properties
 from stylobate.earthquakes.assessment.report.column_verdict import VerdictClass, column_verdict
-from stylobate.earthquakes.assessment.sliding import sliding_model
-from stylobate.earthquakes.remarks import remark_on
+from stylobate.earthquakes.assessment.verdicts import sliding_model
+from stylobate.earthquakes.study_inputs import remark_on
 from stylobate.errors import FileError, ParameterError, UnlikelyInputWarning
 from stylobate.records.intensities import drifts
 from stylobate.results import Assessment

@@ -8,7 +8,8 @@ import pytest
 
 import stylobate as sb
 from stylobate.base_motions.base import VELOCITY
-from stylobate.earthquakes.assessment.ground_motions import (
+from stylobate.earthquakes.assessment.inputs import Parts
+from stylobate.earthquakes.assessment.records import (
     ONE_COMPONENT,
     ROTD50,
     as_record,
@@ -16,7 +17,6 @@ from stylobate.earthquakes.assessment.ground_motions import (
     horizontal_peaks,
     spectra_of,
 )
-from stylobate.earthquakes.assessment.parts import Parts
 from stylobate.records import response_spectra
 
 RECORD = sb.sample_record("el centro 1940")

@@ -5,7 +5,7 @@ import logging
 import numpy as np
 import xarray as xr
 
-from stylobate.earthquakes.assessment.parts import Parts
+from stylobate.earthquakes.assessment.inputs import Parts
 
 
 def computing(progress):

@@ -13,22 +13,28 @@ from matplotlib.patches import Rectangle
 
 import stylobate as sb
 from stylobate.earthquakes import assess, assessment_report, assessment_tables
+from stylobate.earthquakes.assessment.assess import summary_of
 from stylobate.earthquakes.assessment.margins import demands_to_margin
 from stylobate.earthquakes.assessment.report import document
+from stylobate.earthquakes.assessment.report.document import (
+    column_findings,
+    document_table,
+    not_covered,
+    report_sections,
+    summary_text,
+    verdict_table,
+)
 from stylobate.earthquakes.assessment.report.figures import (
     history_figure,
     margins_figure,
+    report_pictures,
     shares_figure,
+    spectra_figure,
     tilts_figure,
 )
-from stylobate.earthquakes.assessment.report.pictures import report_pictures
-from stylobate.earthquakes.assessment.report.record_figures import spectra_figure
-from stylobate.earthquakes.assessment.report.record_tables import drifting
-from stylobate.earthquakes.assessment.report.sections import document_table, not_covered, report_sections
-from stylobate.earthquakes.assessment.report.summary import column_findings, summary_text, verdict_table
+from stylobate.earthquakes.assessment.report.tables import drifting
 from stylobate.earthquakes.assessment.report.wording import at_most, intervals, least_scale
-from stylobate.earthquakes.assessment.summary import summary_of
-from stylobate.earthquakes.figures.interval_regions import UNDECIDED
+from stylobate.earthquakes.figures.overturning_intervals import UNDECIDED
 from stylobate.results import DesignSpectrum, ReportDetails
 
 DETAILS = ReportDetails(

@@ -8,7 +8,7 @@ import pytest
 import xarray as xr
 
 from stylobate import Outcome
-from stylobate.earthquakes.assessment.summary import summary_of
+from stylobate.earthquakes.assessment.assess import summary_of
 
 COLUMNS, SCALES, RECORDS = ("slim", "stout"), (0.5, 1.0), tuple("ABCDEFGHIJKL")
 LEVELS, ACTS = ("low", "central", "high"), ("with", "without")

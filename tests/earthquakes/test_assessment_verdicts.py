@@ -7,13 +7,13 @@ import pytest
 import xarray as xr
 
 import stylobate as sb
-from stylobate.earthquakes.assessment.report.cases import cases_of
 from stylobate.earthquakes.assessment.report.column_verdict import (
     VerdictClass,
+    cases_of,
     column_verdict,
     least_overturning_scale,
 )
-from stylobate.earthquakes.assessment.report.displacements import displacement, tilt_cells, tilt_words
+from stylobate.earthquakes.assessment.report.wording import displacement, tilt_cells, tilt_words
 from stylobate.results import Assessment
 from stylobate.results.verdict import word_of
 from stylobate.studies.proportions import fraction_interval

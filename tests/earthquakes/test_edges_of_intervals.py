@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 
 import stylobate as sb
-from stylobate.earthquakes.spectra.cases import Cases
-from stylobate.earthquakes.spectra.edges import Edges, Ends
-from stylobate.earthquakes.spectra.interval_table import interval_table
+from stylobate.earthquakes.overturning_scales import Edges, Ends, interval_table
+from stylobate.earthquakes.rocking_spectra import Cases
 
 MODEL = sb.Slender(sb.Column.dimensionless(0.1))
 PULSE = sb.Pulse.half_sine(acceleration=0.1, angular_frequency=2.0)

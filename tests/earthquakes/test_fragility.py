@@ -10,7 +10,7 @@ from scipy.special import log_ndtr, ndtr
 from scipy.stats import binom, chi2
 
 from stylobate.earthquakes import Counting, FitStatus, fit_fragility, lognormal_fragility
-from stylobate.earthquakes.fragility.probit import _climb, log_likelihood
+from stylobate.earthquakes.fragility.likelihood import _climb, log_likelihood
 from stylobate.errors import ParameterError
 
 MEDIAN, DISPERSION = 3.0, 0.4

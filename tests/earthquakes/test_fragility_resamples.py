@@ -6,9 +6,8 @@ from scipy.stats import norm
 from scipy.stats import t as student
 
 from stylobate.earthquakes import fit_fragility
+from stylobate.earthquakes.fragility.likelihood import FitStatus, Replicates, resampled
 from stylobate.earthquakes.fragility.observations import Observations
-from stylobate.earthquakes.fragility.probit import FitStatus
-from stylobate.earthquakes.fragility.resampling import Replicates, resampled
 
 SCALE, RECORDS, COUNT = np.geomspace(0.5, 8.0, 7), 9, 25
 

@@ -5,7 +5,7 @@ import pytest
 
 import stylobate as sb
 from stylobate.earthquakes import Intensity, SpectralAcceleration, incremental_dynamic_analysis
-from stylobate.earthquakes.following import tail_of
+from stylobate.earthquakes.study_inputs import tail_of
 from stylobate.studies import open_sweep
 
 MODEL = sb.Slender(sb.Column.solid(radius=0.4, height=4.0, density=2700.0), damping=0.05)

@@ -7,7 +7,7 @@ import pytest
 
 import stylobate as sb
 from stylobate.earthquakes import planar_bias
-from stylobate.earthquakes.in_one_direction import InOneDirection, in_one_direction
+from stylobate.earthquakes.planar_comparison import InOneDirection, in_one_direction
 
 SCALES = np.array([0.5, 0.6, 0.65, 0.7, 0.9, 2.0])
 

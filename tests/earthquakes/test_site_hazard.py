@@ -3,8 +3,8 @@
 import pytest
 
 from stylobate.earthquakes.config.hazard import Hazard
+from stylobate.earthquakes.fragility_study import site_hazard
 from stylobate.earthquakes.intensities import Intensity, IntensityMeasure, SpectralAcceleration
-from stylobate.earthquakes.site_hazard import site_hazard
 from stylobate.errors import ParameterError
 
 LISTED = {"intensity": [0.1, 0.5], "rate": [1e-2, 1e-3], "units": "g", "component": "RotD50"}

@@ -6,10 +6,9 @@ import xarray as xr
 from matplotlib.patches import PathPatch
 
 import stylobate as sb
-from stylobate.earthquakes.figures.interval_regions import UNDECIDED
-from stylobate.earthquakes.spectra.cases import Cases
-from stylobate.earthquakes.spectra.edges import Edges, Ends
-from stylobate.earthquakes.spectra.interval_table import interval_table
+from stylobate.earthquakes.figures.overturning_intervals import UNDECIDED
+from stylobate.earthquakes.overturning_scales import Edges, Ends, interval_table
+from stylobate.earthquakes.rocking_spectra import Cases
 from stylobate.errors import Outcome, ParameterError
 from stylobate.plots.cells import OUTCOME_LOOKS, cell_edges
 from stylobate.plots.style import VERMILION

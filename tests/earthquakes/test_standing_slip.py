@@ -7,7 +7,7 @@ import pytest
 
 import stylobate as sb
 from stylobate.earthquakes.assessment.inputs import Inputs
-from stylobate.earthquakes.assessment.slip import least_slip_scale, standing_slip
+from stylobate.earthquakes.assessment.margins import least_slip_scale, standing_slip
 
 STOUT = sb.Column.solid(radius=0.5, height=3.0, density=2700.0)
 G, C = STOUT.gravity, STOUT.slenderness

@@ -8,7 +8,7 @@ import pytest
 
 import stylobate as sb
 from stylobate.earthquakes import Choice, LognormalSpread, LogUniformSpread, NormalSpread, UniformSpread
-from stylobate.earthquakes.variations import VARIATIONS
+from stylobate.earthquakes.property_spreads import VARIATIONS
 from stylobate.earthquakes.verdict_study import contact_laws
 from stylobate.errors import ParameterError, UnlikelyInputWarning, UnsupportedError
 from stylobate.results.verdict import VerdictWord, interval_text, percent, word_of

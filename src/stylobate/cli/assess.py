@@ -46,8 +46,7 @@ def assess(options: Options) -> None:
     """
     source = options["source"]
     if not source.is_file():
-        message = f"cannot read {source}: No such file or directory"
-        raise FileError(message)
+        raise FileError(f"cannot read {source}: No such file or directory")
     target = options["folder"] or source.with_name(f"{source.stem}-assessment")
     check_place(target / "report.html" if target.exists() else target)
     setup = None
@@ -91,11 +90,11 @@ def _locked(folder: Path) -> Iterator[None]:
         lock = FileLock(folder.resolve() / ".lock", timeout=0, is_singleton=True)
         lock.acquire()
     except Timeout:
-        message = f"{folder}: another assessment writes into it. Wait until it ends, or name another folder."
-        raise FileError(message) from None
+        raise FileError(
+            f"{folder}: another assessment writes into it. Wait until it ends, or name another folder."
+        ) from None
     except OSError as error:
-        message = f"cannot write {folder}: {error.strerror or error}"
-        raise FileError(message) from None
+        raise FileError(f"cannot write {folder}: {error.strerror or error}") from None
     try:
         yield
     finally:
@@ -145,8 +144,7 @@ def _refuse_folder_of_another(target: Path, title: str) -> None:
     except FileError:  # damaged: this command writes it again
         return
     if other != title:
-        message = f"{target} holds the assessment {other!r}; name another folder with --folder, or remove it"
-        raise FileError(message)
+        raise FileError(f"{target} holds the assessment {other!r}; name another folder with --folder, or remove it")
 
 
 def _rows(table: Any) -> list[dict[str, str]]:

@@ -71,8 +71,7 @@ class VerdictOfCase:
         stated = [flag for flag, value in (("runs", runs), ("figure", figure), ("output", output)) if value is not None]
         if stated or (options["single"] and not ends):
             flag = f"--verdict-{stated[0]}" if stated else "--single"
-            message = f"{flag}: there is no verdict (got {reason}). Remove this option."
-            raise ParameterError(message)
+            raise ParameterError(f"{flag}: there is no verdict (got {reason}). Remove this option.")
         return cls(setup, None, why_not if ends else "", None, None, None)
 
     def computed(self) -> "Verdict | None":

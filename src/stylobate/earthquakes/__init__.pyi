@@ -1,22 +1,21 @@
 from . import config
 from .assessment.assess import assess
 from .assessment.report import assessment_report, assessment_tables
-from .figures.planar_bias import plot_directions
-from .figures.records import plot_records
-from .fragility.annual_rate import annual_rate
-from .fragility.curves import lognormal_fragility
+from .figures.incremental import plot_directions
+from .figures.spectra import plot_records
+from .fragility.annual_rate import HazardCurve, annual_rate
 from .fragility.dispersion import Samples, dispersion_parts
-from .fragility.fit import fit_fragility
-from .fragility.hazard import HazardCurve
-from .fragility.limit_states import limit_states
-from .fragility.observations import Counting
-from .fragility.probit import FitStatus
-from .fragility.reached import reached_intervals
+from .fragility.fit import fit_fragility, fragility_of_runs, lognormal_fragility
+from .fragility.likelihood import FitStatus
+from .fragility.observations import Counting, limit_states, reached_intervals
 from .fragility_study import FragilityStudy
 from .incremental import incremental_dynamic_analysis
 from .intensities import Intensity, SpectralAcceleration
+from .overturning_scales import overturning_intervals
 from .planar_comparison import planar_bias
 from .property_spreads import (
+    LABELS,
+    VARIATIONS,
     Choice,
     LognormalSpread,
     LogUniformSpread,
@@ -25,10 +24,7 @@ from .property_spreads import (
     UniformSpread,
     property_samples,
 )
-from .run_fragility import fragility_of_runs
-from .spectra.overturning import overturning_intervals
-from .spectra.rocking import rocking_spectrum
-from .variations import LABELS, VARIATIONS
+from .rocking_spectra import rocking_spectrum
 from .verdict_study import repeat_verdict, verdict
 
 __all__ = [

@@ -1,5 +1,6 @@
 """Incremental dynamic analysis: each record at many scales, up to overturning and beyond."""
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -10,11 +11,9 @@ import numpy.typing as npt
 import xarray as xr
 
 from stylobate.base_motions import BaseMotion, OneOf
-from stylobate.earthquakes.crossing import crossed, unfolded
-from stylobate.earthquakes.following import tail_of
-from stylobate.earthquakes.fragility.limit_states import limit_states
+from stylobate.earthquakes.fragility.observations import limit_states
 from stylobate.earthquakes.intensities import Intensity, IntensityMeasure, SpectralAcceleration
-from stylobate.earthquakes.named_records import Records, named_records
+from stylobate.earthquakes.study_inputs import Records, named_records, tail_of
 from stylobate.engine.parameters import changed_model
 from stylobate.errors import Outcome, ParameterError, as_numbers, require_finite
 from stylobate.models import Model
@@ -28,6 +27,9 @@ from stylobate.studies.maps.integrity import UNRESOLVED
 from stylobate.studies.sweeps import Executor, Sweep
 from stylobate.studies.sweeps.designs import Floats, checked_values
 from stylobate.studies.sweeps.running import labelled_sweep
+
+Places = npt.NDArray[np.intp]
+
 
 _SET_BY_ARGUMENTS = {
     "motion": "records",
@@ -128,7 +130,7 @@ def incremental_dynamic_analysis(
     )
 
     def label(runs: xr.Dataset) -> xr.Dataset:
-        return plan.labelled(unfolded(runs, plan.lengths))
+        return plan.labelled(_unfolded(runs, plan.lengths))
 
     sweep = Sweep.points(model, plan.motion, at=plan.points, **options)
     return labelled_sweep(sweep, label, store=store, executor=executor, resume=resume, progress=progress)
@@ -180,7 +182,7 @@ class Plan:
     ) -> Self:
         """Check the arguments of `incremental_dynamic_analysis`; raise ParameterError for an invalid one."""
         named = named_records(records)
-        factors = positive_values("scales", scales)
+        factors = _positive_values("scales", scales)
         angles = checked_values("rotations", "rotation", rotations, scalar=True)
         chosen = _choices(vertical)
         samples = _samples(parameters)
@@ -191,8 +193,7 @@ class Plan:
             "property_sample": not any(np.ndim(values) for values in (parameters or {}).values()),
         }
         if not angles.size:
-            message = "rotations must hold at least one angle, got none"
-            raise ParameterError(message)
+            raise ParameterError("rotations must hold at least one angle, got none")
         return cls(
             model=model,
             records=named,
@@ -249,7 +250,7 @@ class Plan:
     @property
     def points(self) -> dict[str, npt.ArrayLike]:
         """The values of the runs, flat."""
-        at = crossed(self.lengths)
+        at = _crossed(self.lengths)
         return {
             "motion": at["record"] * len(self.vertical) + at["vertical"],
             "scale": self.scales[at["scale"]],
@@ -308,41 +309,58 @@ def without_vertical(motion: BaseMotion) -> BaseMotion:
     return motion.scaled(1.0, vertical=0.0)
 
 
-def positive_values(name: str, values: npt.ArrayLike) -> Floats:
+def _positive_values(name: str, values: npt.ArrayLike) -> Floats:
     """Check for at least one positive number; return an array, or raise ParameterError."""
     array = checked_values(name, "scale", values, scalar=True)
     bad = array[~(array > 0.0)]
     if bad.size or not array.size:
         got = repr(float(bad[0])) if bad.size else "none"
-        message = f"{name} must hold at least one number, all positive, got {got}; use record.inverted() to reverse one"
-        raise ParameterError(message)
+        raise ParameterError(
+            f"{name} must hold at least one number, all positive, got {got}; use record.inverted() to reverse one"
+        )
     return array
 
 
 def _choices(vertical: bool | Sequence[bool]) -> tuple[bool, ...]:
     given = (vertical,) if isinstance(vertical, (bool, np.bool_)) else tuple(vertical)
     if not given or len(set(given)) < len(given) or not all(isinstance(one, (bool, np.bool_)) for one in given):
-        message = f"vertical must be True, False or (True, False), got {vertical!r}"
-        raise ParameterError(message)
+        raise ParameterError(f"vertical must be True, False or (True, False), got {vertical!r}")
     return tuple(bool(one) for one in given)
 
 
 def _samples(parameters: Mapping[str, npt.ArrayLike] | None) -> dict[str, Floats]:
     """Return the parameters of the property samples, as arrays of equal length."""
     if parameters is not None and not isinstance(parameters, Mapping):
-        message = f'parameters must map names to values, such as {{"damping": […]}}, got {parameters!r}'
-        raise ParameterError(message)
+        raise ParameterError(f'parameters must map names to values, such as {{"damping": […]}}, got {parameters!r}')
     given = {name: as_numbers(name, value, quantity_of(name).unit) for name, value in (parameters or {}).items()}
     for name in given:
         if name in _SET_BY_ARGUMENTS:
-            message = f"parameters cannot name {name}: use the argument {_SET_BY_ARGUMENTS[name]}"
-            raise ParameterError(message)
+            raise ParameterError(f"parameters cannot name {name}: use the argument {_SET_BY_ARGUMENTS[name]}")
     remark_on_lengths("parameters", given)
     several = {name: checked_values("parameters", name, values) for name, values in given.items() if np.ndim(values)}
     sizes = {name: values.size for name, values in several.items()}
     if len(set(sizes.values())) > 1 or 0 in sizes.values():
-        message = f"parameters must have equal numbers of values, one for each property sample, got {sizes}"
-        raise ParameterError(message)
+        raise ParameterError(f"parameters must have equal numbers of values, one for each property sample, got {sizes}")
     count = next(iter(sizes.values()), 1)
     same = {name: np.full(count, require_finite(name, value)) for name, value in given.items() if name not in several}
     return {name: {**several, **same}[name] for name in given}
+
+
+def _crossed(lengths: Mapping[str, int]) -> dict[str, Places]:
+    """Return flat arrays of the indices of each named choice over all combinations; the last choice varies fastest."""
+    grids = np.indices(tuple(lengths.values()))
+    return {name: grid.ravel() for name, grid in zip(lengths, grids, strict=True)}
+
+
+def _unfolded(runs: xr.Dataset, lengths: Mapping[str, int]) -> xr.Dataset:
+    """Reshape `runs` from the dimension `run` to the dimensions of `_crossed` choices; drop coordinates over `run`."""
+    shape = tuple(lengths.values())
+    assert runs.sizes["run"] == math.prod(shape)
+    variables = {}
+    for name, variable in runs.data_vars.items():
+        ordered = variable.transpose("run", ...)
+        values = ordered.to_numpy()
+        dims = (*lengths, *ordered.dims[1:])
+        variables[name] = xr.Variable(dims, values.reshape(*shape, *values.shape[1:]), variable.attrs)
+    kept = {name: coordinate for name, coordinate in runs.coords.items() if "run" not in coordinate.dims}
+    return xr.Dataset(variables, coords=kept, attrs=runs.attrs)

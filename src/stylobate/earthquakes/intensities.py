@@ -90,8 +90,7 @@ class SpectralAcceleration:
         """
         del column
         if not isinstance(motion, Record):
-            message = f"a spectral acceleration needs a Record, got {motion!r}; choose another intensity"
-            raise UnsupportedError(message)
+            raise UnsupportedError(f"a spectral acceleration needs a Record, got {motion!r}; choose another intensity")
         spectra = response_spectra(motion, [self.period], damping=self.damping).isel(period=0)
         along = [float(spectra["psa"].sel(axis=axis)) for axis in motion.axes if axis != "z"]
         if len(along) < 2:  # noqa: PLR2004  one component or none
@@ -142,8 +141,7 @@ class IntensityMeasure:
             if one.value == intensity:
                 return cls(one, definition)
         known = ", ".join(repr(one.value) for one in Intensity)
-        message = f"intensity must be {known}, or SpectralAcceleration(period); got {intensity!r}"
-        raise ParameterError(message)
+        raise ParameterError(f"intensity must be {known}, or SpectralAcceleration(period); got {intensity!r}")
 
     @property
     def name(self) -> str:

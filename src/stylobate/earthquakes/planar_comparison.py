@@ -2,25 +2,28 @@
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any, Unpack
 
 import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
+from stylobate.base_motions import BaseMotion, Record
+from stylobate.base_motions.base import Components, Direction
+from stylobate.base_motions.combined import Transformed
 from stylobate.earthquakes.fragility.observations import LIMIT_STATE
-from stylobate.earthquakes.in_one_direction import in_one_direction
 from stylobate.earthquakes.incremental import incremental_dynamic_analysis
 from stylobate.earthquakes.intensities import Intensity, SpectralAcceleration
-from stylobate.earthquakes.named_records import Records, named_records
-from stylobate.errors import ParameterError, UnsupportedError
+from stylobate.earthquakes.study_inputs import Records, named_records
+from stylobate.errors import ParameterError, UnsupportedError, require_finite
 from stylobate.models import Model, PlanarRocking
 from stylobate.progress import Progress, Report, report_of, shows_progress
 from stylobate.run_arguments import RunOptions
 from stylobate.studies.sweeps import Executor
 from stylobate.studies.sweeps.designs import Floats, checked_values
 
-AXES = (0.0, 0.5 * math.pi)
+_AXES = (0.0, 0.5 * math.pi)
 """The directions of the two horizontal components [rad]."""
 
 # Minimum number of records for a bias: one record has no scatter.
@@ -33,7 +36,7 @@ def planar_bias(
     records: Records,
     *,
     scales: npt.ArrayLike,
-    directions: Sequence[float] = AXES,
+    directions: Sequence[float] = _AXES,
     planar: PlanarRocking | None = None,
     tail: float | None = None,
     intensity: str | Intensity | SpectralAcceleration = Intensity.PEAK_ACCELERATION,
@@ -105,14 +108,12 @@ def planar_bias(
     [[0.0, 0.0]]
     """
     if not isinstance(model, Model) or model.planar_only:
-        message = (
+        raise UnsupportedError(
             f"model must be three-dimensional to compare with a planar one (got {model!r}). Use one such as Wobbling."
         )
-        raise UnsupportedError(message)
     angles = checked_values("directions", "rotation", directions, scalar=True)
     if not angles.size:
-        message = "directions must hold at least one angle, got none"
-        raise ParameterError(message)
+        raise ParameterError("directions must hold at least one angle, got none")
     named = named_records(records)
     common: dict[str, Any] = {"scales": scales, "tail": tail, "executor": executor, **options}
     runs = np.size(scales) * len(named)
@@ -232,3 +233,34 @@ def _moments(values: xr.DataArray, names: tuple[str, str, str, str]) -> dict[str
     labels = ("mean over the records", "standard deviation over the records", "standard error of the mean")
     parts = zip((mean, scatter, error, number), (*labels, "records compared"), strict=True)
     return dict(zip(names, (_named(one, long_name) for one, long_name in parts), strict=True))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class InOneDirection(Transformed):
+    """`motion` without its horizontal acceleration across the `direction` [rad from x, anticlockwise]."""
+
+    direction: Direction
+
+    def derivative(self, time: npt.ArrayLike, order: int) -> Components:
+        """Return the displacement (`order` 0), velocity (1) or acceleration (2)."""
+        x, y, z = self.motion.derivative(time, order)
+        along = self._along(x, y)
+        return math.cos(self.direction) * along, math.sin(self.direction) * along, z
+
+    def directions(self) -> tuple[tuple[float, float], ...]:
+        """Return the only direction; none if the motion is perpendicular to it."""
+        longest = max((abs(float(self._along(x, y))) for x, y in self.motion.directions()), default=0.0)
+        return ((longest * math.cos(self.direction), longest * math.sin(self.direction)),) if longest > 0.0 else ()
+
+    def _along(self, x: npt.ArrayLike, y: npt.ArrayLike) -> npt.NDArray[np.float64]:
+        return np.asarray(math.cos(self.direction) * np.asarray(x) + math.sin(self.direction) * np.asarray(y))
+
+
+def in_one_direction(motion: BaseMotion, direction: float) -> BaseMotion:
+    """Keep only the horizontal component of `motion` along `direction` [rad], rotated to x; a record stays a record."""
+    direction = require_finite("direction", direction, "rad")
+    if not isinstance(motion, Record):
+        return InOneDirection(motion=motion.rotated(-direction) if direction else motion, direction=0.0)
+    turned = motion.rotated(-direction) if direction else motion
+    note = f"component along {direction!r} rad only"
+    return turned.changed(note, samples=turned.samples * [1.0, 0.0, 1.0])

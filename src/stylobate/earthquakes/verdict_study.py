@@ -16,19 +16,18 @@ from scipy.special import fdtrc
 
 from stylobate.base_motions import BaseMotion, OneOf, Record
 from stylobate.config import config_of
-from stylobate.earthquakes.config.spreads import described_spread
-from stylobate.earthquakes.config.verdict import VerdictConfig
-from stylobate.earthquakes.following import tail_of
+from stylobate.earthquakes.config.verdict import VerdictConfig, described_spread
 from stylobate.earthquakes.incremental import tilt_ratios
-from stylobate.earthquakes.property_spreads import Spread
-from stylobate.earthquakes.variations import (
+from stylobate.earthquakes.property_spreads import (
     VARIATIONS,
+    Spread,
     check_variations,
     chosen_variations,
     drawn,
     scaled_dissipation,
     shares_of,
 )
+from stylobate.earthquakes.study_inputs import tail_of
 from stylobate.engine.parameters import COLUMN_NAMES, model_names
 from stylobate.errors import (
     LARGEST_SEED,
@@ -166,8 +165,9 @@ def verdict(
     require_no_tilt_limit(options)
     _check_motion(motion)
     _check_options(options)
+    one_law = isinstance(variations, Mapping) and variations.get(CONTACT_LAW, "") is None
     case = _Case(
-        models=contact_laws([models] if _one_law(variations) and isinstance(models, Model) else models),
+        models=contact_laws([models] if one_law and isinstance(models, Model) else models),
         motion=motion,
         variations=chosen_variations(variations),
         runs=require_whole("runs", runs, least=2, most=MOST_RUNS),
@@ -198,22 +198,15 @@ def undamped(model: Model, variations: Mapping[str, Spread]) -> str:
     )
 
 
-def _one_law(variations: object) -> bool:
-    """Return whether the variation between contact laws is left out."""
-    return isinstance(variations, Mapping) and variations.get(CONTACT_LAW, "") is None
-
-
 def _check_motion(motion: BaseMotion) -> None:
     """Raise ParameterError unless the motion is one base motion that ends."""
     if not isinstance(motion, BaseMotion):
-        message = f"motion: must be one base motion (got {motion!r}). Pass each record by itself."
-        raise ParameterError(message)
+        raise ParameterError(f"motion: must be one base motion (got {motion!r}). Pass each record by itself.")
     if not 0.0 < motion.duration < math.inf:
-        message = (
+        raise ParameterError(
             f"motion: must end after t = 0 (got {motion!r} with a duration of {motion.duration:g} s). Pass a record, a "
             "pulse or a sine sweep."
         )
-        raise ParameterError(message)
 
 
 def _check_options(options: Mapping[str, Any]) -> None:
@@ -221,12 +214,12 @@ def _check_options(options: Mapping[str, Any]) -> None:
     known = [*inspect.signature(verdict).parameters, *RunOptions.__annotations__]
     for name in options:
         if name in ("duration", "periods"):
-            message = f"{name}: a verdict sets it for each variation (got {options[name]!r}). Pass tail= instead."
-            raise ParameterError(message)
+            raise ParameterError(
+                f"{name}: a verdict sets it for each variation (got {options[name]!r}). Pass tail= instead."
+            )
         if name not in RunOptions.__annotations__:
             remedy = did_you_mean(name, known) or "remove it"
-            message = f"{name}: is no argument of verdict (got {options[name]!r}); {remedy}"
-            raise ParameterError(message)
+            raise ParameterError(f"{name}: is no argument of verdict (got {options[name]!r}); {remedy}")
 
 
 def _check_values(case: "_Case") -> None:
@@ -241,8 +234,9 @@ def _check_values(case: "_Case") -> None:
                 try:
                     quantity.quantity.checked(name, value)
                 except ParameterError as error:
-                    message = f"variations[{name!r}]: {error}. Pass a distribution within this range."
-                    raise ParameterError(message) from None
+                    raise ParameterError(
+                        f"variations[{name!r}]: {error}. Pass a distribution within this range."
+                    ) from None
 
 
 def repeat_verdict(saved: Verdict) -> Verdict:
@@ -266,8 +260,9 @@ def repeat_verdict(saved: Verdict) -> Verdict:
     given = saved.provenance["verdict"]
     for name, spread in given["variations"].items():
         if spread and spread.get("kind") == "other":
-            message = f"variations[{name!r}]: only the text of this distribution is kept (got {spread['repr']})"
-            raise UnsupportedError(message)
+            raise UnsupportedError(
+                f"variations[{name!r}]: only the text of this distribution is kept (got {spread['repr']})"
+            )
     numbers = {name: value for name, value in given.items() if name in VerdictConfig.model_fields and value is not None}
     models = [config_of({**_case_of(saved), **case}).build().model for case in given["models"]]
     motion = config_of(_case_of(saved)).build().motion
@@ -292,11 +287,11 @@ def contact_laws(models: Model | Sequence[Model]) -> tuple[Model, ...]:
     given = tuple(models) if isinstance(models, Sequence) else (models,)
     for model in given:
         if not isinstance(model, Model) or model.planar_only:
-            message = f"models: must be three-dimensional models (got {model!r}). Use one such as Wobbling(column)."
-            raise ParameterError(message)
+            raise ParameterError(
+                f"models: must be three-dimensional models (got {model!r}). Use one such as Wobbling(column)."
+            )
     if not given:
-        message = f"models: must be at least one model (got {models!r}). Pass one such as Wobbling(column)."
-        raise ParameterError(message)
+        raise ParameterError(f"models: must be at least one model (got {models!r}). Pass one such as Wobbling(column).")
     if not isinstance(models, Model) or not has_other_contact_law(models):
         return given
     return models, with_other_contact_law(models)

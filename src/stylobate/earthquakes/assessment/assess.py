@@ -13,20 +13,29 @@ import xarray as xr
 
 from stylobate.base_motions import Record
 from stylobate.config.levels import Dissipation
-from stylobate.earthquakes.assessment.fragilities import fragility_of
-from stylobate.earthquakes.assessment.governing import governing_record, histories_of
-from stylobate.earthquakes.assessment.ground_motions import ground_motions, spectra_of
-from stylobate.earthquakes.assessment.inputs import CENTRAL, Inputs
-from stylobate.earthquakes.assessment.margins import margin_runs, margins_of, of_one_width
-from stylobate.earthquakes.assessment.parts import Parts
-from stylobate.earthquakes.assessment.planar import planar_of, planar_runs
-from stylobate.earthquakes.assessment.properties import column_properties, record_properties
-from stylobate.earthquakes.assessment.shares import share_runs, shares_of
-from stylobate.earthquakes.assessment.sliding import sliding_of, sliding_runs
-from stylobate.earthquakes.assessment.summary import summary_of
-from stylobate.earthquakes.assessment.verdicts import verdict_runs, verdicts_on
-from stylobate.earthquakes.named_records import Records
-from stylobate.earthquakes.remarks import remark_on
+from stylobate.earthquakes.assessment.inputs import CENTRAL, OTHER_LAW, Inputs, Parts
+from stylobate.earthquakes.assessment.margins import (
+    governing_record,
+    histories_of,
+    margin_runs,
+    margins_of,
+    of_one_width,
+)
+from stylobate.earthquakes.assessment.records import column_properties, ground_motions, record_properties, spectra_of
+from stylobate.earthquakes.assessment.verdicts import (
+    planar_of,
+    planar_runs,
+    share_runs,
+    shares_of,
+    sliding_of,
+    sliding_runs,
+    verdict_runs,
+    verdicts_on,
+)
+from stylobate.earthquakes.fragility import fit_fragility
+from stylobate.earthquakes.fragility.observations import LIMIT_STATE
+from stylobate.earthquakes.intensities import Intensity, IntensityMeasure
+from stylobate.earthquakes.study_inputs import Records, remark_on
 from stylobate.errors import LARGEST_SEED, require_positive, require_whole
 from stylobate.models import Model
 from stylobate.progress import Progress, in_parts, report_of, shows_progress
@@ -38,6 +47,7 @@ from stylobate.results.report_details import ReportDetails
 from stylobate.results.verdict import require_variations
 from stylobate.run_arguments import FREE_TAIL, RunOptions
 from stylobate.studies.checks import require_no_tilt_limit
+from stylobate.studies.maps.uncertainty_exponent import overturned_or_not
 from stylobate.studies.sweeps import Executor
 
 # Packages whose versions can change the last digits of the results.
@@ -212,7 +222,7 @@ def assess(
     if len(inputs.records) >= inputs.least_records:
         peaks = data["records"]["median_peak_acceleration"]
         data["fragility"] = _over_columns(
-            [fragility_of(one["reached"].isel(margin_scale=inputs.scanned), peaks) for one in margins], names
+            [_fragility_of(one["reached"].isel(margin_scale=inputs.scanned), peaks) for one in margins], names
         )
     governing = [governing_record(one, other, inputs.as_recorded) for one, other in zip(verdicts, margins, strict=True)]
     runs = [
@@ -222,24 +232,16 @@ def assess(
     data["histories"] = _over_columns(runs, names)
     data["summary"] = summary_of(data, governing)
     parts.report()
-    more = {
+    more: dict[str, Any] = {
         "title": title,
         "notes": list(notes),
         "contact": contact,
         "sliding": sliding,
         "resolution": margins[0].attrs["resolution"],
     }
-    return Assessment(data=data, setting={**_setting(inputs), **more, "details": _dated(details)})
-
-
-def _dated(details: ReportDetails) -> dict[str, Any]:
-    return {**details.values(), "date": details.date or dt.datetime.now().astimezone().date().isoformat()}
-
-
-def _software() -> dict[str, str]:
-    """Return the versions of stylobate and its numerical packages, and the machine."""
-    packages = {name: version(name) for name in _PACKAGES}
-    return {**packages, "Python": platform.python_version(), "machine": f"{platform.system()} {platform.machine()}"}
+    today = dt.datetime.now().astimezone().date().isoformat()
+    more["details"] = {**details.values(), "date": details.date or today}
+    return Assessment(data=data, setting={**_setting(inputs), **more})
 
 
 def _runs(inputs: Inputs, *, planar: bool, sliding: bool) -> int:
@@ -264,7 +266,11 @@ def _setting(inputs: Inputs) -> dict[str, Any]:
     """Return the settings of the assessment as plain values."""
     return {
         "version": version("stylobate"),
-        "software": _software(),
+        "software": {
+            **{name: version(name) for name in _PACKAGES},
+            "Python": platform.python_version(),
+            "machine": f"{platform.system()} {platform.machine()}",
+        },
         "columns": {
             name: {
                 part: provenance_of_run(levels[CENTRAL], motion)[part]
@@ -297,3 +303,157 @@ def _setting(inputs: Inputs) -> dict[str, Any]:
         "least_records": inputs.least_records,
         "options": {name: repr(value) for name, value in inputs.options.items() if value is not None},
     }
+
+
+_RESAMPLES = 200
+_SEED = 0
+
+
+def _fragility_of(reached: xr.DataArray, peak_acceleration: xr.DataArray) -> xr.Dataset:
+    """Fit the fragility of one column over the peak ground acceleration.
+
+    Parameters
+    ----------
+    reached
+        Over `record`, `limit_state` and `margin_scale`: 1 reached, 0 not reached, −1 undecided.
+    peak_acceleration
+        Peak acceleration over `record` [m/s²]: RotD50, or the peak of the only component.
+    """
+    about = IntensityMeasure(Intensity.PEAK_ACCELERATION).attributes
+    names = reached["record"].to_numpy()
+    scales = reached["margin_scale"].to_numpy()
+    values = np.multiply.outer(peak_acceleration.sel(record=names).to_numpy(), scales)
+    intensity = xr.DataArray(values, dims=("record", "scale"), attrs=about)
+    states = xr.DataArray(
+        reached.transpose(LIMIT_STATE, "record", "margin_scale").to_numpy(),
+        dims=(LIMIT_STATE, "record", "scale"),
+        coords={LIMIT_STATE: reached[LIMIT_STATE].to_numpy()},
+    )
+    return fit_fragility(
+        intensity,
+        states,
+        record=xr.DataArray(names, dims="record"),
+        resamples=_RESAMPLES,
+        rng=np.random.default_rng(_SEED),
+    )
+
+
+_ACTS = "with"
+
+
+def summary_of(data: Mapping[str, xr.Dataset], governing: list[str]) -> xr.Dataset:
+    """Count the records by their outcomes, and collect the extreme results over them.
+
+    Parameters
+    ----------
+    data
+        The parts of an assessment.
+    governing
+        Governing record of each column.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over `column` and `scale`, numbers of records: `overturned`, `undecided` and `stood` in the central case
+        (central dissipation with the vertical component); `overturned_in_some`, `undecided_in_some` and
+        `uncertain_in_some` in at least one case; `on_dissipation` and `on_vertical`, with a verdict that depends on
+        dissipation or vertical component; `overturned_other_law`, overturned with the other contact law at some level;
+        `in_band`, with an overturning scale within 10 %; `variations_disagree`, overturned by some small variations
+        but not by all; `undecided_word`, undecided under small variations; `planar_differs`, with another outcome
+        of the planar column. Also `peak_tilt_ratio`; `friction_demand`, the largest of all runs, and over `record` too
+        `friction_by_record`.
+
+        Over `column`: `governing`; `least_overturning`, the smallest overturning scale of the central case, NaN if
+        none, and its record `least_record`, empty if none; `least_of_all`, the smallest of all cases; of the cases with
+        the given contact law: `friction_to_margin`, the largest, `least_slipping`, the smallest, and `slips_first`,
+        whether in some case a record needs more than the stated friction below the smallest overturning scale; of the
+        cases with the other contact law `least_slipping_other_law`, the smallest, NaN if none; `slides_first`,
+        whether the stated friction is below r/h, so that the column slides before it rocks. Numbers of records in the
+        central case: `never_overturned`, `stands_again`, and `scan_undecided`, with undecided runs in
+        the scan of the margin; `decided_to`, the largest scale up to which all runs of the central case were decided,
+        NaN if the first scale was not.
+    """
+    verdicts, margins = data["verdicts"], data["margins"]
+    fallen = verdicts["overturned"]
+    central = fallen.sel(dissipation=CENTRAL, vertical=_ACTS, drop=True)
+    counts = {
+        "stood": (central == 0).sum("record"),
+        "overturned": (central == 1).sum("record"),
+        "undecided": (central < 0).sum("record"),
+        "overturned_in_some": (fallen == 1).any(("dissipation", "vertical")).sum("record"),
+        "undecided_in_some": (fallen < 0).any(("dissipation", "vertical")).sum("record"),
+        "uncertain_in_some": (verdicts["uncertain"] == 1).any(("dissipation", "vertical")).sum("record"),
+        "on_dissipation": _differs(fallen.sel(vertical=_ACTS, drop=True), "dissipation"),
+        "on_vertical": _differs(fallen.sel(dissipation=CENTRAL, drop=True), "vertical"),
+    }
+    others = margins["case"].str.endswith(OTHER_LAW)
+    own_law, other_law = margins.isel(case=~others), margins.isel(case=others)
+    if bool(others.any()):
+        law = _at_scales(margins, verdicts["scale"]).where(others, drop=True)
+        counts["overturned_other_law"] = (law == 1).any("case").sum("record")
+    counts["in_band"] = (margins["in_band"] > 0).any("case").sum("record")
+    if "variations" in data:
+        shares = data["variations"]
+        counts["variations_disagree"] = ((shares["overturned"] > 0) & (shares["overturned"] < shares["runs"])).sum(
+            "record"
+        )
+        counts["undecided_word"] = (shares["word"] == "undecided").sum("record")
+    if "planar" in data:
+        tilts = data["planar"]["planar_tilt_ratio"]
+        decided = (central >= 0) & tilts.notnull()
+        counts["planar_differs"] = (decided & (np.isinf(tilts) != (central == 1))).sum("record")
+    tilt = verdicts["tilt_ratio"].sel(dissipation=CENTRAL, vertical=_ACTS, drop=True)
+    least = margins["least_overturning"]
+    central_margins = margins.sel(case=CENTRAL, drop=True)
+    return xr.Dataset(
+        {
+            **counts,
+            "peak_tilt_ratio": tilt.max("record"),
+            "friction_demand": verdicts["friction_demand"].max(("record", "dissipation", "vertical")),
+            "friction_by_record": verdicts["friction_demand"].max(("dissipation", "vertical")),
+            "governing": ("column", governing),
+            "least_overturning": central_margins["least_overturning"].min("record"),
+            "least_record": ("column", _least_records(central_margins)),
+            "least_of_all": least.min(("record", "case")),
+            "friction_to_margin": own_law["friction_to_margin"].max(("record", "case")),
+            "least_slipping": own_law["least_slipping"].min(("record", "case")),
+            "least_slipping_other_law": other_law["least_slipping"].reduce(_least, ("record", "case")),
+            "slips_first": _slips_first(own_law).any(("record", "case")).astype(np.int8),
+            "slides_first": margins["standing_slip"].notnull().any(("record", "case")).astype(np.int8),
+            "never_overturned": (central_margins["intervals"] == 0).sum("record"),
+            "stands_again": (central_margins["stands_again"] > 0).sum("record"),
+            "scan_undecided": (central_margins["unknown"] > 0).sum("record"),
+            "decided_to": central_margins["decided_to"].min("record", skipna=False),
+        }
+    ).transpose("column", ...)
+
+
+def _at_scales(margins: xr.Dataset, scales: xr.DataArray) -> xr.DataArray:
+    """Return the states of the scan at the stated scales: 1 overturned, 0 not, negative undecided."""
+    state = margins["outcome"].copy(data=overturned_or_not(margins))
+    stated = [state.sel(margin_scale=scale, method="nearest").drop_vars("margin_scale") for scale in scales.to_numpy()]
+    joined: xr.DataArray = xr.concat(stated, dim=scales)
+    return joined
+
+
+def _least_records(margins: xr.Dataset) -> list[str]:
+    """Return the record with the smallest overturning scale of each column; the first by name among equals."""
+    least = margins["least_overturning"].transpose("column", "record").to_numpy()
+    names = margins["record"].to_numpy()
+    return [str(names[np.nanargmin(row)]) if np.isfinite(row).any() else "" for row in least]
+
+
+def _least(values: npt.NDArray[np.float64], axis: tuple[int, ...]) -> Any:
+    """Return the minimum of the numbers, also of none; NaN without any."""
+    least = np.fmin.reduce(values, axis=axis, initial=np.inf)
+    return np.where(np.isinf(least), np.nan, least)
+
+
+def _slips_first(margins: xr.Dataset) -> xr.DataArray:
+    """Return whether a scale below the smallest overturning scale (if any) needs more than the stated friction."""
+    slipping, falling = margins["least_slipping"], margins["least_overturning"]
+    return slipping.notnull() & ~(slipping >= falling)
+
+
+def _differs(states: xr.DataArray, dim: str) -> xr.DataArray:
+    return ((states == 1).any(dim) & (states == 0).any(dim)).sum("record")

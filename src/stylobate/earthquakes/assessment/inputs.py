@@ -1,22 +1,29 @@
-"""Checked arguments of an assessment: columns with dissipation and friction, records by name, and options."""
+"""Checked arguments of an assessment, and the store of its parts."""
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+import hashlib
+import json
+import logging
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from importlib.metadata import version
-from typing import Any, Self
+from pathlib import Path
+from typing import Any, Self, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
+import xarray as xr
 
-from stylobate.base_motions import BASE_AT_REST, BaseMotion
+from stylobate.base_motions import BASE_AT_REST, BaseMotion, Record
 from stylobate.config.levels import OF_DISSIPATION, Dissipation, at_levels, levels_by_column
-from stylobate.earthquakes.assessment.parts import identities
-from stylobate.earthquakes.named_records import Records, named_records
+from stylobate.earthquakes.study_inputs import Records, named_records
 from stylobate.earthquakes.verdict_study import has_other_contact_law, with_other_contact_law
 from stylobate.engine.parameters import changed_model, model_names
-from stylobate.errors import ParameterError, require_not_negative, require_positive
+from stylobate.errors import FileError, ParameterError, require_not_negative, require_positive
 from stylobate.models import Model
+from stylobate.progress import Report
 from stylobate.provenance import provenance_of_run
+from stylobate.quantities import exact_repr
+from stylobate.results.storage import read_dataset, write_netcdf
 from stylobate.run_arguments import RunOptions
 from stylobate.studies.sweeps.designs import Floats
 from stylobate.studies.sweeps.fingerprint import identity_of
@@ -101,9 +108,8 @@ class Inputs:
     ) -> Self:
         """Check the arguments of an assessment; raise ParameterError for an invalid one."""
         if not isinstance(columns, Mapping) or not columns:
-            message = f"columns must map names to models, at least one, got {columns!r}"
-            raise ParameterError(message)
-        levels = checked_dissipation(dissipation, columns)
+            raise ParameterError(f"columns must map names to models, at least one, got {columns!r}")
+        levels = _checked_dissipation(dissipation, columns)
         stated = _rising("scales", scales, least=1)
         scan = _rising("margin_scales", margin_scales, least=2)
         return cls(
@@ -184,7 +190,7 @@ class Inputs:
         }
 
 
-def checked_dissipation(
+def _checked_dissipation(
     dissipation: Dissipation | None, columns: Mapping[str, Model]
 ) -> dict[str, dict[str, dict[str, float]]]:
     """Check the dissipation parameters of each column at each level; words become the numbers of the column.
@@ -196,8 +202,7 @@ def checked_dissipation(
     """
     remedy = "State it for low, central and high, such as low = {damping = 0.04}"
     if not isinstance(dissipation, Mapping) or not dissipation:
-        message = f"dissipation is missing: it decides the outcome of a three-dimensional column. {remedy}"
-        raise ParameterError(message)
+        raise ParameterError(f"dissipation is missing: it decides the outcome of a three-dimensional column. {remedy}")
     return {
         name: _checked_levels(at_levels(levels, _three_dimensional(name, columns[name]).column), remedy)
         for name, levels in levels_by_column(dissipation, columns).items()
@@ -208,12 +213,12 @@ def _checked_levels(levels: Mapping[str, Mapping[str, Any]], remedy: str) -> dic
     names = set(levels[CENTRAL])
     if not names or any(set(level) != names for level in levels.values()):
         given = ", ".join(f"{level} {' and '.join(sorted(numbers)) or 'nothing'}" for level, numbers in levels.items())
-        message = f"dissipation must state the same parameters at each level, got {given}. {remedy}"
-        raise ParameterError(message)
+        raise ParameterError(f"dissipation must state the same parameters at each level, got {given}. {remedy}")
     unknown = sorted(names.difference(OF_DISSIPATION))
     if unknown:
-        message = f"dissipation: {unknown[0]} is no parameter of dissipation. Use one of {', '.join(OF_DISSIPATION)}"
-        raise ParameterError(message)
+        raise ParameterError(
+            f"dissipation: {unknown[0]} is no parameter of dissipation. Use one of {', '.join(OF_DISSIPATION)}"
+        )
     return {
         level: {name: require_not_negative(f"dissipation.{level}.{name}", value) for name, value in numbers.items()}
         for level, numbers in levels.items()
@@ -222,33 +227,33 @@ def _checked_levels(levels: Mapping[str, Mapping[str, Any]], remedy: str) -> dic
 
 def _three_dimensional(name: str, model: Model) -> Model:
     if not isinstance(model, Model) or model.planar_only:
-        message = f"columns: {name!r} must be a three-dimensional model (got {model!r}). Use one such as Wobbling."
-        raise ParameterError(message)
+        raise ParameterError(
+            f"columns: {name!r} must be a three-dimensional model (got {model!r}). Use one such as Wobbling."
+        )
     return model
 
 
 def _at_levels(model: Model, levels: Mapping[str, Mapping[str, float]]) -> dict[str, Model]:
     lacking = [number for number in levels[CENTRAL] if number not in model_names(model)]
     if lacking:
-        message = f"dissipation: the model {model.name} has no {lacking[0]}; leave it out or choose another model"
-        raise ParameterError(message)
+        raise ParameterError(
+            f"dissipation: the model {model.name} has no {lacking[0]}; leave it out or choose another model"
+        )
     return {level: changed_model(model, numbers) for level, numbers in levels.items()}
 
 
 def _frictions(given: float | Mapping[str, float] | None, columns: Sequence[str]) -> dict[str, float]:
     if given is None:
-        message = (
+        raise ParameterError(
             "friction_coefficient is missing: the friction between column and base. State one number such as 0.6, or "
             "one for each column."
         )
-        raise ParameterError(message)
     if not isinstance(given, Mapping):
         return dict.fromkeys(columns, require_positive("friction_coefficient", given))
     for name in (*given, *columns):
         if (name in given) != (name in columns):
             what = "is no column" if name in given else "has none; state one for each column"
-            message = f"friction_coefficient: {name!r} {what}"
-            raise ParameterError(message)
+            raise ParameterError(f"friction_coefficient: {name!r} {what}")
     return {name: require_positive(f"friction_coefficient.{name}", given[name]) for name in columns}
 
 
@@ -258,8 +263,7 @@ def _rising(name: str, values: npt.ArrayLike, *, least: int) -> Floats:
     except (TypeError, ValueError):
         array = np.empty(0)
     if array.ndim != 1 or array.size < least or not np.all(np.isfinite(array) & (array > 0.0)):
-        message = f"{name} must be positive numbers, {least} or more, got {values!r}"
-        raise ParameterError(message)
+        raise ParameterError(f"{name} must be positive numbers, {least} or more, got {values!r}")
     return np.unique(array)
 
 
@@ -274,3 +278,94 @@ def _as_values(model: Model) -> dict[str, Any]:
     provenance = provenance_of_run(model, BASE_AT_REST)
     described = provenance["model"] if provenance["model"].get("kind") != "other" else identity_of(model)
     return {"column": provenance["column"], "model": described}
+
+
+_log = logging.getLogger("stylobate")
+
+Announce: TypeAlias = Callable[[str, int, int], None]
+"""Called with the name of the part, the runs done and the total number of runs."""
+
+
+@dataclass(frozen=True, slots=True)
+class Parts:
+    """Parts of an assessment, computed or read from the folder `store`.
+
+    Parameters
+    ----------
+    store
+        Folder of the parts; None stores nothing.
+    total
+        Approximate number of runs of all parts.
+    announce
+        Called with the progress while a part is computed; runs of stored parts count as done.
+    """
+
+    store: Path | None
+    total: int
+    announce: Announce
+    _done: list[int] = field(default_factory=list, init=False)
+    _known: list[str] = field(default_factory=list, init=False)
+
+    def get(
+        self, name: str, runs: int, identity: Mapping[str, Any], compute: Callable[[Report], xr.Dataset]
+    ) -> xr.Dataset:
+        """Return the part `name` of about `runs` runs; compute it if the store has none of the same `identity`.
+
+        Raises
+        ------
+        FileError
+            If the store cannot be written.
+        """
+        before = sum(self._done)
+        path = None if self.store is None else self.store / f"{_digest({'part': name, **identity})}.nc"
+        found = None if path is None else _kept(path)
+        if found is not None:
+            self._known.append(name)
+        else:
+            if self._known and len(self._known) == len(self._done):  # the first part that is computed
+                _log.info("%d parts were read from %s; the assessment resumes there", len(self._known), self.store)
+            self.announce(name, before, self.total)
+            found = compute(
+                lambda done, total: self.announce(name, before + round(runs * done / max(total, 1)), self.total)
+            )
+            if path is not None:
+                _keep(found, path)
+            self.announce(name, before + runs, self.total)
+        self._done.append(runs)
+        return found
+
+    def report(self) -> None:
+        """Log the number of parts that were read from the store, if any."""
+        if self._known:
+            _log.info(
+                "%d of %d parts were read from %s and not computed again", len(self._known), len(self._done), self.store
+            )
+
+
+def identities(motions: Mapping[str, BaseMotion]) -> dict[str, Any]:
+    """Return the identities of motions, by name."""
+    return {
+        name: motion.digest if isinstance(motion, Record) else identity_of(motion) for name, motion in motions.items()
+    }
+
+
+def _digest(identity: Mapping[str, Any]) -> str:
+    return hashlib.sha256(json.dumps(identity, sort_keys=True, default=exact_repr).encode()).hexdigest()[:24]
+
+
+def _kept(path: Path) -> xr.Dataset | None:
+    if not path.exists():
+        return None
+    try:
+        return read_dataset(path)
+    except FileError as error:
+        _log.warning("%s; it is computed again", error)
+        return None
+
+
+def _keep(data: xr.Dataset, path: Path) -> None:
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise FileError(f"cannot write {path}: {error.strerror or error}") from None
+    write_netcdf(data, path)

@@ -3,15 +3,11 @@
 The functions accept runs of any origin: they need intensity, record and limit state of each run.
 """
 
-from stylobate.earthquakes.fragility.annual_rate import annual_rate
-from stylobate.earthquakes.fragility.curves import lognormal_fragility
+from stylobate.earthquakes.fragility.annual_rate import HazardCurve, annual_rate
 from stylobate.earthquakes.fragility.dispersion import Samples, dispersion_parts
-from stylobate.earthquakes.fragility.fit import fit_fragility
-from stylobate.earthquakes.fragility.hazard import HazardCurve
-from stylobate.earthquakes.fragility.limit_states import limit_states
-from stylobate.earthquakes.fragility.observations import Counting
-from stylobate.earthquakes.fragility.probit import FitStatus
-from stylobate.earthquakes.fragility.reached import reached_intervals
+from stylobate.earthquakes.fragility.fit import fit_fragility, lognormal_fragility
+from stylobate.earthquakes.fragility.likelihood import FitStatus
+from stylobate.earthquakes.fragility.observations import Counting, limit_states, reached_intervals
 
 __all__ = [
     "Counting",

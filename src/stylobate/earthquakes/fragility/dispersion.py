@@ -187,27 +187,28 @@ def _series(reached: xr.DataArray, scale: npt.ArrayLike | xr.DataArray) -> tuple
     """Return states and scales, both of shape (record, property sample, scale)."""
     if not isinstance(reached, xr.DataArray) or set(reached.dims) != set(_DIMS):
         got = reached.dims if isinstance(reached, xr.DataArray) else type(reached).__name__
-        message = f"reached must be a DataArray over {', '.join(_DIMS)}, got {got}; choose one limit state with .sel"
-        raise ParameterError(message)
+        raise ParameterError(
+            f"reached must be a DataArray over {', '.join(_DIMS)}, got {got}; choose one limit state with .sel"
+        )
     for dim in _DIMS[:2]:
         if reached.sizes[dim] < _LEAST:
-            message = f"reached must have two or more along {dim}, got {reached.sizes[dim]}"
-            raise ParameterError(message)
+            raise ParameterError(f"reached must have two or more along {dim}, got {reached.sizes[dim]}")
     states = reached.transpose(*_DIMS)
     try:
         named = scale if isinstance(scale, xr.DataArray) else xr.DataArray(np.asarray(scale, float), dims="scale")
         x = np.asarray(named.broadcast_like(states).transpose(*_DIMS).to_numpy(), dtype=float)
     except ValueError as error:
-        message = f"scale must have as many numbers as reached along scale, {reached.sizes['scale']}: {error}"
-        raise ParameterError(message) from None
+        raise ParameterError(
+            f"scale must have as many numbers as reached along scale, {reached.sizes['scale']}: {error}"
+        ) from None
     if x.shape != states.shape or not np.all(np.isfinite(x) & (x > 0.0)) or np.any(np.diff(x, axis=-1) <= 0.0):
-        message = f"scale must be positive and increase along the dimension scale, got {np.asarray(scale)!r}"
-        raise ParameterError(message)
+        raise ParameterError(
+            f"scale must be positive and increase along the dimension scale, got {np.asarray(scale)!r}"
+        )
     codes = states.to_numpy()
     bad = codes[~np.isin(codes, (NOT_KNOWN, 0, 1))]
     if bad.size:
-        message = f"reached must hold True or False (or 1, 0, and -1 for not known), got {bad.flat[0]!r}"
-        raise ParameterError(message)
+        raise ParameterError(f"reached must hold True or False (or 1, 0, and -1 for not known), got {bad.flat[0]!r}")
     return codes.astype(np.int64), x
 
 

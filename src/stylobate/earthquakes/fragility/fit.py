@@ -1,18 +1,50 @@
-"""Lognormal fragility curves by maximum likelihood, with intervals."""
+"""Lognormal fragility curves by maximum likelihood, with intervals: fits to any runs, or to an incremental analysis."""
+
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import xarray as xr
 from scipy.special import ndtr, ndtri
 
-from stylobate.earthquakes.fragility.curves import CURVE_POINTS, Curve, curves_table
-from stylobate.earthquakes.fragility.intervals import Likelihood, profile_ends
-from stylobate.earthquakes.fragility.observations import LIMIT_STATE, Counting, Data, Floats, Observations
-from stylobate.earthquakes.fragility.probit import Fits, FitStatus, fit_probit
-from stylobate.earthquakes.fragility.resampling import Replicates, resampled
-from stylobate.earthquakes.fragility.stripes import observed_shares
-from stylobate.errors import ParameterError, require_whole
+from stylobate.earthquakes.fragility.likelihood import (
+    Fits,
+    FitStatus,
+    Likelihood,
+    Replicates,
+    fit_probit,
+    profile_ends,
+    resampled,
+)
+from stylobate.earthquakes.fragility.observations import LIMIT_STATE, Counting, Data, Floats, Integers, Observations
+from stylobate.errors import ParameterError, require_positive, require_whole
+from stylobate.records import HorizontalComponent
+from stylobate.results.outcomes import flag_attributes
 from stylobate.results.random_numbers import Rng, generator_of
-from stylobate.studies.proportions import require_confidence
+from stylobate.studies.proportions import require_confidence, wilson_interval
+
+_CURVE_POINTS = 121
+# Half-width of a curve without data, in dispersions.
+_REACH = 3.5
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Curve:
+    """The fragility of one limit state.
+
+    Parameters
+    ----------
+    numbers
+        Numbers by the names of the variables.
+    covariance
+        Covariance of (ln median, ln dispersion).
+    shares
+        Probabilities along the curve, by the names of the variables.
+    """
+
+    numbers: dict[str, float]
+    covariance: Floats
+    shares: dict[str, Floats]
 
 
 def fit_fragility(
@@ -91,12 +123,12 @@ def fit_fragility(
     seen = given.counted(counting)
     non_monotone = given.non_monotone()
     replicates = _replicates(seen, draws, rng)
-    x = np.geomspace(seen.intensity.min(), seen.intensity.max(), CURVE_POINTS)
+    x = np.geomspace(seen.intensity.min(), seen.intensity.max(), _CURVE_POINTS)
     curves = [
         _curve(seen, place, x, level, replicates[place] if replicates else None) for place in range(len(seen.names))
     ]
     return (
-        xr.merge([curves_table(seen, x, curves), observed_shares(seen, level)], combine_attrs="override")
+        xr.merge([_curves_table(seen, x, curves), _observed_shares(seen, level)], combine_attrs="override")
         .assign(
             non_monotone_records=(
                 LIMIT_STATE,
@@ -120,11 +152,11 @@ def _replicates(seen: Observations, draws: int, rng: Rng | None) -> list[Replica
     if not draws:
         return []
     if seen.record is None or seen.record.max() < 1:
-        message = f"resamples: requires two or more records (got {draws} resamples). Add records, or pass resamples=0."
-        raise ParameterError(message)
+        raise ParameterError(
+            f"resamples: requires two or more records (got {draws} resamples). Add records, or pass resamples=0."
+        )
     if rng is None:
-        message = "rng: required to resample the records (got None). Pass a seed, for example rng=0."
-        raise ParameterError(message)
+        raise ParameterError("rng: required to resample the records (got None). Pass a seed, for example rng=0.")
     return resampled(seen, draws, generator_of(rng))
 
 
@@ -188,3 +220,224 @@ def _band(fits: Fits, u: Floats, eta: Floats, confidence: float) -> tuple[Floats
     variance = np.einsum("in,ij,jn->n", design, np.linalg.inv(fits.information[0]), design)
     half = ndtri(0.5 + 0.5 * confidence) * np.sqrt(variance)
     return ndtr(eta - half), ndtr(eta + half)
+
+
+_PROBABILITY = {"units": "1", "long_name": "probability of reaching the limit state"}
+
+
+def _status_attributes() -> dict[str, object]:
+    return flag_attributes("status of the fit", [status.name for status in FitStatus], dtype=np.int64)
+
+
+def _curves_table(seen: Observations, x: Floats, curves: list[Curve]) -> xr.Dataset:
+    """Collect the fits of all limit states, and their curves at intensities `x`."""
+    about: dict[str, object] = {
+        name: seen.attributes[name] for name in ("units", "component") if name in seen.attributes
+    }
+    names = {
+        "median": {**about, "long_name": f"median {seen.attributes['long_name']}"},
+        "median_low": {**about, "long_name": "lower end of the interval of the median"},
+        "median_high": {**about, "long_name": "upper end of the interval of the median"},
+        "dispersion": {"units": "1", "long_name": "dispersion"},
+        "dispersion_low": {"units": "1", "long_name": "lower end of the interval of the dispersion"},
+        "dispersion_high": {"units": "1", "long_name": "upper end of the interval of the dispersion"},
+        "status": _status_attributes(),
+        "log_likelihood": {"units": "1", "long_name": "log-likelihood"},
+        "runs": {"units": "1", "long_name": "runs decided for the limit state"},
+        "runs_reached": {"units": "1", "long_name": "runs that reached it"},
+        "runs_not_known": {"units": "1", "long_name": "undecided runs"},
+        "largest_safe": {**about, "long_name": "largest intensity that did not reach it"},
+        "least_reached": {**about, "long_name": "smallest intensity that reached it"},
+        "resamples_without_fit": {"units": "1", "long_name": "resamples without a fit"},
+    }
+    shares = {
+        "probability": _PROBABILITY,
+        "probability_low": {"units": "1", "long_name": "lower end of the interval of the probability"},
+        "probability_high": {"units": "1", "long_name": "upper end of the interval of the probability"},
+    }
+    parameters = ["log median", "log dispersion"]
+    return xr.Dataset(
+        {
+            **{name: (LIMIT_STATE, [one.numbers[name] for one in curves], attrs) for name, attrs in names.items()},
+            "covariance": (
+                (LIMIT_STATE, "parameter", "other_parameter"),
+                np.array([one.covariance for one in curves]),
+                {"units": "1", "long_name": "covariance of the logarithms of median and dispersion"},
+            ),
+            **{
+                name: ((LIMIT_STATE, "curve"), np.array([one.shares[name] for one in curves]), attrs)
+                for name, attrs in shares.items()
+            },
+        },
+        coords={
+            LIMIT_STATE: list(seen.names),
+            "parameter": parameters,
+            "other_parameter": parameters,
+            "curve_intensity": ("curve", x, seen.attributes),
+        },
+    )
+
+
+# Maximum number of separate intensities; more are grouped into bins with equal numbers of runs.
+_MOST_STRIPES = 25
+_BINS = 10
+
+
+def _observed_shares(seen: Observations, confidence: float) -> xr.Dataset:
+    """Compute fractions over `stripe`: runs of one intensity, or bins with equal numbers of runs.
+
+    Each stripe has the geometric mean `stripe_intensity` of its intensities, and their range.
+    """
+    bins = _bins(seen.intensity)
+    count = int(bins.max()) + 1
+    logs = np.log(seen.intensity)
+    mean = np.exp(np.bincount(bins, weights=logs) / np.bincount(bins))
+    ends = np.array([[part.min(), part.max()] for part in (seen.intensity[bins == one] for one in range(count))])
+    hits, decided = (
+        np.array([np.bincount(bins, weights=state, minlength=count) for state in chosen])
+        for chosen in (seen.reached == 1, seen.reached >= 0)
+    )
+    low, high = wilson_interval(hits, decided, confidence=confidence)
+    dims = (LIMIT_STATE, "stripe")
+    share = np.where(decided > 0.0, hits / np.maximum(decided, 1.0), np.nan)
+    return xr.Dataset(
+        {
+            "stripe_runs": (dims, decided.astype(np.int64), {"units": "1", "long_name": "runs"}),
+            "stripe_reached": (dims, hits.astype(np.int64), {"units": "1", "long_name": "runs that reached it"}),
+            "stripe_share": (dims, share, {"units": "1", "long_name": "share of runs that reached it"}),
+            "stripe_share_low": (dims, low, {"units": "1", "long_name": "lower end of its interval"}),
+            "stripe_share_high": (dims, high, {"units": "1", "long_name": "upper end of its interval"}),
+            "stripe_from": ("stripe", ends[:, 0], {**seen.attributes, "long_name": "least intensity"}),
+            "stripe_to": ("stripe", ends[:, 1], {**seen.attributes, "long_name": "largest intensity"}),
+        },
+        coords={"stripe_intensity": ("stripe", mean, seen.attributes), LIMIT_STATE: list(seen.names)},
+    )
+
+
+def _bins(intensity: Floats) -> Integers:
+    different, place = np.unique(intensity, return_inverse=True)
+    if different.size <= _MOST_STRIPES:
+        return np.asarray(place, dtype=np.int64)
+    # Runs of one intensity stay together.
+    first = np.searchsorted(np.sort(intensity), intensity)
+    return np.asarray(np.unique(_BINS * first // intensity.size, return_inverse=True)[1], dtype=np.int64)
+
+
+def lognormal_fragility(
+    median: float,
+    dispersion: float,
+    *,
+    name: str = "given",
+    units: str = "1",
+    component: str | HorizontalComponent | None = None,
+) -> xr.Dataset:
+    """Build a fragility from a known median and dispersion, without data or intervals.
+
+    Parameters
+    ----------
+    median
+        Intensity at which the limit state is reached with probability 1/2, in `units`.
+    dispersion
+        Standard deviation β of the logarithm of the capacity.
+    name, units
+        Name of the limit state, and unit of the intensity.
+    component
+        Definition of the horizontal component of the intensity, such as "RotD50"; None if it has none.
+
+    Returns
+    -------
+    xarray.Dataset
+        Of kind "fragility": `median`, `dispersion` and the curve.
+
+    Raises
+    ------
+    ParameterError
+        If a number is not positive, or the component is unknown.
+
+    Examples
+    --------
+    >>> lognormal_fragility(3.0, 0.4)["median"].item()
+    3.0
+    """
+    m, beta = require_positive("median", median), require_positive("dispersion", dispersion)
+    x = m * np.exp(np.linspace(-_REACH * beta, _REACH * beta, _CURVE_POINTS))
+    definition = {} if component is None else {"component": HorizontalComponent.named(component).value}
+    about = {"units": units, "long_name": ", ".join(["intensity", *definition.values()]), **definition}
+    return xr.Dataset(
+        {
+            "median": (LIMIT_STATE, [m], {**about, "long_name": f"median {about['long_name']}"}),
+            "dispersion": (LIMIT_STATE, [beta], {"units": "1", "long_name": "dispersion"}),
+            "status": (LIMIT_STATE, [int(FitStatus.FITTED)], _status_attributes()),
+            "probability": ((LIMIT_STATE, "curve"), ndtr(np.log(x / m) / beta)[np.newaxis], _PROBABILITY),
+        },
+        coords={LIMIT_STATE: [name], "curve_intensity": ("curve", x, about)},
+        attrs={"kind": "fragility", "intervals": "none"},
+    )
+
+
+# For fixed values of these dimensions and a fixed record, the intensity depends on the scale only.
+_SERIES = ("rotation", "vertical", "property_sample")
+
+
+def fragility_of_runs(
+    runs: xr.Dataset,
+    *,
+    counting: Counting = Counting.AS_COMPUTED,
+    confidence: float = 0.95,
+    resamples: int = 0,
+    rng: Rng | None = None,
+) -> xr.Dataset:
+    """Fit fragility curves to an incremental dynamic analysis, one for each limit state.
+
+    Parameters
+    ----------
+    runs
+        From `incremental_dynamic_analysis`, complete or partial; after an interruption some runs are not known.
+    counting
+        How runs above the first that reached the limit state count, if the column survives there.
+    confidence, resamples, rng
+        As for `fit_fragility`. Without `resamples` the intervals treat runs as independent.
+
+    Returns
+    -------
+    xarray.Dataset
+        As from `fit_fragility`, with `record` and `property_sample` set from the runs: rotations, choices of the
+        vertical component and property samples are series of their own within a record.
+
+    Raises
+    ------
+    ParameterError
+        If `runs` are of another kind, or an argument is out of range.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import stylobate as sb
+    >>> from stylobate.earthquakes import incremental_dynamic_analysis
+    >>> model = sb.Slender(sb.Column.solid(radius=0.2, height=2.0, density=2700.0), damping=0.02)
+    >>> pulses = [sb.Pulse.one_sine(acceleration=1.0, angular_frequency=w) for w in (4.0, 5.0, 6.0, 8.0)]
+    >>> runs = incremental_dynamic_analysis(model, pulses, scales=np.linspace(1.2, 4.2, 7))
+    >>> found = fragility_of_runs(runs)
+    >>> fallen = found.sel(limit_state="overturning")
+    >>> int(fallen["runs"]), int(fallen["runs_reached"])
+    (28, 16)
+    """
+    if not isinstance(runs, xr.Dataset) or runs.attrs.get("kind") != "incremental dynamic analysis":
+        got = runs.attrs.get("kind") if isinstance(runs, xr.Dataset) else repr(runs)
+        raise ParameterError(f"runs must be an incremental dynamic analysis, got {got}")
+    reached: Any = runs["reached"]
+    series = [name for name in _SERIES if name in reached.dims]
+    sample = xr.DataArray(0)
+    for name in series:
+        sample = sample * reached.sizes[name] + xr.DataArray(np.arange(reached.sizes[name]), dims=name)
+    plain = reached.drop_vars([name for name in reached.coords if name not in ("record", "limit_state")])
+    return fit_fragility(
+        runs["intensity"].drop_vars(list(runs["intensity"].coords)),
+        plain.drop_vars("record"),
+        record=runs["record"].drop_vars("record") if "record" in runs.coords else None,
+        property_sample=sample if series else None,
+        counting=counting,
+        confidence=confidence,
+        resamples=resamples,
+        rng=rng,
+    ).assign_attrs(provenance=runs.attrs["provenance"])

@@ -1,5 +1,10 @@
-"""Data of a fragility fit: intensity, limit states, record and property sample of each run."""
+"""Data of a fragility: limit states of runs, the runs as flat arrays, and the intervals that reached a state.
 
+Overturning is not monotonic: a column may survive a stronger motion. See Zhang and Makris, "Rocking response
+of free-standing blocks under cycloidal pulses", J. Eng. Mech. 127 (2001).
+"""
+
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
 from typing import Any, Self, TypeAlias
@@ -8,7 +13,9 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from stylobate.errors import ParameterError
+from stylobate.errors import Outcome, ParameterError, require_positive
+from stylobate.results.outcomes import NOT_COMPUTED, flag_attributes
+from stylobate.studies.maps.integrity import UNRESOLVED
 
 Floats: TypeAlias = npt.NDArray[np.float64]
 Integers: TypeAlias = npt.NDArray[np.int64]
@@ -81,8 +88,9 @@ class Observations:
             parts = xr.broadcast(shaped, levels, *(one for one in named if one is not None))
             states = states.broadcast_like(parts[0]).transpose(LIMIT_STATE, *parts[0].dims)
         except ValueError as error:
-            message = f"intensity, reached and record must have one shape or share named dimensions: {error}"
-            raise ParameterError(message) from None
+            raise ParameterError(
+                f"intensity, reached and record must have one shape or share named dimensions: {error}"
+            ) from None
         values = parts[1].to_numpy().ravel()
         known, number = (None, None) if named[0] is None else _numbered(parts[2])
         series = number
@@ -110,8 +118,9 @@ class Observations:
         if counting is Counting.AS_COMPUTED:
             return self
         if self.series is None:
-            message = "counting must be Counting.AS_COMPUTED if no record is named, got Counting.FIRST; give record"
-            raise ParameterError(message)
+            raise ParameterError(
+                "counting must be Counting.AS_COMPUTED if no record is named, got Counting.FIRST; give record"
+            )
         reached = self.reached.copy()
         for state in reached:
             for one in range(self.series.max() + 1):
@@ -143,8 +152,9 @@ def _labelled(name: str, values: Data, dims: tuple[str, ...], shape: tuple[int, 
     if not dims:
         return xr.DataArray(array, dims=[f"run_{place}" if place else "run" for place in range(array.ndim)])
     if array.shape != shape:
-        message = f"{name} must have the shape of reached, {shape}, or named dimensions; got shape {array.shape}"
-        raise ParameterError(message)
+        raise ParameterError(
+            f"{name} must have the shape of reached, {shape}, or named dimensions; got shape {array.shape}"
+        )
     return xr.DataArray(array, dims=dims)
 
 
@@ -165,22 +175,219 @@ def _numbered(values: xr.DataArray) -> tuple[npt.NDArray[Any], Integers]:
 
 def _positive(given: npt.NDArray[Any]) -> Floats:
     if given.size and given.dtype.kind not in "iuf":
-        message = f"intensity must hold real numbers, got {given[0]!r}"
-        raise ParameterError(message)
+        raise ParameterError(f"intensity must hold real numbers, got {given[0]!r}")
     values = given.astype(np.float64)
     if not values.size:
-        message = "intensity must hold at least one run, got none"
-        raise ParameterError(message)
+        raise ParameterError("intensity must hold at least one run, got none")
     bad = values[~(np.isfinite(values) & (values > 0.0))]
     if bad.size:
-        message = f"intensity must be positive and finite, got {float(bad[0])!r}; leave out runs without base motion"
-        raise ParameterError(message)
+        raise ParameterError(
+            f"intensity must be positive and finite, got {float(bad[0])!r}; leave out runs without base motion"
+        )
     return values
 
 
 def _codes(values: npt.NDArray[Any]) -> Integers:
     bad = values[~np.isin(values, (NOT_KNOWN, 0, 1))]
     if bad.size:
-        message = f"reached must hold True or False (or 1, 0, and -1 for not known), got {bad.flat[0]!r}"
-        raise ParameterError(message)
+        raise ParameterError(f"reached must hold True or False (or 1, 0, and -1 for not known), got {bad.flat[0]!r}")
     return np.asarray(values, dtype=np.int64)
+
+
+def limit_states(
+    runs: xr.Dataset,
+    *,
+    slenderness: npt.ArrayLike | xr.DataArray | None = None,
+    tilt_ratios: Sequence[float] = (1e-3, 0.1, 0.5, 1.0),
+) -> xr.DataArray:
+    """Find the limit states that each run reached: peak tilts in fractions of α_c = arctan c, and overturning.
+
+    The tipping angle α_c is the tilt at which the centre of mass stands above the contact point. The smallest default
+    tilt, 0.001 α_c, separates columns that rock from those that stand. It is not uplift: an upright column lifts if
+    |a_h| > c (g + a_z), and may then tilt less.
+
+    Parameters
+    ----------
+    runs
+        Runs with `outcome` and `peak_tilt` [rad], such as from `simulate_ensemble`, `overturning_map` or a sweep.
+    slenderness
+        c of each run; by default the coordinate `slenderness` of `runs`.
+    tilt_ratios
+        Peak tilts over α_c, positive. A run that starts at a larger tilt has reached it from the start.
+
+    Returns
+    -------
+    xarray.DataArray
+        Over `limit_state` and the dimensions of `runs`: 1 reached, 0 not, −1 not known. A run that overturned has
+        reached all limit states. A run that failed, lifted off or stopped at a tilt limit has reached the limit states
+        below its peak tilt; the others are undecided. A run that was not computed is undecided. A run that is
+        STILL_MOVING did not overturn by its end and counts as SURVIVED.
+
+    Raises
+    ------
+    ParameterError
+        If `runs` lack a variable, the slenderness is not known, or a ratio is not positive.
+
+    Examples
+    --------
+    >>> import xarray as xr
+    >>> from stylobate import Outcome
+    >>> codes = [Outcome.AT_REST, Outcome.SURVIVED, Outcome.OVERTURNED]
+    >>> runs = xr.Dataset({"outcome": ("run", codes), "peak_tilt": ("run", [0.0, 0.06, 0.09])})
+    >>> states = limit_states(runs, slenderness=0.1)
+    >>> print(states.sel(limit_state="tilt 0.5 α").values, states.sel(limit_state="overturning").values)
+    [0 1 1] [0 0 1]
+    """
+    for name in ("outcome", "peak_tilt"):
+        if name not in runs:
+            raise ParameterError(
+                f"runs must hold the variable {name}, got {', '.join(map(str, runs.data_vars)) or 'none'}"
+            )
+    critical = np.arctan(_slenderness(runs, slenderness))
+    codes, tilt = runs["outcome"], runs["peak_tilt"]
+    fallen = codes == Outcome.OVERTURNED
+    decided = ~codes.isin([NOT_COMPUTED, *UNRESOLVED])
+    limits = {
+        f"tilt {require_positive(f'tilt_ratios[{place}]', ratio):g} α": ratio for place, ratio in enumerate(tilt_ratios)
+    }
+    exceeded = [fallen | (tilt > ratio * critical) for ratio in limits.values()]
+    computed = codes != NOT_COMPUTED
+    unreached = xr.zeros_like(codes, dtype=np.int8).where(decided, np.int8(NOT_KNOWN))
+    states = [unreached.where(~(reached & computed), np.int8(1)) for reached in [*exceeded, fallen]]
+    names = xr.DataArray([*limits, "overturning"], dims=LIMIT_STATE, name=LIMIT_STATE)
+    joined: xr.DataArray = xr.concat(states, dim=names).rename("reached")
+    joined.attrs = {}
+    return joined.assign_attrs(
+        flag_attributes("limit state reached", ["NOT_KNOWN", "NOT_REACHED", "REACHED"], first=NOT_KNOWN)
+    )
+
+
+def _slenderness(runs: xr.Dataset, given: npt.ArrayLike | xr.DataArray | None) -> xr.DataArray:
+    if given is None:
+        if "slenderness" not in runs.coords:
+            raise ParameterError("slenderness must be given if runs have no coordinate of that name, got None")
+        return runs["slenderness"]
+    if isinstance(given, xr.DataArray):
+        values = given
+    else:
+        array = np.asarray(given, dtype=float)
+        if array.ndim and array.shape != runs["outcome"].shape:
+            raise ParameterError(
+                f"slenderness must be a number or have the shape of runs, {runs['outcome'].shape}; got {array.shape}"
+            )
+        values = xr.DataArray(array, dims=runs["outcome"].dims if array.ndim else ())
+    numbers = values.to_numpy()
+    bad = numbers[~(np.isfinite(numbers) & (numbers > 0.0))]
+    if bad.size:
+        require_positive("slenderness", bad.flat[0])
+    return values
+
+
+def reached_intervals(scale: Data, reached: Data, *, record: Data | None = None) -> xr.Dataset:
+    """Find the intervals of successive scales with the same verdict for each record, and whether it is monotonic.
+
+    Intervals are as fine as the scales: changes between two scales are not seen.
+
+    Parameters
+    ----------
+    scale
+        Scale or intensity of each run, positive.
+    reached
+        Whether each run reached the limit state, as in `fit_fragility`; one limit state. Undecided runs are left out.
+    record
+        The record of each run; by default the dimension or coordinate `record` of `reached`, or one record.
+
+    Returns
+    -------
+    xarray.Dataset
+        Of kind "reached intervals". Over `record`: `monotone`, False if it survives above a scale that reached it;
+        `first_reached` [as scale], NaN if none did; `last_safe`, NaN if none was; `safe_again`, the number of surviving
+        intervals above the first reached; `runs`. Over `interval`, by record and scale: `interval_record`,
+        `interval_reached`, `interval_from` and `interval_to`, the first and last scale computed in it, and
+        `interval_runs`. Attribute `non_monotone_share` of the records.
+
+    Raises
+    ------
+    ParameterError
+        As `fit_fragility`; if `reached` has several limit states; or if two runs of a record at one scale disagree.
+
+    Examples
+    --------
+    >>> found = reached_intervals([1.0, 2.0, 3.0, 4.0], [False, True, False, True])
+    >>> found["monotone"].item(), found["interval_from"].values.tolist(), found["interval_reached"].values.tolist()
+    (False, [1.0, 2.0, 3.0, 4.0], [False, True, False, True])
+    """
+    seen = Observations.of(scale, reached, record)
+    if len(seen.names) > 1:
+        raise ParameterError(f"reached must have one limit state, got {', '.join(seen.names)}; choose one with .sel")
+    groups = np.zeros(seen.intensity.size, dtype=np.int64) if seen.record is None else seen.record
+    state = seen.reached[0]
+    names = seen.records or ("all",)
+    groups_of_runs = [(groups == place) & (state >= 0) for place in range(len(names))]
+    parts = [
+        _intervals_of(seen.intensity[runs], state[runs], name) for runs, name in zip(groups_of_runs, names, strict=True)
+    ]
+    flat = [(place, *interval) for place, part in enumerate(parts) for interval in part]
+    return _dataset(seen, names, parts, flat)
+
+
+# Reached, first scale, last scale, number of runs.
+Interval: TypeAlias = tuple[bool, float, float, int]
+
+
+def _intervals_of(scale: Floats, state: Integers, name: str) -> list[Interval]:
+    x, where = np.unique(scale, return_inverse=True)
+    runs = np.bincount(where, minlength=x.size)
+    hits = np.bincount(where, weights=state, minlength=x.size)
+    torn = np.flatnonzero((hits > 0.0) & (hits < runs))
+    if torn.size:
+        raise ParameterError(
+            f"reached must agree between runs of one record at one scale, got both at {float(x[torn[0]])!r} "
+            f"of record {name}; compute intervals for each property sample separately"
+        )
+    if not x.size:
+        return []
+    edges = np.flatnonzero(np.diff(hits > 0.0)) + 1
+    parts = np.split(np.arange(x.size), edges)
+    return [(bool(hits[p[0]] > 0.0), float(x[p[0]]), float(x[p[-1]]), int(runs[p].sum())) for p in parts]
+
+
+def _dataset(
+    seen: Observations,
+    names: tuple[str, ...],
+    parts: list[list[Interval]],
+    flat: list[tuple[int, bool, float, float, int]],
+) -> xr.Dataset:
+    first = [min((low for hit, low, _, _ in part if hit), default=np.nan) for part in parts]
+    safe = [max((high for hit, _, high, _ in part if not hit), default=np.nan) for part in parts]
+    again = [sum(not hit for hit, _, _, _ in part[1:]) for part in parts]
+    columns = [np.array(column) for column in zip(*flat, strict=True)] or [np.zeros(0)] * 5
+    unit = {"units": seen.attributes["units"]}
+    return xr.Dataset(
+        {
+            "monotone": ("record", np.array(again) == 0, {"long_name": "no survival above a scale that reached it"}),
+            "first_reached": ("record", first, {**unit, "long_name": "smallest scale that reached it"}),
+            "last_safe": ("record", safe, {**unit, "long_name": "largest surviving scale"}),
+            "safe_again": (
+                "record",
+                again,
+                {"units": "1", "long_name": "surviving intervals above the first reached"},
+            ),
+            "runs": (
+                "record",
+                [sum(interval[3] for interval in part) for part in parts],
+                {"units": "1", "long_name": "runs"},
+            ),
+            "interval_record": ("interval", columns[0].astype(np.int64), {"long_name": "index of the record"}),
+            "interval_reached": ("interval", columns[1].astype(bool), {"long_name": "reached the limit state"}),
+            "interval_from": ("interval", columns[2].astype(float), {**seen.attributes}),
+            "interval_to": ("interval", columns[3].astype(float), {**seen.attributes}),
+            "interval_runs": ("interval", columns[4].astype(np.int64), {"units": "1", "long_name": "runs"}),
+        },
+        coords={"record": list(names)},
+        attrs={
+            "kind": "reached intervals",
+            "limit_state": seen.names[0],
+            "non_monotone_share": float(np.mean(np.array(again) > 0)),
+        },
+    )

@@ -1,6 +1,8 @@
-"""Figures of an assessment: margins, tilts, contact, small variations, and histories under the governing record."""
+"""Figures of an assessment, each with its caption: records, margins, tilts, contact, small variations, histories."""
 
 import math
+from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -11,10 +13,15 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import FuncFormatter, NullFormatter
 
-from stylobate.earthquakes.assessment.report.wording import number
-from stylobate.earthquakes.figures.interval_regions import UNDECIDED, undecided_label, undecided_reasons
+from stylobate.column import STANDARD_GRAVITY
+from stylobate.earthquakes.assessment.report.column_verdict import rises
+from stylobate.earthquakes.assessment.report.wording import SMALLEST_TILT, labels, number, stated_friction
+from stylobate.earthquakes.figures.fragility import plot_fragility
+from stylobate.earthquakes.figures.overturning_intervals import UNDECIDED, undecided_label, undecided_reasons
 from stylobate.plots.cells import fill_options
-from stylobate.plots.style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION, new_figure, styled
+from stylobate.plots.labels import literal, with_literal_names
+from stylobate.plots.page import Picture
+from stylobate.plots.style import BLACK, BLUE, GREEN, GREY, ORANGE, PALETTE, PURPLE, SKY, VERMILION, new_figure, styled
 from stylobate.results.assessment import Assessment
 from stylobate.results.verdict import CLEAR
 
@@ -39,19 +46,19 @@ _UNDECIDED_MARK: dict[str, Any] = {"marker": "x", "linestyle": "none", "markersi
 def margins_figure(assessment: Assessment, column: str) -> Figure:
     """Draw the overturning intervals of each record for a column, one line for each case."""
     own = assessment.data["margins"].sel(column=column)
-    cases, records = ([str(name) for name in own[dim].to_numpy()] for dim in ("case", "record"))
+    cases, records = labels(own, "case"), labels(own)
     lines = len(records) * (len(cases) + 1)
     figure = new_figure(min(_FRAME + _ROW * lines, _TALLEST))
     axes = figure.subplots()
     low, high, _ = assessment.setting["margin_scales"]
-    heights, labels = [], []
+    heights, lines_of = [], []
     for place, record in enumerate(records):
         for line, case in enumerate(cases):
             height = place * (len(cases) + 1) + line
             _interval_line(axes, own.sel(record=record, case=case), height, (low, high))
             heights.append(height)
-            labels.append(f"{record} · {case}" if line == 0 else case)
-    axes.set_yticks(heights, labels, fontsize="small")
+            lines_of.append(f"{record} · {case}" if line == 0 else case)
+    axes.set_yticks(heights, lines_of, fontsize="small")
     axes.set(xscale="log", xlim=(low, high), xlabel="scale factor of the record [1]", ylim=(lines - 0.5, -1.0))
     _plain(axes)
     axes.grid(visible=False, axis="y")
@@ -96,19 +103,18 @@ def _bars(axes: Axes, low: xr.DataArray, high: xr.DataArray, height: float, look
 def tilts_figure(assessment: Assessment, column: str, scale: float) -> Figure:
     """Draw the peak tilts of a column under each record at each dissipation, and those of the planar column."""
     own = assessment.data["verdicts"]["tilt_ratio"].sel(column=column, scale=scale)
-    records = [str(name) for name in own["record"].to_numpy()]
+    records = labels(own)
     figure, axes = _rows_figure(records)
     heights = np.arange(len(records), dtype=float)
     handles, undecided = [], False
-    levels = [str(name) for name in own["dissipation"].to_numpy()]
+    levels = labels(own, "dissipation")
     for place, level in enumerate(levels):
         values = own.sel(dissipation=level, vertical="with").to_numpy()
         undecided |= bool(np.isnan(values).any())
-        look: dict[str, Any] = {"marker": _MARKS[place % len(_MARKS)], "color": _COLOURS[place % len(_COLOURS)]}
-        axes.plot(_placed(values), heights + 0.18 * (place - 1), linestyle="none", markersize=5.5, **look)
-        axes.plot(
-            *_undecided_marks(values, heights + 0.18 * (place - 1)), **{**_UNDECIDED_MARK, "color": look["color"]}
-        )
+        look, beside = _look(place), heights + 0.18 * (place - 1)
+        axes.plot(_placed(values), beside, linestyle="none", markersize=5.5, **look)
+        unknown = beside[np.isnan(values)]
+        axes.plot(np.full(unknown.size, _UNKNOWN), unknown, **{**_UNDECIDED_MARK, "color": look["color"]})
         handles.append(Line2D([], [], linestyle="none", label=f"{level} dissipation", **look))
     if "planar" in assessment.data:
         flat = assessment.data["planar"]["planar_tilt_ratio"].sel(column=column, scale=scale).to_numpy()
@@ -127,10 +133,8 @@ def tilts_figure(assessment: Assessment, column: str, scale: float) -> Figure:
     return figure
 
 
-def _undecided_marks(values: np.ndarray, heights: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the coordinates of the marks of undecided runs, beyond those of overturned runs."""
-    chosen = np.isnan(values)
-    return np.full(int(chosen.sum()), _UNKNOWN), heights[chosen]
+def _look(place: int) -> dict[str, Any]:
+    return {"marker": _MARKS[place % len(_MARKS)], "color": _COLOURS[place % len(_COLOURS)]}
 
 
 def _placed(values: np.ndarray) -> np.ndarray:
@@ -139,20 +143,20 @@ def _placed(values: np.ndarray) -> np.ndarray:
 
 
 @styled
-def contact_figure(assessment: Assessment, column: str) -> Figure:
+def _contact_figure(assessment: Assessment, column: str) -> Figure:
     """Draw the friction that the runs of each record needed, and the stated coefficient."""
     own = assessment.data["verdicts"]["friction_demand"].sel(column=column)
-    records = [str(name) for name in own["record"].to_numpy()]
+    records = labels(own)
     figure, axes = _rows_figure(records)
     scales = own["scale"].to_numpy()
     handles = []
     for place, scale in enumerate(scales):
         values = own.sel(scale=scale).stack(run=("dissipation", "vertical")).transpose("record", "run").to_numpy()
-        look: dict[str, Any] = {"marker": _MARKS[place % len(_MARKS)], "color": _COLOURS[place % len(_COLOURS)]}
+        look = _look(place)
         heights = np.repeat(np.arange(len(records)), values.shape[1]) + 0.15 * (place - 0.5 * (scales.size - 1))
         axes.plot(values.ravel(), heights, linestyle="none", markersize=4.5, **look)
         handles.append(Line2D([], [], linestyle="none", label=f"scale {scale:g}, each run", **look))
-    stated = float(assessment.setting["friction_coefficient"][column])
+    stated = stated_friction(assessment, column)
     axes.axvline(stated, color=VERMILION, linestyle="--", linewidth=1.6)
     handles.append(Line2D([], [], color=VERMILION, linestyle="--", label=f"stated coefficient {stated:g}"))
     axes.set(xlim=(0.0, None), xlabel="friction force needed / normal force [1]")
@@ -166,7 +170,7 @@ def shares_figure(assessment: Assessment, column: str, scale: float) -> Figure:
     """Draw the share of small variations that overturn a column under each record, and that of the near scales."""
     own = assessment.data["variations"].sel(column=column, scale=scale)
     band = assessment.data["margins"]["band_share"].sel(column=column, scale=scale).transpose("record", "case")
-    records = [str(name) for name in own["record"].to_numpy()]
+    records = labels(own)
     figure, axes = _rows_figure(records)
     heights = np.arange(len(records), dtype=float)
     low, share, high = (100.0 * own[name].to_numpy() for name in ("share_low", "share", "share_high"))
@@ -254,3 +258,142 @@ def _plain(axes: Axes) -> None:
     axes.set_xticks(ticks)
     axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     axes.xaxis.set_minor_formatter(NullFormatter())
+
+
+_RECORDS_A_FIGURE = 6
+"""Number of records in one figure of components."""
+# Height of a row and of the frame [inches]; largest number of records that have a colour each.
+_RECORD_ROW, _RECORD_FRAME, _COLOURED = 0.85, 0.75, 6
+
+
+@styled
+def _records_figure(assessment: Assessment, records: Sequence[str]) -> Figure:
+    """Draw the components of records against time, one row for each record."""
+    own = assessment.data["ground_motions"]
+    figure = new_figure(_RECORD_FRAME + _RECORD_ROW * len(records))
+    grid = figure.subplots(len(records), 3, squeeze=False, sharey="row", sharex="row")
+    for row, name in zip(grid, records, strict=True):
+        one = own.sel(record=name)
+        for axes, axis in zip(row, ("x", "y", "z"), strict=True):
+            acceleration = one["acceleration"].sel(axis=axis) / STANDARD_GRAVITY
+            axes.plot(one["time"], acceleration, color=BLACK, linewidth=0.4)
+            if not bool((acceleration != 0.0).where(one["time"].notnull()).any()):
+                axes.text(0.5, 0.6, "none", transform=axes.transAxes, color=GREY, ha="center", fontsize="small")
+            axes.tick_params(labelsize=7.5)
+        row[0].set_title(name, fontsize="small", pad=2.0)
+    for axes, title in zip(grid[-1], ("along x", "along y", "up"), strict=True):
+        axes.set_xlabel(f"{title}: time [s]", fontsize="small")
+    figure.supylabel("ground acceleration [g]", fontsize="small")
+    return figure
+
+
+@styled
+def spectra_figure(assessment: Assessment) -> Figure:
+    """Draw the response spectra of the records, their mean, and the design spectrum if it is given."""
+    own = assessment.data["spectra"]["spectral_acceleration"].transpose("record", "period") / STANDARD_GRAVITY
+    period = own["period"].to_numpy()
+    figure = new_figure(3.3)
+    axes = figure.subplots()
+    few = own.sizes["record"] <= _COLOURED
+    for place, name in enumerate(own["record"].to_numpy()):
+        look = {"color": PALETTE[place], "label": str(name)} if few else {"color": GREY, "alpha": 0.6}
+        axes.plot(period, own.sel(record=name), linewidth=0.9, **look)
+    if own.sizes["record"] > 1:
+        axes.plot(period, own.mean("record"), color=BLACK, linewidth=2.2, label="mean of the records")
+    design = assessment.setting.get("details", {}).get("design_spectrum")
+    if design:
+        axes.plot(
+            design["period"],
+            np.array(design["acceleration"]) / STANDARD_GRAVITY,
+            color=VERMILION,
+            linestyle="--",
+            linewidth=2.2,
+            label=literal(str(design["name"])),
+        )
+    axes.set(xlim=(0.0, float(period[-1])), ylim=(0.0, None), xlabel="natural period [s]", ylabel="Sa [g]")
+    axes.legend(loc="upper right", fontsize="small")
+    axes.set_title("Response spectra, 5 % damping, records as recorded (scale 1)")
+    return figure
+
+
+Pictures = dict[str, Picture]
+
+
+def report_pictures(assessment: Assessment) -> Pictures:
+    """Return the pictures by file name; each name begins with the name of the section."""
+    drawn = replace(assessment, data={name: with_literal_names(data) for name, data in assessment.data.items()})
+    found = _of_records(drawn)
+    names = (assessment.data["columns"]["column"], drawn.data["columns"]["column"])
+    for place, (name, column) in enumerate(zip(*(one.to_numpy() for one in names), strict=True)):
+        found |= _of_column(drawn, str(column), str(name), place + 1)
+    return found
+
+
+def _of_records(assessment: Assessment) -> Pictures:
+    if "ground_motions" not in assessment.data:
+        return {}
+    names = labels(assessment.data["ground_motions"])
+    found = {}
+    for first in range(0, len(names), _RECORDS_A_FIGURE):
+        some = names[first : first + _RECORDS_A_FIGURE]
+        found[f"records-{first // _RECORDS_A_FIGURE + 1}"] = Picture(
+            _records_figure(assessment, some), "Ground accelerations as recorded (scale 1) along x, y and up."
+        )
+    design = assessment.setting.get("details", {}).get("design_spectrum")
+    over = f" Dashed: {design['name']}, {100.0 * design['damping']:g} % damping." if design else ""
+    found["spectra-1"] = Picture(
+        spectra_figure(assessment),
+        "Pseudo-acceleration spectra of the records and their mean. They are RotD50; the spectrum of a record along "
+        f"one axis is that of its component.{over}",
+    )
+    return found
+
+
+def _of_column(assessment: Assessment, column: str, called: str, place: int) -> Pictures:
+    """Return the pictures of a `column`, which is `called` otherwise outside figures."""
+    found = {}
+    if bool((assessment.data["margins"]["intervals"].sel(column=column) > 0).any()):
+        found[f"margins-{place}"] = Picture(
+            margins_figure(assessment, column),
+            f"{called}: scale factors of each record at which it overturned (hatched) or did not, at each dissipation. "
+            "An interval narrower than the step of the scan may have been missed.",
+        )
+    if bool((assessment.data["histories"]["peak_tilt_ratio"].sel(column=column) > SMALLEST_TILT).any()):
+        found[f"history-{place}"] = Picture(
+            history_figure(assessment, column),
+            f"{called} under its governing record. Left: tilt and base acceleration against time. Right: path of the "
+            "tilt. Dashed: the tipping angle α_c, at which the centre of mass stands above the rim.",
+        )
+    if bool((assessment.data["verdicts"]["friction_demand"].sel(column=column) > 0.0).any()):
+        found[f"contact-{place}"] = Picture(
+            _contact_figure(assessment, column),
+            f"{called}: friction needed in each run. Dashed: the stated coefficient.",
+        )
+    with_vertical = any(rises(assessment, name) for name in labels(assessment.data["records"]))
+    vertical = " (vertical component included)" if with_vertical else ""
+    for scale in assessment.setting["scales"]:
+        if not _rocked(assessment, column, scale):
+            continue
+        found[f"tilts-{place}-scale-{scale:g}"] = Picture(
+            tilts_figure(assessment, column, scale),
+            f"{called} at scale {scale:g}: peak tilts at each dissipation{vertical}, and those of the planar column if "
+            "it was computed.",
+        )
+        if "variations" in assessment.data:
+            found[f"variations-{place}-scale-{scale:g}"] = Picture(
+                shares_figure(assessment, column, scale),
+                f"{called} at scale {scale:g}: share of small variations that overturn it, with its 90 % sampling "
+                "interval (bar), and share of the scales within 10 % that do so (marks, one for each case). Between "
+                "the dashed limits the case is undecided.",
+            )
+    if "fragility" in assessment.data:
+        found[f"fragility-{place}"] = Picture(
+            plot_fragility(assessment.data["fragility"].sel(column=column)), f"{called}: fragility."
+        )
+    return found
+
+
+def _rocked(assessment: Assessment, column: str, scale: float) -> bool:
+    """Return whether any run at a scale tilted the column, or was not decided."""
+    runs = assessment.data["verdicts"].sel(column=column, scale=scale)
+    return bool(np.any((runs["tilt_ratio"].to_numpy() > SMALLEST_TILT) | (runs["overturned"].to_numpy() != 0)))

@@ -1,36 +1,79 @@
 """The tables of an assessment, for the report and for files."""
 
 import math
-from collections.abc import Callable
+import re
+from collections.abc import Callable, Iterator
 
-from stylobate.earthquakes.assessment.report import margin_tables, record_tables, run_tables
-from stylobate.earthquakes.assessment.report.cells import cells
-from stylobate.earthquakes.assessment.report.displacements import TILT_HEADER, shown_point, tilt_cells
-from stylobate.earthquakes.assessment.report.wording import number
+import numpy as np
+import xarray as xr
+
+from stylobate.earthquakes.assessment.report.column_verdict import (
+    NO_COMPONENT,
+    acts_in,
+    case_name,
+    cases_of,
+    column_verdict,
+    largest_decided,
+    rises,
+)
+from stylobate.earthquakes.assessment.report.wording import (
+    CENTRAL,
+    TILT_HEADER,
+    at_most,
+    cells,
+    counts,
+    degrees,
+    in_g,
+    intervals,
+    labels,
+    least_scale,
+    listed,
+    near_share,
+    number,
+    numbers,
+    shown_point,
+    stated_friction,
+    tilt,
+    tilt_cells,
+    verdict,
+)
 from stylobate.plots.page import Table
 from stylobate.results.assessment import Assessment
+from stylobate.results.verdict import LABELS, interval_text, percent
+
+_ACTS = "with"
+_PLACES = ("column", "record", "scale")
+# The damping of the spectra of the records.
+_DAMPING = 0.05
+# If there are more records, the table of spectra has only the smallest and the largest value.
+_FEW = 6
+_SHOWN_PERIODS = (0.1, 0.2, 0.3, 0.5, 1.0, 2.0, 3.0)
+# Provenance line of a record file: its name, its unit, and the title in its header.
+_READ = re.compile(r"read from (?P<file>.+?), in [^:]+(?:: (?P<title>.+))?")
 
 
-def assessment_tables(assessment: Assessment) -> dict[str, Table]:
-    """Format all tables of an assessment, by name."""
-    made = {name: make(assessment) for name, make in _TABLES.items()}
-    return {name: table for name, table in made.items() if table.rows}
-
-
-def _columns(assessment: Assessment) -> Table:
+def _verdicts(assessment: Assessment) -> Table:
+    """Tabulate the class of each verdict, and the records that decide it."""
     header = (
-        *("column", "radius [m]", "height [m]", "centre of mass [m]", "mass [kg]", "c = r/h", "α_c [°]", "R [m]"),
-        *("p [1/s]", "rocks above [m/s²]", "stated friction", "displaced point"),
-    )
-    names = (
-        *("radius", "height", "mass_height", "mass", "slenderness", "tipping_angle", "rim_distance"),
-        *("frequency_parameter", "uplift_acceleration", "friction_coefficient"),
+        *("column", "scale", "verdict", "overturned it (central dissipation)", "only at another dissipation"),
+        *("only with the other contact law", "only without the vertical component"),
+        *("overturned it within 10 % of the scale", "overturned it in some small variations"),
+        *("small variation not decided", "not decided", "more friction needed than stated, given contact law"),
     )
     rows = []
-    for where, one in cells(assessment.data["columns"], "column"):
-        values = {name: float(one[name]) for name in names}
-        values["tipping_angle"] = math.degrees(values["tipping_angle"])
-        rows.append((*where, *(number(value, 4) for value in values.values()), shown_point(one)[1]))
+    for column, scale in _columns_and_scales(assessment):
+        cases = cases_of(assessment, column, scale)
+        at_other, with_other_law, without = (
+            [f"{name} ({listed(levels, 'and')})" for name, levels in one.items()]
+            for one in (cases.at_other_dissipation, cases.with_other_law, cases.without_vertical)
+        )
+        in_band = [f"{name} ({near_share(share)})" for name, share in cases.in_band.items()]
+        varied = [f"{name} ({percent(share)})" for name, share in cases.varied.items()]
+        undecided = (*cases.undecided, *cases.undecided_elsewhere)
+        nearby = (in_band, varied, cases.variations_open)
+        names = (cases.overturned, at_other, with_other_law, without, *nearby, undecided, tuple(cases.slipping))
+        label = column_verdict(assessment, column, scale).verdict.value
+        rows.append((column, f"{scale:g}", label, *(", ".join(one) or "none" for one in names)))
     return Table(header, rows)
 
 
@@ -53,9 +96,322 @@ def _summary(assessment: Assessment) -> Table:
     )
     rows = []
     for where, one in cells(own, "column", "scale"):
-        counts = (f"{int(one[name])}" for name in (*names, *optional))
         tilted = tilt_cells(float(one["peak_tilt_ratio"]), assessment.data["columns"].sel(column=where[0]))
-        rows.append((*where, *counts, *tilted, number(float(one["friction_demand"]))))
+        rows.append((*where, *counts(one, *names, *optional), *tilted, number(float(one["friction_demand"]))))
+    return Table(header, rows)
+
+
+def _events(assessment: Assessment) -> Table:
+    """Tabulate event, station and files of each record."""
+    about = assessment.setting.get("details", {}).get("about_records", {})
+    rows = []
+    for name in labels(assessment.data["records"]):
+        lines = assessment.setting["records"][name]["processing"]
+        read = [found for found in map(_READ.fullmatch, lines) if found]
+        titles = list(dict.fromkeys(_without_component(found["title"]) for found in read if found["title"]))
+        if not titles and lines and not _READ.fullmatch(lines[0]):
+            titles = lines[:1]
+        stated = [str(about[name])] if name in about else []
+        rows.append((name, "; ".join([*stated, *titles]) or "–", ", ".join(found["file"] for found in read) or "–"))
+    return Table(("record", "event and station, as stated and in the files", "files"), rows)
+
+
+def _without_component(title: str) -> str:
+    """Remove the last field of a title that has several: "event, date, station, component"."""
+    return title.rpartition(",")[0] if title.count(",") > 1 else title
+
+
+def _intensities(assessment: Assessment) -> Table:
+    """Tabulate the intensities of each record as recorded."""
+    own, period = assessment.data["records"], _period(assessment)
+    spectral = _spectral(assessment)
+    header = (
+        *("record", "definition", "PGA [g]", "PGA [m/s²]", "PGV [m/s]", f"Sa({period:g} s) [g]", "PGA, vector [g]"),
+        *("PGA along x [g]", "PGA along y [g]", "PGA up [g]", "PGV, vector [m/s]", "duration [s]", "step [s]"),
+        *("velocity at the end [m/s]", "drift"),
+    )
+    rows = []
+    for name in labels(assessment.data["records"]):
+        one = own.sel(record=name)
+        in_g_too = [f"peak_acceleration{which}" for which in ("", "_x", "_y", "_z")]
+        rows.append(
+            (
+                name,
+                str(one["definition"].item()),
+                in_g(float(one["median_peak_acceleration"])),
+                *numbers(one, "median_peak_acceleration", "median_peak_velocity"),
+                in_g(spectral.get(name, math.nan)),
+                *(in_g(float(one[which])) for which in in_g_too[:-1]),
+                in_g(float(one[in_g_too[-1]])) if rises(assessment, name) else NO_COMPONENT,
+                *numbers(one, "peak_velocity", "length", "step", "residual_velocity"),
+                "yes" if name in drifting(assessment) else "no",
+            )
+        )
+    return Table(header, rows)
+
+
+def _spectra(assessment: Assessment) -> Table:
+    """Tabulate spectral accelerations of the records at some periods, their mean and the design spectrum.
+
+    The spectra of the records have 5 % damping: their mean is divided only by a design spectrum of the same damping.
+    """
+    if "spectra" not in assessment.data:
+        return Table((), [])
+    own = assessment.data["spectra"]["spectral_acceleration"]
+    design = assessment.setting.get("details", {}).get("design_spectrum")
+    alike = design is not None and math.isclose(design["damping"], _DAMPING)
+    each = labels(assessment.data["records"]) if own.sizes["record"] <= _FEW else ["smallest", "largest"]
+    header = ["period [s]", *(f"{name} [g]" for name in each), "mean [g]"]
+    header += [f"{design['name']} [g]", "mean / design"] if design else []
+    rows = []
+    for period in sorted({*_SHOWN_PERIODS, _period(assessment)}):
+        values = np.array([_at(own.sel(record=name), period) for name in labels(assessment.data["records"])])
+        shown = values if len(each) == values.size else (values.min(), values.max())
+        row = [f"{period:g}", *map(in_g, shown), in_g(values.mean())]
+        if design:
+            inside = design["period"][0] <= period <= design["period"][-1]
+            aim = float(np.interp(period, design["period"], design["acceleration"])) if inside else math.nan
+            row += [in_g(aim), number(values.mean() / aim) if aim and alike else "–"]
+        rows.append(tuple(row))
+    return Table(tuple(header), rows)
+
+
+def margin_intensities(assessment: Assessment) -> Table:
+    """Tabulate PGA, PGV and Sa of each record times the smallest overturning scale of a column.
+
+    One row has the smallest scale of the central case; another has the smallest scale of all cases if that is smaller.
+    """
+    period = _period(assessment)
+    header = (
+        *(
+            "column",
+            "record",
+            "governs",
+            "case",
+            "smallest overturning scale, at most",
+            "definition",
+            "PGA [g]",
+            "PGA [m/s²]",
+        ),
+        *("PGV [m/s]", f"Sa({period:g} s) [g]", f"Sa({period:g} s) [m/s²]", "PGA, vector [g]"),
+    )
+    least = assessment.data["margins"]["least_overturning"]
+    rows = []
+    for column in assessment.data["columns"]["column"].to_numpy():
+        governing = str(assessment.data["summary"]["governing"].sel(column=column).item())
+        for name in labels(assessment.data["records"]):
+            one = least.sel(column=column, record=name)
+            scales = {CENTRAL: float(one.sel(case=CENTRAL))}
+            if bool(one.min() < scales[CENTRAL]) or (math.isnan(scales[CENTRAL]) and bool(one.notnull().any())):
+                scales[str(one["case"].to_numpy()[np.nanargmin(one.to_numpy())])] = float(one.min())
+            for case, scale in scales.items():
+                where = (str(column), name, "yes" if name == governing else "", case)
+                highest = largest_decided(assessment, str(column), name, case)
+                rows.append((*where, *_at_scale(assessment, name, scale, highest)))
+    return Table(header, rows)
+
+
+def _at_scale(assessment: Assessment, record: str, scale: float, highest: float) -> tuple[str, ...]:
+    """Return the cells of a record times a scale; if that is NaN, times the highest decided scale, marked with ">"."""
+    own = assessment.data["records"].sel(record=record)
+    above = "> " if math.isnan(scale) and not math.isnan(highest) else ""
+    scale = highest if math.isnan(scale) else scale
+    peak, velocity = (scale * float(own[f"median_peak_{what}"]) for what in ("acceleration", "velocity"))
+    spectral = scale * _spectral(assessment).get(record, math.nan)
+    vector = scale * float(own["peak_acceleration"])
+    shown = (in_g(peak), number(peak), number(velocity), in_g(spectral), number(spectral), in_g(vector))
+    stated = f"{above}{number(scale, 4)}" if above else at_most(scale)
+    return (stated, str(own["definition"].item()), *(f"{above}{value}" for value in shown))
+
+
+def _governing(assessment: Assessment) -> Table:
+    """Tabulate the governing record of each column, and the peak tilt of each run that is drawn."""
+    own, runs = assessment.data["summary"], assessment.data["histories"]
+    header = (
+        *("column", "governing record", "smallest overturning scale", "smallest of all cases, at most"),
+        "scale of the run",
+        *("peak tilt / α_c", "tilt [°]", "displacement [mm]", "azimuth, from x to y", "time of peak [s]"),
+    )
+    rows = []
+    for column in own["column"].to_numpy():
+        one, body = own.sel(column=column), assessment.data["columns"].sel(column=column)
+        record = str(one["governing"].item())
+        margins = assessment.data["margins"].sel(column=column, case=CENTRAL, record=record)
+        first = (str(column), record, least_scale(margins), at_most(float(one["least_of_all"])))
+        for scale, run in _drawn_runs(runs.sel(column=column)):
+            ratio = float(run["peak_tilt_ratio"])
+            azimuth = degrees(float(run["azimuth"])) if ratio > 0.0 else "–"
+            at = number(float(run["time_of_peak_tilt"]))
+            rows.append((*first, number(scale, 4), *tilt_cells(ratio, body), azimuth, at))
+    return Table(header, rows)
+
+
+def _drawn_runs(histories: xr.Dataset) -> list[tuple[float, xr.Dataset]]:
+    """Return the runs of one column whose histories are drawn, each with the scale of its record."""
+    runs = [histories.sel(run=run) for run in histories["run"].to_numpy()]
+    return [(float(run["scale"]), run) for run in runs if math.isfinite(float(run["scale"]))]
+
+
+def _intervals_by_record(assessment: Assessment) -> Table:
+    """Tabulate the overturning intervals of each column, by record and case."""
+    own = assessment.data["margins"]
+    header = (
+        "column",
+        "record",
+        "case",
+        "smallest overturning scale",
+        "overturning intervals found",
+        "runs not decided",
+    )
+    rows = [
+        (*where, least_scale(one), intervals(one), f"{int(one['unknown'])}")
+        for where, one in cells(own, "column", "record", "case")
+        if acts_in(assessment, *where[1:])
+    ]
+    return Table(header, rows)
+
+
+def _tilts(assessment: Assessment) -> Table:
+    """Tabulate the peak tilts by record: at the central dissipation, and the largest of all cases."""
+    header = (
+        *("column", "record", "scale", *(f"{name}, central" for name in TILT_HEADER)),
+        *(*(f"{name}, largest of all cases" for name in TILT_HEADER), "displaced point"),
+    )
+    rows = []
+    for where, one in cells(assessment.data["verdicts"], *_PLACES):
+        body = assessment.data["columns"].sel(column=where[0])
+        central = tilt_cells(float(one["tilt_ratio"].sel(dissipation=CENTRAL, vertical=_ACTS)), body)
+        rows.append((*where, *central, *tilt_cells(float(one["tilt_ratio"].max()), body), shown_point(body)[1]))
+    return Table(header, rows)
+
+
+def _verdicts_by_record(assessment: Assessment) -> Table:
+    """Tabulate the outcome under each record at each dissipation, with and without the vertical component."""
+    own = assessment.data["verdicts"]
+    levels, acting = (own[dim].to_numpy() for dim in ("dissipation", "vertical"))
+    cases = [(level, acts) for acts in acting for level in levels if acts == _ACTS or level == CENTRAL]
+    header = (*_PLACES, *(case_name(str(level), str(acts)) for level, acts in cases))
+    rows = [
+        (*where, *(verdict(float(runs["overturned"].sel(dissipation=level, vertical=acts))) for level, acts in cases))
+        for where, runs in cells(own, *_PLACES)
+    ]
+    return Table(header, rows)
+
+
+def _friction_by_record(assessment: Assessment) -> Table:
+    """Tabulate the largest friction that the runs under each record needed."""
+    header, rows = (*_PLACES, "largest friction needed, given contact law", "stated friction", "sufficient"), []
+    for where, one in cells(assessment.data["summary"], *_PLACES) if assessment.setting["contact"] else ():
+        need, stated = float(one["friction_by_record"]), stated_friction(assessment, where[0])
+        rows.append((*where, number(need), number(stated), _enough(need, stated)))
+    return Table(header, rows)
+
+
+def _enough(need: float, stated: float) -> str:
+    return "–" if math.isnan(need) else "yes" if need <= stated else "no"
+
+
+def _friction_to_margin(assessment: Assessment) -> Table:
+    """Tabulate the friction needed below the smallest overturning scale, and the smallest scale that needs too much."""
+    header = (
+        *("column", "record", "case", "smallest overturning scale", "friction needed below it"),
+        *("stated friction", "smallest scale run that needs more"),
+    )
+    margins, rows = assessment.data["margins"], []
+    for where, one in cells(margins, "column", "record", "case") if assessment.setting["contact"] else ():
+        need, slipping = (float(one[name]) for name in ("friction_to_margin", "least_slipping"))
+        if not acts_in(assessment, *where[1:]) or (math.isnan(need) and math.isnan(slipping)):
+            continue
+        stated = stated_friction(assessment, where[0])
+        first = "none that was run" if math.isnan(slipping) else number(slipping)
+        rows.append((*where, least_scale(one), number(need), number(stated), first))
+    return Table(header, rows)
+
+
+def _sliding(assessment: Assessment) -> Table:
+    """Tabulate the runs with the sliding model, for the columns that slide before they rock."""
+    header = (
+        *("column", "record", "scale", "verdict with the sliding model", "peak slip [mm]", "residual slip [mm]"),
+        "time sliding [s]",
+    )
+    if "sliding" not in assessment.data:
+        return Table(header, [])
+    rows = []
+    for where, run in cells(assessment.data["sliding"], *_PLACES):
+        if not math.isnan(float(run["time_sliding"])):
+            slips = (number(1000.0 * float(run[name])) for name in ("peak_slip", "residual_slip"))
+            rows.append((*where, verdict(float(run["overturned"])), *slips, number(float(run["time_sliding"]))))
+    return Table(header, rows)
+
+
+def _small_variations(assessment: Assessment) -> Table:
+    """Tabulate the share of small variations that overturn each column, and the word that follows from it."""
+    header = (
+        *("column", "record", "scale", "under small variations", "share that overturns it", "90 % sampling interval"),
+        *("by contact law", "decided most by", "not decided", "median tilt / α_c", "95 % of tilts / α_c below"),
+    )
+    if "variations" not in assessment.data:
+        return Table(header, [])
+    rows = []
+    for where, one in cells(assessment.data["variations"], *_PLACES):
+        low, high = (float(one[f"share_{end}"]) for end in ("low", "high"))
+        laws = zip(one["contact_law"].to_numpy(), one["law_share"].to_numpy(), strict=True)
+        deciding = str(one["deciding"].item())
+        rows.append(
+            (
+                *(*where, str(one["word"].item()), percent(float(one["share"])), interval_text(low, high)),
+                ", ".join(f"{law} {percent(float(share))}" for law, share in laws),
+                LABELS.get(deciding, deciding) or "none alone",
+                f"{int(one['open'])} of {int(one['runs'])}",
+                *(tilt(float(one[f"tilt_ratio_{end}"])) for end in ("median", "high")),
+            )
+        )
+    return Table(header, rows)
+
+
+def _near_scales(assessment: Assessment) -> Table:
+    """Tabulate the share of overturning scales within 10 % of each stated scale, by case."""
+    own = assessment.data["margins"][["band_share"]]
+    cases = labels(own, "case")
+    rows = [
+        (*where, *(percent(float(one["band_share"].sel(case=case))) for case in cases))
+        for where, one in cells(own, *_PLACES)
+    ]
+    return Table((*_PLACES, *cases), rows)
+
+
+def _planar(assessment: Assessment) -> Table:
+    """Tabulate the verdicts in three dimensions beside those of the planar column."""
+    header = (
+        *("column", "record", "scale", "three-dimensional", "peak tilt / α_c", "planar (worse component)"),
+        "planar peak tilt / α_c",
+    )
+    if "planar" not in assessment.data:
+        return Table(header, [])
+    spatial = assessment.data["verdicts"].sel(dissipation=CENTRAL, vertical=_ACTS)
+    runs = spatial.assign(planar_tilt_ratio=assessment.data["planar"]["planar_tilt_ratio"])
+    rows = []
+    for where, run in cells(runs, *_PLACES):
+        flat = float(run["planar_tilt_ratio"])
+        state = "not decided" if math.isnan(flat) else verdict(float(math.isinf(flat)))
+        rows.append((*where, verdict(float(run["overturned"])), tilt(float(run["tilt_ratio"])), state, tilt(flat)))
+    return Table(header, rows)
+
+
+def _planar_bias(assessment: Assessment) -> Table:
+    """Tabulate the mean logarithm of the tilts in three dimensions over those of the planar column."""
+    header = (
+        *("column", "scale", "mean ln(tilt in three dimensions / planar)", "standard error", "records compared"),
+        *("overturned in three dimensions only", "overturned in the planar calculation only"),
+    )
+    if "planar" not in assessment.data:
+        return Table(header, [])
+    rows = []
+    for where, one in cells(assessment.data["planar"], "column", "scale"):
+        mean = float(one["bias"])
+        words = "too few records" if math.isnan(mean) else number(mean)
+        compared = counts(one, "compared", "only_space", "only_planar")
+        rows.append((*where, words, *numbers(one, "standard_error"), *compared))
     return Table(header, rows)
 
 
@@ -66,26 +422,38 @@ def _fragility(assessment: Assessment) -> Table:
     )
     if "fragility" not in assessment.data:
         return Table(header, [])
-    numbers = ("median", "median_low", "median_high", "dispersion", "dispersion_low", "dispersion_high")
+    fitted = ("median", "median_low", "median_high", "dispersion", "dispersion_low", "dispersion_high")
+    seen = ("runs", "runs_reached", "non_monotone_records")
     rows = []
     for where, one in cells(assessment.data["fragility"], "column", "limit_state"):
-        counts = (f"{int(one[name])}" for name in ("runs", "runs_reached", "non_monotone_records"))
-        column, state = where
-        rows.append((column, _limit_state(state), *(number(float(one[name])) for name in numbers), *counts))
+        column, state = where[0], where[1].replace("α", "α_c")  # the symbol of the report
+        rows.append((column, state, *numbers(one, *fitted), *counts(one, *seen)))
     return Table(header, rows)
 
 
-def _limit_state(name: str) -> str:
-    """Return a limit state such as "tilt 0.5 α" with the symbol α_c of the report."""
-    return name.replace("α", "α_c")
+def _columns(assessment: Assessment) -> Table:
+    header = (
+        *("column", "radius [m]", "height [m]", "centre of mass [m]", "mass [kg]", "c = r/h", "α_c [°]", "R [m]"),
+        *("p [1/s]", "rocks above [m/s²]", "stated friction", "displaced point"),
+    )
+    names = (
+        *("radius", "height", "mass_height", "mass", "slenderness", "tipping_angle", "rim_distance"),
+        *("frequency_parameter", "uplift_acceleration", "friction_coefficient"),
+    )
+    rows = []
+    for where, one in cells(assessment.data["columns"], "column"):
+        values = {name: float(one[name]) for name in names}
+        values["tipping_angle"] = math.degrees(values["tipping_angle"])
+        rows.append((*where, *(number(value, 4) for value in values.values()), shown_point(one)[1]))
+    return Table(header, rows)
 
 
 def _dissipation(assessment: Assessment) -> Table:
     rows = [
         (column, level, name, number(value, 4))
         for column, levels in assessment.setting["dissipation"].items()
-        for level, numbers in levels.items()
-        for name, value in numbers.items()
+        for level, stated in levels.items()
+        for name, value in stated.items()
     ]
     own = assessment.data["columns"]
     rows += [
@@ -98,27 +466,104 @@ def _dissipation(assessment: Assessment) -> Table:
     return Table(("column", "level", "parameter of the model", "value"), rows)
 
 
+def _provenance(assessment: Assessment) -> Table:
+    """Tabulate origin, processing and digests of each record."""
+    rows = []
+    for name, record in assessment.setting["records"].items():
+        rows += [(name, f"{place + 1}. {line}") for place, line in enumerate(record["processing"])]
+        rows += [
+            (name, f"SHA-256 of {path}: {digest}") for path, digest in record["motion"].get("file_sha256", {}).items()
+        ]
+        if record["digest"]:
+            rows.append((name, f"SHA-256 of its numbers: {record['digest']}"))
+    return Table(("record", "origin and processing"), rows)
+
+
+def _every_run(assessment: Assessment) -> Table:
+    """Tabulate every run at the stated scales."""
+    header = (
+        *("column", "record", "scale", "dissipation", "vertical", "verdict", *TILT_HEADER),
+        *("friction needed", "sufficient", "pivoting moment / (N r)", "minimum normal force / weight"),
+    )
+    rows = []
+    for where, one in cells(assessment.data["verdicts"], *_PLACES, "dissipation", "vertical"):
+        column, record, _, level, acts = where
+        if not acts_in(assessment, record, case_name(level, acts)):
+            continue
+        need = float(one["friction_demand"])
+        friction = (number(need), _enough(need, stated_friction(assessment, column)))
+        more = numbers(one, "pivoting_demand", "minimum_normal_force")
+        tilted = tilt_cells(float(one["tilt_ratio"]), assessment.data["columns"].sel(column=column))
+        vertical = ("yes" if acts == _ACTS else "no") if rises(assessment, record) else NO_COMPONENT
+        state = (vertical, verdict(float(one["overturned"])))
+        rows.append((*where[:-1], *state, *tilted, *friction, *more))
+    return Table(header, rows)
+
+
+# What several tables need
+
+
+def _record_names(assessment: Assessment) -> list[str]:
+    """Return the names of the records."""
+    return [str(name) for name in assessment.data["records"]["record"].to_numpy()]
+
+
+def drifting(assessment: Assessment) -> list[str]:
+    """Return the names of the records that end with a velocity above 5 % of their PGV along some axis."""
+    own = assessment.data["records"]
+    return [str(name) for name in own["record"].to_numpy()[own["drifts"].to_numpy() == 1]]
+
+
+def _period(assessment: Assessment) -> float:
+    return float(assessment.setting.get("details", {}).get("spectral_period", 1.0))
+
+
+def _spectral(assessment: Assessment) -> dict[str, float]:
+    """Return the spectral acceleration of each record at the stated period [m/s²]; empty if there are no spectra."""
+    if "spectra" not in assessment.data:
+        return {}
+    own = assessment.data["spectra"]["spectral_acceleration"]
+    return {name: _at(own.sel(record=name), _period(assessment)) for name in labels(assessment.data["records"])}
+
+
+def _at(spectrum: xr.DataArray, period: float) -> float:
+    """Interpolate a spectrum linearly in the logarithm of the period."""
+    return float(np.interp(math.log(period), np.log(spectrum["period"].to_numpy()), spectrum.to_numpy()))
+
+
+def _columns_and_scales(assessment: Assessment) -> Iterator[tuple[str, float]]:
+    for column in assessment.data["columns"]["column"].to_numpy():
+        for scale in assessment.setting["scales"]:
+            yield str(column), float(scale)
+
+
 _TABLES: dict[str, Callable[[Assessment], Table]] = {
-    "verdicts": run_tables.verdicts,
+    "verdicts": _verdicts,
     "summary": _summary,
-    "events": record_tables.events,
-    "records": record_tables.intensities,
-    "spectra": record_tables.spectra,
-    "margin-intensities": record_tables.margin_intensities,
-    "governing": margin_tables.governing,
-    "margins": margin_tables.intervals_by_record,
-    "tilts": run_tables.tilts,
-    "verdicts-by-record": run_tables.verdicts_by_record,
-    "contact-by-record": run_tables.friction_by_record,
-    "contact-to-margin": margin_tables.friction_to_margin,
-    "sliding": run_tables.sliding,
-    "variations": run_tables.small_variations,
-    "near-scales": run_tables.near_scales,
-    "planar": run_tables.planar,
-    "planar-bias": run_tables.planar_bias,
+    "events": _events,
+    "records": _intensities,
+    "spectra": _spectra,
+    "margin-intensities": margin_intensities,
+    "governing": _governing,
+    "margins": _intervals_by_record,
+    "tilts": _tilts,
+    "verdicts-by-record": _verdicts_by_record,
+    "contact-by-record": _friction_by_record,
+    "contact-to-margin": _friction_to_margin,
+    "sliding": _sliding,
+    "variations": _small_variations,
+    "near-scales": _near_scales,
+    "planar": _planar,
+    "planar-bias": _planar_bias,
     "fragility": _fragility,
     "columns": _columns,
     "dissipation": _dissipation,
-    "record-provenance": record_tables.provenance,
-    "runs": run_tables.every_run,
+    "record-provenance": _provenance,
+    "runs": _every_run,
 }
+
+
+def assessment_tables(assessment: Assessment) -> dict[str, Table]:
+    """Format all tables of an assessment, by name."""
+    made = {name: make(assessment) for name, make in _TABLES.items()}
+    return {name: table for name, table in made.items() if table.rows}

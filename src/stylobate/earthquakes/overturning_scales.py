@@ -1,19 +1,16 @@
-"""All overturning intervals of the amplitude of a base motion: overturning spectra."""
+"""Overturning intervals of the scale of a base motion: a scan, bisection of the edges it finds, and their table."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Unpack
+from typing import Annotated, Any, Self, Unpack, get_args, get_type_hints
 
 import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
 from stylobate.base_motions import BaseMotion
-from stylobate.earthquakes.spectra.cases import Cases
-from stylobate.earthquakes.spectra.edges import Edges, Ends, Integers, joined
-from stylobate.earthquakes.spectra.interval_table import interval_table
-from stylobate.earthquakes.spectra.provenance import provenance_of_spectrum
+from stylobate.earthquakes.rocking_spectra import Cases, provenance_of_spectrum
 from stylobate.errors import Interrupted, Most, ParameterError, require_positive, require_whole
 from stylobate.models import Model
 from stylobate.parameter_quantities import attributes_of
@@ -21,8 +18,211 @@ from stylobate.progress import Progress, Report, report_of, shows_progress
 from stylobate.results.outcomes import NOT_COMPUTED
 from stylobate.run_arguments import RunOptions
 from stylobate.studies.checks import require_no_tilt_limit
+from stylobate.studies.maps.uncertainty_exponent import overturned_or_not
 from stylobate.studies.sweeps import Executor, run_sweep
 from stylobate.studies.sweeps.designs import Floats, checked_values
+
+Integers = npt.NDArray[np.int64]
+Flags = npt.NDArray[np.bool_]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Ends:
+    """Outcomes of runs at these values of `scale`, as arrays of equal shape.
+
+    `state` is 1 if the column overturned, towards the azimuth `direction` [rad]; 0 if it did not; negative if the run
+    is undecided.
+    """
+
+    scale: Floats
+    state: Integers
+    direction: Floats
+    uncertain: Flags
+
+    @classmethod
+    def of(cls, runs: xr.Dataset, scale: Floats) -> Self:
+        """Collect the outcomes of `runs` at these scales, in the same order."""
+        direction, uncertain = (runs[name].to_numpy().reshape(scale.shape) for name in ("direction", "uncertain"))
+        return cls(scale, overturned_or_not(runs).reshape(scale.shape), direction, uncertain.astype(bool))
+
+    def __getitem__(self, chosen: Any) -> "Ends":
+        return Ends(*(array[chosen] for array in (self.scale, self.state, self.direction, self.uncertain)))
+
+    def reshaped(self, shape: tuple[int, ...]) -> "Ends":
+        """Return the same outcomes as arrays of another shape."""
+        scale, state, direction, uncertain = self.scale, self.state, self.direction, self.uncertain
+        return Ends(scale.reshape(shape), state.reshape(shape), direction.reshape(shape), uncertain.reshape(shape))
+
+    @property
+    def decided(self) -> Flags:
+        """Whether each run is decided."""
+        return self.state >= 0
+
+    def differ(self, other: "Ends") -> Flags:
+        """Flag pairs with different states (undecided is one state) or overturning more than a right angle apart."""
+        apart = np.cos(self.direction - other.direction) < 0.0
+        unlike = np.maximum(self.state, -1) != np.maximum(other.state, -1)
+        return np.asarray(unlike | ((self.state == 1) & apart))
+
+
+def joined(*parts: Ends) -> Ends:
+    """Concatenate outcomes."""
+    names = ("scale", "state", "direction", "uncertain")
+    return Ends(*(np.concatenate([getattr(part, name) for part in parts]) for name in names))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Edges:
+    """Changes of the outcome along the scale between the runs `low` and `high`, in order of case and scale.
+
+    At an edge overturning begins or ends, or decided runs end or begin, or the direction of overturning reverses; a
+    reversal may hide a safe gap.
+    """
+
+    case: Integers
+    low: Ends
+    high: Ends
+
+    @classmethod
+    def between(cls, case: Integers, runs: Ends) -> Self:
+        """Find the edges between successive runs of each case; flat arrays, in order of case and scale."""
+        place = np.flatnonzero((case[:-1] == case[1:]) & runs[:-1].differ(runs[1:]))
+        return cls(case[place], runs[place], runs[place + 1])
+
+    @property
+    def middle(self) -> Floats:
+        """Geometric means of the ends."""
+        return np.asarray(np.sqrt(self.low.scale * self.high.scale))
+
+    @property
+    def turns(self) -> Flags:
+        """Whether the column overturns on both sides of an edge."""
+        return np.asarray((self.low.state == 1) & (self.high.state == 1))
+
+    def wide(self, width: float) -> Flags:
+        """Flag the edges that are wider than this fraction of their scale."""
+        return np.asarray(self.high.scale > self.low.scale * (1.0 + width))
+
+    def halvings(self, width: float) -> int:
+        """Return the number of runs that bisect all edges to this width, if no further edges are found."""
+        wide = self.wide(width)
+        ratio = np.log(self.high.scale[wide] / self.low.scale[wide]) / np.log1p(width)
+        return int(np.ceil(np.log2(ratio)).sum())
+
+    def halved(self, chosen: Flags, middle: Ends) -> "Edges":
+        """Cut the `chosen` edges at the runs `middle`; keep the halves whose ends differ."""
+        case, low, high = self.case[chosen], self.low[chosen], self.high[chosen]
+        below, above = low.differ(middle), middle.differ(high)
+        cases = np.concatenate([self.case[~chosen], case[below], case[above]])
+        lower = joined(self.low[~chosen], low[below], middle[above])
+        upper = joined(self.high[~chosen], middle[below], high[above])
+        order = np.lexsort((lower.scale, cases))
+        return Edges(cases[order], lower[order], upper[order])
+
+
+# Each annotation has the type of a field and its long name, an attribute of the result.
+@dataclass(frozen=True, slots=True)
+class _Interval:
+    interval_from: Annotated[float, "smallest scale of the interval that overturned"]
+    interval_to: Annotated[float, "largest scale of the interval that overturned"]
+    safe_below: Annotated[float, "largest scale below the interval that did not overturn"] = np.nan
+    safe_above: Annotated[float, "smallest scale above the interval that did not overturn"] = np.nan
+    open_below: Annotated[bool, "the interval may begin lower: it reaches the first scale or an undecided run"] = False
+    open_above: Annotated[bool, "the interval may end higher: it reaches the last scale or an undecided run"] = False
+    undecided_below: Annotated[bool, "the next run below the interval is undecided"] = False
+    undecided_above: Annotated[bool, "the next run above the interval is undecided"] = False
+    uncertain_below: Annotated[bool, "a run at the lower edge is numerically uncertain or undecided"] = False
+    uncertain_above: Annotated[bool, "a run at the upper edge is numerically uncertain or undecided"] = False
+
+
+@dataclass(frozen=True, slots=True)
+class _Stretch:
+    undecided_from: Annotated[float, "largest decided scale below undecided runs, or the first scale"]
+    undecided_to: Annotated[float, "smallest decided scale above undecided runs, or the last scale"]
+
+
+def interval_table(cases: Cases, scan: Ends, edges: Edges) -> xr.Dataset:
+    """Tabulate the overturning intervals and undecided stretches of each case.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over the axes and `interval`, NaN beyond the last: the intervals. Over the axes and `stretch`: `undecided_from`
+        and `undecided_to`. Over the axes: the numbers of intervals, `reversals` and undecided runs, and `decided_to`.
+    """
+    own = [np.flatnonzero((edges.case == case) & ~edges.turns) for case in range(cases.count)]
+    intervals = [_intervals_of(scan[case], edges, chosen) for case, chosen in enumerate(own)]
+    stretches = [_stretches_of(scan[case], edges, chosen) for case, chosen in enumerate(own)]
+    dims = tuple(cases.axes)
+    counts = {
+        "intervals": ([len(row) for row in intervals], "overturning intervals"),
+        "reversals": (
+            np.bincount(edges.case[edges.turns], minlength=cases.count),
+            "changes of direction within the intervals, without a safe gap as wide as an edge",
+        ),
+        "unknown": (np.count_nonzero(~scan.decided, axis=1), "undecided runs of the scan"),
+    }
+    table: dict[str, xr.Variable] = {}
+    for dim, kind, rows in (("interval", _Interval, intervals), ("stretch", _Stretch, stretches)):
+        for name, declared in get_type_hints(kind, include_extras=True).items():
+            of, long_name = get_args(declared)
+            attributes = {"long_name": long_name} if of is bool else {"units": "1", "long_name": long_name}
+            table[name] = xr.Variable((*dims, dim), cases.over_axes(_column(rows, name, of)), attributes)
+    for name, (count, long_name) in counts.items():
+        attributes = {"units": "1", "long_name": long_name}
+        table[name] = xr.Variable(dims, cases.over_axes(np.array(count, dtype=np.int64)), attributes)
+    first = [row[0].undecided_from if row else float(scan.scale[case, -1]) for case, row in enumerate(stretches)]
+    decided = np.where(scan.decided[:, 0], first, np.nan)
+    about = {"units": "1", "long_name": "largest scale up to which every run was decided"}
+    table["decided_to"] = xr.Variable(dims, cases.over_axes(decided), about)
+    return xr.Dataset(table)
+
+
+def _column(rows: Sequence[Sequence[_Interval]] | Sequence[Sequence[_Stretch]], name: str, of: type) -> Any:
+    values: npt.NDArray[Any] = np.full(
+        (len(rows), max(1, *(len(row) for row in rows))), False if of is bool else np.nan, dtype=of
+    )
+    for case, row in enumerate(rows):
+        values[case, : len(row)] = [getattr(one, name) for one in row]
+    return values
+
+
+def _intervals_of(scan: Ends, edges: Edges, own: Integers) -> list[_Interval]:
+    """Return the overturning intervals of one case from its `own` edges; an interval ends at an undecided run."""
+    intervals: list[_Interval] = []
+    begun: dict[str, Any] = {}
+    if scan.state[0] == 1:
+        begun = {"interval_from": float(scan.scale[0]), "open_below": True}
+    for edge in own:
+        low, high = edges.low[edge], edges.high[edge]
+        unsure = bool(low.uncertain | high.uncertain)
+        if low.state == 1:
+            outside = _outside("above", high, unsure=unsure)
+            intervals.append(_Interval(**begun, interval_to=float(low.scale), **outside))
+        if high.state == 1:
+            begun = {"interval_from": float(high.scale), **_outside("below", low, unsure=unsure)}
+    if scan.state[-1] == 1:
+        intervals.append(_Interval(**begun, interval_to=float(scan.scale[-1]), open_above=True))
+    return intervals
+
+
+def _outside(side: str, run: Ends, *, unsure: bool) -> dict[str, Any]:
+    """Return the fields for the run on one side of an interval: it survived, or it is undecided."""
+    if run.decided:
+        return {f"safe_{side}": float(run.scale), f"uncertain_{side}": unsure}
+    return {f"open_{side}": True, f"undecided_{side}": True, f"uncertain_{side}": True}
+
+
+def _stretches_of(scan: Ends, edges: Edges, own: Integers) -> list[_Stretch]:
+    """Return the undecided stretches of one case, each between decided runs or ends of the scan."""
+    begins = [edge for edge in own if edges.high.state[edge] < 0]
+    ends = [edge for edge in own if edges.low.state[edge] < 0]
+    first = [] if scan.decided[0] else [float(scan.scale[0])]
+    last = [] if scan.decided[-1] else [float(scan.scale[-1])]
+    starts = first + [float(edges.low.scale[edge]) for edge in begins]
+    stops = [float(edges.high.scale[edge]) for edge in ends] + last
+    return [_Stretch(*pair) for pair in zip(starts, stops, strict=True)]
+
 
 # Scales that differ by less than this fraction count as equal.
 _SAME_SCALE = 1e-9
@@ -276,13 +476,13 @@ def _resolution(step: float, span: float, fine_scales: int) -> str:
 def _checked_scales(scales: npt.ArrayLike) -> Floats:
     values = checked_values("scales", "scale", scales)
     if values.size < 2 or not (values[0] > 0.0 and np.all(np.diff(values) > 0.0)):  # noqa: PLR2004  an interval
-        message = f"scales must be two or more positive numbers, increasing; got {values.tolist()}"
-        raise ParameterError(message)
+        raise ParameterError(f"scales must be two or more positive numbers, increasing; got {values.tolist()}")
     return values
 
 
 def _checked_width(width: float) -> float:
     if require_positive("width", width) < _NARROWEST:
-        message = f"width must be at least {_NARROWEST:g}, because rounding errors are larger; got {width!r}"
-        raise ParameterError(message)
+        raise ParameterError(
+            f"width must be at least {_NARROWEST:g}, because rounding errors are larger; got {width!r}"
+        )
     return float(width)

@@ -1,18 +1,113 @@
-"""Figures of rocking spectra: peak tilt and peak tilt rate over the period 2π/p."""
+"""Figures of records and of rocking spectra."""
 
-from typing import Any
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from stylobate.earthquakes.figures.spectrum_axes import Horizontal, finish, motion_names, named, split
-from stylobate.errors import Outcome
+from stylobate.base_motions import Record
+from stylobate.base_motions.record import AXES
+from stylobate.errors import Outcome, ParameterError
+from stylobate.plots.base_motion import COMPONENT_LOOKS, draw_spectra
+from stylobate.plots.cells import set_scale
 from stylobate.plots.kinds import figure_of
-from stylobate.plots.labels import axis_label
+from stylobate.plots.labels import axis_label, literal
+from stylobate.plots.result_figure import WIDTH
 from stylobate.plots.style import BLACK, DASHES, GREY, PALETTE, new_figure, styled
+
+_HEIGHT_OF_RECORD = 2.1
+
+
+@styled
+def plot_records(records: Sequence[Record], spectra: Mapping[str, xr.Dataset]) -> Figure:
+    """Draw each record in a row: accelerations over time on the left, response spectra on the right.
+
+    Parameters
+    ----------
+    records
+        Records with nonzero acceleration.
+    spectra
+        Spectra from `response_spectra`, by name of the record.
+    """
+    figure = new_figure(_HEIGHT_OF_RECORD * len(records) + 0.4, width=1.3 * WIDTH)
+    grid = figure.subplots(len(records), 2, squeeze=False, width_ratios=(2, 1))
+    for (left, right), record in zip(grid, records, strict=True):
+        _history(left, record)
+        draw_spectra(right, spectra[record.name])
+    grid[-1][0].set_xlabel("time [s]")
+    grid[-1][1].set_xlabel("period [s]")
+    return figure
+
+
+def _history(axes: Axes, record: Record) -> None:
+    for axis in record.axes:
+        place = AXES.index(axis)  # the vertical component lies behind
+        look: dict[str, Any] = {"linewidth": 0.6, "zorder": 3.0 - place, "label": axis} | COMPONENT_LOOKS[place]
+        axes.plot(record.times, record.samples[:, place], **look)
+    axes.set_title(literal(record.name))
+    axes.set_ylabel("acceleration [m/s²]")
+    axes.legend(loc="upper right", ncols=3)
+
+
+Floats = npt.NDArray[np.float64]
+
+_PLANE = 2
+# Maximum number of names of motions with horizontal text; more are vertical.
+_SHORT = 3
+
+
+class Horizontal(NamedTuple):
+    """Values along the horizontal axis, their label, and names in place of numbers, if any."""
+
+    values: Floats
+    label: str
+    names: tuple[str, ...] = ()
+
+
+def split(found: xr.Dataset, dims: list[str], most: int, what: str) -> tuple[str | None, str | None]:
+    """Return the dimension along the axis (the longest) and the dimension of the panels or curves.
+
+    Raises
+    ------
+    ParameterError
+        If there are more than two dimensions, or more than `most` values along the second.
+    """
+    ordered = sorted(dims, key=lambda dim: -found.sizes[dim])
+    if len(ordered) > _PLANE or (len(ordered) == _PLANE and found.sizes[ordered[1]] > most):
+        raise ParameterError(
+            f"a figure of {what} has one dimension, or two with up to {most} values along one of them; got "
+            f"{ {dim: found.sizes[dim] for dim in dims} }: choose some by found.sel(...) or found.isel(...)"
+        )
+    return (ordered[0] if ordered else None), (ordered[1] if len(ordered) == _PLANE else None)
+
+
+def named(found: xr.Dataset, dim: str, place: int) -> str:
+    """Return the name of one value along a dimension, such as "slenderness 0.1"."""
+    if dim == "motion":
+        return str(found["motion_name"][place].item())
+    return f"{axis_label(found[dim]).partition(' [')[0]} {found[dim][place].item():.4g}"
+
+
+def motion_names(found: xr.Dataset) -> Horizontal:
+    """Return the positions of several motions with their names."""
+    names = tuple(str(name) for name in found["motion_name"].to_numpy())
+    return Horizontal(np.arange(float(len(names))), "base motion", names)
+
+
+def finish(axes: Axes, along: Horizontal) -> None:
+    """Set scale, ticks and label of the horizontal axis."""
+    if along.names:
+        rotation = 0 if len(along.names) <= _SHORT else 90
+        axes.set_xticks(along.values, along.names, rotation=rotation)
+    else:
+        set_scale(axes, "x", along.values)
+    axes.set_xlabel(along.label)
+
 
 _HEIGHT, _MOST_CURVES = 5.4, 6
 # Height of the axis over the largest peak, with room for the marks of overturned runs.
