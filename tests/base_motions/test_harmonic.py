@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 import stylobate as sb
 from stylobate.base_motions.declared import value_of, with_numbers
-from stylobate.config.motions import describe_motion
+from stylobate.config.parts import describe_motion
 from stylobate.errors import ParameterError
 
 amplitudes = st.floats(-5.0, 5.0)

@@ -11,8 +11,8 @@ from pathlib import Path
 from types import FrameType
 
 from stylobate.cli.commands import COMMANDS
-from stylobate.cli.interrupts import _is_importing
 from stylobate.cli.main import run
+from stylobate.cli.terminal import _is_importing
 
 PROCESSOR_TIME = 10.0
 """Longest processor time of one command line that shows no progress [s]."""

@@ -12,9 +12,9 @@ from stylobate.cli.command import Command
 from stylobate.cli.command import _chosen as chosen_by
 from stylobate.cli.commands import COMMANDS
 from stylobate.cli.main import run
-from stylobate.cli.verdict import VerdictOfCase
-from stylobate.config.motions import MotionConfig
+from stylobate.cli.simulate import VerdictOfCase
 from stylobate.config.options import kinds_in_files
+from stylobate.config.parts import MotionConfig
 
 
 def words(text):

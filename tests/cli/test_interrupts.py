@@ -7,8 +7,8 @@ import sys
 
 import pytest
 
-from stylobate.cli.interrupts import INTERRUPTED, interrupted_by_signals
 from stylobate.cli.main import run
+from stylobate.cli.terminal import INTERRUPTED, interrupted_by_signals
 
 SLOW_MODULE = """
 import os, signal
@@ -22,7 +22,7 @@ except BaseException:
 
 def test_ctrl_c_during_an_import_that_would_swallow_it_ends_the_program(tmp_path):
     (tmp_path / "swallowing.py").write_text(SLOW_MODULE, encoding="utf-8")
-    program = "from stylobate.cli.interrupts import interrupted_by_signals as ends\nwith ends(): import swallowing\n"
+    program = "from stylobate.cli.terminal import interrupted_by_signals as ends\nwith ends(): import swallowing\n"
     paths = os.pathsep.join([str(tmp_path), *sys.path])
     ended = subprocess.run(
         [sys.executable, "-c", program + "print('went on')"],

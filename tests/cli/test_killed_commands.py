@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from stylobate.cli.interrupts import INTERRUPTED
+from stylobate.cli.terminal import INTERRUPTED
 
 CIRCLE = "--slenderness 0.1 --damping 0.1 --motion circular"
 STUDY = """

@@ -11,7 +11,7 @@ import xarray as xr
 
 import stylobate as sb
 from stylobate.cli.main import run
-from stylobate.cli.progress import log_lines
+from stylobate.cli.terminal import log_lines
 
 COLUMN = ["--slenderness", "0.1", "--damping", "0.1"]
 AXES = ["--x", "angular-frequency", "0.5", "6", "5", "--y", "acceleration", "0.05", "0.4", "4"]

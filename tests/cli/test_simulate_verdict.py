@@ -7,7 +7,7 @@ import pytest
 
 import stylobate as sb
 from stylobate.cli.main import run
-from stylobate.cli.verdict import VerdictOfCase
+from stylobate.cli.simulate import VerdictOfCase
 from stylobate.config import Setup
 
 COLUMN = ["--radius", "0.3", "--height", "3", "--density", "2700", "--model", "wobbling", "--damping", "0.08"]

@@ -15,7 +15,7 @@ from stylobate.config import (
     read_config,
     study_config,
 )
-from stylobate.config.motions import describe_motion
+from stylobate.config.parts import describe_motion
 from stylobate.errors import ConfigError, FileError, ParameterError, UnlikelyInputWarning, UnsupportedError
 from stylobate.provenance import provenance_of_run
 

@@ -11,7 +11,7 @@ import pytest
 import schemathesis
 from tests.lab.conformity import DOCUMENT, component, conforms, endpoint, mistakes
 
-from stylobate.config.columns import implied_shape
+from stylobate.config.parts import implied_shape
 from stylobate.lab import Limits
 from stylobate.lab.app import Api
 from stylobate.lab.options import presets

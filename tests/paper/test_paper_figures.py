@@ -5,7 +5,7 @@ import pytest
 import xarray as xr
 
 import stylobate as sb
-from stylobate.paper.analyses import circular, free, planar, standing, straight, twist
+from stylobate.paper.analyses import circular, free, planar, straight, twist
 from stylobate.paper.analyses.setting import paper_model
 from stylobate.paper.report import _PICTURES
 from stylobate.results import PaperCheck, Section
@@ -45,7 +45,7 @@ def check():
         "backbones": planar.backbone_data(),
         "kicks": planar.kick_data(),
         "runaway": free.runaway_data(),
-        "pressure": standing.pressure_data(),
+        "pressure": free.pressure_data(),
     }
     return PaperCheck({"All": Section((), data)})
 

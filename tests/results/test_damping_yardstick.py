@@ -3,8 +3,8 @@
 import pytest
 
 import stylobate as sb
-from stylobate.results.damping_yardstick import AMPLITUDES, damping_yardstick, side_of_yardstick
 from stylobate.results.summary import damping_rows
+from stylobate.results.verdict import AMPLITUDES, damping_yardstick, side_of_yardstick
 
 COLUMN = sb.Column.solid(radius=0.3, height=3.0, density=2700.0)
 LOWEST, HIGHEST = COLUMN.housner_damping(0.75), COLUMN.housner_damping(0.25)

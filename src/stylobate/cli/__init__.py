@@ -1,6 +1,6 @@
 """Command line: one module per command."""
 
-from stylobate.cli.interrupts import interrupted_by_signals
+from stylobate.cli.terminal import interrupted_by_signals
 
 with interrupted_by_signals():
     from stylobate.cli.main import main

@@ -13,10 +13,9 @@ import click
 
 from stylobate import config, earthquakes, studies
 from stylobate.cli.command import Argument, command
-from stylobate.cli.interrupts import INTERRUPTED
 from stylobate.cli.options import Options
 from stylobate.cli.output import NETCDF, check_place, print_json, print_table
-from stylobate.cli.progress import log_lines, part_lines
+from stylobate.cli.terminal import INTERRUPTED, log_lines, part_lines
 from stylobate.config.options import COMPUTING, JSON, Group, Option
 from stylobate.errors import FileError, Interrupted
 

@@ -31,7 +31,7 @@ COMMANDS = {
     ),
     "hierarchy": Entry("cli.hierarchy:hierarchy", "Compare all models of the hierarchy in one case."),
     "response": Entry("cli.response:response", "Compute amplitude and phase of steady rolling against frequency."),
-    "boundary": Entry("cli.boundary:boundary", "Compute the stability boundary of steady rolling over two parameters."),
+    "boundary": Entry("cli.response:boundary", "Compute the stability boundary of steady rolling over two parameters."),
     "map": Entry("studies:overturning_map", "Compute the overturning map over two parameters."),
     "basin": Entry("studies:basins", "Compute basins of attraction over initial conditions, and their fractions."),
     "drift": Entry("conveying:drift", "Compute the mean transport velocity of a column on a vibrating base."),

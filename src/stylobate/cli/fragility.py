@@ -34,9 +34,8 @@ from stylobate.config.options import (
     run_numbers,
 )
 from stylobate.errors import FileError, ParameterError
-from stylobate.results.damping_yardstick import yardstick_text
-from stylobate.results.few_records import few_records
 from stylobate.results.tables import number_of_runs
+from stylobate.results.verdict import few_records, yardstick_text
 from stylobate.run_arguments import SharedByRuns
 from stylobate.text import plural
 

@@ -11,8 +11,7 @@ from functools import partial
 from typing import Any
 
 from stylobate.cli.commands import COMMANDS
-from stylobate.cli.interrupts import INTERRUPTED, interrupted_by_signals
-from stylobate.cli.progress import log_lines
+from stylobate.cli.terminal import INTERRUPTED, interrupted_by_signals, log_lines
 from stylobate.errors import ConfigError, ModelError, StylobateError, UnlikelyInputWarning
 
 _BAD_INPUT = 2

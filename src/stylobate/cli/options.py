@@ -247,7 +247,7 @@ def _numbers(
 
 def _column(values: dict[str, Any], options: Options, problems: list[str]) -> list[str]:
     """Merge the column; options may change the shape of a file only if --shape states it."""
-    from stylobate.config.columns import implied_shape
+    from stylobate.config.parts import implied_shape
 
     part, stated = PARTS["column"], options.stated("column")
     if not stated:

@@ -8,7 +8,7 @@ import click
 from stylobate.cli.command import command
 from stylobate.cli.options import Options
 from stylobate.cli.output import check_place, print_json, print_table
-from stylobate.cli.progress import section_lines
+from stylobate.cli.terminal import section_lines
 from stylobate.config.options import JSON, Group, Option
 
 

@@ -12,7 +12,6 @@ import click
 
 from stylobate import config, studies
 from stylobate.cli.command import Argument, Command
-from stylobate.cli.interrupts import INTERRUPTED
 from stylobate.cli.options import Options, merge, overlay, read_source, with_axes
 from stylobate.cli.output import (
     STORE,
@@ -24,6 +23,7 @@ from stylobate.cli.output import (
     provenance_of,
     study_summary,
 )
+from stylobate.cli.terminal import INTERRUPTED
 from stylobate.config.study import Study, own_options, study_of
 from stylobate.errors import FileError, Interrupted, ParameterError, StylobateError
 

@@ -1,7 +1,6 @@
 from .hierarchy import HierarchyConfig
 from .record_collection import EventConfig, RecordsConfig
-from .record_files import relocated
-from .records import RecordMotion
+from .records import RecordMotion, relocated
 from .response import ResponseConfig
 from .simulation import Setup, SimulationConfig, config_of, read_config
 from .snippets import as_python, as_toml

@@ -6,12 +6,16 @@ from typing import TYPE_CHECKING, Any, Self
 
 from pydantic import Field, create_model
 
-from stylobate.config.columns import ColumnConfig
-from stylobate.config.declared import number_or_word
 from stylobate.config.description import Config, built
-from stylobate.config.models import DEFAULT_MODEL, default_values, described_model
-from stylobate.config.motions import AT_REST, MotionConfig
-from stylobate.config.run_numbers import fields_of, problems_of_the_numbers
+from stylobate.config.parts import (
+    AT_REST,
+    DEFAULT_MODEL,
+    ColumnConfig,
+    MotionConfig,
+    default_values,
+    described_model,
+    number_or_word,
+)
 from stylobate.config.simulation import (
     OF_OTHER_COMMANDS,
     OneColumn,
@@ -19,6 +23,8 @@ from stylobate.config.simulation import (
     SimulationConfig,
     built_parts,
     built_rules,
+    fields_of,
+    problems_of_the_numbers,
     with_default_duration,
 )
 from stylobate.errors import ConfigError, require_positive

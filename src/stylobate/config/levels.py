@@ -4,8 +4,8 @@ from collections.abc import Collection, Iterable, Mapping
 from typing import Any, TypeAlias
 
 from stylobate.column import Column
-from stylobate.config.columns import ANY_COLUMN
 from stylobate.config.description import Config
+from stylobate.config.parts import ANY_COLUMN
 from stylobate.errors import ParameterError, require_not_negative
 from stylobate.models.declared import dissipation_names, model_quantities
 from stylobate.text import did_you_mean

@@ -1,28 +1,174 @@
-"""Describe records: their files, units and processing."""
+"""Records in descriptions: their files, the steps of their processing, and the motion that they describe."""
 
 import hashlib
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Literal, cast
 
 from pydantic import Field
 
 from stylobate.base_motions import Record
 from stylobate.base_motions.record import RecordOrigin
-from stylobate.config.description import Config, Radians, Seconds
-from stylobate.config.record_steps import (
-    AnyStep,
-    RecordStep,
-    RotatedStep,
-    ScaledStep,
-    TailStep,
-    processed,
-)
+from stylobate.config.description import Config, Hertz, MetresPerSquareSecond, Radians, Seconds
 from stylobate.errors import FileError, ParameterError
 from stylobate.records import Lengths, RecordFormat, Steps, read_record, sample_record
 from stylobate.records.events import Event, RecordSource, find_events
 from stylobate.records.joining import join_event, reader, remark_on_missing_components
+
+
+def relocated(values: Any, folder: Path) -> Any:
+    """Return the plain values of a saved result with the new paths of missing record files.
+
+    The search uses the name of the file and the last parts of its old path, below `folder` and the folders above it. A
+    file must have the SHA-256 of the file with which the result was made.
+
+    Parameters
+    ----------
+    values
+        Values of a provenance or a description: tables, lists and plain values.
+    folder
+        Folder of the result.
+    """
+    if isinstance(values, list):
+        return [relocated(value, folder) for value in values]
+    if not isinstance(values, Mapping):
+        return values
+    digests = values.get("file_sha256")
+    if values.get("kind") != "record" or not isinstance(digests, Mapping):
+        return {name: relocated(value, folder) for name, value in values.items()}
+    places = {path: _place(path, digest, folder) for path, digest in digests.items()}
+    path = values.get("path")
+    moved = [places.get(one, one) for one in path] if isinstance(path, list) else places.get(str(path), path)
+    return {**values, "path": moved, "file_sha256": {places[name]: digest for name, digest in digests.items()}}
+
+
+def _place(path: str, digest: str, folder: Path) -> str:
+    """Return the present path of a file; its old path if it is there, or if it is not found."""
+    old = Path(path)
+    if old.is_file():
+        return path
+    here = folder.absolute()
+    for above in (here, *here.parents):
+        for count in range(1, len(old.parts)):
+            found = above.joinpath(*old.parts[-count:])
+            if found.is_file() and hashlib.sha256(found.read_bytes()).hexdigest() == digest:
+                return str(found)
+    return path
+
+
+class _Step(Config):
+    def apply(self, record: Record) -> Record:
+        """Apply the method of `Record` with the name of this step."""
+        values = self.model_dump(exclude_none=True)
+        return cast("Record", getattr(record, values.pop("method"))(**values))
+
+
+class ScaledStep(_Step):
+    """Scale by `factor`; the vertical component by `vertical`, if given."""
+
+    method: Literal["scaled"] = "scaled"
+    factor: float
+    vertical: float | None = None
+
+
+class ScaledToStep(_Step):
+    """Scale to the peak horizontal acceleration `peak` [m/s²]."""
+
+    method: Literal["scaled_to"]
+    peak: MetresPerSquareSecond
+
+
+class RotatedStep(_Step):
+    """Rotate by `angle` [rad] about the vertical, anticlockwise seen from above."""
+
+    method: Literal["rotated"] = "rotated"
+    angle: Radians
+
+
+class DelayedStep(_Step):
+    """Delay by `delay` [s]."""
+
+    method: Literal["delayed"] = "delayed"
+    delay: Seconds
+
+
+class InvertedStep(_Step):
+    """Reverse the horizontal components."""
+
+    method: Literal["inverted"] = "inverted"
+
+
+class TrimmedStep(_Step):
+    """Keep the samples from `begin` to `end` [s]."""
+
+    method: Literal["trimmed"] = "trimmed"
+    begin: Seconds | None = None
+    end: Seconds | None = None
+
+
+class PaddedStep(_Step):
+    """Add zeros `before` and `after` [s]."""
+
+    method: Literal["padded"] = "padded"
+    before: Seconds = 0.0
+    after: Seconds = 0.0
+
+
+class TailStep(_Step):
+    """Add a tail of zeros of this `length` [s]."""
+
+    method: Literal["with_tail"] = "with_tail"
+    length: Seconds
+
+
+class ResampledStep(_Step):
+    """Resample to another time `step` [s]."""
+
+    method: Literal["resampled"] = "resampled"
+    step: Seconds
+
+
+class FilteredStep(_Step):
+    """Apply a Butterworth filter with corners `highpass` and `lowpass` [Hz]."""
+
+    method: Literal["filtered"] = "filtered"
+    highpass: Hertz | None = None
+    lowpass: Hertz | None = None
+    order: int = 4
+    causal: bool = False
+
+
+class BaselineStep(_Step):
+    """Subtract the derivative of a polynomial of this `degree` fitted to the velocity."""
+
+    method: Literal["baseline_corrected"] = "baseline_corrected"
+    degree: int = 1
+
+
+AnyStep = (
+    ScaledStep
+    | ScaledToStep
+    | RotatedStep
+    | DelayedStep
+    | InvertedStep
+    | TrimmedStep
+    | PaddedStep
+    | TailStep
+    | ResampledStep
+    | FilteredStep
+    | BaselineStep
+)
+
+RecordStep = Annotated[AnyStep, Field(discriminator="method")]
+
+
+def processed(record: Record, steps: Iterable[AnyStep]) -> Record:
+    """Apply these steps to the record in order."""
+    for step in steps:
+        record = step.apply(record)
+    return record
+
 
 _LAST = ("scale", "rotation", "tail")
 _LONGEST_EVENT = 3  # two horizontal components and a vertical one

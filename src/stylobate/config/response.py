@@ -6,10 +6,8 @@ from functools import partial
 from typing import Annotated, Any, Self
 
 from stylobate.base_motions.declared import kinds_by_acceleration
-from stylobate.config.columns import ColumnConfig
 from stylobate.config.description import built
-from stylobate.config.models import STEADY_MODEL, SteadyModelConfig, described_model
-from stylobate.config.motions import MotionConfig, made_by
+from stylobate.config.parts import STEADY_MODEL, ColumnConfig, MotionConfig, SteadyModelConfig, described_model, made_by
 from stylobate.config.simulation import OF_OTHER_COMMANDS, OneColumn, Setup, SimulationConfig, built_parts
 from stylobate.errors import ConfigError, require_positive, require_whole
 from stylobate.quantities import Quantity, states

@@ -8,9 +8,15 @@ from pydantic import Field, create_model, field_validator
 
 from stylobate.config.axis import Axis
 from stylobate.config.description import Config, built
-from stylobate.config.many_runs import ManyRuns, common_values, name_of, refuse_design, with_numbers_that_vary
-from stylobate.config.run_numbers import fields_of
-from stylobate.config.simulation import Setup
+from stylobate.config.simulation import (
+    ManyRuns,
+    Setup,
+    common_values,
+    fields_of,
+    name_of,
+    refuse_design,
+    with_numbers_that_vary,
+)
 from stylobate.config.study import Study, own_numbers, several, study_of
 from stylobate.errors import LARGEST_SEED, MOST_RUNS, require_whole
 from stylobate.parameter_quantities import quantity_of

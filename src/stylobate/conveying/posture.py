@@ -18,8 +18,7 @@ from stylobate.errors import MOST_RUNS, Named, Outcome, ParameterError, require_
 from stylobate.models import Model
 from stylobate.quantities import Quantity
 from stylobate.results import OutcomeRules
-from stylobate.results.contact_classes import lands_flat, stays_in_a_plane
-from stylobate.results.outcomes import NOT_COMPUTED, flag_attributes
+from stylobate.results.outcomes import NOT_COMPUTED, flag_attributes, lands_flat, stays_in_a_plane
 from stylobate.results.tables import DEGREES, Table
 from stylobate.results.verdict import CLEAR, VerdictWord, percent, word_of
 from stylobate.studies.proportions import fraction_interval, require_confidence

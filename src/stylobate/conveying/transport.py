@@ -27,8 +27,7 @@ from stylobate.models import Model
 from stylobate.progress import Progress
 from stylobate.quantities import Quantity
 from stylobate.results import OutcomeRules
-from stylobate.results.contact_classes import contact_classes, knife_edge_remarks, lands_flat
-from stylobate.results.outcomes import NOT_COMPUTED, flag_attributes
+from stylobate.results.outcomes import NOT_COMPUTED, contact_classes, flag_attributes, knife_edge_remarks, lands_flat
 from stylobate.results.tables import DEGREES, Practical, Table, number_of_runs, practical
 from stylobate.run_arguments import RunOptions
 from stylobate.studies.proportions import require_confidence

@@ -22,7 +22,7 @@ from stylobate.errors import ParameterError
 from stylobate.models import Model
 from stylobate.progress import Progress, shows_progress
 from stylobate.records import HorizontalComponent
-from stylobate.results.damping_yardstick import damping_yardstick
+from stylobate.results.verdict import damping_yardstick
 from stylobate.run_arguments import RunOptions
 from stylobate.studies.sweeps import Executor
 

@@ -46,9 +46,8 @@ from stylobate.progress import Progress, Report, report_of, shows_progress
 from stylobate.provenance import provenance_of_run
 from stylobate.quantities import parameters_of
 from stylobate.results import OutcomeRules
-from stylobate.results.damping_yardstick import damping_yardstick, yardstick_text
 from stylobate.results.outcomes import NOT_COMPUTED
-from stylobate.results.verdict import CONTACT_LAW, KIND, Verdict
+from stylobate.results.verdict import CONTACT_LAW, KIND, Verdict, damping_yardstick, yardstick_text
 from stylobate.run_arguments import RunOptions, defaults_of
 from stylobate.studies.checks import require_no_tilt_limit
 from stylobate.studies.maps.uncertainty_exponent import overturned_or_not

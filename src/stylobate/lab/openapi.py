@@ -13,7 +13,7 @@ from pydantic import BaseModel
 
 from stylobate import config, studies
 from stylobate.base_motions.declared import MOTIONS, composite_kinds, kinds_with_response, motion_quantities
-from stylobate.config.motions import is_to_end
+from stylobate.config.parts import is_to_end
 from stylobate.errors import LARGEST, SMALLEST
 from stylobate.lab import answers
 from stylobate.lab.answers import Schema, in_words

@@ -10,10 +10,8 @@ from typing import Any, get_args
 from pydantic_core import PydanticUndefined
 
 from stylobate.base_motions.declared import composite_kinds, motion_quantities
-from stylobate.config.columns import ColumnConfig
 from stylobate.config.description import Config
-from stylobate.config.models import DESCRIBED_MODELS
-from stylobate.config.motions import MotionConfig, is_to_end
+from stylobate.config.parts import DESCRIBED_MODELS, ColumnConfig, MotionConfig, is_to_end
 from stylobate.engine.parameters import COLUMN_NAMES, MOTION_NAMES
 from stylobate.errors import Outcome
 from stylobate.lab import answers

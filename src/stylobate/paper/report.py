@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 
 from stylobate.errors import FileError
 from stylobate.files import write_whole
-from stylobate.paper import figures, twist_figures
+from stylobate.paper import figures
 from stylobate.plots.orbits import plot_exact_response
 from stylobate.plots.page import Picture, Section, Table, page, png_of
 from stylobate.plots.responses import plot_stability_boundary
@@ -89,14 +89,14 @@ _PICTURES: tuple[tuple[str, str, Callable[[PaperCheck], Figure], str], ...] = (
     (
         "free-twist",
         "Free spin",
-        lambda check: twist_figures.twist(check.data["twist"]),
+        lambda check: figures.twist(check.data["twist"]),
         "Steady rolling of a solid cylinder with free spin, a0 = 0.065, for several values of the spin damping ζ. With "
         "less spin damping the column leans less; it spins against its rolling. Bold: stable.",
     ),
     (
         "free-twist-boundary",
         "Free spin",
-        lambda check: twist_figures.twist_boundary(check.data["twist_boundary"]),
+        lambda check: figures.twist_boundary(check.data["twist_boundary"]),
         "The frequency ν* above which steady rolling with free spin is stable, against amplitude, spin damping ζ "
         "(grey: no spin) and damping η (dot: its limit η → 0 at every finite ζ). For columns with i_a < 2κ − 1 = ½ "
         "also the frequency above which it is unstable again (dots: limit ζ → 0).",

@@ -1,8 +1,7 @@
-from .assessment import Assessment
-from .contact_classes import ContactClass, contact_classes
+from .assessment import Assessment, DesignSpectrum, ReportDetails
 from .findings import ClaimStatus, Finding, PaperCheck, Section
 from .known_orbits import KnownOrbit
-from .report_details import DesignSpectrum, ReportDetails
+from .outcomes import ContactClass, contact_classes
 from .response import Event, Response
 from .rules import OutcomeRules
 from .storage import read_dataset, write_netcdf

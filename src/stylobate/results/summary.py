@@ -3,8 +3,8 @@
 import math
 from typing import TYPE_CHECKING, Any
 
-from stylobate.results.damping_yardstick import damping_yardstick, yardstick_text
 from stylobate.results.outcomes import NUMERICALLY_UNCERTAIN
+from stylobate.results.verdict import damping_yardstick, yardstick_text
 from stylobate.text import four_digits
 
 if TYPE_CHECKING:

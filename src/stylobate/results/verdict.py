@@ -1,23 +1,91 @@
-"""Result of a verdict: the share of small variations of a case that overturn the column."""
+"""Number of records that a fragility needs, and the remark on fewer records."""
 
 import json
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from enum import Enum
 from pathlib import Path
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Any, Literal, Self
 
 from stylobate.cards import Row, Section, card
 from stylobate.equality import ByContent
 from stylobate.errors import MOST_RUNS, FileError, Named, ParameterError, require_whole
-from stylobate.results.plain import ByName, plain_value
+from stylobate.results.storage import ByName, plain_value
 from stylobate.text import plural
 
 if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
+
+    from stylobate.column import Column
+
+FEW_RECORDS = 20
+"""Minimum number of records: with fewer, the measured coverage of dispersion intervals is well below nominal."""
+
+
+def few_records(count: int) -> str:
+    """Return the remark on a fragility from `count` records; empty for enough records.
+
+    >>> few_records(12)
+    '12 records: with fewer than 20 the interval of the dispersion is too narrow'
+    >>> few_records(20)
+    ''
+    """
+    if count >= FEW_RECORDS:
+        return ""
+    return f"{plural(count, 'record')}: with fewer than {FEW_RECORDS} the interval of the dispersion is too narrow"
+
+
+AMPLITUDES = {0.25: "¼", 0.5: "½", 0.75: "¾"}
+"""Peak tilts of the yardstick, in tipping angles α_c."""
+
+# Parameters that a planar cycle does not distinguish from damping alone; others lose energy beside it.
+_COMPARED = {"damping", "spin_damping"}
+
+
+def damping_yardstick(column: "Column") -> dict[float, float]:
+    """Compute Housner's damping of a column at each of the `AMPLITUDES`; it falls as they rise."""
+    return {amplitude: column.housner_damping(amplitude) for amplitude in AMPLITUDES}
+
+
+def yardstick_text(values: Iterable[float]) -> str:
+    """Write the values of Housner's damping at the `AMPLITUDES` in a line.
+
+    >>> yardstick_text([0.1173, 0.0802, 0.0641])
+    'η = 0.12, 0.08, 0.064 at a peak tilt of ¼, ½, ¾ α_c'
+    """
+    written = ", ".join(f"{value:.2g}" for value in values)
+    return f"η = {written} at a peak tilt of {', '.join(AMPLITUDES.values())} α_c"
+
+
+def side_of_yardstick(
+    column: "Column", levels: Iterable[Mapping[str, float]]
+) -> Literal["below", "above", "among", "not compared"]:
+    """Determine on which side of Housner's damping a set of levels of dissipation lies.
+
+    Parameters
+    ----------
+    column
+        The column.
+    levels
+        Dissipation parameters of each level, by name.
+
+    Returns
+    -------
+    str
+        "below" if the damping of every level is below the yardstick at all amplitudes, "above" if it is above, "among"
+        otherwise; "not compared" if a level has no damping, or loses energy by rolling resistance or restitution too.
+    """
+    given = list(levels)
+    if not given or any("damping" not in one or not _COMPARED.issuperset(one) for one in given):
+        return "not compared"
+    dampings, yardstick = [one["damping"] for one in given], damping_yardstick(column).values()
+    if max(dampings) < min(yardstick):
+        return "below"
+    return "above" if min(dampings) > max(yardstick) else "among"
+
 
 KIND = "verdict"
 """Value of the attribute `kind` of the data of a verdict."""

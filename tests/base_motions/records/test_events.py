@@ -7,7 +7,7 @@ import pytest
 
 import stylobate as sb
 from stylobate.config import RecordsConfig
-from stylobate.config.motions import describe_motion
+from stylobate.config.parts import describe_motion
 from stylobate.errors import FileError, ParameterError, UnlikelyInputWarning
 from stylobate.records import Direction
 

@@ -14,7 +14,7 @@ import pytest
 import stylobate as sb
 from stylobate.base_motions.base import Acceleration, AngularFrequency
 from stylobate.config import SimulationConfig, config_of, read_config, study_config
-from stylobate.config.many_runs import common_values
+from stylobate.config.simulation import common_values
 from stylobate.errors import ConfigError, ParameterError, UnsupportedError
 from stylobate.studies import Sweep
 

@@ -13,7 +13,7 @@ from stylobate.earthquakes.intensities import has_two_components, horizontal_pea
 from stylobate.progress import Report
 from stylobate.records import HorizontalComponent, response_spectra
 from stylobate.records.intensities import drifts
-from stylobate.results.damping_yardstick import AMPLITUDES, damping_yardstick, side_of_yardstick
+from stylobate.results.verdict import AMPLITUDES, damping_yardstick, side_of_yardstick
 from stylobate.studies.sweeps.designs import Floats
 
 ROTD50, ONE_COMPONENT = HorizontalComponent.ROTD50.value, "one component"

@@ -15,11 +15,9 @@ from pydantic import BeforeValidator, Field, TypeAdapter
 
 from stylobate.base_motions import Record
 from stylobate.config.axis import Axis
-from stylobate.config.columns import ColumnConfig
-from stylobate.config.declared import number_or_word
 from stylobate.config.description import Config, Seconds, built
 from stylobate.config.levels import LEVELS, is_by_level, problems_of_the_levels
-from stylobate.config.models import DEFAULT_MODEL, ModelConfig, described_model
+from stylobate.config.parts import DEFAULT_MODEL, ColumnConfig, ModelConfig, described_model, number_or_word
 from stylobate.config.record_collection import RecordsConfig
 from stylobate.errors import (
     LARGEST_SEED,
@@ -35,9 +33,8 @@ from stylobate.models import Model
 from stylobate.models.declared import model_quantities
 from stylobate.records.tables import Table
 from stylobate.records.text_files import KNOWN, Text, in_si, read_bytes, unit_of
-from stylobate.results.few_records import FEW_RECORDS
-from stylobate.results.report_details import DesignSpectrum, ReportDetails
-from stylobate.results.verdict import require_variations
+from stylobate.results.assessment import DesignSpectrum, ReportDetails
+from stylobate.results.verdict import FEW_RECORDS, require_variations
 from stylobate.run_arguments import Accuracy, numbers_of
 from stylobate.text import did_you_mean
 

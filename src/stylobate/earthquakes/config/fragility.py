@@ -10,9 +10,8 @@ from pydantic_core import PydanticCustomError
 from stylobate.base_motions import Record
 from stylobate.config.axis import Axis
 from stylobate.config.description import Config, Radians, Seconds, built
-from stylobate.config.many_runs import ManyRuns, common_values, name_of, with_numbers_that_vary
 from stylobate.config.record_collection import RecordsConfig
-from stylobate.config.simulation import Setup
+from stylobate.config.simulation import ManyRuns, Setup, common_values, name_of, with_numbers_that_vary
 from stylobate.earthquakes.config.hazard import Hazard, HazardPoints
 from stylobate.earthquakes.config.verdict import AnySpread
 from stylobate.errors import (

@@ -9,13 +9,11 @@ from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
 
-from stylobate.paper.analyses.circular import check_circular
-from stylobate.paper.analyses.exact import check_exact
+from stylobate.paper.analyses.circular import check_circular, check_exact
 from stylobate.paper.analyses.finished import FinishedAnalyses
-from stylobate.paper.analyses.free import check_free
+from stylobate.paper.analyses.free import check_free, check_standing
 from stylobate.paper.analyses.modulated import check_modulated
 from stylobate.paper.analyses.planar import check_planar
-from stylobate.paper.analyses.standing import check_standing
 from stylobate.paper.analyses.straight import check_straight
 from stylobate.paper.analyses.twist import check_twist
 from stylobate.processes import computed

@@ -12,14 +12,14 @@ from stylobate.config.study import Study
 from stylobate.errors import Outcome, ParameterError, UnsupportedError
 from stylobate.models import Model
 from stylobate.quantities import Quantity
-from stylobate.results.contact_classes import (
+from stylobate.results.outcomes import (
     CONTACT_CLASSES,
+    NOT_COMPUTED,
     ContactClass,
     contact_classes,
     knife_edge_remarks,
     lands_flat,
 )
-from stylobate.results.outcomes import NOT_COMPUTED
 from stylobate.results.tables import Table, number_of_runs
 from stylobate.run_arguments import duration_with_tail
 from stylobate.studies.study import Runs, described, study

@@ -42,8 +42,7 @@ from stylobate.files import csv_text, write_whole
 from stylobate.plots.page import Picture, Section, Table, page, png_of
 from stylobate.progress import Progress, Report, report_of, shows_progress
 from stylobate.results.assessment import Assessment
-from stylobate.results.damping_yardstick import yardstick_text
-from stylobate.results.few_records import few_records
+from stylobate.results.verdict import few_records, yardstick_text
 
 # Tables of a dozen columns fit a wide screen; a narrow screen scrolls tables and figures. In print, figures are only as
 # wide as legibility needs, so that a page holds two or three.
