@@ -21,6 +21,7 @@ from stylobate.earthquakes.assessment.report.wording import (
     TILT_HEADER,
     at_most,
     cells,
+    cells_of,
     counts,
     degrees,
     in_g,
@@ -334,10 +335,8 @@ def _sliding(assessment: Assessment) -> Table:
         *("column", "record", "scale", "verdict with the sliding model", "peak slip [mm]", "residual slip [mm]"),
         "time sliding [s]",
     )
-    if "sliding" not in assessment.data:
-        return Table(header, [])
     rows = []
-    for where, run in cells(assessment.data["sliding"], *_PLACES):
+    for where, run in cells_of(assessment, "sliding", *_PLACES):
         if not math.isnan(float(run["time_sliding"])):
             slips = (number(1000.0 * float(run[name])) for name in ("peak_slip", "residual_slip"))
             rows.append((*where, verdict(float(run["overturned"])), *slips, number(float(run["time_sliding"]))))
@@ -350,10 +349,8 @@ def _small_variations(assessment: Assessment) -> Table:
         *("column", "record", "scale", "under small variations", "share that overturns it", "90 % sampling interval"),
         *("by contact law", "decided most by", "not decided", "median tilt / α_c", "95 % of tilts / α_c below"),
     )
-    if "variations" not in assessment.data:
-        return Table(header, [])
     rows = []
-    for where, one in cells(assessment.data["variations"], *_PLACES):
+    for where, one in cells_of(assessment, "variations", *_PLACES):
         low, high = (float(one[f"share_{end}"]) for end in ("low", "high"))
         laws = zip(one["contact_law"].to_numpy(), one["law_share"].to_numpy(), strict=True)
         deciding = str(one["deciding"].item())
@@ -404,10 +401,8 @@ def _planar_bias(assessment: Assessment) -> Table:
         *("column", "scale", "mean ln(tilt in three dimensions / planar)", "standard error", "records compared"),
         *("overturned in three dimensions only", "overturned in the planar calculation only"),
     )
-    if "planar" not in assessment.data:
-        return Table(header, [])
     rows = []
-    for where, one in cells(assessment.data["planar"], "column", "scale"):
+    for where, one in cells_of(assessment, "planar", "column", "scale"):
         mean = float(one["bias"])
         words = "too few records" if math.isnan(mean) else number(mean)
         compared = counts(one, "compared", "only_space", "only_planar")
@@ -420,12 +415,10 @@ def _fragility(assessment: Assessment) -> Table:
         *("column", "limit state", "median PGA, RotD50 [m/s²]", "median from", "median to", "dispersion β_f"),
         *("β_f from", "β_f to", "runs", "runs that reached it", "records with survival above an overturning scale"),
     )
-    if "fragility" not in assessment.data:
-        return Table(header, [])
     fitted = ("median", "median_low", "median_high", "dispersion", "dispersion_low", "dispersion_high")
     seen = ("runs", "runs_reached", "non_monotone_records")
     rows = []
-    for where, one in cells(assessment.data["fragility"], "column", "limit_state"):
+    for where, one in cells_of(assessment, "fragility", "column", "limit_state"):
         column, state = where[0], where[1].replace("α", "α_c")  # the symbol of the report
         rows.append((column, state, *numbers(one, *fitted), *counts(one, *seen)))
     return Table(header, rows)

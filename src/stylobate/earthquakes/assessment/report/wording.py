@@ -207,6 +207,12 @@ def cells(data: xr.Dataset, *dims: str) -> Iterator[tuple[tuple[str, ...], xr.Da
         yield labels, data.sel(dict(zip(dims, values, strict=True)))
 
 
+def cells_of(assessment: Assessment, part: str, *dims: str) -> Iterator[tuple[tuple[str, ...], xr.Dataset]]:
+    """Yield the cells of a part of an assessment; none if it was not computed."""
+    if part in assessment.data:
+        yield from cells(assessment.data[part], *dims)
+
+
 ASSUMPTIONS: tuple[tuple[str, str], ...] = (
     ("body", "a rigid body of revolution in one piece, symmetric about its axis, on a flat circular base"),
     ("ground", "rigid, level and flat; the base acceleration acts on the whole footprint at once"),
