@@ -1,4 +1,4 @@
-"""The verdict beside a single run of `stylobate simulate`: options, computation, rows and files."""
+"""`stylobate simulate`: one column and one base motion; its outcome, and how surely it is so."""
 
 import math
 import warnings

@@ -1,4 +1,4 @@
-"""Details of a report besides its numbers: author, project, records and the design spectrum."""
+"""Result of an assessment of columns under records, and the details of its report besides the numbers."""
 
 import json
 from collections.abc import Mapping

@@ -1,4 +1,4 @@
-"""The samples of a run as plain arrays, converted to a Dataset at first use because xarray is slow to import."""
+"""`Response`, the result of a single run: histories, events, measures; and its file."""
 
 import json
 from collections.abc import Callable, Mapping

@@ -1,4 +1,4 @@
-"""Plain values of results, which JSON can hold: numbers for arrays and NumPy scalars, and values by name."""
+"""Files of results, and results as plain values that JSON can hold."""
 
 import sys
 from collections.abc import Callable, Mapping

@@ -1,4 +1,4 @@
-"""Number of records that a fragility needs, and the remark on fewer records."""
+"""Verdict on a case from small variations, and the remarks on few records and on the damping that a verdict assumes."""
 
 import json
 import math

@@ -1,4 +1,4 @@
-"""Models of the hierarchy, and a case for all of them."""
+"""One case with every model of the hierarchy: runs, their differences, and how these scale with slenderness."""
 
 import json
 import math

@@ -1,4 +1,4 @@
-"""The frame of equations (7) and (10), which turns with one circular component of a harmonic base motion."""
+"""Steady rolling in closed form as a known orbit, in the frame that turns with one circular component of the motion."""
 
 import math
 from collections.abc import Mapping, Sequence

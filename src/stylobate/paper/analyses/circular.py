@@ -1,4 +1,4 @@
-"""Circular base motion: exact rolling (8), its stability and the critical frequency."""
+"""Circular base motion: exact rolling (8), its stability and critical frequency, and exact periodic orbits."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""Standing column: conclusions 1 and 2, uplift and the centre of pressure."""
+"""Free vibration and the standing column: conclusions 1 and 2, uplift and the centre of pressure."""
 
 import math
 

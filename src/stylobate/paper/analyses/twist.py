@@ -1,4 +1,4 @@
-"""Runs of columns with free spin from the paper's solution without spin."""
+"""Free spin: what the paper's solution without spin leaves out, at small and at finite tilts."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""Periodic orbits in stroboscopic samples: detection of repetition, period and identical orbits."""
+"""Search for attractors: periodic orbits in stroboscopic samples, their periods and kinds."""
 
 import json
 import math

@@ -1,4 +1,4 @@
-"""Paths of orbits, each integrated once from a stroboscopic sample."""
+"""Attractors of a column under one base motion, their orbits, and the share of initial conditions that reach each."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace

@@ -1,9 +1,8 @@
-"""Continuation of attractors along a parameter: matching between successive values."""
+"""Basin fractions along a parameter: random initial conditions, and attractors matched between successive values."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
-from pathlib import Path
 from typing import Unpack
 
 import numpy as np
@@ -16,10 +15,8 @@ from stylobate.engine import with_parameters
 from stylobate.errors import MOST_RUNS, require_whole
 from stylobate.models import Model
 from stylobate.parameter_quantities import attributes_of
-from stylobate.progress import Progress, shows_progress
 from stylobate.results.outcomes import NOT_COMPUTED
 from stylobate.results.random_numbers import Rng
-from stylobate.run_arguments import RunOptions
 from stylobate.studies.checks import SYSTEM_STARTS, one_parameter, require_starts
 from stylobate.studies.maps.attractor_search import (
     KINDS,
@@ -35,9 +32,10 @@ from stylobate.studies.maps.attractor_search import (
 )
 from stylobate.studies.maps.attractors import attractor_table, rule_attributes
 from stylobate.studies.proportions import fraction_interval, require_confidence
-from stylobate.studies.sweeps import Executor, Sweep
+from stylobate.studies.study import Runs, described, study
+from stylobate.studies.sweeps import Sweep
 from stylobate.studies.sweeps.designs import Box, whole
-from stylobate.studies.sweeps.running import labelled_sweep
+from stylobate.studies.sweeps.running import Label
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,7 +108,7 @@ def _distance(found: Attractor, branch: Attractor, tolerance: float) -> float:
     return distance if distance < tolerance else _APART
 
 
-@shows_progress("basin fractions")
+@study("basin fractions")
 def basin_fractions(
     model: Model,
     motion: BaseMotion | None = None,
@@ -119,16 +117,10 @@ def basin_fractions(
     over: Mapping[str, Sequence[float]],
     count: int,
     rng: Rng = 0,
-    duration: float | None = None,
-    periods: float | None = None,
     attractor_rules: AttractorRules | None = None,
     confidence: float = 0.95,
-    store: str | Path | None = None,
-    executor: Executor | None = None,
-    resume: bool = False,
-    progress: Progress = None,
-    **options: Unpack[RunOptions],
-) -> xr.Dataset:
+    **run: Unpack[Runs],
+) -> tuple[Sweep, Label]:
     """Compute basin fractions along one parameter, from random initial conditions.
 
     The initial conditions are the same at every value of the parameter, so differences between values reflect the
@@ -146,17 +138,11 @@ def basin_fractions(
         start_phase [rad].
     count, rng
         Number of initial conditions, drawn uniformly; seed or numpy.random.Generator.
-    duration, periods
-        Duration of each run [s], or its number of periods of the base motion.
     attractor_rules
         Tolerances by which attractors are identified.
     confidence
         Confidence level of each interval by itself. Intervals at successive values are correlated.
-    store, executor, resume, progress
-        As in `run_sweep`.
-    **options
-        Arguments of all runs: tilt, tilt_rate, rtol, rules, strobes (by default 32, or half of the periods of a
-        shorter run) …
+    **run
 
     Returns
     -------
@@ -176,14 +162,8 @@ def basin_fractions(
     name, values = one_parameter(model, along, over)
     starts = Box.of(over, require_whole("count", count, least=1, most=MOST_RUNS), rng)
     points = {start: np.tile(drawn, values.size) for start, drawn in starts.values(whole(starts)).items()}
-    sweep = Sweep.points(
-        model,
-        motion,
-        at={name: np.repeat(values, starts.count), **points},
-        duration=duration,
-        periods=periods,
-        **options,
-    )
+    at = {name: np.repeat(values, starts.count), **points}
+    sweep = Sweep.points(model, motion, at=at, **described(run))
     label = partial(
         fractions_along,
         name=name,
@@ -191,8 +171,7 @@ def basin_fractions(
         rules=attractor_rules or AttractorRules(),
         confidence=require_confidence(confidence),
     )
-    sweep = with_strobes(sweep, options.get("strobes"))
-    return labelled_sweep(sweep, label, store=store, executor=executor, resume=resume, progress=progress)
+    return with_strobes(sweep, run["strobes"] or None), label
 
 
 def fractions_along(

@@ -1,9 +1,8 @@
-"""Distance from a state to the nearest overturning initial condition on a grid."""
+"""Integrity: the distance from a state to the nearest initial condition that overturns, and its erosion."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from functools import partial
-from pathlib import Path
 from typing import Any, Self, Unpack
 
 import numpy as np
@@ -14,14 +13,13 @@ from stylobate.base_motions import BaseMotion
 from stylobate.errors import Outcome, ParameterError, require_finite
 from stylobate.models import Model
 from stylobate.parameter_quantities import quantity_of
-from stylobate.progress import Progress, shows_progress
 from stylobate.results.outcomes import NOT_COMPUTED
-from stylobate.run_arguments import RunOptions
 from stylobate.studies.checks import SYSTEM_STARTS, one_parameter, require_no_tilt_limit, require_starts, require_values
 from stylobate.studies.maps.attractor_search import Floats
-from stylobate.studies.sweeps import Executor, Sweep
+from stylobate.studies.study import Runs, described, study
+from stylobate.studies.sweeps import Sweep
 from stylobate.studies.sweeps.designs import STARTS, checked_values
-from stylobate.studies.sweeps.running import labelled_sweep
+from stylobate.studies.sweeps.running import Label
 
 UNRESOLVED = (Outcome.FAILED, Outcome.LIFTED_OFF, Outcome.LIMIT_REACHED)
 """Outcomes of runs that end before overturning is decided."""
@@ -158,21 +156,15 @@ def _within(name: str, value: float, axis: Floats) -> float:
     return value
 
 
-@shows_progress("integrity")
+@study("integrity")
 def integrity(
     model: Model,
     motion: BaseMotion | None = None,
     *,
     over: Mapping[str, npt.ArrayLike],
     reference: Mapping[str, float] | None = None,
-    duration: float | None = None,
-    periods: float | None = None,
-    store: str | Path | None = None,
-    executor: Executor | None = None,
-    resume: bool = False,
-    progress: Progress = None,
-    **options: Unpack[RunOptions],
-) -> xr.Dataset:
+    **run: Unpack[Runs],
+) -> tuple[Sweep, Label]:
     """Compute the distance from a state to the nearest initial condition that overturns.
 
     This is the local integrity measure of Soliman and Thompson, "Integrity measures quantifying the erosion of smooth
@@ -189,12 +181,7 @@ def integrity(
         [rad/s], start_phase [rad]. `tilt` and `tilt_rate` set the others.
     reference
         State from which distances are measured, by the same names; 0 (a standing column) for names left out.
-    duration, periods
-        Duration of each run [s], or its number of periods of the base motion.
-    store, executor, resume, progress
-        As in `run_sweep`.
-    **options
-        Arguments of all runs: tilt, tilt_rate, rtol, rules …
+    **run
 
     Returns
     -------
@@ -215,14 +202,14 @@ def integrity(
     """
     require_starts("over", over)
     require_values("over", over)
-    require_no_tilt_limit(options)
+    require_no_tilt_limit(run)
     metric = Metric.of(model, over, reference)
-    sweep = Sweep.grid(model, motion, over=over, duration=duration, periods=periods, **options)
+    sweep = Sweep.grid(model, motion, over=over, **described(run))
     label = partial(_integrity_of, metric=metric)
-    return labelled_sweep(sweep, label, store=store, executor=executor, resume=resume, progress=progress)
+    return sweep, label
 
 
-@shows_progress("erosion")
+@study("erosion")
 def erosion(
     model: Model,
     motion: BaseMotion | None = None,
@@ -230,22 +217,17 @@ def erosion(
     along: Mapping[str, npt.ArrayLike],
     over: Mapping[str, npt.ArrayLike],
     reference: Mapping[str, float] | None = None,
-    duration: float | None = None,
-    periods: float | None = None,
-    store: str | Path | None = None,
-    executor: Executor | None = None,
-    resume: bool = False,
-    progress: Progress = None,
-    **options: Unpack[RunOptions],
-) -> xr.Dataset:
+    **run: Unpack[Runs],
+) -> tuple[Sweep, Label]:
     """Compute the integrity measure along a parameter, such as a growing amplitude.
 
     Parameters
     ----------
     along
         One parameter of the model or the base motion, with its values, such as acceleration [m/s²].
-    model, motion, over, reference, duration, periods, store, executor, resume, progress, **options
+    model, motion, over, reference
         As in `integrity`.
+    **run
 
     Returns
     -------
@@ -262,12 +244,12 @@ def erosion(
     """
     require_starts("over", over)
     require_values("over", over)
-    require_no_tilt_limit(options)
+    require_no_tilt_limit(run)
     metric = Metric.of(model, over, reference)
     name = _leaves_units(model, one_parameter(model, along, over)[0])
-    sweep = Sweep.grid(model, motion, over={**along, **over}, duration=duration, periods=periods, **options)
+    sweep = Sweep.grid(model, motion, over={**along, **over}, **described(run))
     label = partial(_erosion_of, name=name, metric=metric)
-    return labelled_sweep(sweep, label, store=store, executor=executor, resume=resume, progress=progress)
+    return sweep, label
 
 
 def _integrity_of(runs: xr.Dataset, metric: Metric) -> xr.Dataset:

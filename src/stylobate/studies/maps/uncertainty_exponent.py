@@ -1,4 +1,4 @@
-"""Power-law fit to counted shares, by maximum likelihood."""
+"""Uncertainty exponent of a basin boundary: how fast the share of undecided initial conditions falls with precision."""
 
 import logging
 from collections.abc import Callable, Mapping, Sequence

@@ -1,4 +1,4 @@
-"""First orbit for a continuation within a range of frequencies."""
+"""Exact response of a column to its base motion: branches of periodic orbits over the frequency, with bifurcations."""
 
 import json
 import logging

@@ -1,4 +1,4 @@
-"""Frequency response of steady rolling, from theory, in SI units."""
+"""Response curves of steady rolling from theory, averaged motion, and initial conditions on a branch, in SI units."""
 
 import json
 import math

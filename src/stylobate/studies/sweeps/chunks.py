@@ -1,4 +1,4 @@
-"""Recipe of the runs of a sweep: the shared arguments, combined with the values that vary."""
+"""Computation of a sweep in chunks: recipe of a run, blocks of runs, layout of the results."""
 
 import hashlib
 import math

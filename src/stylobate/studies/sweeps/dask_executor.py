@@ -1,4 +1,4 @@
-"""Tasks for Dask workers: each carries the version and source digest of stylobate, and a worker compares them."""
+"""Executor on Dask workers, which must have the version and sources of the program that sends the tasks."""
 
 import hashlib
 import logging

@@ -1,4 +1,4 @@
-"""Quantities that a sweep can vary: names, units and accepted numbers."""
+"""What a sweep varies: quantities and their checked values, on a grid, at random or at given points."""
 
 import hashlib
 from collections.abc import Iterable, Mapping, Sequence

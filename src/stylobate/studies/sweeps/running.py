@@ -1,4 +1,4 @@
-"""Sinks for the results of a sweep: arrays in memory, or a store on disk."""
+"""`run_sweep`: compute a sweep, or its missing runs, into arrays in memory or a store; and label the runs."""
 
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import closing

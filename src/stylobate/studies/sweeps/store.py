@@ -1,4 +1,4 @@
-"""Differences between the description of a stored sweep and of the present sweep, in words."""
+"""Zarr stores of sweeps: create, open and continue them; state why a store belongs to another sweep."""
 
 import hashlib
 import json
