@@ -13,7 +13,7 @@ from saving import save
 ROOT = Path(__file__).parents[2]
 TARGET = ROOT / "docs" / "_static" / "architecture" / "rooms.png"
 DUTIES = {
-    "cli": "the program stylobate: one file a command",
+    "cli": "the program stylobate: commands, and those of declared studies",
     "lab": "the laboratory: a local server and its page",
     "paper": "the source paper checked",
     "earthquakes": "records, fragility, assessment",
@@ -24,7 +24,7 @@ DUTIES = {
     "records": "files of records, measures, synthesis",
     "engine": "integration: runs, ensembles",
     "theory": "closed forms",
-    "config": "files and provenance to objects",
+    "config": "files, options and provenance to objects",
     "provenance": "objects to plain values",
     "parameter_quantities": "what studies vary",
     "run_arguments": "the arguments of a run, each declared once",
