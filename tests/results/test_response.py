@@ -10,7 +10,7 @@ import xarray as xr
 
 import stylobate as sb
 from stylobate.errors import FileError, ParameterError, UnsupportedError
-from stylobate.results.response import Samples
+from stylobate.results.samples import Samples
 
 MODEL = sb.Slender(sb.Column.solid(radius=0.5, height=10.0, density=2700.0), damping=0.1)
 MOTION = sb.Harmonic.circular(acceleration=0.7, angular_frequency=2.5, ramp=2.0).delayed(1.0) + sb.Harmonic.vertical(

@@ -20,7 +20,7 @@ from stylobate.models import Model, Sliding
 from stylobate.models.contact import contact_loads, per_normal_force
 from stylobate.models.sliding import Contact
 from stylobate.models.sliding.equations import JAM
-from stylobate.results.response import Labelled, Samples
+from stylobate.results.samples import Labelled, Samples
 
 if TYPE_CHECKING:
     import xarray as xr

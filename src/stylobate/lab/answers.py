@@ -20,7 +20,7 @@ from stylobate.models.sliding.balance import Contact
 from stylobate.plots.geometry import Shape
 from stylobate.quantities import Quantity, parameters_of
 from stylobate.results.outcomes import NUMERICALLY_UNCERTAIN
-from stylobate.results.storage import plain_numbers
+from stylobate.results.plain import plain_numbers
 
 Schema = dict[str, Any]
 

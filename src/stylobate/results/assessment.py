@@ -11,7 +11,8 @@ import xarray as xr
 from stylobate.cards import Row, Section, card
 from stylobate.equality import ByContent
 from stylobate.errors import FileError, ParameterError, require_not_negative, require_positive
-from stylobate.results.storage import ByName, plain_value, read_tree, require_this_version, write_netcdf
+from stylobate.results.plain import ByName, plain_value
+from stylobate.results.storage import read_tree, require_this_version, write_netcdf
 from stylobate.text import four_digits, plural
 
 _ENDS = 2

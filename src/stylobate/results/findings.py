@@ -9,7 +9,7 @@ import xarray as xr
 
 from stylobate.equality import ByContent
 from stylobate.errors import Named
-from stylobate.results.storage import ByName
+from stylobate.results.plain import ByName
 
 
 class ClaimStatus(Named, Enum):

@@ -1,129 +1,23 @@
-"""`Response`, the result of a single run: histories, events, measures; and its file."""
+"""The result of one run."""
 
-import json
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple, Self
+from typing import TYPE_CHECKING, Any, Self
 
-import numpy as np
 import numpy.typing as npt
-import xarray as xr
 
 from stylobate.cards import Row, Section, card
 from stylobate.equality import ByContent
-from stylobate.errors import FileError, Outcome, UnsupportedError
-from stylobate.results.storage import OWN_FORMATS, plain_value, read_dataset, require_this_version
+from stylobate.errors import Outcome, UnsupportedError
+from stylobate.results.plain import plain_value
+from stylobate.results.samples import Samples
 from stylobate.text import four_digits
 
 if TYPE_CHECKING:
     import pandas as pd
-
-
-class Labelled(NamedTuple):
-    """An array with its labels, from which xarray makes a variable."""
-
-    dimensions: tuple[str, ...]
-    values: npt.NDArray[Any]
-    attributes: Mapping[str, str]
-
-
-@dataclass(frozen=True, slots=True)
-class Samples:
-    """Arrays along a run, by name.
-
-    Parameters
-    ----------
-    time
-        Times [s], shape (n,).
-    variables
-        Arrays with the dimensions "time", "axis" (x and y) and "direction" (x, y and z).
-    attributes
-        Attributes of the Dataset.
-    """
-
-    time: npt.NDArray[np.float64]
-    variables: Mapping[str, Labelled]
-    attributes: Mapping[str, float]
-
-    def as_dataset(self) -> "xr.Dataset":
-        """Make a Dataset of these arrays."""
-        import xarray as xr
-
-        coordinates = {
-            "time": Labelled(("time",), self.time, {"units": "s", "long_name": "time"}),
-            "axis": ["x", "y"],
-            "direction": ["x", "y", "z"],
-        }
-        return xr.Dataset(self.variables, coords=coordinates, attrs=self.attributes)
-
-
-_FORMAT = f"{OWN_FORMATS}response 1"
-_OF_ORBITS = ("orbit", "branch", "bifurcation")
-_WORDS, _FLAGS = ("reason", "decided_at"), ("uncertain", "planar")
-_AS_JSON = ("thresholds", "measures", "provenance", "warnings")
-_OWN_ATTRIBUTES = ("format", "outcome", *_WORDS, *_FLAGS, "events", *_AS_JSON)
-
-
-def as_dataset(run: Any) -> xr.Dataset:
-    """Return the samples of a `Response` as a Dataset, with its other fields as attributes."""
-    attributes = {
-        "format": _FORMAT,
-        "outcome": run.outcome.name,
-        **{name: getattr(run, name) for name in _WORDS},
-        **{name: int(getattr(run, name)) for name in _FLAGS},
-        "events": json.dumps([[event.kind, event.time] for event in run.events]),
-        **{name: json.dumps(getattr(run, name)) for name in _AS_JSON},
-    }
-    data: xr.Dataset = run.data.assign_attrs(attributes)
-    data["resting"] = data["resting"].astype(np.int8)
-    return data
-
-
-def fields_of(path: str | Path) -> dict[str, Any]:
-    """Return the fields of the `Response` saved in the netCDF file `path`; events are lists of kind and time.
-
-    Raises
-    ------
-    FileError
-        If the file cannot be read or holds no saved run.
-    """
-    data = read_dataset(path)
-    attributes: dict[str, Any] = dict(data.attrs)
-    if "format" not in attributes and "kind" in attributes:
-        raise FileError(
-            f"{path} holds the result of a study of kind {attributes['kind']!r}, not a run; stylobate.load reads it"
-        )
-    kind = str(attributes.get("format", "")).removeprefix(OWN_FORMATS).partition(" ")[0]
-    if kind in _OF_ORBITS:
-        raise FileError(
-            f"{path} holds an object of stylobate.orbits of kind {kind!r}, not a run; stylobate.load reads it"
-        )
-    require_this_version(path, attributes.get("format"), _FORMAT)
-    if attributes.get("format") != _FORMAT:
-        raise FileError(
-            f"{path} is not a run saved by stylobate: its format is {attributes.get('format')!r}, not {_FORMAT!r}"
-        )
-    try:
-        return _fields(data, attributes)
-    except (KeyError, TypeError, ValueError) as error:
-        raise FileError(f"{path} is damaged: {error}. Compute it again") from error
-
-
-def _fields(data: xr.Dataset, attributes: dict[str, Any]) -> dict[str, Any]:
-    data.attrs = {name: value for name, value in attributes.items() if name not in _OWN_ATTRIBUTES}
-    data["resting"] = data["resting"].astype(bool)
-    return {
-        "outcome": Outcome[attributes["outcome"]],
-        "reason": str(attributes["reason"]),
-        "decided_at": float(attributes["decided_at"]),
-        **{name: bool(attributes[name]) for name in _FLAGS},
-        "data": data,
-        "events": [(str(kind), float(time)) for kind, time in json.loads(attributes["events"])],
-        **{name: json.loads(attributes[name]) for name in _AS_JSON if name in attributes or name != "warnings"},
-    }
-
+    import xarray as xr
 
 _PLAIN = ("decided_at", "uncertain", "planar", "thresholds", "measures", "provenance", "warnings")
 """Fields of a response that are converted to plain Python values."""
@@ -254,6 +148,7 @@ class Response(ByContent):
 
     def save(self, path: str | Path) -> Path:
         """Write the run to a netCDF file at `path`, with its provenance; `stylobate.load` reads it again."""
+        from stylobate.results.run_file import as_dataset
         from stylobate.results.storage import write_netcdf
 
         return write_netcdf(as_dataset(self), Path(path))
@@ -267,6 +162,8 @@ class Response(ByContent):
         FileError
             If the file cannot be read or holds no saved run.
         """
+        from stylobate.results.run_file import fields_of
+
         fields = fields_of(path)
         fields["events"] = tuple(Event(kind, time) for kind, time in fields["events"])
         return cls(**fields | {"warnings": tuple(fields.get("warnings", ()))})

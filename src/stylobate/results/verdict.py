@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Literal, Self
 from stylobate.cards import Row, Section, card
 from stylobate.equality import ByContent
 from stylobate.errors import MOST_RUNS, FileError, Named, ParameterError, require_whole
-from stylobate.results.storage import ByName, plain_value
+from stylobate.results.plain import ByName, plain_value
 from stylobate.text import plural
 
 if TYPE_CHECKING:

@@ -12,7 +12,7 @@ import xarray as xr
 from stylobate.errors import Outcome, ParameterError, require_positive
 from stylobate.plots.geometry import Floats, Shape, base_centres, quaternions
 from stylobate.results import Response
-from stylobate.results.storage import plain_numbers
+from stylobate.results.plain import plain_numbers
 
 # Maximum number of instants of a run: a page contains them all.
 _MOST = 2000
