@@ -1,11 +1,13 @@
 """What a column that can slip does over two parameters, and where a vibrating base walks it to."""
 
+import json
 import math
 
 import numpy as np
 import pytest
 
 import stylobate as sb
+from stylobate.config.study import study_of
 from stylobate.conveying import Transport
 from stylobate.conveying.transport import half_width
 from stylobate.results import ContactClass
@@ -178,3 +180,12 @@ def test_beyond_the_friction_angle_a_part_accelerates_and_has_no_mean_velocity()
     assert found["periods_computed"][0] == pytest.approx(30.0)
     speed = sb.theory.mean_block_speed(1.0, 0.2, static_friction=0.2, incline=0.22)
     assert np.isinf(speed)
+
+
+def test_a_contact_map_is_shown_and_repeated_with_its_least_share():
+    over = {"friction_coefficient": [0.05, 0.2], "acceleration": [0.05, 0.3]}
+    found = sb.studies.overturning_map(sb.Sliding(COLUMN), LINE, over=over, periods=2.0, least_share=0.6)
+    study = study_of(sb.studies.overturning_map)
+    assert study.completed(found, None, {}).identical(found)
+    described = sb.config.study_config(sb.studies.overturning_map).of_saved(json.loads(found.attrs["provenance"]), over)
+    assert described.build().options["least_share"] == found.attrs["least_share"] == 0.6

@@ -79,7 +79,7 @@ def start_boundary(
     See Also
     --------
     stylobate.theory.start_of_motion : the closed form.
-    contact_map : the motion after the onset.
+    stylobate.studies.overturning_map : the motion after the onset.
 
     Notes
     -----

@@ -4,17 +4,18 @@ The decorator `study` adds what they share: the arguments of runs, store, execut
 """
 
 import inspect
+import json
 from functools import wraps
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, ParamSpec, TypedDict, cast, get_args
+from typing import TYPE_CHECKING, Annotated, Any, ParamSpec, TypedDict, cast, get_args
 
-from stylobate.config.study import Study
+from stylobate.config.study import Study, own_numbers
 from stylobate.progress import Progress, shows_progress
 from stylobate.run_arguments import Argument, RunOptions, defaults_of, takes
 from stylobate.studies.sweeps.executors import Executor
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Mapping
 
     import xarray as xr
 
@@ -99,7 +100,8 @@ def study(
     """
 
     def decorated(function: "Callable[_P, tuple[Sweep, Label]]") -> "Callable[_P, xr.Dataset]":
-        (group,) = get_args(inspect.signature(function).parameters["run"].annotation)
+        signature = inspect.signature(function)
+        (group,) = get_args(signature.parameters["run"].annotation)
         how = defaults_of(Computing)
 
         @wraps(function)
@@ -107,8 +109,15 @@ def study(
             from stylobate.studies.sweeps.running import labelled_sweep
 
             sweep, label = function(*arguments, **named)
-            return labelled_sweep(sweep, label, **{name: named[name] for name in how})  # type: ignore[arg-type]
+            found = labelled_sweep(sweep, label, **{name: named[name] for name in how})  # type: ignore[arg-type]
+            if declared is None:
+                return found
+            given = signature.bind(*arguments, **named).arguments
+            return _with_numbers(
+                found, declared.name, {name: given[name] for name in own_numbers(made) if name in given}
+            )
 
+        computed.__signature__ = signature.replace(return_annotation="xr.Dataset")  # type: ignore[attr-defined]
         computed.__doc__ = (function.__doc__ or "").replace("    **run\n", f"    **run\n{_OPTIONS}")
         groups = (Lengths, Computing) if "duration" in group.__annotations__ else (Computing,)
         made = shows_progress(word)(takes(group, described=groups)(computed))
@@ -116,3 +125,12 @@ def study(
         return made
 
     return decorated
+
+
+def _with_numbers(found: "xr.Dataset", name: str, numbers: "Mapping[str, Any]") -> "xr.Dataset":
+    """Return a result whose provenance has the study's own numbers that were given, unless it has them already."""
+    given = {one: value for one, value in numbers.items() if value is not None}
+    provenance = json.loads(found.attrs.get("provenance", "{}"))
+    if not given or name in provenance:
+        return found
+    return found.assign_attrs(provenance=json.dumps({**provenance, name: given}))

@@ -1,4 +1,4 @@
-"""Names that the integration of a flow leaves open: `flows` binds them to a model."""
+"""Names that the integration of a flow leaves open: each flow binds them to a model."""
 
 from collections.abc import Callable
 

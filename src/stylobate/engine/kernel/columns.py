@@ -293,7 +293,7 @@ class BySeries(FromZero):
     NODE_FORWARD_SIN = auto()
     NODE_BACKWARD_COS = auto()
     NODE_BACKWARD_SIN = auto()
-    """Weighted values at one of the nodes of a step, for the integrals over the last periods, see `observation`."""
+    """Weighted values at one of the nodes of a step, for the integrals over the last periods."""
 
 
 class Watching(FromZero):
@@ -378,7 +378,7 @@ class Orbit(FromZero):
     LARGEST = auto()
     AGE = auto()
     FALLS = auto()
-    """Approach to the orbit, see `convergence.Approach`."""
+    """Approach to the orbit, see `loop`."""
 
 
 LAGS = 8

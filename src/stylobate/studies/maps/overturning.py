@@ -87,7 +87,7 @@ def _arguments(config: Any, setup: Any) -> Mapping[str, Any]:
         axes=("x", "y"),
         early=True,
         arguments=_arguments,
-        completed=lambda saved, *_: labelled(saved),
+        completed=lambda saved, *_: saved if "count" in saved else labelled(saved),
         table=_table,
         summary=_summary,
     ),

@@ -496,11 +496,6 @@ def _every_run(assessment: Assessment) -> Table:
 # What several tables need
 
 
-def _record_names(assessment: Assessment) -> list[str]:
-    """Return the names of the records."""
-    return [str(name) for name in assessment.data["records"]["record"].to_numpy()]
-
-
 def drifting(assessment: Assessment) -> list[str]:
     """Return the names of the records that end with a velocity above 5 % of their PGV along some axis."""
     own = assessment.data["records"]

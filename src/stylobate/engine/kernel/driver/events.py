@@ -62,7 +62,7 @@ class Status(IntEnum):
     )
     """Dynamic jamming: the contact can neither stick nor slip nor open."""
     CONVERGED = None
-    """The run has converged to a known orbit, see `convergence`."""
+    """The run has converged to a known orbit, see `loop`."""
 
 
 class TraceKind(IntEnum):
