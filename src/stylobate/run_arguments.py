@@ -190,7 +190,7 @@ class SingleRun(OneRun, FreeStart, total=False):
     ]
 
 
-class Options(Accuracy, total=False):
+class EnsembleOptions(Accuracy, total=False):
     """The arguments that all runs of an ensemble share, besides their start."""
 
     method: Annotated[
@@ -233,7 +233,7 @@ class Options(Accuracy, total=False):
     ]
 
 
-class OfEnsemble(Options, total=False):
+class OfEnsemble(EnsembleOptions, total=False):
     """The arguments of `simulate_ensemble` besides those that differ between the runs."""
 
     known_orbits: Annotated[
@@ -335,7 +335,7 @@ def defaults_of(group: Any) -> dict[str, Any]:
     return {name: one.default for name, one in arguments_of(group).items()}
 
 
-def checked_options(given: Mapping[str, Any]) -> Options:
+def checked_options(given: Mapping[str, Any]) -> EnsembleOptions:
     """Check the options of an ensemble among the arguments `given`, and add the defaults of the others.
 
     Without rules the options have the usual ones; without samples they have 0.
@@ -345,8 +345,8 @@ def checked_options(given: Mapping[str, Any]) -> Options:
     ParameterError
         If an option is out of range.
     """
-    found = {name: one.checked(given.get(name, one.default)) for name, one in arguments_of(Options).items()}
-    return cast("Options", {**found, "rules": found["rules"] or OutcomeRules(), "samples": found["samples"] or 0})
+    found = {name: one.checked(given.get(name, one.default)) for name, one in arguments_of(EnsembleOptions).items()}
+    return cast("EnsembleOptions", {**found, "rules": found["rules"] or OutcomeRules(), "samples": found["samples"] or 0})
 
 
 def takes(group: Any, *, described: Sequence[Any] = ()) -> Callable[[Callable[_P, _T]], Callable[_P, _T]]:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from stylobate import config, earthquakes, studies
-from stylobate.cli.command import Argument, command
+from stylobate.cli.command import Positional, command
 from stylobate.cli.options import Options
 from stylobate.cli.output import NETCDF, check_place, print_json, print_table
 from stylobate.cli.terminal import INTERRUPTED, log_lines, part_lines
@@ -29,7 +29,7 @@ _SHOWN = ("column", "scale", "did not overturn it", "overturned it", "not decide
 @command(
     Option("folder", "folder of report, tables and figures; NAME-assessment beside the study by default", Path),
     Option("store", "store of the parts that are computed; FOLDER/store by default", Path),
-    argument=Argument(text="study, a TOML file; or a saved assessment (.nc) to show again", required=True),
+    argument=Positional(text="study, a TOML file; or a saved assessment (.nc) to show again", required=True),
     groups=(COMPUTING.reduced_to("threads"), Group.of("Output", JSON)),
 )
 def assess(options: Options) -> None:

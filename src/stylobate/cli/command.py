@@ -15,7 +15,7 @@ from stylobate.units import has_unit
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Argument:
+class Positional:
     """The positional argument of a command: a file, or several."""
 
     text: str
@@ -42,7 +42,7 @@ class Command:
 
     function: Callable[[Options], None]
     help: str
-    argument: Argument | None
+    argument: Positional | None
     own: Sequence[Option]
     groups: Sequence[Group]
 
@@ -84,10 +84,10 @@ class Command:
 
 
 def command(
-    *own: Option, argument: Argument | str | None = None, groups: Sequence[Group] = ()
+    *own: Option, argument: Positional | str | None = None, groups: Sequence[Group] = ()
 ) -> Callable[[Callable[[Options], None]], Command]:
     """Make a function a command with its `own` options and the options of the groups; a decorator."""
-    made = Argument(text=argument) if isinstance(argument, str) else argument
+    made = Positional(text=argument) if isinstance(argument, str) else argument
     return lambda function: Command(function, function.__doc__ or "", made, own, groups)
 
 

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from stylobate import config, earthquakes
-from stylobate.cli.command import Argument, command
+from stylobate.cli.command import Positional, command
 from stylobate.cli.options import Options, read_source
 from stylobate.cli.output import check_place, check_writable, print_json, print_table, save_figure
 from stylobate.config.options import FIGURE, JSON, ONE_COMPONENT, SAMPLE, STEP, UNITS, Group, Option
@@ -36,7 +36,7 @@ _SHOWN = tuple(name for name in _COLUMNS if name not in ("origin", "pga"))
 
 
 @command(
-    argument=Argument(
+    argument=Positional(
         name="sources",
         several=True,
         text="folders, patterns such as 'quakes/*.AT2', files; or a study (.toml)",

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from stylobate import config, studies
-from stylobate.cli.command import Argument, Command
+from stylobate.cli.command import Command, Positional
 from stylobate.cli.options import Options, merge, overlay, read_source, with_axes
 from stylobate.cli.output import (
     STORE,
@@ -43,7 +43,7 @@ def study_command(function: Callable[..., "xr.Dataset"]) -> Command:
     return Command(
         lambda options: _run(function, study, options),
         study.help,
-        Argument(text=study.source),
+        Positional(text=study.source),
         own_options(function),
         tuple(study.groups),
     )

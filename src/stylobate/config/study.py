@@ -145,7 +145,7 @@ def study_of(function: Callable[..., Any]) -> Study:
     return found
 
 
-def own_numbers(function: Callable[..., Any]) -> Mapping[str, Parameter]:
+def declared_numbers(function: Callable[..., Any]) -> Mapping[str, Parameter]:
     """Return the numbers that a study declares in its signature, by name, such as a tolerance."""
     return parameters_of(function)
 
@@ -153,7 +153,8 @@ def own_numbers(function: Callable[..., Any]) -> Mapping[str, Parameter]:
 def own_options(function: Callable[..., Any]) -> list[Option]:
     """Make the options of the numbers that a study declares."""
     return [
-        Option(name, text_of(one), _kind(one), unit=one.quantity.unit) for name, one in own_numbers(function).items()
+        Option(name, text_of(one), _kind(one), unit=one.quantity.unit)
+        for name, one in declared_numbers(function).items()
     ]
 
 

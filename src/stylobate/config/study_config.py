@@ -17,7 +17,7 @@ from stylobate.config.simulation import (
     refuse_design,
     with_numbers_that_vary,
 )
-from stylobate.config.study import Study, own_numbers, several, study_of
+from stylobate.config.study import Study, declared_numbers, several, study_of
 from stylobate.errors import LARGEST_SEED, MOST_RUNS, require_whole
 from stylobate.parameter_quantities import quantity_of
 from stylobate.quantities import Parameter
@@ -189,7 +189,7 @@ def study_config(function: Callable[..., Any]) -> type[StudyConfig]:
     fields: dict[str, Any] = {
         place.rstrip("?"): (Axis | None, None) if "?" in place else (Axis, ...) for place in study.axes
     }
-    numbers_of_study = own_numbers(function)
+    numbers_of_study = declared_numbers(function)
     numbers = {name: (Annotated[_type_of(one), one.quantity], one.default) for name, one in numbers_of_study.items()}
     room = "".join(map(str.title, study.name.split("_")))
     make: Any = create_model

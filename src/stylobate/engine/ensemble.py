@@ -41,9 +41,9 @@ from stylobate.results import OutcomeRules
 from stylobate.results.known_orbits import as_orbits
 from stylobate.results.outcomes import NOT_COMPUTED
 from stylobate.run_arguments import (
+    EnsembleOptions,
     FreeStart,
     OfEnsemble,
-    Options,
     SingleRun,
     Start,
     arguments_of,
@@ -197,7 +197,7 @@ def simulate_ensemble(
     raise Interrupted("interrupted; `partial` has the finished runs", result())
 
 
-def _options(model: Model, run: Mapping[str, Any], *, with_orbits: bool, with_friction: bool) -> Options:
+def _options(model: Model, run: Mapping[str, Any], *, with_orbits: bool, with_friction: bool) -> EnsembleOptions:
     """Check the options that the runs share; runs with a friction coefficient need the contact demand.
 
     Raises
@@ -289,7 +289,7 @@ def _rechecked(plan: Plan, runs: Runs, arrays: Arrays, threads: int) -> bool:
     return finished
 
 
-def _provenance(model: Model, motion: BaseMotion, options: Options, same: Mapping[str, Any]) -> dict[str, Any]:
+def _provenance(model: Model, motion: BaseMotion, options: EnsembleOptions, same: Mapping[str, Any]) -> dict[str, Any]:
     names = (*Start.__annotations__, *FreeStart.__annotations__, "duration", "friction_coefficient")
     starts = {name: same[name] for name in names if name in same}
     parameters = {name: value for name, value in same.items() if name not in starts}

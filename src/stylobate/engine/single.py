@@ -27,7 +27,7 @@ from stylobate.errors import Outcome, UnsupportedError, require_vector
 from stylobate.models import Model
 from stylobate.provenance import provenance_of_run
 from stylobate.results import Event, OutcomeRules, Response
-from stylobate.run_arguments import Accuracy, Options, SingleRun, arguments_of, checked_options, takes
+from stylobate.run_arguments import Accuracy, EnsembleOptions, SingleRun, arguments_of, checked_options, takes
 
 
 @takes(SingleRun)
@@ -168,7 +168,7 @@ class RunResult:
 
 
 def run_result(
-    model: Model, motion: BaseMotion, options: Options, start: Start, functions: Sequence[EventFunction]
+    model: Model, motion: BaseMotion, options: EnsembleOptions, start: Start, functions: Sequence[EventFunction]
 ) -> RunResult:
     """Compute a run by the kernels of ensembles, and return its result."""
     run = one_run(start)

@@ -9,7 +9,7 @@ from functools import wraps
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, ParamSpec, TypedDict, cast, get_args
 
-from stylobate.config.study import Study, own_numbers
+from stylobate.config.study import Study, declared_numbers
 from stylobate.progress import Progress, shows_progress
 from stylobate.run_arguments import Argument, RunOptions, defaults_of, takes
 from stylobate.studies.sweeps.executors import Executor
@@ -114,7 +114,7 @@ def study(
                 return found
             given = signature.bind(*arguments, **named).arguments
             return _with_numbers(
-                found, declared.name, {name: given[name] for name in own_numbers(made) if name in given}
+                found, declared.name, {name: given[name] for name in declared_numbers(made) if name in given}
             )
 
         computed.__signature__ = signature.replace(return_annotation="xr.Dataset")  # type: ignore[attr-defined]

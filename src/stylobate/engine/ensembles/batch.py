@@ -36,7 +36,7 @@ from stylobate.engine.verdict import FINER_PASSAGE, FINER_REST, other_tolerance,
 from stylobate.models import Model
 from stylobate.results import OutcomeRules
 from stylobate.results.known_orbits import OrbitsOfRuns
-from stylobate.run_arguments import Options
+from stylobate.run_arguments import EnsembleOptions
 
 Floats = npt.NDArray[np.float64]
 
@@ -66,7 +66,7 @@ class Plan:
 
     model: Model
     motion: MotionPlan
-    options: Options
+    options: EnsembleOptions
     rest_share: float = 1.0
     passage_share: float = 1.0
     traces: int = 0
@@ -88,8 +88,8 @@ class Plan:
         own = self.options
         rtol, atol = other_tolerance(own["rtol"]), own["atol"]
         atol = None if atol is None else atol * (rtol / own["rtol"])
-        finer: Options = {**own, "rtol": rtol, "atol": atol}
-        options: Options = {**finer, "samples": None, "strobes": 0, "recheck": False}
+        finer: EnsembleOptions = {**own, "rtol": rtol, "atol": atol}
+        options: EnsembleOptions = {**finer, "samples": None, "strobes": 0, "recheck": False}
         return replace(self, options=options, rest_share=FINER_REST, passage_share=FINER_PASSAGE, traces=0)
 
     def shape(self, *, planar: bool) -> Shape:
@@ -264,7 +264,7 @@ class Batch:
         self.table[chosen] = part
 
 
-def _rest_energy(options: Options, models: ModelColumns, motions: MotionColumns) -> Floats:
+def _rest_energy(options: EnsembleOptions, models: ModelColumns, motions: MotionColumns) -> Floats:
     if options["rest_energy"] is None:
         energy = usual_rest_energy(
             motions.mean_frequency,
@@ -278,7 +278,7 @@ def _rest_energy(options: Options, models: ModelColumns, motions: MotionColumns)
     return np.where(models.comes_to_rest, energy, 0.0)
 
 
-def _rest_energy_for_good(options: Options, models: ModelColumns, motions: MotionColumns) -> Floats:
+def _rest_energy_for_good(options: EnsembleOptions, models: ModelColumns, motions: MotionColumns) -> Floats:
     usual = rest_energy_for_good(motions.mean_frequency)
     energy = usual if options["rest_energy"] is None else options["rest_energy"]
     return np.where(models.comes_to_rest, energy, 0.0)

@@ -16,7 +16,7 @@ from stylobate.errors import ParameterError, require_size
 from stylobate.models import Model
 from stylobate.results.known_orbits import KnownOrbit, OrbitsOfRuns
 from stylobate.results.outcomes import NOT_COMPUTED, NUMERICALLY_UNCERTAIN, outcome_attributes
-from stylobate.run_arguments import Options
+from stylobate.run_arguments import EnsembleOptions
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -316,7 +316,7 @@ QUANTITIES: Mapping[str, Variable] = {
 DEMANDS = ("peak_friction_demand", "peak_pivoting_demand", "minimum_normal_force")
 
 
-def empty(model: Model, options: Options, count: int, *, slips: bool = False) -> Arrays:
+def empty(model: Model, options: EnsembleOptions, count: int, *, slips: bool = False) -> Arrays:
     """Return arrays for the results of `count` runs, filled with the values for runs that are not computed.
 
     `slips` adds an array for runs with a friction coefficient.
