@@ -346,7 +346,9 @@ def checked_options(given: Mapping[str, Any]) -> EnsembleOptions:
         If an option is out of range.
     """
     found = {name: one.checked(given.get(name, one.default)) for name, one in arguments_of(EnsembleOptions).items()}
-    return cast("EnsembleOptions", {**found, "rules": found["rules"] or OutcomeRules(), "samples": found["samples"] or 0})
+    return cast(
+        "EnsembleOptions", {**found, "rules": found["rules"] or OutcomeRules(), "samples": found["samples"] or 0}
+    )
 
 
 def takes(group: Any, *, described: Sequence[Any] = ()) -> Callable[[Callable[_P, _T]], Callable[_P, _T]]:

@@ -1,7 +1,8 @@
-from .assessment import Assessment, DesignSpectrum, ReportDetails
+from .assessment import Assessment
 from .findings import ClaimStatus, Finding, PaperCheck, Section
 from .known_orbits import KnownOrbit
 from .outcomes import ContactClass, contact_classes
+from .report_details import DesignSpectrum, ReportDetails
 from .response import Event, Response
 from .rules import OutcomeRules
 from .storage import read_dataset, write_netcdf

@@ -41,7 +41,8 @@ from stylobate.models import Model
 from stylobate.progress import Progress, in_parts, report_of, shows_progress
 from stylobate.provenance import provenance_of_run
 from stylobate.quantities import exact_repr
-from stylobate.results.assessment import Assessment, ReportDetails
+from stylobate.results.assessment import Assessment
+from stylobate.results.report_details import ReportDetails
 from stylobate.results.verdict import FEW_RECORDS, require_variations
 from stylobate.run_arguments import FREE_TAIL, RunOptions
 from stylobate.studies.checks import require_no_tilt_limit

@@ -33,7 +33,7 @@ from stylobate.models import Model
 from stylobate.models.declared import model_quantities
 from stylobate.records.tables import Table
 from stylobate.records.text_files import KNOWN, Text, in_si, read_bytes, unit_of
-from stylobate.results.assessment import DesignSpectrum, ReportDetails
+from stylobate.results.report_details import DesignSpectrum, ReportDetails
 from stylobate.results.verdict import FEW_RECORDS, require_variations
 from stylobate.run_arguments import Accuracy, numbers_of
 from stylobate.text import did_you_mean
