@@ -3,16 +3,18 @@
 import math
 import re
 from enum import Enum
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-import xarray as xr
 
 from stylobate.base_motions.base import ACCELERATION, DISPLACEMENT, VELOCITY
 from stylobate.base_motions.record import AXES, Record
 from stylobate.base_motions.signal_processing import Floats, energy
 from stylobate.column import STANDARD_GRAVITY, Column
 from stylobate.errors import ParameterError
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 _DEGREES = np.arange(180)
 
@@ -168,7 +170,7 @@ def _turns(record: Record, axis: int) -> Floats:
 _ONSET, _MIDDLE_END, _END = 0.05, 0.75, 0.95
 
 
-def intensity_measures(record: Record) -> xr.Dataset:
+def intensity_measures(record: Record) -> "xr.Dataset":
     """Compute the intensity measures of each component and of the horizontal motion.
 
     Returns
@@ -213,6 +215,8 @@ def intensity_measures(record: Record) -> xr.Dataset:
         "duration_5_95": (significant_duration(record, _ONSET, _END), "s", "significant duration 5-95 %"),
     }
     horizontal = {"pga": ACCELERATION, "pgv": VELOCITY}
+    import xarray as xr
+
     return xr.Dataset(
         {
             **{
@@ -277,7 +281,7 @@ def _reached(record: Record, grown: Floats, axis: int, part: float) -> float:
     return float(record.step * (knot + np.clip(inside, 0.0, 1.0)))
 
 
-def rocking_measures(record: Record, column: Column) -> xr.Dataset:
+def rocking_measures(record: Record, column: Column) -> "xr.Dataset":
     """Compute the dimensionless intensity measures of the horizontal motion for the rocking of `column`.
 
     Returns
@@ -301,6 +305,8 @@ def rocking_measures(record: Record, column: Column) -> xr.Dataset:
         "velocity_ratio": (p * measures.pgv / strength, "p PGV/(g tan α)"),
         "duration_ratio": (p * measures.duration_5_95, "p D5-95"),
     }
+    import xarray as xr
+
     return xr.Dataset(
         {
             name: ("axis", np.asarray(values), {"units": "1", "long_name": long_name})
