@@ -34,10 +34,14 @@ def duration_with_tail(motion_duration: float, frequency_parameter: float) -> fl
 
 @dataclass(frozen=True, slots=True)
 class Argument:
-    """Default of an argument, and its meaning in sentences; without a default the argument is required."""
+    """Default of an argument, and its meaning in sentences; without a default the argument is required.
+
+    An argument that ends runs, such as a limit of the tilt, leaves it open whether they overturn.
+    """
 
     default: Any = inspect.Parameter.empty
     says: str = ""
+    ends_runs: bool = False
 
 
 class Start(TypedDict, total=False):
@@ -110,7 +114,7 @@ class Accuracy(TypedDict, total=False):
     tilt_limit: Annotated[
         float | None,
         Quantity(unit="rad", text="tilt at which a run ends", gt=0.0, le=QUARTER_TURN),
-        Argument(None, "Tilt that ends the run [rad]; none by default."),
+        Argument(None, "Tilt that ends the run [rad]; none by default.", ends_runs=True),
     ]
     rest_energy: Annotated[
         float | None,
@@ -288,6 +292,7 @@ class Declaration:
     default: Any
     says: str
     number: Parameter | None
+    ends_runs: bool
 
     def checked(self, value: Any) -> Any:
         """Check a value and return it in its type; None where it is allowed.
@@ -313,7 +318,7 @@ def arguments_of(group: Any) -> Mapping[str, Declaration]:
     for name, hint in get_type_hints(group, include_extras=True).items():
         stated = next(one for one in hint.__metadata__ if isinstance(one, Argument))
         number = parameter_of(name, hint, stated.default)
-        found[name] = Declaration(name, hint.__origin__, stated.default, stated.says, number)
+        found[name] = Declaration(name, hint.__origin__, stated.default, stated.says, number, stated.ends_runs)
     return found
 
 

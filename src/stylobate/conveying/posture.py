@@ -214,12 +214,12 @@ def upright(
     >>> print(found.attrs["verdict"].partition(", ")[0])
     stays upright: 100 % of 64 runs stay upright (90 % interval 96 to 100 %)
     """
-    from stylobate.studies.checks import remark_on_knife_edge, require_no_tilt_limit
+    from stylobate.studies.checks import remark_on_knife_edge, require_no_limits
     from stylobate.studies.sweeps import Sweep
     from stylobate.studies.sweeps.designs import checked_values
 
     require_conveyor(model, motion, "posture")
-    require_no_tilt_limit(options_of(run))
+    require_no_limits(options_of(run))
     if np.any(run["tilt"]):
         raise ParameterError(
             f"tilt: tilts sets the initial tilts (got {run['tilt']!r}). Pass tilts, and azimuth if needed."

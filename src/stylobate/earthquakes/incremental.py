@@ -22,7 +22,7 @@ from stylobate.progress import Progress, shows_progress
 from stylobate.records import HorizontalComponent
 from stylobate.results.outcomes import NOT_COMPUTED
 from stylobate.run_arguments import RunOptions
-from stylobate.studies.checks import remark_on_lengths, require_no_tilt_limit
+from stylobate.studies.checks import remark_on_lengths, require_no_limits
 from stylobate.studies.maps.integrity import UNRESOLVED
 from stylobate.studies.sweeps import Executor, Sweep
 from stylobate.studies.sweeps.designs import Floats, checked_values
@@ -124,7 +124,7 @@ def incremental_dynamic_analysis(
     array([[0, 1, 1],
            [0, 0, 1]], dtype=int8)
     """
-    require_no_tilt_limit(options)
+    require_no_limits(options)
     plan = Plan.of(
         model, records, scales, rotations, vertical, parameters, tail, IntensityMeasure.named(intensity, component)
     )

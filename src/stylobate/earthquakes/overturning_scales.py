@@ -17,7 +17,7 @@ from stylobate.parameter_quantities import attributes_of
 from stylobate.progress import Progress, Report, report_of, shows_progress
 from stylobate.results.outcomes import NOT_COMPUTED
 from stylobate.run_arguments import RunOptions
-from stylobate.studies.checks import require_no_tilt_limit
+from stylobate.studies.checks import require_no_limits
 from stylobate.studies.maps.uncertainty_exponent import overturned_or_not
 from stylobate.studies.sweeps import Executor, run_sweep
 from stylobate.studies.sweeps.designs import Floats, checked_values
@@ -343,7 +343,7 @@ def overturning_intervals(
     >>> print(found["interval_from"].values.round(2), found["interval_to"].values.round(2), found["open_above"].values)
     [2.57 7.72] [ 6.9 20. ] [False  True]
     """
-    require_no_tilt_limit(options)
+    require_no_limits(options)
     cases = Cases.of(model, motion, over)
     search = _Search(
         cases=cases,

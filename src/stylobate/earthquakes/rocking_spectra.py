@@ -24,7 +24,7 @@ from stylobate.provenance import provenance_of_run
 from stylobate.results import OutcomeRules
 from stylobate.results.outcomes import NOT_COMPUTED
 from stylobate.run_arguments import RunOptions, defaults_of
-from stylobate.studies.checks import remark_on_lengths, require_no_tilt_limit, require_values
+from stylobate.studies.checks import remark_on_lengths, require_no_limits, require_values
 from stylobate.studies.maps.uncertainty_exponent import overturned_or_not
 from stylobate.studies.sweeps import Executor, Sweep
 from stylobate.studies.sweeps.designs import OF_A_RUN, Floats, check_quantities, checked_values
@@ -254,7 +254,7 @@ def rocking_spectrum(
     >>> print(found["peak_tilt_ratio"].values.round(3))
     [  nan   nan 0.113]
     """
-    require_no_tilt_limit(options)
+    require_no_limits(options)
     cases = Cases.of(model, motion, over, scaled=True)
     if not cases.axes:
         raise ParameterError(f'over must name a parameter with its values, such as {{"size": […]}}; got {over!r}')

@@ -49,7 +49,7 @@ from stylobate.results import OutcomeRules
 from stylobate.results.outcomes import NOT_COMPUTED
 from stylobate.results.verdict import CONTACT_LAW, KIND, Verdict, damping_yardstick, yardstick_text
 from stylobate.run_arguments import RunOptions, defaults_of
-from stylobate.studies.checks import require_no_tilt_limit
+from stylobate.studies.checks import require_no_limits
 from stylobate.studies.maps.uncertainty_exponent import overturned_or_not
 from stylobate.studies.proportions import fraction_interval, require_confidence
 from stylobate.studies.sweeps import Executor, Sweep, run_sweep
@@ -161,7 +161,7 @@ def verdict(
     >>> print(sb.verdict(model, pulse, runs=100))
     overturns: 100 % of 100 variations overturn (90 % sampling interval 97 to 100 %)
     """
-    require_no_tilt_limit(options)
+    require_no_limits(options)
     _check_motion(motion)
     _check_options(options)
     one_law = isinstance(variations, Mapping) and variations.get(CONTACT_LAW, "") is None

@@ -13,6 +13,7 @@ from stylobate.errors import ParameterError, UnlikelyInputWarning, as_numbers, r
 from stylobate.models import Model, Sliding
 from stylobate.parameter_quantities import quantity_of
 from stylobate.quantities import parameters_of
+from stylobate.run_arguments import RunOptions, arguments_of
 from stylobate.studies.sweeps.designs import STARTS, Floats, Own, check_quantities, checked_values
 
 SYSTEM_STARTS = (*STARTS, "start_phase")
@@ -81,13 +82,15 @@ def _require_some(where: str, name: str, values: Floats) -> None:
         raise ParameterError(f"{where}[{name!r}] must have at least one value, got none")
 
 
-def require_no_tilt_limit(options: Mapping[str, object]) -> None:
-    """Raise ParameterError if `options` name a tilt limit: for a run stopped there, overturning is undecided."""
-    if options.get("tilt_limit") is not None:
-        given = options["tilt_limit"]
-        raise ParameterError(
-            f"tilt_limit must be left out: a run stopped at it is not known to overturn or not; got {given!r} rad"
-        )
+def require_no_limits(options: Mapping[str, object]) -> None:
+    """Raise ParameterError if `options` name a limit that ends runs: for a run stopped there, overturning is undecided."""
+    for name, one in arguments_of(RunOptions).items():
+        if one.ends_runs and options.get(name) is not None:
+            unit = one.number.quantity.unit if one.number is not None else ""
+            raise ParameterError(
+                f"{name} must be left out: a run stopped at it is not known to overturn or not; got "
+                f"{options[name]!r} {unit}".rstrip()
+            )
 
 
 def remark_on_knife_edge(where: str, model: Model, over: Mapping[str, npt.ArrayLike]) -> None:

@@ -45,7 +45,7 @@ from stylobate.results.assessment import Assessment
 from stylobate.results.report_details import ReportDetails
 from stylobate.results.verdict import FEW_RECORDS, require_variations
 from stylobate.run_arguments import FREE_TAIL, RunOptions
-from stylobate.studies.checks import require_no_tilt_limit
+from stylobate.studies.checks import require_no_limits
 from stylobate.studies.maps.uncertainty_exponent import overturned_or_not
 from stylobate.studies.sweeps import Executor
 
@@ -180,7 +180,7 @@ def assess(
     >>> found.data["verdicts"]["overturned"].sel(vertical="with", scale=1.0).values
     array([[[1, 1, 1]]], dtype=int8)
     """
-    require_no_tilt_limit(options)
+    require_no_limits(options)
     details = details or ReportDetails()
     inputs = Inputs.of(
         columns,

@@ -14,7 +14,7 @@ from stylobate.errors import Outcome, ParameterError, require_finite
 from stylobate.models import Model
 from stylobate.parameter_quantities import quantity_of
 from stylobate.results.outcomes import NOT_COMPUTED
-from stylobate.studies.checks import SYSTEM_STARTS, one_parameter, require_no_tilt_limit, require_starts, require_values
+from stylobate.studies.checks import SYSTEM_STARTS, one_parameter, require_no_limits, require_starts, require_values
 from stylobate.studies.maps.attractor_search import Floats
 from stylobate.studies.study import Runs, described, study
 from stylobate.studies.sweeps import Sweep
@@ -202,7 +202,7 @@ def integrity(
     """
     require_starts("over", over)
     require_values("over", over)
-    require_no_tilt_limit(run)
+    require_no_limits(run)
     metric = Metric.of(model, over, reference)
     sweep = Sweep.grid(model, motion, over=over, **described(run))
     label = partial(_integrity_of, metric=metric)
@@ -244,7 +244,7 @@ def erosion(
     """
     require_starts("over", over)
     require_values("over", over)
-    require_no_tilt_limit(run)
+    require_no_limits(run)
     metric = Metric.of(model, over, reference)
     name = _leaves_units(model, one_parameter(model, along, over)[0])
     sweep = Sweep.grid(model, motion, over={**along, **over}, **described(run))

@@ -21,7 +21,7 @@ from stylobate.progress import Progress, shows_progress
 from stylobate.results.outcomes import NOT_COMPUTED
 from stylobate.results.random_numbers import Rng
 from stylobate.run_arguments import RunOptions
-from stylobate.studies.checks import require_no_tilt_limit, require_starts
+from stylobate.studies.checks import require_no_limits, require_starts
 from stylobate.studies.maps.attractor_search import (
     UNSETTLED,
     AttractorRules,
@@ -211,7 +211,7 @@ def uncertainty_exponent(
     epsilon = _shifts(shifts, over, shifted)
     base = Box.of(over, epsilon.size * require_whole("count", count, least=1, most=MOST_RUNS), rng)
     if overturning_only:
-        require_no_tilt_limit(options)
+        require_no_limits(options)
     sweep = Sweep.points(
         model,
         motion,
