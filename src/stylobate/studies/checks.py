@@ -83,7 +83,7 @@ def _require_some(where: str, name: str, values: Floats) -> None:
 
 
 def require_no_limits(options: Mapping[str, object]) -> None:
-    """Raise ParameterError if `options` name a limit that ends runs: for a run stopped there, overturning is undecided."""
+    """Raise ParameterError if `options` name a limit that ends runs: whether a stopped run overturns is undecided."""
     for name, one in arguments_of(RunOptions).items():
         if one.ends_runs and options.get(name) is not None:
             unit = one.number.quantity.unit if one.number is not None else ""
