@@ -2,8 +2,6 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from functools import partial
-from pathlib import Path
 from typing import Any, Unpack
 
 import numpy as np
@@ -13,10 +11,8 @@ from stylobate.base_motions import BaseMotion, Harmonic
 from stylobate.engine import simulate_ensemble
 from stylobate.errors import MOST_RUNS, require_whole
 from stylobate.models import Model
-from stylobate.progress import Progress, shows_progress
 from stylobate.results.outcomes import NOT_COMPUTED, flag_attributes
 from stylobate.results.random_numbers import Rng
-from stylobate.run_arguments import RunOptions
 from stylobate.studies.checks import require_starts
 from stylobate.studies.maps.attractor_search import (
     NOT_SETTLED,
@@ -32,8 +28,9 @@ from stylobate.studies.maps.attractor_search import (
     with_turns,
 )
 from stylobate.studies.proportions import fraction_interval
-from stylobate.studies.sweeps import Executor, Sweep
-from stylobate.studies.sweeps.running import labelled_sweep
+from stylobate.studies.study import Runs, described, study
+from stylobate.studies.sweeps import Sweep
+from stylobate.studies.sweeps.running import Label
 
 # Maximum turn between samples for which its sense is certain.
 _LARGEST_TURN = np.pi / 2.0
@@ -120,7 +117,7 @@ def _steady(motion: BaseMotion | None) -> Harmonic | None:
 _TABLE = "attractor_index"
 
 
-@shows_progress("attractors")
+@study("attractors")
 def attractors(
     model: Model,
     motion: BaseMotion | None = None,
@@ -128,16 +125,10 @@ def attractors(
     over: Mapping[str, Sequence[float]],
     count: int,
     rng: Rng = 0,
-    duration: float | None = None,
-    periods: float | None = None,
     attractor_rules: AttractorRules | None = None,
     confidence: float = 0.95,
-    store: str | Path | None = None,
-    executor: Executor | None = None,
-    resume: bool = False,
-    progress: Progress = None,
-    **options: Unpack[RunOptions],
-) -> xr.Dataset:
+    **run: Unpack[Runs],
+) -> tuple[Sweep, Label]:
     """Find the attractors of a column under one base motion, and their fractions, from random initial conditions.
 
     The rules of `label_attractors` classify the runs without a list in advance: at rest, rolling in either sense,
@@ -152,18 +143,11 @@ def attractors(
         start_phase [rad].
     count, rng
         Number of initial conditions, drawn uniformly; seed or numpy.random.Generator.
-    duration, periods
-        Duration of each run [s], or its number of periods of the base motion: long enough to settle before the
-        stroboscopic samples. With damping η, transients decay as exp(−ηω0 t/2): to a thousandth in 14/(ηω0).
     attractor_rules
         Tolerances by which attractors are identified.
     confidence
         Confidence level of the intervals of the fractions.
-    store, executor, resume, progress
-        As in `run_sweep`.
-    **options
-        Arguments of all runs: tilt, tilt_rate, rtol, rules, strobes (by default 32, or half of the periods of a
-        shorter run) …
+    **run
 
     Returns
     -------
@@ -174,6 +158,11 @@ def attractors(
     ------
     ParameterError
         If an argument is out of range, a name in `over` changes the system, or runs are too short for the samples.
+
+    Notes
+    -----
+    Runs must be long enough to settle before the stroboscopic samples. With damping η, transients decay as
+    exp(−ηω0 t/2): to a thousandth in 14/(ηω0).
     """
     require_starts("over", over)
     sweep = Sweep.random(
@@ -182,14 +171,14 @@ def attractors(
         over=over,
         count=require_whole("count", count, least=1, most=MOST_RUNS),
         rng=rng,
-        duration=duration,
-        periods=periods,
-        **options,
+        **described(run),
     )
-    label = partial(label_attractors, model=model, motion=motion, rules=attractor_rules, confidence=confidence)
-    sweep = with_strobes(sweep, options.get("strobes"))
-    found = labelled_sweep(sweep, label, store=store, executor=executor, resume=resume, progress=progress)
-    return found.drop_dims("run").assign_attrs(kind="attractors")
+
+    def label(runs: xr.Dataset) -> xr.Dataset:
+        found = label_attractors(runs, model, motion, rules=attractor_rules, confidence=confidence)
+        return found.drop_dims("run").assign_attrs(kind="attractors")
+
+    return with_strobes(sweep, run["strobes"] or None), label
 
 
 def label_attractors(

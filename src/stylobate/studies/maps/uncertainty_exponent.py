@@ -4,8 +4,7 @@ import logging
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
-from pathlib import Path
-from typing import Unpack
+from typing import Any, Unpack
 
 import numpy as np
 import numpy.typing as npt
@@ -17,10 +16,8 @@ from stylobate.base_motions import BaseMotion
 from stylobate.errors import MOST_RUNS, Outcome, ParameterError, require_whole
 from stylobate.models import Model
 from stylobate.parameter_quantities import attributes_of
-from stylobate.progress import Progress, shows_progress
 from stylobate.results.outcomes import NOT_COMPUTED
 from stylobate.results.random_numbers import Rng
-from stylobate.run_arguments import RunOptions
 from stylobate.studies.checks import require_no_limits, require_starts
 from stylobate.studies.maps.attractor_search import (
     UNSETTLED,
@@ -33,9 +30,10 @@ from stylobate.studies.maps.attractor_search import (
 )
 from stylobate.studies.maps.integrity import UNRESOLVED
 from stylobate.studies.proportions import require_confidence, wilson_interval
-from stylobate.studies.sweeps import Executor, Sweep
+from stylobate.studies.study import Runs, described, study
+from stylobate.studies.sweeps import Sweep
 from stylobate.studies.sweeps.designs import Box, checked_values, whole
-from stylobate.studies.sweeps.running import labelled_sweep
+from stylobate.studies.sweeps.running import Label
 
 # Shares above this are near saturation, and the power law does not hold.
 _LARGEST_SHARE = 0.5
@@ -135,7 +133,7 @@ _MANY_DROPPED = 0.1
 _log = logging.getLogger("stylobate")
 
 
-@shows_progress("uncertainty exponent")
+@study("uncertainty exponent")
 def uncertainty_exponent(
     model: Model,
     motion: BaseMotion | None = None,
@@ -146,16 +144,10 @@ def uncertainty_exponent(
     count: int,
     rng: Rng = 0,
     overturning_only: bool = False,
-    duration: float | None = None,
-    periods: float | None = None,
     attractor_rules: AttractorRules | None = None,
     confidence: float = 0.95,
-    store: str | Path | None = None,
-    executor: Executor | None = None,
-    resume: bool = False,
-    progress: Progress = None,
-    **options: Unpack[RunOptions],
-) -> xr.Dataset:
+    **run: Unpack[Runs],
+) -> tuple[Sweep, Label]:
     """Estimate the uncertainty exponent υ of a basin boundary, f(ε) ~ ε^υ, and the boundary's dimension.
 
     A random initial condition is uncertain at ε if the run reaches another attractor when one component is shifted by
@@ -181,16 +173,11 @@ def uncertainty_exponent(
         Number of initial conditions per ε, three runs each; seed or numpy.random.Generator.
     overturning_only
         Consider only the boundary between overturning and survival.
-    duration, periods
-        Duration of each run [s], or its number of periods of the base motion.
     attractor_rules
         Tolerances by which attractors are identified.
     confidence
         Confidence level of the intervals of the fractions.
-    store, executor, resume, progress
-        As in `run_sweep`.
-    **options
-        Arguments of all runs: tilt, tilt_rate, rtol, rules, strobes …
+    **run
 
     Returns
     -------
@@ -211,32 +198,27 @@ def uncertainty_exponent(
     epsilon = _shifts(shifts, over, shifted)
     base = Box.of(over, epsilon.size * require_whole("count", count, least=1, most=MOST_RUNS), rng)
     if overturning_only:
-        require_no_limits(options)
+        require_no_limits(run)
     sweep = Sweep.points(
         model,
         motion,
         at=shifted_starts(base.values(whole(base)), shifted, epsilon),
-        duration=duration,
-        periods=periods,
-        **options,
+        **described(run),
     )
 
     classify: Callable[[xr.Dataset], Integers] = overturned_or_not
     if not overturning_only:
-        sweep = with_strobes(sweep, options.get("strobes"))
+        sweep = with_strobes(sweep, run["strobes"] or None)
         rules = attractor_rules or AttractorRules()
         classify = partial(_attractor_of_each, scales=OrbitScales.of(model, motion), rules=rules)
-    label = partial(
-        _labelled,
-        classify=classify,
-        epsilon=epsilon,
-        shifted=shifted,
-        dimension=len(over),
-        confidence=require_confidence(confidence),
-    )
-    found = labelled_sweep(sweep, label, store=store, executor=executor, resume=resume, progress=progress)
-    _warn_of_dropped(found)
-    return found.assign_attrs(overturning_only=int(overturning_only))
+    settings: Any = {"shifted": shifted, "dimension": len(over), "confidence": require_confidence(confidence)}
+
+    def label(runs: xr.Dataset) -> xr.Dataset:
+        found = _labelled(runs, classify=classify, epsilon=epsilon, **settings)
+        _warn_of_dropped(found)
+        return found.assign_attrs(overturning_only=int(overturning_only))
+
+    return sweep, label
 
 
 def _warn_of_dropped(found: xr.Dataset) -> None:
