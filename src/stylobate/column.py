@@ -3,10 +3,11 @@
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from typing import Annotated, Self
+from typing import Annotated, Any, Self
 
 import numpy as np
 
+from stylobate.elementwise import atan2, hypot, larger, sqrt
 from stylobate.errors import ParameterError, as_float, require_positive
 from stylobate.quantities import Declared, Quantity, checked_arguments, question_input
 
@@ -97,9 +98,47 @@ class Column(Declared):
 
     def validate(self) -> None:
         """Raise ParameterError if the centre of mass lies outside the body, or no body can have these inertias."""
-        self._check_inertias()
-        if self.height is not None:
-            self._check_height(self.height)
+        if self.axial_inertia > self._most_axial:
+            raise ParameterError(
+                f"axial_inertia must be at most twice transverse_inertia = {self.transverse_inertia!r} kg m² "
+                f"for a body of revolution, got {self.axial_inertia!r} kg m²"
+            )
+        if self.height is None:
+            return
+        if self.mass_height >= self.height:
+            raise ParameterError(
+                f"mass_height must lie inside the body, below height = {self.height!r} m, got {self.mass_height!r} m"
+            )
+        if self._spread > self._most_spread * (1.0 + _ROUNDING):
+            raise ParameterError(
+                f"transverse_inertia must be at most {self._most_spread + self.axial_inertia / 2.0!r} kg m² for a body "
+                f"of height {self.height!r} m, got {self.transverse_inertia!r} kg m²"
+            )
+
+    @property
+    def consistent(self) -> Any:
+        """Whether `validate` accepts the numbers; of arrays, for each column."""
+        fits = self.axial_inertia <= self._most_axial
+        if self.height is None:
+            return fits
+        inside = self.mass_height < self.height
+        return fits & inside & (self._spread <= self._most_spread * (1.0 + _ROUNDING))
+
+    @property
+    def _most_axial(self) -> float:
+        # I_t = I_a/2 + ∫ z² dm for every body of revolution, z from the centre of mass.
+        return 2.0 * self.transverse_inertia * (1.0 + _ROUNDING)
+
+    @property
+    def _spread(self) -> float:
+        """∫ z² dm along the axis, z from the centre of mass."""
+        return self.transverse_inertia - self.axial_inertia / 2.0
+
+    @property
+    def _most_spread(self) -> float:
+        """Spread of two points at the ends: no distribution of mass over 0…H with its mean at h has more."""
+        assert self.height is not None
+        return self.mass * self.mass_height * (self.height - self.mass_height)
 
     @classmethod
     @checked_arguments
@@ -250,21 +289,30 @@ class Column(Declared):
 
         Height of the centre of mass, mass and transverse inertia are kept; the axial inertia is proportional to r².
         """
-        radius = require_positive("slenderness", slenderness) * self.mass_height
-        return replace(self, radius=radius, axial_inertia=self.axial_inertia * (radius / self.radius) ** 2)
+        return replace(self, **self.numbers_at_slenderness(require_positive("slenderness", slenderness)))
+
+    def numbers_at_slenderness(self, slenderness: Any) -> dict[str, Any]:
+        """Return the numbers that change with the slenderness, a number or an array."""
+        radius = slenderness * self.mass_height
+        ratio = radius / self.radius
+        return {"radius": radius, "axial_inertia": self.axial_inertia * (ratio * ratio)}
 
     def resized(self, size: float) -> Self:
         """Copy the column at the same shape and density, with all lengths times `size`."""
-        size = require_positive("size", size)
-        return replace(
-            self,
-            radius=size * self.radius,
-            mass_height=size * self.mass_height,
-            mass=size**3 * self.mass,
-            transverse_inertia=size**5 * self.transverse_inertia,
-            axial_inertia=size**5 * self.axial_inertia,
-            height=None if self.height is None else size * self.height,
-        )
+        return replace(self, **self.numbers_at_size(require_positive("size", size)))
+
+    def numbers_at_size(self, size: Any) -> dict[str, Any]:
+        """Return the numbers that change with all lengths times `size`, a number or an array."""
+        cube = size * size * size
+        fifth = cube * size * size
+        return {
+            "radius": size * self.radius,
+            "mass_height": size * self.mass_height,
+            "mass": cube * self.mass,
+            "transverse_inertia": fifth * self.transverse_inertia,
+            "axial_inertia": fifth * self.axial_inertia,
+            "height": None if self.height is None else size * self.height,
+        }
 
     @property
     def slenderness(self) -> Slenderness:
@@ -274,51 +322,51 @@ class Column(Declared):
     @property
     def base_inertia(self) -> float:
         """J0 = I_t + m h², about a diameter of the base [kg m²]."""
-        return self.transverse_inertia + self.mass * self.mass_height**2
+        return self.transverse_inertia + self.mass * (self.mass_height * self.mass_height)
 
     @property
     def rim_inertia(self) -> float:
         """K = I_t + m (h² + r²), about a tangent of the rim [kg m²]."""
-        return self.base_inertia + self.mass * self.radius**2
+        return self.base_inertia + self.mass * (self.radius * self.radius)
 
     @property
     def inertia_ratio(self) -> float:
         """κ = m h²/J0, between 0 and 1."""
-        return self.mass * self.mass_height**2 / self.base_inertia
+        return self.mass * (self.mass_height * self.mass_height) / self.base_inertia
 
     @property
     def axial_ratio(self) -> float:
         """i_a = I_a/(m r²)."""
-        return self.axial_inertia / (self.mass * self.radius**2)
+        return self.axial_inertia / (self.mass * (self.radius * self.radius))
 
     @property
     def frequency_scale(self) -> FrequencyScale:
         """ω0 = √(m g h/J0), the unit of dimensionless frequency [rad/s]."""
-        return math.sqrt(self.mass * self.gravity * self.mass_height / self.base_inertia)
+        return sqrt(self.mass * self.gravity * self.mass_height / self.base_inertia)
 
     @property
     def tipping_angle(
         self,
     ) -> Annotated[float, Quantity(symbol="α_c", unit="rad", text="angle of static tipping", in_repr=False)]:
         """α_c = atan(r/h), the angle of static tipping of the rocking-block literature [rad]."""
-        return math.atan2(self.radius, self.mass_height)
+        return atan2(self.radius, self.mass_height)
 
     @property
     def rim_distance(self) -> float:
         """R = √(h² + r²), from the centre of mass to the rim: the size parameter of the literature [m]."""
-        return math.hypot(self.mass_height, self.radius)
+        return hypot(self.mass_height, self.radius)
 
     @property
     def frequency_parameter(
         self,
     ) -> Annotated[float, Quantity(symbol="p", unit="rad/s", text="√(m g R/K) of the rocking block", in_repr=False)]:
         """p = √(m g R/K) of the rocking-block literature [rad/s]."""
-        return math.sqrt(self.mass * self.gravity * self.rim_distance / self.rim_inertia)
+        return sqrt(self.mass * self.gravity * self.rim_distance / self.rim_inertia)
 
     @property
     def housner_restitution(self) -> float:
         """Housner's e = 1 − 2 m r²/K, the ratio of rocking rates after and before a planar impact; 0 if negative."""
-        return max(0.0, 1.0 - 2.0 * self.mass * self.radius**2 / self.rim_inertia)
+        return larger(0.0, 1.0 - 2.0 * self.mass * (self.radius * self.radius) / self.rim_inertia)
 
     def housner_damping(self, amplitude: float = 0.5) -> float:
         """Compute the viscous damping that loses as much energy per cycle of planar rocking as Housner's impacts.
@@ -366,27 +414,6 @@ class Column(Declared):
         rate = np.sqrt(2.0 * (highest - energy) * self.base_inertia / self.rim_inertia)
         action = peak * float(np.sum(weights * rate * root[:-1]))  # S
         return float((1.0 - self.housner_restitution**2) * highest / (2.0 * action))
-
-    def _check_inertias(self) -> None:
-        # I_t = I_a/2 + ∫ z² dm for every body of revolution, z from the centre of mass.
-        if self.axial_inertia > 2.0 * self.transverse_inertia * (1.0 + _ROUNDING):
-            raise ParameterError(
-                f"axial_inertia must be at most twice transverse_inertia = {self.transverse_inertia!r} kg m² "
-                f"for a body of revolution, got {self.axial_inertia!r} kg m²"
-            )
-
-    def _check_height(self, height: float) -> None:
-        if self.mass_height >= height:
-            raise ParameterError(
-                f"mass_height must lie inside the body, below height = {height!r} m, got {self.mass_height!r} m"
-            )
-        # No distribution of mass over 0…H with its mean at h spreads wider than two points at the ends.
-        spread = self.mass * self.mass_height * (height - self.mass_height)
-        if self.transverse_inertia - self.axial_inertia / 2.0 > spread * (1.0 + _ROUNDING):
-            raise ParameterError(
-                f"transverse_inertia must be at most {spread + self.axial_inertia / 2.0!r} kg m² for a body of "
-                f"height {height!r} m, got {self.transverse_inertia!r} kg m²"
-            )
 
 
 SHAPES: Mapping[str, Callable[..., Column]] = {

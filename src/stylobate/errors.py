@@ -288,9 +288,14 @@ def require_whole(name: str, value: int, *, least: int, most: Most = MOST_NUMBER
     return int(value)
 
 
+def sizes(unit: str) -> tuple[float, float]:
+    """Return the smallest and the largest magnitude of a number of this unit whose products do not overflow."""
+    return _SIZES.get(unit, (SMALLEST, LARGEST))
+
+
 def require_size(name: str, number: float, unit: str = "", *, zero: bool = True) -> None:
     """Raise ParameterError for a number so large or small that its products overflow; with `zero` only if large."""
-    low, high = _SIZES.get(unit, (SMALLEST, LARGEST))
+    low, high = sizes(unit)
     if (zero or abs(number) >= low) and abs(number) <= high:
         return
     problem, limit = ("too large", f"at most {high:g}") if abs(number) > high else ("too small", f"at least {low:g}")

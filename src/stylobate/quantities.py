@@ -30,6 +30,7 @@ from stylobate.errors import (
     require_size,
     require_vector,
     require_whole,
+    sizes,
 )
 from stylobate.kinds import new_of, place_of
 from stylobate.text import four_digits
@@ -145,6 +146,21 @@ class Quantity:
         inverse = (f"{part}-1" if part.isalpha() else f"{part[:-1]}-{part[-1]}" for part in below.split())
         return " ".join((*(one for one in above.split() if one != "1"), *inverse)) or "1"
 
+    def plain(self, values: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
+        """Check which values `checked` returns without an error or a warning."""
+        low, high = sizes(self.unit)
+        size = np.abs(values)
+        inside = self.accepts(values) & (size <= high)
+        if self._above_zero:
+            inside &= size >= low
+        if self.unlikely_above is None:
+            return inside if self.unit != "rad" else inside & ((size < _TURNS) | (values % _STEP != 0.0))
+        return inside & (size >= (self.unlikely_below or 0.0)) & (size <= self.unlikely_above)
+
+    @property
+    def _above_zero(self) -> bool:
+        return self.gt is not None and self.gt >= 0.0
+
     def shown(self, value: Any) -> str:
         """Format a value of the quantity, with four digits and its unit."""
         return f"{_shown(value)} {self.unit}".rstrip()
@@ -185,7 +201,7 @@ class Quantity:
         number = as_float(name, value, self.unit)
         if not self._allows(number):
             raise ParameterError(self.refusal(name, number))
-        require_size(name, number, self.unit, zero=self.gt is None or self.gt < 0.0)
+        require_size(name, number, self.unit, zero=not self._above_zero)
         self.question(name, number)
         return number
 
@@ -287,6 +303,11 @@ class Declared:
 
     def validate(self) -> None:
         """Raise ParameterError for numbers that contradict each other; each number has been checked before."""
+
+    @property
+    def consistent(self) -> Any:
+        """Whether `validate` accepts the numbers; for a value made by `unchecked` of arrays, an array of bools."""
+        return True
 
     def _call(self) -> tuple[Callable[..., Any], Mapping[str, Any]]:
         """Return the constructor of the value, and its arguments: by default its class and its fields."""
@@ -506,6 +527,14 @@ def check_declared(made: Any) -> None:
     """
     for name, parameter in parameters_of(made.__class__).items():
         object.__setattr__(made, name, parameter.checked(getattr(made, name)))
+
+
+def unchecked(value: _T, **numbers: Any) -> _T:
+    """Copy a frozen dataclass with these numbers, such as arrays of the numbers of many runs, without checks."""
+    made = object.__new__(type(value))
+    for one in fields(value):  # type: ignore[arg-type]  # a dataclass
+        object.__setattr__(made, one.name, numbers.get(one.name, getattr(value, one.name)))
+    return made
 
 
 def question_input(message: str) -> None:

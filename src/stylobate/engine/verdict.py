@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from stylobate.base_motions import BaseMotion
+from stylobate.elementwise import cos, sin
 from stylobate.engine.kernel.columns import LAGS, SLACK
 from stylobate.engine.trajectory import Trajectory
 from stylobate.errors import Outcome, ParameterError, require_positive
@@ -79,10 +80,10 @@ def energy_over_balance(model: Model, states: Floats, push: npt.ArrayLike = 0.0)
     balance, energy = model.balance, model.energy(states)
     if balance is None or energy is None or not belongs_to_equations(type(model), "balance", "energy"):
         return np.full(states.shape[1], math.inf)
-    required = np.full(states.shape[1], balance.energy)
-    if balance.tilt < math.inf:
-        a, rise = np.asarray(push), 1.0 - math.cos(balance.tilt)
-        required = required * (1.0 - (2.0 * a * math.sin(balance.tilt) + 0.5 * a * a) / rise)
+    required = np.broadcast_to(balance.energy, states.shape[1])
+    if np.all(balance.tilt < math.inf):
+        a, rise = np.asarray(push), 1.0 - cos(balance.tilt)
+        required = required * (1.0 - (2.0 * a * sin(balance.tilt) + 0.5 * a * a) / rise)
     share = np.divide(energy, required, out=np.full(states.shape[1], math.inf), where=required > 0.0)
     return np.where(np.hypot(*model.tilt(states)) < balance.tilt, share, math.inf)
 

@@ -173,6 +173,5 @@ def balance(column: Column) -> Balance:
 
 def loss_tilt(column: Column, restitution: float, passage_tilt: float | None) -> float:
     """Return the tilt below which a passage of the vertical loses energy [rad]; 0 without loss."""
-    if restitution == 1.0:
-        return 0.0
-    return _PASSAGE * column.slenderness if passage_tilt is None else passage_tilt
+    tilt = _PASSAGE * column.slenderness if passage_tilt is None else passage_tilt
+    return (restitution < 1.0) * tilt

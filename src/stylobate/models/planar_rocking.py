@@ -206,7 +206,7 @@ class PlanarRocking(TiltVectorModel):
     @property
     def comes_to_rest(self) -> bool:
         """Whether there is damping, or loss at impacts."""
-        return self.damping > 0.0 or self.rolling_resistance > 0.0 or self.impact_restitution < 1.0
+        return (self.damping > 0.0) | (self.rolling_resistance > 0.0) | (self.impact_restitution < 1.0)
 
     @property
     def loss_tilt(self) -> float:

@@ -284,7 +284,7 @@ class Wobbling(TiltVectorModel):
     @property
     def comes_to_rest(self) -> bool:
         """Whether there is damping, rolling resistance or loss."""
-        return self.damping > 0.0 or self.rolling_resistance > 0.0 or self.restitution < 1.0
+        return (self.damping > 0.0) | (self.rolling_resistance > 0.0) | (self.restitution < 1.0)
 
     @property
     def loss_tilt(self) -> float:

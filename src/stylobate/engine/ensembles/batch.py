@@ -8,7 +8,8 @@ import numpy as np
 import numpy.typing as npt
 
 from stylobate.compiler.kept import runs_plain
-from stylobate.engine.ensembles.run_columns import ModelColumns, MotionColumns, MotionPlan
+from stylobate.engine.ensembles.model_columns import ModelColumns
+from stylobate.engine.ensembles.run_columns import MotionColumns, MotionPlan
 from stylobate.engine.ensembles.runs import Runs
 from stylobate.engine.forcing import is_rest, rest_energy_for_good, usual_rest_energy
 from stylobate.engine.kernel.columns import (
@@ -366,7 +367,7 @@ def _fill_starts(
     if model.contact_kinds is not None:  # a standing column begins as sliding; the reset map decides its contact
         states[stands, -1] = model.contact_kinds["SLIDING"]
         turning = runs.turning or ()
-        for changed, chosen in models.kinds if turning else ():
+        for changed, chosen in models.models.each() if turning else ():
             for k in np.arange(len(runs))[chosen]:
                 states[k] = turning[k].begun(changed, states[k])
     table[:, STATE : STATE + states.shape[1]] = states

@@ -260,11 +260,14 @@ def _survive(batch: Batch, moving: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool
     lasts = batch.motions.duration
     survive = moving & (batch.log(Log.STATUS) == Status.STOPPED) & (batch.log(Log.STANDS) == 0.0)
     survive &= (lasts > 0.0) & has_ended(batch.log(Log.TIME) * batch.models.time_scale, lasts)
-    states = _states(batch) if survive.any() else np.empty((0, 0))
-    for changed, runs in batch.models.kinds:
-        if survive[runs].any():
-            survive[runs] &= energy_over_balance(changed, states[:, runs], batch.motions.remaining[runs]) < 1.0
-    return np.asarray(survive)
+    chosen = np.flatnonzero(survive)
+    if chosen.size:
+        states, remaining = _states(batch)[:, chosen], batch.motions.remaining[chosen]
+        energy = batch.models.models.of(chosen).evaluate(
+            lambda changed, runs: {"over": energy_over_balance(changed, states[:, runs], remaining[runs])}
+        )
+        survive[chosen] = energy["over"] < 1.0
+    return survive
 
 
 def _states(batch: Batch) -> Floats:

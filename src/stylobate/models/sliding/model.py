@@ -1,15 +1,15 @@
 """The column with six degrees of freedom, on a plane that it can leave and on which it can slip."""
 
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import IntEnum
-from typing import Annotated, ClassVar
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 import numpy.typing as npt
 
 from stylobate.column import Column
+from stylobate.elementwise import cos, larger, sin, smaller
 from stylobate.errors import ParameterError
 from stylobate.models import finite_tilt
 from stylobate.models.contact import path_outputs, per_normal_force
@@ -114,11 +114,17 @@ class Sliding(Model):
 
     def validate(self) -> None:
         """Raise ParameterError if the static coefficient of friction is below the kinetic one."""
-        static, kinetic = self.static_friction_coefficient, self.friction_coefficient
-        if static is not None and static < kinetic:
+        if not self.consistent:
             raise ParameterError(
-                f"static_friction_coefficient must not be below the kinetic {kinetic!r}, got {static!r}"
+                f"static_friction_coefficient must not be below the kinetic {self.friction_coefficient!r}, "
+                f"got {self.static_friction_coefficient!r}"
             )
+
+    @property
+    def consistent(self) -> Any:
+        """Whether the static coefficient of friction is at least the kinetic one; of arrays, for each model."""
+        static = self.static_friction_coefficient
+        return static is None or static >= self.friction_coefficient
 
     rates = staticmethod(rates)
     tilt_of = staticmethod(tilt_of)
@@ -130,7 +136,8 @@ class Sliding(Model):
     @property
     def numbers(self) -> Numbers:
         """The parameters by name."""
-        column, kinetic, down = self.column, self.friction_coefficient, math.sin(self.incline)
+        column, kinetic = self.column, self.friction_coefficient
+        down, half = sin(self.incline), sin(0.5 * self.incline)
         return Numbers(
             c=column.slenderness,
             eta=self.damping,
@@ -142,9 +149,9 @@ class Sliding(Model):
             static=kinetic if self.static_friction_coefficient is None else self.static_friction_coefficient,
             patch=self.patch,
             normal_restitution=self.normal_restitution,
-            slope_x=-down * math.cos(self.incline_direction),
-            slope_y=-down * math.sin(self.incline_direction),
-            relief=2.0 * math.sin(0.5 * self.incline) ** 2,
+            slope_x=-down * cos(self.incline_direction),
+            slope_y=-down * sin(self.incline_direction),
+            relief=2.0 * (half * half),
         )
 
     @property
@@ -162,7 +169,7 @@ class Sliding(Model):
     def rest_capacity(self) -> float:
         """Maximum |a_h|/(g + a_z) at which the column neither slides nor tips: the smaller of c and the static μ."""
         numbers = self.numbers
-        return min(numbers.c, numbers.static) * (1.0 + RELEASE_MARGIN)
+        return smaller(numbers.c, numbers.static) * (1.0 + RELEASE_MARGIN)
 
     @property
     def comes_to_rest(self) -> bool:
@@ -173,7 +180,7 @@ class Sliding(Model):
     def loss_tilt(self) -> float:
         """Distance from the vertical below which a passage is an impact of the base face [rad]."""
         least = STRAIGHT * self.column.slenderness
-        return least if self.passage_tilt is None else max(self.passage_tilt, least)
+        return least if self.passage_tilt is None else larger(self.passage_tilt, least)
 
     @property
     def closed_form(self) -> ClosedForm:

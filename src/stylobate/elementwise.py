@@ -1,0 +1,31 @@
+"""Functions of numbers that also take arrays, with the same bits for each number.
+
+Properties of a column and of a model compute with them: the models of an ensemble whose numbers differ are then
+evaluated at once, on arrays.
+"""
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+
+def _elementwise(function: Callable[..., float], count: int) -> Callable[..., Any]:
+    over = np.frompyfunc(function, count, 1)
+
+    def of(*numbers: Any) -> Any:
+        if any(isinstance(number, np.ndarray) for number in numbers):
+            return over(*numbers).astype(float)
+        return function(*numbers)
+
+    return of
+
+
+sqrt = _elementwise(math.sqrt, 1)
+sin = _elementwise(math.sin, 1)
+cos = _elementwise(math.cos, 1)
+atan2 = _elementwise(math.atan2, 2)
+hypot = _elementwise(math.hypot, 2)
+smaller = _elementwise(min, 2)
+larger = _elementwise(max, 2)
