@@ -3,6 +3,7 @@
 `study_command` makes the command of a declared study; the other functions serve commands that do more.
 """
 
+import inspect
 import sys
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
@@ -24,13 +25,15 @@ from stylobate.cli.output import (
     study_summary,
 )
 from stylobate.cli.terminal import INTERRUPTED
-from stylobate.config.study import Study, own_options, study_of
+from stylobate.config.study import Analysis, Study, own_options, study_of
 from stylobate.errors import FileError, Interrupted, ParameterError, StylobateError
+from stylobate.kinds import loaded
 
 if TYPE_CHECKING:
     import xarray as xr
 
     from stylobate.config import Setup
+    from stylobate.results.tables import Table
     from stylobate.studies import Dask, Threads
 
 # Options that do not change the runs.
@@ -40,13 +43,30 @@ _HOW = ("source", "figure", "output", "as_json", "resume", "executor", "threads"
 def study_command(function: Callable[..., "xr.Dataset"]) -> Command:
     """Make the command of a declared study."""
     study = study_of(function)
+    of_file = Positional(text=study.source)
+    if isinstance(study, Analysis):
+        return Command(lambda options: _analyse(function, options), study.help, of_file, (), study.groups)
     return Command(
-        lambda options: _run(function, study, options),
-        study.help,
-        Positional(text=study.source),
-        own_options(function),
-        tuple(study.groups),
+        lambda options: _run(function, study, options), study.help, of_file, own_options(function), tuple(study.groups)
     )
+
+
+def _analyse(function: Callable[..., "xr.Dataset"], options: Options) -> None:
+    """Compute a study without a store, write and print its result."""
+    study = study_of(function)
+    for place in (place for name, place in study.instead.items() if options[name]):
+        _analyse(loaded(f"stylobate.{place}"), options)
+        return
+    check_writable(options["figure"], options["output"])
+    chosen, kind = study.chosen(options), config.study_config(function)
+    values = overlay(read_source(options), options, kind.model_fields)
+    merge(values, study.name, {one.number: options[one.name] for one in options.stated(study.name)})
+    setup = kind.parse(values).build()
+    options.refuse_unused()
+    open_ones = {name: one for name, one in chosen.items() if setup.options.get(name) is None}
+    of = setup.model.column if "column" in inspect.signature(function).parameters else setup.model
+    result = function(of, setup.motion, **(setup.options | open_ones))
+    deliver(result, options, _save_flags, study.summary, lambda result: _show(*study.tables(result)))
 
 
 def _run(function: Callable[..., "xr.Dataset"], study: Study, options: Options) -> None:
@@ -58,7 +78,8 @@ def _run(function: Callable[..., "xr.Dataset"], study: Study, options: Options) 
 
     def completed(saved: "xr.Dataset") -> "xr.Dataset":
         def setup() -> "Setup":
-            return kind.of_saved(provenance_of(saved), axes_of(saved)).build()
+            built: Setup = kind.of_saved(provenance_of(saved), axes_of(saved)).build()
+            return built
 
         try:
             return study.completed(saved, setup, options)
@@ -87,16 +108,17 @@ def _run(function: Callable[..., "xr.Dataset"], study: Study, options: Options) 
         result,
         options,
         lambda result: study_summary(result, **study.summary(result)),
-        lambda result: _show(study, result),
+        lambda result: _show(study.table(result)),
         complete=complete,
     )
 
 
-def _show(study: Study, result: "xr.Dataset") -> None:
-    table = study.table(result)
-    print_table(table.title, table.rows, table.header)
-    for remark in table.remarks:
-        print(remark)
+def _show(*tables: "Table") -> None:
+    for table in tables:
+        if table.header:
+            print_table(table.title, table.rows, table.header)
+        for remark in table.remarks:
+            print(remark)
 
 
 def _with_sample(values: dict[str, Any], name: str, options: Options) -> dict[str, Any]:
@@ -261,6 +283,12 @@ def save(result: "xr.Dataset", output: Path) -> None:
         from stylobate.results import write_netcdf
 
         write_netcdf(result, output)
+
+
+def _save_flags(result: "xr.Dataset", output: Path) -> None:
+    """Write a result into a netCDF file; truth values become integers."""
+    flags = {name: data.astype("int8") for name, data in result.data_vars.items() if data.dtype == bool}
+    save(result.assign(flags), output)
 
 
 def end(result: "xr.Dataset", options: Options, *, complete: bool) -> None:

@@ -172,15 +172,15 @@ class Group:
         return [one for one in kept if not self.only or one.name in self.only]
 
 
-def run_numbers(group: type) -> Group:
-    """Make the options of the declared numbers of a run, such as `stylobate.run_arguments.SingleRun`."""
+def run_numbers(group: type, panel: str = "Run") -> Group:
+    """Make the options of a group of declared numbers, such as `stylobate.run_arguments.SingleRun`."""
 
     def made(_: Chosen) -> Iterable[Option]:
         from stylobate.run_arguments import numbers_of
 
         for name, parameter in numbers_of(group).items():
             unit = parameter.quantity.unit
-            yield Option(name, text_of(parameter), type_of(parameter), panel="Run", unit=unit)
+            yield Option(name, text_of(parameter), type_of(parameter), panel=panel, unit=unit)
 
     return Group(made)
 

@@ -1,4 +1,4 @@
-"""What a study of many runs declares of itself: its description in files, its options, and how its result is shown.
+"""What a study declares of itself: its description in files, its options, and how its result is shown.
 
 From it follow the description (`study_config`) and the command (`stylobate.cli.study`).
 """
@@ -23,6 +23,7 @@ from stylobate.config.options import (
 )
 from stylobate.errors import ParameterError
 from stylobate.quantities import Parameter, parameters_of
+from stylobate.results.plain import plain_variables
 from stylobate.run_arguments import SharedByRuns
 
 if TYPE_CHECKING:
@@ -116,6 +117,53 @@ class Study:
         yield from (COMPUTING, OUTPUT_OR_STORE)
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Analysis:
+    """The declaration of a study that is computed at once: without store, executor and resumption.
+
+    The numbers that the signature of its function declares form a table of its name in descriptions.
+
+    Parameters
+    ----------
+    name
+        Name of the command, and of the table of the study in a description.
+    source, help
+        Help of the positional argument of the command, and of the command.
+    groups
+        Options of the command; the part of an option of the study's own table is the name of the study.
+    numbers
+        Group of the numbers at the top of a description, such as `OneRun`.
+    arguments
+        Function that makes the keyword arguments of the study from the description and the built objects.
+    tables, summary
+        Functions that return a result as tables, and as plain values for JSON.
+    steady
+        Whether the case is that of steady rolling: see `SteadyCase`.
+    read
+        Function that completes the plain values of a description before they are validated.
+    problems
+        Function that returns a line for each invalid number of a description.
+    chosen
+        Function that checks the options of the command, and returns arguments that the description leaves open.
+    instead
+        Options that choose another study in place of this one, with its place, such as "studies:exact_response".
+    """
+
+    name: str
+    source: str
+    help: str
+    groups: tuple[Group, ...]
+    numbers: type
+    arguments: Callable[[Any, Any], Mapping[str, Any]]
+    tables: "Callable[[xr.Dataset], Sequence[Table]]"
+    summary: "Callable[[xr.Dataset], dict[str, Any]]" = plain_variables
+    steady: bool = False
+    read: Callable[[Mapping[str, Any]], Mapping[str, Any]] = lambda values: values
+    problems: Callable[[Any], Sequence[str]] = lambda _: ()
+    chosen: Callable[[Mapping[str, Any]], Mapping[str, Any]] = lambda _: {}
+    instead: Mapping[str, str] = field(default_factory=dict)
+
+
 RANDOM = Group.of(
     "Initial conditions",
     Option("random", "number of initial conditions to draw in the ranges --over", int),
@@ -129,8 +177,8 @@ RANDOM = Group.of(
 )
 
 
-def study_of(function: Callable[..., Any]) -> Study:
-    """Return the declaration of a study.
+def study_of(function: Callable[..., Any]) -> Any:
+    """Return the declaration of a study, a `Study` or an `Analysis`.
 
     Raises
     ------
@@ -138,7 +186,7 @@ def study_of(function: Callable[..., Any]) -> Study:
         If the function is no declared study.
     """
     found = getattr(function, "study", None)
-    if not isinstance(found, Study):
+    if not isinstance(found, (Study, Analysis)):
         raise ParameterError(
             f"study: no study with a description (got {function!r}). Name one such as overturning_map."
         )

@@ -1,4 +1,4 @@
-"""The description of a study of many runs in a file, made from what the study declares of itself."""
+"""The description of a study in a file, made from what the study declares of itself."""
 
 from collections.abc import Callable, Mapping, Sequence
 from functools import cache
@@ -9,18 +9,25 @@ from pydantic import Field, create_model, field_validator
 from stylobate.config.axis import Axis
 from stylobate.config.description import Config, built
 from stylobate.config.simulation import (
+    OF_OTHER_COMMANDS,
+    Case,
     ManyRuns,
     Setup,
+    SimulationConfig,
+    SteadyCase,
+    built_parts,
     common_values,
     fields_of,
     name_of,
+    problems_of_the_numbers,
     refuse_design,
     with_numbers_that_vary,
 )
-from stylobate.config.study import Study, declared_numbers, several, study_of
+from stylobate.config.study import Analysis, Study, declared_numbers, several, study_of
 from stylobate.errors import LARGEST_SEED, MOST_RUNS, require_whole
 from stylobate.parameter_quantities import quantity_of
 from stylobate.quantities import Parameter
+from stylobate.run_arguments import numbers_of
 from stylobate.units import read_all
 
 
@@ -97,6 +104,31 @@ class StudyConfig(ManyRuns):
             options["end_converged"] = True
         setup = Setup(model, motion, arguments | options)
         setup.options.update(study.arguments(self, setup))
+        return setup
+
+
+class AnalysisConfig(Case):
+    """A study that is computed at once: `column`, `model`, `motion`, numbers at the top, and the table of the study."""
+
+    study: ClassVar[Analysis]
+
+    @classmethod
+    def parse(cls, values: Mapping[str, Any]) -> Self:
+        """Validate these `values`; those of other commands are ignored."""
+        of_others = {*OF_OTHER_COMMANDS, *SimulationConfig.model_fields} - set(cls.model_fields)
+        return super().parse(cls.study.read({name: one for name, one in values.items() if name not in of_others}))
+
+    def build(self) -> Setup:
+        """Build model and motion; the options are the keyword arguments of the study.
+
+        Raises
+        ------
+        ConfigError
+            With one line for each invalid part.
+        """
+        problems = [*problems_of_the_numbers(self), *self.study.problems(self)]
+        setup = Setup(*built_parts(self.column, self.model, self.motion, problems), {})
+        setup.options.update(self.study.arguments(self, setup))
         return setup
 
 
@@ -177,8 +209,12 @@ def _problems_of_the_grid(name: str, axes: Sequence[str], table: _StartsTable) -
 
 
 @cache
-def study_config(function: Callable[..., Any]) -> type[StudyConfig]:
+def study_config(function: Callable[..., Any]) -> Any:
     """Make the class that describes a study, such as `stylobate.studies.overturning_map`, in files.
+
+    Returns
+    -------
+    type[StudyConfig] or type[AnalysisConfig]
 
     Raises
     ------
@@ -186,12 +222,14 @@ def study_config(function: Callable[..., Any]) -> type[StudyConfig]:
         If the function is no study with a description.
     """
     study = study_of(function)
+    if isinstance(study, Analysis):
+        return _analysis_config(function, study)
     fields: dict[str, Any] = {
         place.rstrip("?"): (Axis | None, None) if "?" in place else (Axis, ...) for place in study.axes
     }
     numbers_of_study = declared_numbers(function)
-    numbers = {name: (Annotated[_type_of(one), one.quantity], one.default) for name, one in numbers_of_study.items()}
-    room = "".join(map(str.title, study.name.split("_")))
+    numbers = _fields(numbers_of_study)
+    room = study.name.title().replace("_", "")
     make: Any = create_model
     about = {"__doc__": (function.__doc__ or "").partition("\n")[0], "__module__": __name__}
     made: type[StudyTable] = make(
@@ -216,14 +254,47 @@ def study_config(function: Callable[..., Any]) -> type[StudyConfig]:
     return found
 
 
+def _analysis_config(function: Callable[..., Any], study: Analysis) -> type[AnalysisConfig]:
+    own, room = declared_numbers(function), study.name.title().replace("_", "")
+    make: Any = create_model
+    fields: dict[str, Any] = {}
+    if "rules" in study.numbers.__annotations__:
+        fields["rules"] = (dict[str, float], Field(default_factory=dict))
+    if own:
+        text = _keys(f"The table `{study.name}`.", own)
+        table = make(f"{room}Table", __base__=Config, __doc__=text, __module__=__name__, **_fields(own))
+        fields[study.name] = (table, table())
+    found: type[AnalysisConfig] = make(
+        f"{room}Config",
+        __base__=(fields_of(study.numbers, "duration"), *([SteadyCase] if study.steady else []), AnalysisConfig),
+        __doc__=_keys((function.__doc__ or "").partition("\n")[0], numbers_of(study.numbers)),
+        __module__=__name__,
+        **fields,
+    )
+    found.study = study
+    return found
+
+
+def _fields(numbers: Mapping[str, Parameter]) -> dict[str, Any]:
+    return {name: (Annotated[_type_of(one), one.quantity], one.default) for name, one in numbers.items()}
+
+
 def _about(study: Study, numbers: Mapping[str, Parameter]) -> str:
     """Write the docstring of the table of a study: the meaning of each of its keys."""
     if study.starts:
         return str(_StartsTable.__doc__)
     axes = dict.fromkeys(study.places, "Values of a quantity: a table as above.")
-    said = axes | {name: f"{one.quantity.text[:1].upper()}{one.quantity.text[1:]}." for name, one in numbers.items()}
+    return _keys(f"The table `{study.name}`.", numbers, axes)
+
+
+def _keys(first: str, numbers: Mapping[str, Parameter], others: Mapping[str, str] | None = None) -> str:
+    """Write a docstring with the meaning of each key."""
+    said = dict(others or {})
+    for name, one in numbers.items():
+        text, unit = one.quantity.text, one.quantity.unit
+        said[name] = f"{text[:1].upper()}{text[1:]}{f' [{unit}]' if unit else ''}."
     lines = "".join(f"    {name}\n        {text}\n" for name, text in said.items())
-    return f"The table `{study.name}`.\n\n    Parameters\n    ----------\n{lines}    "
+    return f"{first}\n\n    Parameters\n    ----------\n{lines}    "
 
 
 def _type_of(number: Any) -> Any:

@@ -31,7 +31,7 @@ _F = TypeVar("_F", bound=Callable[..., Any])
 
 _REQUESTS: Mapping[str, type[BaseModel]] = {
     "Simulation": config.SimulationConfig,
-    "Response": config.ResponseConfig,
+    "Response": config.study_config(studies.response_curves),
     "SteadyRollingStart": StartConfig,
     "Map": config.study_config(studies.overturning_map),
     "Basin": config.study_config(studies.basins),

@@ -69,7 +69,7 @@ def warm_up() -> None:
 
 
 JOBS: Mapping[str, type[Config]] = {
-    "exact": config.ResponseConfig,
+    "exact": config.study_config(studies.response_curves),
     "map": config.study_config(studies.overturning_map),
     "basin": config.study_config(studies.basins),
     "animation": config.SimulationConfig,

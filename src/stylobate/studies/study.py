@@ -9,7 +9,7 @@ from functools import wraps
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, ParamSpec, TypedDict, cast, get_args
 
-from stylobate.config.study import Study, declared_numbers
+from stylobate.config.study import Analysis, Study, declared_numbers
 from stylobate.progress import Progress, shows_progress
 from stylobate.run_arguments import Argument, RunOptions, defaults_of, takes
 from stylobate.studies.sweeps.executors import Executor
@@ -123,6 +123,16 @@ def study(
         made = shows_progress(word)(takes(group, described=groups)(computed))
         made.study = declared  # type: ignore[attr-defined]  # read by `study_of`
         return made
+
+    return decorated
+
+
+def analysis(declared: Analysis) -> "Callable[[Callable[_P, xr.Dataset]], Callable[_P, xr.Dataset]]":
+    """Declare a study that is computed at once; a decorator."""
+
+    def decorated(function: "Callable[_P, xr.Dataset]") -> "Callable[_P, xr.Dataset]":
+        function.study = declared  # type: ignore[attr-defined]  # read by `study_of`
+        return function
 
     return decorated
 
