@@ -8,8 +8,8 @@ import pytest
 import stylobate as sb
 from stylobate.config import SimulationConfig
 from stylobate.errors import Outcome
-from stylobate.lab.grids import overturning_plane
 from stylobate.lab.messages import Found
+from stylobate.lab.tasks import task
 
 BOTTLE = {
     "column": {"shape": "solid", "radius": 0.03, "height": 0.2, "density": 1000.0},
@@ -26,7 +26,7 @@ def axis(name, low, high, number):
 def cells_of(values):
     """Return the axes and the outcome of each cell, as they are sent while the map fills in."""
     found = []
-    overturning_plane(values, found.append)
+    task("map")(values, found.append)
     sent = [one.value.model_dump() for one in found if isinstance(one, Found)]
     cells = {(x, y): code for one in sent if "cells" in one for x, y, code in one["cells"]}
     return sent[0]["axes"], cells
