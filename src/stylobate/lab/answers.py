@@ -121,13 +121,6 @@ class Kind(Answer):
     ends: bool | None = Field(None, description="for motions: whether the motion ends, so that a run needs no duration")
 
 
-class Sample(Answer):
-    """A sample record."""
-
-    name: str
-    about: str
-
-
 class Preset(Answer):
     """An example motion."""
 
@@ -141,14 +134,6 @@ class Preset(Answer):
     )
 
 
-class OutcomeCode(Answer):
-    """An outcome."""
-
-    name: OutcomeName
-    value: str = Field(description="outcome in words")
-    code: Count = Field(description="code in maps")
-
-
 class About(Answer):
     """Options of the laboratory."""
 
@@ -157,9 +142,8 @@ class About(Answer):
     shapes: list[Kind] = Field(description="kinds of columns")
     models: list[Kind] = Field(description="kinds of models")
     motions: list[Kind] = Field(description="kinds of base motions")
-    samples: list[Sample] = Field(description="sample records")
+    samples: list[str] = Field(description="names of the sample records")
     presets: list[Preset] = Field(description="example motions")
-    outcomes: list[OutcomeCode] = Field(description="the possible outcomes")
 
 
 class Peaks(Answer):

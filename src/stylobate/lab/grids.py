@@ -71,16 +71,18 @@ def grid(function: Callable[..., xr.Dataset], values: Mapping[str, Any], emit: E
 
 def _answered(found: xr.Dataset, study: Study, shape: tuple[int, ...]) -> answers.GridResult:
     of = next(one for one in study.classes if one.codes in found)
-    table = {name: found[name].to_numpy().tolist() for name in (of.names, of.share)}
-    ends = (f"{of.share}_low", f"{of.share}_high")
-    lows, highs = (found[end].to_numpy().tolist() if end in found else repeat(None) for end in ends)
+    shares = (
+        answers.numbers(found[name]) if name in found else repeat(None)
+        for name in (of.share, f"{of.share}_low", f"{of.share}_high")
+    )
+    classes = zip(found[of.names].to_numpy(), *shares, strict=False)
     return answers.GridResult(
         runs=found["outcome"].size,
         uncertain=int(found["uncertain"].sum()),
         codes=found[of.codes].transpose(*found["outcome"].dims).to_numpy().reshape(shape).tolist(),
         classes=[
-            answers.CellClass(code=code, name=name, share=share, low=low, high=high)
-            for code, (name, share, low, high) in enumerate(zip(*table.values(), lows, highs, strict=False))
+            answers.CellClass(code=code, name=str(name), share=share, low=low, high=high)
+            for code, (name, share, low, high) in enumerate(classes)
         ],
     )
 

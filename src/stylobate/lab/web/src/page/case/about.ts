@@ -21,12 +21,11 @@ export type Preset = Omit<schema.Preset, "description" | "view"> & {
   readonly view: Readonly<Record<string, Value>>;
 };
 
-export type About = Omit<schema.About, "limits" | "shapes" | "models" | "motions" | "samples" | "presets"> & {
+export type About = Omit<schema.About, "limits" | "shapes" | "models" | "motions" | "presets"> & {
   readonly limits: Partial<schema.About["limits"]>;
   readonly shapes: readonly Kind[];
   readonly models: readonly Kind[];
   readonly motions: readonly Kind[];
-  readonly samples: readonly { readonly name: string; readonly about?: string }[];
   readonly presets: readonly Preset[];
 };
 

@@ -63,7 +63,7 @@ export class RecordForm {
   constructor(about: About, changed: (motion: Part) => void) {
     this.#changed = changed;
     const [id, fileId] = [newId("record"), newId("files")];
-    const samples = about.samples.map(({ name }) => [name, capital(name)] as const);
+    const samples = about.samples.map((name) => [name, capital(name)] as const);
     this.#source = choice([...samples, [OWN, "Your own files…"]], { id }, (value) => this.#choose(value));
     this.#files.id = fileId;
     this.#files.addEventListener("change", () => this.#send());

@@ -27,12 +27,10 @@ export type About = {
   readonly models: readonly Kind[];
   /** kinds of base motions */
   readonly motions: readonly Kind[];
-  /** sample records */
-  readonly samples: readonly Sample[];
+  /** names of the sample records */
+  readonly samples: readonly string[];
   /** example motions */
   readonly presets: readonly Preset[];
-  /** the possible outcomes */
-  readonly outcomes: readonly OutcomeCode[];
 };
 
 /** A new job. */
@@ -337,15 +335,6 @@ export type OrbitFamily = {
   readonly tilt_rate: readonly (readonly [number, number])[];
 };
 
-/** An outcome. */
-export type OutcomeCode = {
-  readonly name: "AT_REST" | "ROCKING" | "ROLLING" | "MODULATED" | "OVERTURNED" | "STILL_MOVING" | "LIMIT_REACHED" | "LIFTED_OFF" | "FAILED" | "SLID" | "SURVIVED" | "STOPPED" | "PERIODIC" | "APERIODIC";
-  /** outcome in words */
-  readonly value: string;
-  /** code in maps */
-  readonly code: number;
-};
-
 /** A parameter. */
 export type Parameter = {
   /** name as in descriptions */
@@ -480,12 +469,6 @@ export type RunEvent = {
   readonly kind: string;
   /** time [s] */
   readonly time: number;
-};
-
-/** A sample record. */
-export type Sample = {
-  readonly name: string;
-  readonly about: string;
 };
 
 /** Histories, all as long as `time`. Models may add further histories. */
