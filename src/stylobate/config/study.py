@@ -35,6 +35,18 @@ if TYPE_CHECKING:
 Complete = Callable[["xr.Dataset", Callable[[], Any], Mapping[str, Any]], "xr.Dataset"]
 
 
+@dataclass(frozen=True, slots=True)
+class Classes:
+    """Variables of a result that divide its runs into classes: the code of each run, names and shares of the classes.
+
+    A code is the index of its class. A share can have an interval, in variables that end in `_low` and `_high`.
+    """
+
+    codes: str
+    names: str
+    share: str = "share"
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Study:
     """The declaration of a study; its own numbers are those that the signature of its function declares.
@@ -65,6 +77,9 @@ class Study:
         Whether the base motion can be a record.
     kinds, remedy
         Kinds of saved results that the command shows, by default all; and the remedy for another one.
+    classes
+        Classes of the runs, of which the first that a result has count. A study with classes over the axes x and y
+        (`stylobate.studies.GRIDS`) is a job of the laboratory too, and a tab of its page.
     completed
         Function that completes a saved result, such as the bare runs of a store. Its arguments are the result, a
         function that builds its description, and the options of the command.
@@ -90,6 +105,7 @@ class Study:
     records: bool = True
     kinds: tuple[str, ...] = ()
     remedy: str = ""
+    classes: tuple[Classes, ...] = ()
     completed: Complete = lambda saved, *_: saved
     arguments: Callable[[Any, Any], Mapping[str, Any]] = lambda *_: {}
     repeated: Callable[[Mapping[str, Any], dict[str, Any]], dict[str, Any]] = lambda _, values: values

@@ -18,6 +18,8 @@ from .responses.slow_sweep import slow_sweep
 from .responses.stability_boundary import stability_boundary
 from .sweeps import Dask, Sweep, Threads, executor_from, open_sweep, run_sweep
 
+GRIDS: tuple[str, ...]
+
 __all__ = [
     "AttractorRules",
     "Comparison",
