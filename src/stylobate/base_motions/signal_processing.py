@@ -37,7 +37,7 @@ def samples_within_limit(argument: str, got: str, count: float, remedy: str) -> 
     """
     if count > MOST_NUMBERS.number:
         raise ParameterError(
-            f"{argument}: {count:.3g} samples are needed, at most {MOST_NUMBERS.number:,} allowed (got {got}). {remedy}."
+            f"{argument}: {count:.3g} samples are needed, {MOST_NUMBERS.number:,} allowed (got {got}). {remedy}."
         )
     return math.ceil(count)
 
