@@ -16,9 +16,9 @@ from stylobate.base_motions.combined import members_of
 from stylobate.column import Column
 from stylobate.engine.cost import announce, expected_steps
 from stylobate.engine.ensembles.batch import Batch, Plan
+from stylobate.engine.ensembles.results import fallen, write_results
 from stylobate.engine.ensembles.run_columns import MotionPlan, terms_of
 from stylobate.engine.ensembles.runs import AXIS, COMPONENT, QUANTITIES, ArrayLike, Arrays, Runs, broadcast, empty
-from stylobate.engine.ensembles.summaries import fallen, summarize_into
 from stylobate.engine.forcing import check_motion
 from stylobate.engine.parameters import changed_model, check_names, in_declared_units, own_numbers, split
 from stylobate.engine.starts import Turning, refuse_friction, require_nouns
@@ -263,7 +263,7 @@ def _followed(plan: Plan, runs: Runs, arrays: Arrays, threads: int, progress: Re
     def compute(part: slice, halt: Halt) -> None:
         batch = Batch.of(plan, runs.part(part))
         batch.advance(halt)
-        summarize_into({name: values[part] for name, values in arrays.items()}, batch)
+        write_results({name: values[part] for name, values in arrays.items()}, batch)
 
     def count(part: slice) -> None:
         nonlocal done

@@ -16,6 +16,7 @@ from stylobate.engine.kernel.bound import (
     SPIN,
     WIDTH,
     R,
+    Table,
     begin,
     handle,
 )
@@ -36,7 +37,6 @@ from stylobate.engine.kernel.driver.records import (
 from stylobate.engine.kernel.driver.rest import repeats_to_the_end
 from stylobate.engine.kernel.driver.stages import set_dense_output, set_within, set_within_closely
 from stylobate.engine.kernel.driver.step import step
-from stylobate.engine.kernel.layout import Table
 
 
 def advance(table: Table, pieces: Table, halt: npt.NDArray[np.uint8], buf: Table) -> bool:

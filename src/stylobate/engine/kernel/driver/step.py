@@ -17,6 +17,7 @@ from stylobate.engine.kernel.bound import (
     SWITCHING,
     WIDTH,
     R,
+    Table,
 )
 from stylobate.engine.kernel.driver.equations import lean_of_new
 from stylobate.engine.kernel.driver.events import lean, overshoot_of
@@ -32,7 +33,6 @@ from stylobate.engine.kernel.driver.stages import (
     rises_and_falls,
     slopes_of,
 )
-from stylobate.engine.kernel.layout import Table
 from stylobate.engine.tolerances import PASSAGE_FROM, PASSAGE_OFFSET, SLIP_SHARE
 
 

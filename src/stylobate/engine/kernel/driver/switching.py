@@ -23,6 +23,7 @@ from stylobate.engine.kernel.bound import (
     SLIP_Y,
     SLIPPING,
     R,
+    Table,
 )
 from stylobate.engine.kernel.driver.equations import accelerations, held_for_good, lean_of_new, row_state
 from stylobate.engine.kernel.driver.events import STATUSES_AT_LIMITS, Status, TraceKind, limit_passed
@@ -69,7 +70,6 @@ from stylobate.engine.kernel.driver.records import (
 )
 from stylobate.engine.kernel.driver.rest import RELEASE_MARGIN, next_release, search_end
 from stylobate.engine.kernel.driver.stages import dense_state, set_dense, set_within, stability
-from stylobate.engine.kernel.layout import Table
 from stylobate.engine.tolerances import DEPARTURE, SLIP_SHARE, SLIP_SHORTER, SLIP_TURNS
 
 
