@@ -14,7 +14,7 @@ CONFIGS = [
     (config.study_config(studies.basins), SharedByRuns),
     (config.study_config(studies.basins), Stroboscopic),
     (config.study_config(conveying.drift), SharedByRuns),
-    (earthquakes.config.SpectrumConfig, SharedByRuns),
+    (config.study_config(earthquakes.overturning_intervals), SharedByRuns),
     (earthquakes.config.FragilityConfig, SharedByRuns),
 ]
 

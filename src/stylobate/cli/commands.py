@@ -43,7 +43,9 @@ COMMANDS = {
     ),
     "records": Entry("cli.records:records", "List ground-motion records, their components and their intensities."),
     "assess": Entry("cli.assess:assess", "Assess whether columns survive records, and how robust the answer is."),
-    "spectrum": Entry("cli.spectrum:spectrum", "Compute overturning intervals of the amplitude, or rocking spectra."),
+    "spectrum": Entry(
+        "earthquakes:overturning_intervals", "Compute overturning intervals of the amplitude, or rocking spectra."
+    ),
     "fragility": Entry(
         "cli.fragility:fragility", "Fit fragility curves: probability of each limit state versus intensity."
     ),

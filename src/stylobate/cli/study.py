@@ -47,7 +47,11 @@ def study_command(function: Callable[..., "xr.Dataset"]) -> Command:
     if isinstance(study, Analysis):
         return Command(lambda options: _analyse(function, options), study.help, of_file, (), study.groups)
     return Command(
-        lambda options: _run(function, study, options), study.help, of_file, own_options(function), tuple(study.groups)
+        lambda options: _run(function, study, options),
+        study.help,
+        of_file,
+        tuple(own_options(function).values()),
+        tuple(study.groups),
     )
 
 
@@ -74,11 +78,12 @@ def _run(function: Callable[..., "xr.Dataset"], study: Study, options: Options) 
     source = options["source"]
     saved = open_saved(source)
     if saved is not None and study.kinds and saved.attrs["kind"] not in study.kinds:
-        raise FileError(f"{source}: no result of {study.name} (got a {saved.attrs['kind']}). {study.remedy}")
+        remedy = f" {study.remedy}" if _is_store(source) else ""
+        raise FileError(f"{source}: no {study.name} result (got a {saved.attrs['kind']}).{remedy}")
 
     def completed(saved: "xr.Dataset") -> "xr.Dataset":
         def setup() -> "Setup":
-            built: Setup = kind.of_saved(provenance_of(saved), axes_of(saved)).build()
+            built: Setup = kind.of_saved(provenance_of(saved), axes_of(saved), saved.attrs["kind"]).build()
             return built
 
         try:
@@ -91,17 +96,18 @@ def _run(function: Callable[..., "xr.Dataset"], study: Study, options: Options) 
         if study.starts:
             values = _with_sample(values, study.name, options)
         if study.axes:
-            values = with_axes(values, options, study.name)
-            if "y?" in study.axes and not values.get(study.name):
+            values = with_axes(values, options, study.name, (*"xy", *(["scales"] if study.scales else [])))
+            if study.axes == ("x", "y?") and not values.get(study.name):
                 raise ParameterError(
                     f"{study.name}.x is missing. State what varies: --x acceleration 2 30 29, or "
                     "--x acceleration 9 9 1 for one run."
                 )
-        merge(values, study.name, options.pick(*(one.name for one in own_options(function))))
-        setup = kind.parse(values).build()
+        with_own_options(values, function, options)
+        description = kind.parse(values)
+        setup = description.build()
         if study.axes:
             check_axes(study.name, setup, starts=study.starts)
-        return function, setup
+        return loaded(description.instead.place) if description.instead else function, setup
 
     result, complete = run_study(options, saved, completed, prepared)
     finish(
@@ -119,6 +125,17 @@ def _show(*tables: "Table") -> None:
             print_table(table.title, table.rows, table.header)
         for remark in table.remarks:
             print(remark)
+
+
+def with_own_options(values: dict[str, Any], function: Callable[..., Any], options: Options) -> None:
+    """Override the table of a study by the options of its own numbers; either a tail or a duration is kept."""
+    name, own = study_of(function).name, {key: one.name for key, one in own_options(function).items()}
+    given, table = options.pick(*own.values()), values.get(name)
+    if "tail" in own and options.get("duration") is not None and isinstance(table, Mapping):
+        values[name] = {key: one for key, one in table.items() if key != "tail"}
+    elif own.get("tail") in given:
+        values.pop("duration", None)
+    merge(values, name, {key: given[option] for key, option in own.items() if option in given})
 
 
 def _with_sample(values: dict[str, Any], name: str, options: Options) -> dict[str, Any]:
@@ -200,7 +217,7 @@ def run_study(
 
 
 def study_values(
-    saved: "xr.Dataset | None", options: Options, kind: Any, usual: Mapping[str, Any] | None = None, **of_saved: Any
+    saved: "xr.Dataset | None", options: Options, kind: Any, usual: Mapping[str, Any] | None = None
 ) -> dict[str, Any]:
     """Override the values of a file or of a saved study by the options.
 
@@ -214,13 +231,11 @@ def study_values(
         Class of the configuration.
     usual
         Values that a file may leave out.
-    of_saved
-        Further arguments of `kind.of_saved`.
     """
     if saved is None:
         values = {**(usual or {}), **read_source(options)}
     else:
-        values = kind.of_saved(provenance_of(saved), axes_of(saved), **of_saved).values()
+        values = kind.of_saved(provenance_of(saved), axes_of(saved), saved.attrs["kind"]).values()
     return overlay(values, options, kind.model_fields)
 
 

@@ -250,6 +250,16 @@ AXES = Group.of(
     Option("x_spacing", "linear (by default) or log", str),
     Option("y_spacing", "linear (by default) or log", str),
 )
+SCALES = Group.of(
+    "Axes",
+    Option(
+        "scales",
+        "factors of the base motion: first, last, number",
+        tuple[float, float, int],
+        metavar="FROM TO NUMBER",
+    ),
+    Option("scales_spacing", "log (by default) or linear", str),
+)
 UNITS = Option("units", "unit of files that do not state it: g, m/s2 or cm/s2", str)
 STEP = Option("step", "time step of files that do not state it", unit="s")
 EARLY_END = Group.of(

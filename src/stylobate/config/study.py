@@ -16,6 +16,7 @@ from stylobate.config.options import (
     MOTION,
     OUTPUT_OR_STORE,
     RECORD,
+    SCALES,
     Group,
     Option,
     run_numbers,
@@ -48,6 +49,26 @@ class Classes:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Instead:
+    """A study that a command computes in place of its own.
+
+    Parameters
+    ----------
+    key, text
+        Key of the table, and option of the command, that ask for this study; and the help of the option.
+    place
+        Place of its function, such as "stylobate.earthquakes:rocking_spectrum".
+    kind
+        Kind of its results.
+    """
+
+    key: str
+    text: str
+    place: str
+    kind: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Study:
     """The declaration of a study; its own numbers are those that the signature of its function declares.
 
@@ -61,6 +82,8 @@ class Study:
         Functions that return a result as a table, and the study's own part of it as plain values for JSON.
     axes
         Places of the axes in the table: "x" and "y"; "y?" can be left out.
+    scales
+        Whether the table has factors of the base motion.
     starts
         Whether only initial conditions vary, on the grid of the axes, or drawn at random.
     early
@@ -68,7 +91,12 @@ class Study:
     numbers
         A group of further numbers of all runs, such as `Stroboscopic`.
     without
-        Arguments of all runs that the study sets itself, each with the reason and the remedy.
+        Arguments of all runs that the study sets itself, each with the reason and the remedy; without a reason, the
+        argument is ignored.
+    renamed
+        Options whose argument has another name: the option by the name of the argument.
+    instead
+        A study that the command computes in place of this one.
     usual
         Values that a description can leave out.
     model, motion
@@ -95,10 +123,13 @@ class Study:
     table: "Callable[[xr.Dataset], Table]"
     summary: "Callable[[xr.Dataset], dict[str, Any]]"
     axes: tuple[str, ...] = ()
+    scales: bool = False
     starts: bool = False
     early: bool = False
     numbers: type | None = None
     without: Mapping[str, str] = field(default_factory=dict)
+    renamed: Mapping[str, str] = field(default_factory=dict)
+    instead: Instead | None = None
     usual: Mapping[str, Any] = field(default_factory=dict)
     model: Group = MODEL
     motion: Group = MOTION
@@ -120,6 +151,8 @@ class Study:
         """The options that the study shares with others."""
         if self.places:
             yield AXES
+        if self.scales:
+            yield SCALES
         if self.starts:
             yield RANDOM
         yield run_numbers(SharedByRuns).without(*self.without)
@@ -214,12 +247,15 @@ def declared_numbers(function: Callable[..., Any]) -> Mapping[str, Parameter]:
     return parameters_of(function)
 
 
-def own_options(function: Callable[..., Any]) -> list[Option]:
-    """Make the options of the numbers that a study declares."""
-    return [
-        Option(name, text_of(one), _kind(one), unit=one.quantity.unit)
+def own_options(function: Callable[..., Any]) -> dict[str, Option]:
+    """Make the options of the own keys in the table of a study, by key."""
+    study = study_of(function)
+    own = {
+        name: Option(study.renamed.get(name, name), text_of(one), _kind(one), unit=one.quantity.unit)
         for name, one in declared_numbers(function).items()
-    ]
+    }
+    other = study.instead
+    return own if other is None else own | {other.key: Option(other.key, other.text, bool)}
 
 
 def several(number: Parameter) -> bool:

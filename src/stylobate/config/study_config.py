@@ -1,12 +1,13 @@
 """The description of a study in a file, made from what the study declares of itself."""
 
+import inspect
 from collections.abc import Callable, Mapping, Sequence
 from functools import cache
 from typing import Annotated, Any, ClassVar, Self
 
 from pydantic import Field, create_model, field_validator
 
-from stylobate.config.axis import Axis
+from stylobate.config.axis import Axis, Scales
 from stylobate.config.description import Config, built
 from stylobate.config.simulation import (
     OF_OTHER_COMMANDS,
@@ -23,8 +24,9 @@ from stylobate.config.simulation import (
     refuse_design,
     with_numbers_that_vary,
 )
-from stylobate.config.study import Analysis, Study, declared_numbers, several, study_of
+from stylobate.config.study import Analysis, Instead, Study, declared_numbers, several, study_of
 from stylobate.errors import LARGEST_SEED, MOST_RUNS, require_whole
+from stylobate.kinds import loaded
 from stylobate.parameter_quantities import quantity_of
 from stylobate.quantities import Parameter
 from stylobate.run_arguments import numbers_of
@@ -38,16 +40,19 @@ class StudyConfig(ManyRuns):
 
     @classmethod
     def parse(cls, values: Mapping[str, Any]) -> Self:
-        """Validate these `values`; a motion may omit a number that varies."""
-        values = {**cls.study.usual, **values}
-        table = values.get(cls.study.name)
-        if cls.study.axes and not cls.study.starts:
+        """Validate these `values`; a motion may omit a number that varies, or the acceleration if it is scaled."""
+        study = cls.study
+        values = {name: one for name, one in {**study.usual, **values}.items() if study.without.get(name) != ""}
+        table = values.get(study.name)
+        if study.axes and not study.starts:
             axes = table if isinstance(table, Mapping) else {}
-            values = with_numbers_that_vary(values, tuple(name_of(axes.get(place)) for place in cls.study.places))
+            scaled = study.scales and not (study.instead and axes.get(study.instead.key))
+            varied = (*(name_of(axes.get(place)) for place in study.places), *(["acceleration"] if scaled else []))
+            values = with_numbers_that_vary(values, varied)
         return super().parse(values)
 
     @classmethod
-    def of_saved(cls, provenance: Mapping[str, Any], axes: Mapping[str, Sequence[float]]) -> Self:
+    def of_saved(cls, provenance: Mapping[str, Any], axes: Mapping[str, Sequence[float]], kind: str = "") -> Self:
         """Make the description that repeats a saved result.
 
         Parameters
@@ -55,7 +60,9 @@ class StudyConfig(ManyRuns):
         provenance
             Provenance of the result.
         axes
-            Coordinates of a grid: its names with their values, x first.
+            Coordinates of a grid: its names with their values, x first; then the scales.
+        kind
+            Kind of the result; by default that of the study.
 
         Raises
         ------
@@ -64,16 +71,28 @@ class StudyConfig(ManyRuns):
         ParameterError
             If the values of the runs follow another design.
         """
+        study = cls.study
         table: dict[str, Any] = {}
-        if cls.study.axes:
-            design = refuse_design(provenance, *(("grid", "random") if cls.study.starts else ("grid",)))
-            if design["kind"] == "random":
-                table = {"random": design["count"], "seed": design["seed"], "over": design["values"]}
-            else:
-                listed = ({"name": name, "values": list(values)} for name, values in axes.items())
-                table = dict(zip(cls.study.places, listed, strict=False))
-        table |= {name: one for name, one in dict(provenance.get(cls.study.name, {})).items() if one is not None}
-        return cls.parse(cls.study.repeated(provenance, {**common_values(provenance), cls.study.name: table}))
+        design: Mapping[str, Any] = {"kind": "grid"}
+        if study.axes and not study.scales:
+            design = refuse_design(provenance, *(("grid", "random") if study.starts else ("grid",)))
+        if design["kind"] == "random":
+            table = {"random": design["count"], "seed": design["seed"], "over": design["values"]}
+        else:
+            listed = {name: {"name": name, "values": list(values)} for name, values in axes.items()}
+            if study.instead and kind == study.instead.kind:
+                table[study.instead.key] = True
+            elif study.scales:
+                table["scales"] = listed.pop("scale")
+            table |= dict(zip(study.places, listed.values(), strict=False))
+        table |= {name: one for name, one in dict(provenance.get(study.name, {})).items() if one is not None}
+        return cls.parse(study.repeated(provenance, {**common_values(provenance), study.name: table}))
+
+    @property
+    def instead(self) -> Instead | None:
+        """The study that the table asks for in place of its own."""
+        other = self.study.instead
+        return other if other is not None and getattr(getattr(self, self.study.name), other.key) else None
 
     def build(self) -> Setup:
         """Build model and motion; the options are the keyword arguments of the study.
@@ -92,7 +111,14 @@ class StudyConfig(ManyRuns):
             for name, why in study.without.items()
             if (getattr(self, name) or None) not in (None, type(self).model_fields[name].default)
         ]
-        if "duration" not in study.without:
+        if "tail" in type(table).model_fields:
+            names = ("duration",)  # that of each run follows from the end of its base motion
+            if table.tail is not None and self.duration is not None:
+                problems.append(
+                    f"{study.name}.tail: contradicts duration (got a duration of {self.duration!r} s and a tail of "
+                    f"{table.tail!r} s). Remove one of them."
+                )
+        elif "duration" not in study.without:
             problems += self.problems_of_the_length(names)
         model, motion, options = self.common(problems, names)
         for name in study.without:
@@ -137,7 +163,23 @@ class StudyTable(Config):
 
     def arguments(self, study: Study, problems: list[str]) -> dict[str, Any]:
         """Make the arguments of the study; add a line to `problems` for each mistake."""
-        return ({"over": self.grid(study, problems)} if study.axes else {}) | self.model_dump(exclude={*study.places})
+        fields = type(self).model_fields
+        own = {name: getattr(self, name) for name in fields if name not in study.places}
+        if study.instead is not None and own.pop(study.instead.key):
+            taken = inspect.signature(loaded(study.instead.place)).parameters
+            problems += [
+                f"{study.name}.{name} is not supported by a {study.instead.kind}. Remove it."
+                for name, value in own.items()
+                if name not in taken and value != fields[name].default
+            ]
+            own = {name: value for name, value in own.items() if name in taken}
+        elif study.scales and own["scales"] is None:
+            problems.append(
+                f"{study.name}.scales are missing: factors of the base motion, such as from 0.2 to 5, number 40"
+            )
+        elif study.scales:
+            own["scales"] = built(f"{study.name}.scales", own["scales"].build, problems)
+        return ({"over": self.grid(study, problems)} if study.axes else {}) | own
 
     def grid(self, study: Study, problems: list[str]) -> dict[str, Any]:
         """Make the values along the axes, by name; add a line to `problems` for each mistake."""
@@ -227,6 +269,10 @@ def study_config(function: Callable[..., Any]) -> Any:
     fields: dict[str, Any] = {
         place.rstrip("?"): (Axis | None, None) if "?" in place else (Axis, ...) for place in study.axes
     }
+    if study.scales:
+        fields["scales"] = (Scales | None, None)
+    if study.instead is not None:
+        fields[study.instead.key] = (bool, False)
     numbers_of_study = declared_numbers(function)
     numbers = _fields(numbers_of_study)
     room = study.name.title().replace("_", "")
@@ -283,8 +329,13 @@ def _about(study: Study, numbers: Mapping[str, Parameter]) -> str:
     """Write the docstring of the table of a study: the meaning of each of its keys."""
     if study.starts:
         return str(_StartsTable.__doc__)
-    axes = dict.fromkeys(study.places, "Values of a quantity: a table as above.")
-    return _keys(f"The table `{study.name}`.", numbers, axes)
+    said = dict.fromkeys(study.places, "Values of a quantity: a table as above.")
+    if study.scales:
+        said["scales"] = "Factors of the base motion: a table as above, without a name."
+    if study.instead is not None:
+        text = study.instead.text
+        said[study.instead.key] = f"{text[:1].upper()}{text[1:]}."
+    return _keys(f"The table `{study.name}`.", numbers, said)
 
 
 def _keys(first: str, numbers: Mapping[str, Parameter], others: Mapping[str, str] | None = None) -> str:
