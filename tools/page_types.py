@@ -11,7 +11,9 @@ from typing import Any
 
 from stylobate.base_motions import Harmonic
 from stylobate.base_motions.declared import MOTIONS, kinds_by_acceleration, kinds_with_response
+from stylobate.config.study import study_of
 from stylobate.lab.answers import schemas
+from stylobate.lab.requests import GRIDS
 from stylobate.models.declared import MODELS
 from stylobate.quantities import parameters_of
 from stylobate.run_arguments import Start, numbers_of, run_numbers
@@ -56,6 +58,9 @@ def names() -> str:
         for name, one in parameters_of(make).items()
         if one.quantity.unit in _RATES
     ]
+    grids = "".join(f"  {name}: {{ starts: {json.dumps(study_of(one).starts)} }},\n" for name, one in GRIDS.items())
+    about = "Studies whose result is a grid of classes: whether only initial conditions vary."
+    parts += [f"/** {about} */\nexport const GRIDS = {{\n{grids}}} as const;\n"]
     about = "By kind of harmonic motion: the number that holds the frequency, and its unit."
     kind = "Readonly<Record<string, readonly [name: string, unit: string]>>"
     parts += [f"/** {about} */\nexport const FREQUENCIES: {kind} = {{\n{''.join(rates)}}};\n"]

@@ -169,10 +169,15 @@ def _shown(value: Any) -> str:
 
 
 def table_of(place: str) -> type:
-    """Load the class at "package.module:Name" whose fields are the keys of a table, or that of a declared study."""
+    """Load the class at "package.module:Name" whose fields are the keys of a table, or that of a declared study.
+
+    A study without a table of its own has its keys at the top of a description.
+    """
     found: Any = loaded(f"stylobate.{place}")
     if hasattr(found, "study"):
-        found = study_config(found).model_fields[found.study.name].annotation
+        top = study_config(found)
+        own = top.model_fields.get(found.study.name)
+        found = top if own is None else own.annotation
     cls: type = found
     return cls
 

@@ -370,6 +370,11 @@ class Declared:
         return new_of, (place,), self.__getstate__()
 
 
+def cf_attributes(units: str, long_name: str) -> dict[str, str]:
+    """Return the attributes of a variable of a Dataset by the CF conventions."""
+    return {"units": units, "long_name": long_name}
+
+
 def exact_repr(value: Any) -> str:
     """Write a value with all fields and all digits, for the provenance of a run that no description can repeat."""
     if isinstance(value, tuple):

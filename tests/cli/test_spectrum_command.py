@@ -8,12 +8,13 @@ import xarray as xr
 
 import stylobate as sb
 from stylobate.cli.main import run
-from stylobate.earthquakes.config import SpectrumConfig
+from stylobate.config import study_config
 from stylobate.errors import ConfigError
 
 COLUMN = ["--slenderness", "0.1", "--damping", "0.1"]
 OVER = ["--motion", "one-sine", "--x", "angular-frequency", "3", "6", "2"]
 INTERVALS = ["spectrum", *COLUMN, *OVER, "--scales", "0.1", "1.5", "10", "--width", "0.01"]
+SpectrumConfig = study_config(sb.earthquakes.overturning_intervals)
 MODEL = sb.Wobbling(sb.Column.dimensionless(slenderness=0.1), damping=0.1)
 SINE = sb.Pulse.one_sine(acceleration=1.0, angular_frequency=1.0)
 

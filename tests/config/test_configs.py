@@ -10,7 +10,7 @@ import pytest
 import stylobate as sb
 from stylobate.base_motions import BASE_AT_REST, Sum
 from stylobate.base_motions.pulses import Waveform
-from stylobate.config import HierarchyConfig, SimulationConfig, config_of, read_config
+from stylobate.config import SimulationConfig, config_of, read_config, study_config
 from stylobate.errors import ConfigError, FileError, UnsupportedError
 from stylobate.models.declared import MODELS as KINDS
 from stylobate.provenance import provenance_of_run
@@ -151,7 +151,7 @@ def test_damping_in_a_word_is_the_number_of_the_column_where_the_model_is_made(k
 
 def test_the_models_of_the_hierarchy_share_the_number_of_a_word():
     values = {"column": {"radius": 0.3, "height": 3.0, "density": 2700.0}, "tilt": (0.05, 0.0), "duration": 1.0}
-    setup = HierarchyConfig.parse({**values, "model": {"damping": "housner"}}).build()
+    setup = study_config(sb.studies.model_hierarchy).parse({**values, "model": {"damping": "housner"}}).build()
     assert setup.options["damping"] == setup.model.damping == setup.model.column.housner_damping()
 
 

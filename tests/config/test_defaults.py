@@ -2,10 +2,11 @@
 
 import pytest
 
-from stylobate.config import HierarchyConfig, ResponseConfig, SimulationConfig
+from stylobate.config import SimulationConfig, study_config
 from stylobate.engine.verdict import duration_of
 from stylobate.errors import ConfigError, ParameterError
 from stylobate.models import Slender, Wobbling
+from stylobate.studies import model_hierarchy, response_curves
 
 EXAMPLES = [
     {"kind": "rest"},
@@ -26,7 +27,7 @@ CHANGED = [
 
 @pytest.mark.parametrize("change", CHANGED)
 @pytest.mark.parametrize("motion", EXAMPLES, ids=lambda motion: motion["kind"])
-@pytest.mark.parametrize("kind", [SimulationConfig, HierarchyConfig])
+@pytest.mark.parametrize("kind", [SimulationConfig, study_config(model_hierarchy)])
 def test_a_run_needs_a_duration_in_a_file_where_it_needs_one_in_python_and_has_the_same_otherwise(kind, motion, change):
     values = {"column": {"slenderness": 0.1}, "motion": change(motion)}
     built = kind.parse({**values, "duration": 1.0}).build()
@@ -63,7 +64,7 @@ def test_a_file_without_a_model_wobbles_and_theory_of_steady_rolling_is_slender(
     motion = {"kind": "circular", "acceleration": 0.1, "angular_frequency": 2.0}
     values = {"column": column, "motion": motion, "duration": 1.0, "angular_frequency_range": [1.0, 2.0], **model}
     eta = 0.1 if model else 0.0
-    kinds = ((SimulationConfig, Wobbling), (ResponseConfig, Slender))
+    kinds = ((SimulationConfig, Wobbling), (study_config(response_curves), Slender))
     for config, kind in kinds:
         built = config.parse({name: one for name, one in values.items() if name in config.model_fields}).build().model
         assert built == kind(built.column, damping=eta)

@@ -9,12 +9,12 @@ from stylobate.run_arguments import OneRun, SharedByRuns, SingleRun, Stroboscopi
 
 CONFIGS = [
     (config.SimulationConfig, SingleRun),
-    (config.HierarchyConfig, OneRun),
+    (config.study_config(studies.model_hierarchy), OneRun),
     (config.study_config(studies.overturning_map), SharedByRuns),
     (config.study_config(studies.basins), SharedByRuns),
     (config.study_config(studies.basins), Stroboscopic),
     (config.study_config(conveying.drift), SharedByRuns),
-    (earthquakes.config.SpectrumConfig, SharedByRuns),
+    (config.study_config(earthquakes.overturning_intervals), SharedByRuns),
     (earthquakes.config.FragilityConfig, SharedByRuns),
 ]
 

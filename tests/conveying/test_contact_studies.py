@@ -11,7 +11,7 @@ from stylobate.config.study import study_of
 from stylobate.conveying import Transport
 from stylobate.conveying.transport import half_width
 from stylobate.results import ContactClass
-from stylobate.results.summary import column_rows
+from stylobate.results.run_rows import column_rows
 
 C = 0.1
 COLUMN = sb.Column.dimensionless(slenderness=C)

@@ -9,11 +9,11 @@ from tests.reference import integrated, switched
 import stylobate as sb
 from stylobate.base_motions import BASE_AT_REST
 from stylobate.engine.ensembles.batch import Batch
+from stylobate.engine.ensembles.results import Contacts
 from stylobate.engine.ensembles.runs import one_run
-from stylobate.engine.ensembles.summaries import Contacts
-from stylobate.engine.followed import Followed
 from stylobate.engine.kernel.columns import LOG, TRACE_ROOM, Change, Log, Setup, Trace
 from stylobate.engine.kernel.driver.events import Status, TraceKind
+from stylobate.engine.single import Followed
 from stylobate.engine.starts import Start, Turning
 from stylobate.models.sliding import Contact
 

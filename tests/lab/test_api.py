@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import stylobate as sb
-from stylobate.config import ResponseConfig, SimulationConfig
+from stylobate.config import SimulationConfig, study_config
 from stylobate.lab import Limits
 from stylobate.lab.options import presets
 from stylobate.lab.tasks import speed_of_pictures
@@ -81,7 +81,7 @@ def test_a_description_is_told_without_a_run(client):
 def test_response_curves_are_those_of_theory(client):
     values = {**CIRCLE, "angular_frequency_range": [0.5, 4.0], "points": 50}
     told = client.post("/api/response", json=values).json()
-    assert ResponseConfig.parse(values).points == len(told["angular_frequency"]) == 50
+    assert study_config(sb.studies.response_curves).parse(values).points == len(told["angular_frequency"]) == 50
     steady = sb.theory.steady_rolling(np.linspace(0.5, 4.0, 50), 0.065, c=0.1, eta=0.1)
     upper = next(one for one in told["branches"] if one["branch"] == "upper")
     known = np.isfinite(steady.upper.amplitude)

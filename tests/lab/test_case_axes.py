@@ -1,15 +1,20 @@
 """Maps over the numbers that describe a case: each cell is a run of the case with its numbers."""
 
 import math
+from typing import Unpack
 
 import numpy as np
 import pytest
 
 import stylobate as sb
 from stylobate.config import SimulationConfig
+from stylobate.config.study import Classes, Study
 from stylobate.errors import Outcome
-from stylobate.lab.grids import overturning_plane
+from stylobate.lab.grids import grid
 from stylobate.lab.messages import Found
+from stylobate.lab.tasks import task
+from stylobate.results.tables import Table
+from stylobate.studies.study import Runs, described, study
 
 BOTTLE = {
     "column": {"shape": "solid", "radius": 0.03, "height": 0.2, "density": 1000.0},
@@ -26,7 +31,7 @@ def axis(name, low, high, number):
 def cells_of(values):
     """Return the axes and the outcome of each cell, as they are sent while the map fills in."""
     found = []
-    overturning_plane(values, found.append)
+    task("map")(values, found.append)
     sent = [one.value.model_dump() for one in found if isinstance(one, Found)]
     cells = {(x, y): code for one in sent if "cells" in one for x, y, code in one["cells"]}
     return sent[0]["axes"], cells
@@ -68,3 +73,42 @@ def test_a_number_that_cannot_be_is_refused_by_name():
     motion = {"kind": "circular", "acceleration": 1.0, "angular_frequency": 2.0 * math.pi}
     with pytest.raises((sb.errors.ParameterError, sb.errors.ConfigError), match="radius must be positive"):
         cells_of({**BOTTLE, "motion": motion, "duration": 1.0, "map": {"x": x, "y": y}})
+
+
+def labelled_by_tilt(runs):
+    high = (runs["peak_tilt"] > 0.1).astype("int8")
+    share = [1.0 - float(high.mean()), float(high.mean())]
+    return runs.assign(tilt_class=high, tilt_name=("class", ["low", "high"]), share=("class", share))
+
+
+@study(
+    "peaks",
+    Study(
+        name="peaks",
+        source="a saved result",
+        help="Compute peak tilts.",
+        axes=("x", "y"),
+        classes=(Classes("tilt_class", "tilt_name"),),
+        completed=lambda saved, *_: labelled_by_tilt(saved),
+        table=lambda _: Table("", (), ()),
+        summary=lambda _: {},
+    ),
+)
+def peak_tilts(model, motion=None, *, over, **run: Unpack[Runs]):
+    """Compute peak tilts."""
+    return sb.studies.Sweep.grid(model, motion, over=over, **described(run)), labelled_by_tilt
+
+
+@pytest.mark.parametrize(
+    ("x", "y"),
+    [
+        (axis("rpm", 100.0, 400.0, 3), axis("diameter", 0.005, 0.03, 2)),
+        (axis("damping", 0.05, 0.2, 3), axis("slenderness", 0.1, 0.2, 2)),
+    ],
+)
+def test_the_job_of_a_new_study_follows_from_its_declaration(x, y):
+    found = grid(peak_tilts, {**BOTTLE, "motion": ORBIT, "duration": 1.0, "peaks": {"x": x, "y": y}}, lambda _: None)
+    codes = np.array(found.codes)
+    assert codes.shape == (3, 2)
+    assert [one.name for one in found.classes] == ["low", "high"]
+    assert [one.share for one in found.classes] == pytest.approx([(codes == code).mean() for code in (0, 1)])

@@ -80,7 +80,7 @@ def test_basins_tell_their_attractors(client):
     starts = {name: {"name": f"tilt_{name}", "from": -0.12, "to": 0.12, "number": 9} for name in "xy"}
     job = followed(client, begun(client, "basin", {**CIRCLE, "duration": 300.0, "basin": starts}))
     assert job["state"] == "done", job["problems"]
-    names = {one["name"] for one in job["result"]["attractors"]}
+    names = {one["name"] for one in job["result"]["classes"]}
     assert {"at rest", "overturned"} <= names
     assert len(job["result"]["codes"]) == len(job["result"]["codes"][0]) == 9
 

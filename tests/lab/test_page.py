@@ -11,7 +11,7 @@ from tests.lab.conftest import laboratory
 import stylobate as sb
 from stylobate.config import SimulationConfig
 from stylobate.lab.options import presets
-from stylobate.results.summary import measure_rows
+from stylobate.results.run_rows import measure_rows
 
 PRESETS = {preset.identity: preset for preset in presets()}
 # What the page reads back from the drawn column: doubles, interpolated on samples of seven digits.

@@ -11,6 +11,7 @@ import pytest
 import schemathesis
 from tests.lab.conformity import DOCUMENT, component, conforms, endpoint, mistakes
 
+import stylobate as sb
 from stylobate.config.parts import implied_shape
 from stylobate.lab import Limits
 from stylobate.lab.app import Api
@@ -137,7 +138,7 @@ def test_a_map_of_a_model_that_slides_is_as_described(client):
         "map": {**plane, "y": {"name": "acceleration", "values": [0.05, 0.2, 0.8]}},
     }
     job = ended(client, client.post("/api/jobs", json={"kind": "map", "description": values}).json()["id"])
-    assert component("ContactMapResult").is_valid(job["result"]), job["problems"]
+    assert component("GridResult").is_valid(job["result"]), job["problems"]
 
 
 def test_refusals_are_as_described(client):
@@ -227,3 +228,9 @@ def test_the_types_of_the_page_follow_from_the_schema(monkeypatch, capsys):
     script = Path(__file__).parents[2] / "tools" / "page_types.py"
     monkeypatch.setattr(sys, "argv", [str(script), "--check"])
     assert runpy.run_path(str(script))["main"]() == 0, capsys.readouterr().out
+
+
+def test_every_study_with_classes_is_a_grid_of_the_laboratory():
+    public = {name: getattr(sb.studies, name) for name in sb.studies.__all__}
+    with_classes = {name for name, one in public.items() if hasattr(one, "study") and one.study and one.study.classes}
+    assert with_classes == set(sb.studies.GRIDS)

@@ -6,7 +6,7 @@ It is what tests compare single runs and ensembles with.
 from collections.abc import Sequence
 
 from stylobate.base_motions import BaseMotion
-from stylobate.engine.user_events import EventRecorder
+from stylobate.engine.trajectory import EventRecorder
 from stylobate.models import Model
 
 from .course import Course

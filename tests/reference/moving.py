@@ -11,7 +11,7 @@ from scipy.optimize import brentq
 
 from stylobate.engine.cost import report, step_limit
 from stylobate.engine.tolerances import PASSAGE_FROM, PASSAGE_OFFSET
-from stylobate.engine.user_events import EventRecorder
+from stylobate.engine.trajectory import EventRecorder
 from stylobate.models import Model
 
 from .following import Method, Reason

@@ -12,7 +12,7 @@ from scipy.optimize import brentq
 
 from stylobate.engine.cost import report, step_limit, unseen
 from stylobate.engine.tolerances import SLIP_SHORTER
-from stylobate.engine.user_events import EventFunction, EventRecorder
+from stylobate.engine.trajectory import EventFunction, EventRecorder
 from stylobate.models import Model
 from stylobate.models.model import RELEASE_MARGIN
 from stylobate.results import Event

@@ -3,7 +3,7 @@
 import pytest
 
 import stylobate as sb
-from stylobate.results.summary import damping_rows
+from stylobate.results.run_rows import damping_rows
 from stylobate.results.verdict import AMPLITUDES, damping_yardstick, side_of_yardstick
 
 COLUMN = sb.Column.solid(radius=0.3, height=3.0, density=2700.0)

@@ -12,9 +12,23 @@ import numpy.typing as npt
 
 from stylobate.base_motions.base import ACCELERATION, VELOCITY, Components
 from stylobate.base_motions.combined import BaseMotion
-from stylobate.base_motions.signal_processing import Floats, baseline_corrected, filtered, integrals, resampled
+from stylobate.base_motions.signal_processing import (
+    Floats,
+    baseline_corrected,
+    filtered,
+    integrals,
+    resampled,
+    samples_within_limit,
+)
 from stylobate.cards import Row, Section
-from stylobate.errors import ParameterError, as_numbers, require_finite, require_not_negative, require_positive
+from stylobate.errors import (
+    MOST_NUMBERS,
+    ParameterError,
+    as_numbers,
+    require_finite,
+    require_not_negative,
+    require_positive,
+)
 from stylobate.text import four_digits
 
 if TYPE_CHECKING:
@@ -379,7 +393,7 @@ class Record(BaseMotion):
     def padded(self, *, before: float = 0.0, after: float = 0.0) -> "Record":
         """Add `before` and `after` [s] of zeros to this record, rounded up to whole steps."""
         before, after = require_not_negative("before", before, "s"), require_not_negative("after", after, "s")
-        counts = [self._steps(before), self._steps(after)]
+        counts = [self._steps("before", before), self._steps("after", after)]
         samples = np.pad(self.samples, (counts, (0, 0)))
         note = f"padded with {counts[0]} zeros before and {counts[1]} after"
         return self.changed(note, samples=samples, origin=self._then("padded", before=before, after=after))
@@ -390,12 +404,13 @@ class Record(BaseMotion):
         Run to the `duration` of the result: survival is known after the tail, not at the last original sample.
         """
         length = require_not_negative("length", length, "s")
-        count = self._steps(length)
+        count = self._steps("length", length)
         samples = np.pad(self.samples, ((0, count), (0, 0)))
         return self.changed(f"tail of {count} zeros", samples=samples, origin=self._then("with_tail", length=length))
 
-    def _steps(self, length: float) -> int:
-        return math.ceil(length / self.step - _KNOT_SLACK)
+    def _steps(self, name: str, length: float) -> int:
+        count = length / self.step - _KNOT_SLACK
+        return samples_within_limit(name, f"{length!r} s", count, f"Use at most {MOST_NUMBERS.number * self.step:g} s")
 
     def resampled(self, step: float) -> "Record":
         """Resample this record to another `step` [s], band-limited (see `signal_processing`)."""

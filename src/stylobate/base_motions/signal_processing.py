@@ -7,7 +7,7 @@ from typing import Literal
 import numpy as np
 import numpy.typing as npt
 
-from stylobate.errors import ParameterError, require_positive, require_whole
+from stylobate.errors import MOST_NUMBERS, ParameterError, require_positive, require_whole
 
 Floats = npt.NDArray[np.float64]
 
@@ -16,6 +16,30 @@ _PAD = 1.5
 # Largest whole number in a ratio of steps, and tolerance of the ratio.
 _LARGEST_FACTOR = 1000
 _RATIO_TOLERANCE = 1e-9
+
+
+def samples_within_limit(argument: str, got: str, count: float, remedy: str) -> int:
+    """Round a `count` of samples up.
+
+    Parameters
+    ----------
+    argument, got
+        Name of the argument that asks for so many samples, and its value with unit.
+    count
+        Number of samples that are needed.
+    remedy
+        Remedy in the message, as an imperative.
+
+    Raises
+    ------
+    ParameterError
+        If the count exceeds 10 million, which take 240 MB.
+    """
+    if count > MOST_NUMBERS.number:
+        raise ParameterError(
+            f"{argument}: {count:.3g} samples are needed, {MOST_NUMBERS.number:,} allowed (got {got}). {remedy}."
+        )
+    return math.ceil(count)
 
 
 def integrals(samples: Floats, step: float) -> tuple[Floats, Floats]:
@@ -75,7 +99,8 @@ def filtered(
     Raises
     ------
     ParameterError
-        If no corner is given, or they are not in order between 0 and half the sampling rate.
+        If no corner is given, or they are not in order between 0 and half the sampling rate, or the zeros around the
+        record are more than 10 million samples.
 
     Notes
     -----
@@ -104,7 +129,10 @@ def filtered(
     if causal:
         passed = sosfilt(sections, samples, axis=0)
     else:
-        zeros = math.ceil(_PAD * order / edges[0] / step)
+        name = next(iter(corners))
+        zeros = samples_within_limit(
+            name, f"{edges[0]!r} Hz", _PAD * order / edges[0] / step, "Raise the corner, or filter with causal=True"
+        )
         wide = np.pad(samples, ((zeros, zeros), (0, 0)))
         passed = sosfiltfilt(sections, wide, axis=0, padlen=0)[zeros : zeros + len(samples)]
     corners_text = ", ".join(f"{name} {value!r} Hz" for name, value in corners.items())
@@ -149,7 +177,7 @@ def resampled(samples: Floats, before: float, step: float) -> tuple[Floats, str]
     Raises
     ------
     ParameterError
-        If the steps are not in a ratio of whole numbers up to 1000.
+        If the steps are not in a ratio of whole numbers up to 1000, or the result has more than 10 million samples.
 
     Notes
     -----
@@ -165,5 +193,8 @@ def resampled(samples: Floats, before: float, step: float) -> tuple[Floats, str]
         raise ParameterError(f"step must be in a ratio of whole numbers up to 1000 to {before!r} s, got {step!r} s")
     if up == down:
         return samples, ""
+    samples_within_limit(
+        "step", f"{step!r} s", len(samples) * before / step, "Choose a longer step, or trim the record"
+    )
     note = f"resampled from {before!r} s to {step!r} s (polyphase {up}:{down}, anti-aliased)"
     return resample_poly(samples, up, down, axis=0), note

@@ -29,9 +29,11 @@ COMMANDS = {
     "simulate": Entry(
         "cli.simulate:simulate", "Integrate one column; under a record or a pulse also decide how surely it overturns."
     ),
-    "hierarchy": Entry("cli.hierarchy:hierarchy", "Compare all models of the hierarchy in one case."),
-    "response": Entry("cli.response:response", "Compute amplitude and phase of steady rolling against frequency."),
-    "boundary": Entry("cli.response:boundary", "Compute the stability boundary of steady rolling over two parameters."),
+    "hierarchy": Entry("studies:model_hierarchy", "Compare all models of the hierarchy in one case."),
+    "response": Entry("studies:response_curves", "Compute amplitude and phase of steady rolling against frequency."),
+    "boundary": Entry(
+        "studies:stability_boundary", "Compute the stability boundary of steady rolling over two parameters."
+    ),
     "map": Entry("studies:overturning_map", "Compute the overturning map over two parameters."),
     "basin": Entry("studies:basins", "Compute basins of attraction over initial conditions, and their fractions."),
     "drift": Entry("conveying:drift", "Compute the mean transport velocity of a column on a vibrating base."),
@@ -41,7 +43,9 @@ COMMANDS = {
     ),
     "records": Entry("cli.records:records", "List ground-motion records, their components and their intensities."),
     "assess": Entry("cli.assess:assess", "Assess whether columns survive records, and how robust the answer is."),
-    "spectrum": Entry("cli.spectrum:spectrum", "Compute overturning intervals of the amplitude, or rocking spectra."),
+    "spectrum": Entry(
+        "earthquakes:overturning_intervals", "Compute overturning intervals of the amplitude, or rocking spectra."
+    ),
     "fragility": Entry(
         "cli.fragility:fragility", "Fit fragility curves: probability of each limit state versus intensity."
     ),

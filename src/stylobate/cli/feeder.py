@@ -5,9 +5,9 @@ from typing import TYPE_CHECKING, Any
 
 from stylobate import config, conveying
 from stylobate.cli.command import command
-from stylobate.cli.options import Options, merge
+from stylobate.cli.options import Options
 from stylobate.cli.output import NETCDF, check_place, print_json, print_table
-from stylobate.cli.study import executor_of, study_values
+from stylobate.cli.study import executor_of, study_values, with_own_options
 from stylobate.config.options import (
     COLUMN,
     COMPUTING,
@@ -30,7 +30,7 @@ _KIND, _CSV = "feeder sheet", ".csv"
 
 
 @command(
-    *own_options(conveying.upright),
+    *own_options(conveying.upright).values(),
     argument="TOML description, as of `stylobate upright`, or a saved sheet (.nc) to show",
     groups=(
         run_numbers(SharedByRuns).without("duration", "tilt"),
@@ -81,7 +81,7 @@ def _shown(source: Path, options: Options) -> "xr.Dataset":
 def _computed(options: Options) -> "xr.Dataset":
     kind = config.study_config(conveying.upright)
     values = study_values(None, options, kind, study_of(conveying.upright).usual)
-    merge(values, "upright", options.pick(*(one.name for one in own_options(conveying.upright))))
+    with_own_options(values, conveying.upright, options)
     setup = kind.parse(values).build()
     executor = executor_of(options)
     options.refuse_unused()

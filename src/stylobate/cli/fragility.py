@@ -8,17 +8,15 @@ from typing import TYPE_CHECKING, Any
 
 from stylobate import config, earthquakes
 from stylobate.cli.command import command
-from stylobate.cli.options import Options, axis_values, overlay, read_source, spacing
+from stylobate.cli.options import Options, overlay, read_source, with_axes
 from stylobate.cli.output import (
     check_writable,
-    model_named,
     open_study,
     print_json,
     print_table,
     provenance_of,
     save_plot,
 )
-from stylobate.cli.spectrum import SCALES, SCALES_SPACING
 from stylobate.cli.study import check_outputs, computed, end, is_to_compute, save
 from stylobate.config.options import (
     COLUMN,
@@ -27,6 +25,7 @@ from stylobate.config.options import (
     ONE_COMPONENT,
     OUTPUT_OR_STORE,
     SAMPLE,
+    SCALES,
     STEP,
     UNITS,
     Group,
@@ -34,7 +33,7 @@ from stylobate.config.options import (
     run_numbers,
 )
 from stylobate.errors import FileError, ParameterError
-from stylobate.results.tables import number_of_runs
+from stylobate.results.tables import model_named, number_of_runs
 from stylobate.results.verdict import few_records, yardstick_text
 from stylobate.run_arguments import SharedByRuns
 from stylobate.text import plural
@@ -51,8 +50,6 @@ _FRAGILITY = Group.of(
     UNITS,
     STEP,
     ONE_COMPONENT,
-    SCALES,
-    SCALES_SPACING,
     Option(
         "intensity",
         "'peak ground acceleration' (by default), 'peak ground velocity', 'PGA/(g tan α)' or 'p PGV/(g tan α)'",
@@ -102,6 +99,7 @@ _RUNS_FIGURE = Group.of("Output", Option("runs_figure", "draw the runs into this
 @command(
     argument="TOML description, or saved runs (.nc) to fit again or repeat",
     groups=(
+        SCALES,
         _FRAGILITY,
         run_numbers(SharedByRuns).without("duration", "periods", "tilt_limit"),
         COLUMN,
@@ -210,13 +208,10 @@ _VERTICAL = {"on": (True,), "off": (False,), "both": (True, False)}
 
 
 def _table(values: Mapping[str, Any], options: Options) -> Any:
-    described = values.get("fragility", {})
+    described = with_axes(values, options, "fragility", ("scales",)).get("fragility", {})
     if not isinstance(described, Mapping):
         return described
     table = dict(described)
-    if options["scales"] is not None:
-        table["scales"] = axis_values(options["scales"])
-    table |= spacing(table, "scales", options)
     if options["vertical"] is not None:
         if options["vertical"] not in _VERTICAL:
             raise ParameterError(f"--vertical must be on, off or both, got {options['vertical']!r}")

@@ -195,31 +195,21 @@ def merge(values: dict[str, Any], name: str, options: Mapping[str, Any], tag: st
         values[name] = merged
 
 
-def with_axes(values: Mapping[str, Any], options: Options, section: str) -> dict[str, Any]:
-    """Override the axes in the table `section` of `values` by the options x, y, x_spacing and y_spacing."""
+def with_axes(
+    values: Mapping[str, Any], options: Options, section: str, places: Iterable[str] = ("x", "y")
+) -> dict[str, Any]:
+    """Override the axes in the table `section` of `values` by the options of these `places` and of their spacing."""
     result, table = dict(values), values.get(section, {})
     if not isinstance(table, Mapping):
         return result
     table = dict(table)
-    for place in "xy":
-        if options[place] is not None:
-            name, *rest = options[place]
-            table[place] = {"name": name, **axis_values(rest)}
-        table |= spacing(table, place, options)
+    for place in places:
+        if options[place] is not None:  # scales have no name
+            table[place] = dict(zip(("number", "to", "from", "name"), reversed(options[place]), strict=False))
+        axis, spacing = table.get(place), options.by_name[f"{place}_spacing"]
+        if isinstance(axis, Mapping) and "values" not in axis and spacing is not None:  # listed values have no spacing
+            table[place] = {**axis, "spacing": options[f"{place}_spacing"]}
     return {**result, section: table} if table else result
-
-
-def axis_values(values: Iterable[Any]) -> dict[str, Any]:
-    """Name the values of an option FROM TO NUMBER."""
-    return dict(zip(("from", "to", "number"), values, strict=True))
-
-
-def spacing(table: Mapping[str, Any], name: str, options: Options) -> dict[str, Any]:
-    """Return the axis `name` of a table with its spacing, if an option states it; listed values have none."""
-    axis = table.get(name)
-    if not isinstance(axis, Mapping) or "values" in axis or options[f"{name}_spacing"] is None:
-        return {}
-    return {name: {**axis, "spacing": options[f"{name}_spacing"]}}
 
 
 def _numbers(

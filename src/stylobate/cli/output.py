@@ -261,13 +261,6 @@ def provenance_of(data: "xr.Dataset") -> dict[str, Any]:
     return provenance
 
 
-def model_named(data: "xr.Dataset") -> str:
-    """Return the model of the runs in `data` in words, with its damping unless the damping varies."""
-    model = provenance_of(data).get("model", {})
-    damping = "" if "damping" not in model or "damping" in data.dims else f", damping {model['damping']:g}"
-    return f"model {model.get('kind', 'unknown')}{damping}"
-
-
 def axes_of(data: "xr.Dataset") -> dict[str, list[float]]:
     """Return the values along each dimension of the runs in `data`, by name; none for a random sample."""
     names = [str(dim) for dim in data["outcome"].dims]

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from stylobate.config import Setup
     from stylobate.models import Model
     from stylobate.results import Response, Verdict
-    from stylobate.results.summary import Rows
+    from stylobate.results.run_rows import Rows
 
 VERDICT_OPTIONS = (
     Option("single", "this run alone, without small variations", bool, default=False, panel="Verdict"),
@@ -87,7 +87,7 @@ class VerdictOfCase:
 
     def rows(self, run: "Response", verdict: "Verdict | None") -> "Rows":
         """Return the rows of model, verdict and outcome, with a remark on a run that does not state the verdict."""
-        from stylobate.results.summary import damping_rows, outcome_of
+        from stylobate.results.run_rows import damping_rows, outcome_of
 
         model = [("model", _model(self.setup.model))]
         if verdict is None and not self.why_not:
@@ -249,7 +249,7 @@ def _summary(run: "Response") -> dict[str, Any]:
 
 
 def _rows(run: "Response", model: "Model", outcome: "Rows") -> "Rows":
-    from stylobate.results.summary import column_rows, measure_rows, reason_rows
+    from stylobate.results.run_rows import column_rows, measure_rows, reason_rows
 
     warnings = [("warning", warning) for warning in run.warnings]
     return [*column_rows(model.column, model.rest_capacity), *outcome, *reason_rows(run), *measure_rows(run), *warnings]

@@ -3,6 +3,7 @@
 `study_command` makes the command of a declared study; the other functions serve commands that do more.
 """
 
+import inspect
 import sys
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
@@ -24,13 +25,15 @@ from stylobate.cli.output import (
     study_summary,
 )
 from stylobate.cli.terminal import INTERRUPTED
-from stylobate.config.study import Study, own_options, study_of
+from stylobate.config.study import Analysis, Study, own_options, study_of
 from stylobate.errors import FileError, Interrupted, ParameterError, StylobateError
+from stylobate.kinds import loaded
 
 if TYPE_CHECKING:
     import xarray as xr
 
     from stylobate.config import Setup
+    from stylobate.results.tables import Table
     from stylobate.studies import Dask, Threads
 
 # Options that do not change the runs.
@@ -40,13 +43,34 @@ _HOW = ("source", "figure", "output", "as_json", "resume", "executor", "threads"
 def study_command(function: Callable[..., "xr.Dataset"]) -> Command:
     """Make the command of a declared study."""
     study = study_of(function)
+    of_file = Positional(text=study.source)
+    if isinstance(study, Analysis):
+        return Command(lambda options: _analyse(function, options), study.help, of_file, (), study.groups)
     return Command(
         lambda options: _run(function, study, options),
         study.help,
-        Positional(text=study.source),
-        own_options(function),
+        of_file,
+        tuple(own_options(function).values()),
         tuple(study.groups),
     )
+
+
+def _analyse(function: Callable[..., "xr.Dataset"], options: Options) -> None:
+    """Compute a study without a store, write and print its result."""
+    study = study_of(function)
+    for place in (place for name, place in study.instead.items() if options[name]):
+        _analyse(loaded(f"stylobate.{place}"), options)
+        return
+    check_writable(options["figure"], options["output"])
+    chosen, kind = study.chosen(options), config.study_config(function)
+    values = overlay(read_source(options), options, kind.model_fields)
+    merge(values, study.name, {one.number: options[one.name] for one in options.stated(study.name)})
+    setup = kind.parse(values).build()
+    options.refuse_unused()
+    open_ones = {name: one for name, one in chosen.items() if setup.options.get(name) is None}
+    of = setup.model.column if "column" in inspect.signature(function).parameters else setup.model
+    result = function(of, setup.motion, **(setup.options | open_ones))
+    deliver(result, options, _save_flags, study.summary, lambda result: _show(*study.tables(result)))
 
 
 def _run(function: Callable[..., "xr.Dataset"], study: Study, options: Options) -> None:
@@ -54,11 +78,13 @@ def _run(function: Callable[..., "xr.Dataset"], study: Study, options: Options) 
     source = options["source"]
     saved = open_saved(source)
     if saved is not None and study.kinds and saved.attrs["kind"] not in study.kinds:
-        raise FileError(f"{source}: no result of {study.name} (got a {saved.attrs['kind']}). {study.remedy}")
+        remedy = f" {study.remedy}" if _is_store(source) else ""
+        raise FileError(f"{source}: no {study.name} result (got a {saved.attrs['kind']}).{remedy}")
 
     def completed(saved: "xr.Dataset") -> "xr.Dataset":
         def setup() -> "Setup":
-            return kind.of_saved(provenance_of(saved), axes_of(saved)).build()
+            built: Setup = kind.of_saved(provenance_of(saved), axes_of(saved), saved.attrs["kind"]).build()
+            return built
 
         try:
             return study.completed(saved, setup, options)
@@ -70,33 +96,46 @@ def _run(function: Callable[..., "xr.Dataset"], study: Study, options: Options) 
         if study.starts:
             values = _with_sample(values, study.name, options)
         if study.axes:
-            values = with_axes(values, options, study.name)
-            if "y?" in study.axes and not values.get(study.name):
+            values = with_axes(values, options, study.name, (*"xy", *(["scales"] if study.scales else [])))
+            if study.axes == ("x", "y?") and not values.get(study.name):
                 raise ParameterError(
                     f"{study.name}.x is missing. State what varies: --x acceleration 2 30 29, or "
                     "--x acceleration 9 9 1 for one run."
                 )
-        merge(values, study.name, options.pick(*(one.name for one in own_options(function))))
-        setup = kind.parse(values).build()
+        with_own_options(values, function, options)
+        description = kind.parse(values)
+        setup = description.build()
         if study.axes:
             check_axes(study.name, setup, starts=study.starts)
-        return function, setup
+        return loaded(description.instead.place) if description.instead else function, setup
 
     result, complete = run_study(options, saved, completed, prepared)
     finish(
         result,
         options,
         lambda result: study_summary(result, **study.summary(result)),
-        lambda result: _show(study, result),
+        lambda result: _show(study.table(result)),
         complete=complete,
     )
 
 
-def _show(study: Study, result: "xr.Dataset") -> None:
-    table = study.table(result)
-    print_table(table.title, table.rows, table.header)
-    for remark in table.remarks:
-        print(remark)
+def _show(*tables: "Table") -> None:
+    for table in tables:
+        if table.header:
+            print_table(table.title, table.rows, table.header)
+        for remark in table.remarks:
+            print(remark)
+
+
+def with_own_options(values: dict[str, Any], function: Callable[..., Any], options: Options) -> None:
+    """Override the table of a study by the options of its own numbers; either a tail or a duration is kept."""
+    name, own = study_of(function).name, {key: one.name for key, one in own_options(function).items()}
+    given, table = options.pick(*own.values()), values.get(name)
+    if "tail" in own and options.get("duration") is not None and isinstance(table, Mapping):
+        values[name] = {key: one for key, one in table.items() if key != "tail"}
+    elif own.get("tail") in given:
+        values.pop("duration", None)
+    merge(values, name, {key: given[option] for key, option in own.items() if option in given})
 
 
 def _with_sample(values: dict[str, Any], name: str, options: Options) -> dict[str, Any]:
@@ -178,7 +217,7 @@ def run_study(
 
 
 def study_values(
-    saved: "xr.Dataset | None", options: Options, kind: Any, usual: Mapping[str, Any] | None = None, **of_saved: Any
+    saved: "xr.Dataset | None", options: Options, kind: Any, usual: Mapping[str, Any] | None = None
 ) -> dict[str, Any]:
     """Override the values of a file or of a saved study by the options.
 
@@ -192,13 +231,11 @@ def study_values(
         Class of the configuration.
     usual
         Values that a file may leave out.
-    of_saved
-        Further arguments of `kind.of_saved`.
     """
     if saved is None:
         values = {**(usual or {}), **read_source(options)}
     else:
-        values = kind.of_saved(provenance_of(saved), axes_of(saved), **of_saved).values()
+        values = kind.of_saved(provenance_of(saved), axes_of(saved), saved.attrs["kind"]).values()
     return overlay(values, options, kind.model_fields)
 
 
@@ -261,6 +298,12 @@ def save(result: "xr.Dataset", output: Path) -> None:
         from stylobate.results import write_netcdf
 
         write_netcdf(result, output)
+
+
+def _save_flags(result: "xr.Dataset", output: Path) -> None:
+    """Write a result into a netCDF file; truth values become integers."""
+    flags = {name: data.astype("int8") for name, data in result.data_vars.items() if data.dtype == bool}
+    save(result.assign(flags), output)
 
 
 def end(result: "xr.Dataset", options: Options, *, complete: bool) -> None:

@@ -1,17 +1,13 @@
-from .hierarchy import HierarchyConfig
 from .record_collection import EventConfig, RecordsConfig
 from .records import RecordMotion, relocated
-from .response import ResponseConfig
 from .simulation import Setup, SimulationConfig, config_of, read_config
 from .snippets import as_python, as_toml
 from .study_config import study_config
 
 __all__ = [
     "EventConfig",
-    "HierarchyConfig",
     "RecordMotion",
     "RecordsConfig",
-    "ResponseConfig",
     "Setup",
     "SimulationConfig",
     "as_python",

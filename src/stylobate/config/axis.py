@@ -92,6 +92,13 @@ class Axis(Config):
         return np.linspace(require_finite("from", first), require_finite("to", last), number)
 
 
+class Scales(Axis):
+    """Factors of the base motion, spaced or listed."""
+
+    name: str = "scale"
+    spacing: Literal["linear", "log"] = "log"
+
+
 def _remedy(name: str) -> str:
     return did_you_mean(name, known_names()) or "use a name of the column, model, base motion or start"
 

@@ -172,15 +172,15 @@ class Group:
         return [one for one in kept if not self.only or one.name in self.only]
 
 
-def run_numbers(group: type) -> Group:
-    """Make the options of the declared numbers of a run, such as `stylobate.run_arguments.SingleRun`."""
+def run_numbers(group: type, panel: str = "Run") -> Group:
+    """Make the options of a group of declared numbers, such as `stylobate.run_arguments.SingleRun`."""
 
     def made(_: Chosen) -> Iterable[Option]:
         from stylobate.run_arguments import numbers_of
 
         for name, parameter in numbers_of(group).items():
             unit = parameter.quantity.unit
-            yield Option(name, text_of(parameter), type_of(parameter), panel="Run", unit=unit)
+            yield Option(name, text_of(parameter), type_of(parameter), panel=panel, unit=unit)
 
     return Group(made)
 
@@ -249,6 +249,16 @@ AXES = Group.of(
     Option("y", "values along y: name, first, last, number", _AXIS, metavar="NAME FROM TO NUMBER"),
     Option("x_spacing", "linear (by default) or log", str),
     Option("y_spacing", "linear (by default) or log", str),
+)
+SCALES = Group.of(
+    "Axes",
+    Option(
+        "scales",
+        "factors of the base motion: first, last, number",
+        tuple[float, float, int],
+        metavar="FROM TO NUMBER",
+    ),
+    Option("scales_spacing", "log (by default) or linear", str),
 )
 UNITS = Option("units", "unit of files that do not state it: g, m/s2 or cm/s2", str)
 STEP = Option("step", "time step of files that do not state it", unit="s")

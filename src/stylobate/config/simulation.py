@@ -15,9 +15,11 @@ from stylobate.config.parts import (
     ANY_COLUMN,
     AT_REST,
     DEFAULT_MODEL,
+    STEADY_MODEL,
     ColumnConfig,
     ModelConfig,
     MotionConfig,
+    SteadyModelConfig,
     described_model,
     is_dimensionless,
     is_to_end,
@@ -77,7 +79,7 @@ def fields_of(group: Any, *required: str) -> Any:
     """Make a base of a description that has the numbers of a group, with their defaults; those `required` have none."""
     declared = numbers_of(group)
     annotations = {name: Annotated[_kind(one), one.quantity] for name, one in declared.items()}
-    defaults = {name: one.default for name, one in declared.items() if name not in required}
+    defaults = {name: one.default for name, one in declared.items() if not (one.required or name in required)}
     return type(group.__name__, (), {"__annotations__": annotations, **defaults})
 
 
@@ -133,6 +135,13 @@ class Case(OneColumn):
     column: ColumnConfig
     model: ModelConfig = described_model(DEFAULT_MODEL)
     motion: MotionConfig = AT_REST
+
+
+class SteadyCase(Case):
+    """The case of steady rolling, whose closed forms are those of the slender model; its base moves."""
+
+    model: SteadyModelConfig = described_model(STEADY_MODEL)
+    motion: MotionConfig
 
 
 def _texts_with_units(values: Any, place: str = "") -> Iterator[tuple[str, str]]:

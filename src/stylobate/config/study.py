@@ -1,4 +1,4 @@
-"""What a study of many runs declares of itself: its description in files, its options, and how its result is shown.
+"""What a study declares of itself: its description in files, its options, and how its result is shown.
 
 From it follow the description (`study_config`) and the command (`stylobate.cli.study`).
 """
@@ -16,6 +16,7 @@ from stylobate.config.options import (
     MOTION,
     OUTPUT_OR_STORE,
     RECORD,
+    SCALES,
     Group,
     Option,
     run_numbers,
@@ -23,6 +24,7 @@ from stylobate.config.options import (
 )
 from stylobate.errors import ParameterError
 from stylobate.quantities import Parameter, parameters_of
+from stylobate.results.plain import plain_variables
 from stylobate.run_arguments import SharedByRuns
 
 if TYPE_CHECKING:
@@ -32,6 +34,38 @@ if TYPE_CHECKING:
 
 
 Complete = Callable[["xr.Dataset", Callable[[], Any], Mapping[str, Any]], "xr.Dataset"]
+
+
+@dataclass(frozen=True, slots=True)
+class Classes:
+    """Variables of a result that divide its runs into classes: the code of each run, names and shares of the classes.
+
+    A code is the index of its class. A share can have an interval, in variables that end in `_low` and `_high`.
+    """
+
+    codes: str
+    names: str
+    share: str = "share"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Instead:
+    """A study that a command computes in place of its own.
+
+    Parameters
+    ----------
+    key, text
+        Key of the table, and option of the command, that ask for this study; and the help of the option.
+    place
+        Place of its function, such as "stylobate.earthquakes:rocking_spectrum".
+    kind
+        Kind of its results.
+    """
+
+    key: str
+    text: str
+    place: str
+    kind: str
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -48,6 +82,8 @@ class Study:
         Functions that return a result as a table, and the study's own part of it as plain values for JSON.
     axes
         Places of the axes in the table: "x" and "y"; "y?" can be left out.
+    scales
+        Whether the table has factors of the base motion.
     starts
         Whether only initial conditions vary, on the grid of the axes, or drawn at random.
     early
@@ -55,7 +91,12 @@ class Study:
     numbers
         A group of further numbers of all runs, such as `Stroboscopic`.
     without
-        Arguments of all runs that the study sets itself, each with the reason and the remedy.
+        Arguments of all runs that the study sets itself, each with the reason and the remedy; without a reason, the
+        argument is ignored.
+    renamed
+        Options whose argument has another name: the option by the name of the argument.
+    instead
+        A study that the command computes in place of this one.
     usual
         Values that a description can leave out.
     model, motion
@@ -64,6 +105,9 @@ class Study:
         Whether the base motion can be a record.
     kinds, remedy
         Kinds of saved results that the command shows, by default all; and the remedy for another one.
+    classes
+        Classes of the runs, of which the first that a result has count. A study with classes over the axes x and y
+        (`stylobate.studies.GRIDS`) is a job of the laboratory too, and a tab of its page.
     completed
         Function that completes a saved result, such as the bare runs of a store. Its arguments are the result, a
         function that builds its description, and the options of the command.
@@ -79,16 +123,20 @@ class Study:
     table: "Callable[[xr.Dataset], Table]"
     summary: "Callable[[xr.Dataset], dict[str, Any]]"
     axes: tuple[str, ...] = ()
+    scales: bool = False
     starts: bool = False
     early: bool = False
     numbers: type | None = None
     without: Mapping[str, str] = field(default_factory=dict)
+    renamed: Mapping[str, str] = field(default_factory=dict)
+    instead: Instead | None = None
     usual: Mapping[str, Any] = field(default_factory=dict)
     model: Group = MODEL
     motion: Group = MOTION
     records: bool = True
     kinds: tuple[str, ...] = ()
     remedy: str = ""
+    classes: tuple[Classes, ...] = ()
     completed: Complete = lambda saved, *_: saved
     arguments: Callable[[Any, Any], Mapping[str, Any]] = lambda *_: {}
     repeated: Callable[[Mapping[str, Any], dict[str, Any]], dict[str, Any]] = lambda _, values: values
@@ -103,6 +151,8 @@ class Study:
         """The options that the study shares with others."""
         if self.places:
             yield AXES
+        if self.scales:
+            yield SCALES
         if self.starts:
             yield RANDOM
         yield run_numbers(SharedByRuns).without(*self.without)
@@ -114,6 +164,53 @@ class Study:
         if self.records:
             yield RECORD
         yield from (COMPUTING, OUTPUT_OR_STORE)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Analysis:
+    """The declaration of a study that is computed at once: without store, executor and resumption.
+
+    The numbers that the signature of its function declares form a table of its name in descriptions.
+
+    Parameters
+    ----------
+    name
+        Name of the command, and of the table of the study in a description.
+    source, help
+        Help of the positional argument of the command, and of the command.
+    groups
+        Options of the command; the part of an option of the study's own table is the name of the study.
+    numbers
+        Group of the numbers at the top of a description, such as `OneRun`.
+    arguments
+        Function that makes the keyword arguments of the study from the description and the built objects.
+    tables, summary
+        Functions that return a result as tables, and as plain values for JSON.
+    steady
+        Whether the case is that of steady rolling: see `SteadyCase`.
+    read
+        Function that completes the plain values of a description before they are validated.
+    problems
+        Function that returns a line for each invalid number of a description.
+    chosen
+        Function that checks the options of the command, and returns arguments that the description leaves open.
+    instead
+        Options that choose another study in place of this one, with its place, such as "studies:exact_response".
+    """
+
+    name: str
+    source: str
+    help: str
+    groups: tuple[Group, ...]
+    numbers: type
+    arguments: Callable[[Any, Any], Mapping[str, Any]]
+    tables: "Callable[[xr.Dataset], Sequence[Table]]"
+    summary: "Callable[[xr.Dataset], dict[str, Any]]" = plain_variables
+    steady: bool = False
+    read: Callable[[Mapping[str, Any]], Mapping[str, Any]] = lambda values: values
+    problems: Callable[[Any], Sequence[str]] = lambda _: ()
+    chosen: Callable[[Mapping[str, Any]], Mapping[str, Any]] = lambda _: {}
+    instead: Mapping[str, str] = field(default_factory=dict)
 
 
 RANDOM = Group.of(
@@ -129,8 +226,8 @@ RANDOM = Group.of(
 )
 
 
-def study_of(function: Callable[..., Any]) -> Study:
-    """Return the declaration of a study.
+def study_of(function: Callable[..., Any]) -> Any:
+    """Return the declaration of a study, a `Study` or an `Analysis`.
 
     Raises
     ------
@@ -138,7 +235,7 @@ def study_of(function: Callable[..., Any]) -> Study:
         If the function is no declared study.
     """
     found = getattr(function, "study", None)
-    if not isinstance(found, Study):
+    if not isinstance(found, (Study, Analysis)):
         raise ParameterError(
             f"study: no study with a description (got {function!r}). Name one such as overturning_map."
         )
@@ -150,12 +247,15 @@ def declared_numbers(function: Callable[..., Any]) -> Mapping[str, Parameter]:
     return parameters_of(function)
 
 
-def own_options(function: Callable[..., Any]) -> list[Option]:
-    """Make the options of the numbers that a study declares."""
-    return [
-        Option(name, text_of(one), _kind(one), unit=one.quantity.unit)
+def own_options(function: Callable[..., Any]) -> dict[str, Option]:
+    """Make the options of the own keys in the table of a study, by key."""
+    study = study_of(function)
+    own = {
+        name: Option(study.renamed.get(name, name), text_of(one), _kind(one), unit=one.quantity.unit)
         for name, one in declared_numbers(function).items()
-    ]
+    }
+    other = study.instead
+    return own if other is None else own | {other.key: Option(other.key, other.text, bool)}
 
 
 def several(number: Parameter) -> bool:

@@ -1,26 +1,35 @@
-"""The description of a study of many runs in a file, made from what the study declares of itself."""
+"""The description of a study in a file, made from what the study declares of itself."""
 
+import inspect
 from collections.abc import Callable, Mapping, Sequence
 from functools import cache
 from typing import Annotated, Any, ClassVar, Self
 
 from pydantic import Field, create_model, field_validator
 
-from stylobate.config.axis import Axis
+from stylobate.config.axis import Axis, Scales
 from stylobate.config.description import Config, built
 from stylobate.config.simulation import (
+    OF_OTHER_COMMANDS,
+    Case,
     ManyRuns,
     Setup,
+    SimulationConfig,
+    SteadyCase,
+    built_parts,
     common_values,
     fields_of,
     name_of,
+    problems_of_the_numbers,
     refuse_design,
     with_numbers_that_vary,
 )
-from stylobate.config.study import Study, declared_numbers, several, study_of
+from stylobate.config.study import Analysis, Instead, Study, declared_numbers, several, study_of
 from stylobate.errors import LARGEST_SEED, MOST_RUNS, require_whole
+from stylobate.kinds import loaded
 from stylobate.parameter_quantities import quantity_of
 from stylobate.quantities import Parameter
+from stylobate.run_arguments import numbers_of
 from stylobate.units import read_all
 
 
@@ -31,16 +40,19 @@ class StudyConfig(ManyRuns):
 
     @classmethod
     def parse(cls, values: Mapping[str, Any]) -> Self:
-        """Validate these `values`; a motion may omit a number that varies."""
-        values = {**cls.study.usual, **values}
-        table = values.get(cls.study.name)
-        if cls.study.axes and not cls.study.starts:
+        """Validate these `values`; a motion may omit a number that varies, or the acceleration if it is scaled."""
+        study = cls.study
+        values = {name: one for name, one in {**study.usual, **values}.items() if study.without.get(name) != ""}
+        table = values.get(study.name)
+        if study.axes and not study.starts:
             axes = table if isinstance(table, Mapping) else {}
-            values = with_numbers_that_vary(values, tuple(name_of(axes.get(place)) for place in cls.study.places))
+            scaled = study.scales and not (study.instead and axes.get(study.instead.key))
+            varied = (*(name_of(axes.get(place)) for place in study.places), *(["acceleration"] if scaled else []))
+            values = with_numbers_that_vary(values, varied)
         return super().parse(values)
 
     @classmethod
-    def of_saved(cls, provenance: Mapping[str, Any], axes: Mapping[str, Sequence[float]]) -> Self:
+    def of_saved(cls, provenance: Mapping[str, Any], axes: Mapping[str, Sequence[float]], kind: str = "") -> Self:
         """Make the description that repeats a saved result.
 
         Parameters
@@ -48,7 +60,9 @@ class StudyConfig(ManyRuns):
         provenance
             Provenance of the result.
         axes
-            Coordinates of a grid: its names with their values, x first.
+            Coordinates of a grid: its names with their values, x first; then the scales.
+        kind
+            Kind of the result; by default that of the study.
 
         Raises
         ------
@@ -57,16 +71,28 @@ class StudyConfig(ManyRuns):
         ParameterError
             If the values of the runs follow another design.
         """
+        study = cls.study
         table: dict[str, Any] = {}
-        if cls.study.axes:
-            design = refuse_design(provenance, *(("grid", "random") if cls.study.starts else ("grid",)))
-            if design["kind"] == "random":
-                table = {"random": design["count"], "seed": design["seed"], "over": design["values"]}
-            else:
-                listed = ({"name": name, "values": list(values)} for name, values in axes.items())
-                table = dict(zip(cls.study.places, listed, strict=False))
-        table |= {name: one for name, one in dict(provenance.get(cls.study.name, {})).items() if one is not None}
-        return cls.parse(cls.study.repeated(provenance, {**common_values(provenance), cls.study.name: table}))
+        design: Mapping[str, Any] = {"kind": "grid"}
+        if study.axes and not study.scales:
+            design = refuse_design(provenance, *(("grid", "random") if study.starts else ("grid",)))
+        if design["kind"] == "random":
+            table = {"random": design["count"], "seed": design["seed"], "over": design["values"]}
+        else:
+            listed = {name: {"name": name, "values": list(values)} for name, values in axes.items()}
+            if study.instead and kind == study.instead.kind:
+                table[study.instead.key] = True
+            elif study.scales:
+                table["scales"] = listed.pop("scale")
+            table |= dict(zip(study.places, listed.values(), strict=False))
+        table |= {name: one for name, one in dict(provenance.get(study.name, {})).items() if one is not None}
+        return cls.parse(study.repeated(provenance, {**common_values(provenance), study.name: table}))
+
+    @property
+    def instead(self) -> Instead | None:
+        """The study that the table asks for in place of its own."""
+        other = self.study.instead
+        return other if other is not None and getattr(getattr(self, self.study.name), other.key) else None
 
     def build(self) -> Setup:
         """Build model and motion; the options are the keyword arguments of the study.
@@ -85,7 +111,14 @@ class StudyConfig(ManyRuns):
             for name, why in study.without.items()
             if (getattr(self, name) or None) not in (None, type(self).model_fields[name].default)
         ]
-        if "duration" not in study.without:
+        if "tail" in type(table).model_fields:
+            names = ("duration",)  # that of each run follows from the end of its base motion
+            if table.tail is not None and self.duration is not None:
+                problems.append(
+                    f"{study.name}.tail: contradicts duration (got a duration of {self.duration!r} s and a tail of "
+                    f"{table.tail!r} s). Remove one of them."
+                )
+        elif "duration" not in study.without:
             problems += self.problems_of_the_length(names)
         model, motion, options = self.common(problems, names)
         for name in study.without:
@@ -100,12 +133,53 @@ class StudyConfig(ManyRuns):
         return setup
 
 
+class AnalysisConfig(Case):
+    """A study that is computed at once: `column`, `model`, `motion`, numbers at the top, and the table of the study."""
+
+    study: ClassVar[Analysis]
+
+    @classmethod
+    def parse(cls, values: Mapping[str, Any]) -> Self:
+        """Validate these `values`; those of other commands are ignored."""
+        of_others = {*OF_OTHER_COMMANDS, *SimulationConfig.model_fields} - set(cls.model_fields)
+        return super().parse(cls.study.read({name: one for name, one in values.items() if name not in of_others}))
+
+    def build(self) -> Setup:
+        """Build model and motion; the options are the keyword arguments of the study.
+
+        Raises
+        ------
+        ConfigError
+            With one line for each invalid part.
+        """
+        problems = [*problems_of_the_numbers(self), *self.study.problems(self)]
+        setup = Setup(*built_parts(self.column, self.model, self.motion, problems), {})
+        setup.options.update(self.study.arguments(self, setup))
+        return setup
+
+
 class StudyTable(Config):
     """The table of a study: its axes, and its own numbers."""
 
     def arguments(self, study: Study, problems: list[str]) -> dict[str, Any]:
         """Make the arguments of the study; add a line to `problems` for each mistake."""
-        return ({"over": self.grid(study, problems)} if study.axes else {}) | self.model_dump(exclude={*study.places})
+        fields = type(self).model_fields
+        own = {name: getattr(self, name) for name in fields if name not in study.places}
+        if study.instead is not None and own.pop(study.instead.key):
+            taken = inspect.signature(loaded(study.instead.place)).parameters
+            problems += [
+                f"{study.name}.{name} is not supported by a {study.instead.kind}. Remove it."
+                for name, value in own.items()
+                if name not in taken and value != fields[name].default
+            ]
+            own = {name: value for name, value in own.items() if name in taken}
+        elif study.scales and own["scales"] is None:
+            problems.append(
+                f"{study.name}.scales are missing: factors of the base motion, such as from 0.2 to 5, number 40"
+            )
+        elif study.scales:
+            own["scales"] = built(f"{study.name}.scales", own["scales"].build, problems)
+        return ({"over": self.grid(study, problems)} if study.axes else {}) | own
 
     def grid(self, study: Study, problems: list[str]) -> dict[str, Any]:
         """Make the values along the axes, by name; add a line to `problems` for each mistake."""
@@ -177,8 +251,12 @@ def _problems_of_the_grid(name: str, axes: Sequence[str], table: _StartsTable) -
 
 
 @cache
-def study_config(function: Callable[..., Any]) -> type[StudyConfig]:
+def study_config(function: Callable[..., Any]) -> Any:
     """Make the class that describes a study, such as `stylobate.studies.overturning_map`, in files.
+
+    Returns
+    -------
+    type[StudyConfig] or type[AnalysisConfig]
 
     Raises
     ------
@@ -186,12 +264,18 @@ def study_config(function: Callable[..., Any]) -> type[StudyConfig]:
         If the function is no study with a description.
     """
     study = study_of(function)
+    if isinstance(study, Analysis):
+        return _analysis_config(function, study)
     fields: dict[str, Any] = {
         place.rstrip("?"): (Axis | None, None) if "?" in place else (Axis, ...) for place in study.axes
     }
+    if study.scales:
+        fields["scales"] = (Scales | None, None)
+    if study.instead is not None:
+        fields[study.instead.key] = (bool, False)
     numbers_of_study = declared_numbers(function)
-    numbers = {name: (Annotated[_type_of(one), one.quantity], one.default) for name, one in numbers_of_study.items()}
-    room = "".join(map(str.title, study.name.split("_")))
+    numbers = _fields(numbers_of_study)
+    room = study.name.title().replace("_", "")
     make: Any = create_model
     about = {"__doc__": (function.__doc__ or "").partition("\n")[0], "__module__": __name__}
     made: type[StudyTable] = make(
@@ -216,14 +300,52 @@ def study_config(function: Callable[..., Any]) -> type[StudyConfig]:
     return found
 
 
+def _analysis_config(function: Callable[..., Any], study: Analysis) -> type[AnalysisConfig]:
+    own, room = declared_numbers(function), study.name.title().replace("_", "")
+    make: Any = create_model
+    fields: dict[str, Any] = {}
+    if "rules" in study.numbers.__annotations__:
+        fields["rules"] = (dict[str, float], Field(default_factory=dict))
+    if own:
+        text = _keys(f"The table `{study.name}`.", own)
+        table = make(f"{room}Table", __base__=Config, __doc__=text, __module__=__name__, **_fields(own))
+        fields[study.name] = (table, table())
+    found: type[AnalysisConfig] = make(
+        f"{room}Config",
+        __base__=(fields_of(study.numbers, "duration"), *([SteadyCase] if study.steady else []), AnalysisConfig),
+        __doc__=_keys((function.__doc__ or "").partition("\n")[0], numbers_of(study.numbers)),
+        __module__=__name__,
+        **fields,
+    )
+    found.study = study
+    return found
+
+
+def _fields(numbers: Mapping[str, Parameter]) -> dict[str, Any]:
+    return {name: (Annotated[_type_of(one), one.quantity], one.default) for name, one in numbers.items()}
+
+
 def _about(study: Study, numbers: Mapping[str, Parameter]) -> str:
     """Write the docstring of the table of a study: the meaning of each of its keys."""
     if study.starts:
         return str(_StartsTable.__doc__)
-    axes = dict.fromkeys(study.places, "Values of a quantity: a table as above.")
-    said = axes | {name: f"{one.quantity.text[:1].upper()}{one.quantity.text[1:]}." for name, one in numbers.items()}
+    said = dict.fromkeys(study.places, "Values of a quantity: a table as above.")
+    if study.scales:
+        said["scales"] = "Factors of the base motion: a table as above, without a name."
+    if study.instead is not None:
+        text = study.instead.text
+        said[study.instead.key] = f"{text[:1].upper()}{text[1:]}."
+    return _keys(f"The table `{study.name}`.", numbers, said)
+
+
+def _keys(first: str, numbers: Mapping[str, Parameter], others: Mapping[str, str] | None = None) -> str:
+    """Write a docstring with the meaning of each key."""
+    said = dict(others or {})
+    for name, one in numbers.items():
+        text, unit = one.quantity.text, one.quantity.unit
+        said[name] = f"{text[:1].upper()}{text[1:]}{f' [{unit}]' if unit else ''}."
     lines = "".join(f"    {name}\n        {text}\n" for name, text in said.items())
-    return f"The table `{study.name}`.\n\n    Parameters\n    ----------\n{lines}    "
+    return f"{first}\n\n    Parameters\n    ----------\n{lines}    "
 
 
 def _type_of(number: Any) -> Any:

@@ -16,7 +16,7 @@ from stylobate.conveying.transport import PERIODIC, TOLERANCE, Transport, drift,
 from stylobate.errors import UnsupportedError, require_positive
 from stylobate.models import Model, Sliding
 from stylobate.progress import Progress, shows_progress
-from stylobate.quantities import parameters_of
+from stylobate.quantities import cf_attributes, parameters_of
 from stylobate.run_arguments import RunOptions
 from stylobate.studies.proportions import require_confidence
 from stylobate.studies.sweeps import Executor
@@ -170,8 +170,11 @@ def sheet(
     described = {**json.loads(postures[0].attrs["provenance"]), "friction": frictions.tolist(), "tolerance": tolerance}
     return xr.Dataset(
         {
-            **{name: ((), value, _about(units, text)) for name, (value, units, text) in scalars.items()},
-            **{name: ("friction", values, _about(units, text)) for name, (values, units, text) in by_friction.items()},
+            **{name: ((), value, cf_attributes(units, text)) for name, (value, units, text) in scalars.items()},
+            **{
+                name: ("friction", values, cf_attributes(units, text))
+                for name, (values, units, text) in by_friction.items()
+            },
             "transport": ("friction", moved["transport"].to_numpy(), moved["transport"].attrs),
             **{
                 name: (
@@ -185,7 +188,7 @@ def sheet(
             "steepest_verdict": ("friction", sloping),
         },
         coords={
-            "friction": ("friction", frictions, _about("1", "friction coefficient")),
+            "friction": ("friction", frictions, cf_attributes("1", "friction coefficient")),
             "posture_name": postures[0]["posture_name"].to_numpy(),
         },
         attrs={"kind": KIND, "confidence": confidence, "provenance": json.dumps(described)},
@@ -212,10 +215,6 @@ def sheet_rows(found: xr.Dataset) -> list[tuple[str, list[str]]]:
         ("steepest track of a part that stays upright", [_angle(float(case["steepest_incline"])) for case in cases]),
         ("posture on that track", [str(case["steepest_verdict"].item()) or "not known" for case in cases]),
     ]
-
-
-def _about(units: str, long_name: str) -> dict[str, str]:
-    return {"units": units, "long_name": long_name}
 
 
 def _speed(case: xr.Dataset) -> str:

@@ -22,7 +22,7 @@ from stylobate.results.outcomes import NOT_COMPUTED, flag_attributes, lands_flat
 from stylobate.results.tables import DEGREES, Table
 from stylobate.results.verdict import CLEAR, VerdictWord, percent, word_of
 from stylobate.studies.proportions import fraction_interval, require_confidence
-from stylobate.studies.study import PeriodicRuns, options_of, study
+from stylobate.studies.study import RunsOfOwnLength, options_of, study
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -145,7 +145,7 @@ def upright(
     ] = None,
     periods: float = PERIODS,
     confidence: Annotated[float, Quantity(text="confidence level of intervals")] = 0.9,
-    **run: Unpack[PeriodicRuns],
+    **run: Unpack[RunsOfOwnLength],
 ) -> "tuple[Sweep, Label]":
     """Decide whether a part on a vibrating base stays upright, rocks or falls, over initial tilts and phases.
 

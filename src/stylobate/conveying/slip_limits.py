@@ -18,6 +18,7 @@ from stylobate.models.declared import name_by_symbol
 from stylobate.models.model import ClosedForm, RollingLaw, closed_form_of
 from stylobate.parameter_quantities import attributes_of
 from stylobate.provenance import provenance_of_run
+from stylobate.quantities import cf_attributes
 from stylobate.results.outcomes import flag_attributes
 from stylobate.studies.checks import require_rising_frequencies
 from stylobate.studies.known_rolling import RollingFrame
@@ -132,16 +133,20 @@ def slipping_boundary(
     return xr.Dataset(
         {
             **_without_slip(held),
-            "slips": ((*_PLANE, "branch"), slips, _attributes("1", "needs more friction than available")),
+            "slips": ((*_PLANE, "branch"), slips, cf_attributes("1", "needs more friction than available")),
             **_with_slip(slipping, model),
             "steady_rolling": (_PLANE, _classes(exists, rolls, slides), flags),
             **{
-                name: ("friction_coefficient", edge / model.time_scale, _attributes("rad s-1", name.replace("_", " ")))
+                name: (
+                    "friction_coefficient",
+                    edge / model.time_scale,
+                    cf_attributes("rad s-1", name.replace("_", " ")),
+                )
                 for name, edge in ends.items()
             },
         },
         coords={
-            "friction_coefficient": ("friction_coefficient", friction, _attributes("1", "friction coefficient")),
+            "friction_coefficient": ("friction_coefficient", friction, cf_attributes("1", "friction coefficient")),
             "angular_frequency": ("angular_frequency", frequency, attributes_of("angular_frequency")),
             "class_name": np.array(STEADY_ROLLING),
         },
@@ -157,9 +162,9 @@ def slipping_boundary(
 def _without_slip(held: theory.FiniteTiltRolling) -> Variables:
     over = ("angular_frequency", "branch")
     return {
-        "rolling_amplitude": (over, held.amplitude, _attributes("rad", "tilt of rolling without slip")),
-        "rolling_stable": (over, held.stable, _attributes("1", "rolling without slip is stable")),
-        "required_friction": (over, held.friction_demand, _attributes("1", "friction required without slip")),
+        "rolling_amplitude": (over, held.amplitude, cf_attributes("rad", "tilt of rolling without slip")),
+        "rolling_stable": (over, held.stable, cf_attributes("1", "rolling without slip is stable")),
+        "required_friction": (over, held.friction_demand, cf_attributes("1", "friction required without slip")),
     }
 
 
@@ -169,10 +174,10 @@ def _with_slip(slipping: theory.SlippingRolling, model: Model) -> Variables:
     speed = unit * np.hypot(slipping.slip_along, slipping.slip_across)
     power = unit * column.mass * column.gravity * slipping.slip_power
     return {
-        "slipping_amplitude": (over, slipping.amplitude, _attributes("rad", "tilt of rolling with slip")),
-        "slip_speed": (over, speed, _attributes("m s-1", "speed of slip")),
-        "slip_power": (over, power, _attributes("W", "power dissipated by slip")),
-        "slipping_stable": (over, slipping.stable, _attributes("1", "rolling with slip is stable")),
+        "slipping_amplitude": (over, slipping.amplitude, cf_attributes("rad", "tilt of rolling with slip")),
+        "slip_speed": (over, speed, cf_attributes("m s-1", "speed of slip")),
+        "slip_power": (over, power, cf_attributes("W", "power dissipated by slip")),
+        "slipping_stable": (over, slipping.stable, cf_attributes("1", "rolling with slip is stable")),
     }
 
 
@@ -286,7 +291,3 @@ def _first(inside: Flags, nu: Floats, mu: Floats, predicate: Predicate) -> Float
 def _any(branches: Flags) -> Flags:
     """Return whether any branch fulfils the condition."""
     return np.asarray(branches.any(axis=-1))
-
-
-def _attributes(units: str, long_name: str) -> dict[str, str]:
-    return {"units": units, "long_name": long_name}

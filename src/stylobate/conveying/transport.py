@@ -31,7 +31,7 @@ from stylobate.results.outcomes import NOT_COMPUTED, contact_classes, flag_attri
 from stylobate.results.tables import DEGREES, Practical, Table, number_of_runs, practical
 from stylobate.run_arguments import RunOptions
 from stylobate.studies.proportions import require_confidence
-from stylobate.studies.study import PeriodicRuns, options_of, study
+from stylobate.studies.study import RunsOfOwnLength, options_of, study
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -208,7 +208,7 @@ def drift(
     tolerance: Annotated[float | None, Quantity(text="relative half-width of the interval of a speed")] = TOLERANCE,
     most_periods: Annotated[float, Quantity(text="maximum duration of a run in periods")] = MOST_PERIODS,
     confidence: Annotated[float, Quantity(text="confidence level of the intervals")] = CONFIDENCE,
-    **run: Unpack[PeriodicRuns],
+    **run: Unpack[RunsOfOwnLength],
 ) -> "tuple[Sweep, Label]":
     """Compute the mean transport velocity of a column on a vibrating base, and its mean rate of rotation.
 

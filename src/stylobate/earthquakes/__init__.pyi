@@ -11,7 +11,6 @@ from .fragility.observations import Counting, limit_states, reached_intervals
 from .fragility_study import FragilityStudy
 from .incremental import incremental_dynamic_analysis
 from .intensities import Intensity, SpectralAcceleration
-from .overturning_scales import overturning_intervals
 from .planar_comparison import planar_bias
 from .property_spreads import (
     LABELS,
@@ -24,7 +23,7 @@ from .property_spreads import (
     UniformSpread,
     property_samples,
 )
-from .rocking_spectra import rocking_spectrum
+from .spectrum_study import overturning_intervals, rocking_spectrum
 from .verdict_study import repeat_verdict, verdict
 
 __all__ = [

@@ -2,8 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from pathlib import Path
-from typing import Any, Self
+from typing import Any, Self, Unpack
 
 import numpy as np
 import xarray as xr
@@ -20,11 +19,11 @@ from stylobate.earthquakes.property_spreads import Spread, property_samples
 from stylobate.earthquakes.study_inputs import remark_on
 from stylobate.errors import ParameterError
 from stylobate.models import Model
-from stylobate.progress import Progress, shows_progress
+from stylobate.progress import shows_progress
 from stylobate.records import HorizontalComponent
 from stylobate.results.verdict import damping_yardstick
-from stylobate.run_arguments import RunOptions
-from stylobate.studies.sweeps import Executor
+from stylobate.run_arguments import RunOptions, takes
+from stylobate.studies.study import Computing
 
 _OVERTURNING = "overturning"
 _LEAST = 2
@@ -108,15 +107,9 @@ class FragilityStudy:
         )
 
     @shows_progress("incremental dynamic analysis")
-    def runs(
-        self,
-        *,
-        store: str | Path | None = None,
-        executor: Executor | None = None,
-        resume: bool = False,
-        progress: Progress = None,
-    ) -> xr.Dataset:
-        """Run the incremental dynamic analysis, with the samples of the properties."""
+    @takes(Computing)
+    def runs(self, **run: Unpack[Computing]) -> xr.Dataset:
+        """Run the incremental dynamic analysis, with the samples of the properties; arguments as in `run_sweep`."""
         remark_on({"column": self.model.column}, self.records)
         samples = None
         if self.spreads:
@@ -132,10 +125,7 @@ class FragilityStudy:
             tail=self.tail,
             intensity=self.intensity,
             component=self.component,
-            store=store,
-            executor=executor,
-            resume=resume,
-            progress=progress,
+            **run,
             **self.options,
         )
         return found.assign_attrs(self._yardstick())

@@ -3,7 +3,6 @@
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any, Self, Unpack
 
 import numpy as np
@@ -18,15 +17,14 @@ from stylobate.engine.parameters import changed_model
 from stylobate.errors import Outcome, ParameterError, as_numbers, require_finite
 from stylobate.models import Model
 from stylobate.parameter_quantities import attributes_of, quantity_of
-from stylobate.progress import Progress, shows_progress
 from stylobate.records import HorizontalComponent
 from stylobate.results.outcomes import NOT_COMPUTED
-from stylobate.run_arguments import RunOptions
 from stylobate.studies.checks import remark_on_lengths, require_no_limits
 from stylobate.studies.maps.integrity import UNRESOLVED
-from stylobate.studies.sweeps import Executor, Sweep
+from stylobate.studies.study import RunsOfOwnLength, options_of, study
+from stylobate.studies.sweeps import Sweep
 from stylobate.studies.sweeps.designs import Floats, checked_values
-from stylobate.studies.sweeps.running import labelled_sweep
+from stylobate.studies.sweeps.running import Label
 
 Places = npt.NDArray[np.intp]
 
@@ -40,7 +38,7 @@ _SET_BY_ARGUMENTS = {
 }
 
 
-@shows_progress("incremental dynamic analysis")
+@study("incremental dynamic analysis")
 def incremental_dynamic_analysis(
     model: Model,
     records: Records,
@@ -52,12 +50,8 @@ def incremental_dynamic_analysis(
     tail: float | None = None,
     intensity: str | Intensity | SpectralAcceleration = Intensity.PEAK_ACCELERATION,
     component: str | HorizontalComponent = HorizontalComponent.ROTD50,
-    store: str | Path | None = None,
-    executor: Executor | None = None,
-    resume: bool = False,
-    progress: Progress = None,
-    **options: Unpack[RunOptions],
-) -> xr.Dataset:
+    **run: Unpack[RunsOfOwnLength],
+) -> tuple[Sweep, Label]:
     """Compute the response of a column to each record at each scale (incremental dynamic analysis).
 
     All runs start upright at rest unless `tilt` is given. The column starts to rock when the base acceleration exceeds
@@ -86,10 +80,7 @@ def incremental_dynamic_analysis(
     intensity, component
         The intensity measure of each run, and the definition of its horizontal component: "RotD50", "RotD100",
         "geometric mean" or "larger component". For a motion along one line all definitions agree.
-    store, executor, resume, progress
-        As in `run_sweep`.
-    **options
-        Options of all runs, as in `simulate_ensemble`.
+    **run
 
     Returns
     -------
@@ -124,16 +115,13 @@ def incremental_dynamic_analysis(
     array([[0, 1, 1],
            [0, 0, 1]], dtype=int8)
     """
-    require_no_limits(options)
+    require_no_limits(options_of(run))
     plan = Plan.of(
         model, records, scales, rotations, vertical, parameters, tail, IntensityMeasure.named(intensity, component)
     )
 
-    def label(runs: xr.Dataset) -> xr.Dataset:
-        return plan.labelled(_unfolded(runs, plan.lengths))
-
-    sweep = Sweep.points(model, plan.motion, at=plan.points, **options)
-    return labelled_sweep(sweep, label, store=store, executor=executor, resume=resume, progress=progress)
+    sweep = Sweep.points(model, plan.motion, at=plan.points, **options_of(run))
+    return sweep, lambda runs: plan.labelled(_unfolded(runs, plan.lengths))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -1,11 +1,12 @@
-"""Rocking spectra: peak tilt and peak tilt rate over size and slenderness; and the cases that all spectra run."""
+"""The cases that all spectra run; and peak tilts and peak tilt rates of runs, which make a rocking spectrum.
+
+`stylobate.earthquakes.spectrum_study` declares the studies.
+"""
 
 import json
 import math
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
-from functools import partial
-from pathlib import Path
 from typing import Any, Self, Unpack
 
 import numpy as np
@@ -16,19 +17,18 @@ from stylobate.base_motions import BaseMotion
 from stylobate.base_motions.combined import members_of
 from stylobate.base_motions.declared import frequency_of
 from stylobate.engine.parameters import own_numbers, with_parameters
-from stylobate.errors import ParameterError, require_positive, require_whole
+from stylobate.errors import ParameterError, require_positive
 from stylobate.models import Model
 from stylobate.parameter_quantities import attributes_of
-from stylobate.progress import Progress, shows_progress
 from stylobate.provenance import provenance_of_run
 from stylobate.results import OutcomeRules
 from stylobate.results.outcomes import NOT_COMPUTED
-from stylobate.run_arguments import RunOptions, defaults_of
-from stylobate.studies.checks import remark_on_lengths, require_no_limits, require_values
+from stylobate.run_arguments import RunOptions
+from stylobate.studies.checks import remark_on_lengths, require_values
 from stylobate.studies.maps.uncertainty_exponent import overturned_or_not
-from stylobate.studies.sweeps import Executor, Sweep
+from stylobate.studies.study import RunsOfOwnLength, options_of
+from stylobate.studies.sweeps import Sweep
 from stylobate.studies.sweeps.designs import OF_A_RUN, Floats, check_quantities, checked_values
-from stylobate.studies.sweeps.running import labelled_sweep
 
 Integers = npt.NDArray[np.int64]
 
@@ -186,87 +186,21 @@ def _names(motion: BaseMotion, numbers: Floats) -> list[str]:
 
 
 def provenance_of_spectrum(
-    model: Model, motion: BaseMotion, options: RunOptions, *, tail: float | None, duration: float | None, **own: float
+    cases: Cases, run: RunsOfOwnLength, *, tail: float | None, duration: float | None, **own: float
 ) -> str:
     """Return model, motion, options and length of the runs, in JSON."""
-    chosen: dict[str, Any] = {**defaults_of(RunOptions), **options}
+    chosen: dict[str, Any] = dict(options_of(run))
     chosen["rules"] = asdict(chosen["rules"] or OutcomeRules())
     length = {"tail": tail if tail is None else float(tail)} if duration is None else {"duration": float(duration)}
-    return json.dumps({**provenance_of_run(model, motion, **chosen), **length, **own})
+    return json.dumps({**provenance_of_run(cases.model, cases.motion, **chosen), **length, **own})
 
 
-_SAMPLES = 2001
 # Histories; the result keeps only the peak rate of them.
 _HISTORIES = ("sample_time", "sampled_tilt", "sampled_tilt_rate")
 
 
-@shows_progress("rocking spectrum")
-def rocking_spectrum(
-    model: Model,
-    motion: BaseMotion,
-    *,
-    over: Mapping[str, npt.ArrayLike] | None = None,
-    tail: float | None = None,
-    duration: float | None = None,
-    store: str | Path | None = None,
-    executor: Executor | None = None,
-    resume: bool = False,
-    progress: Progress = None,
-    **options: Unpack[RunOptions],
-) -> xr.Dataset:
-    """Compute the peak tilt and the peak rate of tilt of columns of many sizes under one base motion.
-
-    The rocking spectrum of Makris and Konstantinidis, "The rocking spectrum and the limitations of practical design
-    methodologies", Earthquake Eng. Struct. Dyn. 32 (2003), defines it for Housner's block, `PlanarRocking`; it
-    works for any model here.
-
-    Parameters
-    ----------
-    model, motion
-        The column and the base motion: a `Pulse`, a `Record`, or a `OneOf` several.
-    over
-        Parameters with their values, one at least, as for `overturning_intervals`, and `scale`: size, which sets
-        p ~ 1/√size, and slenderness, motion, angular_frequency …
-    tail, duration
-        As for `overturning_intervals`.
-    store, executor, resume, progress, **options
-        As for `overturning_intervals`; the peak rate is taken over `samples` (2001 by default) at equal times of each
-        run. Its error is of the second order of the time between two. Peak tilts do not depend on it.
-
-    Returns
-    -------
-    xarray.Dataset
-        Of kind "rocking spectrum", over the names: `peak_tilt_ratio`, peak tilt over α_c; `peak_rate_ratio`, peak rate
-        of the tilt vector over p [rad]; both NaN if the column overturned or the run is undecided, see `outcome`;
-        and all variables of ensembles. Coordinates as for `overturning_intervals`, and `rocking_period` 2π/p [s].
-
-    Raises
-    ------
-    ParameterError, UnsupportedError, Interrupted
-        As `overturning_intervals`.
-
-    Examples
-    --------
-    >>> import stylobate as sb
-    >>> model = sb.Slender(sb.Column.solid(radius=0.5, height=5.0, density=2000.0), damping=0.05)
-    >>> pulse = sb.Pulse.one_sine(acceleration=3.0, angular_frequency=6.0)
-    >>> found = sb.earthquakes.rocking_spectrum(model, pulse, over={"size": [0.2, 1.0, 5.0]})
-    >>> print(found["peak_tilt_ratio"].values.round(3))
-    [  nan   nan 0.113]
-    """
-    require_no_limits(options)
-    cases = Cases.of(model, motion, over, scaled=True)
-    if not cases.axes:
-        raise ParameterError(f'over must name a parameter with its values, such as {{"size": […]}}; got {over!r}')
-    options["samples"] = require_whole("samples", options.get("samples") or _SAMPLES, least=2)
-    durations = cases.durations(duration, tail)
-    sweep = cases.sweep(np.arange(cases.count), durations, None, **options)
-    provenance = provenance_of_spectrum(model, motion, options, tail=tail, duration=duration)
-    label = partial(_spectrum, cases=cases, provenance=provenance)
-    return labelled_sweep(sweep, label, store=store, executor=executor, resume=resume, progress=progress)
-
-
-def _spectrum(runs: xr.Dataset, cases: Cases, provenance: str) -> xr.Dataset:
+def peaks_of_runs(runs: xr.Dataset, cases: Cases, provenance: str) -> xr.Dataset:
+    """Make the rocking spectrum of the runs of these cases, which have histories."""
     runs = runs.load()
     dims = tuple(cases.axes)
     safe = overturned_or_not(runs) == 0

@@ -15,6 +15,9 @@ STAGES = 12
 EXTRA_STAGES = 3
 """Number of additional stages for the dense output."""
 
+SAFETY, LEAST_FACTOR, LARGEST_FACTOR, LEAST_ERROR = 0.9, 0.2, 10.0, 1e-12
+"""Step control as in SciPy: safety factor, bounds of the ratio of successive steps, and lower bound of the error."""
+
 
 def _table(rows: Sequence[Weights], columns: int) -> tuple[tuple[float, ...], ...]:
     return tuple(tuple(weights.get(stage, 0.0) for stage in range(columns)) for weights in rows)

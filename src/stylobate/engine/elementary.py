@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from stylobate.compiler.marks import fast
-from stylobate.engine.kernel.layout import Row, Table
+from stylobate.engine.kernel.bound import Row, Table
 
 
 @fast

@@ -16,9 +16,9 @@ from stylobate.base_motions.combined import members_of
 from stylobate.column import Column
 from stylobate.engine.cost import announce, expected_steps
 from stylobate.engine.ensembles.batch import Batch, Plan
+from stylobate.engine.ensembles.results import fallen, write_results
 from stylobate.engine.ensembles.run_columns import MotionPlan, terms_of
 from stylobate.engine.ensembles.runs import AXIS, COMPONENT, QUANTITIES, ArrayLike, Arrays, Runs, broadcast, empty
-from stylobate.engine.ensembles.summaries import fallen, summarize_into
 from stylobate.engine.forcing import check_motion
 from stylobate.engine.parameters import changed_model, check_names, in_declared_units, own_numbers, split
 from stylobate.engine.starts import Turning, refuse_friction, require_nouns
@@ -197,6 +197,12 @@ def simulate_ensemble(
     raise Interrupted("interrupted; `partial` has the finished runs", result())
 
 
+def _named(parameters: Mapping[str, ArrayLike] | None) -> dict[str, ArrayLike]:
+    if parameters is not None and not isinstance(parameters, Mapping):
+        raise ParameterError(f'parameters must name what differs, such as {{"acceleration": […]}}, got {parameters!r}')
+    return dict(parameters or {})
+
+
 def _options(model: Model, run: Mapping[str, Any], *, with_orbits: bool, with_friction: bool) -> EnsembleOptions:
     """Check the options that the runs share; runs with a friction coefficient need the contact demand.
 
@@ -250,12 +256,6 @@ def _check_own_model(model: Model, runs: Runs) -> None:
         check_once(changed_model(model, {name: float(values[index]) for name, values in own.items()}))
 
 
-def _named(parameters: Mapping[str, ArrayLike] | None) -> dict[str, ArrayLike]:
-    if parameters is not None and not isinstance(parameters, Mapping):
-        raise ParameterError(f'parameters must name what differs, such as {{"acceleration": […]}}, got {parameters!r}')
-    return dict(parameters or {})
-
-
 def _followed(plan: Plan, runs: Runs, arrays: Arrays, threads: int, progress: Report) -> bool:
     """Fill `arrays`; return False after Ctrl-C."""
     done = 0
@@ -263,7 +263,7 @@ def _followed(plan: Plan, runs: Runs, arrays: Arrays, threads: int, progress: Re
     def compute(part: slice, halt: Halt) -> None:
         batch = Batch.of(plan, runs.part(part))
         batch.advance(halt)
-        summarize_into({name: values[part] for name, values in arrays.items()}, batch)
+        write_results({name: values[part] for name, values in arrays.items()}, batch)
 
     def count(part: slice) -> None:
         nonlocal done
@@ -289,64 +289,7 @@ def _rechecked(plan: Plan, runs: Runs, arrays: Arrays, threads: int) -> bool:
     return finished
 
 
-def _provenance(model: Model, motion: BaseMotion, options: EnsembleOptions, same: Mapping[str, Any]) -> dict[str, Any]:
-    names = (*Start.__annotations__, *FreeStart.__annotations__, "duration", "friction_coefficient")
-    starts = {name: same[name] for name in names if name in same}
-    parameters = {name: value for name, value in same.items() if name not in starts}
-    kept = {**options, "rules": asdict(options["rules"] or OutcomeRules()), **starts, "parameters": parameters}
-    return provenance_of_run(model, motion, **kept)
-
-
-def _dataset(
-    runs: Runs,
-    arrays: Mapping[str, npt.NDArray[Any]],
-    provenance: Mapping[str, Any],
-    declared: Mapping[str, Parameter],
-) -> xr.Dataset:
-    variables = {
-        name: (
-            (*runs.dims, *QUANTITIES[name].dims),
-            values.reshape(*runs.shape, *values.shape[1:]),
-            dict(QUANTITIES[name].attributes),
-        )
-        for name, values in arrays.items()
-    }
-    coordinates: dict[str, Any] = {AXIS: ["x", "y"]}
-    if any(COMPONENT in array.dims for array in runs.coordinates.values()):
-        coordinates[COMPONENT] = ["x", "y", "z"]
-    for name, array in runs.coordinates.items():
-        for label, index in array.coords.items():
-            coordinates.setdefault(str(label), index)
-        # An array along a dimension of its own name is the index, which exists already.
-        if name not in coordinates:
-            coordinates[name] = array.variable
-    data = xr.Dataset(
-        variables, coords=coordinates, attrs={"kind": "ensemble", "provenance": json.dumps(dict(provenance))}
-    )
-    for name in runs.coordinates:
-        known = declared.get(name.removeprefix("motion."))
-        if known is not None and not data.variables[name].attrs:
-            data.variables[name].attrs = {"long_name": known.quantity.text, "units": known.quantity.cf_units}
-    return data
-
-
 Halt = npt.NDArray[np.uint8]
-
-# Size of parts: small enough that every thread has one, all threads end together and progress is visible; large enough
-# to fill the lanes and to keep the overhead of Python small.
-_FEWEST, _ENOUGH, _MOST, _PARTS_PER_THREAD = 32, 512, 4096, 4
-
-
-def parts_of(count: int, threads: int) -> list[slice]:
-    """Return the slices of the parts of `count` runs."""
-    share = -(-count // threads)
-    size = min(max(_FEWEST, min(share, _ENOUGH), -(-share // _PARTS_PER_THREAD)), _MOST)
-    return [slice(start, min(start + size, count)) for start in range(0, count, size)]
-
-
-def usual_threads() -> int:
-    """Return the number of threads that this process may run at a time."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def run_parts(
@@ -391,3 +334,61 @@ def run_parts(
             halt[0] = 1
             raise
     return True
+
+
+# Size of parts: small enough that every thread has one, all threads end together and progress is visible; large enough
+# to fill the lanes and to keep the overhead of Python small.
+_FEWEST, _ENOUGH, _MOST, _PARTS_PER_THREAD = 32, 512, 4096, 4
+
+
+def parts_of(count: int, threads: int) -> list[slice]:
+    """Return the slices of the parts of `count` runs."""
+    share = -(-count // threads)
+    size = min(max(_FEWEST, min(share, _ENOUGH), -(-share // _PARTS_PER_THREAD)), _MOST)
+    return [slice(start, min(start + size, count)) for start in range(0, count, size)]
+
+
+def usual_threads() -> int:
+    """Return the number of threads that this process may run at a time."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def _provenance(model: Model, motion: BaseMotion, options: EnsembleOptions, same: Mapping[str, Any]) -> dict[str, Any]:
+    names = (*Start.__annotations__, *FreeStart.__annotations__, "duration", "friction_coefficient")
+    starts = {name: same[name] for name in names if name in same}
+    parameters = {name: value for name, value in same.items() if name not in starts}
+    kept = {**options, "rules": asdict(options["rules"] or OutcomeRules()), **starts, "parameters": parameters}
+    return provenance_of_run(model, motion, **kept)
+
+
+def _dataset(
+    runs: Runs,
+    arrays: Mapping[str, npt.NDArray[Any]],
+    provenance: Mapping[str, Any],
+    declared: Mapping[str, Parameter],
+) -> xr.Dataset:
+    variables = {
+        name: (
+            (*runs.dims, *QUANTITIES[name].dims),
+            values.reshape(*runs.shape, *values.shape[1:]),
+            dict(QUANTITIES[name].attributes),
+        )
+        for name, values in arrays.items()
+    }
+    coordinates: dict[str, Any] = {AXIS: ["x", "y"]}
+    if any(COMPONENT in array.dims for array in runs.coordinates.values()):
+        coordinates[COMPONENT] = ["x", "y", "z"]
+    for name, array in runs.coordinates.items():
+        for label, index in array.coords.items():
+            coordinates.setdefault(str(label), index)
+        # An array along a dimension of its own name is the index, which exists already.
+        if name not in coordinates:
+            coordinates[name] = array.variable
+    data = xr.Dataset(
+        variables, coords=coordinates, attrs={"kind": "ensemble", "provenance": json.dumps(dict(provenance))}
+    )
+    for name in runs.coordinates:
+        known = declared.get(name.removeprefix("motion."))
+        if known is not None and not data.variables[name].attrs:
+            data.variables[name].attrs = {"long_name": known.quantity.text, "units": known.quantity.cf_units}
+    return data

@@ -340,7 +340,7 @@ def contact_measures(arrays: Mapping[str, Any], motion: BaseMotion, trajectory: 
     Parameters
     ----------
     arrays
-        Results of the run from the summary of an ensemble.
+        Results of the run as those of an ensemble.
     motion, trajectory
         Motion of the base, and of the column.
 

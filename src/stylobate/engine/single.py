@@ -1,33 +1,46 @@
-"""Integration of one run: simulate."""
+"""Integration of one run: simulate, from its arguments to a response."""
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass, replace
 from functools import partial
 from typing import Any, Unpack
 
 import numpy as np
+import numpy.typing as npt
 
 from stylobate.base_motions import BASE_AT_REST, BaseMotion
-from stylobate.engine.cost import LOG, announce, expected_steps, report
+from stylobate.engine.cost import EVERY, LOG, announce, expected_steps, report, step_limit, unseen
 from stylobate.engine.ensembles.batch import Batch, Plan
+from stylobate.engine.ensembles.results import Late, grounds_of, late_periods, results_of
 from stylobate.engine.ensembles.run_columns import MotionPlan
 from stylobate.engine.ensembles.runs import Runs, one_run
-from stylobate.engine.ensembles.summaries import summaries
-from stylobate.engine.followed import Followed, bounds_of, late_measures, reason_of
 from stylobate.engine.forcing import check_motion, is_rest, without_dust
 from stylobate.engine.history import contact_measures, contact_warnings, history
-from stylobate.engine.kernel.columns import EVENTS_AT, Log, Setup
-from stylobate.engine.kernel.driver.events import EventSetup
+from stylobate.engine.kernel.columns import EVENTS_AT, STATE, TRACE_TERMS, Log, Setup, Trace
+from stylobate.engine.kernel.driver.events import EventSetup, Status, TraceKind
 from stylobate.engine.starts import Start, Turning, refuse_friction, require_below_level, require_nouns, require_plane
 from stylobate.engine.tolerances import CLOSE_PASSAGE, OVERTURNED_TILT
-from stylobate.engine.trajectory import Trajectory
-from stylobate.engine.user_events import EventFunction, checked_events, own_events
-from stylobate.engine.verdict import FALLEN, FIRST_DIGIT, MANY_PASSAGES, UNSETTLED, duration_of
+from stylobate.engine.trajectory import EventFunction, Trajectory, checked_events, own_events
+from stylobate.engine.verdict import (
+    FALLEN,
+    FIRST_DIGIT,
+    MANY_PASSAGES,
+    UNSETTLED,
+    Ground,
+    duration_of,
+    reason_on,
+    steady_periods,
+    survival,
+)
 from stylobate.errors import Outcome, UnsupportedError, require_vector
 from stylobate.models import Model
 from stylobate.provenance import provenance_of_run
 from stylobate.results import Event, OutcomeRules, Response
 from stylobate.run_arguments import Accuracy, EnsembleOptions, SingleRun, arguments_of, checked_options, takes
+from stylobate.text import plural
+
+Floats = npt.NDArray[np.float64]
 
 
 @takes(SingleRun)
@@ -189,7 +202,7 @@ def run_result(
         whole = followed.trajectory
         run = one_run(replace(start, duration=stopped_at))
         followed = Followed.of(plan, run, paused)
-    arrays = {name: values[0] for name, values in summaries(followed.batch).items()}
+    arrays = {name: values[0] for name, values in results_of(followed.batch).items()}
     outcome = Outcome(int(arrays["outcome"]))
     reason = reason_of(model, motion, followed, outcome)
     if stopped_at is not None:
@@ -247,7 +260,7 @@ def _repeated(plan: Plan, run: Runs, outcome: Outcome, peak: float) -> tuple[boo
     again = plan.repeated()
     batch = Batch.of(again, run)
     batch.advance(np.zeros(1, dtype=np.uint8))
-    found = summaries(batch)
+    found = results_of(batch)
     other, other_peak = Outcome(int(found["outcome"][0])), float(found["peak_tilt"][0])
     if other is Outcome.FAILED:
         return False, ()
@@ -260,3 +273,190 @@ def _repeated(plan: Plan, run: Runs, outcome: Outcome, peak: float) -> tuple[boo
     if outcome in FALLEN or abs(other_peak - peak) < FIRST_DIGIT * peak:
         return False, ()
     return False, (f"peak_tilt {peak:.2g} rad has no certain digit: {settings} {other_peak:.2g} rad",)
+
+
+@dataclass(frozen=True, slots=True)
+class Followed:
+    """Finished run: its batch of one, its motion, its events, and the measures of its last periods.
+
+    `last_guard` is the index of the guard of the last contact change; −1 for none.
+    """
+
+    batch: Batch
+    trajectory: Trajectory
+    events: tuple[Event, ...]
+    late: Late
+    last_guard: int
+
+    @classmethod
+    def of(cls, plan: Plan, run: Runs, paused: Callable[[float, float], None]) -> "Followed":
+        """Compute the only run of `run`.
+
+        Parameters
+        ----------
+        plan, run
+            Plan and run as for ensembles.
+        paused
+            Called as `paused(steps, time [s])` whenever the trace is full.
+        """
+        plan = plan if plan.traces else replace(plan, traces=EVERY + plan.layout.trace_room)
+        batch = Batch.of(plan, run)
+        batch.advance(np.zeros(1, dtype=np.uint8), paused)
+        entries = np.concatenate([*batch.traces, np.empty((0, plan.layout.trace_width))])
+        batch.traces.clear()  # saves memory for long runs
+        happened = entries[:, Trace.KIND] >= TraceKind.RELEASE
+        stretches = entries[~happened] if not happened.all() else _nothing_moved(batch)
+        line = batch.table[0, [Setup.LINE_X, Setup.LINE_Y]].tolist()
+        end = float(batch.log(Log.TIME)[0])
+        carried = (run.turning[0] if run.turning else Turning()).carried(plan.model)
+        trajectory = Trajectory(plan.model, stretches, (line[0], line[1]), carried, end)
+        scale = plan.model.time_scale
+        named = [(_event_in(plan.model, entry), float(entry[Trace.START])) for entry in entries[happened]]
+        named.append((Status(int(batch.log(Log.STATUS)[0])).event, end))
+        events = tuple(Event(name, time * scale) for name, time in named if name)
+        changes = entries[entries[:, Trace.KIND] == TraceKind.CONTACT]
+        last_guard = int(changes[-1, len(Trace)]) if len(changes) else -1
+        return cls(batch, trajectory, events, late_periods(batch), last_guard)
+
+    @property
+    def status(self) -> Status:
+        """Status at the end of the run."""
+        return Status(int(self.batch.log(Log.STATUS)[0]))
+
+    def log(self, column: Log) -> float:
+        """Return a column of the log of the kernel."""
+        return float(self.batch.log(column)[0])
+
+
+def _event_in(model: Model, entry: Floats) -> str:
+    """Return the name of the event of an entry; "" for none."""
+    kind = TraceKind(int(entry[Trace.KIND]))
+    if kind is not TraceKind.CONTACT:
+        return kind.event
+    number, before, after = entry[len(Trace) : len(Trace) + 3].astype(int).tolist()
+    return model.event_of(model.guard_names[number], before, after)
+
+
+def _nothing_moved(batch: Batch) -> Floats:
+    """Return the only trace entry of a run that ended at its start."""
+    entry = np.zeros((1, batch.plan.layout.trace_width))
+    entry[0, Trace.KIND] = TraceKind.PLANE_STEP if batch.planar[0] else TraceKind.STEP
+    entry[0, Trace.LENGTH] = 1.0
+    states = (entry.shape[1] - len(Trace)) // TRACE_TERMS
+    entry[0, len(Trace) : len(Trace) + states] = batch.table[0, STATE : STATE + states]
+    return entry
+
+
+_STANDS = {True: "can neither tip nor move it", False: "cannot uplift it"}
+
+
+_UPRIGHT = {
+    Outcome.SLID: "it stands upright, and its base face slides on the plane to the end",
+    Outcome.LIFTED_OFF: "it stays upright over the last periods, and leaves the plane again and again",
+}
+
+
+_UNPROVED = "its tilt reached π/2, which counts as overturned"
+
+
+_RELEASED = "it may still be uplifted: follow it longer"
+
+
+_RACING = (
+    "; it passes the vertical so closely that the contact point runs fast round the rim, and no passage loses energy: "
+    "set restitution below 1"
+)
+
+
+# Passages through the vertical closer than this take many steps [units of c].
+_RACES = 1e-3
+
+
+def reason_of(model: Model, motion: BaseMotion, followed: Followed, outcome: Outcome) -> str:
+    """Return the reason of the `outcome` of a run."""
+    status = followed.status
+    if outcome is Outcome.FAILED:
+        return f"the integration stopped: {_failure(model, followed)}{_RACING if _races(model, followed) else ''}"
+    if outcome is Outcome.OVERTURNED and math.isinf(model.least_safe_tilt(*bounds_of(followed))):
+        return _UNPROVED
+    if status is Status.RESTED:
+        return f"it stands, and the base motion to come {_STANDS[model.switches]}"
+    return status.reason or _UPRIGHT.get(outcome) or _at_its_end(model, motion, followed, outcome)
+
+
+def _at_its_end(model: Model, motion: BaseMotion, followed: Followed, outcome: Outcome) -> str:
+    """Return the reason of the outcome of a run that reached its duration."""
+    if outcome is Outcome.AT_REST:
+        return _standing(model, motion, followed)
+    if outcome in (Outcome.STILL_MOVING, Outcome.SURVIVED) and math.isfinite(motion.duration):
+        return survival(model, motion, followed.trajectory)[1]
+    ground = Ground(int(grounds_of(followed.batch, followed.late)[0]))
+    return reason_on(ground, followed.late.evidence, followed.batch.plan.rules, motion.period or 0.0)
+
+
+def _failure(model: Model, followed: Followed) -> str:
+    """Return the reason of a failed integration."""
+    most = int(followed.batch.plan.options["max_steps"])
+    match followed.status:
+        case Status.STEP_LIMIT:
+            return step_limit(most)
+        case Status.UNSEEN:
+            return unseen(most)
+        case Status.ENDLESS:
+            planar = followed.log(Log.THREE_DIMENSIONAL) == 0.0
+            remedy = "; it moves in exactly one vertical plane: pass a tilt out of it" if planar else ""
+            return f"its contact changes without end ({model.guard_names[followed.last_guard]}){remedy}"
+        case status:
+            return status.reason
+
+
+def _standing(model: Model, motion: BaseMotion, followed: Followed) -> str:
+    releases = int(followed.log(Log.RELEASES))
+    before = f", uplifted {plural(releases, 'time')} before" if releases else ""
+    left = motion.duration - followed.trajectory.end * model.time_scale
+    to_come = math.isfinite(left) and left > 0.0
+    stops = f", {left:.4g} s before the base motion stops; {_RELEASED}" if to_come else ""
+    return f"it stands at the end of the run{before}{stops}"
+
+
+def _races(model: Model, followed: Followed) -> bool:
+    """Return whether close passages explain the number of steps, and the model could have a loss but has none."""
+    lossless = model.impact_map is not None and model.loss_tilt == 0.0
+    return lossless and followed.log(Log.CLOSEST_PASSAGE) < _RACES * model.column.slenderness
+
+
+def bounds_of(followed: Followed) -> tuple[float, float]:
+    """Return sup |a_h| and inf a_z [g] of a whole run."""
+    motions = followed.batch.motions
+    return float(motions.largest[0]), float(motions.minimum_vertical[0])
+
+
+def late_measures(followed: Followed) -> dict[str, float]:
+    """Return the measures of the last periods if these were completed."""
+    late = followed.late
+    if np.isnan(late.span[0]):
+        return {}
+    scale = followed.trajectory.model.time_scale
+    measures = {
+        "mean_rolling_rate": 2.0 * math.pi * float(late.turned[0] / (late.span[0] * scale)),
+        "repetition": float(late.repetition[0]),
+        "repeats_after": float(late.repeats_after[0]),
+        "mean_tilt_late": float(late.mean_tilt[0]),
+        "minimum_tilt_late": float(late.minimum_tilt[0]),
+        "peak_tilt_late": _peak_tilt(followed),
+    }
+    if late.evidence is not None and late.evidence.held[0] >= steady_periods(followed.batch.plan.rules):
+        change, lag = late.evidence.change, late.evidence.lag
+        measures["modulation_change"] = abs(math.expm1(float(change.slope[0] * change.window[0])))
+        measures["rolling_rate_error"] = abs(float(lag.slope[0]))
+    return measures
+
+
+# Samples per period for the peak tilt in the last periods.
+_SAMPLES = 64
+
+
+def _peak_tilt(followed: Followed) -> float:
+    trajectory, periods = followed.trajectory, followed.batch.plan.rules.periods
+    tau = np.linspace(trajectory.end - float(followed.late.span[0]), trajectory.end, periods * _SAMPLES + 1)
+    return float(np.hypot(*trajectory.model.tilt(trajectory.states(tau))).max())

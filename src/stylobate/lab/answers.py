@@ -15,6 +15,7 @@ from pydantic_core import CoreSchema
 from stylobate.column import Column
 from stylobate.errors import Outcome
 from stylobate.lab.limits import Limits
+from stylobate.lab.requests import JOBS
 from stylobate.models.declared import column_quantities
 from stylobate.models.sliding.balance import Contact
 from stylobate.plots.geometry import Shape
@@ -120,13 +121,6 @@ class Kind(Answer):
     ends: bool | None = Field(None, description="for motions: whether the motion ends, so that a run needs no duration")
 
 
-class Sample(Answer):
-    """A sample record."""
-
-    name: str
-    about: str
-
-
 class Preset(Answer):
     """An example motion."""
 
@@ -140,14 +134,6 @@ class Preset(Answer):
     )
 
 
-class OutcomeCode(Answer):
-    """An outcome."""
-
-    name: OutcomeName
-    value: str = Field(description="outcome in words")
-    code: Count = Field(description="code in maps")
-
-
 class About(Answer):
     """Options of the laboratory."""
 
@@ -156,9 +142,8 @@ class About(Answer):
     shapes: list[Kind] = Field(description="kinds of columns")
     models: list[Kind] = Field(description="kinds of models")
     motions: list[Kind] = Field(description="kinds of base motions")
-    samples: list[Sample] = Field(description="sample records")
+    samples: list[str] = Field(description="names of the sample records")
     presets: list[Preset] = Field(description="example motions")
-    outcomes: list[OutcomeCode] = Field(description="the possible outcomes")
 
 
 class Peaks(Answer):
@@ -419,9 +404,6 @@ class Start(Answer):
 
 # Jobs
 
-Meanings = Annotated[list[tuple[int, str]], Field(description="codes and their meanings")]
-Codes = Annotated[list[list[int]], Field(description="a row for each value of x, with a code for each value of y")]
-
 
 class PlaneAxis(Answer):
     """A quantity that varies."""
@@ -443,7 +425,7 @@ class PlaneBegun(Answer):
     """The first event of a map or basin: its axes, and the meanings of the codes of cells."""
 
     axes: PlaneAxes
-    names: Meanings
+    names: list[tuple[int, str]] = Field(description="codes and their meanings")
 
 
 class PlaneCells(Answer):
@@ -453,39 +435,25 @@ class PlaneCells(Answer):
     cells: list[tuple[Count, Count, int]] = Field(description="index along x, index along y, and code")
 
 
-class _PlaneSize(Answer):
-    uncertain: Count = Field(description=f"runs whose outcome is {NUMERICALLY_UNCERTAIN}")
+class CellClass(Answer):
+    """A class of cells: a kind of outcome or of contact, or an attractor."""
+
+    code: Count = Field(description="code in the cells")
+    name: str
+    share: Share = Field(description="share of all runs")
+    low: Share = Field(description="lower end of the interval of the share; null if there is none")
+    high: Share = Field(description="upper end")
+
+
+class GridResult(Answer):
+    """The result of a map or basin: the class of each cell."""
+
     runs: Count = Field(description="number of runs")
-
-
-class MapResult(_PlaneSize):
-    """The result of a map: frequencies of the outcomes."""
-
-    shares: Annotated[dict[str, Share], Names({one.label: f"share that ended {one.label}" for one in Outcome}, {})]
-
-
-class ContactMapResult(_PlaneSize):
-    """The result of a map of a model that slides: kinds of contact."""
-
-    codes: Codes
-    names: Meanings
-
-
-class Attractor(Answer):
-    """An attractor, with its share of all initial conditions."""
-
-    name: str = Field(description="name as in names")
-    kind: str = Field(description="kind of outcome")
-    period: Count = Field(description="period in periods of the base; 0 if there is none")
-    fraction: Share = Field(description="share of all initial conditions")
-    fraction_low: Share = Field(description="lower end of its interval")
-    fraction_high: Share = Field(description="upper end of its interval")
-
-
-class BasinResult(ContactMapResult):
-    """The result of a basin: the attractor of each initial condition."""
-
-    attractors: list[Attractor]
+    uncertain: Count = Field(description=f"runs whose outcome is {NUMERICALLY_UNCERTAIN}")
+    codes: list[list[int]] = Field(
+        description="a row for each value of x, with a code for each value of y; -1 if not computed"
+    )
+    classes: list[CellClass]
 
 
 class Begun(Answer):
@@ -500,7 +468,7 @@ JobState = Literal["waiting", "running", "done", "failed", "cancelled"]
 class Job(Begun):
     """The state of a job."""
 
-    kind: Literal["exact", "map", "basin", "animation"] = Field(description="kind of computation")
+    kind: Annotated[str, _one_of([*JOBS])] = Field(description="kind of computation")
     state: JobState
     done: Count = Field(description="number of completed runs")
     total: Count = Field(description="number of runs; 0 while unknown")
@@ -508,7 +476,7 @@ class Job(Begun):
     events: list[PlaneBegun | PlaneCells] = Field(description="events, from the number `after` on")
     next: Count = Field(description="value of `after` in the next request")
     problems: list[str] = Field(description="reasons for the failure, one line each")
-    result: ExactOrbits | MapResult | BasinResult | ContactMapResult | None = Field(
+    result: ExactOrbits | GridResult | None = Field(
         description="the result when the job is done; null before, and for an animation, which has a file"
     )
 

@@ -31,9 +31,8 @@ from stylobate.lab.messages import OUT_OF_MEMORY, Broken, Finished, Lost, Refuse
 from stylobate.lab.options import about
 from stylobate.lab.pages import page_routes
 from stylobate.lab.pool import BusyError, Pool
-from stylobate.lab.requests import Description, Uploads, described, json_body, problems_of_numbers
+from stylobate.lab.requests import JOBS, Description, Uploads, described, json_body, problems_of_numbers
 from stylobate.lab.runs import column_numbers, snippets
-from stylobate.lab.tasks import JOBS
 
 
 def create_app(

@@ -9,8 +9,7 @@ import xarray as xr
 
 from stylobate import config, orbits, studies
 from stylobate.base_motions import Harmonic
-from stylobate.config.response import SteadyCase
-from stylobate.config.simulation import built_parts
+from stylobate.config.simulation import SteadyCase, built_parts
 from stylobate.errors import NoOrbitError, ParameterError, UnsupportedError
 from stylobate.lab import answers
 from stylobate.lab.messages import Emit, Note
@@ -27,12 +26,9 @@ _ORBITS = 400
 
 def response(values: Mapping[str, Any]) -> answers.ResponseCurves:
     """Compute the curves of theory that `values` describe, one for each sense and branch, within milliseconds."""
-    setup = config.ResponseConfig.parse(values).build()
-    low, high = setup.options["range"]
-    frequencies = np.linspace(low, high, setup.options["points"])
+    setup = config.study_config(studies.response_curves).parse(values).build()
     with np.errstate(all="ignore"):
-        curves = studies.response_curves(setup.model, setup.motion, angular_frequency=frequencies)
-        return _curves(curves)
+        return _curves(studies.response_curves(setup.model, setup.motion, **setup.options))
 
 
 def _curves(curves: xr.Dataset) -> answers.ResponseCurves:
@@ -59,7 +55,7 @@ def _curves(curves: xr.Dataset) -> answers.ResponseCurves:
 
 def exact_curves(values: Mapping[str, Any], emit: Emit) -> answers.ExactOrbits:
     """Compute the exact orbits that `values` describe; progress states the number of orbits and the last frequency."""
-    setup = config.ResponseConfig.parse(values).build()
+    setup = config.study_config(studies.exact_response).parse(values).build()
 
     number = count(1)
 
@@ -69,7 +65,7 @@ def exact_curves(values: Mapping[str, Any], emit: Emit) -> answers.ExactOrbits:
     found = studies.exact_response(
         setup.model,
         setup.motion,
-        angular_frequency=setup.options["range"],
+        **setup.options,
         control=orbits.StepControl(most=_ORBITS),
         progress=reached,
     )

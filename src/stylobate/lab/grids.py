@@ -4,14 +4,15 @@ import os
 import time
 from collections.abc import Callable, Generator, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
-from functools import partial
+from itertools import repeat
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from stylobate import config, studies
+from stylobate import config
+from stylobate.config.study import Study, declared_numbers, study_of
 from stylobate.engine.parameters import COLUMN_NAMES, present_value
 from stylobate.errors import Outcome, ParameterError, UnsupportedError
 from stylobate.lab import answers
@@ -20,7 +21,6 @@ from stylobate.lab.options import CASE_NUMBERS
 from stylobate.models import Model
 from stylobate.parameter_quantities import attributes_of
 from stylobate.progress import Report
-from stylobate.studies.maps.overturning import labelled
 from stylobate.studies.sweeps import Executor, Sweep
 from stylobate.studies.sweeps.chunks import Arrays, Computed, Task
 from stylobate.studies.sweeps.executors import Work
@@ -30,55 +30,25 @@ Cells = npt.NDArray[np.int64]
 Floats = npt.NDArray[np.float64]
 
 
-def overturning_plane(values: Mapping[str, Any], emit: Emit) -> answers.MapResult | answers.ContactMapResult:
-    """Compute the map of outcomes over two quantities; for a sliding model, the map of kinds of contact."""
-    study = studies.overturning_map
-    setup = config.study_config(study).parse(values).build()
-    if case_numbers(values, setup.options["over"]):
-        found = _watched(partial(case_map, setup, values), setup, emit, keywords={}, flat=True)
-    else:
-        found = _watched(partial(study, setup.model, setup.motion), setup, emit, keywords=setup.options)
-    if "contact_class" in found:
-        return answers.ContactMapResult(**_classes(found, "contact_class", found["class_name"].to_numpy(), setup))
-    shares = zip(Outcome, found["share"].to_numpy().tolist(), strict=True)
-    return answers.MapResult(**_size(found), shares={outcome.label: share for outcome, share in shares})
+def grid(function: Callable[..., xr.Dataset], values: Mapping[str, Any], emit: Emit) -> answers.GridResult:
+    """Compute the grid of a study that `values` describe, and emit the outcomes as soon as they are known.
 
-
-def basin_plane(values: Mapping[str, Any], emit: Emit) -> answers.BasinResult:
-    """Compute the attractor of each initial condition of a grid."""
-    setup = config.study_config(studies.basins).parse(values).build()
+    Raises
+    ------
+    ConfigError, ParameterError
+        If the description is invalid, or of a random sample.
+    """
+    study = study_of(function)
+    setup = config.study_config(function).parse(values).build()
     if "count" in setup.options:
         raise ParameterError(
-            "basin.random: the laboratory computes grids only. Give basin.x and basin.y, or use the command line."
+            f"{study.name}.random: the laboratory computes grids only. Give {study.name}.x and {study.name}.y, or use "
+            "the command line."
         )
-    found = _watched(partial(studies.basins, setup.model, setup.motion), setup, emit, keywords=setup.options)
-    classes = _classes(found, "attractor", found["attractor_name"].to_numpy(), setup)
-    members = [found.isel(attractor_index=i) for i in range(found.sizes["attractor_index"])]
-    return answers.BasinResult(**classes, attractors=[_attractor(one) for one in members])
-
-
-def _attractor(one: xr.Dataset) -> answers.Attractor:
-    return answers.Attractor(
-        name=str(one["attractor_name"].item()),
-        kind=str(one["attractor_kind"].item()),
-        period=int(one["attractor_period"]),
-        **{name: float(one[name]) for name in ("fraction", "fraction_low", "fraction_high")},
-    )
-
-
-def _watched(
-    study: Callable[..., xr.Dataset],
-    setup: config.Setup,
-    emit: Emit,
-    *,
-    keywords: Mapping[str, Any],
-    flat: bool = False,
-) -> xr.Dataset:
-    """Run `study` and emit the outcomes as soon as they are known; `flat` if the runs of the study form one row."""
     over = setup.options["over"]
     axes = {
-        place: answers.PlaneAxis(name=name, values=values, **(attributes_of(name) or {"units": units_of(name)}))
-        for place, (name, values) in zip("xy", over.items(), strict=True)
+        place: answers.PlaneAxis(name=name, values=along, **(attributes_of(name) or {"units": units_of(name)}))
+        for place, (name, along) in zip("xy", over.items(), strict=True)
     }
     names = [(int(outcome), outcome.label) for outcome in Outcome]
     emit(Found(answers.PlaneBegun(axes=answers.PlaneAxes(**axes), names=names)))
@@ -86,24 +56,35 @@ def _watched(
     def show(stride: int, places: Cells, outcomes: Cells) -> None:
         emit(Found(answers.PlaneCells(stride=stride, cells=np.column_stack([places, outcomes]).tolist())))
 
-    shape = tuple(len(values) for values in over.values()) if flat else None
-    executor = Refining(show, threads=max(1, (os.cpu_count() or 2) // 2), shape=shape)
-    return study(
-        **keywords,
-        executor=executor,
-        progress=lambda done, total: emit(Progress(done, total)),
+    def report(done: int, total: int) -> None:
+        emit(Progress(done, total))
+
+    shape = tuple(len(along) for along in over.values())
+    of_case = bool(case_numbers(values, over))  # runs of one row
+    executor = Refining(show, threads=max(1, (os.cpu_count() or 2) // 2), shape=shape if of_case else None)
+    if of_case:
+        found = case_grid(function, setup, values, executor=executor, progress=report)
+    else:
+        found = function(setup.model, setup.motion, **setup.options, executor=executor, progress=report)
+    return _answered(found, study, shape)
+
+
+def _answered(found: xr.Dataset, study: Study, shape: tuple[int, ...]) -> answers.GridResult:
+    of = next(one for one in study.classes if one.codes in found)
+    shares = (
+        answers.numbers(found[name]) if name in found else repeat(None)
+        for name in (of.share, f"{of.share}_low", f"{of.share}_high")
     )
-
-
-def _classes(found: xr.Dataset, variable: str, names: Any, setup: config.Setup) -> dict[str, Any]:
-    """Return the cells with their final classes."""
-    codes = found[variable].transpose(*found["outcome"].dims).to_numpy()
-    codes = codes.reshape([len(values) for values in setup.options["over"].values()])
-    return {**_size(found), "codes": codes.tolist(), "names": [(index, str(name)) for index, name in enumerate(names)]}
-
-
-def _size(found: xr.Dataset) -> dict[str, int]:
-    return {"uncertain": int(found["uncertain"].sum()), "runs": int(found["outcome"].size)}
+    classes = zip(found[of.names].to_numpy(), *shares, strict=False)
+    return answers.GridResult(
+        runs=found["outcome"].size,
+        uncertain=int(found["uncertain"].sum()),
+        codes=found[of.codes].transpose(*found["outcome"].dims).to_numpy().reshape(shape).tolist(),
+        classes=[
+            answers.CellClass(code=code, name=str(name), share=share, low=low, high=high)
+            for code, (name, share, low, high) in enumerate(classes)
+        ],
+    )
 
 
 # The executor: every eighth run along each axis first, then the runs between them
@@ -210,33 +191,43 @@ def case_numbers(values: Mapping[str, Any], over: Mapping[str, Floats]) -> dict[
     return {part: names for part, names in found.items() if not (part == "column" and given)}
 
 
-def case_map(
-    setup: config.Setup, values: Mapping[str, Any], *, executor: Executor, progress: Report | None = None
+def case_grid(
+    function: Callable[..., xr.Dataset],
+    setup: config.Setup,
+    values: Mapping[str, Any],
+    *,
+    executor: Executor,
+    progress: Report | None = None,
 ) -> xr.Dataset:
-    """Compute a map whose axes are numbers of the described case.
+    """Compute the grid of a study whose axes are numbers of the described case.
 
     Each run has the column and motion of the case with the numbers of its cell.
 
     Parameters
     ----------
-    setup, values
-        Model, motion and options of the map, and the plain values that describe it.
+    function, setup, values
+        The study; model, motion and options of its runs; and the plain values that describe them.
     executor, progress
         As in `run_sweep`. The runs form one row, with the second axis varying fastest.
 
     Returns
     -------
     xarray.Dataset
-        An overturning map, or a contact map if the model slides, over `run`.
+        The result of the study over `run`.
 
     Raises
     ------
     ConfigError, ParameterError
         If an axis has an impossible value.
     """
-    options = {name: value for name, value in setup.options.items() if name not in ("over", "least_share")}
+    own = {"over", *declared_numbers(function)}
+    options = {name: value for name, value in setup.options.items() if name not in own}
     sweep = Sweep.points(_without_height(setup.model), setup.motion, at=_at(values, setup.options["over"]), **options)
-    label = partial(labelled, least_share=setup.options.get("least_share"))
+
+    def label(runs: xr.Dataset) -> xr.Dataset:
+        found: xr.Dataset = study_of(function).completed(runs, lambda: setup, setup.options)
+        return found
+
     return labelled_sweep(sweep, label, executor=executor, progress=progress)
 
 

@@ -11,17 +11,17 @@ from typing import Any, TypeVar
 
 from pydantic import BaseModel
 
-from stylobate import config, studies
+from stylobate import config
 from stylobate.base_motions.declared import MOTIONS, composite_kinds, kinds_with_response, motion_quantities
 from stylobate.config.parts import is_to_end
+from stylobate.config.study import study_of
 from stylobate.errors import LARGEST, SMALLEST
 from stylobate.lab import answers
 from stylobate.lab.answers import Schema, in_words
 from stylobate.lab.curves import StartConfig
 from stylobate.lab.limits import Limits
 from stylobate.lab.options import NUMBERS, presets
-from stylobate.lab.requests import RecordRequest
-from stylobate.lab.tasks import JOBS
+from stylobate.lab.requests import GRIDS, JOBS, RecordRequest
 from stylobate.models.declared import column_quantities, model_quantities
 from stylobate.quantities import Quantity
 from stylobate.results import OutcomeRules
@@ -31,10 +31,9 @@ _F = TypeVar("_F", bound=Callable[..., Any])
 
 _REQUESTS: Mapping[str, type[BaseModel]] = {
     "Simulation": config.SimulationConfig,
-    "Response": config.ResponseConfig,
+    "Response": JOBS["exact"],
     "SteadyRollingStart": StartConfig,
-    "Map": config.study_config(studies.overturning_map),
-    "Basin": config.study_config(studies.basins),
+    **{JOBS[name].__name__.removesuffix("Config"): JOBS[name] for name in GRIDS},
     "Record": RecordRequest,
 }
 """The components of requests."""
@@ -56,8 +55,12 @@ _PLANE = {
 _TILTS = {place: {"name": f"tilt_{place}", "from": -0.12, "to": 0.12, "number": 7} for place in "xy"}
 _RECORD = base64.b64encode(b"0.00 0.000\n0.01 0.120\n0.02 0.310\n0.03 0.080\n0.04 -0.210\n0.05 0.000\n").decode()
 _OF_JOBS = {
-    "map": {**_CIRCLE, **_START, "duration": 60.0, "map": _PLANE},
-    "basin": {**_CIRCLE, "duration": 200.0, "basin": _TILTS},
+    **{
+        name: {**_CIRCLE, "duration": 200.0, name: _TILTS}
+        if study_of(one).starts
+        else {**_CIRCLE, **_START, "duration": 60.0, name: _PLANE}
+        for name, one in GRIDS.items()
+    },
     "exact": {**_CIRCLE, "angular_frequency_range": [1.2, 2.0]},
     "animation": {**_CIRCLE, **_START, "duration": 2.0},
 }

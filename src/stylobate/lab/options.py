@@ -13,7 +13,6 @@ from stylobate.base_motions.declared import composite_kinds, motion_quantities
 from stylobate.config.description import Config
 from stylobate.config.parts import DESCRIBED_MODELS, ColumnConfig, MotionConfig, is_to_end
 from stylobate.engine.parameters import COLUMN_NAMES, MOTION_NAMES
-from stylobate.errors import Outcome
 from stylobate.lab import answers
 from stylobate.lab.limits import Limits
 from stylobate.models.declared import column_quantities, model_quantities
@@ -34,9 +33,8 @@ def about(limits: Limits) -> answers.About:
             for one in motions
             if one["kind"] not in composite_kinds()  # available in files only
         ],
-        samples=[answers.Sample(name=name, about="sample record") for name in sample_names()],
+        samples=list(sample_names()),
         presets=presets(),
-        outcomes=[answers.OutcomeCode(name=one.name, value=one.label, code=int(one)) for one in Outcome],
     )
 
 

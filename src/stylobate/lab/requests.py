@@ -19,6 +19,9 @@ from typing import Annotated, Any, NoReturn
 from pydantic import AfterValidator, BaseModel, BeforeValidator, Field, ValidationError, WithJsonSchema
 from starlette.requests import ClientDisconnect, Request
 
+from stylobate import config, studies
+from stylobate.config.description import Config
+from stylobate.config.study import study_of
 from stylobate.errors import LARGEST, SMALLEST
 from stylobate.lab.limits import Limits, RefusedError
 from stylobate.units import size_of, split
@@ -215,6 +218,20 @@ def _require_unpacked_size(name: str, content: bytes, most: int) -> None:
         )
 
 
+# Jobs
+
+GRIDS: Mapping[str, Callable[..., Any]] = {
+    study_of(one).name: one for one in (getattr(studies, name) for name in studies.GRIDS)
+}
+"""The studies whose result is a grid of classes, by name."""
+
+JOBS: Mapping[str, type[Config]] = {
+    **{name: config.study_config(one) for name, one in GRIDS.items()},
+    "exact": config.study_config(studies.response_curves),
+    "animation": config.SimulationConfig,
+}
+"""The description of each kind of job; `stylobate.lab.answers.Job` has its kind and its result."""
+
 # Descriptions
 
 _DEEPEST = 24
@@ -243,7 +260,7 @@ def described(body: Mapping[str, Any], uploads: Uploads, limits: Limits) -> Desc
         _with_uploads(body, lambda digest: uploads[digest].motion()),
         _with_uploads(body, lambda digest: uploads[digest].shown()),
     )
-    problems = [*problems_of_numbers(body, limits), *_problems_of_the_plane(body, limits)]
+    problems = [*problems_of_numbers(body, limits), *_problems_of_grids(body, limits)]
     if problems:
         raise RefusedError(422, problems)
     return found
@@ -313,15 +330,18 @@ def _number_of(value: object) -> float:
         return LARGEST * 2.0
 
 
-def _problems_of_the_plane(body: Mapping[str, Any], limits: Limits) -> list[str]:
-    """Return a line if the map or basin has too many runs."""
-    plane = body.get("map") or body.get("basin")
-    if not isinstance(plane, Mapping):
-        return []
-    cells = max(_number_of(plane.get("random")), prod(_length(plane.get(place)) for place in "xy"))
-    if cells <= limits.cells:
-        return []
-    return [f"a map may have {limits.cells} runs in the laboratory, got {cells:g}. Use stylobate map."]
+def _problems_of_grids(body: Mapping[str, Any], limits: Limits) -> list[str]:
+    """Return a line for each grid with too many runs."""
+    grids = {name: grid for name in GRIDS if isinstance(grid := body.get(name), Mapping)}
+    cells = {
+        name: max(_number_of(grid.get("random")), prod(_length(grid.get(place)) for place in "xy"))
+        for name, grid in grids.items()
+    }
+    return [
+        f"a {name} may have {limits.cells} runs in the laboratory, got {size:g}. Use stylobate {name}."
+        for name, size in cells.items()
+        if size > limits.cells
+    ]
 
 
 def _length(axis: object) -> float:

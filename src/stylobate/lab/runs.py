@@ -16,7 +16,7 @@ from stylobate.lab.requests import Description
 from stylobate.models import Model
 from stylobate.plots.animation import drawn_motion
 from stylobate.results import Response
-from stylobate.results.summary import column_rows, damping_rows, measure_rows
+from stylobate.results.run_rows import column_rows, damping_rows, measure_rows
 
 _HISTORIES = (
     *("time", "base_acceleration", "amplitude", "azimuth", "rolling_rate", "spin"),

@@ -2,13 +2,13 @@
 
 import math
 from collections.abc import Callable, Mapping
+from functools import partial
 from importlib import import_module
 from typing import Any
 
-from stylobate import config, engine, studies
-from stylobate.config.description import Config
+from stylobate import config, engine
 from stylobate.lab.messages import Emit, Progress
-from stylobate.lab.requests import Description
+from stylobate.lab.requests import GRIDS, Description
 from stylobate.lab.runs import answered_run, record_contents, remarks
 
 _USUAL_LENGTH = 12.0
@@ -68,28 +68,22 @@ def warm_up() -> None:
     run(Description(values, values), lambda _: None)
 
 
-JOBS: Mapping[str, type[Config]] = {
-    "exact": config.ResponseConfig,
-    "map": config.study_config(studies.overturning_map),
-    "basin": config.study_config(studies.basins),
-    "animation": config.SimulationConfig,
-}
-"""The description of each kind of job; `stylobate.lab.answers.Job` has its kind and its result."""
-
 _TASKS = {
     "run": "tasks:run",
     "record": "tasks:record",
     "start": "curves:start",
     "exact": "curves:exact_curves",
-    "map": "grids:overturning_plane",
-    "basin": "grids:basin_plane",
     "animation": "tasks:animation",
 }
-"""Module and function of each task, imported by the processes that need it."""
+"""Module and function of each task besides grids, imported by the processes that need it."""
 
 
 def task(kind: str) -> Callable[[Any, Emit], Any]:
     """Return the task of this `kind`, which takes plain values and sends messages during the computation."""
+    if kind in GRIDS:
+        from stylobate.lab.grids import grid
+
+        return partial(grid, GRIDS[kind])
     module, _, name = _TASKS[kind].partition(":")
     found: Callable[[Any, Emit], Any] = getattr(import_module(f"stylobate.lab.{module}"), name)
     return found

@@ -1,4 +1,4 @@
-"""Tilt equation of the models at finite tilt, and its trigonometry.
+"""Models at finite tilt: tilt equation, its trigonometry, and all that does not depend on the axial rotation.
 
 Everything is divided by J0: m h² becomes κ, I_t becomes 1 − κ, I_a becomes κ i_a c², K becomes 1 + κc², weight times h
 becomes 1; lengths are in units of h, accelerations of the base in g. u is the direction in which the tilt θ grows, n
@@ -7,12 +7,14 @@ centre of mass, z' = c cos θ − sin θ its derivative by θ.
 """
 
 import math
+from collections.abc import Callable
+from typing import ClassVar
 
 import numpy as np
 import numpy.typing as npt
 
 from stylobate.column import Column
-from stylobate.models.model import Balance, Push
+from stylobate.models.model import Balance, Push, TiltVectorModel
 from stylobate.models.vertical import departing_lean
 
 Floats = npt.NDArray[np.float64]
@@ -108,7 +110,7 @@ def planar_acceleration(
 ) -> tuple[float, float, float]:
     """Return the tilt acceleration of planar motion, and N and the component of T along the lean, over m g.
 
-    K θ̈ = −(1 + a_z) z' − ρ' a_d − ηθ̇ − δN θ̇/|θ̇|, θ being `side` (±1) times the tilt.
+    K θ̈ = −(1 + a_z) z' − ρ' a_d − ηθ̇ − δN θ̇/|θ̇|, θ being `side` (±1) times the tilt. η may depend on the state.
     """
     square = tilt * tilt
     sine, cos = side * tilt * sine_over_angle(square), cosine(square)
@@ -132,14 +134,25 @@ def no_return_tilt(peak_horizontal: float, minimum_vertical: float, c: float, *_
     return min(math.atan(c) + math.atan(peak_horizontal / weight), 0.5 * math.pi)
 
 
-def energy_at_rest(tilt: float, speed: float, vertical: float, c: float, kappa: float) -> float:
-    """Return ½K|α̇|² + c(1 + a_z)|α|, the energy above rest near the vertical."""
-    return 0.5 * (1.0 + kappa * c * c) * speed * speed + c * (1.0 + vertical) * tilt
+def planar_rates(
+    tilt: float,
+    rate: float,
+    side: float,
+    horizontal: float,
+    vertical: float,
+    c: float,
+    eta: float,
+    kappa: float,
+    resistance: float,
+    *_: float,
+) -> tuple[float, float]:
+    """Return the right-hand side of planar motion, which has no spin."""
+    return rate, planar_acceleration(tilt, rate, side, horizontal, vertical, c, eta, kappa, resistance)[0]
 
 
 def rest_energy(tilt: float, speed: float, vertical: float, c: float, _eta: float, kappa: float, *_: float) -> float:
-    """Return ½K|α̇|² + c(1 + a_z)|α|, the energy above rest near the vertical; parameters begin with c, η, κ."""
-    return energy_at_rest(tilt, speed, vertical, c, kappa)
+    """Return ½K|α̇|² + c(1 + a_z)|α|, the energy above rest near the vertical without that of a spin."""
+    return 0.5 * (1.0 + kappa * c * c) * speed * speed + c * (1.0 + vertical) * tilt
 
 
 def uplift_terms(push: Push, c: float, eta: float, kappa: float, resistance: float) -> tuple[float, float, float]:
@@ -153,11 +166,27 @@ def uplift_terms(push: Push, c: float, eta: float, kappa: float, resistance: flo
 
 
 def departure(
-    push: Push, elapsed: float, c: float, eta: float, kappa: float, resistance: float
+    push: Push, elapsed: float, c: float, eta: float, kappa: float, resistance: float, *_: float
 ) -> tuple[float, float, float, float]:
     """Return the state a short time after uplift."""
     damping, inertia, gain = uplift_terms(push, c, eta, kappa, resistance)
     return departing_lean(push, elapsed, damping, inertia, gain, 1.0)[:4]
+
+
+def impact_map(
+    x: float,
+    y: float,
+    vx: float,
+    vy: float,
+    _c: float,
+    _eta: float,
+    _kappa: float,
+    _resistance: float,
+    restitution: float,
+    *_: float,
+) -> tuple[float, float, float, float]:
+    """Return the state after a passage of the vertical with loss: the tilt rate times the restitution."""
+    return x, y, restitution * vx, restitution * vy
 
 
 def potential(tilt: Floats, c: float) -> Floats:
@@ -175,3 +204,24 @@ def loss_tilt(column: Column, restitution: float, passage_tilt: float | None) ->
     """Return the tilt below which a passage of the vertical loses energy [rad]; 0 without loss."""
     tilt = _PASSAGE * column.slenderness if passage_tilt is None else passage_tilt
     return (restitution < 1.0) * tilt
+
+
+class FiniteTiltModel(TiltVectorModel):
+    """A model at finite tilt whose `parameters` begin with c, η, κ, δ/r and e.
+
+    A subclass with further couples in its plane states `planar_rates` again, its couples in the η that it passes to
+    `planar_acceleration`.
+    """
+
+    __slots__ = ()
+
+    planar_rates = staticmethod(planar_rates)
+    rest_energy = staticmethod(rest_energy)
+    departure: ClassVar[Callable[..., tuple[float, ...]]] = staticmethod(departure)
+    impact_map: ClassVar[Callable[..., tuple[float, ...]]] = staticmethod(impact_map)
+
+    @property
+    def comes_to_rest(self) -> bool:
+        """Whether there is damping, rolling resistance or loss."""
+        _, eta, _, resistance, restitution, *_ = self.parameters
+        return (eta > 0.0) | (resistance > 0.0) | (restitution < 1.0)

@@ -13,8 +13,8 @@ from stylobate.errors import require_positive
 from stylobate.models import finite_tilt
 from stylobate.models.contact import contact_outputs, path_outputs
 from stylobate.models.declared import Damping, Restitution, RollingResistance
-from stylobate.models.finite_tilt import TINY, planar_acceleration
-from stylobate.models.model import Balance, Floats, Output, Push, TiltVectorModel
+from stylobate.models.finite_tilt import TINY, FiniteTiltModel, planar_acceleration
+from stylobate.models.model import Balance, Floats, Output
 
 
 def rates(
@@ -61,48 +61,8 @@ def contact(
     return normal, abs(swept), 0.0
 
 
-def planar_rates(
-    tilt: float,
-    rate: float,
-    side: float,
-    horizontal: float,
-    vertical: float,
-    c: float,
-    eta: float,
-    kappa: float,
-    resistance: float,
-    _restitution: float,
-) -> tuple[float, float]:
-    """Return the right-hand side K θ̈ = (1 + a_z)(sin θ − c cos θ) − a_h (cos θ + c sin θ) − ηθ̇ on one side."""
-    acceleration, _, _ = planar_acceleration(tilt, rate, side, horizontal, vertical, c, eta, kappa, resistance)
-    return rate, acceleration
-
-
-def departure(
-    push: Push, elapsed: float, c: float, eta: float, kappa: float, resistance: float, _restitution: float
-) -> tuple[float, float, float, float]:
-    """Return the state a short time after uplift."""
-    return finite_tilt.departure(push, elapsed, c, eta, kappa, resistance)
-
-
-def impact_map(
-    x: float,
-    y: float,
-    vx: float,
-    vy: float,
-    _c: float,
-    _eta: float,
-    _kappa: float,
-    _resistance: float,
-    restitution: float,
-    *_: float,
-) -> tuple[float, float, float, float]:
-    """Return the state after an impact: the tilt rate times the restitution."""
-    return x, y, restitution * vx, restitution * vy
-
-
 @dataclass(frozen=True, slots=True)
-class PlanarRocking(TiltVectorModel):
+class PlanarRocking(FiniteTiltModel):
     """A body that rocks in a vertical plane from one edge to the other: Housner's model, at finite angles.
 
     Initial tilt and base motion must lie in one vertical plane. The model uses the half width r, the height h of the
@@ -185,11 +145,7 @@ class PlanarRocking(TiltVectorModel):
 
     rates = staticmethod(rates)
     contact = staticmethod(contact)
-    planar_rates = staticmethod(planar_rates)
-    rest_energy = staticmethod(finite_tilt.rest_energy)
     no_return_tilt = staticmethod(finite_tilt.no_return_tilt)
-    departure = staticmethod(departure)
-    impact_map = staticmethod(impact_map)
 
     @property
     def impact_restitution(self) -> float:
@@ -202,11 +158,6 @@ class PlanarRocking(TiltVectorModel):
         column = self.column
         numbers = (column.slenderness, self.damping, column.inertia_ratio)
         return (*numbers, self.rolling_resistance, self.impact_restitution)
-
-    @property
-    def comes_to_rest(self) -> bool:
-        """Whether there is damping, or loss at impacts."""
-        return (self.damping > 0.0) | (self.rolling_resistance > 0.0) | (self.impact_restitution < 1.0)
 
     @property
     def loss_tilt(self) -> float:

@@ -12,7 +12,7 @@ from stylobate.column import Column
 from stylobate.models import finite_tilt
 from stylobate.models.contact import contact_outputs, path_outputs
 from stylobate.models.declared import Damping, PassageTilt, Restitution, RollingResistance, SpinDamping
-from stylobate.models.finite_tilt import TINY, cosine, planar_acceleration, sine_over_angle, tilt_acceleration
+from stylobate.models.finite_tilt import TINY, FiniteTiltModel, cosine, sine_over_angle, tilt_acceleration
 from stylobate.models.model import Balance, ClosedForm, Floats, Output, Push, RollingLaw, SpinningModel, zero
 from stylobate.models.vertical import departure_with_spin, passage_with_spin
 
@@ -91,11 +91,11 @@ def rates(
     az: float,
     c: float,
     eta: float,
-    zeta: float,
     kappa: float,
-    axial: float,
     resistance: float,
     _restitution: float,
+    zeta: float,
+    axial: float,
 ) -> tuple[float, float, float, float, float]:
     """Return the rates of tilt vector, tilt rate and spin w3/ω0."""
     bx, by, spin_rate, _, _, _, _ = balance(x, y, vx, vy, spin, ax, ay, az, c, eta, zeta, kappa, axial, resistance)
@@ -113,11 +113,11 @@ def contact(
     az: float,
     c: float,
     eta: float,
-    zeta: float,
     kappa: float,
-    axial: float,
     resistance: float,
     _restitution: float,
+    zeta: float,
+    axial: float,
 ) -> tuple[float, float, float]:
     """Return N and |T| over m g, and the moment |M_z| of the spin damping over m g r."""
     _, _, _, normal, along, across, moment = balance(
@@ -135,42 +135,16 @@ def carried_rates(x: float, y: float, vx: float, vy: float, spin: float, *_: flo
     return twisting, twisting * y / tilt, -twisting * x / tilt
 
 
-def planar_rates(
-    tilt: float,
-    rate: float,
-    side: float,
-    horizontal: float,
-    vertical: float,
-    c: float,
-    eta: float,
-    _zeta: float,
-    kappa: float,
-    _axial: float,
-    resistance: float,
-    _restitution: float,
-) -> tuple[float, float]:
-    """Return the right-hand side of planar motion, which has no spin."""
-    acceleration, _, _ = planar_acceleration(tilt, rate, side, horizontal, vertical, c, eta, kappa, resistance)
-    return rate, acceleration
-
-
-def rest_energy(
-    tilt: float, speed: float, vertical: float, c: float, _eta: float, _zeta: float, kappa: float, *_: float
-) -> float:
-    """Return ½K|α̇|² + c(1 + a_z)|α|, the energy above rest without that of the spin."""
-    return finite_tilt.energy_at_rest(tilt, speed, vertical, c, kappa)
-
-
 def departure(
     push: Push,
     elapsed: float,
     c: float,
     eta: float,
-    _zeta: float,
     kappa: float,
-    axial: float,
     resistance: float,
     _restitution: float,
+    _zeta: float,
+    axial: float,
 ) -> tuple[float, float, float, float, float]:
     """Return the state a short time after uplift."""
     return departure_with_spin(
@@ -189,10 +163,11 @@ def passage(
     az: float,
     c: float,
     eta: float,
-    zeta: float,
     kappa: float,
+    _resistance: float,
+    _restitution: float,
+    zeta: float,
     axial: float,
-    *_: float,
 ) -> tuple[float, tuple[float, float, float, float, float]]:
     """Return the duration and the end state of a passage of the vertical; the spin bends the path."""
     return passage_with_spin((x, y, vx, vy), spin, (ax, ay, az), 1.0 + kappa * c * c, c, eta, zeta, kappa, axial)
@@ -206,9 +181,7 @@ def impact_map(
     spin: float,
     _c: float,
     _eta: float,
-    _zeta: float,
     _kappa: float,
-    _axial: float,
     _resistance: float,
     restitution: float,
     *_: float,
@@ -218,7 +191,7 @@ def impact_map(
 
 
 @dataclass(frozen=True, slots=True)
-class Rolling(SpinningModel):
+class Rolling(SpinningModel, FiniteTiltModel):
     """A rigid column that rolls without slip on the rim of its base, with spin, at any tilt below π/2.
 
     Its state is the tilt vector α = θ(cos β, sin β), its rate and the spin w3, the angular velocity about its axis;
@@ -272,24 +245,16 @@ class Rolling(SpinningModel):
     rates = staticmethod(rates)
     contact = staticmethod(contact)
     carried_rates = staticmethod(carried_rates)
-    planar_rates = staticmethod(planar_rates)
-    rest_energy = staticmethod(rest_energy)
     departure = staticmethod(departure)
     passage = staticmethod(passage)
     impact_map = staticmethod(impact_map)
 
     @property
     def parameters(self) -> tuple[float, ...]:
-        """c, η, ζ, κ, i_a, δ/r and e."""
+        """c, η, κ, δ/r, e, ζ and i_a."""
         column = self.column
-        shape = (column.inertia_ratio, column.axial_ratio)
         losses = (self.rolling_resistance, self.restitution)
-        return (column.slenderness, self.damping, self.spin_damping, *shape, *losses)
-
-    @property
-    def comes_to_rest(self) -> bool:
-        """Whether there is damping, rolling resistance or loss."""
-        return (self.damping > 0.0) | (self.rolling_resistance > 0.0) | (self.restitution < 1.0)
+        return (column.slenderness, self.damping, column.inertia_ratio, *losses, self.spin_damping, column.axial_ratio)
 
     @property
     def loss_tilt(self) -> float:

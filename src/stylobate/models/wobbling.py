@@ -12,8 +12,8 @@ from stylobate.column import Column
 from stylobate.models import finite_tilt
 from stylobate.models.contact import contact_outputs, path_outputs
 from stylobate.models.declared import Damping, PassageTilt, Restitution, RollingResistance
-from stylobate.models.finite_tilt import TINY, cosine, planar_acceleration, sine_over_angle, tilt_acceleration
-from stylobate.models.model import Balance, ClosedForm, Floats, Output, Push, RollingLaw, TiltVectorModel, zero
+from stylobate.models.finite_tilt import TINY, FiniteTiltModel, cosine, sine_over_angle, tilt_acceleration
+from stylobate.models.model import Balance, ClosedForm, Floats, Output, RollingLaw, zero
 from stylobate.models.vertical import pass_vertical
 from stylobate.quantities import Quantity
 
@@ -89,10 +89,10 @@ def rates(
     c: float,
     eta: float,
     kappa: float,
-    axial: float,
     resistance: float,
-    rubber: float,
     _restitution: float,
+    axial: float,
+    rubber: float,
 ) -> tuple[float, float, float, float]:
     """Return the rates of tilt vector and tilt rate."""
     bx, by, _, _, _, _ = balance(x, y, vx, vy, ax, ay, az, c, eta, kappa, axial, resistance, rubber)
@@ -110,10 +110,10 @@ def contact(
     c: float,
     eta: float,
     kappa: float,
-    axial: float,
     resistance: float,
-    rubber: float,
     _restitution: float,
+    axial: float,
+    rubber: float,
 ) -> tuple[float, float, float]:
     """Return N and |T| over m g, and the moment |M_z| of the couple that prevents rotation, over m g r."""
     _, _, normal, along, across, couple = balance(x, y, vx, vy, ax, ay, az, c, eta, kappa, axial, resistance, rubber)
@@ -128,10 +128,10 @@ def carried_rates(
     _c: float,
     _eta: float,
     _kappa: float,
-    _axial: float,
     _resistance: float,
+    _restitution: float,
+    _axial: float,
     rubber: float,
-    *_: float,
 ) -> tuple[float, float, float]:
     """Return χ̇ = w3 − w1 tan(θ/2), 0 where ω·(e3 + Z) = 0, and the rate −χ̇ n of the footprint circle in radii."""
     square = x * x + y * y + TINY
@@ -139,40 +139,6 @@ def carried_rates(
     # w1 (tan θ − tan(θ/2)) = −β̇ (1 − cos θ)/cos θ
     twisting = -rubber * (x * vy - y * vx) / square * (1.0 - cos) / (cos + _LEVEL)
     return twisting, twisting * y / tilt, -twisting * x / tilt
-
-
-def planar_rates(
-    tilt: float,
-    rate: float,
-    side: float,
-    horizontal: float,
-    vertical: float,
-    c: float,
-    eta: float,
-    kappa: float,
-    _axial: float,
-    resistance: float,
-    _rubber: float,
-    _restitution: float,
-) -> tuple[float, float]:
-    """Return the right-hand side of planar motion."""
-    acceleration, _, _ = planar_acceleration(tilt, rate, side, horizontal, vertical, c, eta, kappa, resistance)
-    return rate, acceleration
-
-
-def departure(
-    push: Push,
-    elapsed: float,
-    c: float,
-    eta: float,
-    kappa: float,
-    _axial: float,
-    resistance: float,
-    _rubber: float,
-    _restitution: float,
-) -> tuple[float, float, float, float]:
-    """Return the state a short time after uplift."""
-    return finite_tilt.departure(push, elapsed, c, eta, kappa, resistance)
 
 
 def passage(
@@ -197,26 +163,8 @@ def passage(
     return pass_vertical((x, y, vx, vy), push, c * (1.0 + az), 0.0, eta, inertia)
 
 
-def impact_map(
-    x: float,
-    y: float,
-    vx: float,
-    vy: float,
-    _c: float,
-    _eta: float,
-    _kappa: float,
-    _axial: float,
-    _resistance: float,
-    _rubber: float,
-    restitution: float,
-    *_: float,
-) -> tuple[float, float, float, float]:
-    """Return the state after a passage of the vertical with loss: the tilt rate times the restitution."""
-    return x, y, restitution * vx, restitution * vy
-
-
 @dataclass(frozen=True, slots=True)
-class Wobbling(TiltVectorModel):
+class Wobbling(FiniteTiltModel):
     """A rigid column that rolls on the rim of its base without axial rotation, at any tilt below π/2.
 
     Its angular velocity has no component along e3 + Z, the bisector of axis and vertical: it tilts without twist, and
@@ -266,25 +214,16 @@ class Wobbling(TiltVectorModel):
     rates = staticmethod(rates)
     contact = staticmethod(contact)
     carried_rates = staticmethod(carried_rates)
-    planar_rates = staticmethod(planar_rates)
-    rest_energy = staticmethod(finite_tilt.rest_energy)
     no_return_tilt = staticmethod(finite_tilt.no_return_tilt)
-    departure = staticmethod(departure)
     passage = staticmethod(passage)
-    impact_map = staticmethod(impact_map)
 
     @property
     def parameters(self) -> tuple[float, ...]:
-        """c, η, κ, i_a, δ/r, 1 for rubber, else 0, and e."""
+        """c, η, κ, δ/r, e, i_a, and 1 for rubber, else 0."""
         column = self.column
-        shape = (column.inertia_ratio, column.axial_ratio)
-        rest = (self.rolling_resistance, float(self.constraint == "rubber"), self.restitution)
-        return (column.slenderness, self.damping, *shape, *rest)
-
-    @property
-    def comes_to_rest(self) -> bool:
-        """Whether there is damping, rolling resistance or loss."""
-        return (self.damping > 0.0) | (self.rolling_resistance > 0.0) | (self.restitution < 1.0)
+        losses = (self.rolling_resistance, self.restitution)
+        own = (column.axial_ratio, float(self.constraint == "rubber"))
+        return (column.slenderness, self.damping, column.inertia_ratio, *losses, *own)
 
     @property
     def loss_tilt(self) -> float:

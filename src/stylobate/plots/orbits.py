@@ -29,6 +29,7 @@ from stylobate.plots.style import (
     new_figure,
     styled,
 )
+from stylobate.results.outcomes import stability_of
 
 _NARROW, _ROOM = 3.6, 1.12
 
@@ -164,12 +165,6 @@ def key_of_stability(axes: Axes, found: xr.Dataset) -> None:
         axes.add_patch(
             Rectangle((0.0, 0.0), 0.0, 0.0, color="black", label="range of the tilt over a period", **_SHADE)
         )
-
-
-def stability_of(found: xr.Dataset) -> str:
-    """Return the meaning of "stable": neutrally stable without damping, in the plane for planar orbits."""
-    neutral = "" if found.attrs.get("friction", 1) else "neutrally "
-    return f"{neutral}stable{' in the plane' if found.attrs.get('planar', 0) else ''}"
 
 
 def _beside_stable(part: xr.Dataset) -> npt.NDArray[np.bool_]:

@@ -21,6 +21,7 @@ from scipy.signal import lfilter
 from stylobate.base_motions.record import AXES, Record
 from stylobate.base_motions.signal_processing import Floats
 from stylobate.errors import ParameterError, as_numbers, require_not_negative, require_positive
+from stylobate.quantities import cf_attributes
 from stylobate.records.intensities import over_directions
 
 # Minimum number of values per period of the response, and after interpolation by cubics.
@@ -155,27 +156,23 @@ def response_spectra(record: Record, periods: npt.ArrayLike, *, damping: float =
     squares = (2.0 * math.pi / natural) ** 2
     both, one = ("period", "axis"), "period"
     data: dict[str, Any] = {
-        "sd": (both, sd, _attributes("m", "spectral displacement")),
-        "sv": (both, sv, _attributes("m s-1", "spectral velocity")),
-        "psa": (both, squares[:, np.newaxis] * sd, _attributes("m s-2", "spectral pseudo-acceleration")),
+        "sd": (both, sd, cf_attributes("m", "spectral displacement")),
+        "sv": (both, sv, cf_attributes("m s-1", "spectral velocity")),
+        "psa": (both, squares[:, np.newaxis] * sd, cf_attributes("m s-2", "spectral pseudo-acceleration")),
     }
     if turns:
         for name, values in zip(_PERCENTILES, turned.T, strict=True):
-            data[name] = (one, squares * values, _attributes("m s-2", f"{name.replace('rotd', 'RotD')} of PSA"))
+            data[name] = (one, squares * values, cf_attributes("m s-2", f"{name.replace('rotd', 'RotD')} of PSA"))
         data["geometric_mean"] = (
             one,
             squares * np.sqrt(sd[:, 0] * sd[:, 1]),
-            _attributes("m s-2", "geometric mean of PSA"),
+            cf_attributes("m s-2", "geometric mean of PSA"),
         )
     return xr.Dataset(
         data,
-        coords={"period": (one, natural, _attributes("s", "natural period")), "axis": shown},
+        coords={"period": (one, natural, cf_attributes("s", "natural period")), "axis": shown},
         attrs={"damping": damping, "record": record.name, "digest": record.digest},
     )
-
-
-def _attributes(units: str, long_name: str) -> dict[str, str]:
-    return {"units": units, "long_name": long_name}
 
 
 def _peaks(samples: Floats, step: float, period: float, damping: float) -> tuple[Floats, Floats, Floats]:

@@ -23,7 +23,7 @@ from scipy.optimize import brentq
 from scipy.special import gammaincinv, gammaln
 
 from stylobate.base_motions.record import AXES, Record
-from stylobate.base_motions.signal_processing import Floats
+from stylobate.base_motions.signal_processing import Floats, samples_within_limit
 from stylobate.column import STANDARD_GRAVITY
 from stylobate.errors import ParameterError, require_finite, require_positive, require_whole
 from stylobate.records.spectra import oscillator_response
@@ -228,11 +228,13 @@ class EvolvingNoise:
         if components > len(AXES):
             raise ParameterError(f"components must be 1, 2 or 3, got {components!r}")
         shape, scale = self._modulation()
-        noisy = math.ceil(scale * gammaincinv(shape, 1.0 - _REST_OF_INTENSITY) / step) + 1
+        length = scale * float(gammaincinv(shape, 1.0 - _REST_OF_INTENSITY))
+        noisy = samples_within_limit("step", f"{step!r} s", length / step, "Choose a longer step") + 1
         time = step * np.arange(float(noisy))
         noise = rng.standard_normal((noisy, components))
         x = self.envelope(time)[:, np.newaxis] * self._unit_process(time, noise)  # (1)
-        silent = math.ceil(_swing_forgotten() / (2.0 * math.pi * self.corner) / step)
+        rest = _swing_forgotten() / (2.0 * math.pi * self.corner)
+        silent = samples_within_limit("corner", f"{self.corner!r} Hz", rest / step, "Raise the corner")
         x = np.pad(x, ((0, silent), (0, 0)))
         record = Record(
             samples=self._without_drift(x, step), step=step, name="", provenance=(f"realization of {self!r}",)

@@ -137,3 +137,13 @@ def knife_edge_remarks(runs: "xr.Dataset") -> list[str]:
         ),
         *([f"{plural(planar, 'run')} stayed in exactly one vertical plane: pass a tilt out of it"] if planar else []),
     ]
+
+
+def stability_of(orbits: "xr.Dataset") -> str:
+    """Return the meaning of "stable": neutrally stable without damping, in the plane for planar orbits."""
+    neutral = "" if orbits.attrs.get("friction", 1) else "neutrally "
+    return f"{neutral}stable{' in the plane' if orbits.attrs.get('planar', 0) else ''}"
+
+
+LOSSES = {1: "supercritical", 0: "subcritical", -1: ""}
+"""Kind of a loss of stability, by its code in `supercritical`; empty if undecided."""

@@ -1,13 +1,16 @@
 """Plain values of results, which JSON can hold: numbers for arrays and NumPy scalars, and values by name."""
 
 from collections.abc import Mapping
-from typing import Any, Never, TypeVar
+from typing import TYPE_CHECKING, Any, Never, TypeVar
 
 import numpy as np
 import numpy.typing as npt
 
 from stylobate.errors import UnknownNameError
 from stylobate.text import did_you_mean
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 _T = TypeVar("_T")
 
@@ -65,3 +68,9 @@ def plain_value(value: Any) -> Any:
     if type(value) in (list, tuple):
         return type(value)(plain_value(one) for one in value)
     return value
+
+
+def plain_variables(data: "xr.Dataset") -> dict[str, Any]:
+    """Return the values of a Dataset as plain values by name, and the names of the dimensions of its variables."""
+    dims = {str(name): [str(dim) for dim in one.dims] for name, one in data.data_vars.items()}
+    return {"dims": dims} | {str(name): data[name].to_numpy().tolist() for name in (*data.coords, *data.data_vars)}

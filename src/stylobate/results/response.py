@@ -186,7 +186,7 @@ class Response(ByContent):
 
     def _repr_html_(self) -> str:
         """Render the card that notebooks show."""
-        from stylobate.results.summary import measure_rows, outcome_of, reason_rows, threshold_rows
+        from stylobate.results.run_rows import measure_rows, outcome_of, reason_rows, threshold_rows
 
         flags = [(name, "yes" if getattr(self, name) else "no") for name in ("uncertain", "planar")]
         rows = [("outcome", outcome_of(self)), *reason_rows(self), *flags]

@@ -1,5 +1,6 @@
 """Results as tables: of text, as the command line prints them, and in pandas."""
 
+import json
 import math
 from collections.abc import Hashable, Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -30,6 +31,13 @@ def number_of_runs(data: "xr.Dataset", over: str = "", word: str = "run") -> str
     """Describe in words the number of runs of a study, and the number of computed runs."""
     done, total = int(data["computed"]), data["outcome"].size
     return f"{plural(total, word)}{over}" + (f", {done} of them done" if done < total else "")
+
+
+def model_named(data: "xr.Dataset") -> str:
+    """Return the model of the runs in `data` in words, with its damping unless the damping varies."""
+    model = json.loads(data.attrs["provenance"]).get("model", {})
+    damping = "" if "damping" not in model or "damping" in data.dims else f", damping {model['damping']:g}"
+    return f"model {model.get('kind', 'unknown')}{damping}"
 
 
 class Practical(NamedTuple):

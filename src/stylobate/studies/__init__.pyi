@@ -1,10 +1,11 @@
-from .hierarchy_study import Comparison, model_hierarchy, outcome_differences
+from .hierarchy_study import model_hierarchy
 from .loading import load
 from .maps.attractor_search import AttractorRules
 from .maps.attractors import attractors, label_attractors
 from .maps.basin_fractions import basin_fractions
 from .maps.basins import basins
 from .maps.integrity import erosion, integrity
+from .maps.outcome_differences import Comparison, outcome_differences
 from .maps.overturning import overturning_map
 from .maps.uncertainty_exponent import uncertainty_exponent
 from .responses.after_bifurcation import after_bifurcation
@@ -16,6 +17,8 @@ from .responses.response_curves import averaged_motion, response_curves, steady_
 from .responses.slow_sweep import slow_sweep
 from .responses.stability_boundary import stability_boundary
 from .sweeps import Dask, Sweep, Threads, executor_from, open_sweep, run_sweep
+
+GRIDS: tuple[str, ...]
 
 __all__ = [
     "AttractorRules",

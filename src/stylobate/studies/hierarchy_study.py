@@ -1,21 +1,25 @@
-"""One case with every model of the hierarchy: runs, their differences, and how these scale with slenderness."""
+"""One case with every model of the hierarchy: runs, their differences, and how these scale with slenderness.
+
+`stylobate hierarchy` shows them.
+"""
 
 import json
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from enum import Enum
-from typing import Any, Unpack
+from functools import partial
+from typing import TYPE_CHECKING, Annotated, Any, Unpack
 
 import numpy as np
 import numpy.typing as npt
-import xarray as xr
 
+from stylobate import engine
 from stylobate.base_motions import BASE_AT_REST, BaseMotion
 from stylobate.column import Column
-from stylobate.engine import simulate
-from stylobate.engine.forcing import common_line
+from stylobate.config.options import COLUMN, MODEL, MOTION_WITHOUT_RECORDS, OUTPUT, Group, Option, run_numbers
+from stylobate.config.study import Analysis
 from stylobate.errors import (
+    ConfigError,
     Outcome,
     ParameterError,
     as_numbers,
@@ -27,13 +31,18 @@ from stylobate.errors import (
 from stylobate.models import Model, PlanarRocking, Rolling, Slender, SlenderRolling, Wobbling
 from stylobate.models.declared import dissipation_of
 from stylobate.models.model import require_column
-from stylobate.progress import Progress, shows_progress
 from stylobate.provenance import provenance_of_run
-from stylobate.results import Response
-from stylobate.results.outcomes import NOT_COMPUTED, flag_attributes, outcome_attributes
-from stylobate.run_arguments import Accuracy, RunOptions
-from stylobate.studies.maps.overturning import overturning_map
-from stylobate.studies.sweeps import Executor
+from stylobate.quantities import Quantity
+from stylobate.results.outcomes import outcome_attributes, outcome_label
+from stylobate.results.plain import plain_variables
+from stylobate.results.tables import Table
+from stylobate.run_arguments import Accuracy, OneRun, duration_with_tail, numbers_of
+from stylobate.studies.study import analysis
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from stylobate.results import Response
 
 
 class HierarchyArguments(Accuracy, total=False):
@@ -88,6 +97,8 @@ class Case:
     @property
     def in_a_plane(self) -> bool:
         """Whether initial conditions and base motion are planar, without spin."""
+        from stylobate.engine.forcing import common_line
+
         directions = (self.tilt, self.tilt_rate, *self.motion.directions())
         moving = any(any(direction) for direction in directions)
         return self.spin == 0.0 and (not moving or common_line(*directions) is not None)
@@ -104,9 +115,9 @@ class Case:
 
     def run(
         self, model: Model, duration: float, friction_coefficient: float | None, arguments: Mapping[str, Any]
-    ) -> Response:
+    ) -> "Response":
         """Run one model; a model without spin starts without spin."""
-        return simulate(
+        return engine.simulate(
             model,
             self.motion,
             tilt=self.tilt,
@@ -131,7 +142,7 @@ _TIMES_COMPARED = 400
 class Course:
     """A run and its requested duration [s]; a run that came to rest early stands until the end."""
 
-    run: Response
+    run: "Response"
     duration: float
 
     def history(self, time: Floats) -> tuple[Floats, Floats]:
@@ -158,130 +169,115 @@ class Course:
         return {"mean_late_tilt": float(np.hypot(*tilt.T).mean()), "mean_late_spin": float(spin.mean())}
 
 
-def largest_distance(first: xr.DataArray, second: xr.DataArray) -> float:
+def largest_distance(first: "xr.DataArray", second: "xr.DataArray") -> float:
     """Return the maximum distance of two histories of the tilt vector while both are known [rad]."""
     return float(np.nanmax(np.hypot(*(first.to_numpy() - second.to_numpy()).T)))
 
 
-class Comparison(Enum):
-    """Comparison of the outcomes of two models, in the order of the codes."""
-
-    BOTH_STAY = "overturns in neither"
-    ONLY_FIRST = "overturns in the first only"
-    ONLY_SECOND = "overturns in the second only"
-    BOTH_OVERTURN = "overturns in both"
-    UNDECIDED = "undecided"
-    """A run failed, or lifted off, or was stopped by a tilt limit."""
+# The most general model declares the dissipation parameters of all other models.
+_SHARED = tuple(dissipation_of(Rolling))
 
 
-@shows_progress("outcome differences")
-def outcome_differences(
-    first: Model,
-    second: Model,
-    motion: BaseMotion | None = None,
-    *,
-    over: Mapping[str, npt.ArrayLike],
-    duration: float | None = None,
-    periods: float | None = None,
-    executor: Executor | None = None,
-    progress: Progress = None,
-    **options: Unpack[RunOptions],
-) -> xr.Dataset:
-    """Compare, over two parameters, whether a column overturns in two models.
+def _of_all_models(values: Mapping[str, Any]) -> Mapping[str, Any]:
+    """Return the values of a description with the most general model; its kind and unchanged defaults are ignored."""
+    from stylobate.config.parts import DEFAULT_MODEL, default_values
+    from stylobate.config.simulation import with_default_duration
 
-    If the models differ in one assumption, such as `Slender` and `SlenderRolling`, the map shows where this assumption
-    decides the outcome.
+    described = values.get("model", {})
+    if isinstance(described, Mapping):
+        usual = {**default_values(described.get("kind", DEFAULT_MODEL)), "kind": described.get("kind")}
+        stated = {name: one for name, one in described.items() if name not in usual or one != usual[name]}
+        problems = [
+            f"model.{name}: the models of the hierarchy share {', '.join(_SHARED)} only (got {value!r}). Remove it."
+            for name, value in stated.items()
+            if name not in _SHARED
+        ]
+        if problems:
+            raise ConfigError(problems)
+        values = {**values, "model": {"kind": Rolling.name, **stated}}
+    return with_default_duration(values)
 
-    Parameters
-    ----------
-    first, second
-        The models, usually of one column.
-    motion, over, duration, periods, executor, progress, **options
-        As in `overturning_map`; `over` names parameters of both models.
 
-    Returns
-    -------
-    xarray.Dataset
-        Of kind "outcome differences": over the two names `comparison`, codes of `Comparison`; `first_outcome`,
-        `second_outcome`, and `first_peak_tilt`, `second_peak_tilt` [rad], with demands=True also the contact demands of
-        both; `count` and `share` over `comparison_name`.
+def _problems(config: Any) -> list[str]:
+    from stylobate.config.description import built
+    from stylobate.config.simulation import built_rules
 
-    Raises
-    ------
-    ParameterError
-        If an argument is out of range.
-    Interrupted
-        After Ctrl-C; `partial` is the overturning map of the model that was interrupted.
+    problems: list[str] = []
+    for c in config.hierarchy.slenderness or ():
+        built("hierarchy", partial(require_positive, "slenderness", c), problems)
+    built("rules", partial(built_rules, config.rules), problems)
+    return problems
 
-    Examples
-    --------
-    >>> import stylobate as sb
-    >>> column = sb.Column.dimensionless(slenderness=0.1)
-    >>> held, free = sb.Slender(column, damping=0.1), sb.SlenderRolling(column, damping=0.1, spin_damping=0.1)
-    >>> motion = sb.Harmonic.circular(acceleration=0.13, angular_frequency=3.0)
-    >>> over = {"angular_frequency": [2.0, 3.0], "acceleration": [0.12, 0.13]}
-    >>> found = sb.studies.outcome_differences(held, free, motion, over=over, periods=60.0)
-    >>> print(found["comparison"].dims, int(found["count"].sum()))
-    ('angular_frequency', 'acceleration') 4
-    """
-    maps = [
-        overturning_map(
-            model,
-            motion,
-            over=over,
-            duration=duration,
-            periods=periods,
-            executor=executor,
-            progress=progress,
-            **options,
+
+def _arguments(config: Any, setup: Any) -> Mapping[str, Any]:
+    from stylobate.config.simulation import built_rules
+
+    found = {name: getattr(config, name) for name in numbers_of(OneRun)}
+    if config.duration is None:
+        found["duration"] = duration_with_tail(setup.motion.duration, setup.model.column.frequency_parameter)
+    found |= {name: getattr(setup.model, name) for name in config.model.model_fields_set - {"kind"}}
+    compared = {"slenderness": config.hierarchy.slenderness or None, "rules": built_rules(config.rules)}
+    return found | compared | {"reference": config.hierarchy.reference.replace("-", " ").replace("_", " ")}
+
+
+def _chosen(options: Mapping[str, Any]) -> Mapping[str, Any]:
+    if options["model"] is not None:
+        raise ParameterError(f"--model: hierarchy runs all models (got {options['model']!r}). Remove it.")
+    scaled_to = options["scaled_to"] or ()
+    if any(not 0.0 < c < math.inf for c in scaled_to):
+        raise ParameterError(
+            f"--scaled-to must be followed by a positive slenderness, got {', '.join(map(str, scaled_to))}"
         )
-        for model in (first, second)
-    ]
-    codes = _compared_pair(*(found["outcome"].to_numpy() for found in maps))
-    return _dataset(maps, codes, (first, second))
+    return {} if options["figure"] is None else {"samples": _DRAWN}
 
 
-def _compared_pair(first: npt.NDArray[np.int8], second: npt.NDArray[np.int8]) -> npt.NDArray[np.int8]:
-    fallen = Outcome.OVERTURNED
-    places = {one: code for code, one in enumerate(Comparison)}
-    codes = np.where(first == fallen, places[Comparison.ONLY_FIRST], places[Comparison.BOTH_STAY])
-    codes = np.where(second == fallen, codes + places[Comparison.ONLY_SECOND], codes)
-    unclear = [Outcome.FAILED, Outcome.LIFTED_OFF, Outcome.LIMIT_REACHED]
-    codes = np.where(np.isin(first, unclear) | np.isin(second, unclear), places[Comparison.UNDECIDED], codes)
-    return np.where((first == NOT_COMPUTED) | (second == NOT_COMPUTED), NOT_COMPUTED, codes).astype(np.int8)
+# Samples of the histories in a figure, unless --samples states another number.
+_DRAWN = 4000
 
 
-# Variables of each model's runs in the result; demands only if they were computed.
-_COMPARED = ("outcome", "peak_tilt", "peak_friction_demand", "peak_pivoting_demand", "minimum_normal_force")
+def _tables(result: "xr.Dataset") -> list[Table]:
+    several = "slenderness" in result.dims
+    rows = []
+    for index in range(result.sizes["slenderness"] if several else 1):
+        at = result.isel(slenderness=index) if several else result
+        c = float(at["slenderness"]) if several else float(result.attrs["column_slenderness"])
+        scaled = [f"{c:.4g}"] if several else []
+        rows += [[*scaled, *_row(at.sel(model=model), c)] for model in result["model"].to_numpy()]
+    header = (*(("c",) if several else ()), *_HEADER)
+    remarks = []
+    if "deviation_order" in result:
+        for first, second in (("slender", "wobbling"), ("slender rolling", "rolling"), ("slender", "rolling")):
+            order = float(result["deviation_order"].sel(model=first, other_model=second))
+            remarks.append(f"the distance of {second} from {first} is proportional to c to the power {order:.2f}")
+    # Over several slendernesses, the warnings at the largest.
+    shown = result.isel(slenderness=int(np.argmax(result["slenderness"].to_numpy()))) if several else result
+    warned = zip(shown["model"].to_numpy(), shown["warnings"].to_numpy(), strict=True)
+    remarks += [f"{model}: {line}" for model, line in warned if line]
+    distance = f"distance: maximum deviation of the tilt vector from {result.attrs['reference']}"
+    return [Table(f"tilts over c; late: the last fifth of the run; {distance}", header, rows, remarks)]
 
 
-def _dataset(maps: list[xr.Dataset], codes: npt.NDArray[np.int8], models: tuple[Model, Model]) -> xr.Dataset:
-    dims = maps[0]["outcome"].dims
-    names = [one.value for one in Comparison]
-    meanings = ["NOT_COMPUTED", *(one.name for one in Comparison)]
-    about = flag_attributes("comparison of the two models", meanings, first=NOT_COMPUTED)
-    count = np.array([np.count_nonzero(codes == code) for code in range(len(names))], dtype=np.int64)
-    variables: dict[str, Any] = {
-        "comparison": (dims, codes, about),
-        "count": ("comparison_name", count, {"units": "1", "long_name": "runs compared so"}),
-        "share": ("comparison_name", count / max(codes.size, 1), {"units": "1", "long_name": "share of the runs"}),
-    }
-    for place, found in zip(("first", "second"), maps, strict=True):
-        shared = [name for name in _COMPARED if name in found]
-        variables |= {f"{place}_{name}": found[name].variable for name in shared}
-    provenance = {
-        place: json.loads(found.attrs["provenance"]) for place, found in zip(("first", "second"), maps, strict=True)
-    }
-    return xr.Dataset(
-        variables,
-        coords={**{dim: maps[0][dim] for dim in dims}, "comparison_name": names},
-        attrs={
-            "kind": "outcome differences",
-            "first": models[0].name,
-            "second": models[1].name,
-            "provenance": json.dumps(provenance),
-        },
+_HEADER = ("model", "outcome", "peak tilt", "late mean", "spin rad/s", "friction", "pivoting", "min N", "distance")
+
+
+def _row(at: "xr.Dataset", c: float) -> list[str]:
+    numbers = (
+        float(at["peak_tilt"]) / c,
+        float(at["mean_late_tilt"]) / c,
+        float(at["mean_late_spin"]),
+        float(at["peak_friction_demand"]),
+        float(at["peak_pivoting_demand"]),
+        float(at["minimum_normal_force"]),
+        float(at["deviation"].sel(other_model=at.attrs["reference"])) / c,
     )
+    cells = ("" if np.isnan(one) else "unbounded" if np.isinf(one) else f"{one:.4g}" for one in numbers)
+    outcome = outcome_label(int(at["outcome"])) + (" (numerically uncertain)" if bool(at["uncertain"]) else "")
+    return [str(at["model"].to_numpy()), outcome, *cells]
+
+
+def _summary(result: "xr.Dataset") -> dict[str, Any]:
+    attributes = {name: result.attrs[name] for name in ("reference", "column_slenderness", "provenance")}
+    return {**plain_variables(result), "attributes": attributes}
 
 
 # Number of times at which models are compared, unless the user requests histories of another length.
@@ -290,6 +286,55 @@ _TIMES = 2001
 _OF_SIMULATE = tuple(Accuracy.__annotations__)
 
 
+@analysis(
+    Analysis(
+        name="hierarchy",
+        source="TOML description, or a saved run (.nc)",
+        help="""Compare all models of the hierarchy in one case.
+
+    The file is that of `simulate`; the kind of its model is ignored. --samples keeps histories; --figure draws them.
+
+    Examples
+    --------
+    stylobate hierarchy --slenderness 0.1 --damping 0.1 --spin-damping 0.1 --motion circular --acceleration 0.065
+    --angular-frequency 1.8 --tilt 0.04 0 --tilt-rate 0 0.07 --duration 100 --figure hierarchy.png
+
+    stylobate hierarchy run.toml --scaled-to 0.05 --scaled-to 0.1 --scaled-to 0.2
+    """,
+        groups=(
+            Group.of(
+                "Options",
+                Option(
+                    "scaled_to",
+                    "slenderness to which the case is scaled, with its tilts and base motion; can be repeated",
+                    list[float],
+                    part="hierarchy",
+                    number="slenderness",
+                ),
+                Option(
+                    "reference",
+                    "model from which distances are measured; rolling by default",
+                    str,
+                    part="hierarchy",
+                    number="reference",
+                ),
+                Option("model", type=str, hidden=True),
+            ),
+            run_numbers(OneRun),
+            COLUMN,
+            MODEL.reduced_to(*_SHARED),
+            MOTION_WITHOUT_RECORDS,
+            OUTPUT,
+        ),
+        numbers=OneRun,
+        read=_of_all_models,
+        problems=_problems,
+        arguments=_arguments,
+        chosen=_chosen,
+        tables=_tables,
+        summary=_summary,
+    )
+)
 def model_hierarchy(
     column: Column,
     motion: BaseMotion | None = None,
@@ -298,12 +343,18 @@ def model_hierarchy(
     tilt_rate: Sequence[float] = (0.0, 0.0),
     spin: float = 0.0,
     duration: float,
-    slenderness: npt.ArrayLike | None = None,
+    slenderness: Annotated[
+        float | Sequence[float] | Floats | None,
+        Quantity(
+            text="slendernesses to which the case is scaled, with its tilts and base motion; "
+            "that of the column by default"
+        ),
+    ] = None,
     friction_coefficient: float | None = None,
-    reference: str = Rolling.name,
+    reference: Annotated[str, Quantity(text="model from which differences are taken")] = Rolling.name,
     samples: int | None = None,
     **arguments: Unpack[HierarchyArguments],
-) -> xr.Dataset:
+) -> "xr.Dataset":
     """Run one case with every model of the hierarchy and compare the results.
 
     The models are slender, slender rolling, wobbling and rolling; if initial conditions and base motion are planar,
@@ -360,16 +411,17 @@ def model_hierarchy(
     wobbling           0.388
     rolling            0.193
     """
-    shared = dissipation_of(Rolling)
-    strange = [name for name in arguments if name not in (*_OF_SIMULATE, *shared)]
+    import xarray as xr
+
+    strange = [name for name in arguments if name not in (*_OF_SIMULATE, *_SHARED)]
     if strange:
-        known = ", ".join((*shared, *_OF_SIMULATE))
+        known = ", ".join((*_SHARED, *_OF_SIMULATE))
         raise ParameterError(
             f"{strange[0]} is no argument of model_hierarchy. Besides those of its signature use {known}."
         )
     moved = BASE_AT_REST if motion is None else motion
     given: dict[str, Any] = {**arguments}
-    dissipation = {name: given.pop(name) for name in shared if name in given}
+    dissipation = {name: given.pop(name) for name in _SHARED if name in given}
     case = _case(column, moved, dissipation, tilt, tilt_rate, spin)
     duration = require_positive("duration", duration, "s")
     models = [model.name for model in case.models()]
@@ -377,7 +429,7 @@ def model_hierarchy(
         raise ParameterError(f"reference must be a model of this case, {', '.join(models)}; got {reference!r}")
     time = np.linspace(0.0, duration, _TIMES if samples is None else require_whole("samples", samples, least=2))
 
-    def compared(one: Case) -> xr.Dataset:
+    def compared(one: Case) -> "xr.Dataset":
         runs = [one.run(model, duration, friction_coefficient, given) for model in one.models()]
         return _compared(one, runs, time, duration)
 
@@ -470,8 +522,10 @@ _MEASURES = {
 _DIFFERENT = ("peak_tilt", "mean_late_tilt", "peak_friction_demand", "peak_pivoting_demand")
 
 
-def _compared(case: Case, runs: Sequence[Response], time: Floats, duration: float) -> xr.Dataset:
+def _compared(case: Case, runs: "Sequence[Response]", time: Floats, duration: float) -> "xr.Dataset":
     """Summarise the `runs` of all models of a case."""
+    import xarray as xr
+
     courses = [Course(run, duration) for run in runs]
     rows = [
         {**run.measures, "decided_at": run.decided_at, **course.late_means(case.motion)}
@@ -507,7 +561,7 @@ def _compared(case: Case, runs: Sequence[Response], time: Floats, duration: floa
     )
 
 
-def _with_order(found: xr.Dataset) -> xr.Dataset:
+def _with_order(found: "xr.Dataset") -> "xr.Dataset":
     """Add the power of c with which the deviation over c falls, by least squares; NaN without a deviation."""
     c = found["slenderness"].to_numpy()
     relative = (found["deviation"] / found["slenderness"]).transpose("slenderness", ...).to_numpy()
@@ -519,7 +573,7 @@ def _with_order(found: xr.Dataset) -> xr.Dataset:
     return found.assign(deviation_order=(("model", "other_model"), slope, about))
 
 
-def _with_differences(found: xr.Dataset, reference: str) -> xr.Dataset:
+def _with_differences(found: "xr.Dataset", reference: str) -> "xr.Dataset":
     base = found.sel(model=reference)
     added = {}
     for name in _DIFFERENT:

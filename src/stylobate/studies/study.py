@@ -1,4 +1,4 @@
-"""Studies of many runs: each is a function that returns a sweep and the labelling of its runs.
+"""Studies of many runs: most are functions that return a sweep and the labelling of its runs.
 
 The decorator `study` adds what they share: the arguments of runs, store, executor, resumption and progress.
 """
@@ -9,7 +9,7 @@ from functools import wraps
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, ParamSpec, TypedDict, cast, get_args
 
-from stylobate.config.study import Study, declared_numbers
+from stylobate.config.study import Analysis, Study, declared_numbers
 from stylobate.progress import Progress, shows_progress
 from stylobate.run_arguments import Argument, RunOptions, defaults_of, takes
 from stylobate.studies.sweeps.executors import Executor
@@ -63,8 +63,8 @@ class Runs(Described, Computing, total=False):
     """The arguments of a study of many runs besides its own."""
 
 
-class PeriodicRuns(RunOptions, Computing, total=False):
-    """The arguments of a study whose runs last a number of periods that is an argument of its own."""
+class RunsOfOwnLength(RunOptions, Computing, total=False):
+    """The arguments of a study whose own arguments state how long runs last, such as a number of periods."""
 
 
 def described(run: Runs) -> Described:
@@ -73,7 +73,7 @@ def described(run: Runs) -> Described:
     return cast("Described", {name: value for name, value in run.items() if name not in how})
 
 
-def options_of(run: PeriodicRuns) -> RunOptions:
+def options_of(run: RunsOfOwnLength) -> RunOptions:
     """Return the options of the runs, without the arguments of their computation."""
     return cast("RunOptions", described(cast("Runs", run)))
 
@@ -86,10 +86,11 @@ _OPTIONS = f"""    **options
 
 def study(
     word: str, declared: Study | None = None
-) -> "Callable[[Callable[_P, tuple[Sweep, Label]]], Callable[_P, xr.Dataset]]":
+) -> "Callable[[Callable[_P, tuple[Sweep, Label] | xr.Dataset]], Callable[_P, xr.Dataset]]":
     """Make a study of a function that returns its sweep, and the function that labels the runs; a decorator.
 
     The function takes `**run: Unpack[Runs]`, or another group in place of `Runs`, and gets all arguments of the group.
+    A function that computes several sweeps returns its result instead.
 
     Parameters
     ----------
@@ -99,7 +100,7 @@ def study(
         Description in files and command of the study.
     """
 
-    def decorated(function: "Callable[_P, tuple[Sweep, Label]]") -> "Callable[_P, xr.Dataset]":
+    def decorated(function: "Callable[_P, tuple[Sweep, Label] | xr.Dataset]") -> "Callable[_P, xr.Dataset]":
         signature = inspect.signature(function)
         (group,) = get_args(signature.parameters["run"].annotation)
         how = defaults_of(Computing)
@@ -108,8 +109,9 @@ def study(
         def computed(*arguments: _P.args, **named: _P.kwargs) -> "xr.Dataset":
             from stylobate.studies.sweeps.running import labelled_sweep
 
-            sweep, label = function(*arguments, **named)
-            found = labelled_sweep(sweep, label, **{name: named[name] for name in how})  # type: ignore[arg-type]
+            found = function(*arguments, **named)
+            if isinstance(found, tuple):
+                found = labelled_sweep(*found, **{name: named[name] for name in how})  # type: ignore[arg-type]
             if declared is None:
                 return found
             given = signature.bind(*arguments, **named).arguments
@@ -127,10 +129,20 @@ def study(
     return decorated
 
 
+def analysis(declared: Analysis) -> "Callable[[Callable[_P, xr.Dataset]], Callable[_P, xr.Dataset]]":
+    """Declare a study that is computed at once; a decorator."""
+
+    def decorated(function: "Callable[_P, xr.Dataset]") -> "Callable[_P, xr.Dataset]":
+        function.study = declared  # type: ignore[attr-defined]  # read by `study_of`
+        return function
+
+    return decorated
+
+
 def _with_numbers(found: "xr.Dataset", name: str, numbers: "Mapping[str, Any]") -> "xr.Dataset":
     """Return a result whose provenance has the study's own numbers that were given, unless it has them already."""
-    given = {one: value for one, value in numbers.items() if value is not None}
     provenance = json.loads(found.attrs.get("provenance", "{}"))
+    given = {one: value for one, value in numbers.items() if value is not None and one not in provenance}
     if not given or name in provenance:
         return found
     return found.assign_attrs(provenance=json.dumps({**provenance, name: given}))

@@ -139,6 +139,29 @@ def test_corners_out_of_range_are_refused(corners, message):
         RECORD.filtered(**corners)
 
 
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (lambda: RECORD.filtered(highpass=1e-6), "highpass: 6e+08 samples are needed, 10,000,000 allowed"),
+        (lambda: RECORD.filtered(lowpass=1e-6), "lowpass: 6e+08 samples are needed"),
+        (lambda: RECORD.padded(before=1e6), "before: 1e+08 samples are needed"),
+        (lambda: RECORD.with_tail(1e6), "length: 1e+08 samples are needed"),
+        (lambda: RECORD.with_tail(1e5).resampled(1e-3), "step: 1e+08 samples are needed"),
+    ],
+)
+def test_a_change_that_needs_too_many_samples_is_refused_in_one_line(change, message):
+    with pytest.raises(ParameterError) as refusal:
+        change()
+    text = str(refusal.value)
+    assert message in text
+    assert "(got 1" in text or "(got 0.001 s)" in text
+    assert "\n" not in text
+
+
+def test_a_corner_forwards_only_needs_no_zeros():
+    assert len(RECORD.filtered(highpass=1e-6, causal=True).samples) == len(RECORD.samples)
+
+
 def test_the_sample_record_drifts_as_its_documentation_says_and_its_corrected_version_does_not():
     raw, clean = sb.sample_record("el centro 1940"), sb.sample_record("el centro 1940 corrected")
     before, after = intensity_measures(raw), intensity_measures(clean)

@@ -9,8 +9,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from stylobate.compiler.programs import Bound
+from stylobate.engine.kernel.bound import Rows
 from stylobate.engine.kernel.driver import equations
-from stylobate.engine.kernel.layout import Rows
 from stylobate.engine.kernel.shape import SERIES_ORDER, Harmonics, Polynomials
 
 EPS = float(np.finfo(float).eps)

@@ -1,7 +1,5 @@
 """Checked arguments of an assessment, and the store of its parts."""
 
-import hashlib
-import json
 import logging
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -18,12 +16,11 @@ from stylobate.config.levels import OF_DISSIPATION, Dissipation, at_levels, leve
 from stylobate.earthquakes.study_inputs import Records, named_records
 from stylobate.earthquakes.verdict_study import has_other_contact_law, with_other_contact_law
 from stylobate.engine.parameters import changed_model, model_names
-from stylobate.errors import FileError, ParameterError, require_not_negative, require_positive
+from stylobate.errors import ParameterError, require_not_negative, require_positive
 from stylobate.models import Model
 from stylobate.progress import Report
 from stylobate.provenance import provenance_of_run
-from stylobate.quantities import exact_repr
-from stylobate.results.storage import read_dataset, write_netcdf
+from stylobate.results.keyed_store import KeyedStore
 from stylobate.run_arguments import RunOptions
 from stylobate.studies.sweeps.designs import Floats
 from stylobate.studies.sweeps.fingerprint import identity_of
@@ -317,9 +314,10 @@ class Parts:
             If the store cannot be written.
         """
         before = sum(self._done)
-        path = None if self.store is None else self.store / f"{_digest({'part': name, **identity})}.nc"
-        found = None if path is None else _kept(path)
-        if found is not None:
+        store = None if self.store is None else KeyedStore(self.store)
+        stored = None if store is None else store.read(name, identity)
+        if stored is not None:
+            found = stored.to_dataset()
             self._known.append(name)
         else:
             if self._known and len(self._known) == len(self._done):  # the first part that is computed
@@ -328,8 +326,8 @@ class Parts:
             found = compute(
                 lambda done, total: self.announce(name, before + round(runs * done / max(total, 1)), self.total)
             )
-            if path is not None:
-                _keep(found, path)
+            if store is not None:
+                store.write(name, identity, found)
             self.announce(name, before + runs, self.total)
         self._done.append(runs)
         return found
@@ -347,25 +345,3 @@ def identities(motions: Mapping[str, BaseMotion]) -> dict[str, Any]:
     return {
         name: motion.digest if isinstance(motion, Record) else identity_of(motion) for name, motion in motions.items()
     }
-
-
-def _digest(identity: Mapping[str, Any]) -> str:
-    return hashlib.sha256(json.dumps(identity, sort_keys=True, default=exact_repr).encode()).hexdigest()[:24]
-
-
-def _kept(path: Path) -> xr.Dataset | None:
-    if not path.exists():
-        return None
-    try:
-        return read_dataset(path)
-    except FileError as error:
-        _log.warning("%s; it is computed again", error)
-        return None
-
-
-def _keep(data: xr.Dataset, path: Path) -> None:
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise FileError(f"cannot write {path}: {error.strerror or error}") from None
-    write_netcdf(data, path)

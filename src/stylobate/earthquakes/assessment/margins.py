@@ -12,7 +12,7 @@ from stylobate.column import Column
 from stylobate.earthquakes.assessment.inputs import CENTRAL, NO_VERTICAL, Inputs, Parts
 from stylobate.earthquakes.fragility.observations import limit_states
 from stylobate.earthquakes.incremental import tilt_ratios, without_vertical
-from stylobate.earthquakes.overturning_scales import overturning_intervals
+from stylobate.earthquakes.spectrum_study import overturning_intervals
 from stylobate.earthquakes.study_inputs import tail_of
 from stylobate.engine import simulate_ensemble
 from stylobate.errors import Outcome

@@ -1,7 +1,7 @@
-"""File formats of studies of earthquakes: assessments, fragilities and spectra."""
+"""File formats of studies of earthquakes: assessments and fragilities."""
 
 from stylobate.earthquakes.config.assess import AssessConfig, AssessmentSetup
-from stylobate.earthquakes.config.fragility import FragilityConfig, FragilitySetup, SpectrumConfig
+from stylobate.earthquakes.config.fragility import FragilityConfig, FragilitySetup
 from stylobate.earthquakes.config.verdict import VerdictConfig
 
-__all__ = ["AssessConfig", "AssessmentSetup", "FragilityConfig", "FragilitySetup", "SpectrumConfig", "VerdictConfig"]
+__all__ = ["AssessConfig", "AssessmentSetup", "FragilityConfig", "FragilitySetup", "VerdictConfig"]

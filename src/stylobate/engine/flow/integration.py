@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from stylobate.compiler.marks import fast, lanes
-from stylobate.engine.dop853 import E3, E5, STAGES, A, B, C
+from stylobate.engine.dop853 import E3, E5, LARGEST_FACTOR, LEAST_ERROR, LEAST_FACTOR, SAFETY, STAGES, A, B, C
 from stylobate.engine.elementary import turning_point, weighted, winding
 from stylobate.engine.flow.bound import (
     ACCELERATIONS,
@@ -54,8 +54,6 @@ class Record(IntEnum):
 Table = npt.NDArray[np.float64]
 Vector = npt.NDArray[np.float64]
 
-# Step control as in SciPy: safety factor, bounds of the step ratio, and lower bound of the error.
-SAFETY, LEAST_FACTOR, LARGEST_FACTOR, LEAST_ERROR = 0.9, 0.2, 10.0, 1e-12
 # Steps in turns of the base motion.
 FIRST_STEP, LONGEST_STEP, SHORTEST_STEP = 0.01, 0.125, 1e-13
 MOST_STEPS = 200_000

@@ -15,8 +15,8 @@ from typing import Any
 
 import numpy as np
 
+from stylobate.engine.kernel.bound import FromZero
 from stylobate.engine.kernel.driver.events import EventSetup
-from stylobate.engine.kernel.layout import FromZero
 
 
 class Setup(FromZero):

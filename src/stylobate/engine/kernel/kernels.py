@@ -16,6 +16,7 @@ from stylobate.compiler.values import Element
 from stylobate.engine import dop853, elementary, tolerances
 from stylobate.engine.kernel import columns
 from stylobate.engine.kernel import shape as shapes
+from stylobate.engine.kernel.bound import Row, Table
 from stylobate.engine.kernel.driver import (
     equations,
     events,
@@ -31,7 +32,6 @@ from stylobate.engine.kernel.driver import (
     switching,
 )
 from stylobate.engine.kernel.expansion import expand_source
-from stylobate.engine.kernel.layout import Row, Table
 from stylobate.engine.kernel.shape import SERIES_ORDER, STAGES, Shape
 from stylobate.models import Model
 

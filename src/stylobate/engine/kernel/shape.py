@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from functools import cache
 from typing import Protocol
 
+from stylobate.engine.kernel.bound import Rows
 from stylobate.engine.kernel.columns import (
     ORBIT,
     STATE,
@@ -22,7 +23,6 @@ from stylobate.engine.kernel.columns import (
     Wave,
 )
 from stylobate.engine.kernel.driver.events import EventSetup
-from stylobate.engine.kernel.layout import Rows
 
 
 class KernelForcing(Protocol):

@@ -2,7 +2,6 @@
 
 import hashlib
 import json
-import re
 import sys
 from dataclasses import dataclass
 from functools import cache
@@ -12,25 +11,22 @@ from pathlib import Path
 import xarray as xr
 
 from stylobate.errors import FileError
-from stylobate.results import ClaimStatus, Finding, Section, write_netcdf
-from stylobate.results.storage import read_tree
+from stylobate.results import ClaimStatus, Finding, Section
+from stylobate.results.keyed_store import KeyedStore
 
 _FINDINGS = "findings"
 
 
 @dataclass(frozen=True, slots=True)
 class FinishedAnalyses:
-    """Sections by heading in a folder, one netCDF file each, named with the fingerprint of the code."""
+    """Sections by heading in a folder, each stored with the fingerprint of the code that computed it."""
 
     folder: Path
 
     def read(self, heading: str) -> Section | None:
         """Read the section with this heading; None if it is missing, damaged or from other code."""
-        try:
-            tree = read_tree(self._file(heading))
-        except FileError:
-            return None
-        if _FINDINGS not in tree.attrs:
+        tree = KeyedStore(self.folder).read(heading, {"code": fingerprint()})
+        if tree is None:
             return None
         findings = json.loads(tree.attrs[_FINDINGS])
         found = tuple(
@@ -49,20 +45,11 @@ class FinishedAnalyses:
         tree = xr.DataTree.from_dict({f"/{name}": data for name, data in section.data.items()})
         findings = [(f.source, f.statement, f.measured, f.verdict.name) for f in section.findings]
         tree.attrs = {_FINDINGS: json.dumps(findings, ensure_ascii=False)}
-        try:
-            self.folder.mkdir(parents=True, exist_ok=True)
-            for earlier in self.folder.glob(f"{_slug(heading)}-*.nc"):
-                earlier.unlink()
-        except OSError as error:
-            raise FileError(f"cannot write into {self.folder}: {error.strerror or error}") from None
-        write_netcdf(tree, self._file(heading))
+        KeyedStore(self.folder).write(heading, {"code": fingerprint()}, tree, replace=True)
         kept = self.read(heading)
         if kept is None:
-            raise FileError(f"cannot read {self._file(heading)}, which has just been written. Check the disk")
+            raise FileError(f"cannot read {heading!r} in {self.folder}, which has just been written. Check the disk")
         return kept
-
-    def _file(self, heading: str) -> Path:
-        return self.folder / f"{_slug(heading)}-{fingerprint()}.nc"
 
 
 @cache
@@ -75,7 +62,3 @@ def fingerprint() -> str:
     for path in sorted(package.rglob("*.py")):
         digest.update(str(path.relative_to(package)).encode() + b"\0" + path.read_bytes())
     return digest.hexdigest()[:16]
-
-
-def _slug(heading: str) -> str:
-    return re.sub(r"\W+", "-", heading.lower())

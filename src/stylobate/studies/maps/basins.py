@@ -8,7 +8,7 @@ import numpy.typing as npt
 
 from stylobate.base_motions import BASE_AT_REST, BaseMotion
 from stylobate.config.options import MODEL_WITHOUT_SLIDING
-from stylobate.config.study import Study
+from stylobate.config.study import Classes, Study
 from stylobate.errors import MOST_RUNS, FileError, ParameterError, require_whole
 from stylobate.models import Model
 from stylobate.results.random_numbers import Rng
@@ -111,6 +111,7 @@ def _completed(saved: "xr.Dataset", setup: Callable[[], Any], options: Mapping[s
         early=True,
         numbers=Stroboscopic,
         model=MODEL_WITHOUT_SLIDING,
+        classes=(Classes("attractor", "attractor_name", "fraction"),),
         completed=_completed,
         repeated=lambda provenance, values: {**values, "strobes": provenance.get("strobes") or None},
         table=_table,

@@ -8,7 +8,7 @@ import numpy.typing as npt
 
 from stylobate.base_motions import BaseMotion
 from stylobate.base_motions.declared import is_pulse, with_numbers
-from stylobate.config.study import Study
+from stylobate.config.study import Classes, Study
 from stylobate.errors import Outcome, ParameterError, UnsupportedError
 from stylobate.models import Model
 from stylobate.quantities import Quantity
@@ -87,7 +87,8 @@ def _arguments(config: Any, setup: Any) -> Mapping[str, Any]:
         axes=("x", "y"),
         early=True,
         arguments=_arguments,
-        completed=lambda saved, *_: saved if "count" in saved else labelled(saved),
+        classes=(Classes("contact_class", "class_name"), Classes("outcome", "outcome_name")),
+        completed=lambda saved, _, options: saved if "count" in saved else labelled(saved, options.get("least_share")),
         table=_table,
         summary=_summary,
     ),

@@ -1,10 +1,14 @@
-"""Exact response of a column to its base motion: branches of periodic orbits over the frequency, with bifurcations."""
+"""Exact response of a column to its base motion: branches of periodic orbits over the frequency, with bifurcations.
+
+`stylobate response --exact` shows them.
+"""
 
 import json
 import logging
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -32,8 +36,11 @@ from stylobate.orbits.orbit import require_orbit, require_subject
 from stylobate.orbits.shooting import arcs_of, shots
 from stylobate.progress import Progress, at_value, shows_progress
 from stylobate.provenance import provenance_of_run
+from stylobate.results.outcomes import LOSSES, stability_of
+from stylobate.results.tables import Table
 from stylobate.studies.checks import require_frequencies
-from stylobate.studies.responses.response_curves import response_curves
+from stylobate.studies.responses.response_curves import RESPONSE, response_curves
+from stylobate.studies.study import analysis
 
 _log = logging.getLogger("stylobate")
 
@@ -227,6 +234,57 @@ _SAME, _PHASES = 1e-9, 16
 _BIFURCATION_UNITS = {"angular_frequency": "rad s-1", "mean_tilt": "rad", "peak_tilt": "rad"}
 
 
+def _chosen(options: Mapping[str, Any]) -> Mapping[str, Any]:
+    if options["points"] is not None:
+        raise ParameterError(
+            f"--points: --exact chooses its own frequencies (got {options['points']}). Remove one of them."
+        )
+    return {}
+
+
+def _tables(curves: xr.Dataset) -> list[Table]:
+    names = curves["branch_name"].to_numpy()
+    columns = (
+        curves[f"bifurcation_{name}"].to_numpy()
+        for name in ("kind", "angular_frequency", "branch", "mean_tilt", "supercritical")
+    )
+    bifurcations = [
+        [str(kind), f"{float(at):.9g} rad/s", str(names[branch]), f"{float(tilt):.6g} rad", LOSSES[int(code)]]
+        for kind, at, branch, tilt, code in zip(*columns, strict=True)
+    ]
+    stable = [row for index, name in enumerate(names) for row in _stable_ranges(curves, index, str(name))]
+    return [
+        Table(
+            f"{curves.sizes['point']} exact orbits on {len(names)} branches; their bifurcations",
+            ("bifurcation", "Ω", "branch", "mean tilt", "loss of stability"),
+            bifurcations,
+        ),
+        Table(f"where orbits are {stability_of(curves)}", ("branch", "Ω", "mean tilt"), stable),
+    ]
+
+
+def _stable_ranges(curves: xr.Dataset, index: int, name: str) -> Iterator[list[str]]:
+    """Yield the intervals of a branch with stable orbits, from one bounding point to the other."""
+    part = curves.isel(point=np.nonzero(curves["branch"].to_numpy() == index)[0])
+    stable = part["stable"].to_numpy()
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], stable, [False]]).astype(int)))
+    for first, last in zip(edges[::2], edges[1::2] - 1, strict=True):
+        # The points next to an interval are the bifurcations that bound it.
+        ends = part.isel(point=[max(first - 1, 0), min(last + 1, stable.size - 1)])
+        low, high = sorted(map(float, ends["angular_frequency"]))
+        least, most = sorted(map(float, ends["mean_tilt"]))
+        yield [name, f"{low:.6g} to {high:.6g} rad/s", f"{least:.5g} to {most:.5g} rad"]
+
+
+@analysis(
+    replace(
+        RESPONSE,
+        arguments=lambda config, _: {"angular_frequency": config.angular_frequency_range},
+        chosen=_chosen,
+        instead={},
+        tables=_tables,
+    )
+)
 @shows_progress("response", at_value)
 def exact_response(
     model: Model,

@@ -1,30 +1,161 @@
-"""Response curves of steady rolling from theory, averaged motion, and initial conditions on a branch, in SI units."""
+"""Response curves of steady rolling from theory, averaged motion, and initial conditions on a branch, in SI units.
+
+`stylobate response` shows the curves.
+"""
 
 import json
 import math
-from collections.abc import Sequence
-from typing import TypedDict
+from collections.abc import Mapping, Sequence
+from functools import partial
+from typing import TYPE_CHECKING, Annotated, Any, TypedDict
 
 import numpy as np
 import numpy.typing as npt
-import xarray as xr
-from scipy.integrate import solve_ivp
 
-from stylobate import theory
 from stylobate.base_motions import BaseMotion, Harmonic, as_harmonic
-from stylobate.errors import ParameterError, UnsupportedError, as_numbers, require_positive, require_vector
+from stylobate.base_motions.declared import kinds_by_acceleration
+from stylobate.config.options import (
+    COLUMN,
+    HORIZONTAL_MOTION,
+    MODEL_OF_STEADY_ROLLING,
+    OUTPUT,
+    Group,
+    Option,
+    run_numbers,
+)
+from stylobate.config.study import Analysis
+from stylobate.errors import (
+    ConfigError,
+    ParameterError,
+    UnsupportedError,
+    as_numbers,
+    require_positive,
+    require_vector,
+)
 from stylobate.models import Model, Slender
 from stylobate.models.declared import name_by_symbol
 from stylobate.models.model import ClosedForm, RollingLaw, closed_form_of
-from stylobate.orbits.finding import rolling_form_of, steady_rolling_of
 from stylobate.provenance import provenance_of_run
-from stylobate.studies.known_rolling import RollingFrame
-from stylobate.theory.averaging import circular_components, rotating_frame_rates
+from stylobate.quantities import Quantity, states
+from stylobate.results.tables import Table
+from stylobate.run_arguments import Argument, numbers_of
+from stylobate.studies.study import analysis
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 
+class Frequencies(TypedDict, total=False):
+    """The frequencies of response curves in a description."""
+
+    angular_frequency_range: Annotated[
+        tuple[float, float],
+        Quantity(unit="rad/s", text="lowest and highest angular frequency", components=2),
+        Argument(),
+    ]
+    points: Annotated[int, Quantity(text="number of frequencies", ge=2), Argument(400)]
+
+
+FREQUENCIES = run_numbers(Frequencies, panel="Options")
+
+
+def _with_frequency(values: Mapping[str, Any]) -> Mapping[str, Any]:
+    """Return the values of a description; a missing frequency of the motion follows from the range."""
+    from stylobate.config.parts import made_by
+
+    motion = values.get("motion")
+    kind = motion.get("kind") if isinstance(motion, Mapping) else None
+    if isinstance(motion, Mapping) and kind in kinds_by_acceleration():
+        # A mistake in the range is reported once: the motion is built with a valid frequency.
+        stated = values.get("angular_frequency_range")
+        ends = stated if isinstance(stated, (list, tuple)) else ()
+        possible = (float(one) for one in ends if isinstance(one, (int, float)) and 0.0 < one < math.inf)
+        values = {**values, "motion": {"angular_frequency": next(possible, 1.0), **motion}}
+    make = made_by(kind)
+    if make is not None and not states(make, "responds"):
+        raise ConfigError([f"motion.kind must be a horizontal harmonic motion for response curves, got {kind!r}"])
+    return values
+
+
+def _problems(config: Any) -> list[str]:
+    from stylobate.config.description import built
+
+    problems: list[str] = []
+    low, high = config.angular_frequency_range
+    if not 0.0 < low < high:
+        problems.append(f"angular_frequency_range must rise from above zero, got {low!r} to {high!r} rad/s")
+    for end in (low, high) if 0.0 < low < high else ():
+        built("angular_frequency_range", partial(require_positive, "an end", end, "rad/s"), problems)
+    built("points", partial(numbers_of(Frequencies)["points"].checked, config.points), problems)
+    return problems
+
+
+def _frequencies_of(config: Any, _: object) -> dict[str, Any]:
+    low, high = map(float, config.angular_frequency_range)
+    return {"angular_frequency": np.linspace(low, high, config.points)}
+
+
+def _tables(curves: "xr.Dataset") -> list[Table]:
+    shown = np.unique(np.linspace(0, curves.sizes["angular_frequency"] - 1, _ROWS).round().astype(int))
+    senses = curves["sense"].to_numpy()
+    columns = [(sense, branch) for sense in senses for branch in curves["branch"].to_numpy()]
+    header = ["Ω [rad/s]", *(f"{sense}, {branch}: A [rad], ψ [rad]" for sense, branch in columns)]
+    rows = []
+    for index in shown:
+        at = curves.isel(angular_frequency=int(index))
+        cells = [_cell(at.sel(sense=sense, branch=branch)) for sense, branch in columns]
+        rows.append([f"{float(at['angular_frequency']):.4f}", *cells])
+    known = zip(senses, curves["critical_frequency"].to_numpy(), strict=True)
+    critical = ", ".join(f"{float(value):.6f} rad/s ({sense})" for sense, value in known)
+    exact = "averaged: the full motion may overturn where this is stable" if curves.attrs["averaged"] else "exact"
+    return [Table(f"stable where marked * ({exact}); critical frequency {critical}", header, rows)]
+
+
+_ROWS = 17
+
+
+def _cell(at: "xr.Dataset") -> str:
+    if not np.isfinite(at["amplitude"]):
+        return "none"
+    return f"{float(at['amplitude']):.5f} {float(at['phase']):+.4f}{' *' if bool(at['stable']) else ''}"
+
+
+RESPONSE = Analysis(
+    name="response",
+    source="TOML description",
+    help="""Compute amplitude and phase of steady rolling against frequency.
+
+    Theory is exact for circular motion and averaged for straight and elliptic motion. With --exact, periodic orbits
+    and their bifurcations are computed instead. Examples:
+
+    stylobate response --slenderness 0.1 --damping 0.1 --motion circular --acceleration 0.065
+    --angular-frequency-range 0.2 4 --figure response.png
+
+    stylobate response --exact --slenderness 0.1 --damping 0.1 --motion straight --acceleration 0.13
+    --angular-frequency-range 0.8 8 --figure exact.png
+    """,
+    groups=(
+        FREQUENCIES,
+        Group.of("Options", Option("exact", "exact periodic orbits and bifurcations, no theory", bool, default=False)),
+        COLUMN,
+        MODEL_OF_STEADY_ROLLING,
+        HORIZONTAL_MOTION,
+        OUTPUT,
+    ),
+    numbers=Frequencies,
+    steady=True,
+    read=_with_frequency,
+    problems=_problems,
+    arguments=_frequencies_of,
+    instead={"exact": "studies:exact_response"},
+    tables=_tables,
+)
+
+
+@analysis(RESPONSE)
 def response_curves(
     model: Model, motion: BaseMotion, *, angular_frequency: npt.ArrayLike | Sequence[float]
-) -> xr.Dataset:
+) -> "xr.Dataset":
     """Compute amplitude and phase of steady rolling over the frequency of a harmonic base motion.
 
     For circular motion the solution (8) is exact. For elliptic and straight motion it is the averaged solution (10)
@@ -61,12 +192,16 @@ def response_curves(
     >>> curves["stable"].sel(sense="anticlockwise", branch="upper").values
     array([False,  True])
     """
+    import xarray as xr
+
+    from stylobate import theory
+
     eta, column = _damping(model), model.column
     frequency = _frequencies(angular_frequency)
     a1, a2, phase = _amplitudes(motion, column.gravity)
     c, scale = column.slenderness, column.frequency_scale
     steady = theory.averaged_rolling(frequency / scale, a1, a2, phase, c=c, eta=eta)
-    p, q = (abs(part) for part in circular_components(a1, a2, phase))
+    p, q = (abs(part) for part in theory.averaging.circular_components(a1, a2, phase))
     largest = max(p, q)
     senses = [
         (name, branches, size)
@@ -112,6 +247,8 @@ _NO_PART = 1e-12
 
 def _damping(model: Model) -> float:
     """Return η of a model with the equations of the slender model, or raise an error."""
+    from stylobate.orbits.finding import rolling_form_of
+
     form = rolling_form_of(model)
     if form is None or form.law is not RollingLaw.SLENDER:
         message = f"response_curves needs the slender model, which has a closed form; got {model.name}"
@@ -151,7 +288,7 @@ def averaged_motion(
     sense: int | None = None,
     samples: int = 1001,
     rtol: float = 1e-9,
-) -> xr.Dataset:
+) -> "xr.Dataset":
     """Integrate the averaged equations (10) from an initial condition of the full motion.
 
     Parameters
@@ -194,6 +331,12 @@ def averaged_motion(
     >>> round(float(slow["amplitude"].max() - slow["amplitude"].min()), 9)
     0.0
     """
+    import xarray as xr
+    from scipy.integrate import solve_ivp
+
+    from stylobate.studies.known_rolling import RollingFrame
+    from stylobate.theory.averaging import rotating_frame_rates
+
     form = closed_form_of(model)
     if form is None or form.law is not RollingLaw.SLENDER:
         raise UnsupportedError(
@@ -287,6 +430,9 @@ def steady_start(model: Model, motion: Harmonic, *, branch: str = "upper", sense
     >>> sb.simulate(model, motion, **start, duration=50.0).outcome
     <Outcome.ROLLING: 'rolling'>
     """
+    from stylobate.orbits.finding import steady_rolling_of
+    from stylobate.studies.known_rolling import RollingFrame
+
     if branch not in _BRANCHES:
         raise ParameterError(f'branch must be "upper" or "lower", got {branch!r}')
     form = _closed_form(model, branch)
@@ -304,6 +450,8 @@ def steady_start(model: Model, motion: Harmonic, *, branch: str = "upper", sense
 
 def _closed_form(model: Model, branch: str) -> ClosedForm:
     """Return the closed form of steady rolling of a model; raise an error if it does not apply."""
+    from stylobate.orbits.finding import rolling_form_of
+
     form = rolling_form_of(model)
     if form is None:
         raise UnsupportedError(

@@ -1,42 +1,122 @@
-"""Stability boundary of rolling over the frequency of the base motion and a second parameter."""
+"""Stability boundary of rolling over the frequency of the base motion and a second parameter.
+
+`stylobate boundary` shows it.
+"""
 
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import xarray as xr
 
+from stylobate import engine, orbits
 from stylobate.base_motions import BaseMotion
-from stylobate.engine import with_parameters
+from stylobate.config.options import COLUMN, HORIZONTAL_MOTION, MODEL_OF_STEADY_ROLLING, OUTPUT, Group, Option
 from stylobate.errors import Interrupted, NoOrbitError, ParameterError, UnsupportedError, as_numbers, require_positive
 from stylobate.models import Model
-from stylobate.orbits import (
-    Bifurcation,
-    BifurcationCurve,
-    Branch,
-    Kind,
-    StepControl,
-    bifurcation_curve,
-    continue_branch,
-)
-from stylobate.orbits.orbit import require_subject
-from stylobate.orbits.shooting import is_stable
 from stylobate.parameter_quantities import attributes_of, quantity_of
 from stylobate.progress import Progress, report_of, shows_progress
 from stylobate.provenance import provenance_of_run
-from stylobate.studies.checks import require_bounds, require_frequencies
-from stylobate.studies.responses.exact_response import between_bifurcations, first_orbit
-from stylobate.studies.responses.response_curves import response_curves
+from stylobate.results.outcomes import LOSSES
+from stylobate.results.tables import Table
+from stylobate.studies.responses.response_curves import FREQUENCIES, RESPONSE, response_curves
+from stylobate.studies.study import analysis
 from stylobate.text import plural
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from stylobate.orbits import Bifurcation, BifurcationCurve, Branch, StepControl
 
 _THEORY_POINTS = 201
 # A bifurcation within this distance from a curve, as a fraction of the widths of the bounds, lies on the curve.
 _ON_CURVE = 2e-3
 # Maximum deviation of a curve from the chord of two of its points, as a fraction of the chord.
 _BENT = 0.05
-_FOLLOWED = (Kind.FOLD, Kind.PITCHFORK, Kind.PERIOD_DOUBLING, Kind.NEIMARK_SACKER)
+
+_BOUNDS = Option(
+    "bounds", "lowest and highest value of the second parameter; required", tuple[str, str], metavar="NUMBER NUMBER"
+)
 
 
+def _chosen(options: Mapping[str, Any]) -> Mapping[str, Any]:
+    """Return the second parameter and its values; the unit of its bounds is that of the parameter."""
+    if options["bounds"] is None:
+        name = options["parameter"]
+        raise ParameterError(f"--bounds: missing. Give the lowest and the highest {name}: --bounds LOW HIGH.")
+    parameter = options["parameter"].replace("-", "_")
+    bounds = replace(_BOUNDS, type=tuple[float, float], unit=quantity_of(parameter).unit)
+    return {"parameter": parameter, "bounds": bounds.read(options["bounds"]), "values": options["at"]}
+
+
+def _tables(result: "xr.Dataset") -> list[Table]:
+    parameter = str(result.attrs["parameter"])
+    name = parameter.replace("_", " ")
+    if not result.sizes["curve_index"]:
+        (low, high), (least, most) = result.attrs["angular_frequency_range"], result.attrs["bounds"]
+        none = (
+            f"no loss of stability was found: rolling is {result.attrs['rolling']} wherever it was found from "
+            f"{low:.6g} to {high:.6g} rad/s and {name} {least:.6g} to {most:.6g}"
+        )
+        return [Table("", (), (), (none,))]
+    unit = str(result[parameter].attrs.get("units", "")).replace(" s-2", "/s²").replace(" s-1", "/s")
+    rows = []
+    for index, kind in enumerate(result["curve_kind"].to_numpy()):
+        part = result.isel(point=np.nonzero(result["curve"].to_numpy() == index)[0])
+        for place in np.unique(np.linspace(0, part.sizes["point"] - 1, _ROWS_OF_A_CURVE).round().astype(int)):
+            at = part.isel(point=int(place))
+            value = f"{float(at[parameter]):.6g} {unit}".strip()
+            loss = LOSSES[int(at["supercritical"])]
+            rows.append([str(kind), f"{float(at['angular_frequency']):.8g} rad/s", value, loss])
+    title = f"{plural(result.sizes['curve_index'], 'curve')}, a few points of each"
+    return [Table(title, ("bifurcation", "Ω", name, "loss of stability"), rows)]
+
+
+_ROWS_OF_A_CURVE = 9
+
+
+@analysis(
+    replace(
+        RESPONSE,
+        name="boundary",
+        help="""Compute the stability boundary of steady rolling over two parameters.
+
+    The parameters are the frequency of the base and a second one. The result holds curves of pitchforks, Neimark–Sacker
+    points and folds, and the critical frequency of theory. Example:
+
+    stylobate boundary --slenderness 0.1 --damping 0.1 --motion straight --acceleration 0.1
+    --angular-frequency-range 0.5 6 --bounds 0.02 0.4 --figure boundary.png
+    """,
+        groups=(
+            Group.of(
+                "Options",
+                _BOUNDS,
+                Option(
+                    "parameter",
+                    "second parameter: acceleration (by default), amplitude-y, damping, slenderness",
+                    str,
+                    default="acceleration",
+                ),
+                Option(
+                    "at",
+                    "value of the second parameter at which the search begins; repeat it; five across the bounds by "
+                    "default",
+                    list[float],
+                ),
+            ),
+            FREQUENCIES.without("points"),
+            COLUMN,
+            MODEL_OF_STEADY_ROLLING,
+            HORIZONTAL_MOTION,
+            OUTPUT,
+        ),
+        arguments=lambda config, _: {"angular_frequency": config.angular_frequency_range},
+        chosen=_chosen,
+        instead={},
+        tables=_tables,
+    )
+)
 @shows_progress("stability boundary")
 def stability_boundary(
     model: Model,
@@ -47,9 +127,9 @@ def stability_boundary(
     angular_frequency: tuple[float, float],
     values: Sequence[float] | None = None,
     sense: int | None = None,
-    control: StepControl | None = None,
+    control: "StepControl | None" = None,
     progress: Progress = None,
-) -> xr.Dataset:
+) -> "xr.Dataset":
     """Compute the curves on which exact rolling loses stability, with the critical frequency of theory.
 
     At a few values of the parameter rolling is continued over the frequency. From each bifurcation at which it loses
@@ -101,6 +181,10 @@ def stability_boundary(
     >>> boundary["curve_kind"].values.tolist()
     ['Neimark-Sacker']
     """
+    from stylobate.orbits.orbit import require_subject
+    from stylobate.orbits.shooting import is_stable
+    from stylobate.studies.checks import require_bounds, require_frequencies
+
     require_subject(model, motion)
     low, high = require_bounds(bounds, parameter)
     frequencies = require_frequencies(angular_frequency)
@@ -113,7 +197,7 @@ def stability_boundary(
     looked_at: set[bool] = set()
     reason: Exception | None = None
 
-    def result() -> xr.Dataset:
+    def result() -> "xr.Dataset":
         return (
             _joined(curves, parameter)
             .assign(_of_theory(model, motion, parameter, (low, high), sense))
@@ -130,7 +214,7 @@ def stability_boundary(
     for done, value in enumerate(chosen):
         try:
             report_of(progress)(done, chosen.size)
-            at = with_parameters(model, motion, **{parameter: float(value)})
+            at = engine.with_parameters(model, motion, **{parameter: float(value)})
             branch = _rolling(*at, frequencies, sense)
             if isinstance(branch, NoOrbitError):
                 reason = branch
@@ -150,42 +234,48 @@ def stability_boundary(
 
 def _rolling(
     model: Model, motion: BaseMotion, frequencies: tuple[float, float], sense: int | None
-) -> Branch | NoOrbitError:
+) -> "Branch | NoOrbitError":
     """Continue rolling over the frequency; return the reason if no orbit was found."""
+    from stylobate.studies.responses.exact_response import between_bifurcations, first_orbit
+
     try:
         orbit = first_orbit(model, motion, frequencies, sense)
     except NoOrbitError as error:
         return error
-    return between_bifurcations(continue_branch(orbit, "angular_frequency", bounds=frequencies))
+    return between_bifurcations(orbits.continue_branch(orbit, "angular_frequency", bounds=frequencies))
 
 
 def _add_curves(
-    curves: list[BifurcationCurve],
-    branch: Branch,
+    curves: "list[BifurcationCurve]",
+    branch: "Branch",
     parameter: str,
     value: float,
     bounds: tuple[tuple[float, float], tuple[float, float]],
-    control: StepControl | None,
+    control: "StepControl | None",
 ) -> None:
     """Append curves from the losses of stability that lie on no known curve; after Ctrl-C the last one so far."""
     for one in losses(branch):
         if any(_on(curve, one, value, *bounds) for curve in curves):
             continue
         try:
-            curves.append(bifurcation_curve(one, parameter, bounds=bounds, control=control))
+            curves.append(orbits.bifurcation_curve(one, parameter, bounds=bounds, control=control))
         except Interrupted as stop:
             curves.append(stop.partial)
             raise
 
 
-def losses(branch: Branch) -> list[Bifurcation]:
+def losses(branch: "Branch") -> "list[Bifurcation]":
     """Return the bifurcations of a branch at which stability is lost or gained."""
+    from stylobate.orbits.shooting import is_stable
+
+    kinds = orbits.Kind
+    followed = (kinds.FOLD, kinds.PITCHFORK, kinds.PERIOD_DOUBLING, kinds.NEIMARK_SACKER)
     found = []
     for one in branch.bifurcations:
         place = next(index for index, point in enumerate(branch.path) if point is one.point)
         around = [branch.path[k] for k in (place - 1, place + 1) if 0 <= k < len(branch.path)]
         stable = [is_stable(point.multipliers) for point in around]
-        if one.kind in _FOLLOWED and len(set(stable)) > 1:
+        if one.kind in followed and len(set(stable)) > 1:
             found.append(one)
     return found
 
@@ -207,8 +297,8 @@ def _everywhere(stable: set[bool]) -> str:
 
 
 def _on(
-    curve: BifurcationCurve,
-    one: Bifurcation,
+    curve: "BifurcationCurve",
+    one: "Bifurcation",
     value: float,
     frequencies: tuple[float, float],
     bounds: tuple[float, float],
@@ -229,7 +319,9 @@ def _on(
     return bool(np.any(gaps < _ON_CURVE + _BENT * np.sqrt(squares)))
 
 
-def _joined(curves: list[BifurcationCurve], parameter: str) -> xr.Dataset:
+def _joined(curves: "list[BifurcationCurve]", parameter: str) -> "xr.Dataset":
+    import xarray as xr
+
     tables = [curve.points for curve in curves]
 
     def column(name: str) -> np.ndarray:
@@ -267,7 +359,7 @@ def _of_theory(
     for index, value in enumerate(values):
         try:
             curves = response_curves(
-                *with_parameters(model, motion, **{parameter: float(value)}), angular_frequency=[1.0]
+                *engine.with_parameters(model, motion, **{parameter: float(value)}), angular_frequency=[1.0]
             )
         except (UnsupportedError, ParameterError):
             continue

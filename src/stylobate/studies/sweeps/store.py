@@ -1,4 +1,7 @@
-"""Zarr stores of sweeps: create, open and continue them; state why a store belongs to another sweep."""
+"""Zarr stores of sweeps: create, open and continue them; state why a store belongs to another sweep.
+
+A `KeyedStore` holds wholes under keys; this store is one array that many workers fill, chunk by chunk.
+"""
 
 import hashlib
 import json

@@ -23,6 +23,7 @@ from stylobate.engine.kernel.bound import (
     VERTICAL,
     WINDOWED,
     R,
+    Table,
     at_rest,
     contact,
     departure,
@@ -35,7 +36,6 @@ from stylobate.engine.kernel.bound import (
     tilt_of,
 )
 from stylobate.engine.kernel.columns import Piece, Tabulated, Wave
-from stylobate.engine.kernel.layout import Table
 from stylobate.models.model import Push
 
 Accelerations = tuple[float, float, float]

@@ -13,8 +13,7 @@ from typing import Any, NamedTuple, Self
 import numpy.typing as npt
 
 from stylobate.engine.elementary import first_growth_past, first_return, turning_point
-from stylobate.engine.kernel.bound import PLANAR, R
-from stylobate.engine.kernel.layout import FromZero, Table
+from stylobate.engine.kernel.bound import PLANAR, FromZero, R, Table
 from stylobate.engine.tolerances import OVERTURNED_TILT
 from stylobate.errors import Outcome
 

@@ -19,6 +19,7 @@ from stylobate.engine.kernel.bound import (
     WIDTH,
     WINDOW_ENDS,
     R,
+    Table,
     guards,
     project,
     reset_map,
@@ -26,7 +27,6 @@ from stylobate.engine.kernel.bound import (
 from stylobate.engine.kernel.driver.equations import Accelerations, State, accelerations, lean_of, numbers, row_state
 from stylobate.engine.kernel.driver.events import LIMITS, lean, margins_of_limits
 from stylobate.engine.kernel.driver.stages import dense_state
-from stylobate.engine.kernel.layout import Table
 from stylobate.engine.kernel.shape import GUARD_PLACES
 
 PLACES = tuple(range(1, GUARD_PLACES + 1))

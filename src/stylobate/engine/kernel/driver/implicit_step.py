@@ -5,10 +5,9 @@ import math
 import numpy as np
 
 from stylobate.engine.elementary import NewtonRoom, factor, solve
-from stylobate.engine.kernel.bound import CHANGES, ORDER, SLIP_X, SLIP_Y, R
+from stylobate.engine.kernel.bound import CHANGES, ORDER, SLIP_X, SLIP_Y, R, Row, Table
 from stylobate.engine.kernel.driver.equations import rates_at, row_state
 from stylobate.engine.kernel.driver.stages import dense_state
-from stylobate.engine.kernel.layout import Row, Table
 from stylobate.engine.kernel.shape import DENSE_TERMS
 from stylobate.engine.tolerances import SLIP_SHARE
 

@@ -16,6 +16,7 @@ from stylobate.engine.kernel.bound import (
     SPIN,
     WIDTH,
     R,
+    Table,
     begin,
     handle,
 )
@@ -36,7 +37,69 @@ from stylobate.engine.kernel.driver.records import (
 from stylobate.engine.kernel.driver.rest import repeats_to_the_end
 from stylobate.engine.kernel.driver.stages import set_dense_output, set_within, set_within_closely
 from stylobate.engine.kernel.driver.step import step
-from stylobate.engine.kernel.layout import Table
+
+
+def advance(table: Table, pieces: Table, halt: npt.NDArray[np.uint8], buf: Table) -> bool:
+    """Run a batch to its end; return whether it has ended.
+
+    The batch stops early if another thread sets `halt[0]` to 1, or if a trace is full. After the caller has emptied the
+    trace, a call with the same buffer continues. `table` has a row for each run, see `columns`; a new `buf` is NaN.
+    """
+    waiting = begin_or_continue(buf, table, pieces)
+    traced = table[0, R.TRACES] > 0.0
+    while True:
+        width = gather(buf)
+        if width == 0:
+            return True
+        met = full = False
+        while not met:
+            step(buf, width)
+            full = traced and trace_steps(buf, table)
+            met = full
+            for i in range(width):
+                met = is_due(buf, i, table, pieces) or met
+            if halt[0] != 0:
+                return False
+        for i in range(width):
+            if buf[R.FLAG, i] > 0.0 and buf[R.RUN, i] >= 0.0:
+                status = status_of(buf, i, table, pieces)
+                if status != Status.WAITING:
+                    leave(buf, i, table, status)
+                    set_idle(buf, i)
+                    waiting = fill(buf, i, table, pieces, waiting)
+        if full:
+            return pause(buf, table)
+
+
+def begin_or_continue(buf: Table, table: Table, pieces: Table) -> int:
+    """Fill the lanes of a new buffer, or continue a paused batch; return the next waiting run."""
+    waiting = 0
+    if math.isnan(buf[R.RUN, 0]):
+        for i in range(WIDTH):
+            set_idle(buf, i)
+            waiting = fill(buf, i, table, pieces, waiting)
+        return waiting
+    for i in range(WIDTH):
+        run = int(buf[R.RUN, i])
+        waiting = max(waiting, run + 1)
+        if run >= 0:
+            buf[R.NEXT_TRACE, i] = table[run, R.NEXT_TRACE]
+    return waiting
+
+
+def fill(buf: Table, i: int, table: Table, pieces: Table, waiting: int) -> int:
+    """Load the first run from `waiting` on that does not end at once into lane `i`; return the next waiting run."""
+    while waiting < len(table):
+        run = waiting
+        waiting += 1
+        if table[run, R.STATUS] == Status.WAITING:
+            status = enter(buf, i, table, pieces, run)
+            if status == Status.WAITING:
+                break
+            leave(buf, i, table, status)
+            set_idle(buf, i)
+    return waiting
+
 
 # A motion that begins has a finer tolerance up to this tilt [units of c].
 GROWN = 1e-3
@@ -100,36 +163,6 @@ def set_idle(buf: Table, i: int) -> None:
     buf[R.RUN, i] = -1.0
 
 
-def fill(buf: Table, i: int, table: Table, pieces: Table, waiting: int) -> int:
-    """Load the first run from `waiting` on that does not end at once into lane `i`; return the next waiting run."""
-    while waiting < len(table):
-        run = waiting
-        waiting += 1
-        if table[run, R.STATUS] == Status.WAITING:
-            status = enter(buf, i, table, pieces, run)
-            if status == Status.WAITING:
-                break
-            leave(buf, i, table, status)
-            set_idle(buf, i)
-    return waiting
-
-
-def begin_or_continue(buf: Table, table: Table, pieces: Table) -> int:
-    """Fill the lanes of a new buffer, or continue a paused batch; return the next waiting run."""
-    waiting = 0
-    if math.isnan(buf[R.RUN, 0]):
-        for i in range(WIDTH):
-            set_idle(buf, i)
-            waiting = fill(buf, i, table, pieces, waiting)
-        return waiting
-    for i in range(WIDTH):
-        run = int(buf[R.RUN, i])
-        waiting = max(waiting, run + 1)
-        if run >= 0:
-            buf[R.NEXT_TRACE, i] = table[run, R.NEXT_TRACE]
-    return waiting
-
-
 def gather(buf: Table) -> int:
     """Move the runs to the first lanes; return the number of lanes for a step in whole vectors, 0 without a run."""
     live = 0
@@ -143,14 +176,6 @@ def gather(buf: Table) -> int:
     return GRAIN * ((live + GRAIN - 1) // GRAIN)
 
 
-def pause(buf: Table, table: Table) -> bool:
-    """Prepare the table so that the caller can empty the traces; return False, since the batch has not ended."""
-    for i in range(WIDTH):
-        if buf[R.RUN, i] >= 0.0:
-            table[int(buf[R.RUN, i]), R.NEXT_TRACE] = buf[R.NEXT_TRACE, i]
-    return False
-
-
 def is_due(buf: Table, i: int, table: Table, pieces: Table) -> bool:
     """Observe the step just made in a lane; return whether the lane has an event for the driver."""
     if buf[R.WATCHED, i] > 0.0 and buf[R.GO, i] > 0.0:
@@ -160,11 +185,6 @@ def is_due(buf: Table, i: int, table: Table, pieces: Table) -> bool:
     return buf[R.FLAG, i] > 0.0 and not passes_knot(buf, i, table, pieces)
 
 
-def passes_phase_zero(buf: Table, i: int) -> bool:
-    """Return whether the step just made is final and reached phase zero of the base motion."""
-    return buf[R.TIME, i] >= buf[R.PHASE_ZERO_AT, i] and buf[R.GO, i] > 0.0 and buf[R.AIMED, i] == 0.0
-
-
 def status_of(buf: Table, i: int, table: Table, pieces: Table) -> int:
     """Handle the event of a flagged lane; return its status."""
     if ORBITS and buf[R.CONVERGED, i] > 0.0:
@@ -172,54 +192,129 @@ def status_of(buf: Table, i: int, table: Table, pieces: Table) -> int:
     return handle(buf, i, table, pieces)
 
 
-def advance(table: Table, pieces: Table, halt: npt.NDArray[np.uint8], buf: Table) -> bool:
-    """Run a batch to its end; return whether it has ended.
+def pause(buf: Table, table: Table) -> bool:
+    """Prepare the table so that the caller can empty the traces; return False, since the batch has not ended."""
+    for i in range(WIDTH):
+        if buf[R.RUN, i] >= 0.0:
+            table[int(buf[R.RUN, i]), R.NEXT_TRACE] = buf[R.NEXT_TRACE, i]
+    return False
 
-    The batch stops early if another thread sets `halt[0]` to 1, or if a trace is full. After the caller has emptied the
-    trace, a call with the same buffer continues. `table` has a row for each run, see `columns`; a new `buf` is NaN.
-    """
-    waiting = begin_or_continue(buf, table, pieces)
-    traced = table[0, R.TRACES] > 0.0
-    while True:
-        width = gather(buf)
-        if width == 0:
-            return True
-        met = full = False
-        while not met:
-            step(buf, width)
-            full = traced and trace_steps(buf, table)
-            met = full
-            for i in range(width):
-                met = is_due(buf, i, table, pieces) or met
-            if halt[0] != 0:
-                return False
-        for i in range(width):
-            if buf[R.FLAG, i] > 0.0 and buf[R.RUN, i] >= 0.0:
-                status = status_of(buf, i, table, pieces)
-                if status != Status.WAITING:
-                    leave(buf, i, table, status)
-                    set_idle(buf, i)
-                    waiting = fill(buf, i, table, pieces, waiting)
-        if full:
-            return pause(buf, table)
+
+# Convergence to a known orbit
+
+
+def passes_phase_zero(buf: Table, i: int) -> bool:
+    """Return whether the step just made is final and reached phase zero of the base motion."""
+    return buf[R.TIME, i] >= buf[R.PHASE_ZERO_AT, i] and buf[R.GO, i] > 0.0 and buf[R.AIMED, i] == 0.0
+
+
+def start_watching(buf: Table, i: int, table: Table) -> None:
+    """Start the comparison of the run of a lane with its known orbits."""
+    run = int(buf[R.RUN, i])
+    for k in range(ORBITS):
+        first = R.ORBIT + k * ORBIT
+        for column in range(ORBIT):
+            buf[first + column, i] = table[run, ORBITS_AT + k * ORBIT + column]
+        reset_approach(buf, i, k)
+    buf[R.CONVERGED, i] = 0.0
+    buf[R.PHASE_ZERO_AT, i] = math.inf
+    if latest(buf, i) > buf[R.TIME, i]:
+        set_phase_zero(buf, i)
+
+
+def set_phase_zero(buf: Table, i: int) -> None:
+    """Set the next time at which the base motion has phase zero; none if it is too late for a run to end early."""
+    t, period, first = buf[R.TIME, i], buf[R.PERIOD, i], buf[R.STROBE, i]
+    following = first + (math.floor((t - first) / period + SLACK) + 1.0) * period
+    buf[R.PHASE_ZERO_AT, i] = following if following < judged_from(buf, i) else math.inf
+
+
+def judged_from(buf: Table, i: int) -> float:
+    """Return the start of the last periods, which decide the outcome."""
+    return buf[R.END, i] - (buf[R.PERIODS, i] + 1.0) * buf[R.PERIOD, i]
+
+
+def latest(buf: Table, i: int) -> float:
+    """Return the last time at which a run far from its orbits can still converge before its outcome is decided."""
+    last = -math.inf
+    for k in range(ORBITS):
+        last = max(last, buf[R.ORBIT + k * ORBIT + Orbit.LATEST, i])
+    return last
+
+
+def watch(buf: Table, i: int, table: Table) -> None:
+    """Measure the distances from the known orbits after a step past phase zero; flag a run that has converged."""
+    end, h = buf[R.TIME, i], buf[R.MADE, i]
+    elapsed = buf[R.PHASE_ZERO_AT, i] - (end - h)
+    set_phase_zero(buf, i)
+    if elapsed < 0.0:  # the column stood, or made an analytical step past the vertical
+        for k in range(ORBITS):
+            reset_approach(buf, i, k)
+        return
+    set_within(buf, i, elapsed)
+    closest = math.inf
+    for k in range(ORBITS):
+        closest = min(closest, distance_of_new(buf, i, k))
+    if end > latest(buf, i) and closest > NEAR + OF_CUBICS:
+        buf[R.PHASE_ZERO_AT, i] = math.inf
+        return
+    near = closest < FAR + OF_CUBICS
+    if near:
+        set_dense_output(buf, i)
+        set_within_closely(buf, i, elapsed)
+    for k in range(ORBITS):
+        distance = distance_of_new(buf, i, k) if near else math.inf
+        if distance < FAR:
+            if approaches(buf, i, k, distance):
+                table[int(buf[R.RUN, i]), ORBITS_AT + k * ORBIT + Orbit.REACHED] = 1.0
+                buf[R.CONVERGED, i] = 1.0
+                buf[R.FLAG, i] += 1.0
+        else:
+            reset_approach(buf, i, k)
+
+
+def distance_of_new(buf: Table, i: int, k: int) -> float:
+    """Return the distance of the new state from an orbit; NaN if the run has no such orbit."""
+    first = R.ORBIT + k * ORBIT
+    x, y, vx, vy = lean_of_new(buf, i)
+    size, rate = buf[first + Orbit.SIZE, i], buf[first + Orbit.RATE, i]
+    x, y = (x - buf[first + Orbit.X, i]) / size, (y - buf[first + Orbit.Y, i]) / size
+    vx, vy = (vx - buf[first + Orbit.VX, i]) / rate, (vy - buf[first + Orbit.VY, i]) / rate
+    square = x * x + y * y + vx * vx + vy * vy
+    if SPIN >= 0:
+        square += ((buf[R.NEW + SPIN, i] - buf[first + Orbit.SPIN, i]) / rate) ** 2
+    return math.sqrt(square)
+
+
+def approaches(buf: Table, i: int, k: int, distance: float) -> bool:
+    """Record the distance from an orbit; return whether the run has converged to the orbit."""
+    first = R.ORBIT + k * ORBIT
+    before = first + Orbit.BEFORE
+    approach = buf[before, i], buf[before + 1, i], buf[before + 2, i], buf[before + 3, i]
+    approach = approach_after(approach, distance, buf[first + Orbit.WINDOW, i], buf[first + Orbit.FALL, i])
+    set_approach(buf, i, k, approach)
+    left = judged_from(buf, i) - buf[R.TIME, i]
+    fall = math.exp(-buf[first + Orbit.DECAY, i] * left)
+    return left >= 0.0 and is_certain(approach, fall, buf[first + Orbit.REPEATS, i]) and repeats_to_the_end(buf, i)
 
 
 Approach = tuple[float, float, float, float]
 """Largest distances in the previous and in the present window, periods of the present window so far, and number of
 successive windows that fell as the multipliers demand."""
 
+
 # Distance from an orbit within which perturbations are assumed to follow its multipliers.
 NEAR = 0.03
+# A run is not compared with an orbit above this distance.
+FAR = 0.2
+# Maximum error of the first estimates of distances, by cubics through the ends of a step.
+OF_CUBICS = 0.1
 # The largest distance of a window agrees with ρ^m times the previous one within this factor.
 MARGIN = 1.6
 # Number of successive windows that must fall as the multipliers demand.
 WINDOWS = 3.0
 # A run is on the orbit below this distance: rounding and tolerance prevent smaller distances.
 ON_ORBIT = 1e-6
-# A run is not compared with an orbit above this distance.
-FAR = 0.2
-# Maximum error of the first estimates of distances, by cubics through the ends of a step.
-OF_CUBICS = 0.1
 # States one period apart must differ by less than this fraction of the tolerance that decides the outcome.
 CERTAIN = 0.05
 
@@ -264,32 +359,6 @@ def is_certain(approach: Approach, fall_to_judgement: float, repeats: float) -> 
     return periods == 0.0 and falls >= WINDOWS and largest * fall_to_judgement <= CERTAIN * repeats
 
 
-def start_watching(buf: Table, i: int, table: Table) -> None:
-    """Start the comparison of the run of a lane with its known orbits."""
-    run = int(buf[R.RUN, i])
-    for k in range(ORBITS):
-        first = R.ORBIT + k * ORBIT
-        for column in range(ORBIT):
-            buf[first + column, i] = table[run, ORBITS_AT + k * ORBIT + column]
-        reset_approach(buf, i, k)
-    buf[R.CONVERGED, i] = 0.0
-    buf[R.PHASE_ZERO_AT, i] = math.inf
-    if latest(buf, i) > buf[R.TIME, i]:
-        set_phase_zero(buf, i)
-
-
-def set_phase_zero(buf: Table, i: int) -> None:
-    """Set the next time at which the base motion has phase zero; none if it is too late for a run to end early."""
-    t, period, first = buf[R.TIME, i], buf[R.PERIOD, i], buf[R.STROBE, i]
-    following = first + (math.floor((t - first) / period + SLACK) + 1.0) * period
-    buf[R.PHASE_ZERO_AT, i] = following if following < judged_from(buf, i) else math.inf
-
-
-def judged_from(buf: Table, i: int) -> float:
-    """Return the start of the last periods, which decide the outcome."""
-    return buf[R.END, i] - (buf[R.PERIODS, i] + 1.0) * buf[R.PERIOD, i]
-
-
 def reset_approach(buf: Table, i: int, k: int) -> None:
     """Reset the record of the approach to an orbit."""
     set_approach(buf, i, k, (math.inf, 0.0, 0.0, 0.0))
@@ -299,67 +368,3 @@ def set_approach(buf: Table, i: int, k: int, approach: Approach) -> None:
     first = R.ORBIT + k * ORBIT + Orbit.BEFORE
     for column in range(4):
         buf[first + column, i] = approach[column]
-
-
-def watch(buf: Table, i: int, table: Table) -> None:
-    """Measure the distances from the known orbits after a step past phase zero; flag a run that has converged."""
-    end, h = buf[R.TIME, i], buf[R.MADE, i]
-    elapsed = buf[R.PHASE_ZERO_AT, i] - (end - h)
-    set_phase_zero(buf, i)
-    if elapsed < 0.0:  # the column stood, or made an analytical step past the vertical
-        for k in range(ORBITS):
-            reset_approach(buf, i, k)
-        return
-    set_within(buf, i, elapsed)
-    closest = math.inf
-    for k in range(ORBITS):
-        closest = min(closest, distance_of_new(buf, i, k))
-    if end > latest(buf, i) and closest > NEAR + OF_CUBICS:
-        buf[R.PHASE_ZERO_AT, i] = math.inf
-        return
-    near = closest < FAR + OF_CUBICS
-    if near:
-        set_dense_output(buf, i)
-        set_within_closely(buf, i, elapsed)
-    for k in range(ORBITS):
-        distance = distance_of_new(buf, i, k) if near else math.inf
-        if distance < FAR:
-            if approaches(buf, i, k, distance):
-                table[int(buf[R.RUN, i]), ORBITS_AT + k * ORBIT + Orbit.REACHED] = 1.0
-                buf[R.CONVERGED, i] = 1.0
-                buf[R.FLAG, i] += 1.0
-        else:
-            reset_approach(buf, i, k)
-
-
-def latest(buf: Table, i: int) -> float:
-    """Return the last time at which a run far from its orbits can still converge before its outcome is decided."""
-    last = -math.inf
-    for k in range(ORBITS):
-        last = max(last, buf[R.ORBIT + k * ORBIT + Orbit.LATEST, i])
-    return last
-
-
-def distance_of_new(buf: Table, i: int, k: int) -> float:
-    """Return the distance of the new state from an orbit; NaN if the run has no such orbit."""
-    first = R.ORBIT + k * ORBIT
-    x, y, vx, vy = lean_of_new(buf, i)
-    size, rate = buf[first + Orbit.SIZE, i], buf[first + Orbit.RATE, i]
-    x, y = (x - buf[first + Orbit.X, i]) / size, (y - buf[first + Orbit.Y, i]) / size
-    vx, vy = (vx - buf[first + Orbit.VX, i]) / rate, (vy - buf[first + Orbit.VY, i]) / rate
-    square = x * x + y * y + vx * vx + vy * vy
-    if SPIN >= 0:
-        square += ((buf[R.NEW + SPIN, i] - buf[first + Orbit.SPIN, i]) / rate) ** 2
-    return math.sqrt(square)
-
-
-def approaches(buf: Table, i: int, k: int, distance: float) -> bool:
-    """Record the distance from an orbit; return whether the run has converged to the orbit."""
-    first = R.ORBIT + k * ORBIT
-    before = first + Orbit.BEFORE
-    approach = buf[before, i], buf[before + 1, i], buf[before + 2, i], buf[before + 3, i]
-    approach = approach_after(approach, distance, buf[first + Orbit.WINDOW, i], buf[first + Orbit.FALL, i])
-    set_approach(buf, i, k, approach)
-    left = judged_from(buf, i) - buf[R.TIME, i]
-    fall = math.exp(-buf[first + Orbit.DECAY, i] * left)
-    return left >= 0.0 and is_certain(approach, fall, buf[first + Orbit.REPEATS, i]) and repeats_to_the_end(buf, i)

@@ -4,7 +4,7 @@ import math
 
 from stylobate.compiler.marks import fast, lanes
 from stylobate.engine.elementary import length, nearest_turn, quintic, turns_of, winding
-from stylobate.engine.kernel.bound import DEMANDS, ORDER, PLANAR, SERIES, R
+from stylobate.engine.kernel.bound import DEMANDS, ORDER, PLANAR, SERIES, R, Table
 from stylobate.engine.kernel.driver.equations import (
     State,
     accelerations,
@@ -16,7 +16,6 @@ from stylobate.engine.kernel.driver.equations import (
     row_state,
 )
 from stylobate.engine.kernel.driver.stages import series_within, set_within
-from stylobate.engine.kernel.layout import Table
 from stylobate.engine.tolerances import FINEST_SHARE, PLANAR_OFFSET
 
 PLACES = tuple(range(1, 5))

@@ -21,6 +21,7 @@ from stylobate.engine.kernel.bound import (
     WIDTH,
     WINDOW_ENDS,
     R,
+    Table,
 )
 from stylobate.engine.kernel.columns import EARLIER, LAGS, NOTE, PAIRS, SLACK, TRACE_TERMS, Pair, Trace, pair_begins
 from stylobate.engine.kernel.driver.equations import (
@@ -35,7 +36,6 @@ from stylobate.engine.kernel.driver.events import Status, TraceKind
 from stylobate.engine.kernel.driver.guards import record_window
 from stylobate.engine.kernel.driver.motion import azimuth_now, set_rates
 from stylobate.engine.kernel.driver.stages import series_terms, set_dense
-from stylobate.engine.kernel.layout import Table
 from stylobate.engine.kernel.shape import NODES
 from stylobate.engine.tolerances import SAMPLES_PER_PERIOD
 

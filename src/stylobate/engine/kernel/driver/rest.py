@@ -3,7 +3,17 @@
 import math
 
 from stylobate.engine.elementary import length
-from stylobate.engine.kernel.bound import CAN_DEPART, CAN_GO_TO_PLANE, CAN_LOSE, DEGREE, PLANAR, SPIN, VERTICAL, R
+from stylobate.engine.kernel.bound import (
+    CAN_DEPART,
+    CAN_GO_TO_PLANE,
+    CAN_LOSE,
+    DEGREE,
+    PLANAR,
+    SPIN,
+    VERTICAL,
+    R,
+    Table,
+)
 from stylobate.engine.kernel.driver.equations import (
     Accelerations,
     accelerations,
@@ -29,7 +39,6 @@ from stylobate.engine.kernel.driver.records import (
     trace_stand,
 )
 from stylobate.engine.kernel.driver.stages import set_dense_output, set_within, set_within_closely
-from stylobate.engine.kernel.layout import Table
 from stylobate.engine.tolerances import CHATTER, DEPARTURE, SAMPLES_PER_PERIOD, SHORTEST_DEPARTURE, STILL, SWINGS_APART
 from stylobate.models.model import Push
 

@@ -3,7 +3,7 @@
 import math
 
 from stylobate.engine.elementary import length
-from stylobate.engine.kernel.bound import CAN_LOSE, CAN_PASS, CAN_REST, ORDER, PLANAR, SERIES, R
+from stylobate.engine.kernel.bound import CAN_LOSE, CAN_PASS, CAN_REST, ORDER, PLANAR, SERIES, R, Table
 from stylobate.engine.kernel.driver.equations import (
     accelerations,
     lean_of,
@@ -43,7 +43,6 @@ from stylobate.engine.kernel.driver.records import (
 )
 from stylobate.engine.kernel.driver.rest import find_lift, rest_margin, rest_within_step, settle, stand
 from stylobate.engine.kernel.driver.stages import set_within
-from stylobate.engine.kernel.layout import Table
 from stylobate.engine.tolerances import PASSAGE_FROM, PASSAGE_OFFSET
 
 

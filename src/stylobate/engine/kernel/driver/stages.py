@@ -5,7 +5,18 @@ import math
 from stylobate.compiler.marks import fast, flat, lanes
 from stylobate.engine.dop853 import A_EXTRA, C_EXTRA, STAGES, A, B, C, D
 from stylobate.engine.elementary import cubic, polynomial, reciprocals, turning_point, value_and_slope, weighted
-from stylobate.engine.kernel.bound import COEFFICIENTS, DEGREES, INTEGRALS, ORDER, RATES_OF, SERIES, WIDTH, R, expand
+from stylobate.engine.kernel.bound import (
+    COEFFICIENTS,
+    DEGREES,
+    INTEGRALS,
+    ORDER,
+    RATES_OF,
+    SERIES,
+    WIDTH,
+    R,
+    Table,
+    expand,
+)
 from stylobate.engine.kernel.driver.equations import (
     State,
     accelerations,
@@ -17,7 +28,6 @@ from stylobate.engine.kernel.driver.equations import (
     rates_under,
     row_state,
 )
-from stylobate.engine.kernel.layout import Table
 from stylobate.engine.kernel.shape import DENSE_TERMS, SERIES_ORDER
 
 STAGE_NUMBERS = tuple(range(1, STAGES + 1))

@@ -3,7 +3,7 @@
 import math
 
 from stylobate.compiler.marks import fast, lanes
-from stylobate.engine.dop853 import E3, E5, STAGES
+from stylobate.engine.dop853 import E3, E5, LARGEST_FACTOR, LEAST_ERROR, LEAST_FACTOR, SAFETY, STAGES
 from stylobate.engine.elementary import reciprocals, turning_point, weighted, winding
 from stylobate.engine.kernel.bound import (
     DEMANDS,
@@ -17,6 +17,7 @@ from stylobate.engine.kernel.bound import (
     SWITCHING,
     WIDTH,
     R,
+    Table,
 )
 from stylobate.engine.kernel.driver.equations import lean_of_new
 from stylobate.engine.kernel.driver.events import lean, overshoot_of
@@ -32,7 +33,6 @@ from stylobate.engine.kernel.driver.stages import (
     rises_and_falls,
     slopes_of,
 )
-from stylobate.engine.kernel.layout import Table
 from stylobate.engine.tolerances import PASSAGE_FROM, PASSAGE_OFFSET, SLIP_SHARE
 
 
@@ -67,8 +67,6 @@ def make_long_step(buf: Table) -> None:
     evaluate_guards(buf)
 
 
-# Step control as in SciPy: safety factor, bounds of the step ratio, and lower bound of the error.
-SAFETY, LEAST_FACTOR, LARGEST_FACTOR, LEAST_ERROR = 0.9, 0.2, 10.0, 1e-12
 # Factor for a second attempt after a step by series that gave NaN.
 RETRY = 0.5
 # Minimum step, as a fraction of the time.

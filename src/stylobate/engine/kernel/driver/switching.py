@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 
+from stylobate.engine.dop853 import LEAST_ERROR, LEAST_FACTOR, SAFETY
 from stylobate.engine.elementary import NewtonRoom, nearest_turn, turning_point, turns_of, winding
 from stylobate.engine.kernel.bound import (
     CHANGES,
@@ -22,6 +23,7 @@ from stylobate.engine.kernel.bound import (
     SLIP_Y,
     SLIPPING,
     R,
+    Table,
 )
 from stylobate.engine.kernel.driver.equations import accelerations, held_for_good, lean_of_new, row_state
 from stylobate.engine.kernel.driver.events import STATUSES_AT_LIMITS, Status, TraceKind, limit_passed
@@ -68,7 +70,6 @@ from stylobate.engine.kernel.driver.records import (
 )
 from stylobate.engine.kernel.driver.rest import RELEASE_MARGIN, next_release, search_end
 from stylobate.engine.kernel.driver.stages import dense_state, set_dense, set_within, stability
-from stylobate.engine.kernel.layout import Table
 from stylobate.engine.tolerances import DEPARTURE, SLIP_SHARE, SLIP_SHORTER, SLIP_TURNS
 
 
@@ -426,8 +427,8 @@ def broken_at_release(buf: Table, i: int) -> int:
 PAYS, MOST_UNPAID = 20.0, 5
 # Maximum number of implicit steps in one call, so that other lanes and a halt signal are served.
 STRETCH = 1000
-# Step control of Hairer and Wanner: safety factor, bounds of step changes, and the factor after a failed solution.
-SAFETY, LEAST_FACTOR, LARGEST_FACTOR, UNSOLVED_FACTOR = 0.9, 0.2, 8.0, 0.5
+# Largest ratio of successive implicit steps, as in RADAU5 of Hairer and Wanner, and the ratio after a failed solution.
+LARGEST_IMPLICIT_FACTOR, UNSOLVED_FACTOR = 8.0, 0.5
 
 
 def follow_implicitly(buf: Table, i: int, table: Table, pieces: Table) -> int:
@@ -496,7 +497,7 @@ def factor_of(error: float, iterations: int) -> float:
     if not error < math.inf:
         return UNSOLVED_FACTOR
     safety = SAFETY * (2 * MOST_ITERATIONS + 1) / (2 * MOST_ITERATIONS + iterations)
-    return min(max(safety / math.sqrt(math.sqrt(max(error, 1e-12))), LEAST_FACTOR), LARGEST_FACTOR)
+    return min(max(safety / math.sqrt(math.sqrt(max(error, LEAST_ERROR))), LEAST_FACTOR), LARGEST_IMPLICIT_FACTOR)
 
 
 def take_step(buf: Table, i: int, table: Table, pieces: Table) -> tuple[int, int]:

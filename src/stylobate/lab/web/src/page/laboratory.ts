@@ -2,7 +2,7 @@
 
 import type { Clock, Stage, Theme } from "../viewer/index";
 import type { About } from "./case/about";
-import type { Answer } from "./server/answers";
+import type { Run as Answer } from "./server/schema";
 import { Refused, Unreachable } from "./server/api";
 import type { ResponsePanel } from "./charts/response-panel";
 import type { Connection } from "./server/connection";
@@ -25,7 +25,7 @@ import { Problems } from "./frame/problems";
 import type { ColumnScales } from "./case/quantities";
 import { type JobStart, ResponseAsking } from "./charts/response-asking";
 import type { PlaneKind, Tab, View } from "./view/state";
-import { isPlaneKind, Store, TABS } from "./view/state";
+import { isPlaneKind, PLANE_KINDS, PLANES, Store, TABS } from "./view/state";
 import { Tabs } from "./frame/tabs";
 import type { ThemeSwitch } from "./frame/theme";
 import type { Branch } from "./case/starting";
@@ -323,13 +323,11 @@ export class Laboratory {
   }
 
   #newTabs(): Tabs<Tab> {
-    const { map, basin } = this.#planes.panels;
     return new Tabs<Tab>(
       "Planes",
       [
         { name: "orbit", title: "Tilt path", panel: this.#motion.orbit.root },
-        { name: "map", title: "Overturning map", panel: map.root },
-        { name: "basin", title: "Basin", panel: basin.root },
+        ...PLANE_KINDS.map((kind) => ({ name: kind, title: PLANES[kind][0], panel: this.plane(kind).root })),
         { name: "numbers", title: "Numbers", panel: this.#motion.numbers.root },
       ],
       (tab) => {

@@ -50,9 +50,8 @@ export const ABOUT: About = {
     { kind: "sum", name: "sum", parameters: [] },
     { kind: "rest", name: "rest", parameters: [] },
   ],
-  samples: [{ name: "el centro 1940" }],
+  samples: ["el centro 1940"],
   presets: [],
-  outcomes: [],
 };
 
 export const VIEW: View = viewOf({

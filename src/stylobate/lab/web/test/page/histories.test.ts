@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import type { Answer, Series } from "../../src/page/server/answers";
+import type { Run as Answer, Series } from "../../src/page/server/schema";
 import { brokenAt } from "../../src/page/frame/exports";
 import type { HistoryName, RunShown } from "../../src/page/charts/history-kinds";
 import { chosenHistories, historyOf, offeredHistories } from "../../src/page/charts/history-kinds";

@@ -6,7 +6,7 @@ import { badgeAt, durationWanted } from "../../src/page/motion/verdict";
 import { nextEvent } from "../../src/page/motion/transport";
 import { shareOf } from "../../src/page/plane/classes";
 import { roomFor } from "../../src/page/plane/plane-canvas";
-import type { Answer, Attractor, ComputedAxis } from "../../src/page/server/answers";
+import type { PlaneAxis, Run as Answer } from "../../src/page/server/schema";
 
 test("numbers are read as they are written in most countries", () => {
   for (const text of ["0.02", "0,02", " 2e-2 "]) assert.equal(readNumber(text), 0.02, text);
@@ -29,14 +29,14 @@ test("a column is said to be overturned from the instant on at which that is dec
 });
 
 test("an interval is rounded outward: nothing that is open is shown as certain", () => {
-  const share = (fraction: number, fraction_low: number, fraction_high: number): string | null =>
-    shareOf({ name: "", kind: "", fraction, fraction_low, fraction_high } as Attractor);
-  assert.equal(share(1, 0.99627, 1), "100 % (99.6 to 100)");
-  assert.equal(share(0, 0, 0.00037), "0 % (0 to 0.1)");
+  const shown = (share: number, low: number, high: number): string | null =>
+    shareOf({ code: 0, name: "", share, low, high });
+  assert.equal(shown(1, 0.99627, 1), "100 % (99.6 to 100)");
+  assert.equal(shown(0, 0, 0.00037), "0 % (0 to 0.1)");
 });
 
 test("starts along x and y are drawn to one scale, and other axes fill their room", () => {
-  const axis = (name: string, units: string, reach: number): ComputedAxis => ({
+  const axis = (name: string, units: string, reach: number): PlaneAxis => ({
     ...{ name, units },
     values: Array.from({ length: 5 }, (_, i) => reach * (i / 2 - 1)),
   });

@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import type { Described, ResponseCurves } from "../../src/page/server/answers";
+import type { Described, ResponseCurves } from "../../src/page/server/schema";
 import type { Part } from "../../src/page/case/description";
 import { ScaledResponse } from "../../src/page/charts/response-asking";
 

@@ -3,6 +3,7 @@
 import type { Description, Part } from "./description";
 import { angularFrequency, isHorizontalHarmonic } from "./frequency";
 import { type ColumnScales, withValue } from "./quantities";
+import { GRIDS } from "../server/declared";
 import type { Axis, Plane, PlaneKind } from "../view/state";
 
 /** The fewest periods of a horizontal base motion after which a motion counts as settled, and the most. */
@@ -19,7 +20,7 @@ const TURN = 2 * Math.PI;
 /** Returns the length of the runs as it is sent: periods of each run's own motion, or the duration of the case. */
 export function lengthOf(kind: PlaneKind, description: Description, plane: Plane, scales: ColumnScales): Part {
   const settled = isHorizontalHarmonic(description.motion) ? settledPeriods(description, plane, scales) : null;
-  const periods = kind === "map" ? mapPeriods(description, settled) : settled;
+  const periods = GRIDS[kind].starts ? settled : mapPeriods(description, settled);
   return periods === null ? { duration: description["duration"] ?? null } : { duration: null, periods };
 }
 

@@ -1,6 +1,6 @@
 /** Two quantities of the run over time: tilt and demand on the contact, or what the reader chooses. */
 
-import type { Answer } from "../server/answers";
+import type { Run as Answer } from "../server/schema";
 import { element } from "../frame/dom";
 import { axisLabel } from "../frame/format";
 import type { HistoryName, HistoryPair, RunShown } from "./history-kinds";

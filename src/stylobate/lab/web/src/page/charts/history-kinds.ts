@@ -1,6 +1,7 @@
 /** What can be drawn over the time of a run: its quantities, as far as its model provides them. */
 
-import type { Answer, Numbers, Series } from "../server/answers";
+import type { Run as Answer, Series } from "../server/schema";
+import type { Numbers } from "./plot-looks";
 import { formatted, unitWritten, withUnit } from "../frame/format";
 import { isDimensionless } from "../frame/units";
 

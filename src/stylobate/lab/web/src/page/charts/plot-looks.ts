@@ -4,6 +4,9 @@ import type uPlot from "uplot";
 import { themeColour } from "../frame/dom";
 import { formatted } from "../frame/format";
 
+/** Values along a curve; null where it has a gap. */
+export type Numbers = readonly (number | null)[];
+
 export const LETTERING = '11px system-ui, -apple-system, "Segoe UI", Roboto, sans-serif';
 
 /** Room for the numbers and the name of a vertical axis [px]: the same everywhere, so that plots stand in line. */

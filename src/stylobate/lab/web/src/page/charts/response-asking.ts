@@ -4,7 +4,7 @@ import { type Part, isPart, without, written } from "../case/description";
 import { angularFrequency, withAngularFrequency } from "../case/frequency";
 import type { ColumnScales } from "../case/quantities";
 import { mayTurn } from "../case/starting";
-import type { Described, JobReport, ResponseCurves } from "../server/answers";
+import type { Described, Job as JobReport, ResponseCurves } from "../server/schema";
 import { Unreachable, describe, response } from "../server/api";
 import type { Job } from "../server/job";
 import { Latest } from "../server/latest";

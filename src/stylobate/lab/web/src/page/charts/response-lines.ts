@@ -1,6 +1,6 @@
 /** Response curves as the lines that are drawn: for each branch what is stable, and what is not. */
 
-import type { Numbers, ResponseBranch, ResponseCurves } from "../server/answers";
+import type { Numbers } from "./plot-looks";
 
 export interface ResponseLine {
   readonly stable: boolean;
@@ -10,8 +10,16 @@ export interface ResponseLine {
   readonly phase: Numbers;
 }
 
+/** A branch of a response, or two of opposite senses that look the same. */
+interface ResponseBranch extends Omit<ResponseLine, "stable"> {
+  readonly stable: readonly (boolean | null)[];
+}
+
 /** Returns two lines for each branch; the unstable ones reach to their stable neighbours, so that no gap is left. */
-export function linesOf(curves: ResponseCurves, slenderness: number): readonly ResponseLine[] {
+export function linesOf(
+  curves: { readonly branches: readonly ResponseBranch[] },
+  slenderness: number,
+): readonly ResponseLine[] {
   return distinct(curves.branches).flatMap((branch) => {
     const amplitude = branch.amplitude.map((value) => (value === null ? null : value / slenderness));
     const phase = continuous(branch.phase);

@@ -5,7 +5,7 @@ import { Elapsed } from "../frame/elapsed";
 import { enlarging } from "../frame/enlarging";
 import { axisLabel, capital, counted, formatted, plain, readNumber, unitWritten, words } from "../frame/format";
 import { joined } from "../frame/units";
-import type { ExactResponse, JobReport, ResponseCurves } from "../server/answers";
+import type { ExactOrbits, Job as JobReport, ResponseCurves } from "../server/schema";
 import type { Job } from "../server/job";
 import { type Extent, FrequencyMarker } from "./frequency-marker";
 import { AXIS_WIDTH } from "./plot-looks";
@@ -21,7 +21,7 @@ function aboutCurves(curves: ResponseCurves, own: boolean): string {
 }
 
 /** Returns how many families of exact orbits there are, and where they bifurcate. */
-function aboutExact(exact: ExactResponse): string {
+function aboutExact(exact: ExactOrbits): string {
   const families = counted(exact.families.length, "family", "families");
   const kinds = [...new Set(exact.bifurcations.map((one) => one.kind))];
   const found = kinds.map((kind) => {
@@ -62,7 +62,7 @@ export class ResponsePanel {
   readonly #phase: ResponsePlot;
   readonly #marker: FrequencyMarker;
   #curves: ResponseCurves | null = null;
-  #exact: ExactResponse | null = null;
+  #exact: ExactOrbits | null = null;
   #job: Job | null = null;
   readonly #elapsed = new Elapsed((message) => this.report(message));
   #range: readonly [number, number] = [0.2, 4];
@@ -177,7 +177,7 @@ export class ResponsePanel {
     this.#phase.plot.redraw(false);
   }
 
-  get exact(): ExactResponse | null {
+  get exact(): ExactOrbits | null {
     return this.#exact;
   }
 
@@ -222,7 +222,7 @@ export class ResponsePanel {
       this.report(problems.join(" "));
       return;
     }
-    this.#exact = last.result as ExactResponse;
+    this.#exact = last.result as ExactOrbits;
     this.report(this.#about);
     this.#draw();
   }

@@ -2,7 +2,8 @@
 
 import uPlot from "uplot";
 import type { Pair } from "../../viewer/index";
-import type { ExactFamily, ExactResponse, Numbers } from "../server/answers";
+import type { ExactOrbits, OrbitFamily } from "../server/schema";
+import type { Numbers } from "./plot-looks";
 import { themeColour } from "../frame/dom";
 import { formatted } from "../frame/format";
 import type { Label } from "./plot-looks";
@@ -17,7 +18,7 @@ export interface ResponsePicture {
   readonly lines: readonly ResponseLine[];
   readonly backbone: Numbers;
   readonly critical: readonly number[];
-  readonly exact: ExactResponse | null;
+  readonly exact: ExactOrbits | null;
   readonly slenderness: number;
   readonly range: readonly [number, number];
   readonly height: number;
@@ -139,7 +140,7 @@ export class ResponsePlot {
   }
 
   /** Returns what of a family this plot draws: its phase, or its mean tilt in units of c. */
-  #valuesOf(family: ExactFamily, slenderness: number): Numbers {
+  #valuesOf(family: OrbitFamily, slenderness: number): Numbers {
     if (this.#quantity === "phase") return continuous(family.phase);
     return family.mean_tilt.map((value) => (value === null ? null : value / slenderness));
   }

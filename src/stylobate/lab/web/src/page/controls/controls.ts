@@ -199,7 +199,7 @@ export class Controls {
 
   /** A record needs to be one: the first sample, until another is chosen. */
   #withSample(motion: Part): Part {
-    const sample = this.#about.samples[0]?.name;
+    const sample = this.#about.samples[0];
     return motion["kind"] === "record" && sample !== undefined ? { ...motion, sample } : motion;
   }
 

@@ -1,7 +1,7 @@
 /** Which record: one that comes with the package, or files of the user's own. */
 
 import type { About } from "../case/about";
-import type { Received } from "../server/answers";
+import type { UploadedRecord } from "../server/schema";
 import { Refused, sendRecord, Unreachable } from "../server/api";
 import type { Part, Value } from "../case/description";
 import { button, choice, element, newId } from "../frame/dom";
@@ -36,7 +36,7 @@ export function inWordsOfForm(line: string): string {
 
 /** A record that was uploaded: what the server said of it, and what was sent. */
 interface Kept {
-  readonly received: Received;
+  readonly received: UploadedRecord;
   readonly body: Part;
 }
 
@@ -63,7 +63,7 @@ export class RecordForm {
   constructor(about: About, changed: (motion: Part) => void) {
     this.#changed = changed;
     const [id, fileId] = [newId("record"), newId("files")];
-    const samples = about.samples.map(({ name }) => [name, capital(name)] as const);
+    const samples = about.samples.map((name) => [name, capital(name)] as const);
     this.#source = choice([...samples, [OWN, "Your own files…"]], { id }, (value) => this.#choose(value));
     this.#files.id = fileId;
     this.#files.addEventListener("change", () => this.#send());
@@ -154,7 +154,7 @@ function stepIn(text: string): number | string | null {
   return written === "" ? null : Number.isFinite(Number(written)) ? Number(written) : text;
 }
 
-function summaryOf(record: Received): string {
+function summaryOf(record: UploadedRecord): string {
   const peaks = Object.entries(record.peaks).map(([axis, peak]) => `${axis} ${formatted(peak)} m/s²`);
   const length = `${record.samples} samples, ${formatted(record.duration)} s in steps of ${formatted(record.step)} s`;
   return `${record.name}: ${length}; peaks ${peaks.join(", ")}.`;

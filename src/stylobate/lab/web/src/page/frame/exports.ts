@@ -2,7 +2,7 @@
 
 import type { Stage } from "../../viewer/index";
 import type { Part } from "../case/description";
-import type { Described } from "../server/answers";
+import type { Described } from "../server/schema";
 import { jobFile } from "../server/api";
 import { Job, problemsIn } from "../server/job";
 import { button, download, element, themeColour } from "./dom";

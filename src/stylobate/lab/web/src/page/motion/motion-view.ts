@@ -8,7 +8,7 @@ import { button, element } from "../frame/dom";
 import { Elapsed } from "../frame/elapsed";
 import { capital } from "../frame/format";
 import { shownUnit } from "../frame/units";
-import type { Answer } from "../server/answers";
+import type { Run as Answer } from "../server/schema";
 import { Transport } from "./transport";
 import { Verdict } from "./verdict";
 

@@ -1,6 +1,6 @@
 /** The speed at which a motion is well seen. */
 
-import type { Answer } from "../server/answers";
+import type { Run as Answer } from "../server/schema";
 import type { Part } from "../case/description";
 import { angularFrequency } from "../case/frequency";
 import { SPEEDS } from "../view/state";

@@ -1,7 +1,7 @@
 /** Play, pause, speed and the line of time, with a tick for each event. */
 
 import type { Clock } from "../../viewer/index";
-import type { Answer } from "../server/answers";
+import type { Run as Answer } from "../server/schema";
 import { button, choice, element, newId, onResize, themeColour } from "../frame/dom";
 import { clockTime, formatted, words } from "../frame/format";
 import { joined } from "../frame/units";

@@ -1,6 +1,6 @@
 /** The outcome, in a line that is read out. */
 
-import type { Answer } from "../server/answers";
+import type { Run as Answer } from "../server/schema";
 import { button, element } from "../frame/dom";
 import { capital, sentence, withUnit } from "../frame/format";
 

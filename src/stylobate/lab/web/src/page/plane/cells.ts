@@ -1,6 +1,6 @@
 /** The cells of a plane that fills in from coarse to fine. */
 
-import type { CellsEvent } from "../server/answers";
+import type { PlaneCells } from "../server/schema";
 
 /** No code of the server's: nothing is known of the cell yet. */
 export const UNKNOWN = -128;
@@ -21,7 +21,7 @@ export class Cells {
   }
 
   /** Takes cells of a stride; each stands for the block that begins at it, until finer ones come. */
-  take({ stride, cells }: CellsEvent): void {
+  take({ stride, cells }: PlaneCells): void {
     for (const [ix, iy, code] of cells) {
       const [endX, endY] = [Math.min(ix + stride, this.width), Math.min(iy + stride, this.height)];
       for (let y = iy; y < endY; y += 1) this.#codes.fill(code, y * this.width + ix, y * this.width + endX);

@@ -2,7 +2,7 @@
 
 import { element } from "../frame/dom";
 import { formatted } from "../frame/format";
-import type { Attractor } from "../server/answers";
+import type { CellClass } from "../server/schema";
 import { type Cells, UNKNOWN } from "./cells";
 import { type Look, looksOf, rgbOf } from "./looks";
 
@@ -33,23 +33,24 @@ export class Classes {
   readonly legend = element("ul", { class: "legend classes" });
   #names: Names = [];
   #looks: ReadonlyMap<number, Look> = new Map();
-  #attractors: readonly Attractor[] = [];
+  /** The classes with their shares, once all is computed. */
+  #final: readonly CellClass[] = [];
 
   get looks(): ReadonlyMap<number, Look> {
     return this.#looks;
   }
 
   /** Takes the names of outcomes. */
-  take(names: Names, attractors: readonly Attractor[] = []): void {
+  take(names: Names, final: readonly CellClass[] = []): void {
     this.#names = names;
-    this.#attractors = attractors;
+    this.#final = final;
     const looks = looksOf(names.map(([, name]) => name));
     this.#looks = new Map(names.flatMap(([code], i) => (looks[i] ? [[code, looks[i]] as const] : [])));
   }
 
-  /** Takes the names that are known at the end: of attractors, or of what a sliding column does. */
-  takeFinal(names: Names, attractors: readonly Attractor[]): void {
-    this.take([...names, ...NOT_COMPUTED], attractors);
+  /** Takes the classes that are known at the end, such as attractors, or what a sliding column does. */
+  takeFinal(classes: readonly CellClass[]): void {
+    this.take([...classes.map(({ code, name }) => [code, name] as const), ...NOT_COMPUTED], classes);
   }
 
   nameOf(code: number): string {
@@ -64,31 +65,31 @@ export class Classes {
     const items = this.#names.flatMap(([code, name], i) => {
       const [count, look] = [counts.get(code) ?? 0, this.#looks.get(code)];
       if (count === 0 || look === undefined) return [];
-      return [element("li", {}, swatch(look), `${name} ${shareOf(this.#attractors[i]) ?? percent(count / known)}`)];
+      return [element("li", {}, swatch(look), `${name} ${shareOf(this.#final[i]) ?? percent(count / known)}`)];
     });
     this.legend.replaceChildren(...items, ...this.#remark());
   }
 
   /** Explains the intervals of a basin, and its starts that have not settled. */
   #remark(): readonly HTMLElement[] {
-    if (!this.#attractors.some((one) => shareOf(one) !== null)) return [];
-    const open = this.#attractors.some((one) => one.kind === UNSETTLED)
+    if (!this.#final.some((one) => shareOf(one) !== null)) return [];
+    const open = this.#final.some((one) => one.name === UNSETTLED)
       ? " An initial condition that has not settled may lead to any attractor. The upper end of each interval counts it there."
       : "";
     return [element("li", { class: "hint" }, `In brackets: 95 % intervals in per cent.${open}`)];
   }
 }
 
-/** The kind of the starts that lead to no known attractor by the end of their runs. */
+/** The class of the starts that lead to no known attractor by the end of their runs. */
 const UNSETTLED = "not settled";
 
 function percent(share: number): string {
   return `${formatted(100 * share, share < 0.01 ? 1 : 2)} %`;
 }
 
-/** Returns the share of starts that lead to an attractor, with its interval rounded outward. */
-export function shareOf(attractor: Attractor | undefined): string | null {
-  const { fraction, fraction_low: low, fraction_high: high } = attractor ?? { fraction: null };
-  if (fraction === null || typeof low !== "number" || typeof high !== "number") return null;
-  return `${percent(fraction)} (${Math.floor(1000 * low) / 10} to ${Math.ceil(1000 * high) / 10})`;
+/** Returns the share of a class with its interval, rounded outward; null if it has none. */
+export function shareOf(known: CellClass | undefined): string | null {
+  if (known === undefined || known.share === null || known.low === null || known.high === null) return null;
+  const { share, low, high } = known;
+  return `${percent(share)} (${Math.floor(1000 * low) / 10} to ${Math.ceil(1000 * high) / 10})`;
 }

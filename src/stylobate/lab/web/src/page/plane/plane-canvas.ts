@@ -1,6 +1,6 @@
 /** A map or basin on a canvas: cells in the looks of their classes, axes with units, the motion that is shown. */
 
-import type { AxesEvent, ComputedAxis } from "../server/answers";
+import type { PlaneAxis, PlaneBegun } from "../server/schema";
 import { element, onResize, themeColour } from "../frame/dom";
 import { axisLabel, formatted } from "../frame/format";
 import { ticks } from "../case/ranges";
@@ -12,7 +12,7 @@ import { rgbOf } from "./looks";
 const MARGIN = { left: 62, right: 12, top: 8, bottom: 38 };
 
 export interface PlanePicture {
-  readonly axes: AxesEvent["axes"];
+  readonly axes: PlaneBegun["axes"];
   readonly cells: Cells | null;
   readonly looks: ReadonlyMap<number, Look>;
 }
@@ -166,7 +166,7 @@ export class PlaneCanvas {
     pen.putImageData(image, Math.round(MARGIN.left * ratio), Math.round(MARGIN.top * ratio));
   }
 
-  #drawAxes(pen: CanvasRenderingContext2D, axes: AxesEvent["axes"]): void {
+  #drawAxes(pen: CanvasRenderingContext2D, axes: PlaneBegun["axes"]): void {
     const { width, height } = this.#room();
     const { left, top } = MARGIN;
     pen.font = "11px system-ui, sans-serif";
@@ -195,7 +195,7 @@ export class PlaneCanvas {
   }
 
   /** Marks the values of the motion that is shown: a ring that is seen on any colour. */
-  #drawMark(pen: CanvasRenderingContext2D, axes: AxesEvent["axes"], [x, y]: Place): void {
+  #drawMark(pen: CanvasRenderingContext2D, axes: PlaneBegun["axes"], [x, y]: Place): void {
     const [sx, sy] = [share(axes.x, x), share(axes.y, y)];
     if (sx < 0 || sx > 1 || sy < 0 || sy > 1) return;
     const { width, height } = this.#room();
@@ -253,25 +253,25 @@ interface Room {
 }
 
 /** Returns the part of a room in which axes of one kind are drawn to one scale; other axes take all of it. */
-export function roomFor({ x, y }: AxesEvent["axes"], { width, height }: Room): Room {
+export function roomFor({ x, y }: PlaneBegun["axes"], { width, height }: Room): Room {
   if (x.units !== y.units || x.name.replace(/_x$/, "") !== y.name.replace(/_y$/, "")) return { width, height };
   const scale = Math.min(width / span(x), height / span(y));
   return { width: scale * span(x), height: scale * span(y) };
 }
 
 /** Returns the length of an axis, to the edges of its cells. */
-function span({ values }: ComputedAxis): number {
+function span({ values }: PlaneAxis): number {
   const [first, last] = [values[0] ?? 0, values.at(-1) ?? 1];
   return ((last - first) * values.length) / Math.max(values.length - 1, 1) || 1;
 }
 
 /** Returns where a value stands along an axis, 0 to 1; cells reach half a step beyond their values. */
-export function share({ values }: ComputedAxis, value: number): number {
+export function share({ values }: PlaneAxis, value: number): number {
   const [first, last] = [values[0] ?? 0, values.at(-1) ?? 1];
   const half = (last - first) / Math.max(values.length - 1, 1) / 2;
   return (value - first + half) / (last - first + 2 * half);
 }
 
-function ticksOf({ values }: ComputedAxis, number: number): readonly number[] {
+function ticksOf({ values }: PlaneAxis, number: number): readonly number[] {
   return ticks(values[0] ?? 0, values.at(-1) ?? 1, Math.max(number, 2));
 }

@@ -1,12 +1,12 @@
 /** An overturning map or a basin: its axes, its picture while it fills in, what its colours mean. */
 
-import type { AxesEvent, CellsEvent, JobReport, PlaneResult, ComputedAxis } from "../server/answers";
+import type { GridResult, Job as JobReport, PlaneAxis, PlaneBegun } from "../server/schema";
 import { button, element } from "../frame/dom";
 import { capital, counted, formatted, withUnit, words } from "../frame/format";
 import { Elapsed } from "../frame/elapsed";
 import type { Job } from "../server/job";
 import type { Quantity } from "../case/quantities";
-import type { Axis, Plane, PlaneKind } from "../view/state";
+import { type Axis, PLANES, type Plane, type PlaneKind } from "../view/state";
 import type { Description, Part } from "../case/description";
 import { AxesForm } from "./axes-form";
 import { Cells } from "./cells";
@@ -42,7 +42,7 @@ export class PlanePanel {
   #complete = false;
   #key = "";
   #shownKey = "";
-  #axes: AxesEvent["axes"] | null = null;
+  #axes: PlaneBegun["axes"] | null = null;
   #filled: Cells | null = null;
   /** How long runs of the case last, and those of the picture do. */
   #runs = "";
@@ -121,7 +121,7 @@ export class PlanePanel {
     return this.#canvas.clientPlace(cell);
   }
 
-  get axes(): AxesEvent["axes"] | null {
+  get axes(): PlaneBegun["axes"] | null {
     return this.#axes;
   }
 
@@ -159,7 +159,7 @@ export class PlanePanel {
   }
 
   #take(report: JobReport): void {
-    for (const event of report.events as readonly (AxesEvent | CellsEvent)[]) {
+    for (const event of report.events) {
       if ("axes" in event) this.#begin(event);
       else this.#filled?.take(event);
     }
@@ -175,7 +175,7 @@ export class PlanePanel {
     }
   }
 
-  #begin({ axes, names }: AxesEvent): void {
+  #begin({ axes, names }: PlaneBegun): void {
     this.#axes = axes;
     this.#filled = new Cells(axes.x.values.length, axes.y.values.length);
     this.#classes.take(names);
@@ -188,24 +188,22 @@ export class PlanePanel {
     this.#progress.hidden = true;
     this.#refuse(problems);
     this.#complete = last?.state === "done";
-    if (this.#complete) this.#finish((last?.result ?? null) as PlaneResult | null);
+    if (this.#complete) this.#finish(last?.result as GridResult);
     else this.#readout.textContent = ""; // a job that has ended does nothing any more
     this.#redraw();
   }
 
-  #finish(result: PlaneResult | null): void {
-    if (result?.codes && result.names) {
-      this.#classes.takeFinal(result.names, result.attractors ?? []);
-      this.#filled?.takeAll(result.codes);
-    }
-    const unsure = result?.uncertain ? `, ${result.uncertain} of them numerically uncertain` : "";
-    this.#readout.textContent = `${counted(result?.runs ?? 0, "run")}${this.#length}${unsure}. Click a cell to see its motion.`;
+  #finish({ runs, uncertain, codes, classes }: GridResult): void {
+    this.#classes.takeFinal(classes);
+    this.#filled?.takeAll(codes);
+    const unsure = uncertain ? `, ${uncertain} of them numerically uncertain` : "";
+    this.#readout.textContent = `${counted(runs, "run")}${this.#length}${unsure}. Click a cell to see its motion.`;
     this.#classes.report(this.#filled);
   }
 
   /** Before anything is computed: the axes alone. */
   #rest(plane: Plane, quantities: readonly Quantity[]): void {
-    const computedAxis = (axis: Axis): ComputedAxis => ({
+    const computedAxis = (axis: Axis): PlaneAxis => ({
       name: axis.name,
       values: Array.from(
         { length: axis.number },
@@ -217,17 +215,16 @@ export class PlanePanel {
       { axes: { x: computedAxis(plane.x), y: computedAxis(plane.y) }, cells: null, looks: new Map() },
       this.#values,
     );
-    this.#readout.textContent = HINTS[this.#kind];
+    this.#readout.textContent = `${PLANES[this.#kind][2]}, then click a cell to see its motion.`;
   }
 
   #redraw(): void {
     if (this.#axes === null) return;
     this.#canvas.show({ axes: this.#axes, cells: this.#filled, looks: this.#classes.looks }, this.#shownValues());
-    const kind = this.#kind === "map" ? "Overturning map" : "Basins of attraction";
     const { x, y } = this.#axes;
     this.#canvas.canvas.setAttribute(
       "aria-label",
-      `${kind} over ${words(x.name)} and ${words(y.name)}; arrow keys select a cell, Enter starts its motion`,
+      `${PLANES[this.#kind][1]} over ${words(x.name)} and ${words(y.name)}; arrow keys select a cell, Enter starts its motion`,
     );
   }
 
@@ -240,7 +237,7 @@ export class PlanePanel {
     if (cell === null || this.#axes === null || this.#filled === null) return;
     const { x, y } = this.#axes;
     const name = this.#classes.nameOf(this.#filled.at(...cell));
-    const value = (axis: ComputedAxis, index: number): string =>
+    const value = (axis: PlaneAxis, index: number): string =>
       `${words(axis.name)} ${withUnit(axis.values[index], axis.units ?? "")}`;
     this.#readout.textContent = `${value(x, cell[0])}, ${value(y, cell[1])}: ${name}`;
   }
@@ -267,11 +264,6 @@ export class PlanePanel {
     this.#problem.hidden = lines.length === 0;
   }
 }
-
-const HINTS: Readonly<Record<PlaneKind, string>> = {
-  map: "The outcome over two quantities. Compute the map, then click a cell to see its motion.",
-  basin: "The long-term motion for each initial condition. Compute the basins, then click a cell to see its motion.",
-};
 
 function lengthInWords({ periods, duration }: Part): string {
   if (typeof periods === "number") return ` of ${formatted(periods)} periods of the base`;

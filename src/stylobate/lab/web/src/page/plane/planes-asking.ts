@@ -9,10 +9,8 @@ import { isSlender, planeRequest } from "../server/requests";
 import type { JobStart } from "../charts/response-asking";
 import { lengthOf, withLength } from "../case/run-length";
 import type { Plane, PlaneKind, View } from "../view/state";
-import { isPlaneKind } from "../view/state";
+import { PLANE_KINDS, isPlaneKind, ofPlanes } from "../view/state";
 import { PlanePanel } from "./plane-panel";
-
-const KINDS = ["map", "basin"] as const;
 
 /** Cells along an axis of a plane that is filled unasked. */
 const FEW = 25;
@@ -35,14 +33,14 @@ export class PlanesAsking {
     this.#view = view;
     this.#scales = scales;
     this.#hearing = hearing;
-    this.panels = { map: this.#panel("map"), basin: this.#panel("basin") };
+    this.panels = ofPlanes((kind) => this.#panel(kind));
   }
 
   show(view: View, scales: ColumnScales): void {
     this.#view = view;
     this.#scales = scales;
     const { description } = view;
-    for (const kind of KINDS) {
+    for (const kind of PLANE_KINDS) {
       const plane = this.#plane(kind);
       if (plane === null) continue;
       const quantities = quantitiesOf(kind, description, this.#about, scales);
@@ -69,7 +67,7 @@ export class PlanesAsking {
   }
 
   redraw(): void {
-    for (const kind of KINDS) this.panels[kind].redraw();
+    for (const kind of PLANE_KINDS) this.panels[kind].redraw();
   }
 
   #panel(kind: PlaneKind): PlanePanel {

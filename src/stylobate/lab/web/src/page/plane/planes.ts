@@ -6,6 +6,7 @@ import { without, written } from "../case/description";
 import { RATES } from "../case/frequency";
 import type { ColumnScales, Quantity } from "../case/quantities";
 import { basinQuantities, mapQuantities, rangeAbout, valueOf } from "../case/quantities";
+import { GRIDS } from "../server/declared";
 import type { Axis, Plane, PlaneKind } from "../view/state";
 import { DEFAULT_CELLS } from "../view/state";
 
@@ -15,14 +16,14 @@ export function quantitiesOf(
   about: About,
   scales: ColumnScales,
 ): readonly Quantity[] {
-  return kind === "map" ? mapQuantities(description, about, scales) : basinQuantities(description, scales);
+  return GRIDS[kind].starts ? basinQuantities(description, scales) : mapQuantities(description, about, scales);
 }
 
 /** Returns the plane of the first two quantities: frequency and strength of the motion, or the two tilts. */
 export function defaultPlane(kind: PlaneKind, description: Description, quantities: readonly Quantity[]): Plane | null {
   const moving = quantities.filter(({ name, unit }) => name in description.motion && unit !== "rad");
   const named = ["friction_coefficient", "damping"].flatMap((name) => quantities.filter((one) => one.name === name));
-  const wanted = kind === "map" ? [...moving.filter(({ unit }) => unit in RATES), ...moving, ...named] : [];
+  const wanted = GRIDS[kind].starts ? [] : [...moving.filter(({ unit }) => unit in RATES), ...moving, ...named];
   const [x, y] = new Set([...wanted, ...quantities]);
   return x && y ? { x: defaultAxis(x, description), y: defaultAxis(y, description) } : null;
 }

@@ -2,7 +2,7 @@
 
 import type { About } from "../case/about";
 import type { Part, Value } from "../case/description";
-import type { Answer, BranchStart, Described, JobReport, Received, ResponseCurves } from "./answers";
+import type { Described, Job as JobReport, ResponseCurves, Run as Answer, Start, UploadedRecord } from "./schema";
 
 /** The server refused: a line for each thing that was wrong. */
 export class Refused extends Error {
@@ -30,10 +30,11 @@ export const response = (description: Part, signal: AbortSignal): Promise<Respon
 export const describe = (description: Part): Promise<Described> =>
   call<Described>("POST", "/api/describe", description);
 
-export const steadyStart = (body: Part, signal: AbortSignal): Promise<BranchStart> =>
-  call<BranchStart>("POST", "/api/start", body, signal);
+export const steadyStart = (body: Part, signal: AbortSignal): Promise<Start> =>
+  call<Start>("POST", "/api/start", body, signal);
 
-export const sendRecord = (upload: Part): Promise<Received> => call<Received>("POST", "/api/records", upload);
+export const sendRecord = (upload: Part): Promise<UploadedRecord> =>
+  call<UploadedRecord>("POST", "/api/records", upload);
 
 export const startJob = (kind: string, description: Part): Promise<{ readonly id: string }> =>
   call<{ readonly id: string }>("POST", "/api/jobs", { kind, description });

@@ -15,6 +15,12 @@ export const BY_ACCELERATION: readonly string[] = ["circular", "straight", "elli
 /** Kinds of models of columns that may turn about their axis. */
 export const TURNING: readonly string[] = ["slender_rolling", "rolling", "sliding"];
 
+/** Studies whose result is a grid of classes: whether only initial conditions vary. */
+export const GRIDS = {
+  map: { starts: false },
+  basin: { starts: true },
+} as const;
+
 /** By kind of harmonic motion: the number that holds the frequency, and its unit. */
 export const FREQUENCIES: Readonly<Record<string, readonly [name: string, unit: string]>> = {
   circular: ["angular_frequency", "rad/s"],

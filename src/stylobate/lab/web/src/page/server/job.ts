@@ -1,6 +1,6 @@
 /** Work that takes the server some time: started, asked after, and cancelled. */
 
-import type { JobReport } from "./answers";
+import type { Job as JobReport } from "./schema";
 import { cancelJob, jobReport, startJob } from "./api";
 import type { Part } from "../case/description";
 

@@ -3,7 +3,7 @@
 import type { Description } from "../case/description";
 import type { Branch } from "../case/starting";
 import { startedFrom } from "../case/starting";
-import type { Answer } from "./answers";
+import type { Run as Answer } from "./schema";
 import { simulate, steadyStart } from "./api";
 import { sent } from "./requests";
 

@@ -27,41 +27,10 @@ export type About = {
   readonly models: readonly Kind[];
   /** kinds of base motions */
   readonly motions: readonly Kind[];
-  /** sample records */
-  readonly samples: readonly Sample[];
+  /** names of the sample records */
+  readonly samples: readonly string[];
   /** example motions */
   readonly presets: readonly Preset[];
-  /** the possible outcomes */
-  readonly outcomes: readonly OutcomeCode[];
-};
-
-/** An attractor, with its share of all initial conditions. */
-export type Attractor = {
-  /** name as in names */
-  readonly name: string;
-  /** kind of outcome */
-  readonly kind: string;
-  /** period in periods of the base; 0 if there is none */
-  readonly period: number;
-  /** share of all initial conditions */
-  readonly fraction: number | null;
-  /** lower end of its interval */
-  readonly fraction_low: number | null;
-  /** upper end of its interval */
-  readonly fraction_high: number | null;
-};
-
-/** The result of a basin: the attractor of each initial condition. */
-export type BasinResult = {
-  /** runs whose outcome is numerically uncertain: rounding or the rest threshold could alter it */
-  readonly uncertain: number;
-  /** number of runs */
-  readonly runs: number;
-  /** a row for each value of x, with a code for each value of y */
-  readonly codes: readonly (readonly number[])[];
-  /** codes and their meanings */
-  readonly names: readonly (readonly [number, string])[];
-  readonly attractors: readonly Attractor[];
 };
 
 /** A new job. */
@@ -80,6 +49,19 @@ export type Bifurcation = {
   readonly mean_tilt: number;
   /** whether it is supercritical; null if undecided */
   readonly supercritical: boolean | null;
+};
+
+/** A class of cells: a kind of outcome or of contact, or an attractor. */
+export type CellClass = {
+  /** code in the cells */
+  readonly code: number;
+  readonly name: string;
+  /** share of all runs */
+  readonly share: number | null;
+  /** lower end of the interval of the share; null if there is none */
+  readonly low: number | null;
+  /** upper end */
+  readonly high: number | null;
 };
 
 /** The decisive numbers of the column. */
@@ -112,18 +94,6 @@ export type ColumnNumbers = {
 
 /** Kind of contact between column and plane: the value of the last state. */
 export type Contact = 0 | 1 | 2 | 3 | 4 | 5;
-
-/** The result of a map of a model that slides: kinds of contact. */
-export type ContactMapResult = {
-  /** runs whose outcome is numerically uncertain: rounding or the rest threshold could alter it */
-  readonly uncertain: number;
-  /** number of runs */
-  readonly runs: number;
-  /** a row for each value of x, with a code for each value of y */
-  readonly codes: readonly (readonly number[])[];
-  /** codes and their meanings */
-  readonly names: readonly (readonly [number, string])[];
-};
 
 /** The frequency at which the upper branch loses its stability. */
 export type CriticalFrequency = {
@@ -227,12 +197,23 @@ export type ExactOrbits = {
   readonly bifurcations: readonly Bifurcation[];
 };
 
+/** The result of a map or basin: the class of each cell. */
+export type GridResult = {
+  /** number of runs */
+  readonly runs: number;
+  /** runs whose outcome is numerically uncertain: rounding or the rest threshold could alter it */
+  readonly uncertain: number;
+  /** a row for each value of x, with a code for each value of y; -1 if not computed */
+  readonly codes: readonly (readonly number[])[];
+  readonly classes: readonly CellClass[];
+};
+
 /** The state of a job. */
 export type Job = {
   /** identity of the job in requests */
   readonly id: string;
   /** kind of computation */
-  readonly kind: "exact" | "map" | "basin" | "animation";
+  readonly kind: "map" | "basin" | "exact" | "animation";
   readonly state: "waiting" | "running" | "done" | "failed" | "cancelled";
   /** number of completed runs */
   readonly done: number;
@@ -247,7 +228,7 @@ export type Job = {
   /** reasons for the failure, one line each */
   readonly problems: readonly string[];
   /** the result when the job is done; null before, and for an animation, which has a file */
-  readonly result: ExactOrbits | MapResult | BasinResult | ContactMapResult | null;
+  readonly result: ExactOrbits | GridResult | null;
 };
 
 /** A kind of column, model or motion. */
@@ -261,44 +242,6 @@ export type Kind = {
   readonly parameters: readonly Parameter[];
   /** for motions: whether the motion ends, so that a run needs no duration */
   readonly ends?: boolean;
-};
-
-/** The result of a map: frequencies of the outcomes. */
-export type MapResult = {
-  /** runs whose outcome is numerically uncertain: rounding or the rest threshold could alter it */
-  readonly uncertain: number;
-  /** number of runs */
-  readonly runs: number;
-  readonly shares: {
-    /** share that ended at rest */
-    readonly "at rest": number | null;
-    /** share that ended rocking */
-    readonly rocking: number | null;
-    /** share that ended rolling */
-    readonly rolling: number | null;
-    /** share that ended modulated */
-    readonly modulated: number | null;
-    /** share that ended overturned */
-    readonly overturned: number | null;
-    /** share that ended still moving */
-    readonly "still moving": number | null;
-    /** share that ended limit reached */
-    readonly "limit reached": number | null;
-    /** share that ended lifted off */
-    readonly "lifted off": number | null;
-    /** share that ended failed */
-    readonly failed: number | null;
-    /** share that ended slid */
-    readonly slid: number | null;
-    /** share that ended survived */
-    readonly survived: number | null;
-    /** share that ended stopped */
-    readonly stopped: number | null;
-    /** share that ended periodic */
-    readonly periodic: number | null;
-    /** share that ended aperiodic */
-    readonly aperiodic: number | null;
-  };
 };
 
 /** Numbers of the run as a whole. Models may add further numbers. */
@@ -390,15 +333,6 @@ export type OrbitFamily = {
   readonly tilt: readonly (readonly [number, number])[];
   /** tilt rate at t = 0 [rad/s] */
   readonly tilt_rate: readonly (readonly [number, number])[];
-};
-
-/** An outcome. */
-export type OutcomeCode = {
-  readonly name: "AT_REST" | "ROCKING" | "ROLLING" | "MODULATED" | "OVERTURNED" | "STILL_MOVING" | "LIMIT_REACHED" | "LIFTED_OFF" | "FAILED" | "SLID" | "SURVIVED" | "STOPPED" | "PERIODIC" | "APERIODIC";
-  /** outcome in words */
-  readonly value: string;
-  /** code in maps */
-  readonly code: number;
 };
 
 /** A parameter. */
@@ -535,12 +469,6 @@ export type RunEvent = {
   readonly kind: string;
   /** time [s] */
   readonly time: number;
-};
-
-/** A sample record. */
-export type Sample = {
-  readonly name: string;
-  readonly about: string;
 };
 
 /** Histories, all as long as `time`. Models may add further histories. */

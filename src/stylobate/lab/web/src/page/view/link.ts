@@ -19,7 +19,7 @@ import {
 } from "../case/description";
 import { BRANCHES } from "../case/starting";
 import { RUN } from "../server/declared";
-import { type Axis, type Plane, TABS, type View, historiesFrom, isRange, viewOf } from "./state";
+import { type Axis, PLANE_KINDS, type Plane, TABS, type View, historiesFrom, isRange, ofPlanes, viewOf } from "./state";
 
 /** A link that cannot be read; the message says why in one line. */
 export class BrokenLink extends Error {}
@@ -32,8 +32,10 @@ export function linkOf(view: View): string {
     items.push(`${name}=${isVector(value) ? value.map(atom).join() : atom(value)}`);
   }
   if (view.range !== null) items.push(`range=${view.range.join()}`);
-  if (view.map !== null) items.push(`map=${planeWritten(view.map)}`);
-  if (view.basin !== null) items.push(`basin=${planeWritten(view.basin)}`);
+  for (const kind of PLANE_KINDS) {
+    const plane = view[kind];
+    if (plane !== null) items.push(`${kind}=${planeWritten(plane)}`);
+  }
   if (view.histories !== null) items.push(`histories=${view.histories.join()}`);
   if (view.tab !== "orbit") items.push(`tab=${view.tab}`);
   if (view.filled) items.push("filled=true");
@@ -71,8 +73,7 @@ const LOOKS: Readonly<Record<string, (text: string) => Value>> = {
     if (!isRange(range)) throw new BrokenLink(`range must be two rising frequencies, got ${text}`);
     return range;
   },
-  map: (text) => planeRead("map", text),
-  basin: (text) => planeRead("basin", text),
+  ...ofPlanes((kind) => (text: string) => planeRead(kind, text)),
   histories: (text) => {
     const pair = historiesFrom(text.split(","));
     if (pair === null) throw new BrokenLink(`histories must be two quantities of a run, got ${text}`);

@@ -6,7 +6,7 @@ import { clockTime } from "../frame/format";
 import { joined } from "../frame/units";
 import type { MotionView } from "../motion/motion-view";
 import { verdictOf } from "../motion/verdict";
-import type { Answer, Described } from "../server/answers";
+import type { Described, Run as Answer } from "../server/schema";
 import { describe } from "../server/api";
 import { sent } from "../server/requests";
 import { linkOf } from "./link";

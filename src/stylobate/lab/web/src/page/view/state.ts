@@ -6,6 +6,7 @@ import { isHistoryName } from "../charts/history-kinds";
 import { isPart, isVector } from "../case/description";
 import type { Branch } from "../case/starting";
 import { BRANCHES } from "../case/starting";
+import type { GRIDS } from "../server/declared";
 
 /** Values of one quantity, evenly spaced. */
 export interface Axis {
@@ -20,27 +21,38 @@ export interface Plane {
   readonly y: Axis;
 }
 
-export const TABS = ["orbit", "map", "basin", "numbers"] as const;
-export type Tab = (typeof TABS)[number];
+/** The tabs with a plane of cells: a job of the server each. */
+export type PlaneKind = keyof typeof GRIDS;
 
-/** The tabs with a plane of cells. */
-export type PlaneKind = Extract<Tab, "map" | "basin">;
+/** By plane: its tab, its heading, and its hint before anything is computed. */
+export const PLANES: Readonly<Record<PlaneKind, readonly [tab: string, heading: string, hint: string]>> = {
+  map: ["Overturning map", "Overturning map", "The outcome over two quantities. Compute the map"],
+  basin: ["Basin", "Basins of attraction", "The long-term motion for each initial condition. Compute the basins"],
+};
 
-export function isPlaneKind(tab: Tab): tab is PlaneKind {
-  return tab === "map" || tab === "basin";
+export const PLANE_KINDS = Object.keys(PLANES) as readonly PlaneKind[];
+
+/** Returns what is made for each plane. */
+export function ofPlanes<Made>(make: (kind: PlaneKind) => Made): Readonly<Record<PlaneKind, Made>> {
+  return Object.fromEntries(PLANE_KINDS.map((kind) => [kind, make(kind)])) as Record<PlaneKind, Made>;
 }
 
-export interface View {
+export type Tab = "orbit" | PlaneKind | "numbers";
+export const TABS: readonly Tab[] = ["orbit", ...PLANE_KINDS, "numbers"];
+
+export function isPlaneKind(tab: Tab): tab is PlaneKind {
+  return tab in PLANES;
+}
+
+/** With the axes of each plane; null: chosen to suit the case. */
+export interface View extends Readonly<Record<PlaneKind, Plane | null>> {
   readonly description: Description;
   /** Angular frequencies of the response [rad/s]; null: chosen to suit the column. */
   readonly range: readonly [number, number] | null;
-  /** Axes of the overturning map and of the basin; null: chosen to suit the case. */
-  readonly map: Plane | null;
-  readonly basin: Plane | null;
   /** What is drawn over time; null: chosen to suit the run. */
   readonly histories: HistoryPair | null;
   readonly tab: Tab;
-  /** Whether the map or basin of the tab has been asked for: a link to it computes it again. */
+  /** Whether the plane of the tab has been asked for: a link to it computes it again. */
   readonly filled: boolean;
   /** The branch of steady rolling on which the run starts, whatever changes; null: the start is as it is set. */
   readonly start: Branch | null;
@@ -63,8 +75,7 @@ export function viewOf(description: Description, looks: Readonly<Record<string, 
   return {
     description,
     range: isRange(range) ? range : null,
-    map: planeFrom(looks["map"]),
-    basin: planeFrom(looks["basin"]),
+    ...ofPlanes((kind) => planeFrom(looks[kind])),
     histories: historiesFrom(looks["histories"]),
     tab,
     filled: looks["filled"] === true,

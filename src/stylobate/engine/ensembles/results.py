@@ -31,14 +31,14 @@ from stylobate.models.contact import LEAST_FORCE
 Floats = npt.NDArray[np.float64]
 
 
-def summaries(batch: Batch) -> Arrays:
+def results_of(batch: Batch) -> Arrays:
     """Return the results of the runs of `batch`; runs that have not ended have the values of `empty`."""
     arrays = empty(batch.plan.model, batch.plan.options, len(batch.table))
-    summarize_into(arrays, batch)
+    write_results(arrays, batch)
     return arrays
 
 
-def summarize_into(arrays: Arrays, batch: Batch) -> None:
+def write_results(arrays: Arrays, batch: Batch) -> None:
     """Write the results of the ended runs of `batch` into `arrays`, which have a row for each run."""
     ended = batch.log(Log.STATUS) != Status.WAITING
     every_run = bool(ended.all())

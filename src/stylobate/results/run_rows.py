@@ -1,4 +1,4 @@
-"""Summary of a run, a `Response`, in lines of text: for its card, the command line and the laboratory."""
+"""Rows of text that state the results of a run, a `Response`: for its card, the command line and the laboratory."""
 
 import math
 from typing import TYPE_CHECKING, Any
@@ -44,7 +44,7 @@ def reason_rows(run: Any) -> Rows:
 
 
 def measure_rows(run: Any) -> Rows:
-    """Return the rows of the summary numbers of `run`: tilt, final position and contact demand."""
+    """Return the rows of the measures of `run`: tilt, final position and contact demand."""
     return [*_motion_rows(run), *_contact_rows(run), *_demand_rows(run)]
 
 
