@@ -151,7 +151,8 @@ def test_a_broken_link_is_told_and_the_usual_case_shown(browser, address):
 def test_a_run_that_takes_long_is_cancelled(watched):
     page = watched.page
     page.route(re.compile("/api/simulate"), lambda route: None)  # never answered
-    moved(page, "damping", 0.2)
+    with page.expect_request(re.compile("/api/simulate")):  # after the start on its branch is known
+        moved(page, "damping", 0.2)
     with page.expect_event("requestfailed", lambda request: "simulate" in request.url):
         page.locator(".stage").get_by_role("button", name="Cancel").click()
     assert page.get_by_text("The run was cancelled.").first.is_visible()

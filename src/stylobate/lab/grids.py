@@ -220,13 +220,13 @@ def case_grid(
     ConfigError, ParameterError
         If an axis has an impossible value.
     """
+    study: Study = study_of(function)
     own = {"over", *declared_numbers(function)}
     options = {name: value for name, value in setup.options.items() if name not in own}
     sweep = Sweep.points(_without_height(setup.model), setup.motion, at=_at(values, setup.options["over"]), **options)
 
     def label(runs: xr.Dataset) -> xr.Dataset:
-        found: xr.Dataset = study_of(function).completed(runs, lambda: setup, setup.options)
-        return found
+        return study.completed(runs, lambda: setup, setup.options)
 
     return labelled_sweep(sweep, label, executor=executor, progress=progress)
 
