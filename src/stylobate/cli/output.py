@@ -274,8 +274,9 @@ def study_summary(data: "xr.Dataset", **own: Any) -> dict[str, Any]:
 
 
 def plain_axes(data: "xr.Dataset") -> Mapping[str, Any]:
-    """Return name, ends and number of the values along each axis, for JSON."""
-    axes = axes_of(data).items()
+    """Return name, ends and number of the values along each axis of a grid, for JSON; none of other designs."""
+    design = provenance_of(data).get("design", {}).get("kind")
+    axes = axes_of(data).items() if design == "grid" else ()
     return {
         place: {"name": name, "from": values[0], "to": values[-1], "number": len(values)}
         for place, (name, values) in zip("xy", axes, strict=False)
