@@ -169,7 +169,6 @@ def _repeated(provenance: Mapping[str, Any], values: dict[str, Any]) -> dict[str
         },
         renamed={"tail": "free_tail"},
         kinds=(_INTERVALS, _ROCKING),
-        remedy="Continue a store with its options, --output and --resume, or save a spectrum as .nc.",
         arguments=_arguments,
         repeated=_repeated,
         table=_table,
