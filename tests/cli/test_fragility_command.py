@@ -7,7 +7,6 @@ import pytest
 import xarray as xr
 
 import stylobate as sb
-from stylobate.cli.fragility import describe_parts
 from stylobate.cli.main import run
 from stylobate.earthquakes import (
     Counting,
@@ -22,6 +21,7 @@ from stylobate.earthquakes import (
     property_samples,
 )
 from stylobate.earthquakes.config import FragilityConfig
+from stylobate.earthquakes.fragility_study import describe_parts
 from stylobate.errors import ConfigError
 
 COLUMN = ["--radius", "0.4", "--height", "4", "--density", "2700", "--damping", "0.05"]

@@ -9,7 +9,7 @@ import xarray as xr
 
 import stylobate as sb
 from stylobate.earthquakes import overturning_intervals
-from stylobate.earthquakes.rocking_spectra import Cases
+from stylobate.earthquakes.overturning_scales import Cases
 from stylobate.errors import Interrupted, Outcome, ParameterError, UnlikelyInputWarning, UnsupportedError
 
 C = 0.1

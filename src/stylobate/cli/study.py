@@ -19,7 +19,7 @@ from stylobate.cli.output import (
     axes_of,
     check_writable,
     deliver,
-    open_saved,
+    open_kind,
     print_table,
     provenance_of,
     study_summary,
@@ -70,16 +70,13 @@ def _analyse(function: Callable[..., "xr.Dataset"], options: Options) -> None:
     open_ones = {name: one for name, one in chosen.items() if setup.options.get(name) is None}
     of = setup.model.column if "column" in inspect.signature(function).parameters else setup.model
     result = function(of, setup.motion, **(setup.options | open_ones))
-    deliver(result, options, _save_flags, study.summary, lambda result: _show(*study.tables(result)))
+    deliver(result, options, _save_flags, study.summary, lambda result: show(*study.tables(result)))
 
 
 def _run(function: Callable[..., "xr.Dataset"], study: Study, options: Options) -> None:
     kind = config.study_config(function)
     source = options["source"]
-    saved = open_saved(source)
-    if saved is not None and study.kinds and saved.attrs["kind"] not in study.kinds:
-        remedy = f" {study.remedy}" if _is_store(source) else ""
-        raise FileError(f"{source}: no {study.name} result (got a {saved.attrs['kind']}).{remedy}")
+    saved = open_kind(source, study.name, study.kinds)
 
     def completed(saved: "xr.Dataset") -> "xr.Dataset":
         def setup() -> "Setup":
@@ -114,12 +111,13 @@ def _run(function: Callable[..., "xr.Dataset"], study: Study, options: Options) 
         result,
         options,
         lambda result: study_summary(result, **study.summary(result)),
-        lambda result: _show(study.table(result)),
+        lambda result: show(study.table(result)),
         complete=complete,
     )
 
 
-def _show(*tables: "Table") -> None:
+def show(*tables: "Table") -> None:
+    """Print tables with their remarks."""
     for table in tables:
         if table.header:
             print_table(table.title, table.rows, table.header)

@@ -103,8 +103,8 @@ class Study:
         Options of the model and of the base motion.
     records
         Whether the base motion can be a record.
-    kinds, remedy
-        Kinds of saved results that the command shows, by default all; and the remedy for another one.
+    kinds
+        Kinds of saved results that the command shows, by default all; the store of such a study has bare runs.
     classes
         Classes of the runs, of which the first that a result has count. A study with classes over the axes x and y
         (`stylobate.studies.GRIDS`) is a job of the laboratory too, and a tab of its page.
@@ -135,7 +135,6 @@ class Study:
     motion: Group = MOTION
     records: bool = True
     kinds: tuple[str, ...] = ()
-    remedy: str = ""
     classes: tuple[Classes, ...] = ()
     completed: Complete = lambda saved, *_: saved
     arguments: Callable[[Any, Any], Mapping[str, Any]] = lambda *_: {}

@@ -127,7 +127,6 @@ _FRICTION = Quantity(text="friction coefficient; repeat it for several, each as 
         motion=MOTION_WITHOUT_RECORDS,
         records=False,
         kinds=(KIND,),
-        remedy="The runs of its store are shown by its description, with --output and --resume.",
         repeated=_repeated,
         table=_table,
         summary=_summary,
