@@ -6,7 +6,6 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from stylobate import config, earthquakes
 from stylobate.cli.command import command
 from stylobate.cli.options import Options, overlay, read_source, with_axes
 from stylobate.cli.output import (
@@ -41,7 +40,7 @@ from stylobate.text import plural
 if TYPE_CHECKING:
     import xarray as xr
 
-    from stylobate.earthquakes import FragilityStudy
+    from stylobate.earthquakes.fragility_study import FragilityStudy
 
 _FRAGILITY = Group.of(
     "Fragility",
@@ -120,14 +119,17 @@ def fragility(options: Options) -> None:
 
     stylobate fragility runs.nc --counting first --hazard site.csv
     """
+    from stylobate.earthquakes.config.fragility import FragilityConfig
+    from stylobate.earthquakes.fragility_study import FragilityStudy
+
     complete = True
     check_outputs(options)
     check_writable(options["runs_figure"])
     saved = _saved(options["source"])
     values = _overlay(_described(options) if saved is None else _description(saved, options["source"]), options)
-    description = earthquakes.config.FragilityConfig.parse(values)
+    description = FragilityConfig.parse(values)
     read = is_to_compute(saved, options, shown_with=_OF_FITS)
-    study = earthquakes.FragilityStudy.of(description.build(read=read))
+    study = FragilityStudy.of(description.build(read=read))
     if read:
         runs, complete = _computed(study, options)
         runs = runs.assign_attrs(description=json.dumps(description.values()))
@@ -180,7 +182,9 @@ def _described(options: Options) -> dict[str, Any]:
 
 def _overlay(described: Mapping[str, Any], options: Options) -> dict[str, Any]:
     """Return the values `described`, overridden by the options."""
-    values = overlay(described, options, earthquakes.config.FragilityConfig.model_fields)
+    from stylobate.earthquakes.config.fragility import FragilityConfig
+
+    values = overlay(described, options, FragilityConfig.model_fields)
     if not values.get("motion"):
         values.pop("motion", None)
     return {**values, "records": _records(values.get("records"), options), "fragility": _table(values, options)}
@@ -256,11 +260,12 @@ def _spread(text: str) -> tuple[str, dict[str, Any]]:
 
 def _computed(study: "FragilityStudy", options: Options) -> "tuple[xr.Dataset, bool]":
     from stylobate.base_motions import BASE_AT_REST
+    from stylobate.config.simulation import Setup
 
     def run(_model: Any, _motion: Any, **computing: Any) -> "xr.Dataset":
         return study.runs(**computing)
 
-    return computed(run, config.Setup(study.model, BASE_AT_REST, {}), options)
+    return computed(run, Setup(study.model, BASE_AT_REST, {}), options)
 
 
 def _write(runs: "xr.Dataset", fits: "xr.Dataset", options: Options) -> None:

@@ -20,7 +20,7 @@ from stylobate.earthquakes.study_inputs import remark_on
 from stylobate.errors import ParameterError
 from stylobate.models import Model
 from stylobate.progress import shows_progress
-from stylobate.records import HorizontalComponent
+from stylobate.records.intensities import HorizontalComponent
 from stylobate.results.verdict import damping_yardstick
 from stylobate.run_arguments import RunOptions, takes
 from stylobate.studies.study import Computing

@@ -1,7 +1,7 @@
 from .ensemble import simulate_ensemble
 from .parameters import with_parameters
 from .single import simulate
-from .user_events import EventFunction
+from .trajectory import EventFunction
 
 __all__ = [
     "EventFunction",

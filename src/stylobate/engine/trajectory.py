@@ -1,4 +1,4 @@
-"""Trajectory of one run: a polynomial for each step, from the trace of its kernel; and zeros of event functions on it."""
+"""Trajectory of one run: a polynomial for each step, from the trace of its kernel; zeros of event functions on it."""
 
 import math
 from collections.abc import Callable, Sequence
