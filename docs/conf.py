@@ -122,6 +122,10 @@ nitpick_ignore_regex = [
         r"stylobate\.models\.(model\.ClosedForm|sliding\.balance\.Numbers)",  # inner values of models
         r"stylobate\.plots\.(animation\.drawing|body|figure|geometry|kinds|page)\.\w+",  # parts of figures and reports
         r"stylobate\.base_motions\.record\.RecordOrigin",  # kept for files
+        r"stylobate\.base_motions\.combined\.(Scaled|Rotated|Delayed|Offset)",  # made by methods of motions
+        r"stylobate\.models\.model\.Push|stylobate\.results\.findings\.\w+",  # inner values of models and of the paper
+        r"stylobate\.(earthquakes\.intensities\.Intensity|records\.intensities\.HorizontalComponent)",  # given as texts
+        r"stylobate\.earthquakes\.property_spreads\.Spread",  # any of the spreads
         r"(stylobate\.studies\.sweeps\.(chunks|designs|executors)\.)?(Computed|Design|Task|Work)",  # given by sweeps
         r"stylobate\.earthquakes\.config\.(fragility\.Fragility|hazard\.HazardPoints)",  # shown as tables of keys
         r"starlette\.applications\.Starlette",  # has no inventory of names

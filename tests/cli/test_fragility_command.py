@@ -10,7 +10,6 @@ import stylobate as sb
 from stylobate.cli.main import run
 from stylobate.earthquakes import (
     Counting,
-    FragilityStudy,
     HazardCurve,
     LognormalSpread,
     NormalSpread,
@@ -20,8 +19,8 @@ from stylobate.earthquakes import (
     incremental_dynamic_analysis,
     property_samples,
 )
-from stylobate.earthquakes.config import FragilityConfig
-from stylobate.earthquakes.fragility_study import describe_parts
+from stylobate.earthquakes.config.fragility import FragilityConfig
+from stylobate.earthquakes.fragility_study import FragilityStudy, describe_parts
 from stylobate.errors import ConfigError
 
 COLUMN = ["--radius", "0.4", "--height", "4", "--density", "2700", "--damping", "0.05"]

@@ -4,9 +4,8 @@ import json
 
 import pytest
 
-import stylobate as sb
 from stylobate.cli.main import run
-from stylobate.results import ClaimStatus, Finding, PaperCheck, Section
+from stylobate.results.findings import ClaimStatus, Finding, PaperCheck, Section
 
 
 @pytest.mark.slow
@@ -21,7 +20,7 @@ def test_paper_makes_its_report(tmp_path, capsys):
     html = (folder / "report.html").read_text()
     assert html.count("data:image/png;base64,") == len(pictures) > 10
     assert "http" not in html
-    assert all(sb.results.ClaimStatus(finding["verdict"]) for finding in findings)
+    assert all(ClaimStatus(finding["verdict"]) for finding in findings)
 
 
 def test_an_unconfirmed_claim_ends_with_status_1(monkeypatch, tmp_path, capsys):

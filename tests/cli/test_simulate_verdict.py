@@ -8,7 +8,7 @@ import pytest
 import stylobate as sb
 from stylobate.cli.main import run
 from stylobate.cli.simulate import VerdictOfCase
-from stylobate.config import Setup
+from stylobate.config.simulation import Setup
 
 COLUMN = ["--radius", "0.3", "--height", "3", "--density", "2700", "--model", "wobbling", "--damping", "0.08"]
 PULSE = ["--motion", "one-sine", "--angular-frequency", "4", "--acceleration"]

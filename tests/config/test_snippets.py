@@ -7,7 +7,8 @@ import pytest
 from PIL import Image
 
 import stylobate as sb
-from stylobate.config import SimulationConfig, as_python, as_toml
+from stylobate.config import SimulationConfig
+from stylobate.config.snippets import as_python, as_toml
 from stylobate.lab.options import presets
 
 COLUMN = {"shape": "dimensionless", "slenderness": 0.1}

@@ -11,6 +11,7 @@ from tests.conveying.planar_block import fallen_and_travel
 import stylobate as sb
 from stylobate.cli.main import run
 from stylobate.conveying import Posture, upright
+from stylobate.results.storage import write_netcdf
 from stylobate.studies.proportions import wilson_interval
 
 PIN = sb.Column.solid(radius=0.006, height=0.040, density=7850.0)
@@ -96,7 +97,7 @@ def test_a_phase_of_a_sum_of_vibrations_is_a_delay():
 
 
 def test_it_is_saved_loaded_and_drawn(found, tmp_path):
-    path = sb.results.write_netcdf(found, tmp_path / "posture.nc")
+    path = write_netcdf(found, tmp_path / "posture.nc")
     again = sb.load(path)
     assert again.attrs["verdict"] == found.attrs["verdict"]
     xr.testing.assert_equal(again["share_of_tilt"], found["share_of_tilt"])

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import stylobate as sb
-from stylobate.conveying import RollingRegime
+from stylobate.conveying.slip_limits import RollingRegime
 from stylobate.errors import ParameterError, UnsupportedError
 from stylobate.theory import full_rolling, rolling_required_friction, slipping_rolling
 

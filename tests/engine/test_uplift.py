@@ -10,7 +10,7 @@ from scipy.linalg import expm
 from scipy.optimize import brentq
 
 import stylobate as sb
-from stylobate.models import Push
+from stylobate.models.model import Push
 
 C = 0.1
 COLUMN = sb.Column.dimensionless(C, 0.75, 0.5)

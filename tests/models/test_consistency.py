@@ -11,7 +11,7 @@ import pytest
 
 import stylobate as sb
 from stylobate.errors import ModelError, ParameterError
-from stylobate.models.consistency import check_once
+from stylobate.models.consistency.check import check_once
 
 COLUMN = sb.Column.dimensionless(0.1)
 BODIES = [COLUMN, sb.Column.solid(radius=0.5, height=4.0, density=2700.0)]

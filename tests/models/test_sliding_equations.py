@@ -7,7 +7,8 @@ import pytest
 
 import stylobate as sb
 from stylobate.models.finite_tilt import FADING
-from stylobate.models.sliding import Contact, State
+from stylobate.models.sliding import Contact
+from stylobate.models.sliding.balance import State
 from stylobate.models.sliding.equations import JAM, forces
 
 from .constrained_body import TURNING, VELOCITY

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 import stylobate as sb
-from stylobate.models.sliding import Contact, State
+from stylobate.models.sliding import Contact
+from stylobate.models.sliding.balance import State
 from stylobate.models.sliding.rim_and_base import REST_SPEED
 
 from .constrained_body import PLACE, TURNING, VELOCITY

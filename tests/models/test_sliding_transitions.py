@@ -7,7 +7,8 @@ import pytest
 from scipy.optimize import brentq
 
 import stylobate as sb
-from stylobate.models.sliding import Contact, State
+from stylobate.models.sliding import Contact
+from stylobate.models.sliding.balance import State
 from stylobate.models.sliding.equations import energy_of, forces, height_of, rates_of
 from stylobate.models.sliding.rim_and_base import STARTS, held, lifted, load_direction, opens, slip_rate
 

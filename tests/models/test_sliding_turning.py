@@ -11,7 +11,8 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import stylobate as sb
-from stylobate.models.sliding import Contact, State
+from stylobate.models.sliding import Contact
+from stylobate.models.sliding.balance import State
 from stylobate.models.sliding.rim_and_base import lifted
 
 COLUMN = sb.Column.dimensionless(slenderness=0.3)

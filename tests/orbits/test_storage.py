@@ -8,7 +8,8 @@ import xarray as xr
 
 import stylobate as sb
 from stylobate.errors import FileError, ParameterError
-from stylobate.orbits import bifurcation_curve, continue_branch, load_orbits, periodic_orbit
+from stylobate.orbits import bifurcation_curve, continue_branch, periodic_orbit
+from stylobate.orbits.storage import load_orbits
 
 MODEL = sb.Slender(sb.Column.dimensionless(0.1), damping=0.1)
 CIRCLE = sb.Harmonic.circular(acceleration=0.065, angular_frequency=2.0)

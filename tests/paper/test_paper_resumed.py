@@ -8,7 +8,7 @@ import xarray as xr
 
 from stylobate.errors import FileError
 from stylobate.paper.analyses import check_paper, finished
-from stylobate.results import ClaimStatus, Finding, Section
+from stylobate.results.findings import ClaimStatus, Finding, Section
 
 paper = importlib.import_module("stylobate.paper.analyses")
 

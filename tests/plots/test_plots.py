@@ -9,6 +9,7 @@ from stylobate.errors import FileError, ParameterError
 from stylobate.plots.page import Picture, Section, Table, page
 from stylobate.plots.responses import draw_branch
 from stylobate.plots.style import STABLE_WIDTH, UNSTABLE_WIDTH, new_figure
+from stylobate.results.findings import PaperCheck
 
 MODEL = sb.Slender(sb.Column.dimensionless(0.1), damping=0.1)
 MOTION = sb.Harmonic.circular(acceleration=0.065, angular_frequency=1.8)
@@ -99,4 +100,4 @@ def test_a_folder_that_cannot_be_written_is_told(tmp_path):
     blocked = tmp_path / "file"
     blocked.write_text("")
     with pytest.raises(FileError, match="cannot write into"):
-        sb.paper.paper_report(sb.results.PaperCheck({}), blocked)
+        sb.paper.paper_report(PaperCheck({}), blocked)

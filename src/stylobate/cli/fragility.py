@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from stylobate import config, earthquakes
+from stylobate import config
 from stylobate.base_motions import BASE_AT_REST
 from stylobate.cli.command import command
 from stylobate.cli.options import Options, overlay, read_source, with_axes
@@ -109,14 +109,17 @@ def fragility(options: Options) -> None:
 
     stylobate fragility runs.nc --counting first --hazard site.csv
     """
+    from stylobate.earthquakes.config.fragility import FragilityConfig
+    from stylobate.earthquakes.fragility_study import FragilityStudy
+
     complete = True
     check_outputs(options)
     check_writable(options["runs_figure"])
     saved = open_kind(options["source"], "fragility", ("incremental dynamic analysis",))
     values = _overlay(_described(options) if saved is None else _description(saved, options["source"]), options)
-    description = earthquakes.config.FragilityConfig.parse(values)
+    description = FragilityConfig.parse(values)
     read = is_to_compute(saved, options, shown_with=_OF_FITS)
-    study = earthquakes.FragilityStudy.of(description.build(read=read))
+    study = FragilityStudy.of(description.build(read=read))
     if read:
         setup = config.Setup(study.model, BASE_AT_REST, {})
         runs, complete = computed(lambda _model, _motion, **how: study.runs(**how), setup, options)
@@ -168,7 +171,9 @@ def _described(options: Options) -> dict[str, Any]:
 
 def _overlay(described: Mapping[str, Any], options: Options) -> dict[str, Any]:
     """Return the values `described`, overridden by the options."""
-    values = overlay(described, options, earthquakes.config.FragilityConfig.model_fields)
+    from stylobate.earthquakes.config.fragility import FragilityConfig
+
+    values = overlay(described, options, FragilityConfig.model_fields)
     if not values.get("motion"):
         values.pop("motion", None)
     return {**values, "records": _records(values.get("records"), options), "fragility": _table(values, options)}

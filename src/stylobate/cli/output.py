@@ -10,7 +10,6 @@ from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from stylobate import config, studies
 from stylobate.errors import FileError, ParameterError, require_positive
 from stylobate.files import write_whole
 
@@ -214,8 +213,10 @@ def open_saved(source: Path | None) -> "xr.Dataset | None":
     if not source.exists():
         raise FileError(f"cannot read {source}: No such file or directory")
     if source.suffix == STORE:
-        return relocated(studies.open_sweep(source, load=True), source)
-    from stylobate.results import read_dataset
+        from stylobate.studies.sweeps.store import open_sweep
+
+        return relocated(open_sweep(source, load=True), source)
+    from stylobate.results.storage import read_dataset
 
     data = read_dataset(source)
     if "outcome" not in data.data_vars or "provenance" not in data.attrs or "format" in data.attrs:
@@ -244,7 +245,9 @@ def open_kind(source: Path | None, name: str, kinds: Collection[str]) -> "xr.Dat
 
 def relocated(data: "xr.Dataset", source: Path) -> "xr.Dataset":
     """Return `data` with new paths of records that were moved together with the file."""
-    return data.assign_attrs(provenance=json.dumps(config.relocated(provenance_of(data), source.parent)))
+    from stylobate.config import records
+
+    return data.assign_attrs(provenance=json.dumps(records.relocated(provenance_of(data), source.parent)))
 
 
 def provenance_of(data: "xr.Dataset") -> dict[str, Any]:

@@ -17,7 +17,7 @@ from stylobate.run_arguments import Accuracy, SingleRun, Start
 from stylobate.text import four_digits
 
 if TYPE_CHECKING:
-    from stylobate.config import Setup
+    from stylobate.config.simulation import Setup
     from stylobate.models import Model
     from stylobate.results import Response, Verdict
     from stylobate.results.run_rows import Rows
@@ -65,7 +65,9 @@ class VerdictOfCase:
         why_not = _why_not(setup.model, single=options["single"], asked=runs is not None or table is not None)
         if ends and not why_not:
             given = {name: value for name, value in setup.options.items() if name in _SHARED and value is not None}
-            described = {} if table is None else earthquakes.config.VerdictConfig.of(table)
+            from stylobate.earthquakes.config.verdict import VerdictConfig
+
+            described = {} if table is None else VerdictConfig.of(table)
             arguments = {**given, **described, **({} if runs is None else {"runs": runs})}
             return cls(setup, arguments, "", _saved(options["source"]), figure, output)
         reason = why_not if ends else "a base motion that does not end"
@@ -96,13 +98,14 @@ class VerdictOfCase:
         if verdict is None:
             return [*model, ("outcome", f"{outcome_of(run)} in this run; {self.why_not}")]
         from stylobate.earthquakes.verdict_study import undamped
+        from stylobate.results.verdict import LABELS, percent
 
-        laws = ", ".join(f"{name} {results.percent(share)}" for name, share in verdict.share_by_model.items())
+        laws = ", ".join(f"{name} {percent(share)}" for name, share in verdict.share_by_model.items())
         rows = [*model, ("verdict", str(verdict)), ("by contact law", f"{laws} overturn")]
         if remark := undamped(self.setup.model, (self.arguments or {}).get("variations") or {}):
             rows.append(("warning", remark))
         if verdict.deciding:
-            rows.append(("decided most by", earthquakes.LABELS.get(verdict.deciding, verdict.deciding)))
+            rows.append(("decided most by", LABELS.get(verdict.deciding, verdict.deciding)))
         return [*rows, ("outcome", outcome_of(run) + _remark(run, verdict))]
 
     def title(self, run: "Response", verdict: "Verdict | None") -> str | None:
@@ -157,7 +160,9 @@ def _saved(source: Path | None) -> "Verdict | None":
     """Read a saved verdict; None for any other source."""
     if source is None or source.suffix != NETCDF:
         return None
-    found = results.read_dataset(source)
+    from stylobate.results.storage import read_dataset
+
+    found = read_dataset(source)
     if found.attrs.get("kind") != "verdict":
         return None
     return results.Verdict(relocated(found, source))

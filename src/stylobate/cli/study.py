@@ -32,7 +32,7 @@ from stylobate.kinds import loaded
 if TYPE_CHECKING:
     import xarray as xr
 
-    from stylobate.config import Setup
+    from stylobate.config.simulation import Setup
     from stylobate.results.tables import Table
     from stylobate.studies import Dask, Threads
 
@@ -293,7 +293,7 @@ def computed(study: Callable[..., "xr.Dataset"], setup: "Setup", options: Option
 def save(result: "xr.Dataset", output: Path) -> None:
     """Write a result into a netCDF file; a store already holds its result."""
     if not _is_store(output):
-        from stylobate.results import write_netcdf
+        from stylobate.results.storage import write_netcdf
 
         write_netcdf(result, output)
 
@@ -333,7 +333,9 @@ def executor_of(options: Options) -> "Threads | Dask":
     text, threads = options["executor"], options["threads"]
     if text in (None, "threads"):
         return studies.Threads(threads)
-    chosen = studies.executor_from(str(text))
+    from stylobate.studies.sweeps.dask_executor import executor_from
+
+    chosen = executor_from(str(text))
     if threads is not None:
         raise ParameterError(f"--threads: the workers of {text} have one thread each (got {threads}). Remove it.")
     return chosen

@@ -22,7 +22,7 @@ from stylobate.earthquakes.study_inputs import remark_on
 from stylobate.errors import ParameterError
 from stylobate.models import Model
 from stylobate.progress import shows_progress
-from stylobate.records import HorizontalComponent
+from stylobate.records.intensities import HorizontalComponent
 from stylobate.results.tables import Table, model_named, number_of_runs
 from stylobate.results.verdict import damping_yardstick, few_records, yardstick_text
 from stylobate.run_arguments import RunOptions, takes

@@ -32,7 +32,7 @@ from stylobate.errors import (
     require_whole,
 )
 from stylobate.models import Model
-from stylobate.models.consistency import check_once
+from stylobate.models.consistency.check import check_once
 from stylobate.processes import end_all
 from stylobate.progress import Progress, Report, beat, report_of, shows_progress, silent
 from stylobate.provenance import provenance_of_run

@@ -10,11 +10,12 @@ import numpy as np
 
 from stylobate import config
 from stylobate.base_motions import Record
+from stylobate.config.snippets import as_python, as_toml
 from stylobate.errors import UnlikelyInputWarning
 from stylobate.lab.answers import OF_ANY_COLUMN, ColumnNumbers, Measures, Peaks, Run, RunEvent, Series
 from stylobate.lab.requests import Description
 from stylobate.models import Model
-from stylobate.plots.animation import drawn_motion
+from stylobate.plots.animation.motion import drawn_motion
 from stylobate.results import Response
 from stylobate.results.run_rows import column_rows, damping_rows, measure_rows
 
@@ -52,8 +53,8 @@ def answered_run(run: Response, model: Model, given: Description, remarked: Iter
 def snippets(given: Description) -> dict[str, str]:
     """Return the description as a TOML file and as a Python program."""
     return {
-        "toml": config.as_toml(given.shown),
-        "python": config.as_python(config.SimulationConfig.parse(given.shown)),
+        "toml": as_toml(given.shown),
+        "python": as_python(config.SimulationConfig.parse(given.shown)),
     }
 
 

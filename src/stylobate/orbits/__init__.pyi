@@ -4,7 +4,6 @@ from .branch import Branch, continue_branch, switch_branch
 from .curves import BifurcationCurve, bifurcation_curve
 from .finding import periodic_orbit, periodic_orbits
 from .orbit import PeriodicOrbit
-from .storage import load_orbits
 
 __all__ = [
     "Bifurcation",
@@ -16,7 +15,6 @@ __all__ = [
     "StepControl",
     "bifurcation_curve",
     "continue_branch",
-    "load_orbits",
     "periodic_orbit",
     "periodic_orbits",
     "switch_branch",

@@ -13,7 +13,8 @@ import numpy as np
 import numpy.typing as npt
 
 from stylobate import theory
-from stylobate.base_motions import BaseMotion, Harmonic, as_harmonic
+from stylobate.base_motions import BaseMotion, Harmonic
+from stylobate.base_motions.harmonic import as_harmonic
 from stylobate.column import Column
 from stylobate.engine.flow.integration import Status
 from stylobate.engine.flow.periodic import PeriodicSystem, plane_of, require_periodic

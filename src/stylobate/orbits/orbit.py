@@ -20,7 +20,7 @@ from stylobate.engine.forcing import common_line
 from stylobate.equality import ByContent
 from stylobate.errors import FileError, ParameterError, UnsupportedError
 from stylobate.models import Model
-from stylobate.models.consistency import check_once
+from stylobate.models.consistency.check import check_once
 from stylobate.orbits.shooting import Shots, is_stable
 from stylobate.provenance import provenance_of_run
 from stylobate.results.storage import write_netcdf

@@ -12,7 +12,8 @@ from stylobate.paper import figures
 from stylobate.plots.orbits import plot_exact_response
 from stylobate.plots.page import Picture, Section, Table, page, png_of
 from stylobate.plots.responses import plot_stability_boundary
-from stylobate.results import Finding, PaperCheck, write_netcdf
+from stylobate.results.findings import Finding, PaperCheck
+from stylobate.results.storage import write_netcdf
 
 _TITLE = "A round column on a vibrating base: the source paper reproduced, checked and corrected"
 

@@ -58,7 +58,7 @@ def figure_of(*kinds: str) -> Callable[[_Draw], _Draw]:
     A figure for a study of your own:
 
     >>> from matplotlib.figure import Figure
-    >>> from stylobate.plots import figure_of
+    >>> from stylobate.plots.kinds import figure_of
     >>> @figure_of("peak displacements")
     ... def plot_peak_displacements(data):
     ...     return Figure()

@@ -14,8 +14,9 @@ from tests.studies.sweeps.conftest import MODEL, MOTION
 
 import stylobate as sb
 from stylobate.errors import FileError
-from stylobate.studies.sweeps import Sweep, open_sweep, run_sweep, store
+from stylobate.studies.sweeps import Sweep, run_sweep, store
 from stylobate.studies.sweeps.chunks import CODECS, METADATA, Blocks, Chunks, decoded, encoded
+from stylobate.studies.sweeps.store import open_sweep
 
 FLIPS, EXCHANGES = 400, 25
 

@@ -15,7 +15,8 @@ DRIVER = """
 import os, signal, sys, time
 import numpy as np
 import stylobate as sb
-from stylobate.studies.sweeps import Sweep, executor_from, run_sweep
+from stylobate.studies.sweeps import Sweep, run_sweep
+from stylobate.studies.sweeps.dask_executor import executor_from
 
 def stop(done, total):
     print(done, flush=True)

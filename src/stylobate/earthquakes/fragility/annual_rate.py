@@ -22,7 +22,7 @@ from scipy.special import log_ndtr, ndtr
 from stylobate.cards import Row, Section, card
 from stylobate.earthquakes.fragility.observations import LIMIT_STATE, Floats
 from stylobate.errors import ParameterError, require_positive, require_whole
-from stylobate.records import HorizontalComponent
+from stylobate.records.intensities import HorizontalComponent
 from stylobate.text import four_digits, unit_in_text
 
 _LEAST = 2

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from stylobate.base_motions import BaseMotion, Delayed, Harmonic, Rotated, Scaled, Sum
-from stylobate.base_motions.combined import members_of
+from stylobate.base_motions import BaseMotion, Harmonic
+from stylobate.base_motions.combined import Delayed, Rotated, Scaled, Sum, members_of
 from stylobate.base_motions.declared import is_pulse, numbers_of, stated_numbers
 from stylobate.engine.ensembles.polynomials import Table, one_after_another, tabulated, tabulated_alike
 from stylobate.engine.forcing import least_rest_energy

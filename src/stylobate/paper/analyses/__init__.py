@@ -18,7 +18,7 @@ from stylobate.paper.analyses.straight import check_straight
 from stylobate.paper.analyses.twist import check_twist
 from stylobate.processes import computed
 from stylobate.progress import News, Progress, report_of, shows_progress
-from stylobate.results import PaperCheck, Section
+from stylobate.results.findings import PaperCheck, Section
 
 __all__ = ["check_paper"]
 

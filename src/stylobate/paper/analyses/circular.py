@@ -11,7 +11,7 @@ from stylobate.engine import simulate
 from stylobate.orbits import Bifurcation, Branch, Kind, continue_branch, periodic_orbit, switch_branch
 from stylobate.paper.analyses.setting import CIRCULAR_AMPLITUDES, DAMPING, SLENDERNESS, judged, paper_model
 from stylobate.paper.analyses.straight import AMPLITUDES
-from stylobate.results import ClaimStatus, Finding, Section
+from stylobate.results.findings import ClaimStatus, Finding, Section
 from stylobate.studies.responses.exact_response import exact_response
 from stylobate.studies.responses.response_curves import steady_start
 from stylobate.studies.responses.stability_boundary import stability_boundary

@@ -11,7 +11,7 @@ from pathlib import Path
 import xarray as xr
 
 from stylobate.errors import FileError
-from stylobate.results import ClaimStatus, Finding, Section
+from stylobate.results.findings import ClaimStatus, Finding, Section
 from stylobate.results.keyed_store import KeyedStore
 
 _FINDINGS = "findings"

@@ -10,7 +10,7 @@ from stylobate.base_motions import Harmonic
 from stylobate.engine import simulate
 from stylobate.errors import Outcome
 from stylobate.paper.analyses.setting import SLENDERNESS, judged, paper_model
-from stylobate.results import ClaimStatus, Finding, Section
+from stylobate.results.findings import ClaimStatus, Finding, Section
 
 _C = SLENDERNESS
 

@@ -9,7 +9,7 @@ from stylobate import theory
 from stylobate.base_motions import Harmonic
 from stylobate.engine import simulate
 from stylobate.paper.analyses.setting import DAMPING, SLENDERNESS, judged, paper_model
-from stylobate.results import ClaimStatus, Finding, Section
+from stylobate.results.findings import ClaimStatus, Finding, Section
 from stylobate.theory.planar import planar_kick_slope
 
 _C = SLENDERNESS

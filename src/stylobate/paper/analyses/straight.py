@@ -11,7 +11,8 @@ from stylobate.base_motions import Harmonic
 from stylobate.engine import simulate
 from stylobate.errors import Outcome
 from stylobate.paper.analyses.setting import DAMPING, SLENDERNESS, judged, paper_model
-from stylobate.results import ClaimStatus, Finding, Response, Section
+from stylobate.results import Response
+from stylobate.results.findings import ClaimStatus, Finding, Section
 from stylobate.studies.responses.response_curves import averaged_motion, steady_start
 from stylobate.theory.averaging import high_frequency_rates
 

@@ -14,7 +14,8 @@ from stylobate.engine import simulate
 from stylobate.errors import Outcome
 from stylobate.models import Model, Rolling, SlenderRolling
 from stylobate.paper.analyses.setting import CIRCULAR_AMPLITUDES, DAMPING, SLENDERNESS, judged
-from stylobate.results import ClaimStatus, Finding, Response, Section
+from stylobate.results import Response
+from stylobate.results.findings import ClaimStatus, Finding, Section
 
 A0, NU = CIRCULAR_AMPLITUDES[1], 3.0
 """a0 and ν of these runs."""

@@ -13,7 +13,8 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from stylobate.base_motions import BaseMotion, as_harmonic
+from stylobate.base_motions import BaseMotion
+from stylobate.base_motions.harmonic import as_harmonic
 from stylobate.engine import with_parameters
 from stylobate.engine.flow.integration import Status
 from stylobate.engine.parameters import present_value

@@ -12,8 +12,9 @@ from typing import TYPE_CHECKING, Annotated, Any, TypedDict
 import numpy as np
 import numpy.typing as npt
 
-from stylobate.base_motions import BaseMotion, Harmonic, as_harmonic
+from stylobate.base_motions import BaseMotion, Harmonic
 from stylobate.base_motions.declared import kinds_by_acceleration
+from stylobate.base_motions.harmonic import as_harmonic
 from stylobate.config.options import (
     COLUMN,
     HORIZONTAL_MOTION,
@@ -327,7 +328,7 @@ def averaged_motion(
     >>> model = sb.Slender(sb.Column.dimensionless(slenderness=0.1), damping=0.1)
     >>> motion = sb.Harmonic.straight(acceleration=0.04, angular_frequency=3.0)
     >>> start = sb.studies.steady_start(model, motion)
-    >>> slow = sb.studies.averaged_motion(model, motion, **start, duration=20.0)
+    >>> slow = averaged_motion(model, motion, **start, duration=20.0)
     >>> round(float(slow["amplitude"].max() - slow["amplitude"].min()), 9)
     0.0
     """

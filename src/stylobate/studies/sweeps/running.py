@@ -231,7 +231,7 @@ def run_sweep(
     if executor is not None and not hasattr(executor, "results"):
         raise ParameterError(
             f"executor must be Threads(...) or Dask(...), got {executor!r}. "
-            'Make one from a text by executor_from("dask://host:port")'
+            'Pass Dask(address="tcp://host:port") for the workers of a scheduler'
         )
     if chunk_size is not None:
         chunk_size = require_whole("chunk_size", chunk_size, least=1, most=MOST_RUNS)
