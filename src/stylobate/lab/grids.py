@@ -225,7 +225,8 @@ def case_grid(
     sweep = Sweep.points(_without_height(setup.model), setup.motion, at=_at(values, setup.options["over"]), **options)
 
     def label(runs: xr.Dataset) -> xr.Dataset:
-        return study_of(function).completed(runs, lambda: setup, setup.options)
+        completed: xr.Dataset = study_of(function).completed(runs, lambda: setup, setup.options)
+        return completed
 
     return labelled_sweep(sweep, label, executor=executor, progress=progress)
 
