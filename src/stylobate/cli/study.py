@@ -25,7 +25,7 @@ from stylobate.cli.output import (
     study_summary,
 )
 from stylobate.cli.terminal import INTERRUPTED
-from stylobate.config.study import Analysis, Study, own_options, study_of
+from stylobate.config.study import Analysis, Study, declared_numbers, own_options, study_of
 from stylobate.errors import FileError, Interrupted, ParameterError, StylobateError
 from stylobate.kinds import loaded
 
@@ -43,28 +43,26 @@ _HOW = ("source", "figure", "output", "as_json", "resume", "executor", "threads"
 def study_command(function: Callable[..., "xr.Dataset"]) -> Command:
     """Make the command of a declared study."""
     study = study_of(function)
-    of_file = Positional(text=study.source)
-    if isinstance(study, Analysis):
-        return Command(lambda options: _analyse(function, options), study.help, of_file, (), study.groups)
+    run: Any = _analyse if isinstance(study, Analysis) else _run
     return Command(
-        lambda options: _run(function, study, options),
+        lambda options: run(function, study, options),
         study.help,
-        of_file,
+        Positional(text=study.source),
         tuple(own_options(function).values()),
         tuple(study.groups),
     )
 
 
-def _analyse(function: Callable[..., "xr.Dataset"], options: Options) -> None:
+def _analyse(function: Callable[..., "xr.Dataset"], study: Analysis, options: Options) -> None:
     """Compute a study without a store, write and print its result."""
-    study = study_of(function)
-    for place in (place for name, place in study.instead.items() if options[name]):
-        _analyse(loaded(f"stylobate.{place}"), options)
-        return
+    if study.instead is not None and options[study.instead.key]:
+        function = loaded(study.instead.place)
+        study = study_of(function)
     check_writable(options["figure"], options["output"])
     chosen, kind = study.chosen(options), config.study_config(function)
     values = overlay(read_source(options), options, kind.model_fields)
-    merge(values, study.name, {one.number: options[one.name] for one in options.stated(study.name)})
+    own = {one: options[study.renamed.get(one, one)] for one in declared_numbers(function)}
+    merge(values, study.name, {one: value for one, value in own.items() if value is not None})
     setup = kind.parse(values).build()
     options.refuse_unused()
     open_ones = {name: one for name, one in chosen.items() if setup.options.get(name) is None}

@@ -179,7 +179,9 @@ class Analysis:
     source, help
         Help of the positional argument of the command, and of the command.
     groups
-        Options of the command; the part of an option of the study's own table is the name of the study.
+        Options of the command besides those of the study's own numbers.
+    renamed
+        Options whose argument has another name: the option by the name of the argument.
     numbers
         Group of the numbers at the top of a description, such as `OneRun`.
     arguments
@@ -195,7 +197,7 @@ class Analysis:
     chosen
         Function that checks the options of the command, and returns arguments that the description leaves open.
     instead
-        Options that choose another study in place of this one, with its place, such as "studies:exact_response".
+        A study that the command computes in place of this one.
     """
 
     name: str
@@ -210,7 +212,8 @@ class Analysis:
     read: Callable[[Mapping[str, Any]], Mapping[str, Any]] = lambda values: values
     problems: Callable[[Any], Sequence[str]] = lambda _: ()
     chosen: Callable[[Mapping[str, Any]], Mapping[str, Any]] = lambda _: {}
-    instead: Mapping[str, str] = field(default_factory=dict)
+    renamed: Mapping[str, str] = field(default_factory=dict)
+    instead: Instead | None = None
 
 
 RANDOM = Group.of(
@@ -264,4 +267,4 @@ def several(number: Parameter) -> bool:
 
 
 def _kind(number: Parameter) -> Any:
-    return list[float] if several(number) else int if number.whole else float
+    return list[float] if several(number) else str if number.annotation is str else int if number.whole else float

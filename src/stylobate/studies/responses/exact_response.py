@@ -281,7 +281,7 @@ def _stable_ranges(curves: xr.Dataset, index: int, name: str) -> Iterator[list[s
         RESPONSE,
         arguments=lambda config, _: {"angular_frequency": config.angular_frequency_range},
         chosen=_chosen,
-        instead={},
+        instead=None,
         tables=_tables,
     )
 )

@@ -14,24 +14,9 @@ import numpy.typing as npt
 
 from stylobate.base_motions import BaseMotion, Harmonic, as_harmonic
 from stylobate.base_motions.declared import kinds_by_acceleration
-from stylobate.config.options import (
-    COLUMN,
-    HORIZONTAL_MOTION,
-    MODEL_OF_STEADY_ROLLING,
-    OUTPUT,
-    Group,
-    Option,
-    run_numbers,
-)
-from stylobate.config.study import Analysis
-from stylobate.errors import (
-    ConfigError,
-    ParameterError,
-    UnsupportedError,
-    as_numbers,
-    require_positive,
-    require_vector,
-)
+from stylobate.config.options import COLUMN, HORIZONTAL_MOTION, MODEL_OF_STEADY_ROLLING, OUTPUT, run_numbers
+from stylobate.config.study import Analysis, Instead
+from stylobate.errors import ConfigError, ParameterError, UnsupportedError, as_numbers, require_positive, require_vector
 from stylobate.models import Model, Slender
 from stylobate.models.declared import name_by_symbol
 from stylobate.models.model import ClosedForm, RollingLaw, closed_form_of
@@ -57,6 +42,7 @@ class Frequencies(TypedDict, total=False):
 
 
 FREQUENCIES = run_numbers(Frequencies, panel="Options")
+STEADY_CASE = (COLUMN, MODEL_OF_STEADY_ROLLING, HORIZONTAL_MOTION, OUTPUT)
 
 
 def _with_frequency(values: Mapping[str, Any]) -> Mapping[str, Any]:
@@ -84,7 +70,7 @@ def _problems(config: Any) -> list[str]:
     low, high = config.angular_frequency_range
     if not 0.0 < low < high:
         problems.append(f"angular_frequency_range must rise from above zero, got {low!r} to {high!r} rad/s")
-    for end in (low, high) if 0.0 < low < high else ():
+    for end in (low, high) if not problems else ():
         built("angular_frequency_range", partial(require_positive, "an end", end, "rad/s"), problems)
     built("points", partial(numbers_of(Frequencies)["points"].checked, config.points), problems)
     return problems
@@ -134,20 +120,18 @@ RESPONSE = Analysis(
     stylobate response --exact --slenderness 0.1 --damping 0.1 --motion straight --acceleration 0.13
     --angular-frequency-range 0.8 8 --figure exact.png
     """,
-    groups=(
-        FREQUENCIES,
-        Group.of("Options", Option("exact", "exact periodic orbits and bifurcations, no theory", bool, default=False)),
-        COLUMN,
-        MODEL_OF_STEADY_ROLLING,
-        HORIZONTAL_MOTION,
-        OUTPUT,
-    ),
+    groups=(FREQUENCIES, *STEADY_CASE),
     numbers=Frequencies,
     steady=True,
     read=_with_frequency,
     problems=_problems,
     arguments=_frequencies_of,
-    instead={"exact": "studies:exact_response"},
+    instead=Instead(
+        key="exact",
+        text="exact periodic orbits and bifurcations, no theory",
+        place="stylobate.studies:exact_response",
+        kind="exact response",
+    ),
     tables=_tables,
 )
 
