@@ -16,7 +16,7 @@ import xarray as xr
 import stylobate as sb
 from stylobate.quantities import Quantity, exact_repr
 from stylobate.results import Assessment
-from stylobate.results.findings import ClaimStatus, Finding, PaperCheck, Section
+from stylobate.results.findings import ClaimStatus, Finding, PaperCheck, PaperSection
 from stylobate.results.verdict import percent
 from stylobate.text import four_digits
 
@@ -72,7 +72,7 @@ def assessment(fallen=1):
 
 def check(measured="0.1"):
     found = Finding("section 2", "a statement", measured, ClaimStatus.HOLDS)
-    return PaperCheck({"Two": Section((found,), {"figure": xr.Dataset({"a": ("x", [1.0, np.nan])})})})
+    return PaperCheck({"Two": PaperSection((found,), {"figure": xr.Dataset({"a": ("x", [1.0, np.nan])})})})
 
 
 CASES = {

@@ -5,7 +5,7 @@ import json
 import pytest
 
 from stylobate.cli.main import run
-from stylobate.results.findings import ClaimStatus, Finding, PaperCheck, Section
+from stylobate.results.findings import ClaimStatus, Finding, PaperCheck, PaperSection
 
 
 @pytest.mark.slow
@@ -25,7 +25,7 @@ def test_paper_makes_its_report(tmp_path, capsys):
 
 def test_an_unconfirmed_claim_ends_with_status_1(monkeypatch, tmp_path, capsys):
     doubt = Finding("(1)", "a claim", "a number", ClaimStatus.NOT_CONFIRMED)
-    monkeypatch.setattr("stylobate.paper.check_paper", lambda **_: PaperCheck({"s": Section((doubt,))}))
+    monkeypatch.setattr("stylobate.paper.check_paper", lambda **_: PaperCheck({"s": PaperSection((doubt,))}))
     monkeypatch.setattr("stylobate.paper.paper_report", lambda *_: tmp_path / "report.html")
     assert run(["paper", "--folder", str(tmp_path)]) == 1
     assert "not confirmed here" in capsys.readouterr().out

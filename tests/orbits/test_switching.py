@@ -7,7 +7,7 @@ import pytest
 
 import stylobate as sb
 from stylobate.errors import ParameterError
-from stylobate.orbits import Kind, continue_branch, periodic_orbit, switch_branch
+from stylobate.orbits import BifurcationKind, continue_branch, periodic_orbit, switch_branch
 
 C = 0.1
 
@@ -20,7 +20,7 @@ def asymmetry(orbit):
 
 @pytest.fixture(scope="module")
 def doublings(asymmetric_branches):
-    return [one for one in asymmetric_branches[0.13][0].bifurcations if one.kind is Kind.PERIOD_DOUBLING]
+    return [one for one in asymmetric_branches[0.13][0].bifurcations if one.kind is BifurcationKind.PERIOD_DOUBLING]
 
 
 @pytest.fixture(scope="module")
@@ -95,7 +95,7 @@ def test_the_asymmetric_orbit_doubles_its_period(doublings):
 
 
 def test_both_images_double_at_the_same_frequency(asymmetric_branches, doublings):
-    image = [one for one in asymmetric_branches[0.13][1].bifurcations if one.kind is Kind.PERIOD_DOUBLING]
+    image = [one for one in asymmetric_branches[0.13][1].bifurcations if one.kind is BifurcationKind.PERIOD_DOUBLING]
     assert image[0].parameter == pytest.approx(doublings[0].parameter, abs=1e-9)
     assert image[0].supercritical
 
@@ -179,7 +179,7 @@ def test_a_family_ends_where_its_path_meets_the_upright():
     motion = sb.Harmonic.straight(acceleration=0.13, angular_frequency=3.0)
     rolling = sb.orbits.continue_branch(sb.orbits.periodic_orbit(model, motion), "angular_frequency", bounds=(1.2, 4.0))
     family = sb.orbits.switch_branch(rolling.bifurcations[-1], bounds=(0.8, 4.0))
-    assert family.ends[1] is sb.orbits.End.LOST
+    assert family.ends[1] is sb.orbits.BranchEnd.LOST
     points = family.points
     assert set(points["turns"].values) == {1.0}
     assert float(points["angular_frequency"][-1]) == pytest.approx(0.9787, abs=1e-3)

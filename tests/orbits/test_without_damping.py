@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import stylobate as sb
-from stylobate.orbits import Kind, continue_branch, periodic_orbit
+from stylobate.orbits import BifurcationKind, continue_branch, periodic_orbit
 
 C, A0 = 0.1, 0.065
 MODEL = sb.Slender(sb.Column.dimensionless(C), damping=0.0)
@@ -71,6 +71,6 @@ def test_without_damping_a_pitchfork_is_neither_soft_nor_hard():
     """Straight-line rolling has one at every friction; nothing that is born there can attract."""
     motion = sb.Harmonic.straight(acceleration=0.04, angular_frequency=2.0)
     branch = continue_branch(periodic_orbit(MODEL, motion), "angular_frequency", bounds=(1.0, 2.0))
-    (pitchfork,) = (one for one in branch.bifurcations if one.kind is Kind.PITCHFORK)
+    (pitchfork,) = (one for one in branch.bifurcations if one.kind is BifurcationKind.PITCHFORK)
     assert pitchfork.supercritical is None
     assert math.isnan(pitchfork.coefficient)

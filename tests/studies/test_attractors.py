@@ -13,7 +13,7 @@ from stylobate.studies.maps.attractor_search import (
     UNSETTLED,
     Attractor,
     AttractorRules,
-    Found,
+    FoundAttractors,
     OrbitScales,
     cycle_distance,
     find_attractors,
@@ -229,7 +229,9 @@ def test_turns_are_counted_along_the_path_of_an_orbit():
 
 def test_orbits_whose_turns_become_known_are_named_and_listed_anew():
     unknown = [replace(attractor("rolling anticlockwise", place, 3), turns=np.nan) for place in (2.0, 1.0)]
-    found, order = with_turns(Found((*unknown,), np.array([0, 1, 1, UNSETTLED])), np.array([0.0, 1.0 / 3.0]), 3e-2)
+    found, order = with_turns(
+        FoundAttractors((*unknown,), np.array([0, 1, 1, UNSETTLED])), np.array([0.0, 1.0 / 3.0]), 3e-2
+    )
     assert [(one.kind, one.turns) for one in found.attractors] == [
         ("rolling anticlockwise", 1.0 / 3.0),
         ("rocking", 0.0),
@@ -240,7 +242,7 @@ def test_orbits_whose_turns_become_known_are_named_and_listed_anew():
 
 def test_unsettled_runs_widen_the_intervals_of_the_fractions_upwards():
     labels = np.array([0] * 6 + [1] * 2 + [UNSETTLED] * 2)
-    found = shares(Found((attractor("rocking", 1.0), attractor("rocking", 2.0)), labels), 0.95)
+    found = shares(FoundAttractors((attractor("rocking", 1.0), attractor("rocking", 2.0)), labels), 0.95)
     # Of what has not settled, listed last, nothing is open.
     np.testing.assert_array_equal(found["fraction_low"], wilson_interval([6, 2, 2], 10)[0])
     np.testing.assert_array_equal(found["fraction_high"], wilson_interval([8, 4, 2], 10)[1])

@@ -149,7 +149,7 @@ def read_source(options: Options, source: Path | None = None) -> dict[str, Any]:
         from stylobate.config.records import relocated
 
         saved = studies.load(source)
-        loaded = saved if isinstance(saved, results.Verdict) else results.Response.load(source)
+        loaded = saved if isinstance(saved, results.Verdict) else results.Run.load(source)
         return config.config_of(relocated(loaded.provenance, source.parent)).values()
     return config.read_config(source, options.files.get(source))
 

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
     from stylobate.config.simulation import Setup
-    from stylobate.results.tables import Table
+    from stylobate.results.tables import ResultTable
     from stylobate.studies import Dask, Threads
 
 # Options that do not change the runs.
@@ -114,7 +114,7 @@ def _run(function: Callable[..., "xr.Dataset"], study: Study, options: Options) 
     )
 
 
-def show(*tables: "Table") -> None:
+def show(*tables: "ResultTable") -> None:
     """Print tables with their remarks."""
     for table in tables:
         if table.header:

@@ -30,7 +30,7 @@ from stylobate.run_arguments import SharedByRuns
 if TYPE_CHECKING:
     import xarray as xr
 
-    from stylobate.results.tables import Table
+    from stylobate.results.tables import ResultTable
 
 
 Complete = Callable[["xr.Dataset", Callable[[], Any], Mapping[str, Any]], "xr.Dataset"]
@@ -120,7 +120,7 @@ class Study:
     name: str
     source: str
     help: str
-    table: "Callable[[xr.Dataset], Table]"
+    table: "Callable[[xr.Dataset], ResultTable]"
     summary: "Callable[[xr.Dataset], dict[str, Any]]"
     axes: tuple[str, ...] = ()
     scales: bool = False
@@ -205,7 +205,7 @@ class Analysis:
     groups: tuple[Group, ...]
     numbers: type
     arguments: Callable[[Any, Any], Mapping[str, Any]]
-    tables: "Callable[[xr.Dataset], Sequence[Table]]"
+    tables: "Callable[[xr.Dataset], Sequence[ResultTable]]"
     summary: "Callable[[xr.Dataset], dict[str, Any]]" = plain_variables
     steady: bool = False
     read: Callable[[Mapping[str, Any]], Mapping[str, Any]] = lambda values: values

@@ -11,7 +11,7 @@ from stylobate.config.axis import Axis, Scales
 from stylobate.config.description import Config, built
 from stylobate.config.simulation import (
     OF_OTHER_COMMANDS,
-    Case,
+    CaseConfig,
     ManyRuns,
     Setup,
     SimulationConfig,
@@ -133,7 +133,7 @@ class StudyConfig(ManyRuns):
         return setup
 
 
-class AnalysisConfig(Case):
+class AnalysisConfig(CaseConfig):
     """A study that is computed at once: `column`, `model`, `motion`, numbers at the top, and the table of the study."""
 
     study: ClassVar[Analysis]

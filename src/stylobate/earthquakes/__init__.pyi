@@ -4,7 +4,7 @@ from .config.assess import AssessConfig
 from .figures.incremental import plot_directions
 from .figures.spectra import plot_records
 from .fragility.annual_rate import HazardCurve, annual_rate
-from .fragility.dispersion import Samples, dispersion_parts
+from .fragility.dispersion import SampleDesign, dispersion_parts
 from .fragility.fit import fit_fragility, fragility_of_runs, lognormal_fragility
 from .fragility.likelihood import FitStatus
 from .fragility.observations import Counting, limit_states, reached_intervals
@@ -31,7 +31,7 @@ __all__ = [
     "LogUniformSpread",
     "LognormalSpread",
     "NormalSpread",
-    "Samples",
+    "SampleDesign",
     "SpectralAcceleration",
     "UniformSpread",
     "annual_rate",

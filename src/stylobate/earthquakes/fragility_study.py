@@ -23,7 +23,7 @@ from stylobate.errors import ParameterError
 from stylobate.models import Model
 from stylobate.progress import shows_progress
 from stylobate.records.intensities import HorizontalComponent
-from stylobate.results.tables import Table, model_named, number_of_runs
+from stylobate.results.tables import ResultTable, model_named, number_of_runs
 from stylobate.results.verdict import damping_yardstick, few_records, yardstick_text
 from stylobate.run_arguments import RunOptions, takes
 from stylobate.studies.study import Computing
@@ -284,7 +284,9 @@ def _row(fits: xr.Dataset, rates: xr.Dataset | None, place: int) -> dict[str, An
     return row
 
 
-def table_of_fits(runs: xr.Dataset, fits: xr.Dataset, parts: xr.Dataset | None, rates: xr.Dataset | None) -> Table:
+def table_of_fits(
+    runs: xr.Dataset, fits: xr.Dataset, parts: xr.Dataset | None, rates: xr.Dataset | None
+) -> ResultTable:
     """Make a table of the fits: a row for each limit state, and remarks."""
     unit = _BRACKETED.get(str(fits["median"].attrs.get("units")), "")
     header = ["limit state", f"median{unit}", "dispersion", "reached", "not monotonic"]
@@ -309,7 +311,7 @@ def table_of_fits(runs: xr.Dataset, fits: xr.Dataset, parts: xr.Dataset | None, 
         remarks.append(describe_parts(parts))
     if rates is not None:
         remarks += [*_of_hazard(rates), *_remarks_on_rates(rows)]
-    return Table(title, header, [_cells(row) for row in rows], remarks)
+    return ResultTable(title, header, [_cells(row) for row in rows], remarks)
 
 
 _BRACKETED = {"m s-2": " [m/s²]", "m s-1": " [m/s]"}

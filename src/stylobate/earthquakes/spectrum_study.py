@@ -14,7 +14,7 @@ from stylobate.errors import ConfigError, ParameterError, require_whole
 from stylobate.models import Model
 from stylobate.quantities import Quantity
 from stylobate.results.outcomes import NOT_COMPUTED, outcome_label
-from stylobate.results.tables import Table, model_named
+from stylobate.results.tables import ResultTable, model_named
 from stylobate.studies.study import RunsOfOwnLength, options_of, study
 from stylobate.text import plural
 
@@ -40,7 +40,7 @@ def _summary(result: "xr.Dataset") -> dict[str, Any]:
     return {"cases": cases, **{name: result.attrs[name] for name in _ACCURACY if name in result.attrs}}
 
 
-def _table(result: "xr.Dataset") -> Table:
+def _table(result: "xr.Dataset") -> ResultTable:
     return _table_of_intervals(result) if result.attrs["kind"] == _INTERVALS else _table_of_peaks(result)
 
 
@@ -76,7 +76,7 @@ def _peaks(result: "xr.Dataset") -> list[dict[str, Any]]:
     return rows
 
 
-def _table_of_intervals(result: "xr.Dataset") -> Table:
+def _table_of_intervals(result: "xr.Dataset") -> ResultTable:
     rows = sorted(_intervals(result), key=_least) if result["intervals"].size > _ROWS else _intervals(result)
     dims = [str(dim) for dim in result["intervals"].dims]
     table = [
@@ -92,7 +92,7 @@ def _table_of_intervals(result: "xr.Dataset") -> Table:
     title += [f"the {_FIRST} that overturn first"] if len(rows) > _ROWS else []
     unknown = int(result["unknown"].sum())
     title += [f"{unknown} of {plural(result['outcome'].size, 'run')} without an answer"] if unknown else []
-    return Table("; ".join([*title, result.attrs["resolution"]]), header, table)
+    return ResultTable("; ".join([*title, result.attrs["resolution"]]), header, table)
 
 
 def _least(row: Mapping[str, Any]) -> float:
@@ -106,7 +106,7 @@ def _interval(interval: Mapping[str, Any]) -> str:
     return f"{low}{interval['interval_from']:.4g} {high}{sure}"
 
 
-def _table_of_peaks(result: "xr.Dataset") -> Table:
+def _table_of_peaks(result: "xr.Dataset") -> ResultTable:
     rows = _peaks(result)
     if len(rows) > _ROWS:
         rows = sorted(rows, key=lambda row: -row["peak_tilt_ratio"] if row["outcome"] != "overturned" else -1e9)[
@@ -117,7 +117,7 @@ def _table_of_peaks(result: "xr.Dataset") -> Table:
     table = [tuple(_written(row[name]) for name in (*dims, *names)) for row in rows]
     shown = f"; the {len(rows)} that rock most" if len(rows) < result["outcome"].size else ""
     header = (*dims, "2π/p [s]", "outcome", "peak tilt / α", "peak rate of tilt / p")
-    return Table(f"{plural(result['outcome'].size, 'case')}, {model_named(result)}{shown}", header, table)
+    return ResultTable(f"{plural(result['outcome'].size, 'case')}, {model_named(result)}{shown}", header, table)
 
 
 def _written(value: Any) -> str:

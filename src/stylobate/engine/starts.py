@@ -90,7 +90,7 @@ class Turning:
 
 
 @dataclass(frozen=True, slots=True)
-class Start:
+class RunStart:
     """Initial conditions of a single run (tilt [rad], tilt rate [rad/s], others), and its duration [s]."""
 
     tilt: tuple[float, float]

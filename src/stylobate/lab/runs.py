@@ -16,7 +16,7 @@ from stylobate.lab.answers import OF_ANY_COLUMN, ColumnNumbers, Measures, Peaks,
 from stylobate.lab.requests import Description
 from stylobate.models import Model
 from stylobate.plots.animation.motion import drawn_motion
-from stylobate.results import Response
+from stylobate.results import Run as FinishedRun
 from stylobate.results.run_rows import column_rows, damping_rows, measure_rows
 
 _HISTORIES = (
@@ -25,7 +25,7 @@ _HISTORIES = (
 )
 
 
-def answered_run(run: Response, model: Model, given: Description, remarked: Iterable[str] = ()) -> Run:
+def answered_run(run: FinishedRun, model: Model, given: Description, remarked: Iterable[str] = ()) -> Run:
     """Convert a run to the answer: outcome, histories and motion to draw."""
     return Run(
         **snippets(given),
@@ -65,7 +65,7 @@ def column_numbers(model: Model) -> ColumnNumbers:
     return ColumnNumbers({**found, "uplift_acceleration": column.slenderness * column.gravity})
 
 
-def _series(run: Response, model: Model) -> Series:
+def _series(run: FinishedRun, model: Model) -> Series:
     """Return the histories for the page: numbers over time, and displacements along the plane from the start."""
     data = run.data
     histories: dict[str, Any] = {name: data[name].to_numpy() for name in _HISTORIES if name in data}

@@ -1,5 +1,5 @@
-from .arclength import End, StepControl
-from .bifurcations import Bifurcation, Kind
+from .arclength import BranchEnd, StepControl
+from .bifurcations import Bifurcation, BifurcationKind
 from .branch import Branch, continue_branch, switch_branch
 from .curves import BifurcationCurve, bifurcation_curve
 from .finding import periodic_orbit, periodic_orbits
@@ -8,9 +8,9 @@ from .orbit import PeriodicOrbit
 __all__ = [
     "Bifurcation",
     "BifurcationCurve",
+    "BifurcationKind",
     "Branch",
-    "End",
-    "Kind",
+    "BranchEnd",
     "PeriodicOrbit",
     "StepControl",
     "bifurcation_curve",

@@ -2,8 +2,8 @@ from .assessment import Assessment
 from .known_orbits import KnownOrbit
 from .outcomes import ContactClass
 from .report_details import DesignSpectrum, ReportDetails
-from .response import Event, Response
 from .rules import OutcomeRules
+from .run import Event, Run
 from .tables import to_dataframe
 from .verdict import Verdict, VerdictWord
 
@@ -15,7 +15,7 @@ __all__ = [
     "KnownOrbit",
     "OutcomeRules",
     "ReportDetails",
-    "Response",
+    "Run",
     "Verdict",
     "VerdictWord",
     "to_dataframe",

@@ -35,14 +35,14 @@ from stylobate.provenance import provenance_of_run
 from stylobate.quantities import Quantity
 from stylobate.results.outcomes import outcome_attributes, outcome_label
 from stylobate.results.plain import plain_variables
-from stylobate.results.tables import Table
+from stylobate.results.tables import ResultTable
 from stylobate.run_arguments import Accuracy, OneRun, duration_with_tail, numbers_of
 from stylobate.studies.study import analysis
 
 if TYPE_CHECKING:
     import xarray as xr
 
-    from stylobate.results import Response
+    from stylobate.results import Run
 
 
 class HierarchyArguments(Accuracy, total=False):
@@ -113,7 +113,7 @@ class Case:
 
     def run(
         self, model: Model, duration: float, friction_coefficient: float | None, arguments: Mapping[str, Any]
-    ) -> "Response":
+    ) -> "Run":
         """Run one model; a model without spin starts without spin."""
         return engine.simulate(
             model,
@@ -140,7 +140,7 @@ _TIMES_COMPARED = 400
 class Course:
     """A run and its requested duration [s]; a run that came to rest early stands until the end."""
 
-    run: "Response"
+    run: "Run"
     duration: float
 
     def history(self, time: Floats) -> tuple[Floats, Floats]:
@@ -228,7 +228,7 @@ def _chosen(options: Mapping[str, Any]) -> Mapping[str, Any]:
 _DRAWN = 4000
 
 
-def _tables(result: "xr.Dataset") -> list[Table]:
+def _tables(result: "xr.Dataset") -> list[ResultTable]:
     several = "slenderness" in result.dims
     rows = []
     for index in range(result.sizes["slenderness"] if several else 1):
@@ -247,7 +247,7 @@ def _tables(result: "xr.Dataset") -> list[Table]:
     warned = zip(shown["model"].to_numpy(), shown["warnings"].to_numpy(), strict=True)
     remarks += [f"{model}: {line}" for model, line in warned if line]
     distance = f"distance: maximum deviation of the tilt vector from {result.attrs['reference']}"
-    return [Table(f"tilts over c; late: the last fifth of the run; {distance}", header, rows, remarks)]
+    return [ResultTable(f"tilts over c; late: the last fifth of the run; {distance}", header, rows, remarks)]
 
 
 _HEADER = ("model", "outcome", "peak tilt", "late mean", "spin rad/s", "friction", "pivoting", "min N", "distance")
@@ -475,7 +475,7 @@ _MEASURES = {
 _DIFFERENT = ("peak_tilt", "mean_late_tilt", "peak_friction_demand", "peak_pivoting_demand")
 
 
-def _compared(case: Case, runs: "Sequence[Response]", time: Floats, duration: float) -> "xr.Dataset":
+def _compared(case: Case, runs: "Sequence[Run]", time: Floats, duration: float) -> "xr.Dataset":
     """Summarise the `runs` of all models of a case."""
     import xarray as xr
 

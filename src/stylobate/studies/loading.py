@@ -14,7 +14,7 @@ from stylobate.studies.sweeps.store import open_sweep
 Orbits = orbits.PeriodicOrbit | orbits.Branch | orbits.BifurcationCurve
 
 
-Result = results.Response | results.Verdict | results.Assessment | Orbits | xr.Dataset
+Result = results.Run | results.Verdict | results.Assessment | Orbits | xr.Dataset
 
 
 def load(path: str | Path) -> Result:
@@ -27,7 +27,7 @@ def load(path: str | Path) -> Result:
 
     Returns
     -------
-    Response, Verdict, PeriodicOrbit, Branch, BifurcationCurve, Assessment or xarray.Dataset
+    Run, Verdict, PeriodicOrbit, Branch, BifurcationCurve, Assessment or xarray.Dataset
         The saved result; the result of a study or a sweep is a Dataset. Variables of a store are read on first use.
 
     Raises
@@ -45,8 +45,8 @@ def load(path: str | Path) -> Result:
     written = str(data.attrs.get("format", ""))
     if written.startswith("stylobate assessment"):
         return results.Assessment.load(path)
-    if written.startswith("stylobate response"):
-        return results.Response.load(path)
+    if written.startswith("stylobate run"):
+        return results.Run.load(path)
     if written.startswith("stylobate "):
         return load_orbits(path)
     if data.attrs.get("kind") == KIND:

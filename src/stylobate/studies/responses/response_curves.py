@@ -23,7 +23,7 @@ from stylobate.models.declared import name_by_symbol
 from stylobate.models.model import ClosedForm, RollingLaw, closed_form_of
 from stylobate.provenance import provenance_of_run
 from stylobate.quantities import Quantity, states
-from stylobate.results.tables import Table
+from stylobate.results.tables import ResultTable
 from stylobate.run_arguments import Argument, numbers_of
 from stylobate.studies.study import analysis
 
@@ -82,7 +82,7 @@ def _frequencies_of(config: Any, _: object) -> dict[str, Any]:
     return {"angular_frequency": np.linspace(low, high, config.points)}
 
 
-def _tables(curves: "xr.Dataset") -> list[Table]:
+def _tables(curves: "xr.Dataset") -> list[ResultTable]:
     shown = np.unique(np.linspace(0, curves.sizes["angular_frequency"] - 1, _ROWS).round().astype(int))
     senses = curves["sense"].to_numpy()
     columns = [(sense, branch) for sense in senses for branch in curves["branch"].to_numpy()]
@@ -95,7 +95,7 @@ def _tables(curves: "xr.Dataset") -> list[Table]:
     known = zip(senses, curves["critical_frequency"].to_numpy(), strict=True)
     critical = ", ".join(f"{float(value):.6f} rad/s ({sense})" for sense, value in known)
     exact = "averaged: the full motion may overturn where this is stable" if curves.attrs["averaged"] else "exact"
-    return [Table(f"stable where marked * ({exact}); critical frequency {critical}", header, rows)]
+    return [ResultTable(f"stable where marked * ({exact}); critical frequency {critical}", header, rows)]
 
 
 _ROWS = 17
@@ -363,20 +363,20 @@ _SMALLEST, _LARGEST = 1e-6, 100.0
 _BRANCHES = ("upper", "lower")
 
 
-class Start(TypedDict):
+class SteadyStart(TypedDict):
     """Initial condition of a run, as keyword arguments of `simulate`."""
 
     tilt: tuple[float, float]
     tilt_rate: tuple[float, float]
 
 
-class TurningStart(Start):
+class TurningStart(SteadyStart):
     """Initial condition of a column with axial rotation (spin)."""
 
     spin: float
 
 
-def steady_start(model: Model, motion: Harmonic, *, branch: str = "upper", sense: int | None = None) -> Start:
+def steady_start(model: Model, motion: Harmonic, *, branch: str = "upper", sense: int | None = None) -> SteadyStart:
     """Compute the initial condition of steady rolling under a harmonic motion without ramp.
 
     It is exact for circular motion and averaged for elliptic and straight motion: (8) for the slender model, and
@@ -396,7 +396,7 @@ def steady_start(model: Model, motion: Harmonic, *, branch: str = "upper", sense
 
     Returns
     -------
-    Start
+    SteadyStart
         `tilt` [rad], `tilt_rate` [rad/s]. For a model with a spin a `TurningStart`, which also has `spin` [rad/s].
 
     Raises

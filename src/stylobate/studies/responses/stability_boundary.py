@@ -19,7 +19,7 @@ from stylobate.parameter_quantities import attributes_of, quantity_of
 from stylobate.progress import Progress, report_of, shows_progress
 from stylobate.provenance import provenance_of_run
 from stylobate.results.outcomes import LOSSES
-from stylobate.results.tables import Table
+from stylobate.results.tables import ResultTable
 from stylobate.studies.responses.response_curves import FREQUENCIES, RESPONSE, STEADY_CASE, response_curves
 from stylobate.studies.study import analysis
 from stylobate.text import plural
@@ -62,7 +62,7 @@ def _chosen(options: Mapping[str, Any]) -> Mapping[str, Any]:
     return {"parameter": parameter, "bounds": bounds.read(options["bounds"]), "values": options["at"]}
 
 
-def _tables(result: "xr.Dataset") -> list[Table]:
+def _tables(result: "xr.Dataset") -> list[ResultTable]:
     parameter = str(result.attrs["parameter"])
     name = parameter.replace("_", " ")
     if not result.sizes["curve_index"]:
@@ -71,7 +71,7 @@ def _tables(result: "xr.Dataset") -> list[Table]:
             f"no loss of stability was found: rolling is {result.attrs['rolling']} wherever it was found from "
             f"{low:.6g} to {high:.6g} rad/s and {name} {least:.6g} to {most:.6g}"
         )
-        return [Table("", (), (), (none,))]
+        return [ResultTable("", (), (), (none,))]
     unit = str(result[parameter].attrs.get("units", "")).replace(" s-2", "/s²").replace(" s-1", "/s")
     rows = []
     for index, kind in enumerate(result["curve_kind"].to_numpy()):
@@ -82,7 +82,7 @@ def _tables(result: "xr.Dataset") -> list[Table]:
             loss = LOSSES[int(at["supercritical"])]
             rows.append([str(kind), f"{float(at['angular_frequency']):.8g} rad/s", value, loss])
     title = f"{plural(result.sizes['curve_index'], 'curve')}, a few points of each"
-    return [Table(title, ("bifurcation", "Ω", name, "loss of stability"), rows)]
+    return [ResultTable(title, ("bifurcation", "Ω", name, "loss of stability"), rows)]
 
 
 _ROWS_OF_A_CURVE = 9
@@ -236,7 +236,7 @@ def losses(branch: "Branch") -> "list[Bifurcation]":
     """Return the bifurcations of a branch at which stability is lost or gained."""
     from stylobate.orbits.shooting import is_stable
 
-    kinds = orbits.Kind
+    kinds = orbits.BifurcationKind
     followed = (kinds.FOLD, kinds.PITCHFORK, kinds.PERIOD_DOUBLING, kinds.NEIMARK_SACKER)
     found = []
     for one in branch.bifurcations:
