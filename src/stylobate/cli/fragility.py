@@ -5,7 +5,6 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from stylobate import config
 from stylobate.base_motions import BASE_AT_REST
 from stylobate.cli.command import command
 from stylobate.cli.options import Options, overlay, read_source, with_axes
@@ -121,7 +120,9 @@ def fragility(options: Options) -> None:
     read = is_to_compute(saved, options, shown_with=_OF_FITS)
     study = FragilityStudy.of(description.build(read=read))
     if read:
-        setup = config.Setup(study.model, BASE_AT_REST, {})
+        from stylobate.config.simulation import Setup
+
+        setup = Setup(study.model, BASE_AT_REST, {})
         runs, complete = computed(lambda _model, _motion, **how: study.runs(**how), setup, options)
         runs = runs.assign_attrs(description=json.dumps(description.values()))
     else:
