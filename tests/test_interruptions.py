@@ -69,6 +69,7 @@ def test_a_branch_is_kept_as_far_as_it_was_continued(branch, tmp_path, after):
     assert sb.load(partial.save(tmp_path / "branch.nc")).ends == partial.ends
 
 
+@pytest.mark.slow
 def test_a_curve_of_bifurcations_is_kept_as_far_as_it_was_continued(branch):
     arguments = (branch.bifurcations[0], "acceleration")
     bounds = ((1.3, 1.5), (0.06, 0.07))
@@ -88,6 +89,7 @@ def test_a_response_keeps_its_branches():
     assert partial.sizes["point"] >= 5
 
 
+@pytest.mark.slow
 def test_a_boundary_keeps_its_curves():
     arguments = {"bounds": (0.05, 0.08), "angular_frequency": (1.0, 3.0), "values": [0.065, 0.07]}
     partial = stopped(sb.studies.stability_boundary, SLENDER, CIRCLE, **arguments, after=2)

@@ -78,6 +78,7 @@ def folder(tmp_path):
     return tmp_path
 
 
+@pytest.mark.slow
 def test_options_run_what_python_runs(folder, capsys, saved):
     drawn = [folder / "fits.png", folder / "runs.png"]
     made = ["--output", str(folder / "runs.nc"), "--figure", str(drawn[0]), "--runs-figure", str(drawn[1])]
@@ -133,6 +134,7 @@ def test_a_described_study_is_that_of_its_parts(folder):
 HAZARD = {"intensity": [0.5, 2.0, 8.0], "rate": [1e-2, 1e-3, 5e-5], "component": "RotD50"}
 
 
+@pytest.mark.slow
 def test_saved_runs_are_fitted_anew_and_repeated(folder, capsys, saved, monkeypatch):
     monkeypatch.chdir(folder)
     assert run(["fragility", "study.toml", "--output", "runs.nc"]) == 0
@@ -152,6 +154,7 @@ def test_saved_runs_are_fitted_anew_and_repeated(folder, capsys, saved, monkeypa
     np.testing.assert_allclose(saved(other)["damping"], 2.0 * saved(folder / "runs.nc")["damping"])
 
 
+@pytest.mark.slow
 def test_a_rate_beyond_the_hazard_is_not_told_as_a_fact(folder, capsys, monkeypatch):
     monkeypatch.chdir(folder)
     assert run(["fragility", "study.toml", "--output", "runs.nc"]) == 0
@@ -166,6 +169,7 @@ def test_a_rate_beyond_the_hazard_is_not_told_as_a_fact(folder, capsys, monkeypa
     assert states["overturning"]["rate_high"] < 0.011
 
 
+@pytest.mark.slow
 def test_probabilities_of_exceedance_are_read_as_such_and_the_table_says_so(folder, capsys, monkeypatch):
     monkeypatch.chdir(folder)
     assert run(["fragility", "study.toml", "--output", "runs.nc"]) == 0

@@ -144,6 +144,7 @@ def test_another_sweep_does_not_go_on_with_a_store(tmp_path, capsys):
     assert "rtol was 1e-08, is 1e-06" in capsys.readouterr().err
 
 
+@pytest.mark.slow
 def test_the_method_is_that_of_the_option_and_told_with_the_map(tmp_path, capsys, saved):
     path = tmp_path / "map.nc"
     assert run([*MAP, "--method", "taylor", "--output", str(path), "--json"]) == 0

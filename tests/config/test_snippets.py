@@ -128,6 +128,7 @@ PRESETS = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("preset", PRESETS)
 def test_the_program_of_a_preset_shows_what_the_preset_says_and_draws_it(preset, folder):
     run = run_by(as_python(SimulationConfig.parse(preset.description)))

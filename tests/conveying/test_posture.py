@@ -187,6 +187,7 @@ def expect_alike(ours, others, phases):
     assert (np.abs(ours - others) <= 3.0 * np.sqrt(2.0 * phases * share * (1.0 - share))).all()
 
 
+@pytest.mark.slow
 def test_a_block_by_time_stepping_falls_as_often():
     ours, others = planar_counts([0.01], 64, periods=30, steps=100)
     assert ours.min() > 0
@@ -226,6 +227,7 @@ def test_it_needs_a_contact_that_slips_and_a_period():
         upright(PART, sb.Pulse.one_sine(acceleration=3.0, angular_frequency=30.0))
 
 
+@pytest.mark.slow
 def test_the_command_saves_shows_and_repeats_the_study(tmp_path, capsys, found):
     path, drawn = tmp_path / "posture.nc", tmp_path / "posture.png"
     part = ["--radius", "0.006", "--height", "0.04", "--density", "7850", "--friction-coefficient", "0.2"]

@@ -24,6 +24,7 @@ def test_it_loads_without_an_error_and_without_a_request_to_elsewhere(watched):
     assert watched.page.get_by_text("once round in each of the last 10 periods").is_visible()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("preset", ["spin-up", "shaker", "conveyor", "averaging-fails"])
 def test_the_motion_drawn_is_the_motion_computed(watched, preset):
     described = PRESETS[preset]
@@ -216,6 +217,7 @@ def test_every_control_has_a_name(watched):
     assert nameless == []
 
 
+@pytest.mark.slow
 def test_the_page_tells_when_the_server_is_gone_and_recovers(browser):
     page = new_page(browser)
     with laboratory() as address:

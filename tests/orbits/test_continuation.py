@@ -21,6 +21,7 @@ def circular_orbit(nu=2.0, a0=0.065, eta=0.1):
     return periodic_orbit(slender(eta), sb.Harmonic.circular(acceleration=a0, angular_frequency=nu))
 
 
+@pytest.mark.slow
 def test_every_point_of_a_branch_of_circular_motion_is_steady_rolling():
     branch = continue_branch(circular_orbit(), "angular_frequency", bounds=(1.2, 2.5))
     points = branch.points
@@ -38,6 +39,7 @@ def test_every_point_of_a_branch_of_circular_motion_is_steady_rolling():
     assert branch.ends == (BranchEnd.BOUND, BranchEnd.BOUND)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("side", "nu", "bounds"), [(1, 3.2, (2.0, 3.4)), (0, 0.3, (0.25, 1.4))])
 def test_a_branch_goes_round_its_fold_to_the_lower_branch(side, nu, bounds):
     """Folds of circular motion: a0²(1 + ν²)² = η²ν²(c² − a0²), where A = c(1 + ν²)/D."""
@@ -61,6 +63,7 @@ def test_a_branch_goes_round_its_fold_to_the_lower_branch(side, nu, bounds):
     assert tilts == pytest.approx([float(rolling.lower.amplitude), float(rolling.upper.amplitude)], abs=1e-11)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("a1", [0.04, 0.13])
 def test_followed_from_either_end_a_branch_is_the_same(straight_branches, a1):
     branch = straight_branches[a1]
@@ -76,6 +79,7 @@ def test_followed_from_either_end_a_branch_is_the_same(straight_branches, a1):
         assert one.parameter == pytest.approx(other.parameter, abs=1e-9)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("largest", [0.005, 0.05])
 def test_a_branch_does_not_depend_on_its_steps(straight_branches, largest):
     usual = straight_branches[0.04]
@@ -165,6 +169,7 @@ def test_orbits_at_a_point_of_the_path_are_given_once():
     assert branch.orbits_at(2.6) == ()
 
 
+@pytest.mark.slow
 def test_an_orbit_in_a_plane_is_followed_as_theory_says():
     """Both closed forms at each point: symmetric rocking of the half-period map."""
     motion = sb.Harmonic.straight(acceleration=0.13, angular_frequency=3.0)

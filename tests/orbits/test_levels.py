@@ -55,6 +55,7 @@ def test_multipliers_are_exponentials_of_the_eigenvalues_at_finite_tilt(name):
     assert orbit.stable
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", NAMES)
 def test_branches_keep_to_the_theory_and_lose_stability_where_it_says(name):
     # With a spin the half orbit closes by the half turn, which leaves the spin as it is.

@@ -49,6 +49,7 @@ def test_a_little_friction_decays(eta):
     assert np.prod(np.abs(orbit.multipliers)) == pytest.approx(math.exp(-2.0 * eta * orbit.period), abs=1e-10)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("bounds", [(0.4, 4.0), (1.5, 2.5)])
 def test_rounding_invents_no_bifurcation_of_circular_motion(bounds):
     """A pair of multipliers is on the unit circle all along; theory has neither fold nor branch point here."""

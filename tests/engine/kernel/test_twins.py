@@ -79,6 +79,7 @@ def test_steps_have_the_bits_of_plain_python(case, draws, plan_of):
         np.testing.assert_array_equal(one, other)
 
 
+@pytest.mark.slow
 def test_a_run_with_implicit_steps_has_the_bits_of_plain_python(plan_of):
     # A base that stands for 0.068 s and then slides, under a load that turns.
     line = sb.Harmonic.elliptic(amplitude=(1.2, 0.6), phase=1.0, angular_frequency=2.0, start_phase=-1.0)
