@@ -11,7 +11,7 @@ from scipy.linalg import expm
 from scipy.optimize import brentq
 
 import stylobate as sb
-from stylobate.results import Response
+from stylobate.results import Run
 
 C, ETA = 0.1, 0.1
 TOLERANCES = (1e-6, 1e-8, 1e-10, 1e-12, 1e-13)
@@ -52,7 +52,7 @@ def steady_rolling(rtol: float) -> float:
     return float(np.abs(run.data["amplitude"] / tilt - 1.0).max())
 
 
-def free_motion(rtol: float) -> Response:
+def free_motion(rtol: float) -> Run:
     """Integrate free motion from 0.6c with the sideways rate 0.3c over τ = 500."""
     return sb.simulate(model(), tilt=(0.6 * C, 0.0), tilt_rate=(0.0, 0.3 * C), duration=500.0, rtol=rtol)
 

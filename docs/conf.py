@@ -119,15 +119,19 @@ nitpick_ignore_regex = [
     ("py:class", pattern)
     for pattern in (
         r"stylobate\.orbits\.(arclength|curves|shooting)\.\w+",  # inner values of branches and orbits
-        r"stylobate\.models\.(model\.ClosedForm|sliding\.balance\.Numbers)",  # inner values of models
+        r"stylobate\.models\.(model\.ClosedForm|sliding\.balance\.SlidingNumbers)",  # inner values of models
         r"stylobate\.plots\.(animation\.drawing|body|figure|geometry|kinds|page)\.\w+",  # parts of figures and reports
         r"stylobate\.base_motions\.record\.RecordOrigin",  # kept for files
+        r"stylobate\.base_motions\.combined\.(Scaled|Rotated|Delayed|Offset)",  # made by methods of motions
+        r"stylobate\.models\.model\.Push|stylobate\.results\.findings\.\w+",  # inner values of models and of the paper
+        r"stylobate\.(earthquakes\.intensities\.Intensity|records\.intensities\.HorizontalComponent)",  # given as texts
+        r"stylobate\.earthquakes\.property_spreads\.Spread",  # any of the spreads
         r"(stylobate\.studies\.sweeps\.(chunks|designs|executors)\.)?(Computed|Design|Task|Work)",  # given by sweeps
         r"stylobate\.earthquakes\.config\.(fragility\.Fragility|hazard\.HazardPoints)",  # shown as tables of keys
         r"starlette\.applications\.Starlette",  # has no inventory of names
         r"(pd|pandas)\.DataFrame|plotly\.graph_objects\.Figure",  # neither have these here
         r"Figure|matplotlib\.axes\._axes\.Axes",  # the inventory has matplotlib.axes.Axes
-        r"stylobate\.(quantities\.Stated|plots\.orbits\.Orbit)",  # inner values of motions and figures
+        r"stylobate\.(quantities\.Stated|plots\.orbits\.DrawnOrbit)",  # inner values of motions and figures
         r"ArrayLike",  # in signatures that are made
     )
 ]

@@ -17,6 +17,7 @@ from stylobate.run_arguments import RunOptions
 from stylobate.studies.hierarchy_study import HierarchyArguments
 
 DOCS = Path(__file__).parents[1] / "docs"
+SOURCE = Path(stylobate.__file__).parent
 PAGES = {page.name: page.read_text(encoding="utf-8") for page in (DOCS / "reference").glob("*.md")}
 
 if not PAGES:
@@ -63,6 +64,19 @@ def is_public_exception(value):
 @pytest.mark.parametrize("name", MODULES)
 def test_the_reference_describes_every_public_name(name):
     assert sorted(set(public_names(MODULES[name])) - described_names()) == []
+
+
+def listing_modules():
+    """The modules of the package that list their names, but for the start of the command line."""
+    for path in sorted(SOURCE.rglob("__init__.py*")) + sorted(SOURCE.rglob("[!_]*.py")):
+        module = ".".join(["stylobate", *path.relative_to(SOURCE).with_suffix("").parts]).removesuffix(".__init__")
+        if module != "stylobate.cli" and re.search(r"^__all__ = ", path.read_text(encoding="utf-8"), re.MULTILINE):
+            yield module
+
+
+@pytest.mark.parametrize("name", [*listing_modules()])
+def test_modules_list_public_names_only(name):
+    assert sorted(set(public_names(importlib.import_module(name))) - described_names()) == []
 
 
 def public_paths(module=stylobate, path="stylobate", seen=()):

@@ -7,6 +7,7 @@ import pytest
 
 import stylobate as sb
 from stylobate import errors
+from stylobate.conveying.slip_limits import RollingRegime
 from stylobate.errors import (
     LARGEST_SEED,
     ConfigError,
@@ -23,6 +24,7 @@ from stylobate.errors import (
     require_vector,
     require_whole,
 )
+from stylobate.results.findings import ClaimStatus
 
 
 def test_every_exception_is_a_stylobate_error_and_bad_input_a_value_error():
@@ -154,15 +156,15 @@ def test_counts_beyond_memory_are_refused_and_large_integers_keep_all_digits():
 NAMED = [
     Outcome,
     sb.results.VerdictWord,
-    sb.results.ClaimStatus,
-    sb.orbits.Kind,
-    sb.orbits.End,
+    ClaimStatus,
+    sb.orbits.BifurcationKind,
+    sb.orbits.BranchEnd,
     sb.earthquakes.FitStatus,
     sb.theory.BlockPhase,
     sb.theory.FirstMotion,
     sb.theory.SlidingRegime,
     sb.results.ContactClass,
-    sb.conveying.RollingRegime,
+    RollingRegime,
 ]
 
 

@@ -22,7 +22,9 @@ from stylobate.cli.output import check_writable, open_saved
 from stylobate.earthquakes import incremental_dynamic_analysis
 from stylobate.errors import FileError
 from stylobate.files import read_sealed, sealed, write_whole
-from stylobate.results import Assessment, write_netcdf
+from stylobate.orbits.storage import load_orbits
+from stylobate.results import Assessment
+from stylobate.results.storage import write_netcdf
 
 MODEL = sb.Slender(sb.Column.dimensionless(0.1), damping=0.1)
 CIRCLE = sb.Harmonic.circular(acceleration=0.065, angular_frequency=2.0)
@@ -64,7 +66,7 @@ KINDS = {
     "map": (save_study, sb.load),
     "basins": (save_basins, open_saved),
     "fragility": (save_fragility, sb.load),
-    "orbit": (save_orbit, orbits.load_orbits),
+    "orbit": (save_orbit, load_orbits),
     "assessment": (save_assessment, Assessment.load),
 }
 
@@ -154,7 +156,7 @@ from contextlib import suppress
 from pathlib import Path
 import numpy as np
 from stylobate.errors import FileError
-from stylobate.results import read_dataset
+from stylobate.results.storage import read_dataset
 
 content = Path(sys.argv[1]).read_bytes()
 for flip in range(40):

@@ -6,7 +6,7 @@ import xarray as xr
 
 import stylobate as sb
 from stylobate.errors import Interrupted
-from stylobate.orbits import End
+from stylobate.orbits import BranchEnd
 
 SLENDER = sb.Slender(sb.Column.dimensionless(slenderness=0.1), damping=0.1)
 CIRCLE = sb.Harmonic.circular(acceleration=0.065, angular_frequency=2.0)
@@ -58,7 +58,7 @@ def branch():
 def test_a_branch_is_kept_as_far_as_it_was_continued(branch, tmp_path, after):
     orbit = sb.orbits.periodic_orbit(SLENDER, CIRCLE)
     partial = stopped(sb.orbits.continue_branch, orbit, "angular_frequency", bounds=(1.35, 2.05), after=after)
-    assert End.INTERRUPTED in partial.ends
+    assert BranchEnd.INTERRUPTED in partial.ends
     values, whole = ([point.value for point in one.path] for one in (partial, branch))
     first = whole.index(values[0])
     assert values == whole[first : first + len(values)]
@@ -69,6 +69,7 @@ def test_a_branch_is_kept_as_far_as_it_was_continued(branch, tmp_path, after):
     assert sb.load(partial.save(tmp_path / "branch.nc")).ends == partial.ends
 
 
+@pytest.mark.slow
 def test_a_curve_of_bifurcations_is_kept_as_far_as_it_was_continued(branch):
     arguments = (branch.bifurcations[0], "acceleration")
     bounds = ((1.3, 1.5), (0.06, 0.07))
@@ -77,17 +78,18 @@ def test_a_curve_of_bifurcations_is_kept_as_far_as_it_was_continued(branch):
     values, known = ([point.values for point in one.path] for one in (partial, whole))
     assert len(values) == 4
     assert values == known[known.index(values[0]) :][:4]
-    assert partial.ends[1] is End.INTERRUPTED
+    assert partial.ends[1] is BranchEnd.INTERRUPTED
 
 
 def test_a_response_keeps_its_branches():
     arguments = {"angular_frequency": (1.0, 1.6), "generations": 1}
     partial = stopped(sb.studies.exact_response, SLENDER, LINE, **arguments, after=5)
     assert partial["branch_name"].size == 1
-    assert End.INTERRUPTED.value in partial["branch_end"].item()
+    assert BranchEnd.INTERRUPTED.value in partial["branch_end"].item()
     assert partial.sizes["point"] >= 5
 
 
+@pytest.mark.slow
 def test_a_boundary_keeps_its_curves():
     arguments = {"bounds": (0.05, 0.08), "angular_frequency": (1.0, 3.0), "values": [0.065, 0.07]}
     partial = stopped(sb.studies.stability_boundary, SLENDER, CIRCLE, **arguments, after=2)

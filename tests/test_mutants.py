@@ -104,6 +104,7 @@ def test_texts_and_looks_stay(tools, tmp_path, text):
     assert changed(tools[1], tmp_path, text) in ([], [(text, "pass")], [("zip(a, strict=True)", "pass")])
 
 
+@pytest.mark.slow
 def test_each_mutant_of_a_module_is_another_program_with_one_place_changed(tools):
     folder = TOOLS.parent
     path = folder / "src/stylobate/engine/kernel/driver/stages.py"
@@ -125,6 +126,7 @@ def test_the_sample_depends_on_the_seed_and_a_longer_one_begins_with_a_shorter_o
     assert sorted(tools[0].drawn(found, 1)) == found
 
 
+@pytest.mark.slow
 def test_a_law_kills_the_mutants_that_break_it_and_the_others_survive(tools, tmp_path, monkeypatch):
     mutants = tools[0]
     files = {"src/stylobate/__init__.py": "", "src/stylobate/room.py": ROOM, "tests/test_room.py": LAW}

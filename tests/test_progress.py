@@ -215,6 +215,7 @@ def on_terminal(due, more=""):
     return printed, received.decode()
 
 
+@pytest.mark.slow
 @pytest.mark.posix
 def test_on_a_terminal_a_bar_is_drawn_and_erased_and_stdout_stays_free():
     printed, received = on_terminal(due=0.0)
@@ -223,6 +224,7 @@ def test_on_a_terminal_a_bar_is_drawn_and_erased_and_stdout_stays_free():
     assert received.rstrip().endswith("\x1b[2K")  # the line is erased
 
 
+@pytest.mark.slow
 @pytest.mark.posix
 @pytest.mark.parametrize(("due", "more"), [(60.0, ""), (0.0, ", progress=False")])
 def test_a_short_or_silent_computation_imports_no_rich_and_draws_nothing(due, more):
@@ -231,6 +233,7 @@ def test_a_short_or_silent_computation_imports_no_rich_and_draws_nothing(due, mo
     assert "━" not in received
 
 
+@pytest.mark.slow
 def test_without_a_terminal_nothing_is_drawn():
     code = SCRIPT.format(due=0.0, more="")
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

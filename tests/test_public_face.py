@@ -24,9 +24,7 @@ def public_members(cls):
     return [name for name in vars(cls) if name[0] != "_" and name != "rates" and callable(getattr(cls, name, None))]
 
 
-@pytest.mark.parametrize(
-    "name", ["BaseMotion", "Column", "Harmonic", "Model", "Pulse", "Response", "SineSweep", "Slender"]
-)
+@pytest.mark.parametrize("name", ["BaseMotion", "Column", "Harmonic", "Model", "Pulse", "Run", "SineSweep", "Slender"])
 def test_every_public_method_is_explained(name):
     cls = getattr(stylobate, name)
     for member in public_members(cls):

@@ -15,7 +15,9 @@ import xarray as xr
 
 import stylobate as sb
 from stylobate.quantities import Quantity, exact_repr
-from stylobate.results import Assessment, ClaimStatus, Finding, PaperCheck, Section
+from stylobate.results import Assessment
+from stylobate.results.findings import ClaimStatus, Finding, PaperCheck, PaperSection
+from stylobate.results.verdict import percent
 from stylobate.text import four_digits
 
 THIRD = 1.0 / 3.0
@@ -70,7 +72,7 @@ def assessment(fallen=1):
 
 def check(measured="0.1"):
     found = Finding("section 2", "a statement", measured, ClaimStatus.HOLDS)
-    return PaperCheck({"Two": Section((found,), {"figure": xr.Dataset({"a": ("x", [1.0, np.nan])})})})
+    return PaperCheck({"Two": PaperSection((found,), {"figure": xr.Dataset({"a": ("x", [1.0, np.nan])})})})
 
 
 CASES = {
@@ -311,9 +313,9 @@ def test_cards_of_a_bifurcation_a_hazard_curve_and_a_known_orbit_have_names_and_
 def test_the_card_of_a_verdict_has_share_interval_and_the_share_of_each_contact_law():
     card, found = card_of(verdict()), verdict()
     assert card["verdict"][-1] == found.word.value
-    assert card["share of overturning"][-1].startswith(f"{sb.results.percent(found.share)} of 10 variations")
+    assert card["share of overturning"][-1].startswith(f"{percent(found.share)} of 10 variations")
     for law, share in found.share_by_model.items():
-        assert card[law][-1].startswith(f"{sb.results.percent(share)} (")
+        assert card[law][-1].startswith(f"{percent(share)} (")
 
 
 def test_cards_of_orbits_and_branches_state_stability_and_bifurcations():

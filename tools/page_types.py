@@ -16,7 +16,7 @@ from stylobate.lab.answers import schemas
 from stylobate.lab.requests import GRIDS
 from stylobate.models.declared import MODELS
 from stylobate.quantities import parameters_of
-from stylobate.run_arguments import Start, numbers_of, run_numbers
+from stylobate.run_arguments import InitialConditions, numbers_of, run_numbers
 
 FOLDER = Path(__file__).parents[1] / "src/stylobate/lab/web/src/page/server"
 _HEAD = "/** Types of the answers, written by tools/page_types.py from stylobate.lab.answers. Do not edit. */\n"
@@ -41,7 +41,7 @@ def names() -> str:
     """Return the names and kinds that the page needs before the server answers."""
     turning = [kind for kind, model in MODELS.items() if getattr(model, "spin_state", None) is not None]
     listed = {
-        "START": ("The numbers of a start.", numbers_of(Start)),
+        "START": ("The numbers of a start.", numbers_of(InitialConditions)),
         "RUN": ("What runs have besides column, model and motion.", (*run_numbers(), "rules")),
         "RESPONDING": ("Kinds of motions that can have response curves.", kinds_with_response()),
         "BY_ACCELERATION": ("Those whose acceleration does not depend on their frequency.", kinds_by_acceleration()),

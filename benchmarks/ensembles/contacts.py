@@ -56,7 +56,7 @@ class Case:
             else sb.Rolling(_COLUMN, **_FRICTION)
         )
 
-    def alone(self) -> list[sb.Response]:
+    def alone(self) -> list[sb.Run]:
         """Integrate the first columns as single runs."""
         return [
             sb.simulate(

@@ -21,7 +21,7 @@ import xarray as xr
 from stylobate.compiler.programs import Bound, Functions, text_of
 from stylobate.compiler.sources import written_module
 from stylobate.compiler.unit import ArrayArgument
-from stylobate.compiler.values import Kind
+from stylobate.compiler.values import NumberKind
 from stylobate.engine.kernel.driver import loop
 from stylobate.engine.kernel.kernels import Kernel
 
@@ -202,7 +202,7 @@ def _steps_alone(method: str) -> Callable[[int], float]:
         kernel.compiled,
         name="steps_alone",
         program=_OtherBatch(kernel.compiled.program, text_of(loop) + _STEPS_ALONE),
-        arguments=(ArrayArgument(begun.shape), Kind.INTEGER),
+        arguments=(ArrayArgument(begun.shape), NumberKind.INTEGER),
     )
     buffer = kernel.buffer()
 

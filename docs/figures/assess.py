@@ -31,9 +31,7 @@ _FONT = 8.0  # points
 
 def assessed(store: Path) -> Assessment:
     """Return the assessment of the example."""
-    setup = sb.earthquakes.config.AssessConfig.parse(
-        sb.config.read_config(STUDY)
-    ).build()
+    setup = sb.earthquakes.AssessConfig.parse(sb.config.read_config(STUDY)).build()
     return sb.earthquakes.assess(
         setup.columns, setup.records, **setup.options, store=store
     )

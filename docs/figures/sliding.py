@@ -8,6 +8,7 @@ from matplotlib.figure import Figure
 from saving import STATIC, save
 
 import stylobate as sb
+from stylobate.conveying.figures.slipping_boundary import plot_slipping_boundary
 
 FOLDER = STATIC / "sliding"
 COLUMN = sb.Column.dimensionless(slenderness=0.1)
@@ -38,9 +39,7 @@ def gentle() -> Figure:
     )
     shown = found.sel(friction_coefficient=[0.03, 0.04, 0.05, 0.06], method="nearest")
     print(shown["rolling_from"].to_numpy(), shown["rolling_to"].to_numpy())
-    return sb.conveying.plot_slipping_boundary(
-        found, friction_coefficient=[0.03, 0.04, 0.05]
-    )
+    return plot_slipping_boundary(found, friction_coefficient=[0.03, 0.04, 0.05])
 
 
 def hard() -> Figure:
@@ -54,9 +53,7 @@ def hard() -> Figure:
     shown = found.sel(friction_coefficient=[0.03, 0.05, 0.07, 0.1], method="nearest")
     for name in ("rolling_from", "rolling_to", "slipping_from", "slipping_to"):
         print(name, shown[name].to_numpy())
-    return sb.conveying.plot_slipping_boundary(
-        found, friction_coefficient=[0.03, 0.05, 0.07]
-    )
+    return plot_slipping_boundary(found, friction_coefficient=[0.03, 0.05, 0.07])
 
 
 def start() -> Figure:

@@ -193,7 +193,7 @@ number = 16
 #    $ stylobate assess study.toml
 #
 # In Python the same takes three statements.
-config = sb.earthquakes.config.AssessConfig.parse(sb.config.read_config(study))
+config = sb.earthquakes.AssessConfig.parse(sb.config.read_config(study))
 setup = config.build()
 found = sb.earthquakes.assess(setup.columns, setup.records, **setup.options)
 

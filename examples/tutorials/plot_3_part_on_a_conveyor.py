@@ -326,8 +326,8 @@ for stroke in (0.6, 1.0):
         found = sb.conveying.upright(
             model, motion, tilts=[1e-3], phases=32, friction=friction
         )
-        share = sb.results.percent(float(found["share"].sel(posture_name="fallen")))
-        print(f"stroke {stroke} mm, μ = {friction}: {share} of the runs fall")
+        share = float(found["share"].sel(posture_name="fallen"))
+        print(f"stroke {stroke} mm, μ = {friction}: {share:.0%} of the runs fall")
 
 # %%
 # One of these runs as an animation, eight times slower than the motion. The blue line

@@ -189,9 +189,7 @@ except sb.Interrupted as stop:
 
 # %%
 # An unfinished store can be opened and drawn; runs not yet computed stay blank.
-from stylobate.studies.sweeps import open_sweep
-
-half = open_sweep(store)
+half = sb.load(store)
 figure, axes = plt.subplots(figsize=(7.4, 3.4), layout="constrained")
 outcome = half["outcome"].where(half["outcome"] >= 0).T
 axes.pcolormesh(frequencies, accelerations, outcome, cmap="cividis")

@@ -22,7 +22,7 @@ from .models import Contact, Model, PlanarRocking, Rolling, Slender, SlenderRoll
 from .plots import animate, plot
 from .quantities import Quantity
 from .records import read_record, read_records, sample_record
-from .results import Event, KnownOrbit, OutcomeRules, Response
+from .results import Event, KnownOrbit, OutcomeRules, Run
 from .studies import load
 
 __version__: str
@@ -45,8 +45,8 @@ __all__ = [
     "Pulse",
     "Quantity",
     "Record",
-    "Response",
     "Rolling",
+    "Run",
     "SineSweep",
     "Slender",
     "SlenderRolling",

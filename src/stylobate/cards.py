@@ -24,14 +24,14 @@ class Row(NamedTuple):
     meaning: str = ""
 
 
-class Section(NamedTuple):
+class CardSection(NamedTuple):
     """Rows of a card below a heading; the first section of a card has none."""
 
     heading: str
     rows: Sequence[Row]
 
 
-def card(title: str, sections: Iterable[Section], folded: Section | None = None) -> str:
+def card(title: str, sections: Iterable[CardSection], folded: CardSection | None = None) -> str:
     """Render a title and sections of rows as a table in HTML; sections without rows are left out.
 
     A `folded` section stands below the table; a click on its heading shows its rows.
@@ -45,7 +45,7 @@ def card(title: str, sections: Iterable[Section], folded: Section | None = None)
     return f'{table}<details>{summary}<table style="{_CARD}">{rows}</table></details>'
 
 
-def _section(section: Section) -> str:
+def _section(section: CardSection) -> str:
     heading = (
         f'<tr><th colspan="3" style="{_CELL};{_PALE};{_LINE}">{escape(section.heading)}</th></tr>'
         if section.heading

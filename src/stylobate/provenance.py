@@ -6,7 +6,6 @@ The values are those of the objects' own declared numbers; `stylobate.config` re
 from collections.abc import Callable, Mapping
 from enum import Enum
 from functools import cache
-from importlib.metadata import version
 from typing import Any
 
 from stylobate.base_motions import BaseMotion, Record
@@ -114,4 +113,6 @@ def _identity_of_record(thing: object) -> dict[str, Any]:
 
 @cache
 def _version() -> str:
+    from importlib.metadata import version
+
     return version("stylobate")

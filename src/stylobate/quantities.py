@@ -18,7 +18,7 @@ from typing import Annotated, Any, Literal, ParamSpec, TypeVar, get_args, get_or
 import numpy as np
 import numpy.typing as npt
 
-from stylobate.cards import Row, Section, card
+from stylobate.cards import CardSection, Row, card
 from stylobate.errors import (
     LARGEST,
     MOST_NUMBERS,
@@ -339,7 +339,7 @@ class Declared:
         make, _ = self._call()
         return type(self).__name__ if "self" in inspect.signature(make).parameters else _name_of(make)
 
-    def _sections(self, *, derived: bool = True) -> list[Section]:
+    def _sections(self, *, derived: bool = True) -> list[CardSection]:
         """Return the rows of the card: the arguments, the derived numbers, then the rows of each object among both.
 
         Objects in an object with derived numbers show none of their own.
@@ -349,10 +349,10 @@ class Declared:
         inner = {name: value for name, value in arguments.items() if isinstance(value, Declared)}
         rows = [_row(name, value, declared.get(name)) for name, value in arguments.items() if name not in inner]
         numbers = [_row(one.name, value, one) for one, value in self._derived()] if derived else []
-        sections = [Section("", rows), Section("derived", numbers)]
+        sections = [CardSection("", rows), CardSection("derived", numbers)]
         for name, value in inner.items():
             own, *others = value._sections(derived=derived and not numbers)  # noqa: SLF001  of the same class, as below
-            sections += [Section(f"{name}: {value._title()}", own.rows), *others]  # noqa: SLF001
+            sections += [CardSection(f"{name}: {value._title()}", own.rows), *others]  # noqa: SLF001
         return sections
 
     def _derived(self) -> list[tuple["Parameter", Any]]:

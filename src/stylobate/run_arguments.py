@@ -44,7 +44,7 @@ class Argument:
     ends_runs: bool = False
 
 
-class Start(TypedDict, total=False):
+class InitialConditions(TypedDict, total=False):
     """The initial conditions that all models share."""
 
     tilt: Annotated[
@@ -149,7 +149,7 @@ Method = Annotated[
 ]
 
 
-class OneRun(Start, Accuracy, total=False):
+class OneRun(InitialConditions, Accuracy, total=False):
     """The arguments of one run with any model."""
 
     duration: Annotated[
@@ -252,7 +252,7 @@ class OfEnsemble(EnsembleOptions, total=False):
     ]
 
 
-class RunOptions(Start, OfEnsemble, total=False):
+class RunOptions(InitialConditions, OfEnsemble, total=False):
     """Arguments of `simulate_ensemble` that all runs of a sweep share."""
 
     end_converged: Annotated[
@@ -264,7 +264,7 @@ class RunOptions(Start, OfEnsemble, total=False):
     ]
 
 
-class SharedByRuns(Start, Accuracy, total=False):
+class SharedByRuns(InitialConditions, Accuracy, total=False):
     """The numbers in the description of many runs."""
 
     duration: Annotated[float | None, _DURATION, Argument(None)]

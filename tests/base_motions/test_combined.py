@@ -8,7 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import stylobate as sb
-from stylobate.base_motions import BASE_AT_REST, Delayed, Rotated, Scaled, Sum
+from stylobate.base_motions import BASE_AT_REST
+from stylobate.base_motions.combined import Delayed, Rotated, Scaled, Sum
 from stylobate.errors import ParameterError
 
 TIME = np.linspace(0.0, 7.0, 71)

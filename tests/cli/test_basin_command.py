@@ -106,6 +106,7 @@ def test_a_sample_instead_of_the_grid_of_a_file(tmp_path, capsys):
     assert "x" not in told
 
 
+@pytest.mark.slow
 def test_after_ctrl_c_a_store_goes_on(tmp_path, capsys, interrupted):
     store = tmp_path / "basin.zarr"
     large = [*BASIN, "--periods", "20", "--random", "2000", *SAMPLE[2:]]

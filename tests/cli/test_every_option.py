@@ -97,7 +97,7 @@ COMPUTING = (
         "conveying.sheet",
         "earthquakes.overturning_intervals",
         "earthquakes.rocking_spectrum",
-        "earthquakes.FragilityStudy.runs",
+        "earthquakes.fragility_study.FragilityStudy.runs",
     ),
     *("earthquakes.assess", "paper.check_paper", "lab.serving.serve"),
     *("cli.records.print_table", "records.response_spectra"),
@@ -223,10 +223,17 @@ def options_of(command):
     return [one for one in kept if one.name not in ("help", *_OF_PRINTING)]
 
 
-@pytest.mark.parametrize("command", COMMANDS)
-def test_an_option_that_is_given_is_used_or_refused(command, capsys):
+@pytest.mark.parametrize(
+    ("command", "bases"),
+    [
+        *((command, bases) for command, bases in BASES.items() if command != "simulate"),
+        ("simulate", BASES["simulate"][::5]),
+        pytest.param("simulate", BASES["simulate"], marks=pytest.mark.slow),
+    ],
+)
+def test_an_option_that_is_given_is_used_or_refused(command, bases, capsys):
     dropped = []
-    for base in BASES[command]:
+    for base in bases:
         plain, refused = outcome([command, *base], capsys)
         assert not refused
         for option in (one for one in options_of(command) if not (one.is_flag and one.opts[0] in base)):
@@ -236,6 +243,7 @@ def test_an_option_that_is_given_is_used_or_refused(command, capsys):
     assert dropped == []
 
 
+@pytest.mark.slow
 def test_no_option_of_a_run_is_refused_with_every_column_model_and_motion(capsys):
     never = {one.name: one for one in options_of("simulate")}
     for base in BASES["simulate"]:
@@ -259,6 +267,10 @@ def test_no_option_of_a_run_is_refused_with_every_column_model_and_motion(capsys
         "verdict_output",
     }
     assert set(never) == {*words, *files, "sense"}
+
+
+def test_every_command_has_options_to_try():
+    assert set(BASES) == set(COMMANDS)
 
 
 @pytest.mark.parametrize("command", ["map", "spectrum", "fragility"])

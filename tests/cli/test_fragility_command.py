@@ -7,11 +7,9 @@ import pytest
 import xarray as xr
 
 import stylobate as sb
-from stylobate.cli.fragility import describe_parts
 from stylobate.cli.main import run
 from stylobate.earthquakes import (
     Counting,
-    FragilityStudy,
     HazardCurve,
     LognormalSpread,
     NormalSpread,
@@ -21,7 +19,8 @@ from stylobate.earthquakes import (
     incremental_dynamic_analysis,
     property_samples,
 )
-from stylobate.earthquakes.config import FragilityConfig
+from stylobate.earthquakes.config.fragility import FragilityConfig
+from stylobate.earthquakes.fragility_study import FragilityStudy, describe_parts
 from stylobate.errors import ConfigError
 
 COLUMN = ["--radius", "0.4", "--height", "4", "--density", "2700", "--damping", "0.05"]
@@ -79,6 +78,7 @@ def folder(tmp_path):
     return tmp_path
 
 
+@pytest.mark.slow
 def test_options_run_what_python_runs(folder, capsys, saved):
     drawn = [folder / "fits.png", folder / "runs.png"]
     made = ["--output", str(folder / "runs.nc"), "--figure", str(drawn[0]), "--runs-figure", str(drawn[1])]
@@ -134,6 +134,7 @@ def test_a_described_study_is_that_of_its_parts(folder):
 HAZARD = {"intensity": [0.5, 2.0, 8.0], "rate": [1e-2, 1e-3, 5e-5], "component": "RotD50"}
 
 
+@pytest.mark.slow
 def test_saved_runs_are_fitted_anew_and_repeated(folder, capsys, saved, monkeypatch):
     monkeypatch.chdir(folder)
     assert run(["fragility", "study.toml", "--output", "runs.nc"]) == 0
@@ -153,6 +154,7 @@ def test_saved_runs_are_fitted_anew_and_repeated(folder, capsys, saved, monkeypa
     np.testing.assert_allclose(saved(other)["damping"], 2.0 * saved(folder / "runs.nc")["damping"])
 
 
+@pytest.mark.slow
 def test_a_rate_beyond_the_hazard_is_not_told_as_a_fact(folder, capsys, monkeypatch):
     monkeypatch.chdir(folder)
     assert run(["fragility", "study.toml", "--output", "runs.nc"]) == 0
@@ -167,6 +169,7 @@ def test_a_rate_beyond_the_hazard_is_not_told_as_a_fact(folder, capsys, monkeypa
     assert states["overturning"]["rate_high"] < 0.011
 
 
+@pytest.mark.slow
 def test_probabilities_of_exceedance_are_read_as_such_and_the_table_says_so(folder, capsys, monkeypatch):
     monkeypatch.chdir(folder)
     assert run(["fragility", "study.toml", "--output", "runs.nc"]) == 0

@@ -48,6 +48,7 @@ def test_the_table_has_a_row_for_each_level_and_says_how_they_converge(capsys, t
     assert saved.stat().st_size > 10_000
 
 
+@pytest.mark.slow
 def test_demands_without_bound_are_told_in_words_and_are_null_in_json(tmp_path, capsys):
     description = tmp_path / "thrown.toml"
     description.write_text(

@@ -12,6 +12,7 @@ import xarray as xr
 import stylobate as sb
 from stylobate.cli.main import run
 from stylobate.cli.terminal import log_lines
+from stylobate.studies.sweeps.store import open_sweep
 
 COLUMN = ["--slenderness", "0.1", "--damping", "0.1"]
 AXES = ["--x", "angular-frequency", "0.5", "6", "5", "--y", "acceleration", "0.05", "0.4", "4"]
@@ -133,9 +134,7 @@ def test_a_store_goes_on_after_ctrl_c_and_ends_as_if_undisturbed(tmp_path, capsy
     assert told["computed"] == 2000
     assert run([*LARGE, "--output", str(store), "--resume"]) == 0
     assert run([*LARGE, "--output", str(whole)]) == 0
-    xr.testing.assert_equal(
-        sb.studies.open_sweep(store).load(), saved(whole).drop_dims("outcome_name").drop_vars("computed")
-    )
+    xr.testing.assert_equal(open_sweep(store).load(), saved(whole).drop_dims("outcome_name").drop_vars("computed"))
 
 
 def test_another_sweep_does_not_go_on_with_a_store(tmp_path, capsys):
@@ -145,6 +144,7 @@ def test_another_sweep_does_not_go_on_with_a_store(tmp_path, capsys):
     assert "rtol was 1e-08, is 1e-06" in capsys.readouterr().err
 
 
+@pytest.mark.slow
 def test_the_method_is_that_of_the_option_and_told_with_the_map(tmp_path, capsys, saved):
     path = tmp_path / "map.nc"
     assert run([*MAP, "--method", "taylor", "--output", str(path), "--json"]) == 0
@@ -189,7 +189,7 @@ def test_dask_workers_compute_the_same(tmp_path):
     for executor, path in paths.items():
         command = [sys.executable, "-m", "stylobate", *MAP, "--executor", executor, "--output", str(path)]
         subprocess.run(command, check=True, capture_output=True)
-    first, second = (sb.studies.open_sweep(path).load() for path in paths.values())
+    first, second = (open_sweep(path).load() for path in paths.values())
     xr.testing.assert_identical(first, second)
 
 

@@ -4,9 +4,8 @@ import json
 
 import pytest
 
-import stylobate as sb
 from stylobate.cli.main import run
-from stylobate.results import ClaimStatus, Finding, PaperCheck, Section
+from stylobate.results.findings import ClaimStatus, Finding, PaperCheck, PaperSection
 
 
 @pytest.mark.slow
@@ -21,12 +20,12 @@ def test_paper_makes_its_report(tmp_path, capsys):
     html = (folder / "report.html").read_text()
     assert html.count("data:image/png;base64,") == len(pictures) > 10
     assert "http" not in html
-    assert all(sb.results.ClaimStatus(finding["verdict"]) for finding in findings)
+    assert all(ClaimStatus(finding["verdict"]) for finding in findings)
 
 
 def test_an_unconfirmed_claim_ends_with_status_1(monkeypatch, tmp_path, capsys):
     doubt = Finding("(1)", "a claim", "a number", ClaimStatus.NOT_CONFIRMED)
-    monkeypatch.setattr("stylobate.paper.check_paper", lambda **_: PaperCheck({"s": Section((doubt,))}))
+    monkeypatch.setattr("stylobate.paper.check_paper", lambda **_: PaperCheck({"s": PaperSection((doubt,))}))
     monkeypatch.setattr("stylobate.paper.paper_report", lambda *_: tmp_path / "report.html")
     assert run(["paper", "--folder", str(tmp_path)]) == 1
     assert "not confirmed here" in capsys.readouterr().out

@@ -8,7 +8,7 @@ import pytest
 import stylobate as sb
 from stylobate.cli.main import run
 from stylobate.cli.simulate import VerdictOfCase
-from stylobate.config import Setup
+from stylobate.config.simulation import Setup
 
 COLUMN = ["--radius", "0.3", "--height", "3", "--density", "2700", "--model", "wobbling", "--damping", "0.08"]
 PULSE = ["--motion", "one-sine", "--angular-frequency", "4", "--acceleration"]
@@ -97,6 +97,7 @@ def test_json_has_the_verdict_or_null(capsys):
     assert json.loads(capsys.readouterr().out)["verdict"] is None
 
 
+@pytest.mark.slow
 def test_a_saved_verdict_is_repeated_and_drawn(capsys, tmp_path):
     saved, figure = tmp_path / "verdict.nc", tmp_path / "verdict.png"
     first = rows_of(capsys, *PULSE, "2.35", *FEW, "--verdict-output", str(saved), "--verdict-figure", str(figure))
@@ -158,6 +159,7 @@ def test_an_option_of_a_verdict_that_cannot_be_is_refused(capsys, arguments, mes
     assert message in capsys.readouterr().err
 
 
+@pytest.mark.slow
 def test_a_planar_model_and_a_sliding_one_have_no_verdict_by_default(capsys):
     slow = [*COLUMN[:6], "--damping", "0.08", *PULSE, "1.2"]
     for model, reason in (("planar-rocking", "planar model"), ("sliding", "--verdict-runs 300")):

@@ -25,6 +25,7 @@ def found():
     return sb.earthquakes.overturning_intervals(MODEL, SINE, scales=scales, over=over, width=0.01)
 
 
+@pytest.mark.slow
 def test_it_finds_saves_and_shows_what_the_study_finds(tmp_path, capsys, saved, found):
     path, drawn = tmp_path / "intervals.nc", tmp_path / "intervals.png"
     assert run([*INTERVALS, "--output", str(path), "--json"]) == 0
@@ -43,6 +44,7 @@ def test_it_finds_saves_and_shows_what_the_study_finds(tmp_path, capsys, saved, 
     assert drawn.read_bytes().startswith(b"\x89PNG")
 
 
+@pytest.mark.slow
 def test_a_saved_spectrum_is_repeated_with_other_numbers(tmp_path, capsys, saved, found):
     path, other = tmp_path / "intervals.nc", tmp_path / "other.nc"
     found.to_netcdf(path, engine="h5netcdf")

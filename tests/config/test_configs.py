@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 import stylobate as sb
-from stylobate.base_motions import BASE_AT_REST, Sum
+from stylobate.base_motions import BASE_AT_REST
+from stylobate.base_motions.combined import Sum
 from stylobate.base_motions.pulses import Waveform
 from stylobate.config import SimulationConfig, config_of, read_config, study_config
 from stylobate.errors import ConfigError, FileError, UnsupportedError

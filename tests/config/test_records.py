@@ -88,6 +88,7 @@ def test_every_method_can_be_described_and_what_was_done_in_python_is_remembered
         assert found.provenance == expected.provenance
 
 
+@pytest.mark.slow
 def test_a_saved_run_rebuilds_its_record_and_refuses_a_changed_file(quakes):
     path = quakes / "second_NS.txt"
     record = RecordMotion(path=str(path), units="g", step=0.01, scale=0.5, one_component=True).build().inverted()

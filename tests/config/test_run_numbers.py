@@ -3,6 +3,7 @@
 import pytest
 
 from stylobate import config, conveying, earthquakes, studies
+from stylobate.earthquakes.config.fragility import FragilityConfig
 from stylobate.errors import ConfigError
 from stylobate.quantities import parameter_of
 from stylobate.run_arguments import OneRun, SharedByRuns, SingleRun, Stroboscopic, numbers_of
@@ -15,7 +16,7 @@ CONFIGS = [
     (config.study_config(studies.basins), Stroboscopic),
     (config.study_config(conveying.drift), SharedByRuns),
     (config.study_config(earthquakes.overturning_intervals), SharedByRuns),
-    (earthquakes.config.FragilityConfig, SharedByRuns),
+    (FragilityConfig, SharedByRuns),
 ]
 
 

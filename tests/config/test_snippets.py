@@ -7,7 +7,8 @@ import pytest
 from PIL import Image
 
 import stylobate as sb
-from stylobate.config import SimulationConfig, as_python, as_toml
+from stylobate.config import SimulationConfig
+from stylobate.config.snippets import as_python, as_toml
 from stylobate.lab.options import presets
 
 COLUMN = {"shape": "dimensionless", "slenderness": 0.1}
@@ -127,6 +128,7 @@ PRESETS = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("preset", PRESETS)
 def test_the_program_of_a_preset_shows_what_the_preset_says_and_draws_it(preset, folder):
     run = run_by(as_python(SimulationConfig.parse(preset.description)))

@@ -79,6 +79,7 @@ def test_a_part_that_stays_upright_on_a_level_track_can_fall_on_the_steepest_one
     assert float(alone["share"].sel(posture_name="fallen")) > 0.5
 
 
+@pytest.mark.slow
 def test_the_table_states_a_horizontal_vibration_and_the_default_friction():
     level = sheet(sb.Sliding(PIN), sb.Harmonic.stroke(stroke=STROKE, frequency=FREQUENCY), tilts=[0.0], phases=1)
     rows = dict(sheet_rows(level))
@@ -131,6 +132,7 @@ def test_it_needs_a_harmonic_motion_and_a_contact_that_slips():
             sheet(model, motion)
 
 
+@pytest.mark.slow
 def test_the_command_writes_the_sheet(tmp_path, capsys, found):
     arguments = ["feeder", "--radius", "0.006", "--height", "0.04", "--density", "7850", "--motion", "stroke"]
     arguments += [

@@ -11,6 +11,7 @@ from tests.conveying.planar_block import fallen_and_travel
 import stylobate as sb
 from stylobate.cli.main import run
 from stylobate.conveying import Posture, upright
+from stylobate.results.storage import write_netcdf
 from stylobate.studies.proportions import wilson_interval
 
 PIN = sb.Column.solid(radius=0.006, height=0.040, density=7850.0)
@@ -96,7 +97,7 @@ def test_a_phase_of_a_sum_of_vibrations_is_a_delay():
 
 
 def test_it_is_saved_loaded_and_drawn(found, tmp_path):
-    path = sb.results.write_netcdf(found, tmp_path / "posture.nc")
+    path = write_netcdf(found, tmp_path / "posture.nc")
     again = sb.load(path)
     assert again.attrs["verdict"] == found.attrs["verdict"]
     xr.testing.assert_equal(again["share_of_tilt"], found["share_of_tilt"])
@@ -186,6 +187,7 @@ def expect_alike(ours, others, phases):
     assert (np.abs(ours - others) <= 3.0 * np.sqrt(2.0 * phases * share * (1.0 - share))).all()
 
 
+@pytest.mark.slow
 def test_a_block_by_time_stepping_falls_as_often():
     ours, others = planar_counts([0.01], 64, periods=30, steps=100)
     assert ours.min() > 0
@@ -225,6 +227,7 @@ def test_it_needs_a_contact_that_slips_and_a_period():
         upright(PART, sb.Pulse.one_sine(acceleration=3.0, angular_frequency=30.0))
 
 
+@pytest.mark.slow
 def test_the_command_saves_shows_and_repeats_the_study(tmp_path, capsys, found):
     path, drawn = tmp_path / "posture.nc", tmp_path / "posture.png"
     part = ["--radius", "0.006", "--height", "0.04", "--density", "7850", "--friction-coefficient", "0.2"]

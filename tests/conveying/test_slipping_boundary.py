@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import stylobate as sb
-from stylobate.conveying import RollingRegime
+from stylobate.conveying.slip_limits import RollingRegime
 from stylobate.errors import ParameterError, UnsupportedError
 from stylobate.theory import full_rolling, rolling_required_friction, slipping_rolling
 
@@ -41,6 +41,7 @@ def hard():
     return sb.conveying.slipping_boundary(model, motion, friction_coefficient=mu, angular_frequency=frequency)
 
 
+@pytest.mark.slow
 def test_friction_leaves_where_stability_begins_and_ends_it_where_rolling_needs_more(gentle):
     np.testing.assert_allclose(gentle["rolling_from"], gentle["rolling_from"][0], rtol=1e-9)
     ends = gentle["rolling_to"].to_numpy()[:-1]
@@ -53,6 +54,7 @@ def test_friction_leaves_where_stability_begins_and_ends_it_where_rolling_needs_
     assert gentle["rolling_to"][-1] == 8.0
 
 
+@pytest.mark.slow
 def test_no_slip_is_stable_on_a_gentle_base_and_slip_takes_over_on_a_hard_one(gentle, hard):
     assert gentle["slipping_from"].isnull().all()
     assert not gentle["slipping_stable"].any()
@@ -106,6 +108,7 @@ def test_runs_stay_at_stable_slip_and_leave_the_unstable_one(hard, mu, nu):
     assert departure(1.0, mu, HARD, nu, found, saddle) > FAR
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("zeta", "acceleration", "mu"), [(0.1, GENTLE, 0.07), (1.0, HARD, 0.05)])
 def test_runs_stay_at_rolling_without_slip_as_far_as_its_border(zeta, acceleration, mu):
     found = sb.conveying.slipping_boundary(

@@ -38,6 +38,7 @@ def shaken(model, acceleration, ratio=0.0, periods=2.6, ramp=2.0):
     return sb.simulate(model, motion, duration=periods * period)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("c", "mu", "ratio", "incline"), CASES)
 def test_runs_stay_below_and_begin_above_with_what_is_told(c, mu, ratio, incline):
     model = model_of(c, mu, incline)

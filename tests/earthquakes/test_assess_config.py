@@ -7,8 +7,7 @@ import pytest
 
 import stylobate as sb
 from stylobate.config import read_config
-from stylobate.earthquakes.config import AssessConfig
-from stylobate.earthquakes.config.assess import DesignSpectrumConfig
+from stylobate.earthquakes.config.assess import AssessConfig, DesignSpectrumConfig
 from stylobate.errors import ConfigError, FileError, UnlikelyInputWarning
 
 COLUMN = {"shape": "solid", "radius": 0.2, "height": 2.0, "density": 2700.0}

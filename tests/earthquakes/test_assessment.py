@@ -142,6 +142,7 @@ def test_an_assessment_is_saved_and_shown_again(found, tmp_path):
         Assessment.load(tmp_path / "run.nc")
 
 
+@pytest.mark.slow
 def test_interrupted_work_goes_on_where_it_was_and_computes_no_part_twice(found, tmp_path, caplog, monkeypatch):
     monkeypatch.setattr(planar, "_TOGETHER", 1)
     store = tmp_path / "store"
@@ -173,6 +174,7 @@ def test_interrupted_work_goes_on_where_it_was_and_computes_no_part_twice(found,
     assert caplog.messages == [f"13 of 13 parts were read from {store} and not computed again"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("change", "parts"),
     [
@@ -194,6 +196,7 @@ def test_a_part_of_another_input_is_another_part(change, parts, tmp_path):
     assert all(any(part in name for name in seen) for part in parts), seen
 
 
+@pytest.mark.slow
 def test_records_are_computed_some_at_a_time_and_the_whole_is_that_of_all_at_once(monkeypatch):
     few = partial(assessed, columns=("slim",), records=RECORDS[:2], planar=True, variations=4)
     announced = {"whole": [], "parts": []}
@@ -582,6 +585,7 @@ def test_a_column_whose_friction_is_below_its_slenderness_slides_before_it_rocks
         assert float(own["least_slipping"]) == float(own["standing_slip"]) if inside else True
 
 
+@pytest.mark.slow
 def test_what_slides_first_is_followed_by_the_model_that_slides():
     # 0.3 g needs 2.94 m/s²: the weak record never gets there.
     assessment = assessed(friction_coefficient=0.3, records=[RECORDS[0], RECORDS[2]], scales=[1.0], sliding=True)

@@ -152,6 +152,7 @@ def page(folder):
     return Page((folder / "report.html").read_text(encoding="utf-8"))
 
 
+@pytest.mark.slow
 def test_the_report_holds_every_cell_of_every_table_and_so_do_the_files(found, folder, page):
     cells = {plain(cell) for cell in page.cells}
     tables = assessment_tables(found)
@@ -346,6 +347,7 @@ def test_a_record_that_drifts_is_named(found):
         assert {row[-1] for row in assessment_tables(changed)["records"].rows} == {words}
 
 
+@pytest.mark.slow
 def test_an_assessment_saved_without_spectra_and_details_has_a_report(found, tmp_path):
     later = {"spectra", "ground_motions"}
     older = {name: value for name, value in found.setting.items() if name not in ("details", "software")}
@@ -575,6 +577,7 @@ def test_shares_are_drawn_with_their_intervals_and_those_of_near_scales_as_marks
     np.testing.assert_allclose(limits, [5.0, 95.0])
 
 
+@pytest.mark.slow
 def test_each_stated_scale_that_moved_a_column_has_a_figure_of_shares(found):
     names = set(report_pictures(found))
     assert {"variations-1-scale-0.5", "variations-1-scale-1", "variations-2-scale-1"} <= names

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 import stylobate as sb
-from stylobate.earthquakes.overturning_scales import Edges, Ends, interval_table
-from stylobate.earthquakes.rocking_spectra import Cases
+from stylobate.earthquakes.overturning_scales import Cases, Edges, Ends, interval_table
 
 MODEL = sb.Slender(sb.Column.dimensionless(0.1))
 PULSE = sb.Pulse.half_sine(acceleration=0.1, angular_frequency=2.0)

@@ -94,6 +94,7 @@ def covered(seed, replications, count):
     return held
 
 
+@pytest.mark.slow
 def test_intervals_hold_the_truth_as_often_as_they_say():
     held = covered(11, 200, 100)
     assert np.all(held >= least_covered(0.94, 200))

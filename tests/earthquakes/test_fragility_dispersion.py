@@ -5,7 +5,7 @@ import pytest
 import xarray as xr
 from scipy.stats import binom
 
-from stylobate.earthquakes import Samples, dispersion_parts
+from stylobate.earthquakes import SampleDesign, dispersion_parts
 from stylobate.errors import ParameterError
 
 DIMS = ("record", "property_sample", "scale")
@@ -54,7 +54,7 @@ def test_properties_that_move_no_capacity_show_no_dispersion():
     assert found.attrs["resolution"] == pytest.approx(np.log(scale[1] / scale[0]) / np.sqrt(12.0))
 
 
-@pytest.mark.parametrize("samples", Samples)
+@pytest.mark.parametrize("samples", SampleDesign)
 def test_the_total_is_the_sum_of_the_variances(samples):
     rng = np.random.default_rng(2)
     found = dispersion_parts(*series(rng, 12, 6), samples=samples, rng=rng)
@@ -68,7 +68,7 @@ def held(seed, replications, *, nested=False, **options):
     part, shared, rest = BETAS
     truth = (np.linalg.norm(BETAS), part, np.hypot(shared, rest), 0.0) if nested else (np.linalg.norm(BETAS), *BETAS)
     counts, squares = np.zeros(4), np.zeros((replications, 4))
-    samples = Samples.NESTED if nested else Samples.CROSSED
+    samples = SampleDesign.NESTED if nested else SampleDesign.CROSSED
     for place in range(replications):
         data = series(rng, 15, 8, nested=nested, **options)
         found = dispersion_parts(*data, samples=samples, resamples=1000, rng=rng)

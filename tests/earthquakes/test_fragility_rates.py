@@ -15,8 +15,7 @@ import stylobate as sb
 from stylobate.base_motions.base import ACCELERATION
 from stylobate.earthquakes import HazardCurve, annual_rate, fit_fragility, lognormal_fragility
 from stylobate.errors import ParameterError
-from stylobate.records import HorizontalComponent
-from stylobate.records.intensities import horizontal_peak
+from stylobate.records.intensities import HorizontalComponent, horizontal_peak
 
 BENT = HazardCurve(intensity=[0.2, 1.0, 3.0, 5.0, 20.0], rate=[0.2, 2e-2, 3e-3, 6e-4, 2e-6])
 

@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 
 import stylobate as sb
-from stylobate.earthquakes import Intensity, SpectralAcceleration, incremental_dynamic_analysis
+from stylobate.earthquakes import SpectralAcceleration, incremental_dynamic_analysis
+from stylobate.earthquakes.intensities import Intensity
 from stylobate.earthquakes.study_inputs import tail_of
-from stylobate.studies import open_sweep
+from stylobate.studies.sweeps.store import open_sweep
 
 MODEL = sb.Slender(sb.Column.solid(radius=0.4, height=4.0, density=2700.0), damping=0.05)
 SCALES = [0.6, 1.0, 1.4, 1.8, 2.4, 4.0]

@@ -9,7 +9,7 @@ import xarray as xr
 
 import stylobate as sb
 from stylobate.earthquakes import overturning_intervals
-from stylobate.earthquakes.rocking_spectra import Cases
+from stylobate.earthquakes.overturning_scales import Cases
 from stylobate.errors import Interrupted, Outcome, ParameterError, UnlikelyInputWarning, UnsupportedError
 
 C = 0.1
@@ -94,6 +94,7 @@ def test_a_gap_narrower_than_the_scan_is_found_by_the_direction(spectrum):
     assert found["interval_from"][1] == pytest.approx(fine["interval_from"][1].item(), rel=2e-3)
 
 
+@pytest.mark.slow
 def test_without_loss_the_direction_turns_where_theory_says_and_no_gap_opens():
     pulse = sb.Pulse.one_sine(acceleration=C, angular_frequency=5.0)
     least = float(sb.theory.one_sine_overturning_without_impact(5.0, 1.0))
@@ -182,6 +183,7 @@ def test_a_record_overturns_in_intervals_too():
     assert float(found["interval_from"][1, 0]) > float(found["interval_from"][0, 0])
 
 
+@pytest.mark.slow
 def test_a_store_keeps_scan_and_edges(tmp_path):
     store, calls = tmp_path / "intervals.zarr", []
     question = {"scales": [1.0, 3.0, 6.0], "over": {"angular_frequency": [5.0]}, "store": store}
@@ -268,6 +270,7 @@ def test_the_tail_is_in_seconds_and_by_default_forty_over_p():
     np.testing.assert_allclose(brief["end_time"].max("scale"), pulse.duration + 3.0, rtol=1e-12)
 
 
+@pytest.mark.slow
 def test_a_refined_scan_finds_below_its_first_interval_what_a_finer_scan_finds():
     column = sb.Column.solid(radius=0.3, height=3.0, density=2700.0)
     quakes = sb.OneOf(motions=tuple(sb.sample_record("el centro 1940").trimmed(0.0, end) for end in (12.0, 9.0)))

@@ -12,6 +12,7 @@ from stylobate.earthquakes import fit_fragility, limit_states, reached_intervals
 from stylobate.errors import ParameterError
 
 
+@pytest.mark.slow
 @given(st.lists(st.lists(st.booleans(), min_size=1, max_size=12), min_size=1, max_size=5), st.randoms())
 def test_intervals_tell_every_run_whatever_their_order(series, random):
     runs = [(place, 1.0 + k, one) for place, states in enumerate(series) for k, one in enumerate(states)]

@@ -9,7 +9,7 @@ import pytest
 import stylobate as sb
 from stylobate.base_motions import BASE_AT_REST
 from stylobate.earthquakes import rocking_spectrum
-from stylobate.earthquakes.rocking_spectra import peak_tilt_rate
+from stylobate.earthquakes.spectrum_study import peak_tilt_rate
 from stylobate.errors import Outcome, ParameterError
 
 C = 0.1

@@ -7,8 +7,7 @@ from matplotlib.patches import PathPatch
 
 import stylobate as sb
 from stylobate.earthquakes.figures.overturning_intervals import UNDECIDED
-from stylobate.earthquakes.overturning_scales import Edges, Ends, interval_table
-from stylobate.earthquakes.rocking_spectra import Cases
+from stylobate.earthquakes.overturning_scales import Cases, Edges, Ends, interval_table
 from stylobate.errors import Outcome, ParameterError
 from stylobate.plots.cells import OUTCOME_LOOKS, cell_edges
 from stylobate.plots.style import VERMILION

@@ -134,6 +134,7 @@ class Counted(sb.Slender):
         return {}
 
 
+@pytest.mark.slow
 def test_a_model_with_a_further_state_keeps_it_at_rest():
     model = Counted(sb.Column.dimensionless(C), damping=0.3)
     standing = sb.simulate(model, duration=1.0)

@@ -68,6 +68,7 @@ def test_the_energy_told_is_that_over_the_energy_of_the_balance():
     assert f"it has {100.0 * share:.2g} % of the energy required" in run.reason
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("model", MODELS[:2])
 def test_a_base_out_of_level_lowers_the_energy_that_overturns(model):
     told = set()
@@ -153,6 +154,7 @@ def pushed_outwards(cls, share_of_bare_balance):
     return sb.simulate(cls(column), **start, duration=0.2), sb.simulate(cls(column), **start, duration=20.0)
 
 
+@pytest.mark.slow
 def test_a_model_of_other_equations_does_not_inherit_the_claim_that_it_cannot_overturn_any_more():
     early, later = pushed_outwards(Leaning, 0.91)
     assert early.reason.endswith("it may overturn later: simulate longer")
@@ -170,6 +172,7 @@ def test_a_model_that_states_its_own_balance_makes_the_claim_where_it_is_true():
     assert later.outcome is Outcome.STILL_MOVING
 
 
+@pytest.mark.slow
 def test_a_model_that_can_never_overturn_can_say_so():
     class Held(Balanced):
         k = 1.2
@@ -186,6 +189,7 @@ def test_a_model_that_can_never_overturn_can_say_so():
 ISOTROPIC = sb.SlenderRolling(COLUMN, damping=0.02, spin_damping=0.02, couples="isotropic")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "model",
     [*QUICK, *(pytest.param(one, id=one.name) for one in (sb.PlanarRocking(COLUMN, restitution=1.0), ISOTROPIC))],

@@ -67,6 +67,7 @@ def test_a_motion_that_repeats_is_looked_at_for_as_long_as_it_needs_to():
     assert run.decided_at == 1e12
 
 
+@pytest.mark.slow
 def test_a_column_that_stands_under_a_motion_without_period_ends_by_the_limit():
     run = sb.simulate(MODEL, NOT_REPEATING, duration=1e9, max_steps=FEW)
     assert run.outcome is sb.Outcome.FAILED

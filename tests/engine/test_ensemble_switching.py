@@ -141,6 +141,7 @@ def test_a_run_does_not_depend_on_its_neighbours():
             np.testing.assert_array_equal(alone[name][0], together[name][i], err_msg=name)
 
 
+@pytest.mark.slow
 def test_without_slip_it_rolls_as_the_rolling_column():
     tilt, rate = [(0.05, 0.0), (0.06, 0.01), (0.03, -0.02)], [(0.0, 0.03), (0.01, 0.05), (-0.02, 0.04)]
     shared = {"tilt": tilt, "tilt_rate": rate, "duration": 8.0, "rtol": RTOL}

@@ -12,9 +12,9 @@ from stylobate.engine.ensembles.batch import Batch
 from stylobate.engine.ensembles.results import Contacts
 from stylobate.engine.ensembles.runs import one_run
 from stylobate.engine.kernel.columns import LOG, TRACE_ROOM, Change, Log, Setup, Trace
-from stylobate.engine.kernel.driver.events import Status, TraceKind
+from stylobate.engine.kernel.driver.events import RunStatus, TraceKind
 from stylobate.engine.single import Followed
-from stylobate.engine.starts import Start, Turning
+from stylobate.engine.starts import RunStart, Turning
 from stylobate.models.sliding import Contact
 
 from .plans import plan_of
@@ -67,7 +67,7 @@ def followed(case, **options):
     model, motion, tilt, rate, duration, _ = CASES[case]
     pauses = []
     plan = plan_of(model, motion, duration, rtol=RTOL, **options)
-    run = Followed.of(plan, one_run(Start(tilt, rate, duration)), lambda *progress: pauses.append(progress))
+    run = Followed.of(plan, one_run(RunStart(tilt, rate, duration)), lambda *progress: pauses.append(progress))
     return run, pauses
 
 
@@ -128,7 +128,7 @@ def test_runs_at_random_agree_with_an_independent_integration(make, seed):
     lean = direction if make is sb.PlanarRocking else random.uniform(0.0, 2.0 * np.pi)
     tilt, duration = 0.4 * C * random.random() * np.array([np.cos(lean), np.sin(lean)]), 3.0
     plan = plan_of(model, motion, duration, rtol=RTOL)
-    run = Followed.of(plan, one_run(Start(tuple(tilt), STILL, duration)), ignored)
+    run = Followed.of(plan, one_run(RunStart(tuple(tilt), STILL, duration)), ignored)
     assert_alike(model, run, integrated(model, motion, tilt=tilt, duration=duration, rtol=RTOL))
 
 
@@ -143,7 +143,7 @@ def test_twist_and_footprint_agree_with_an_independent_integration(case):
 def test_a_trace_changes_no_bit_of_a_run(case):
     model, motion, tilt, rate, duration, _ = CASES[case]
     run, _ = followed(case)
-    batch = Batch.of(plan_of(model, motion, duration, rtol=RTOL), one_run(Start(tilt, rate, duration)))
+    batch = Batch.of(plan_of(model, motion, duration, rtol=RTOL), one_run(RunStart(tilt, rate, duration)))
     batch.advance(np.zeros(1, dtype=np.uint8))
     columns = np.arange(batch.table.shape[1])
     columns = columns[(columns != LOG + Log.NEXT_TRACE) & (columns != Setup.TRACES)]
@@ -164,7 +164,7 @@ def test_a_step_that_is_taken_back_leaves_no_trace():
     whole = followed("spins freely")[0]
     limit = (1.0 - 1e-7) * whole.log(Log.PEAK_TILT)  # reached between the ends of a step
     run, other = followed("spins freely", tilt_limit=limit)[0], referred("spins freely", tilt_limit=limit)
-    assert run.status == Status.LIMIT
+    assert run.status == RunStatus.LIMIT
     assert run.trajectory.end * run.trajectory.model.time_scale == pytest.approx(other.events[-1].time, abs=1e-6)
     assert np.all(np.diff(run.trajectory.starts) > 0.0)
     assert run.trajectory.steps == len(run.trajectory.stretches) < whole.trajectory.steps
@@ -178,8 +178,8 @@ def test_a_run_may_end_at_or_within_an_analytical_step(share):
     end = step[Trace.START] + share * step[Trace.LENGTH]
     duration = end * model.time_scale
     plan = plan_of(model, motion, duration, rtol=RTOL)
-    run = Followed.of(plan, one_run(Start(tilt, rate, duration)), ignored)
-    assert run.status == Status.STOPPED
+    run = Followed.of(plan, one_run(RunStart(tilt, rate, duration)), ignored)
+    assert run.status == RunStatus.STOPPED
     assert run.trajectory.end == pytest.approx(end, rel=1e-14)
     lean, expected = (model.tilt(one.states(np.array([end]))) for one in (run.trajectory, whole))
     np.testing.assert_allclose(lean, expected, atol=1e-6 * C)
@@ -187,7 +187,7 @@ def test_a_run_may_end_at_or_within_an_analytical_step(share):
 
 def test_a_run_that_ends_where_it_begins_has_a_state():
     model = sb.Slender(COLUMN)
-    ended = Followed.of(plan_of(model, CIRCLE), one_run(Start((1.4, 0.0), (0.5, 0.0), 1.0)), ignored)
+    ended = Followed.of(plan_of(model, CIRCLE), one_run(RunStart((1.4, 0.0), (0.5, 0.0), 1.0)), ignored)
     assert ended.events[-1].kind == "overturned"
     assert model.tilt(ended.trajectory.states(np.zeros(1)))[:, 0] == pytest.approx([1.4, 0.0])
 
@@ -249,7 +249,7 @@ SLIDING = {
 def slid(case):
     model, motion, tilt, rate, turning, duration, _ = SLIDING[case]
     return Followed.of(
-        plan_of(model, motion, duration, rtol=RTOL), one_run(Start(tilt, rate, duration, turning)), ignored
+        plan_of(model, motion, duration, rtol=RTOL), one_run(RunStart(tilt, rate, duration, turning)), ignored
     )
 
 

@@ -98,6 +98,7 @@ def test_the_usual_passage_is_a_hundredth_of_the_slenderness():
     assert run.thresholds["passage_tilt"] == pytest.approx(0.01 * C)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("model_type", MODELS)
 def test_in_a_plane_every_passage_costs_what_it_costs_a_rocking_body(model_type):
     model, rocking = with_loss(model_type, 0.8), sb.PlanarRocking(COLUMN, restitution=0.8)

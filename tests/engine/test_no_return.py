@@ -58,6 +58,7 @@ def no_return_tilt(motion, since):
     return C + np.hypot(late[:, 0], late[:, 1]).max() / (1.0 + late[:, 2].min())
 
 
+@pytest.mark.slow
 @settings(max_examples=30)
 @given(
     motion=motions(),

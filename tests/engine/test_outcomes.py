@@ -164,6 +164,7 @@ def test_tilt_limit_ends_the_run_when_it_is_reached():
     assert free.events == (sb.Event("limit", free.decided_at),)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("acceleration", [1.3, 1.01, 1.0001])
 @pytest.mark.parametrize("rate", [(0.0, 0.0), (0.0, 0.03)], ids=["in a plane", "in space"])
 def test_a_base_that_falls_faster_than_gravity_is_left_behind(acceleration, rate):
@@ -173,6 +174,7 @@ def test_a_base_that_falls_faster_than_gravity_is_left_behind(acceleration, rate
     assert run.decided_at == pytest.approx(2.0 * math.acos(-1.0 / acceleration), abs=1e-9)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("horizontal", [0.0, 0.02])
 def test_a_column_at_rest_is_left_behind_too(horizontal):
     motion = sb.Harmonic.vertical(acceleration=1.5, angular_frequency=1.0) + sb.Harmonic.straight(

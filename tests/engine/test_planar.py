@@ -123,6 +123,7 @@ def test_a_start_off_the_line_of_the_motion_is_not_planar():
     assert sb.simulate(model(), motion, tilt=(0.02, 0.0), duration=1.0).planar
 
 
+@pytest.mark.slow
 @settings(max_examples=60)
 @given(
     tilt=st.floats(-0.6, 0.6),

@@ -6,7 +6,7 @@ import pytest
 import stylobate as sb
 from stylobate.models import finite_tilt
 from stylobate.models.sliding import Contact
-from stylobate.models.sliding.balance import State
+from stylobate.models.sliding.balance import SlidingState
 
 from .sliding_at_random import COLUMN, LASTS, MOTIONS, random_runs
 
@@ -55,7 +55,7 @@ def least_end_energy(runs, told, number):
 
     def energy(tilt, rate, spin, kind):
         state = (*tilt, *(scale * np.asarray(rate)), scale * spin, *(0.0,) * 10, float(kind))
-        return float(model._energy(State(*state))) / unit
+        return float(model._energy(SlidingState(*state))) / unit
 
     start = {name: values[number] for name, values in runs.starts.items()}
     stands = not np.any(start["tilt"]) and not np.any(start["tilt_rate"])

@@ -10,7 +10,7 @@ from scipy.linalg import expm
 from scipy.optimize import brentq
 
 import stylobate as sb
-from stylobate.models import Push
+from stylobate.models.model import Push
 
 C = 0.1
 COLUMN = sb.Column.dimensionless(C, 0.75, 0.5)
@@ -122,6 +122,7 @@ class TurningPush(NamedTuple):
         return float(np.abs(last["tilt"].to_numpy() - exact[:2]).max()) / C, least / C
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("model", MODELS.values(), ids=MODELS)
 def test_runs_from_rest_converge_to_rounding_under_a_turning_push(model):
     push = TurningPush(size=1.5 * C, narrow=0.6 * C, lag=0.9, nu=2.0, start=-1.3)

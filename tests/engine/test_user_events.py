@@ -168,6 +168,7 @@ def test_a_truth_value_has_no_sign_that_changes_and_is_refused(truth):
         sb.simulate(MODEL, CIRCLE, **START, duration=5.0, events=[beyond])
 
 
+@pytest.mark.slow
 def test_events_are_kept_in_files(tmp_path):
     run = sb.simulate(MODEL, CIRCLE, **START, duration=5.0, events=[along_x])
     assert sb.load(run.save(tmp_path / "run.nc")).events == run.events

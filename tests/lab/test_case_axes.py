@@ -13,8 +13,8 @@ from stylobate.errors import Outcome
 from stylobate.lab.grids import grid
 from stylobate.lab.messages import Found
 from stylobate.lab.tasks import task
-from stylobate.results.tables import Table
-from stylobate.studies.study import Runs, described, study
+from stylobate.results.tables import ResultTable
+from stylobate.studies.study import StudyArguments, described, study
 
 BOTTLE = {
     "column": {"shape": "solid", "radius": 0.03, "height": 0.2, "density": 1000.0},
@@ -90,11 +90,11 @@ def labelled_by_tilt(runs):
         axes=("x", "y"),
         classes=(Classes("tilt_class", "tilt_name"),),
         completed=lambda saved, *_: labelled_by_tilt(saved),
-        table=lambda _: Table("", (), ()),
+        table=lambda _: ResultTable("", (), ()),
         summary=lambda _: {},
     ),
 )
-def peak_tilts(model, motion=None, *, over, **run: Unpack[Runs]):
+def peak_tilts(model, motion=None, *, over, **run: Unpack[StudyArguments]):
     """Compute peak tilts."""
     return sb.studies.Sweep.grid(model, motion, over=over, **described(run)), labelled_by_tilt
 

@@ -85,6 +85,7 @@ def test_basins_tell_their_attractors(client):
     assert len(job["result"]["codes"]) == len(job["result"]["codes"][0]) == 9
 
 
+@pytest.mark.slow
 def test_exact_orbits_are_told_with_their_bifurcations(client):
     job = followed(client, begun(client, "exact", {**CIRCLE, "angular_frequency_range": [1.2, 2.0]}))
     assert job["state"] == "done", job["problems"]
@@ -99,6 +100,7 @@ def test_exact_orbits_are_told_with_their_bifurcations(client):
     assert found["angular_frequency"] == pytest.approx(sb.theory.critical_frequency(0.065, c=0.1, eta=0.1), abs=1e-6)
 
 
+@pytest.mark.slow
 def test_a_moving_picture_can_be_fetched(client):
     identity = begun(client, "animation", {**CIRCLE, "tilt": [0.05, 0.0], "duration": 1.0})
     assert followed(client, identity)["state"] == "done"

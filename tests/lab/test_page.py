@@ -24,6 +24,7 @@ def test_it_loads_without_an_error_and_without_a_request_to_elsewhere(watched):
     assert watched.page.get_by_text("once round in each of the last 10 periods").is_visible()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("preset", ["spin-up", "shaker", "conveyor", "averaging-fails"])
 def test_the_motion_drawn_is_the_motion_computed(watched, preset):
     described = PRESETS[preset]
@@ -151,7 +152,8 @@ def test_a_broken_link_is_told_and_the_usual_case_shown(browser, address):
 def test_a_run_that_takes_long_is_cancelled(watched):
     page = watched.page
     page.route(re.compile("/api/simulate"), lambda route: None)  # never answered
-    moved(page, "damping", 0.2)
+    with page.expect_request(re.compile("/api/simulate")):  # after the start on its branch is known
+        moved(page, "damping", 0.2)
     with page.expect_event("requestfailed", lambda request: "simulate" in request.url):
         page.locator(".stage").get_by_role("button", name="Cancel").click()
     assert page.get_by_text("The run was cancelled.").first.is_visible()
@@ -215,6 +217,7 @@ def test_every_control_has_a_name(watched):
     assert nameless == []
 
 
+@pytest.mark.slow
 def test_the_page_tells_when_the_server_is_gone_and_recovers(browser):
     page = new_page(browser)
     with laboratory() as address:

@@ -6,6 +6,7 @@ import pytest
 from tests.lab.browser import moved, new_page, shown
 
 
+@pytest.mark.slow
 def test_a_click_in_the_map_starts_that_motion_and_its_link_restores_it(watched, browser):
     page = watched.page
     page.get_by_role("tab", name="Overturning map").click()

@@ -69,6 +69,7 @@ LONG = {**COLUMN, "motion": {**COLUMN["motion"], "angular_frequency": 150.0}, "m
 LONG["model"] = {"kind": "sliding", "friction_coefficient": 0.02, "damping": 0.1}
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform != "linux", reason="reads the states of processes from /proc")
 def test_a_request_to_end_ends_connections_runs_maps_and_their_processes_at_once(slowness):
     process = started("--port", "0")

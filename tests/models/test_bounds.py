@@ -10,6 +10,7 @@ from stylobate.lab import Limits, openapi
 from stylobate.models.declared import MODELS, model_quantities
 from stylobate.quantities import parameters_of
 from stylobate.studies.checks import require_bounds, require_parameters
+from stylobate.studies.responses.response_curves import averaged_motion
 from stylobate.studies.sweeps.designs import checked_values
 
 COLUMN = sb.Column.dimensionless(0.1)
@@ -86,4 +87,4 @@ def test_averaged_equations_are_refused_for_a_subclass_with_equations_of_its_own
 
     motion = sb.Harmonic.straight(acceleration=0.04, angular_frequency=3.0)
     with pytest.raises(UnsupportedError, match=r"^model: averaged_motion holds for Slender only \(got Other\)\."):
-        sb.studies.averaged_motion(Other(COLUMN, damping=0.1), motion, tilt=(0.05, 0.0), duration=1.0)
+        averaged_motion(Other(COLUMN, damping=0.1), motion, tilt=(0.05, 0.0), duration=1.0)

@@ -10,7 +10,8 @@ import pytest
 
 import stylobate as sb
 from stylobate.errors import ModelError
-from stylobate.models.consistency import check_once, equations
+from stylobate.models.consistency import equations
+from stylobate.models.consistency.check import check_once
 from stylobate.models.model import RollingLaw
 
 COLUMN = sb.Column.dimensionless(0.1)

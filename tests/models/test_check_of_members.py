@@ -8,7 +8,7 @@ import pytest
 
 import stylobate as sb
 from stylobate.errors import ModelError
-from stylobate.models.consistency import check_once
+from stylobate.models.consistency.check import check_once
 
 COLUMN = sb.Column.dimensionless(0.2)
 STATES = ("tilt_x", "tilt_y", "tilt_rate_x", "tilt_rate_y")

@@ -11,7 +11,7 @@ import pytest
 
 import stylobate as sb
 from stylobate.errors import ModelError, ParameterError
-from stylobate.models.consistency import check_once
+from stylobate.models.consistency.check import check_once
 
 COLUMN = sb.Column.dimensionless(0.1)
 BODIES = [COLUMN, sb.Column.solid(radius=0.5, height=4.0, density=2700.0)]
@@ -99,6 +99,7 @@ def test_a_run_refuses_a_model_that_contradicts_itself(run):
         run(Sprung(COLUMN), tilt=(0.05, 0.0), duration=1.0)
 
 
+@pytest.mark.slow
 def test_a_soft_spring_with_all_that_it_changes_is_followed_to_the_right_end():
     # (1 − k) x − c from x = 0.42 on: beyond the bare column's point of no return, 0.1, and below its own, 1.0.
     sb.models.check(Whole(COLUMN))

@@ -235,6 +235,7 @@ def test_vertical_acceleration_is_a_change_of_gravity(theta, w1, w2, w3, az):
     np.testing.assert_allclose(found.force, expected.force, atol=1e-12 * scale)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("theta", "rate"), [(0.1, 1.5), (0.3, -6.0), (1.2, 10.0)])
 def test_steady_rolling_is_steady(theta, rate):
     m, r, h, g = SHAKEN.mass, SHAKEN.radius, SHAKEN.mass_height, SHAKEN.gravity

@@ -8,7 +8,7 @@ import pytest
 import stylobate as sb
 from stylobate.compiler import compiled
 from stylobate.models.contact import contact_loads, per_normal_force
-from stylobate.models.sliding.balance import State, balance, forces_along
+from stylobate.models.sliding.balance import SlidingState, balance, forces_along
 from stylobate.models.sliding.equations import forces
 
 C, ETA, A0, NU = 0.1, 0.1, 0.065, 3.0
@@ -102,7 +102,7 @@ def test_the_forces_of_a_column_that_slides_are_those_of_each_moment_and_are_com
     states, push = 0.1 * rng.normal(size=(16, 100)), 0.1 * rng.normal(size=(3, 100))
     states[-1] = np.arange(100) % (sb.Contact.FLYING + 1)
     expected = [
-        forces(State(*state), tuple(now), model.numbers)
+        forces(SlidingState(*state), tuple(now), model.numbers)
         for state, now in zip(states.T.tolist(), push.T.tolist(), strict=True)
     ]
     np.testing.assert_array_equal(forces_along(states, push, model.numbers), np.transpose(expected))

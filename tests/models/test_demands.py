@@ -27,6 +27,7 @@ def begun(model):
     return {"tilt": state[:2], "tilt_rate": np.array(state[2:4]) * SCALE, **spin}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", MODELS)
 def test_the_largest_demands_are_those_of_newton_and_euler(name):
     model, duration = MODELS[name], 3.0 / SCALE

@@ -7,7 +7,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import stylobate as sb
-from stylobate.models import Push
+from stylobate.models.model import Push
 
 C = 0.2
 COLUMN = sb.Column.dimensionless(C, 0.73, 0.5)

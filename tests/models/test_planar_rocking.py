@@ -158,6 +158,7 @@ def test_what_leaves_the_plane_is_refused_in_one_line(start):
     assert "\n" not in str(refusal.value)
 
 
+@pytest.mark.slow
 def test_a_plane_may_have_any_direction_and_shake_upwards():
     motion = LINE.scaled(2.2) + sb.Harmonic.vertical(acceleration=2.0, angular_frequency=9.0)
     turned = sb.simulate(BLOCK, motion, tilt=0.03 * ALONG, duration=3.0, rtol=1e-10)

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 import stylobate as sb
 from stylobate.errors import ParameterError
-from stylobate.models import Push
+from stylobate.models.model import Push
 
 C = 0.1
 MODEL = sb.Slender(sb.Column.dimensionless(C), damping=0.1)

@@ -10,7 +10,7 @@ from scipy.integrate import solve_ivp
 
 import stylobate as sb
 from stylobate.errors import ParameterError
-from stylobate.models import Push
+from stylobate.models.model import Push
 
 C = 0.1
 COLUMN = sb.Column.dimensionless(C)

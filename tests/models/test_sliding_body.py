@@ -94,6 +94,7 @@ def test_friction_on_a_patch_is_on_the_surface_of_what_it_bears():
 # Laws of motions from event to event
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "body",
     [
@@ -170,6 +171,7 @@ def test_a_small_patch_is_the_limit_of_a_point():
     assert far / near == pytest.approx(4.0, rel=0.05)
 
 
+@pytest.mark.slow
 def test_events_converge_with_the_tolerance():
     body = SlidingBody(SHAKEN, kinetic=0.2)
     tracks = [
@@ -185,6 +187,7 @@ def test_events_converge_with_the_tolerance():
     assert off[1] < 1e-8 > off_state[1]
 
 
+@pytest.mark.slow
 def test_what_counts_as_no_slip_decides_nothing():
     body = SlidingBody(SHAKEN, kinetic=0.2)
     tracks = [
@@ -225,6 +228,7 @@ def test_a_jam_is_reported_where_no_normal_force_keeps_the_gap_shut():
         assert (kinds(track)[:1] == ["jam"]) == (expected < 0.0)
 
 
+@pytest.mark.slow
 def test_static_friction_above_kinetic_delays_slip_only():
     start = SlidingBody(SHAKEN, kinetic=0.2).state(**START)
     first = [

@@ -7,7 +7,8 @@ import pytest
 
 import stylobate as sb
 from stylobate.models.finite_tilt import FADING
-from stylobate.models.sliding import Contact, State
+from stylobate.models.sliding import Contact
+from stylobate.models.sliding.balance import SlidingState
 from stylobate.models.sliding.equations import JAM, forces
 
 from .constrained_body import TURNING, VELOCITY
@@ -41,7 +42,7 @@ def cases(patch, frictions):
 
 
 def stated(model, body, contact, theta, beta, w1, w2, w3, slip):
-    """The same motion as a `State` and as (G, q, v_C, ω)."""
+    """The same motion as a `SlidingState` and as (G, q, v_C, ω)."""
     d, n = np.array([math.cos(beta), math.sin(beta)]), np.array([-math.sin(beta), math.cos(beta)])
     rate = w2 * d - theta / math.sin(theta) * w1 * n
     length = model.column.mass_height
@@ -50,7 +51,7 @@ def stated(model, body, contact, theta, beta, w1, w2, w3, slip):
     heading = np.zeros(3)
     if contact == Contact.SLIPPING:
         heading = slip / np.linalg.norm(slip)
-    state = State(*theta * d, *rate, w3, 0.0, 0.0, 0.0, *slip[:2], 0.0, 0.0, *heading, float(contact))
+    state = SlidingState(*theta * d, *rate, w3, 0.0, 0.0, 0.0, *slip[:2], 0.0, 0.0, *heading, float(contact))
     whole = body.state(theta=theta, beta=beta, w1=w1, w2=w2, w3=w3, slip=slip[:2] * length)
     return state, body.touching(whole)
 

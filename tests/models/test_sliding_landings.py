@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 import stylobate as sb
-from stylobate.models.sliding import Contact, State
+from stylobate.models.sliding import Contact
+from stylobate.models.sliding.balance import SlidingState
 from stylobate.models.sliding.rim_and_base import REST_SPEED
 
 from .constrained_body import PLACE, TURNING, VELOCITY
@@ -39,7 +40,7 @@ def arrivals(count, restitution):
 
 
 def velocities(state, body, place):
-    """(v_G, ω) of a `State`, with the attitude that `place` has; rates are in units of ω0 = 1."""
+    """(v_G, ω) of a `SlidingState`, with the attitude that `place` has; rates are in units of ω0 = 1."""
     x, y, vx, vy = state[:4]
     theta = math.hypot(x, y)
     d = np.array([x, y, 0.0]) / theta
@@ -63,7 +64,7 @@ def test_a_landing_is_one_impulse_at_the_lowest_point_within_the_cone(restitutio
         if elapsed > 0.0:
             continue  # it slips anew, from a contact that the impact has stopped
         compared += 1
-        velocity, spin = velocities(State(*after), body, before)
+        velocity, spin = velocities(SlidingState(*after), body, before)
         struck = body.column.mass * (velocity - before[VELOCITY])
         left = before.copy()
         left[VELOCITY], left[TURNING] = velocity, spin
@@ -97,7 +98,7 @@ def test_a_stroke_of_the_base_never_adds_energy(friction, restitution, moving):
         spin = spin if moving in ("spinning", "all") else 0.0
         slip = slip if moving in ("slipping", "all") else np.zeros(2)
         d, n = np.array([math.cos(beta), math.sin(beta)]), np.array([-math.sin(beta), math.cos(beta)])
-        begun = State(
+        begun = SlidingState(
             *tilt * d, *fall * d + around * n, spin, 0.0, 0.0, 0.0, *slip, 0.0, 0.0, 0.0, 0.0, 0.0,
             float(Contact.SLIPPING if slip.any() else Contact.ROLLING),
         )  # fmt: skip

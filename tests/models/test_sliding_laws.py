@@ -52,6 +52,7 @@ def settled(run, lapse):
     return kept
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("patch", [0.0, 0.2], ids=["point", "patch"])
 @pytest.mark.parametrize("seed", range(5))
 def test_the_plane_presses_and_friction_is_coulombs(seed, patch):

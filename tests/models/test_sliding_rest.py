@@ -65,6 +65,7 @@ def random_end(seed):
     return run.outcome, np.concatenate([*end, [float(data["spin"])]])
 
 
+@pytest.mark.slow
 def test_halving_what_counts_as_nothing_changes_nothing(monkeypatch):
     ends = [random_end(seed) for seed in range(4)]
     halve(monkeypatch)

@@ -7,7 +7,8 @@ import pytest
 from scipy.optimize import brentq
 
 import stylobate as sb
-from stylobate.models.sliding import Contact, State
+from stylobate.models.sliding import Contact
+from stylobate.models.sliding.balance import SlidingState
 from stylobate.models.sliding.equations import energy_of, forces, height_of, rates_of
 from stylobate.models.sliding.rim_and_base import STARTS, held, lifted, load_direction, opens, slip_rate
 
@@ -20,13 +21,13 @@ def on_rim(rng, *, theta=(0.02, 1.2), contact=Contact.SLIPPING):
     """Return a random state of a column whose rim touches; its slip is zero."""
     tilt, azimuth = rng.uniform(*theta), rng.uniform(-math.pi, math.pi)
     lean = tilt * math.cos(azimuth), tilt * math.sin(azimuth)
-    return State(*lean, *rng.normal(scale=0.3, size=3), *(0.0,) * 10, float(contact))
+    return SlidingState(*lean, *rng.normal(scale=0.3, size=3), *(0.0,) * 10, float(contact))
 
 
 def after(model, state, guard, push=(0.0, 0.0, 0.0)):
     """Return elapsed time and state after a guard has broken, on a base with a constant acceleration."""
     elapsed, found = model.reset_map(*state, float(guard), *push, *push, AHEAD, 0.0, *model.parameters)
-    return elapsed, State(*found)
+    return elapsed, SlidingState(*found)
 
 
 def test_a_rim_opens_if_its_lowest_point_accelerates_upwards_without_contact():
@@ -112,7 +113,7 @@ def test_a_base_that_lands_sliding_trips_if_its_impulse_leans_beyond_its_edge(ap
     struck = (1.0 + restitution) * approach
     # Friction stops the slip with an impulse of its speed, or slips on with half of the normal impulse.
     for slip, trips in ((0.29 * struck, False), (0.31 * struck, True), (0.6 * struck, True)):
-        flying = State(*(0.0,) * 8, slip, 0.0, 0.0, -approach, 0.0, 0.0, 0.0, float(Contact.FLYING))
+        flying = SlidingState(*(0.0,) * 8, slip, 0.0, 0.0, -approach, 0.0, 0.0, 0.0, float(Contact.FLYING))
         _, found = after(model, flying, SUPPORT)
         assert (found.tilt_x > 0.0, found.tilt_y) == (trips, 0.0)
         assert (found.contact == Contact.FLYING) == (restitution > 0.0)

@@ -11,7 +11,8 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import stylobate as sb
-from stylobate.models.sliding import Contact, State
+from stylobate.models.sliding import Contact
+from stylobate.models.sliding.balance import SlidingState
 from stylobate.models.sliding.rim_and_base import lifted
 
 COLUMN = sb.Column.dimensionless(slenderness=0.3)
@@ -130,7 +131,7 @@ def centre_velocities(model, run):
     found = []
     for tilt, rate, spin, slip in zip(*(data[name].to_numpy() for name in names), strict=True):
         turning = (*(rate * model.time_scale), spin * model.time_scale, 0.0, 0.0, 0.0)
-        state = State(*tilt, *turning, *(slip / unit), *(0.0,) * 5, float(Contact.SLIPPING))
+        state = SlidingState(*tilt, *turning, *(slip / unit), *(0.0,) * 5, float(Contact.SLIPPING))
         flying = lifted(state, model.numbers)
         found.append((flying.velocity_x * unit, flying.velocity_y * unit))
     return np.array(found)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import stylobate as sb
-from stylobate.orbits import Kind, continue_branch, periodic_orbit
+from stylobate.orbits import BifurcationKind, continue_branch, periodic_orbit
 from stylobate.theory.averaging import rotating_frame_jacobian
 
 C = 0.1
@@ -27,7 +27,7 @@ def branch_of_circle(a0, eta, low, high, rtol=1e-12):
 def test_steady_rolling_loses_its_stability_at_the_published_frequency(a0, published):
     branch = branch_of_circle(a0, 0.1, 0.9 * published, 1.1 * published)
     (found,) = branch.bifurcations
-    assert found.kind is Kind.NEIMARK_SACKER
+    assert found.kind is BifurcationKind.NEIMARK_SACKER
     # The condition is known to 1e-11 (multipliers) and its slope is of the order 1.
     assert found.parameter == pytest.approx(published, abs=1e-9)
     assert found.supercritical
@@ -44,7 +44,7 @@ def test_bifurcations_of_circular_motion_are_those_of_theory(eta, a0):
     coefficient = float(sb.theory.first_lyapunov_coefficient(a0, c=C, eta=eta))
     branch = branch_of_circle(a0, eta, 0.97 * expected, 1.05 * expected)
     (found,) = branch.bifurcations
-    assert found.kind is Kind.NEIMARK_SACKER
+    assert found.kind is BifurcationKind.NEIMARK_SACKER
     assert found.parameter == pytest.approx(expected, abs=1e-9)
     assert math.copysign(1.0, found.coefficient) == math.copysign(1.0, coefficient)
     assert found.supercritical == (coefficient < 0.0)
@@ -92,7 +92,7 @@ PITCHFORKS = {0.04: 1.087672063, 0.13: 1.620453934}
 @pytest.mark.parametrize(("a1", "published"), PITCHFORKS.items())
 def test_straight_line_motion_has_its_pitchfork_where_published(straight_branches, a1, published):
     (found,) = straight_branches[a1].bifurcations
-    assert found.kind is Kind.PITCHFORK
+    assert found.kind is BifurcationKind.PITCHFORK
     assert found.parameter == pytest.approx(published, abs=1e-8)
     assert found.supercritical
     assert found.orbit.inversion
@@ -102,7 +102,7 @@ def test_straight_line_motion_has_its_pitchfork_where_published(straight_branche
 
 def test_elliptic_motion_has_its_pitchfork_where_published(ellipse_branch):
     (found,) = ellipse_branch.bifurcations
-    assert found.kind is Kind.PITCHFORK
+    assert found.kind is BifurcationKind.PITCHFORK
     assert found.parameter == pytest.approx(1.436505083, abs=1e-8)
     assert found.supercritical
 

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from stylobate.engine.flow.integration import Status
+from stylobate.engine.flow.integration import FlowStatus
 from stylobate.orbits import arclength
 from stylobate.orbits.arclength import Family, corrected
 from stylobate.orbits.bifurcations import branching, complex_pairs, conditions_between, neimark_sacker
@@ -85,7 +85,7 @@ def test_newtons_step_is_refused_if_it_is_longer_than_the_range_of_the_parameter
 
     def linear(system, states, *_, **__):
         return SimpleNamespace(
-            status=Status.DONE, states=states, matrix=np.eye(1), by_parameter=np.zeros(1), residual=states - miss
+            status=FlowStatus.DONE, states=states, matrix=np.eye(1), by_parameter=np.zeros(1), residual=states - miss
         )
 
     monkeypatch.setattr(arclength, "shots", linear)
@@ -96,4 +96,4 @@ def test_newtons_step_is_refused_if_it_is_longer_than_the_range_of_the_parameter
         point, steps = found
         assert (point.chain.states[0, 0], steps) == (pytest.approx(miss), 2)
     else:
-        assert found is Status.FAILED
+        assert found is FlowStatus.FAILED

@@ -7,7 +7,7 @@ import pytest
 
 import stylobate as sb
 from stylobate.errors import ParameterError, UnsupportedError
-from stylobate.orbits import End, Kind, StepControl, continue_branch, periodic_orbit
+from stylobate.orbits import BifurcationKind, BranchEnd, StepControl, continue_branch, periodic_orbit
 from stylobate.theory.rolling import rolling_gap
 
 C = 0.1
@@ -21,6 +21,7 @@ def circular_orbit(nu=2.0, a0=0.065, eta=0.1):
     return periodic_orbit(slender(eta), sb.Harmonic.circular(acceleration=a0, angular_frequency=nu))
 
 
+@pytest.mark.slow
 def test_every_point_of_a_branch_of_circular_motion_is_steady_rolling():
     branch = continue_branch(circular_orbit(), "angular_frequency", bounds=(1.2, 2.5))
     points = branch.points
@@ -35,15 +36,16 @@ def test_every_point_of_a_branch_of_circular_motion_is_steady_rolling():
     np.testing.assert_allclose(np.sort(np.abs(found), axis=1), np.sort(np.abs(expected), axis=1), rtol=0.0, atol=1e-8)
     assert (nu[0], nu[-1]) == pytest.approx((1.2, 2.5), rel=1e-12)
     assert np.all(np.diff(nu) > 0.0)
-    assert branch.ends == (End.BOUND, End.BOUND)
+    assert branch.ends == (BranchEnd.BOUND, BranchEnd.BOUND)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("side", "nu", "bounds"), [(1, 3.2, (2.0, 3.4)), (0, 0.3, (0.25, 1.4))])
 def test_a_branch_goes_round_its_fold_to_the_lower_branch(side, nu, bounds):
     """Folds of circular motion: a0²(1 + ν²)² = η²ν²(c² − a0²), where A = c(1 + ν²)/D."""
     a0, eta = 0.01, 0.3
     branch = continue_branch(circular_orbit(nu, a0, eta), "angular_frequency", bounds=bounds)
-    (fold,) = (one for one in branch.bifurcations if one.kind is Kind.FOLD)
+    (fold,) = (one for one in branch.bifurcations if one.kind is BifurcationKind.FOLD)
     at = fold.parameter
     # The closed form, solved for ν.
     ratio = eta * math.sqrt(C**2 - a0**2) / a0
@@ -61,6 +63,7 @@ def test_a_branch_goes_round_its_fold_to_the_lower_branch(side, nu, bounds):
     assert tilts == pytest.approx([float(rolling.lower.amplitude), float(rolling.upper.amplitude)], abs=1e-11)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("a1", [0.04, 0.13])
 def test_followed_from_either_end_a_branch_is_the_same(straight_branches, a1):
     branch = straight_branches[a1]
@@ -76,6 +79,7 @@ def test_followed_from_either_end_a_branch_is_the_same(straight_branches, a1):
         assert one.parameter == pytest.approx(other.parameter, abs=1e-9)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("largest", [0.005, 0.05])
 def test_a_branch_does_not_depend_on_its_steps(straight_branches, largest):
     usual = straight_branches[0.04]
@@ -91,10 +95,10 @@ def test_a_branch_does_not_depend_on_its_steps(straight_branches, largest):
 def test_with_the_acceleration_circular_rolling_ends_at_the_upright(nu):
     """On the lower arm A → 0 as a0 → c; nothing of the other arm is followed again from there."""
     branch = continue_branch(circular_orbit(nu), "acceleration", bounds=(0.001, 0.3))
-    assert branch.ends == (End.LOST, End.BOUND)
+    assert branch.ends == (BranchEnd.LOST, BranchEnd.BOUND)
     points = branch.points
     a0, tilt = points["acceleration"].to_numpy(), points["mean_tilt"].to_numpy()
-    (fold,) = (one for one in branch.bifurcations if one.kind is Kind.FOLD)
+    (fold,) = (one for one in branch.bifurcations if one.kind is BifurcationKind.FOLD)
     at = int(np.argmin(a0))
     assert a0[at] == fold.parameter
     assert np.all(np.diff(a0[: at + 1]) < 0.0)
@@ -110,7 +114,7 @@ def test_with_the_acceleration_circular_rolling_ends_at_the_upright(nu):
     assert tilt[0] < 1e-4 * C
     assert a0[0] == pytest.approx(C, rel=1e-3)
     assert len(branch.orbits_at(0.2)) == 1
-    assert sum(one.kind is Kind.NEIMARK_SACKER for one in branch.bifurcations) <= 1
+    assert sum(one.kind is BifurcationKind.NEIMARK_SACKER for one in branch.bifurcations) <= 1
 
 
 def test_a_step_that_ends_farther_off_than_it_is_long_is_not_made():
@@ -137,7 +141,7 @@ def test_followed_over_any_parameter_an_orbit_is_that_found_there(name, bounds, 
     model = slender()
     motion = sb.Harmonic.elliptic(amplitude=(0.08, 0.04), phase=-math.pi / 2.0, angular_frequency=2.5)
     branch = continue_branch(periodic_orbit(model, motion), name, bounds=bounds)
-    assert branch.ends == (End.BOUND, End.BOUND)
+    assert branch.ends == (BranchEnd.BOUND, BranchEnd.BOUND)
     assert [branch.path[0].value, branch.path[-1].value] == pytest.approx(bounds, rel=1e-9)
     (orbit,) = branch.orbits_at(value)
     changed_model, changed_motion = sb.with_parameters(model, motion, **{name: value})
@@ -165,6 +169,7 @@ def test_orbits_at_a_point_of_the_path_are_given_once():
     assert branch.orbits_at(2.6) == ()
 
 
+@pytest.mark.slow
 def test_an_orbit_in_a_plane_is_followed_as_theory_says():
     """Both closed forms at each point: symmetric rocking of the half-period map."""
     motion = sb.Harmonic.straight(acceleration=0.13, angular_frequency=3.0)
@@ -187,13 +192,13 @@ def test_progress_tells_every_new_point():
         circular_orbit(2.0), "angular_frequency", bounds=(1.5, 2.5), both_ways=False, progress=told.append
     )
     assert told == [point.value for point in branch.path[1:]]
-    assert branch.ends == (End.BEGUN, End.BOUND)
+    assert branch.ends == (BranchEnd.BEGUN, BranchEnd.BOUND)
 
 
 def test_as_many_points_as_asked_for():
     branch = continue_branch(circular_orbit(2.0), "angular_frequency", bounds=(1.5, 2.5), control=StepControl(most=4))
     assert len(branch.path) == 1 + 2 * 4
-    assert branch.ends == (End.STEPS, End.STEPS)
+    assert branch.ends == (BranchEnd.STEPS, BranchEnd.STEPS)
 
 
 @pytest.mark.parametrize(

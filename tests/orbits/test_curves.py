@@ -7,7 +7,7 @@ import pytest
 
 import stylobate as sb
 from stylobate.errors import ParameterError
-from stylobate.orbits import Kind, bifurcation_curve, continue_branch, periodic_orbit
+from stylobate.orbits import BifurcationKind, bifurcation_curve, continue_branch, periodic_orbit
 
 C = ETA = 0.1
 MODEL = sb.Slender(sb.Column.dimensionless(C), damping=ETA)
@@ -46,7 +46,7 @@ def test_the_fold_curve_is_where_the_two_branches_of_rolling_meet():
     eta = 0.3
     model = sb.Slender(sb.Column.dimensionless(C), damping=eta)
     motion = sb.Harmonic.circular(acceleration=0.01, angular_frequency=4.0)
-    fold = next(one for one in branch_of(motion, model, (1.5, 6.0)).bifurcations if one.kind is Kind.FOLD)
+    fold = next(one for one in branch_of(motion, model, (1.5, 6.0)).bifurcations if one.kind is BifurcationKind.FOLD)
     curve = bifurcation_curve(fold, "acceleration", bounds=((1.5, 6.0), (0.006, 0.013)))
     nu, a0 = np.transpose([point.values for point in curve.path])
     # The discriminant of (8), relative to its terms.
@@ -70,7 +70,7 @@ def test_the_pitchfork_curve_meets_what_is_located_at_other_amplitudes():
 
     spline = CubicSpline(amplitude[order], frequency[order])
     assert float(spline(0.04)) == pytest.approx(at[0.04].parameter, abs=2e-6)
-    assert curve.kind is Kind.PITCHFORK
+    assert curve.kind is BifurcationKind.PITCHFORK
 
 
 def test_an_orbit_that_is_its_own_mirror_image_is_told():

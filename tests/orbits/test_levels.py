@@ -7,7 +7,7 @@ import pytest
 
 import stylobate as sb
 from stylobate.errors import NoOrbitError, ParameterError
-from stylobate.orbits import Kind
+from stylobate.orbits import BifurcationKind
 
 C, A0, ETA, NU = 0.1, 0.065, 0.1, 3.0
 COLUMN = sb.Column.dimensionless(C)
@@ -55,6 +55,7 @@ def test_multipliers_are_exponentials_of_the_eigenvalues_at_finite_tilt(name):
     assert orbit.stable
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", NAMES)
 def test_branches_keep_to_the_theory_and_lose_stability_where_it_says(name):
     # With a spin the half orbit closes by the half turn, which leaves the spin as it is.
@@ -67,7 +68,7 @@ def test_branches_keep_to_the_theory_and_lose_stability_where_it_says(name):
         known = theory(frequencies[k]).amplitude
         assert np.nanmin(np.abs(known - float(branch.points["mean_tilt"][k]))) < 1e-9
     (lost,) = branch.bifurcations
-    assert lost.kind is Kind.NEIMARK_SACKER
+    assert lost.kind is BifurcationKind.NEIMARK_SACKER
     below, above = (theory(lost.parameter * (1.0 + off)) for off in (-1e-6, 1e-6))
     assert not below.stable.any()
     assert above.stable.sum() == 1

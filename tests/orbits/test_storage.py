@@ -8,7 +8,8 @@ import xarray as xr
 
 import stylobate as sb
 from stylobate.errors import FileError, ParameterError
-from stylobate.orbits import bifurcation_curve, continue_branch, load_orbits, periodic_orbit
+from stylobate.orbits import bifurcation_curve, continue_branch, periodic_orbit
+from stylobate.orbits.storage import load_orbits
 
 MODEL = sb.Slender(sb.Column.dimensionless(0.1), damping=0.1)
 CIRCLE = sb.Harmonic.circular(acceleration=0.065, angular_frequency=2.0)
@@ -80,7 +81,7 @@ def test_a_run_s_loader_points_to_that_of_orbits(tmp_path):
     circle = sb.Harmonic.circular(acceleration=0.065, angular_frequency=2.0)
     orbit = sb.orbits.periodic_orbit(sb.Slender(sb.Column.dimensionless(0.1), damping=0.1), circle)
     with pytest.raises(FileError, match=r"stylobate\.load reads it"):
-        sb.Response.load(orbit.save(tmp_path / "orbit.nc"))
+        sb.Run.load(orbit.save(tmp_path / "orbit.nc"))
     with pytest.raises(FileError, match="there is no such file"):
         sb.load(tmp_path / "none.nc")
     with pytest.raises(FileError, match="it is no store of a sweep"):

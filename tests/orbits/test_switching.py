@@ -7,7 +7,7 @@ import pytest
 
 import stylobate as sb
 from stylobate.errors import ParameterError
-from stylobate.orbits import Kind, continue_branch, periodic_orbit, switch_branch
+from stylobate.orbits import BifurcationKind, continue_branch, periodic_orbit, switch_branch
 
 C = 0.1
 
@@ -20,7 +20,7 @@ def asymmetry(orbit):
 
 @pytest.fixture(scope="module")
 def doublings(asymmetric_branches):
-    return [one for one in asymmetric_branches[0.13][0].bifurcations if one.kind is Kind.PERIOD_DOUBLING]
+    return [one for one in asymmetric_branches[0.13][0].bifurcations if one.kind is BifurcationKind.PERIOD_DOUBLING]
 
 
 @pytest.fixture(scope="module")
@@ -29,6 +29,7 @@ def doubled_branch(doublings):
     return switch_branch(doublings[0], bounds=(at - 0.006, at + 0.01))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("a1", [0.04, 0.13])
 def test_a_soft_pitchfork_bears_stable_orbits_without_the_symmetry(straight_branches, asymmetric_branches, a1):
     (pitchfork,) = straight_branches[a1].bifurcations
@@ -95,11 +96,12 @@ def test_the_asymmetric_orbit_doubles_its_period(doublings):
 
 
 def test_both_images_double_at_the_same_frequency(asymmetric_branches, doublings):
-    image = [one for one in asymmetric_branches[0.13][1].bifurcations if one.kind is Kind.PERIOD_DOUBLING]
+    image = [one for one in asymmetric_branches[0.13][1].bifurcations if one.kind is BifurcationKind.PERIOD_DOUBLING]
     assert image[0].parameter == pytest.approx(doublings[0].parameter, abs=1e-9)
     assert image[0].supercritical
 
 
+@pytest.mark.slow
 def test_orbits_of_twice_the_length_are_born_stable(doublings, doubled_branch):
     at = doublings[0].parameter - 0.002
     orbits = doubled_branch.orbits_at(at)
@@ -155,6 +157,7 @@ def test_the_amplitude_of_doubling_grows_as_the_square_root_of_the_distance(doub
     assert np.polyfit(np.log(distances), np.log(sizes), 1)[0] == pytest.approx(0.5, abs=0.02)
 
 
+@pytest.mark.slow
 def test_nothing_branches_off_at_a_fold_or_a_neimark_sacker_point():
     for a0, eta, nu, bounds in ((0.01, 0.3, 3.2, (2.0, 3.4)), (0.065, 0.1, 1.6, (1.3, 1.7))):
         model = sb.Slender(sb.Column.dimensionless(C), damping=eta)
@@ -173,13 +176,14 @@ def test_bounds_must_enclose_the_bifurcation(straight_branches, bounds):
     assert "\n" not in str(told.value)
 
 
+@pytest.mark.slow
 def test_a_family_ends_where_its_path_meets_the_upright():
     """Beyond, the lean would wind about the upright another number of times: no path leads there but through it."""
     model = sb.Slender(sb.Column.dimensionless(0.1), damping=0.1)
     motion = sb.Harmonic.straight(acceleration=0.13, angular_frequency=3.0)
     rolling = sb.orbits.continue_branch(sb.orbits.periodic_orbit(model, motion), "angular_frequency", bounds=(1.2, 4.0))
     family = sb.orbits.switch_branch(rolling.bifurcations[-1], bounds=(0.8, 4.0))
-    assert family.ends[1] is sb.orbits.End.LOST
+    assert family.ends[1] is sb.orbits.BranchEnd.LOST
     points = family.points
     assert set(points["turns"].values) == {1.0}
     assert float(points["angular_frequency"][-1]) == pytest.approx(0.9787, abs=1e-3)

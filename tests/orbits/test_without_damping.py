@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import stylobate as sb
-from stylobate.orbits import Kind, continue_branch, periodic_orbit
+from stylobate.orbits import BifurcationKind, continue_branch, periodic_orbit
 
 C, A0 = 0.1, 0.065
 MODEL = sb.Slender(sb.Column.dimensionless(C), damping=0.0)
@@ -49,6 +49,7 @@ def test_a_little_friction_decays(eta):
     assert np.prod(np.abs(orbit.multipliers)) == pytest.approx(math.exp(-2.0 * eta * orbit.period), abs=1e-10)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("bounds", [(0.4, 4.0), (1.5, 2.5)])
 def test_rounding_invents_no_bifurcation_of_circular_motion(bounds):
     """A pair of multipliers is on the unit circle all along; theory has neither fold nor branch point here."""
@@ -71,6 +72,6 @@ def test_without_damping_a_pitchfork_is_neither_soft_nor_hard():
     """Straight-line rolling has one at every friction; nothing that is born there can attract."""
     motion = sb.Harmonic.straight(acceleration=0.04, angular_frequency=2.0)
     branch = continue_branch(periodic_orbit(MODEL, motion), "angular_frequency", bounds=(1.0, 2.0))
-    (pitchfork,) = (one for one in branch.bifurcations if one.kind is Kind.PITCHFORK)
+    (pitchfork,) = (one for one in branch.bifurcations if one.kind is BifurcationKind.PITCHFORK)
     assert pitchfork.supercritical is None
     assert math.isnan(pitchfork.coefficient)

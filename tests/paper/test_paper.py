@@ -5,7 +5,7 @@ import pytest
 
 from stylobate import theory
 from stylobate.paper.analyses import circular, free, modulated, planar, straight, twist
-from stylobate.results import ClaimStatus
+from stylobate.results.findings import ClaimStatus
 
 
 @pytest.mark.parametrize(

@@ -8,7 +8,7 @@ import stylobate as sb
 from stylobate.paper.analyses import circular, free, planar, straight, twist
 from stylobate.paper.analyses.setting import paper_model
 from stylobate.paper.report import _PICTURES
-from stylobate.results import PaperCheck, Section
+from stylobate.results.findings import PaperCheck, PaperSection
 
 LINE = sb.Harmonic.straight(acceleration=0.13, angular_frequency=3.0)
 # It takes seconds to compute; tests of plots draw it from another column.
@@ -47,7 +47,7 @@ def check():
         "runaway": free.runaway_data(),
         "pressure": free.pressure_data(),
     }
-    return PaperCheck({"All": Section((), data)})
+    return PaperCheck({"All": PaperSection((), data)})
 
 
 def shows_data(axes):

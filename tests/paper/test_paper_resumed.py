@@ -8,7 +8,7 @@ import xarray as xr
 
 from stylobate.errors import FileError
 from stylobate.paper.analyses import check_paper, finished
-from stylobate.results import ClaimStatus, Finding, Section
+from stylobate.results.findings import ClaimStatus, Finding, PaperSection
 
 paper = importlib.import_module("stylobate.paper.analyses")
 
@@ -33,7 +33,9 @@ def calls(monkeypatch):
             data = xr.Dataset(
                 {"value": ("x", values), "stable": ("x", values > 0.1)}, {"x": ["a", "b", "c"]}, {"c": 0.1}
             )
-            return Section((Finding("(1)", f"{heading} – ν", "1e-3", ClaimStatus.ERRATUM),), {f"data {heading}": data})
+            return PaperSection(
+                (Finding("(1)", f"{heading} – ν", "1e-3", ClaimStatus.ERRATUM),), {f"data {heading}": data}
+            )
 
         return computed
 

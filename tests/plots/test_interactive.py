@@ -14,6 +14,7 @@ from stylobate.errors import ParameterError, UnsupportedError
 from stylobate.plots.cells import attractor_classes
 from stylobate.plots.interactive import _extremes
 from stylobate.plots.runs import ContactHistory
+from stylobate.results.verdict import LABELS
 
 STONE = sb.Column.solid(radius=0.35, height=5.2, density=2700.0)
 MODEL = sb.Wobbling(STONE, damping=0.05)
@@ -166,7 +167,7 @@ def test_a_verdict_counts_its_variations():
     assert sum(counts.values()) == 60
     assert verdict.data.attrs["deciding"] in ("", verdict.data["influence"].idxmax().item())
     influence = {
-        sb.earthquakes.LABELS.get(name, name): float(verdict.data["influence"].sel(variation=name))
+        LABELS.get(name, name): float(verdict.data["influence"].sel(variation=name))
         for name in map(str, verdict.data["variation"].values)
     }
     order = [influence[button.label] for button in figure.layout.updatemenus[0].buttons]

@@ -304,6 +304,7 @@ def test_only_what_repeats_has_circles_at_the_strobe():
     assert sizes == sorted(set(sizes), reverse=True)
 
 
+@pytest.mark.slow
 def test_an_exponent_is_drawn_with_counts_limits_and_fit():
     base = np.zeros((5, 400), dtype=int)
     lower = (np.arange(400) < np.array([0, 4, 16, 64, 300])[:, np.newaxis]).astype(int)

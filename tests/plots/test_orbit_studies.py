@@ -161,6 +161,7 @@ def test_rocking_is_called_stable_in_its_plane():
     figure.canvas.draw()
 
 
+@pytest.mark.slow
 def test_without_damping_stable_is_called_neutrally_stable():
     model = sb.Slender(sb.Column.dimensionless(0.1), damping=0.0)
     line = sb.Harmonic.straight(acceleration=0.04, angular_frequency=3.0)

@@ -38,6 +38,7 @@ def test_a_saved_result_keeps_the_units_of_its_column(tmp_path):
         assert labels(sb.plot(loaded)) == {r"base frequency $\Omega/\omega_0$", "base acceleration $a/g$"}
 
 
+@pytest.mark.slow
 def test_a_saved_run_keeps_the_units_of_its_column(tmp_path):
     run = sb.simulate(OWN, LINE, tilt=(0.02, 0.01), duration=5.0)
     run.save(tmp_path / "run.nc")
@@ -51,6 +52,7 @@ def test_a_run_of_a_stone_is_shown_in_si():
     assert {"time [s]", "base acceleration\n[m/s²]"} <= labels(sb.plot(run))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("draw", ["response_curves", "exact_response", "stability_boundary"])
 def test_no_figure_of_a_dimensionless_column_is_labelled_in_si(draw):
     circle = sb.Harmonic.circular(acceleration=0.065, angular_frequency=2.0)

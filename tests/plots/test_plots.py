@@ -6,9 +6,10 @@ from matplotlib.patches import Circle
 
 import stylobate as sb
 from stylobate.errors import FileError, ParameterError
-from stylobate.plots.page import Picture, Section, Table, page
+from stylobate.plots.page import PageSection, PageTable, Picture, page
 from stylobate.plots.responses import draw_branch
 from stylobate.plots.style import STABLE_WIDTH, UNSTABLE_WIDTH, new_figure
+from stylobate.results.findings import PaperCheck
 
 MODEL = sb.Slender(sb.Column.dimensionless(0.1), damping=0.1)
 MOTION = sb.Harmonic.circular(acceleration=0.065, angular_frequency=1.8)
@@ -87,7 +88,9 @@ def test_what_has_no_picture_is_refused(result):
 def test_a_page_is_one_file_and_escapes_its_text():
     figure = new_figure(2.0)
     figure.subplots().plot([0, 1])
-    html = page("a < b", ["x & y"], [Section("s", ["<script>", Picture(figure, "c"), Table(["h"], [["1 < 2"]])])])
+    html = page(
+        "a < b", ["x & y"], [PageSection("s", ["<script>", Picture(figure, "c"), PageTable(["h"], [["1 < 2"]])])]
+    )
     assert "a &lt; b" in html
     assert "x &amp; y" in html
     assert "<script>" not in html
@@ -99,4 +102,4 @@ def test_a_folder_that_cannot_be_written_is_told(tmp_path):
     blocked = tmp_path / "file"
     blocked.write_text("")
     with pytest.raises(FileError, match="cannot write into"):
-        sb.paper.paper_report(sb.results.PaperCheck({}), blocked)
+        sb.paper.paper_report(PaperCheck({}), blocked)

@@ -7,7 +7,8 @@ from scipy.optimize import brentq, minimize_scalar
 
 from stylobate.engine.starts import cannot_depart
 from stylobate.engine.tolerances import SAMPLES_PER_PERIOD
-from stylobate.models import Model, Push
+from stylobate.models import Model
+from stylobate.models.model import Push
 
 from .forcing import Floats, Forcing
 from .pieces import Piece

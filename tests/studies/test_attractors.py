@@ -8,11 +8,12 @@ import xarray as xr
 
 import stylobate as sb
 from stylobate.errors import Outcome, ParameterError
+from stylobate.studies import shares, turns_of_paths
 from stylobate.studies.maps.attractor_search import (
     UNSETTLED,
     Attractor,
     AttractorRules,
-    Found,
+    FoundAttractors,
     OrbitScales,
     cycle_distance,
     find_attractors,
@@ -22,7 +23,7 @@ from stylobate.studies.maps.attractor_search import (
     with_strobes,
     with_turns,
 )
-from stylobate.studies.maps.attractors import shares, turns_of_paths
+from stylobate.studies.maps.attractors import label_attractors
 from stylobate.studies.maps.basin_fractions import follow_branches
 from stylobate.studies.proportions import wilson_interval
 from stylobate.studies.sweeps import Sweep
@@ -134,7 +135,7 @@ def test_every_kind_of_attractor_is_found_and_listed_in_one_order():
         (None, ended, np.nan, None),
     ]
     outcomes, strobes, turns, names = zip(*table, strict=True)
-    found = sb.studies.label_attractors(runs_of(outcomes, strobes, turns), MODEL, MOTION)
+    found = label_attractors(runs_of(outcomes, strobes, turns), MODEL, MOTION)
     listed = found["attractor_name"].values.tolist()
     assert listed == [
         "at rest",
@@ -180,14 +181,14 @@ def test_attractors_and_their_numbers_do_not_depend_on_the_order_or_number_of_ru
 
 def test_several_of_a_kind_are_numbered():
     runs = runs_of([Outcome.ROCKING] * 2, [repeated(states(1)), repeated(states(1))], [0.0, 0.0])
-    names = sb.studies.label_attractors(runs, MODEL, MOTION)["attractor_name"].values
+    names = label_attractors(runs, MODEL, MOTION)["attractor_name"].values
     assert names.tolist() == ["rocking (1)", "rocking (2)"]
 
 
 def test_runs_without_strobes_are_refused():
     runs = runs_of([Outcome.AT_REST], [repeated(states(1))], [0.0]).drop_vars("strobe_tilt")
     with pytest.raises(ParameterError, match="strobes"):
-        sb.studies.label_attractors(runs, MODEL)
+        label_attractors(runs, MODEL)
 
 
 def test_states_and_vectors_are_inverse():
@@ -228,7 +229,9 @@ def test_turns_are_counted_along_the_path_of_an_orbit():
 
 def test_orbits_whose_turns_become_known_are_named_and_listed_anew():
     unknown = [replace(attractor("rolling anticlockwise", place, 3), turns=np.nan) for place in (2.0, 1.0)]
-    found, order = with_turns(Found((*unknown,), np.array([0, 1, 1, UNSETTLED])), np.array([0.0, 1.0 / 3.0]), 3e-2)
+    found, order = with_turns(
+        FoundAttractors((*unknown,), np.array([0, 1, 1, UNSETTLED])), np.array([0.0, 1.0 / 3.0]), 3e-2
+    )
     assert [(one.kind, one.turns) for one in found.attractors] == [
         ("rolling anticlockwise", 1.0 / 3.0),
         ("rocking", 0.0),
@@ -239,7 +242,7 @@ def test_orbits_whose_turns_become_known_are_named_and_listed_anew():
 
 def test_unsettled_runs_widen_the_intervals_of_the_fractions_upwards():
     labels = np.array([0] * 6 + [1] * 2 + [UNSETTLED] * 2)
-    found = shares(Found((attractor("rocking", 1.0), attractor("rocking", 2.0)), labels), 0.95)
+    found = shares(FoundAttractors((attractor("rocking", 1.0), attractor("rocking", 2.0)), labels), 0.95)
     # Of what has not settled, listed last, nothing is open.
     np.testing.assert_array_equal(found["fraction_low"], wilson_interval([6, 2, 2], 10)[0])
     np.testing.assert_array_equal(found["fraction_high"], wilson_interval([8, 4, 2], 10)[1])

@@ -71,6 +71,7 @@ def test_a_basin_has_the_attractors_of_full_durations(name, turned):
     assert ended_early(early, full).any()
 
 
+@pytest.mark.slow
 def test_orbits_that_are_passed_end_runs_of_a_basin():
     orbits = [sb.orbits.periodic_orbit(SLENDER, LINE, sense=sense) for sense in (1, -1)]
     axis = np.linspace(-0.08, 0.08, 16)

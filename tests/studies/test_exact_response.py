@@ -39,6 +39,7 @@ def test_circular_motion_has_the_response_of_the_exact_solution():
     assert float(curves["bifurcation_angular_frequency"][0]) == pytest.approx(1.397107589247, abs=1e-9)
 
 
+@pytest.mark.slow
 def test_rolling_under_straight_motion_loses_its_stability_above_the_averaged_frequency(straight):
     rolling = family(straight, 0)
     stable = rolling["stable"].to_numpy()
@@ -64,6 +65,7 @@ def test_what_is_born_at_a_pitchfork_begins_at_the_orbit_that_bears_it(straight)
     assert int(straight["bifurcation_supercritical"][1]) == 1
 
 
+@pytest.mark.slow
 def test_a_branch_does_not_depend_on_its_steps(straight):
     fine = sb.studies.exact_response(
         MODEL, LINE, angular_frequency=(1.2, 8.0), generations=0, control=StepControl(largest=0.007)
@@ -84,6 +86,7 @@ def test_the_response_is_made_in_less_than_a_few_seconds_and_saved(straight, tmp
         np.testing.assert_array_equal(read["mean_tilt"], straight["mean_tilt"])
 
 
+@pytest.mark.slow
 def test_a_sense_that_is_asked_for_is_followed():
     curves = [
         sb.studies.exact_response(MODEL, LINE, angular_frequency=(2.9, 3.1), sense=sense, generations=0)
@@ -128,6 +131,7 @@ def test_an_orbit_outside_the_range_is_refused():
         sb.studies.exact_response(MODEL, LINE, angular_frequency=(2.0, 2.5), orbit=orbit)
 
 
+@pytest.mark.slow
 def test_an_orbit_at_another_frequency_begins_the_same_family():
     at = sb.Harmonic.straight(acceleration=0.13, angular_frequency=2.5)
     own = sb.studies.exact_response(
@@ -144,6 +148,7 @@ def wide():
     return sb.studies.exact_response(MODEL, LINE, angular_frequency=(1.2, 3.0))
 
 
+@pytest.mark.slow
 def test_stability_is_known_on_either_side_of_every_bifurcation(wide):
     for index in range(wide.sizes["branch_index"]):
         part = family(wide, index)
@@ -157,6 +162,7 @@ def test_stability_is_known_on_either_side_of_every_bifurcation(wide):
     assert not bool(asymmetric["stable"][asymmetric["angular_frequency"] < 1.5333].any())
 
 
+@pytest.mark.slow
 def test_each_family_is_followed_once_and_along_its_length_once():
     curves = sb.studies.exact_response(MODEL, LINE, angular_frequency=(1.4, 2.0), generations=2)
     assert curves["branch_periods"].values.tolist() == [1, 1, 2]
@@ -168,6 +174,7 @@ def test_each_family_is_followed_once_and_along_its_length_once():
     np.testing.assert_array_equal(ends, doublings)
 
 
+@pytest.mark.slow
 def test_rocking_has_no_averaged_rolling_beside_it():
     orbit = sb.orbits.periodic_orbit(MODEL, LINE, guess=[0.02523651, 0.0, -0.00401839, 0.0])
     curves = sb.studies.exact_response(MODEL, LINE, angular_frequency=(2.5, 4.0), orbit=orbit, generations=0)

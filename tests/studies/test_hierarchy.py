@@ -89,6 +89,7 @@ def test_late_means_are_those_of_steady_rolling():
     assert np.isnan(found["mean_late_spin"].sel(model="slender"))
 
 
+@pytest.mark.slow
 def test_planar_rocking_joins_where_the_motion_lies_in_a_plane():
     line = sb.Harmonic.straight(acceleration=0.15, angular_frequency=3.0)
     start = {"tilt": (0.03, 0.0), "duration": 10.0}

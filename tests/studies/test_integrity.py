@@ -31,6 +31,7 @@ def test_a_free_column_without_friction_is_safe_in_a_diamond():
     assert np.abs(found["nearest"].values).sum() > 0.1
 
 
+@pytest.mark.slow
 def test_a_straight_boundary_lies_between_the_ends_of_its_distance():
     axis = np.linspace(-3.0, 3.0, 41)
     metric = Metric.of(FREE, {"tilt_x": 0.1 * axis, "tilt_y": 0.1 * axis}, None)

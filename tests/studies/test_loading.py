@@ -6,6 +6,7 @@ import xarray as xr
 
 import stylobate as sb
 from stylobate.errors import FileError, ParameterError
+from stylobate.results.storage import write_netcdf
 
 MODEL = sb.Slender(sb.Column.dimensionless(0.1), damping=0.1)
 CIRCLE = sb.Harmonic.circular(acceleration=0.065, angular_frequency=2.0)
@@ -29,7 +30,7 @@ def test_an_assessment_is_read(tmp_path):
     assert sb.load(saved).setting == {"title": "columns"}
 
 
-@pytest.mark.parametrize("write", [sb.results.write_netcdf, lambda data, path: data.to_netcdf(path, engine="h5netcdf")])
+@pytest.mark.parametrize("write", [write_netcdf, lambda data, path: data.to_netcdf(path, engine="h5netcdf")])
 def test_a_study_is_read_however_it_was_written(tmp_path, write):
     found = sb.studies.overturning_map(MODEL, CIRCLE, over=OVER, periods=3.0)
     write(found, tmp_path / "map.nc")

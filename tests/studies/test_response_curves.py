@@ -7,6 +7,7 @@ import pytest
 
 import stylobate as sb
 from stylobate.errors import ParameterError, StylobateError
+from stylobate.studies.responses.response_curves import averaged_motion
 
 MODEL = sb.Slender(sb.Column.solid(radius=0.5, height=10.0, density=2700.0), damping=0.1)
 
@@ -83,7 +84,7 @@ def test_the_slow_flow_is_exact_on_a_circle(sense):
     start = sb.studies.steady_start(MODEL, motion)
     start["tilt"] = (1.1 * start["tilt"][0], 1.1 * start["tilt"][1])
     run = sb.simulate(MODEL, motion, **start, duration=20.0, rtol=1e-11)
-    slow = sb.studies.averaged_motion(MODEL, motion, **start, duration=20.0, rtol=1e-11)
+    slow = averaged_motion(MODEL, motion, **start, duration=20.0, rtol=1e-11)
     full = run.sample(slow["time"])
     np.testing.assert_allclose(slow["amplitude"], full["amplitude"], rtol=1e-8)
     np.testing.assert_allclose(slow["azimuth"] - slow["azimuth"][0], full["azimuth"] - full["azimuth"][0], atol=1e-8)
@@ -93,7 +94,7 @@ def test_the_slow_flow_follows_a_weakly_driven_straight_motion():
     motion = sb.Harmonic.straight(acceleration=0.12, angular_frequency=4.0, direction=0.5, start_phase=0.3)
     start = sb.studies.steady_start(MODEL, motion, sense=-1)
     run = sb.simulate(MODEL, motion, **start, duration=10 * motion.period)
-    slow = sb.studies.averaged_motion(MODEL, motion, **start, duration=10 * motion.period, sense=-1)
+    slow = averaged_motion(MODEL, motion, **start, duration=10 * motion.period, sense=-1)
     full = run.sample(slow["time"])
     # The swing about the average is about 2.3 a1/c = 0.28 of the tilt; the mean follows far better.
     np.testing.assert_allclose(full["amplitude"], slow["amplitude"], rtol=0.35)

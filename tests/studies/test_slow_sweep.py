@@ -83,6 +83,7 @@ def test_after_overturning_nothing_is_computed(downward):
         assert downward[name].isel(step=slice(lost, None)).isnull().all()
 
 
+@pytest.mark.slow
 def test_a_sweep_of_a_straight_line_stays_on_the_exact_orbit_to_the_pitchfork_and_leaves_with_its_branch():
     orbit = sb.orbits.periodic_orbit(MODEL, STRAIGHT)
     # No value so near to the pitchfork that the sweep lags behind.

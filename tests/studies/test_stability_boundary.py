@@ -14,6 +14,7 @@ CIRCLE = sb.Harmonic.circular(acceleration=0.065, angular_frequency=3.0)
 LINE = sb.Harmonic.straight(acceleration=0.1, angular_frequency=3.0)
 
 
+@pytest.mark.slow
 def test_under_circular_motion_the_boundary_is_the_closed_form():
     found = sb.studies.stability_boundary(
         MODEL, CIRCLE, bounds=(0.03, 0.2), angular_frequency=(0.8, 3.0), values=[0.065, 0.1]
@@ -27,6 +28,7 @@ def test_under_circular_motion_the_boundary_is_the_closed_form():
     assert bool(found["theory_is_exact"])
 
 
+@pytest.mark.slow
 def test_under_straight_motion_the_boundary_passes_through_the_pitchforks():
     found = sb.studies.stability_boundary(
         MODEL, LINE, bounds=(0.035, 0.14), angular_frequency=(0.8, 4.0), values=[0.13]
@@ -41,6 +43,7 @@ def test_under_straight_motion_the_boundary_passes_through_the_pitchforks():
     assert np.all(frequency > averaged)
 
 
+@pytest.mark.slow
 def test_where_the_ellipse_is_nearly_a_circle_another_bifurcation_takes_over():
     ellipse = sb.Harmonic.elliptic(amplitude=(0.08, 0.04), phase=-math.pi / 2.0, angular_frequency=3.0)
     found = sb.studies.stability_boundary(
@@ -68,6 +71,7 @@ def test_averaging_is_exact_for_circular_motion():
     assert float(abs(found["error"]).max()) < 1e-9
 
 
+@pytest.mark.slow
 def test_averaging_errs_the_more_the_larger_the_acceleration():
     found = sb.studies.averaging_map(MODEL, LINE, values=[0.04, 0.08, 0.16], angular_frequency=np.linspace(1.0, 4.0, 7))
     error = found["error"].sel(angular_frequency=3.0).to_numpy()
@@ -97,6 +101,7 @@ def test_bad_input_is_told_in_one_line(options, told):
     assert "\n" not in str(error.value)
 
 
+@pytest.mark.slow
 def test_a_curve_begun_on_a_bound_is_followed_once():
     # The first of the default values is the bound itself.
     found = sb.studies.stability_boundary(MODEL, LINE, bounds=(0.12, 0.14), angular_frequency=(1.3, 2.0))
@@ -111,6 +116,7 @@ def test_a_curve_that_bends_much_over_wide_bounds_is_followed_once():
     assert found["curve_kind"].values.tolist() == ["pitchfork"]
 
 
+@pytest.mark.slow
 def test_without_a_loss_of_stability_it_is_told_how_rolling_is():
     above, below = (
         sb.studies.stability_boundary(MODEL, LINE, bounds=(0.1, 0.12), angular_frequency=range_, values=[0.11])

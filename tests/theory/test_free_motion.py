@@ -66,6 +66,7 @@ def test_agrees_with_integration_of_the_equations_of_motion(tilt, rate):
     assert np.hypot(half[0], half[1]) == pytest.approx(other, rel=1e-9)
 
 
+@pytest.mark.slow
 @given(tilt=st.floats(0.01, 1.5), rate=st.floats(0.01, 20.0))
 def test_both_turning_points_have_the_same_integrals_and_give_the_same_motion(tilt, rate):
     motion = free_motion(tilt, rate, 1.0)

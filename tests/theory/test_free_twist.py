@@ -78,6 +78,7 @@ def test_known_numbers():
     assert float(found.spin) == pytest.approx(-0.39991, abs=5e-6)
 
 
+@pytest.mark.slow
 def test_integration_from_elsewhere_settles_on_it():
     # The slowest deviation decays as exp(-0.0254 τ): by a factor 4e-7 here.
     nu, a0, eta, zeta = 3.0, 0.65, 0.1, 0.1

@@ -49,6 +49,7 @@ def test_known_critical_frequencies():
     np.testing.assert_allclose(found, [1.3971, 1.3674, 1.0344], atol=5e-5)
 
 
+@pytest.mark.slow
 @given(a=st.floats(0.5, 10.0), friction=frictions, body=bodies)  # rolling exists at all frequencies
 def test_the_largest_eigenvalue_leaves_the_left_half_plane_there(a, friction, body):
     column = named(friction, body)
@@ -60,6 +61,7 @@ def test_the_largest_eigenvalue_leaves_the_left_half_plane_there(a, friction, bo
     assert growth(nu * 0.999, a, column) > 0.0 > growth(nu * 1.001, a, column)
 
 
+@pytest.mark.slow
 @given(a=st.floats(0.01, 30.0), friction=frictions, body=bodies)
 def test_rolling_is_stable_from_the_critical_to_the_upper_frequency_and_not_beyond(a, friction, body):
     column = named(friction, body)
@@ -76,6 +78,7 @@ def test_rolling_is_stable_from_the_critical_to_the_upper_frequency_and_not_beyo
         assert not theory.free_twist_rolling(high * np.array([1.001, 2.0]), a * C, **column).stable.any()
 
 
+@pytest.mark.slow
 @given(a=st.floats(0.05, 10.0), eta=st.floats(0.0, 1.0), body=bodies)
 def test_infinite_spin_damping_gives_the_critical_frequency_of_the_paper(a, eta, body):
     column = named((eta, math.inf), body)

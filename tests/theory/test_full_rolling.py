@@ -20,6 +20,7 @@ def state_of(found, branch, nu):
     return np.array([0.0, nu, found.amplitude[branch], found.phase[branch], found.spin[branch]])
 
 
+@pytest.mark.slow
 @given(
     c=st.floats(0.01, 1.0), nu=st.floats(0.2, 8.0), a=st.floats(0.05, 5.0), eta=st.floats(1e-3, 2.0),
     zeta=st.one_of(st.floats(1e-2, 10.0), st.just(math.inf)), kappa=st.floats(0.1, 0.6), axial=st.floats(0.1, 1.0),
@@ -39,6 +40,7 @@ def test_the_branches_are_where_nothing_changes_and_their_number_is_even_or_odd(
         assert np.abs(rates).max() <= 1e-12 * terms / (kappa * axial * min(1.0, c) * (1.0 - kappa))
 
 
+@pytest.mark.slow
 def test_nothing_is_missed_without_damping():
     # Where the spin is given, X ∓ a0 is a quartic in tan(A/2) over (1 + tan²)² p: five values give all its zeros.
     rng, most = np.random.default_rng(4), 0

@@ -37,7 +37,7 @@ with tempfile.TemporaryDirectory() as folder:
         sb.studies.run_sweep(sweep, store=store, chunk_size=400, progress=stop_early)
     except KeyboardInterrupt:
         print("interrupted")
-    unfinished = sb.studies.open_sweep(store, load=True)
+    unfinished = sb.load(store).load()
     print(f"runs in the store: {unfinished.attrs['runs_done']} of 1600")
 
     whole = sb.studies.run_sweep(sweep, store=store, resume=True).load()

@@ -1,7 +1,7 @@
 """Base motions: acceleration of the base as a function of time."""
 
-from stylobate.base_motions.combined import BASE_AT_REST, BaseMotion, Delayed, Offset, OneOf, Rotated, Scaled, Sum
-from stylobate.base_motions.harmonic import Harmonic, as_harmonic
+from stylobate.base_motions.combined import BASE_AT_REST, BaseMotion, OneOf, Sum
+from stylobate.base_motions.harmonic import Harmonic
 from stylobate.base_motions.machine_run import MachineRun
 from stylobate.base_motions.pulses import Pulse
 from stylobate.base_motions.record import Record
@@ -10,16 +10,11 @@ from stylobate.base_motions.sweeps import SineSweep
 __all__ = [
     "BASE_AT_REST",
     "BaseMotion",
-    "Delayed",
     "Harmonic",
     "MachineRun",
-    "Offset",
     "OneOf",
     "Pulse",
     "Record",
-    "Rotated",
-    "Scaled",
     "SineSweep",
     "Sum",
-    "as_harmonic",
 ]

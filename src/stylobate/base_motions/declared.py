@@ -100,7 +100,7 @@ def kinds_by_acceleration() -> tuple[str, ...]:
 _FREQUENCY = Parameter("angular_frequency", AngularFrequency.__metadata__[0], float)  # type: ignore[attr-defined]
 
 
-def numbers_of(motion: BaseMotion) -> Mapping[str, Parameter]:
+def numbers_of_motion(motion: BaseMotion) -> Mapping[str, Parameter]:
     """Return the declared numbers of `motion`, of its original if it is a copy, and of its waveform, by name.
 
     A motion with a `frequency` [Hz] also has an `angular_frequency` [rad/s]. `Scaled`, `Rotated`, `Delayed` and
@@ -135,7 +135,7 @@ def with_numbers(motion: BaseMotion, values: Mapping[str, float]) -> BaseMotion:
     UnsupportedError
         If the motion has no number of this name.
     """
-    known = numbers_of(motion)
+    known = numbers_of_motion(motion)
     for name in values:
         if name not in known:
             numbers = f"Its numbers are {', '.join(known)}." if known else "It has none."

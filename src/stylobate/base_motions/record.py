@@ -20,7 +20,7 @@ from stylobate.base_motions.signal_processing import (
     resampled,
     samples_within_limit,
 )
-from stylobate.cards import Row, Section
+from stylobate.cards import CardSection, Row
 from stylobate.errors import (
     MOST_NUMBERS,
     ParameterError,
@@ -232,7 +232,7 @@ class Record(BaseMotion):
             f"peak {peak:.4g} m/s², {self.digest[:12]})"
         )
 
-    def _sections(self, *, derived: bool = True) -> list[Section]:
+    def _sections(self, *, derived: bool = True) -> list[CardSection]:
         """Return the rows of the card: the samples, the peak of each axis, and the processing steps."""
         del derived
         peaks = dict(zip(AXES, np.abs(self.samples).max(axis=0), strict=True))
@@ -244,7 +244,7 @@ class Record(BaseMotion):
             Row("digest", self.digest[:12], meaning="SHA-256 of samples, step and start"),
         ]
         steps = [Row(str(number), step) for number, step in enumerate(self.provenance, 1)]
-        return [Section("", rows), Section("source and processing", steps)]
+        return [CardSection("", rows), CardSection("source and processing", steps)]
 
     def derivative(self, time: npt.ArrayLike, order: int) -> Components:
         """Compute the displacement (`order` 0), velocity (1) or acceleration (2), exact for linear interpolation."""

@@ -20,7 +20,7 @@ from stylobate.config.options import COMPUTING, JSON, Group, Option
 from stylobate.errors import FileError, Interrupted
 
 if TYPE_CHECKING:
-    from stylobate.earthquakes.config import AssessmentSetup
+    from stylobate.earthquakes.config.assess import AssessmentSetup
     from stylobate.results.assessment import Assessment
 
 _SHOWN = ("column", "scale", "did not overturn it", "overturned it", "not decided", "undecided under small variations")
@@ -107,7 +107,7 @@ def _loaded(source: Path) -> "Assessment":
 
 
 def _described(source: Path, target: Path) -> "AssessmentSetup":
-    description = earthquakes.config.AssessConfig.parse(config.read_config(source))
+    description = earthquakes.AssessConfig.parse(config.read_config(source))
     _refuse_folder_of_another(target, description.title)
     setup = description.build()
     digest = hashlib.sha256(source.read_bytes()).hexdigest()

@@ -69,7 +69,7 @@ def feeder(options: Options) -> None:
 
 
 def _shown(source: Path, options: Options) -> "xr.Dataset":
-    from stylobate.results import read_dataset
+    from stylobate.results.storage import read_dataset
 
     options.refuse_unused(f"to show {source}, for which it computes nothing")
     saved = read_dataset(source)
@@ -92,7 +92,7 @@ def _save(result: "xr.Dataset", output: Path) -> None:
     if output.suffix == _CSV:
         write_whole(output, csv_text((), ([label, *values] for label, values in conveying.sheet_rows(result))))
         return
-    from stylobate.results import write_netcdf
+    from stylobate.results.storage import write_netcdf
 
     write_netcdf(result, output)
 

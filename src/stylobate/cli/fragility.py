@@ -1,23 +1,15 @@
 """`stylobate fragility`: probability of overturning versus intensity, and its annual rate."""
 
 import json
-import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from stylobate import config, earthquakes
+from stylobate.base_motions import BASE_AT_REST
 from stylobate.cli.command import command
 from stylobate.cli.options import Options, overlay, read_source, with_axes
-from stylobate.cli.output import (
-    check_writable,
-    open_study,
-    print_json,
-    print_table,
-    provenance_of,
-    save_plot,
-)
-from stylobate.cli.study import check_outputs, computed, end, is_to_compute, save
+from stylobate.cli.output import check_writable, open_kind, print_json, save_plot
+from stylobate.cli.study import check_outputs, computed, end, is_to_compute, save, show
 from stylobate.config.options import (
     COLUMN,
     COMPUTING,
@@ -33,15 +25,11 @@ from stylobate.config.options import (
     run_numbers,
 )
 from stylobate.errors import FileError, ParameterError
-from stylobate.results.tables import model_named, number_of_runs
-from stylobate.results.verdict import few_records, yardstick_text
 from stylobate.run_arguments import SharedByRuns
-from stylobate.text import plural
 
 if TYPE_CHECKING:
     import xarray as xr
 
-    from stylobate.earthquakes import FragilityStudy
 
 _FRAGILITY = Group.of(
     "Fragility",
@@ -120,42 +108,45 @@ def fragility(options: Options) -> None:
 
     stylobate fragility runs.nc --counting first --hazard site.csv
     """
+    from stylobate.config.simulation import Setup
+    from stylobate.earthquakes.config.fragility import FragilityConfig
+    from stylobate.earthquakes.fragility_study import FragilityStudy
+
     complete = True
     check_outputs(options)
     check_writable(options["runs_figure"])
-    saved = _saved(options["source"])
+    saved = open_kind(options["source"], "fragility", ("incremental dynamic analysis",))
     values = _overlay(_described(options) if saved is None else _description(saved, options["source"]), options)
-    description = earthquakes.config.FragilityConfig.parse(values)
+    description = FragilityConfig.parse(values)
     read = is_to_compute(saved, options, shown_with=_OF_FITS)
-    study = earthquakes.FragilityStudy.of(description.build(read=read))
+    study = FragilityStudy.of(description.build(read=read))
     if read:
-        runs, complete = _computed(study, options)
+        setup = Setup(study.model, BASE_AT_REST, {})
+        runs, complete = computed(lambda _model, _motion, **how: study.runs(**how), setup, options)
         runs = runs.assign_attrs(description=json.dumps(description.values()))
     else:
         assert saved is not None
         runs = saved
     fits = study.fits(runs)
-    parts, rates = study.parts(runs), study.rates(fits)
-    _write(runs, fits, options)
+    found = runs, fits, study.parts(runs), study.rates(fits)
+    if options["runs_figure"] is not None:
+        save_plot(runs, options["runs_figure"])
+    if options["output"] is not None:
+        save(runs, options["output"])
+    if options["figure"] is not None:
+        save_plot(fits, options["figure"])
+    from stylobate.earthquakes.fragility_study import plain_fits, table_of_fits
+
     if options["as_json"]:
-        print_json(_summary(runs, fits, parts, rates))
+        print_json(plain_fits(*found))
     else:
-        _print_fits(runs, fits, parts, rates)
+        show(table_of_fits(*found))
     end(runs, options, complete=complete)
 
 
 _OF_HAZARD = ("hazard", "hazard_units", "hazard_component", "hazard_site")
 # Options that change the fits and not the runs.
 _OF_FITS = ("counting", "confidence", "resamples", *_OF_HAZARD, "years", "runs_figure")
-
-
-def _saved(source: Path | None) -> "xr.Dataset | None":
-    store = (
-        "a store of runs, which cannot be shown. Continue it with its description, "
-        f"--output {source} and --resume, or save runs as .nc."
-    )
-    kinds = ("incremental dynamic analysis",)
-    return open_study(source, kinds, lacks="runs under records at several scales", store=store)
 
 
 def _description(saved: "xr.Dataset", source: Path | None) -> dict[str, Any]:
@@ -180,7 +171,9 @@ def _described(options: Options) -> dict[str, Any]:
 
 def _overlay(described: Mapping[str, Any], options: Options) -> dict[str, Any]:
     """Return the values `described`, overridden by the options."""
-    values = overlay(described, options, earthquakes.config.FragilityConfig.model_fields)
+    from stylobate.earthquakes.config.fragility import FragilityConfig
+
+    values = overlay(described, options, FragilityConfig.model_fields)
     if not values.get("motion"):
         values.pop("motion", None)
     return {**values, "records": _records(values.get("records"), options), "fragility": _table(values, options)}
@@ -252,189 +245,3 @@ def _spread(text: str) -> tuple[str, dict[str, Any]]:
         return name.strip().replace("-", "_"), {"kind": "lognormal", "dispersion": float(dispersion)}
     except ValueError:
         raise ParameterError(f"--spread must be a name and a dispersion, such as damping=0.4, got {text!r}") from None
-
-
-def _computed(study: "FragilityStudy", options: Options) -> "tuple[xr.Dataset, bool]":
-    from stylobate.base_motions import BASE_AT_REST
-
-    def run(_model: Any, _motion: Any, **computing: Any) -> "xr.Dataset":
-        return study.runs(**computing)
-
-    return computed(run, config.Setup(study.model, BASE_AT_REST, {}), options)
-
-
-def _write(runs: "xr.Dataset", fits: "xr.Dataset", options: Options) -> None:
-    if options["output"] is not None:
-        save(runs, options["output"])
-    for result, path in ((fits, options["figure"]), (runs, options["runs_figure"])):
-        if path is not None:
-            save_plot(result, path)
-
-
-def _summary(
-    runs: "xr.Dataset", fits: "xr.Dataset", parts: "xr.Dataset | None", rates: "xr.Dataset | None"
-) -> dict[str, Any]:
-    """Convert runs, fits, parts of the dispersion and annual rates to plain values for JSON."""
-    return {
-        "kind": "fragility",
-        "intensity": {
-            "name": runs.attrs["intensity"],
-            "component": fits["median"].attrs.get("component"),
-            "units": fits["median"].attrs.get("units", "1"),
-        },
-        "records": [str(name) for name in runs["record"].to_numpy().ravel()],
-        "scales": runs["scale"].to_numpy().tolist(),
-        "limit_states": [_row(fits, rates, place) for place in range(fits.sizes["limit_state"])],
-        "housner_damping": [
-            {"amplitude": amplitude, "damping": damping}
-            for amplitude, damping in zip(fits.attrs["housner_amplitudes"], fits.attrs["housner_damping"], strict=True)
-        ],
-        "dispersion_parts": None if parts is None else {name: float(parts[name]) for name in _PARTS},
-        "intervals": fits.attrs["intervals"],
-        "confidence": fits.attrs["confidence"],
-        "counting": fits.attrs["counting"],
-        "computed": int(runs["computed"]),
-        "runs": runs["outcome"].size,
-        "provenance": provenance_of(runs),
-    }
-
-
-_ENDS = ("", "_low", "_high")
-_PARTS = [
-    f"{name}_dispersion{end}" for name in ("total", "record", "property", "joint") for end in _ENDS
-]  # as from dispersion_parts
-
-
-_OF_RATES = ("annual_rate", "rate_low", "rate_high", "probability", "share_beyond")
-
-
-def _row(fits: "xr.Dataset", rates: "xr.Dataset | None", place: int) -> dict[str, Any]:
-    """Return the numbers of one limit state."""
-    one = fits.isel(limit_state=place)
-    row: dict[str, Any] = {"name": str(one["limit_state"].item())}
-    row |= {f"{name}{end}": float(one[f"{name}{end}"]) for name in ("median", "dispersion") for end in _ENDS}
-    meanings = str(fits["status"].attrs["flag_meanings"]).split()
-    row["status"] = meanings[int(one["status"])].lower().replace("_", " ")
-    row |= {name: int(one[name]) for name in ("runs", "runs_reached", "runs_not_known", "non_monotone_records")}
-    if rates is not None:
-        rate = rates.isel(limit_state=place)
-        row |= {name: float(rate[name]) for name in _OF_RATES}
-        row["rate_withheld"] = str(rate["withheld_reason"].item())
-        if row["rate_withheld"]:
-            row |= dict.fromkeys(("annual_rate", "probability"), math.nan)
-    return row
-
-
-def _print_fits(runs: "xr.Dataset", fits: "xr.Dataset", parts: "xr.Dataset | None", rates: "xr.Dataset | None") -> None:
-    """Print a row for each limit state, and remarks on the table."""
-    unit = _UNITS.get(str(fits["median"].attrs.get("units")), "")
-    header = ["limit state", f"median{unit}", "dispersion", "reached", "not monotonic"]
-    if rates is not None:
-        header += ["per year", f"in {rates.attrs['years']:g} years"]
-    rows = [_row(fits, rates, place) for place in range(fits.sizes["limit_state"])]
-    over = " × ".join(plural(runs.sizes[dim], str(dim).replace("_", " ")) for dim in runs["outcome"].dims)
-    title = f"{number_of_runs(runs, f': {over}')}; {model_named(runs)}; over the {runs.attrs['intensity']}"
-    print_table(title, [_cells(row) for row in rows], header)
-    percent = f"{100.0 * float(fits.attrs['confidence']):g} %"
-    print(f"{percent} intervals: {fits.attrs['intervals']}; runs counted {fits.attrs['counting']}")
-    print(f"damping: Housner's impacts lose as {yardstick_text(fits.attrs['housner_damping'])}")
-    worst, records = int(fits["non_monotone_records"].max()), runs["record"].size
-    if few := few_records(records):
-        print(few)
-    if worst > 0:
-        print(f"not monotonic: {worst} of {records} records survive at a scale above one that reached a limit state")
-    if parts is not None:
-        print(describe_parts(parts))
-    if rates is not None:
-        for line in (*_of_hazard(rates), *_remarks_on_rates(rows)):
-            print(line)
-
-
-_UNITS = {"m s-2": " [m/s²]", "m s-1": " [m/s]"}
-
-
-def _cells(row: Mapping[str, Any]) -> list[str]:
-    fitted = row["status"] == "fitted"
-    median, dispersion = (
-        f"{_short(row[f'{name}_low'])} to {_short(row[f'{name}_high'])}" for name in ("median", "dispersion")
-    )
-    unknown = f", {row['runs_not_known']} not known" if row["runs_not_known"] else ""
-    cells = [
-        row["name"],
-        f"{_short(row['median'])}, {median}" if fitted else f"{row['status']}: {median}",
-        f"{_short(row['dispersion'])}, {dispersion}" if fitted else "",
-        f"{row['runs_reached']} of {row['runs']}{unknown}",
-        f"{row['non_monotone_records']}" if row["non_monotone_records"] > 0 else "",
-    ]
-    if "annual_rate" in row:
-        cells += _rate_cells(row)
-    return cells
-
-
-def _rate_cells(row: Mapping[str, Any]) -> list[str]:
-    """Write the annual rate and the probability; a rate may be withheld."""
-    if row["rate_withheld"]:
-        return ["withheld", "withheld"]
-    if not math.isfinite(row["annual_rate"]):
-        return ["", ""]
-    return [f"{row['annual_rate']:.2e}", _percent(row["probability"])]
-
-
-def _percent(probability: float) -> str:
-    """Return a probability in percent with two digits, and "> 99.9 %" near certainty.
-
-    >>> _percent(0.036), _percent(0.5), _percent(0.9999), _percent(1.0)
-    ('3.6 %', '50 %', '> 99.9 %', '> 99.9 %')
-    """
-    if probability > _NEARLY_CERTAIN:
-        return "> 99.9 %"
-    return f"{100.0 * probability:.2g} %" if probability < _MANY else f"{100.0 * probability:.1f} %"
-
-
-_MANY, _NEARLY_CERTAIN = 0.95, 0.999
-
-
-def _of_hazard(rates: "xr.Dataset") -> list[str]:
-    """Describe the intensity of the hazard curve, and the origin of its rates."""
-    origin = str(rates.attrs["hazard_origin"])
-    return [f"hazard: {rates['hazard_intensity'].attrs['long_name']}" + (f"; rates from {origin}" if origin else "")]
-
-
-def _remarks_on_rates(rows: Sequence[Mapping[str, Any]]) -> list[str]:
-    """Describe the fraction of the annual rates beyond the hazard curve, and the reasons for withheld rates."""
-    shares = [row["share_beyond"] for row in rows if math.isfinite(row["annual_rate"])]
-    lines = [f"annual rates: up to {100.0 * max(shares):.0f} % from beyond the hazard curve"] if shares else []
-    for row in rows:
-        if why := row["rate_withheld"]:
-            bounds = f"it is between {row['rate_low']:.1e} and {row['rate_high']:.1e} per year"
-            lines.append(f"annual rate of {row['name']!r}: withheld: {why}; {bounds}")
-    return lines
-
-
-def _short(value: float) -> str:
-    return f"{value:.3g}"
-
-
-def describe_parts(parts: "xr.Dataset") -> str:
-    """Describe in a line the parts of the dispersion due to records and to properties."""
-    what = "dispersion of the minimum scales that overturn"
-    if not math.isfinite(float(parts["total_dispersion"])):
-        reasons = {
-            "reached_at_once": "overturn at the first scale",
-            "never_reached": "at none",
-            "not_known": "undecided",
-        }
-        counts = [f"{parts.attrs[name]} {reason}" for name, reason in reasons.items() if parts.attrs[name]]
-        return f"{what}: unknown: of {parts['log_capacity'].size} series {', '.join(counts)}"
-    hidden = float(parts.attrs["resolution"])  # by the steps between scales
-    names = {
-        "record": "from record to record",
-        "property": "from properties",
-        "joint": "from a property in one record only",
-    }
-    described = []
-    for name, words in names.items():
-        value, low, high = (float(parts[f"{name}_dispersion{end}"]) for end in _ENDS)
-        seen, high = (_short(value), high) if value > 0.0 else ("none seen", max(high, hidden))
-        described.append(f"{seen} {words} ({_short(low)} to {_short(high)})")
-    return f"{what}: {', '.join(described)}"

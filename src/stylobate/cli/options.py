@@ -138,7 +138,7 @@ def read_source(options: Options, source: Path | None = None) -> dict[str, Any]:
 
     Notes
     -----
-    `config.relocated` finds records that were moved together with a saved run.
+    `relocated` finds records that were moved together with a saved run.
     """
     source = options["source"] if source is None else source
     if source is None:
@@ -146,9 +146,11 @@ def read_source(options: Options, source: Path | None = None) -> dict[str, Any]:
     if not source.is_file():
         raise FileError(f"cannot read {source}: No such file or directory")
     if source.suffix == ".nc":
+        from stylobate.config.records import relocated
+
         saved = studies.load(source)
-        loaded = saved if isinstance(saved, results.Verdict) else results.Response.load(source)
-        return config.config_of(config.relocated(loaded.provenance, source.parent)).values()
+        loaded = saved if isinstance(saved, results.Verdict) else results.Run.load(source)
+        return config.config_of(relocated(loaded.provenance, source.parent)).values()
     return config.read_config(source, options.files.get(source))
 
 

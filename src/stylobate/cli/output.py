@@ -10,7 +10,6 @@ from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from stylobate import config, studies
 from stylobate.errors import FileError, ParameterError, require_positive
 from stylobate.files import write_whole
 
@@ -214,8 +213,10 @@ def open_saved(source: Path | None) -> "xr.Dataset | None":
     if not source.exists():
         raise FileError(f"cannot read {source}: No such file or directory")
     if source.suffix == STORE:
-        return relocated(studies.open_sweep(source, load=True), source)
-    from stylobate.results import read_dataset
+        from stylobate.studies.sweeps.store import open_sweep
+
+        return relocated(open_sweep(source, load=True), source)
+    from stylobate.results.storage import read_dataset
 
     data = read_dataset(source)
     if "outcome" not in data.data_vars or "provenance" not in data.attrs or "format" in data.attrs:
@@ -223,36 +224,30 @@ def open_saved(source: Path | None) -> "xr.Dataset | None":
     return relocated(data, source)
 
 
-def open_study(source: Path | None, kinds: Collection[str], *, lacks: str, store: str) -> "xr.Dataset | None":
-    """Read a saved study of one of these kinds from a netCDF file; None for any other source.
-
-    Parameters
-    ----------
-    source
-        The file.
-    kinds
-        The kinds of study that the command shows.
-    lacks
-        Noun for the message about a file of another kind, which lacks it.
-    store
-        Message about a store: the problem and the remedy.
+def open_kind(source: Path | None, name: str, kinds: Collection[str]) -> "xr.Dataset | None":
+    """Read saved runs as `open_saved` does; the command of this name shows these `kinds`, or all without kinds.
 
     Raises
     ------
     FileError
-        If the source is a store or of another kind, or cannot be read.
+        If the runs are of another kind, as those of a store.
     """
-    if source is not None and source.suffix == STORE:
-        raise FileError(f"{source} is {store}")
+    if kinds and source is not None and source.suffix == STORE:
+        raise FileError(
+            f"{source} is a store of runs, which cannot be shown. Continue it with its description or options, "
+            f"--output {source} and --resume, or save the result as .nc."
+        )
     saved = open_saved(source)
-    if saved is not None and saved.attrs["kind"] not in kinds:
-        raise FileError(f"{source}: no {lacks} (got a {saved.attrs['kind']}).")
+    if saved is not None and kinds and saved.attrs["kind"] not in kinds:
+        raise FileError(f"{source}: no {name} result (got a {saved.attrs['kind']}).")
     return saved
 
 
 def relocated(data: "xr.Dataset", source: Path) -> "xr.Dataset":
     """Return `data` with new paths of records that were moved together with the file."""
-    return data.assign_attrs(provenance=json.dumps(config.relocated(provenance_of(data), source.parent)))
+    from stylobate.config import records
+
+    return data.assign_attrs(provenance=json.dumps(records.relocated(provenance_of(data), source.parent)))
 
 
 def provenance_of(data: "xr.Dataset") -> dict[str, Any]:
@@ -274,8 +269,9 @@ def study_summary(data: "xr.Dataset", **own: Any) -> dict[str, Any]:
 
 
 def plain_axes(data: "xr.Dataset") -> Mapping[str, Any]:
-    """Return name, ends and number of the values along each axis, for JSON."""
-    axes = axes_of(data).items()
+    """Return name, ends and number of the values along each axis of a grid, for JSON; none of other designs."""
+    design = provenance_of(data).get("design", {}).get("kind")
+    axes = axes_of(data).items() if design == "grid" else ()
     return {
         place: {"name": name, "from": values[0], "to": values[-1], "number": len(values)}
         for place, (name, values) in zip("xy", axes, strict=False)

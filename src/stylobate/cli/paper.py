@@ -27,7 +27,7 @@ def paper(options: Options) -> None:
     The folder stores each finished section: after Ctrl-C the same command computes only the other sections.
     """
     from stylobate.paper import check_paper, paper_report
-    from stylobate.results import ClaimStatus
+    from stylobate.results.findings import ClaimStatus
 
     folder, workers = options["folder"], options["workers"]
     check_place(folder / "report.html" if folder.exists() else folder)

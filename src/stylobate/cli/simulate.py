@@ -13,13 +13,13 @@ from stylobate.cli.options import Options, overlay, read_source
 from stylobate.cli.output import NETCDF, check_animation, check_writable, deliver, print_table, relocated, save_plot
 from stylobate.config.options import COLUMN, MODEL, MOTION, OUTPUT, RECORD, Option, run_numbers
 from stylobate.errors import Outcome, ParameterError, UnlikelyInputWarning
-from stylobate.run_arguments import Accuracy, SingleRun, Start
+from stylobate.run_arguments import Accuracy, InitialConditions, SingleRun
 from stylobate.text import four_digits
 
 if TYPE_CHECKING:
-    from stylobate.config import Setup
+    from stylobate.config.simulation import Setup
     from stylobate.models import Model
-    from stylobate.results import Response, Verdict
+    from stylobate.results import Run, Verdict
     from stylobate.results.run_rows import Rows
 
 VERDICT_OPTIONS = (
@@ -30,7 +30,7 @@ VERDICT_OPTIONS = (
 )
 
 # Options of a run that a verdict shares.
-_SHARED = {*vars(Start)["__annotations__"], *vars(Accuracy)["__annotations__"]} - {"tilt_limit"}
+_SHARED = {*vars(InitialConditions)["__annotations__"], *vars(Accuracy)["__annotations__"]} - {"tilt_limit"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,7 +65,9 @@ class VerdictOfCase:
         why_not = _why_not(setup.model, single=options["single"], asked=runs is not None or table is not None)
         if ends and not why_not:
             given = {name: value for name, value in setup.options.items() if name in _SHARED and value is not None}
-            described = {} if table is None else earthquakes.config.VerdictConfig.of(table)
+            from stylobate.earthquakes.config.verdict import VerdictConfig
+
+            described = {} if table is None else VerdictConfig.of(table)
             arguments = {**given, **described, **({} if runs is None else {"runs": runs})}
             return cls(setup, arguments, "", _saved(options["source"]), figure, output)
         reason = why_not if ends else "a base motion that does not end"
@@ -85,7 +87,7 @@ class VerdictOfCase:
             warnings.filterwarnings("ignore", message="damping: ", category=UnlikelyInputWarning)  # a row states it
             return earthquakes.verdict(self.setup.model, self.setup.motion, **self.arguments)
 
-    def rows(self, run: "Response", verdict: "Verdict | None") -> "Rows":
+    def rows(self, run: "Run", verdict: "Verdict | None") -> "Rows":
         """Return the rows of model, verdict and outcome, with a remark on a run that does not state the verdict."""
         from stylobate.results.run_rows import damping_rows, outcome_of
 
@@ -96,16 +98,17 @@ class VerdictOfCase:
         if verdict is None:
             return [*model, ("outcome", f"{outcome_of(run)} in this run; {self.why_not}")]
         from stylobate.earthquakes.verdict_study import undamped
+        from stylobate.results.verdict import LABELS, percent
 
-        laws = ", ".join(f"{name} {results.percent(share)}" for name, share in verdict.share_by_model.items())
+        laws = ", ".join(f"{name} {percent(share)}" for name, share in verdict.share_by_model.items())
         rows = [*model, ("verdict", str(verdict)), ("by contact law", f"{laws} overturn")]
         if remark := undamped(self.setup.model, (self.arguments or {}).get("variations") or {}):
             rows.append(("warning", remark))
         if verdict.deciding:
-            rows.append(("decided most by", earthquakes.LABELS.get(verdict.deciding, verdict.deciding)))
+            rows.append(("decided most by", LABELS.get(verdict.deciding, verdict.deciding)))
         return [*rows, ("outcome", outcome_of(run) + _remark(run, verdict))]
 
-    def title(self, run: "Response", verdict: "Verdict | None") -> str | None:
+    def title(self, run: "Run", verdict: "Verdict | None") -> str | None:
         """Return the title of figure and animation of a run that does not state the verdict; None if it does."""
         remark = "" if verdict is None else _remark(run, verdict)
         return f"{run.outcome.label}{remark}" if remark else None
@@ -127,7 +130,7 @@ class VerdictOfCase:
             save_plot(verdict, self.figure)
 
 
-def _remark(run: "Response", verdict: "Verdict") -> str:
+def _remark(run: "Run", verdict: "Verdict") -> str:
     """Return the remark on a run that does not state the verdict on its case; empty if it states the same."""
     overturned = run.outcome is Outcome.OVERTURNED
     match verdict.word:
@@ -157,7 +160,9 @@ def _saved(source: Path | None) -> "Verdict | None":
     """Read a saved verdict; None for any other source."""
     if source is None or source.suffix != NETCDF:
         return None
-    found = results.read_dataset(source)
+    from stylobate.results.storage import read_dataset
+
+    found = read_dataset(source)
     if found.attrs.get("kind") != "verdict":
         return None
     return results.Verdict(relocated(found, source))
@@ -223,17 +228,17 @@ def simulate(options: Options) -> None:
         _animate(run, options["animation"], options["speed"], case.title(run, verdict))
 
 
-def _save(run: "Response", path: Path) -> None:
+def _save(run: "Run", path: Path) -> None:
     run.save(path)
 
 
-def _animate(run: "Response", path: Path, speed: float | None, title: str | None) -> None:
+def _animate(run: "Run", path: Path, speed: float | None, title: str | None) -> None:
     from stylobate.plots import animate
 
     animate(run, path, speed=speed, title=title)
 
 
-def _summary(run: "Response") -> dict[str, Any]:
+def _summary(run: "Run") -> dict[str, Any]:
     return {
         "outcome": run.outcome.name,
         "reason": run.reason,
@@ -248,7 +253,7 @@ def _summary(run: "Response") -> dict[str, Any]:
     }
 
 
-def _rows(run: "Response", model: "Model", outcome: "Rows") -> "Rows":
+def _rows(run: "Run", model: "Model", outcome: "Rows") -> "Rows":
     from stylobate.results.run_rows import column_rows, measure_rows, reason_rows
 
     warnings = [("warning", warning) for warning in run.warnings]

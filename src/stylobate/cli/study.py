@@ -19,21 +19,21 @@ from stylobate.cli.output import (
     axes_of,
     check_writable,
     deliver,
-    open_saved,
+    open_kind,
     print_table,
     provenance_of,
     study_summary,
 )
 from stylobate.cli.terminal import INTERRUPTED
-from stylobate.config.study import Analysis, Study, own_options, study_of
+from stylobate.config.study import Analysis, Study, declared_numbers, own_options, study_of
 from stylobate.errors import FileError, Interrupted, ParameterError, StylobateError
 from stylobate.kinds import loaded
 
 if TYPE_CHECKING:
     import xarray as xr
 
-    from stylobate.config import Setup
-    from stylobate.results.tables import Table
+    from stylobate.config.simulation import Setup
+    from stylobate.results.tables import ResultTable
     from stylobate.studies import Dask, Threads
 
 # Options that do not change the runs.
@@ -43,43 +43,38 @@ _HOW = ("source", "figure", "output", "as_json", "resume", "executor", "threads"
 def study_command(function: Callable[..., "xr.Dataset"]) -> Command:
     """Make the command of a declared study."""
     study = study_of(function)
-    of_file = Positional(text=study.source)
-    if isinstance(study, Analysis):
-        return Command(lambda options: _analyse(function, options), study.help, of_file, (), study.groups)
+    run: Any = _analyse if isinstance(study, Analysis) else _run
     return Command(
-        lambda options: _run(function, study, options),
+        lambda options: run(function, study, options),
         study.help,
-        of_file,
+        Positional(text=study.source),
         tuple(own_options(function).values()),
         tuple(study.groups),
     )
 
 
-def _analyse(function: Callable[..., "xr.Dataset"], options: Options) -> None:
+def _analyse(function: Callable[..., "xr.Dataset"], study: Analysis, options: Options) -> None:
     """Compute a study without a store, write and print its result."""
-    study = study_of(function)
-    for place in (place for name, place in study.instead.items() if options[name]):
-        _analyse(loaded(f"stylobate.{place}"), options)
-        return
+    if study.instead is not None and options[study.instead.key]:
+        function = loaded(study.instead.place)
+        study = study_of(function)
     check_writable(options["figure"], options["output"])
     chosen, kind = study.chosen(options), config.study_config(function)
     values = overlay(read_source(options), options, kind.model_fields)
-    merge(values, study.name, {one.number: options[one.name] for one in options.stated(study.name)})
+    own = {one: options[study.renamed.get(one, one)] for one in declared_numbers(function)}
+    merge(values, study.name, {one: value for one, value in own.items() if value is not None})
     setup = kind.parse(values).build()
     options.refuse_unused()
     open_ones = {name: one for name, one in chosen.items() if setup.options.get(name) is None}
     of = setup.model.column if "column" in inspect.signature(function).parameters else setup.model
     result = function(of, setup.motion, **(setup.options | open_ones))
-    deliver(result, options, _save_flags, study.summary, lambda result: _show(*study.tables(result)))
+    deliver(result, options, _save_flags, study.summary, lambda result: show(*study.tables(result)))
 
 
 def _run(function: Callable[..., "xr.Dataset"], study: Study, options: Options) -> None:
     kind = config.study_config(function)
     source = options["source"]
-    saved = open_saved(source)
-    if saved is not None and study.kinds and saved.attrs["kind"] not in study.kinds:
-        remedy = f" {study.remedy}" if _is_store(source) else ""
-        raise FileError(f"{source}: no {study.name} result (got a {saved.attrs['kind']}).{remedy}")
+    saved = open_kind(source, study.name, study.kinds)
 
     def completed(saved: "xr.Dataset") -> "xr.Dataset":
         def setup() -> "Setup":
@@ -114,12 +109,13 @@ def _run(function: Callable[..., "xr.Dataset"], study: Study, options: Options) 
         result,
         options,
         lambda result: study_summary(result, **study.summary(result)),
-        lambda result: _show(study.table(result)),
+        lambda result: show(study.table(result)),
         complete=complete,
     )
 
 
-def _show(*tables: "Table") -> None:
+def show(*tables: "ResultTable") -> None:
+    """Print tables with their remarks."""
     for table in tables:
         if table.header:
             print_table(table.title, table.rows, table.header)
@@ -295,7 +291,7 @@ def computed(study: Callable[..., "xr.Dataset"], setup: "Setup", options: Option
 def save(result: "xr.Dataset", output: Path) -> None:
     """Write a result into a netCDF file; a store already holds its result."""
     if not _is_store(output):
-        from stylobate.results import write_netcdf
+        from stylobate.results.storage import write_netcdf
 
         write_netcdf(result, output)
 
@@ -335,7 +331,9 @@ def executor_of(options: Options) -> "Threads | Dask":
     text, threads = options["executor"], options["threads"]
     if text in (None, "threads"):
         return studies.Threads(threads)
-    chosen = studies.executor_from(str(text))
+    from stylobate.studies.sweeps.dask_executor import executor_from
+
+    chosen = executor_from(str(text))
     if threads is not None:
         raise ParameterError(f"--threads: the workers of {text} have one thread each (got {threads}). Remove it.")
     return chosen

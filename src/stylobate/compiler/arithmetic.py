@@ -20,9 +20,9 @@ from stylobate.compiler.values import (
     BEYOND_FLOATS,
     Array,
     Bounds,
-    Kind,
     LaneIndex,
     Number,
+    NumberKind,
     Value,
     after,
     bounds_of,
@@ -102,7 +102,7 @@ class Arithmetic:
 
     # Numbers and their kinds
 
-    def number(self, value: Value, kind: Kind | None = None) -> Number:
+    def number(self, value: Value, kind: NumberKind | None = None) -> Number:
         """Return a value as a number of the compiled code, of the kind `kind`.
 
         Raises
@@ -115,24 +115,26 @@ class Arithmetic:
         if not is_known_number(value):
             raise Refusal(f"expected a number, got {_described(value)}")
         own = kind_of(value)
-        if own is Kind.INTEGER and abs(value) >= _BEYOND:
+        if own is NumberKind.INTEGER and abs(value) >= _BEYOND:
             raise Refusal(f"whole numbers have 64 bits, {value} has more")
-        if kind is not None and kind < own and kind is Kind.INTEGER:
+        if kind is not None and kind < own and kind is NumberKind.INTEGER:
             raise Refusal(f"expected a whole number, got {value}")
         return constant(value, own if kind is None else kind)
 
-    def _converted(self, number: Number, kind: Kind) -> Number:
-        if kind is Kind.BOOLEAN:
+    def _converted(self, number: Number, kind: NumberKind) -> Number:
+        if kind is NumberKind.BOOLEAN:
             return self.number(self.compared(ast.NotEq(), number, 0))
         if kind < number.kind:
             raise Refusal("expected a whole number, got one with a fraction; write int(...)")
-        instruction = "sitofp" if number.kind is Kind.INTEGER else "uitofp" if kind is Kind.FLOAT else "zext"
+        instruction = (
+            "sitofp" if number.kind is NumberKind.INTEGER else "uitofp" if kind is NumberKind.FLOAT else "zext"
+        )
         text = self.text.value(f"{instruction} {number.operand} to {type_of(kind, number.lanes)}")
-        return Number(kind, text, number.lanes, (0, 1) if kind is Kind.INTEGER else None)
+        return Number(kind, text, number.lanes, (0, 1) if kind is NumberKind.INTEGER else None)
 
     def truth(self, value: Value) -> Number:
         """Return whether a number is not zero."""
-        return self.number(value, Kind.BOOLEAN)
+        return self.number(value, NumberKind.BOOLEAN)
 
     def wide(self, number: Number) -> Number:
         """Repeat a number in each lane."""
@@ -143,7 +145,7 @@ class Arithmetic:
         text = self.text.value(f"shufflevector {kind} {one}, {kind} poison, <{self.lanes} x i32> zeroinitializer")
         return replace(number, text=text, lanes=self.lanes)
 
-    def alike(self, *values: Value, kind: Kind | None = None) -> list[Number]:
+    def alike(self, *values: Value, kind: NumberKind | None = None) -> list[Number]:
         """Convert values to one kind, by default the smallest common kind, in lanes if any value is in lanes."""
         kind = max(map(kind_of, values)) if kind is None else kind
         if any(isinstance(value, Number) and value.lanes for value in values):
@@ -169,16 +171,16 @@ class Arithmetic:
             return _quotient(a, b) if isinstance(operation, ast.Div) else _KNOWN[type(operation)](a, b)
         if isinstance(operation, ast.Pow):
             return self._power(a, b)
-        least = Kind.FLOAT if isinstance(operation, ast.Div) else Kind.INTEGER
+        least = NumberKind.FLOAT if isinstance(operation, ast.Div) else NumberKind.INTEGER
         x, y = self.alike(a, b, kind=max(least, *map(self._kind, (a, b))))
-        bounds = self._bounds(operation, x, y) if x.kind is Kind.INTEGER and self.checked else None
-        if x.kind is Kind.INTEGER and isinstance(operation, ast.FloorDiv | ast.Mod):
+        bounds = self._bounds(operation, x, y) if x.kind is NumberKind.INTEGER and self.checked else None
+        if x.kind is NumberKind.INTEGER and isinstance(operation, ast.FloorDiv | ast.Mod):
             with self.checking(False):
                 return replace(self._divided(operation, x, y), bounds=bounds)
-        names = _FLOAT if x.kind is Kind.FLOAT else _INTEGER
+        names = _FLOAT if x.kind is NumberKind.FLOAT else _INTEGER
         if type(operation) not in names:
             raise Refusal(f"{type(operation).__name__} of numbers with a fraction; write a - b * math.floor(a / b)")
-        flags = self.flags if x.kind is Kind.FLOAT else ""
+        flags = self.flags if x.kind is NumberKind.FLOAT else ""
         text = self.text.value(f"{names[type(operation)]} {flags}{x.operand}, {y.text}")
         return Number(x.kind, text, x.lanes, bounds)
 
@@ -186,30 +188,34 @@ class Arithmetic:
     def _bounds(operation: ast.operator, x: Number, y: Number) -> Bounds:
         return after(operation, bounds_of(x), bounds_of(y))
 
-    def _kind(self, value: Value) -> Kind:
+    def _kind(self, value: Value) -> NumberKind:
         return self.number(value).kind
 
     def _divided(self, operation: ast.operator, x: Number, y: Number) -> Number:
         # LLVM rounds quotients of whole numbers towards zero, Python rounds down.
         y = self.number(self.chosen(self.compared(ast.Eq(), y, 0), 1, y))  # division by zero would trap
-        rest = Number(Kind.INTEGER, self.text.value(f"srem {x.operand}, {y.text}"), x.lanes)
+        rest = Number(NumberKind.INTEGER, self.text.value(f"srem {x.operand}, {y.text}"), x.lanes)
         apart = self.text.value(f"xor {rest.operand}, {y.text}")
-        opposite = self.compared(ast.Lt(), Number(Kind.INTEGER, apart, x.lanes), 0)
+        opposite = self.compared(ast.Lt(), Number(NumberKind.INTEGER, apart, x.lanes), 0)
         one_off = self.both(self.compared(ast.NotEq(), rest, 0), opposite)
         if isinstance(operation, ast.Mod):
             return self.number(self.chosen(one_off, self.binary(ast.Add(), rest, y), rest))
-        whole = Number(Kind.INTEGER, self.text.value(f"sdiv {x.operand}, {y.text}"), x.lanes)
+        whole = Number(NumberKind.INTEGER, self.text.value(f"sdiv {x.operand}, {y.text}"), x.lanes)
         return self.number(self.chosen(one_off, self.binary(ast.Sub(), whole, 1), whole))
 
     def _power(self, base: Value, exponent: Value) -> Value:
         whole = is_known_number(exponent) and exponent == int(exponent) and 0 < exponent <= MOST_FACTORS
         if not whole:
-            if isinstance(exponent, Number) and max(kind_of(base), kind_of(exponent)) < Kind.FLOAT and self.checked:
+            if (
+                isinstance(exponent, Number)
+                and max(kind_of(base), kind_of(exponent)) < NumberKind.FLOAT
+                and self.checked
+            ):
                 raise Refusal(
                     "a power of whole numbers is a whole number or not, as the exponent is; write float(a) ** b"
                 )
             return self.called("llvm.pow", base, exponent)
-        base = self.number(base, max(kind_of(base), kind_of(exponent), Kind.INTEGER))
+        base = self.number(base, max(kind_of(base), kind_of(exponent), NumberKind.INTEGER))
         left, square, result = int(exponent), base, None
         while left:
             if left % 2:
@@ -224,9 +230,9 @@ class Arithmetic:
         if is_known_number(value):
             return -value
         number = self.number(value)
-        if number.kind is not Kind.FLOAT:
+        if number.kind is not NumberKind.FLOAT:
             return self.binary(ast.Sub(), 0, number)
-        return Number(Kind.FLOAT, self.text.value(f"fneg {self.flags}{number.operand}"), number.lanes)
+        return Number(NumberKind.FLOAT, self.text.value(f"fneg {self.flags}{number.operand}"), number.lanes)
 
     def opposite(self, value: Value) -> Value:
         """Return the negation of a condition."""
@@ -234,8 +240,8 @@ class Arithmetic:
         if not isinstance(value, Number):
             return not truth_of_known(value)
         number = self.truth(value)
-        always = constant(1, Kind.BOOLEAN, number.lanes)
-        return Number(Kind.BOOLEAN, self.text.value(f"xor {number.operand}, {always.text}"), number.lanes)
+        always = constant(1, NumberKind.BOOLEAN, number.lanes)
+        return Number(NumberKind.BOOLEAN, self.text.value(f"xor {number.operand}, {always.text}"), number.lanes)
 
     def compared(self, operation: ast.cmpop, a: Value, b: Value) -> Value:
         """Return the result of a comparison."""
@@ -249,14 +255,16 @@ class Arithmetic:
             return _KNOWN[type(operation)](a, b)
         if type(operation) not in _COMPARED:
             raise Refusal(f"{type(operation).__name__} of numbers; write == or !=")
-        least = Kind.BOOLEAN if isinstance(operation, ast.Eq | ast.NotEq) else Kind.INTEGER  # of one bit, 1 is below 0
+        least = (
+            NumberKind.BOOLEAN if isinstance(operation, ast.Eq | ast.NotEq) else NumberKind.INTEGER
+        )  # of one bit, 1 is below 0
         x, y = self.alike(a, b, kind=max(least, kind_of(a), kind_of(b)))
         of_floats, of_integers = _COMPARED[type(operation)]
-        if x.kind is Kind.FLOAT:
+        if x.kind is NumberKind.FLOAT:
             text = self.text.value(f"fcmp {self.flags}{of_floats} {x.operand}, {y.text}")
         else:
             text = self.text.value(f"icmp {of_integers} {x.operand}, {y.text}")
-        return Number(Kind.BOOLEAN, text, x.lanes)
+        return Number(NumberKind.BOOLEAN, text, x.lanes)
 
     def _compared_tuples(self, operation: ast.cmpop, a: tuple[Value, ...], b: tuple[Value, ...]) -> Value:
         if not isinstance(operation, ast.Eq | ast.NotEq):
@@ -279,8 +287,8 @@ class Arithmetic:
         for one, other in ((a, b), (b, a)):
             if not isinstance(one, Number):
                 return decided if truth_of_known(one) is decided else other
-        x, y = self.alike(a, b, kind=Kind.BOOLEAN)
-        return Number(Kind.BOOLEAN, self.text.value(f"{instruction} {x.operand}, {y.text}"), x.lanes)
+        x, y = self.alike(a, b, kind=NumberKind.BOOLEAN)
+        return Number(NumberKind.BOOLEAN, self.text.value(f"{instruction} {x.operand}, {y.text}"), x.lanes)
 
     def chosen(self, condition: Value, a: Value, b: Value) -> Value:
         """Return `a` if the condition holds, else `b`; both are computed."""
@@ -293,7 +301,7 @@ class Arithmetic:
             return type(a)(*made) if hasattr(a, "_fields") else tuple(made)
         x, y = self.alike(a, b)
         bounds = None
-        if x.kind is Kind.INTEGER and self.checked:
+        if x.kind is NumberKind.INTEGER and self.checked:
             bounds = joined(bounds_of(x), bounds_of(y))
         condition = self.truth(condition)
         if condition.lanes:
@@ -305,27 +313,27 @@ class Arithmetic:
 
     def called(self, name: str, *values: Value) -> Number:
         """Return the result of an LLVM intrinsic such as `llvm.sqrt`."""
-        numbers = self.alike(*values, kind=Kind.FLOAT)
+        numbers = self.alike(*values, kind=NumberKind.FLOAT)
         kind, lanes = numbers[0].type, numbers[0].lanes
         suffix = f"v{lanes}f64" if lanes else "f64"
         function = self.module.declared(f"{name}.{suffix}", kind, [kind] * len(numbers))
         text = self.text.value(f"call {self.flags}{kind} {function}({', '.join(one.operand for one in numbers)})")
-        return Number(Kind.FLOAT, text, lanes)
+        return Number(NumberKind.FLOAT, text, lanes)
 
     def called_in_library(self, name: str, *values: Value) -> Number:
         """Return the result of a function of the C library, called for one lane after the other."""
-        numbers = self.alike(*values, kind=Kind.FLOAT)
+        numbers = self.alike(*values, kind=NumberKind.FLOAT)
         lanes = numbers[0].lanes
         function = self.module.declared(name, "double", ["double"] * len(numbers))
         if not lanes:
             operands = ", ".join(one.operand for one in numbers)
-            return Number(Kind.FLOAT, self.text.value(f"call double {function}({operands})"))
+            return Number(NumberKind.FLOAT, self.text.value(f"call double {function}({operands})"))
         kind, result = numbers[0].type, "poison"
         for lane in range(lanes):
             singles = [self.text.value(f"extractelement {one.operand}, i32 {lane}") for one in numbers]
             single = self.text.value(f"call double {function}({', '.join(f'double {one}' for one in singles)})")
             result = self.text.value(f"insertelement {kind} {result}, double {single}, i32 {lane}")
-        return Number(Kind.FLOAT, result, lanes)
+        return Number(NumberKind.FLOAT, result, lanes)
 
     def of_lane(self, value: Value, lane: int) -> Value:
         """Return the value of one lane."""
@@ -351,7 +359,7 @@ class Arithmetic:
         for lane, value in enumerate(values):
             result = self.text.value(f"insertelement {kind} {result}, {value.operand}, i32 {lane}")
         bounds = None
-        if first.kind is Kind.INTEGER and self.checked:
+        if first.kind is NumberKind.INTEGER and self.checked:
             bounds = joined(*map(bounds_of, values))
         return Number(first.kind, result, len(values), bounds)
 
@@ -359,20 +367,20 @@ class Arithmetic:
         """Return a number without its fraction, as `int` does; saturated at 64 bits, or at its bounds, 0 for NaN."""
         if not isinstance(value, Number):
             return int(value)
-        if value.kind is not Kind.FLOAT:
-            return self.number(value, Kind.INTEGER)
+        if value.kind is not NumberKind.FLOAT:
+            return self.number(value, NumberKind.INTEGER)
         if not self.checked and value.lanes:
             raise LanesRefusal("int(...) in a loop over lanes; write math.floor")
-        kind, suffix = type_of(Kind.INTEGER, value.lanes), f"v{value.lanes}" if value.lanes else ""
+        kind, suffix = type_of(NumberKind.INTEGER, value.lanes), f"v{value.lanes}" if value.lanes else ""
         function = self.module.declared(f"llvm.fptosi.sat.{suffix}i64.{suffix}f64", kind, [value.type])
         text = self.text.value(f"call {kind} {function}({value.operand})")
         if not self.checked:
-            return Number(Kind.INTEGER, text)
+            return Number(NumberKind.INTEGER, text)
         for name, end in (("llvm.smax", -BEYOND_FLOATS), ("llvm.smin", BEYOND_FLOATS)):
             function = self.module.declared(f"{name}.{suffix}i64", kind, [kind, kind])
-            limit = constant(end, Kind.INTEGER, value.lanes)
+            limit = constant(end, NumberKind.INTEGER, value.lanes)
             text = self.text.value(f"call {kind} {function}({kind} {text}, {limit.operand})")
-        return Number(Kind.INTEGER, text, value.lanes, ANY)
+        return Number(NumberKind.INTEGER, text, value.lanes, ANY)
 
 
 def _refuse_lanes(*values: Value) -> None:

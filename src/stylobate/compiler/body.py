@@ -11,8 +11,8 @@ from stylobate.compiler.expressions import Expressions
 from stylobate.compiler.memory import Need, has_array
 from stylobate.compiler.reads import Reads
 from stylobate.compiler.sources import LanesRefusal, Refusal, Source, at_its_place
-from stylobate.compiler.text import Block
-from stylobate.compiler.values import Array, Bounds, Kind, LaneIndex, Number, Value, bounds_of, constant
+from stylobate.compiler.text import BasicBlock
+from stylobate.compiler.values import Array, Bounds, LaneIndex, Number, NumberKind, Value, bounds_of, constant
 
 _NOTHING = object()
 """Marks a name that no longer has a value."""
@@ -231,7 +231,7 @@ class Body(Names):
         self.callees = callees
         self.result: Value = None
         self.exit = self.text.new_block()
-        self._loops: list[tuple[Block, Block]] = []
+        self._loops: list[tuple[BasicBlock, BasicBlock]] = []
         self._returned = False
         self._over = False
         """Whether the current instructions are in a loop over lanes of this function, not of its caller."""
@@ -389,7 +389,7 @@ class Body(Names):
         self.text.jump(head)
         self.text.begin(done)
 
-    def _pass(self, statements: Iterable[ast.stmt], onward: Block, done: Block) -> None:
+    def _pass(self, statements: Iterable[ast.stmt], onward: BasicBlock, done: BasicBlock) -> None:
         self._loops.append((onward, done))
         self._while_running(statements)
         self._loops.pop()
@@ -426,12 +426,14 @@ class Body(Names):
         if step and step != [1]:
             raise Refusal("a range whose step is not 1; write a while loop")
         counter = self.text.allocated("i64")
-        end = self.arithmetic.number(stop, Kind.INTEGER)
-        self.text.line(f"store {self.arithmetic.number(start, Kind.INTEGER).operand}, ptr {counter}")
+        end = self.arithmetic.number(stop, NumberKind.INTEGER)
+        self.text.line(f"store {self.arithmetic.number(start, NumberKind.INTEGER).operand}, ptr {counter}")
         head, body, onward, done = (self.text.new_block() for _ in range(4))
         self.text.jump(head)
         self.text.begin(head)
-        index = Number(Kind.INTEGER, self.text.value(f"load i64, ptr {counter}"), bounds=self._passes(start, stop))
+        index = Number(
+            NumberKind.INTEGER, self.text.value(f"load i64, ptr {counter}"), bounds=self._passes(start, stop)
+        )
         self.text.branch(self.arithmetic.compared(ast.Lt(), index, end).text, body, done)
         certain = known and start < stop
         if certain:  # the loop ends after a pass, not before the first one
@@ -517,7 +519,7 @@ class Body(Names):
         whole = count % width == 0 if isinstance(count, int) else isinstance(count, Number)
         if self.arithmetic.lanes or not whole or not isinstance(node.target, ast.Name):
             raise Refusal(f"a loop over lanes cannot be inside another one and must have a multiple of {width} passes")
-        end = self.arithmetic.number(count, Kind.INTEGER)
+        end = self.arithmetic.number(count, NumberKind.INTEGER)
         head, done = self.text.new_block(), self.text.new_block()
         self.text.jump(head)
         begun = self.text.block
@@ -526,11 +528,11 @@ class Body(Names):
         position = len(head.lines)
         self.arithmetic.lanes, self._over = width, True
         self.forget(node)
-        self._bound[node.target.id] = LaneIndex(Number(Kind.INTEGER, first, bounds=self._passes(0, count)))
+        self._bound[node.target.id] = LaneIndex(Number(NumberKind.INTEGER, first, bounds=self._passes(0, count)))
         self._block(node.body)
         self.forget(node)
         self.arithmetic.lanes, self._over = 0, False
-        self.text.line(f"{onward} = add nuw nsw i64 {first}, {constant(width, Kind.INTEGER).text}")
+        self.text.line(f"{onward} = add nuw nsw i64 {first}, {constant(width, NumberKind.INTEGER).text}")
         more = self.text.value(f"icmp ult i64 {onward}, {end.text}")
         last = self.text.block
         head.lines.insert(position, f"{first} = phi i64 [ 0, %{begun.label} ], [ {onward}, %{last.label} ]")

@@ -15,7 +15,7 @@ from stylobate.compiler.programs import Program, Written
 from stylobate.compiler.reads import Reads, Watch
 from stylobate.compiler.sources import CompileError
 from stylobate.compiler.unit import ArrayArgument, Unit
-from stylobate.compiler.values import Element, Kind
+from stylobate.compiler.values import Element, NumberKind
 from stylobate.errors import UnsupportedError
 
 
@@ -44,7 +44,7 @@ class Compiled:
     name: str
     program: Callable[[], Program]
     functions: Mapping[str, Callable[..., Any]]
-    arguments: Sequence[ArrayArgument | Kind]
+    arguments: Sequence[ArrayArgument | NumberKind]
     model: str
     description: str
     fast: Sequence[str] = field(default=())
@@ -62,7 +62,7 @@ class Compiled:
             return self.plain(*values)
         passed: list[Any] = []
         for argument, value in zip(self.arguments, values, strict=True):
-            passed += [value] if isinstance(argument, Kind) else _passed(argument, value)
+            passed += [value] if isinstance(argument, NumberKind) else _passed(argument, value)
         return int(self._code()(*passed))
 
     def plain(self, *values: Any) -> int:
@@ -133,9 +133,9 @@ def _passed(argument: ArrayArgument, value: np.ndarray[Any, Any]) -> list[int]:
     return [value.ctypes.data, *lengths]
 
 
-def _types_of(argument: ArrayArgument | Kind) -> list[Any]:
-    if isinstance(argument, Kind):
-        return [ctypes.c_double if argument is Kind.FLOAT else ctypes.c_int64]
+def _types_of(argument: ArrayArgument | NumberKind) -> list[Any]:
+    if isinstance(argument, NumberKind):
+        return [ctypes.c_double if argument is NumberKind.FLOAT else ctypes.c_int64]
     return [ctypes.c_void_p, *[ctypes.c_int64] * argument.shape.count(None)]
 
 

@@ -15,7 +15,17 @@ from stylobate.compiler import marks, memory
 from stylobate.compiler.arithmetic import Arithmetic, truth_of_known
 from stylobate.compiler.reads import Reads, is_plain
 from stylobate.compiler.sources import Refusal
-from stylobate.compiler.values import Array, Kind, LaneIndex, Number, Value, bounds_of, is_known_number, joined, kind_of
+from stylobate.compiler.values import (
+    Array,
+    LaneIndex,
+    Number,
+    NumberKind,
+    Value,
+    bounds_of,
+    is_known_number,
+    joined,
+    kind_of,
+)
 
 _OF_LLVM = (
     *("sqrt", "fabs", "sin", "cos", "exp", "exp2", "log", "log2", "log10", "pow", "copysign", "floor", "ceil", "trunc"),
@@ -85,10 +95,10 @@ def _length(value: Value) -> Value:
 
 def _absolute(arithmetic: Arithmetic, value: Value) -> Value:
     number = arithmetic.number(value)
-    if number.kind is Kind.FLOAT:
+    if number.kind is NumberKind.FLOAT:
         return arithmetic.called("llvm.fabs", number)
     negative = arithmetic.compared(ast.Lt(), number, 0)
-    result = arithmetic.chosen(negative, arithmetic.negative(number), arithmetic.number(number, Kind.INTEGER))
+    result = arithmetic.chosen(negative, arithmetic.negative(number), arithmetic.number(number, NumberKind.INTEGER))
     low, high = bounds_of(number)
     return replace(result, bounds=(max(low, -high, 0), max(-low, high))) if arithmetic.checked else result
 
@@ -103,7 +113,7 @@ def _extreme(comparison: ast.cmpop, extreme: Callable[..., int]) -> Callable[...
         for value in others:
             before = result
             result = arithmetic.chosen(arithmetic.compared(comparison, value, before), value, before)
-            if arithmetic.checked and isinstance(result, Number) and result.kind is Kind.INTEGER:
+            if arithmetic.checked and isinstance(result, Number) and result.kind is NumberKind.INTEGER:
                 low, high = map(extreme, bounds_of(value), bounds_of(before))
                 result = replace(result, bounds=(low, high))
         return result
@@ -126,7 +136,7 @@ def _is_finite(arithmetic: Arithmetic, value: Value) -> Value:
 def _float(arithmetic: Arithmetic, value: Value) -> Number:
     if isinstance(value, str):
         raise Refusal(f"float({value!r}) is not compiled; write math.inf, math.nan or the number")
-    return arithmetic.number(value, Kind.FLOAT)
+    return arithmetic.number(value, NumberKind.FLOAT)
 
 
 def _scaled(factor: float) -> Callable[[Arithmetic, Value], Value]:
@@ -348,7 +358,7 @@ class Expressions(ABC):
 
     def _boolean(self, node: ast.expr, value: Value) -> Value:
         """Return an operand of `and` or `or` whose value is used; refuse numbers: Python returns them as they are."""
-        if not (isinstance(value, bool) or (isinstance(value, Number) and value.kind is Kind.BOOLEAN)):
+        if not (isinstance(value, bool) or (isinstance(value, Number) and value.kind is NumberKind.BOOLEAN)):
             raise Refusal(
                 f"the value of and, or is used: {ast.unparse(node)} is no condition; write a if condition else b"
             )
@@ -379,7 +389,7 @@ class Expressions(ABC):
         self.text.line(f"store {value.operand}, ptr {result}")
         self.text.jump(done)
         self.text.begin(done)
-        return Number(Kind.BOOLEAN, self.text.value(f"load i1, ptr {result}"))
+        return Number(NumberKind.BOOLEAN, self.text.value(f"load i1, ptr {result}"))
 
     def _comparison(self, node: ast.Compare) -> Value:
         left, result = self.value(node.left), True
@@ -481,6 +491,6 @@ def _wider(a: Value, b: Value) -> Value:
     if isinstance(a, Array | tuple) or isinstance(b, Array | tuple):
         return a
     wider = max(a, b, key=kind_of)
-    if isinstance(wider, Number) and wider.kind is Kind.INTEGER:
+    if isinstance(wider, Number) and wider.kind is NumberKind.INTEGER:
         return replace(wider, bounds=joined(bounds_of(a), bounds_of(b)))
     return wider

@@ -15,9 +15,9 @@ from stylobate.compiler.values import (
     Array,
     Bounds,
     Element,
-    Kind,
     LaneIndex,
     Number,
+    NumberKind,
     Slot,
     Value,
     bounds_of,
@@ -58,9 +58,9 @@ def view(arithmetic: Arithmetic, array: Array, indices: Sequence[Value]) -> Arra
         if isinstance(step, int):
             known += step
         else:
-            pointer = _moved(arithmetic, pointer, arithmetic.number(step, Kind.INTEGER), array.element)
+            pointer = _moved(arithmetic, pointer, arithmetic.number(step, NumberKind.INTEGER), array.element)
     if known:
-        pointer = _moved(arithmetic, pointer, constant(known, Kind.INTEGER), array.element)
+        pointer = _moved(arithmetic, pointer, constant(known, NumberKind.INTEGER), array.element)
     rest = len(indices)
     shape, strides = [*shape, *array.shape[rest:]], [*strides, *array.strides[rest:]]
     return replace(array, pointer=pointer, shape=tuple(shape), strides=tuple(strides))
@@ -133,16 +133,16 @@ def load_element(arithmetic: Arithmetic, element: Array, lanes: int) -> Number:
     """Load the number at a `place`."""
     if element.element is Element.SIGNAL:
         byte = arithmetic.text.value(f"load volatile i8, ptr {element.pointer}")
-        return Number(Kind.INTEGER, arithmetic.text.value(f"zext i8 {byte} to i64"), bounds=(0, 255))
-    kind = type_of(Kind.FLOAT, lanes)
-    return Number(Kind.FLOAT, arithmetic.text.value(f"load {kind}, ptr {element.pointer}, align 8"), lanes)
+        return Number(NumberKind.INTEGER, arithmetic.text.value(f"zext i8 {byte} to i64"), bounds=(0, 255))
+    kind = type_of(NumberKind.FLOAT, lanes)
+    return Number(NumberKind.FLOAT, arithmetic.text.value(f"load {kind}, ptr {element.pointer}, align 8"), lanes)
 
 
 def store_element(arithmetic: Arithmetic, element: Array, lanes: int, value: Value) -> None:
     """Store a number at a `place`."""
     if element.element is Element.SIGNAL or not element.writable:
         raise Refusal("signals, and arrays of a module, are read only")
-    number = arithmetic.number(value, Kind.FLOAT)
+    number = arithmetic.number(value, NumberKind.FLOAT)
     if number.lanes and not lanes:
         raise Refusal("lanes are stored in one element; store each lane in its own element")
     number = arithmetic.wide(number) if lanes else number
@@ -151,7 +151,7 @@ def store_element(arithmetic: Arithmetic, element: Array, lanes: int, value: Val
 
 def table(arithmetic: Arithmetic, values: np.ndarray) -> Array:
     """Return a constant array of the compiled module."""
-    numbers = [constant(float(value), Kind.FLOAT).operand for value in values.ravel()]
+    numbers = [constant(float(value), NumberKind.FLOAT).operand for value in values.ravel()]
     return Array(arithmetic.module.table(numbers), values.shape, _without_gaps(values.shape), writable=False)
 
 
@@ -199,12 +199,12 @@ def counted(arithmetic: Arithmetic, index: Value, length: Value) -> Value:
 
 
 def _is_truth(index: Value) -> bool:
-    return isinstance(index, bool) or (isinstance(index, Number) and index.kind is Kind.BOOLEAN)
+    return isinstance(index, bool) or (isinstance(index, Number) and index.kind is NumberKind.BOOLEAN)
 
 
 def _from_the_start(arithmetic: Arithmetic, index: Value, length: Value) -> Value:
     if isinstance(index, Number):
-        return arithmetic.number(index, Kind.INTEGER)
+        return arithmetic.number(index, NumberKind.INTEGER)
     if isinstance(index, LaneIndex):
         raise Refusal("the index of a loop over lanes belongs in the last axis")
     if not isinstance(index, int | np.integer):
@@ -225,7 +225,7 @@ _MOST_UNIONS = 2
 class Need:
     """Kind of the numbers, and bounds of the whole numbers, that the slots of a name must hold."""
 
-    kind: Kind = Kind.BOOLEAN
+    kind: NumberKind = NumberKind.BOOLEAN
     bounds: Bounds | None = None
     times: int = 0
 
@@ -250,7 +250,7 @@ class WiderSlotError(Exception):
 class WiderKindError(Exception):
     """A slot is too narrow for the kind of a number."""
 
-    def __init__(self, kind: Kind) -> None:
+    def __init__(self, kind: NumberKind) -> None:
         super().__init__(kind)
         self.kind = kind
 
@@ -277,7 +277,7 @@ def slot_for(arithmetic: Arithmetic, value: Value, need: Need = Need()) -> Value
             axes = len(part.shape)
             return replace(part, pointer=arithmetic.text.allocated("ptr"), shape=sizes[:axes], strides=sizes[axes:])
         kind, bounds = max(kind_of(part), need.kind), None
-        if arithmetic.checked and kind_of(part) < Kind.FLOAT:
+        if arithmetic.checked and kind_of(part) < NumberKind.FLOAT:
             bounds = joined(bounds_of(part), *([] if need.bounds is None else [need.bounds]))
         return Slot(kind, arithmetic.text.allocated(kind.type), bounds)
 
@@ -324,7 +324,7 @@ def bounds_beyond(slot: Value, value: Value) -> Bounds | None:
     if isinstance(value, tuple):
         beyond = [found for pair in zip(slot, value, strict=True) if (found := bounds_beyond(*pair)) is not None]
         return joined(*beyond) if beyond else None
-    if not isinstance(slot, Slot) or slot.bounds is None or slot.kind is not Kind.INTEGER:
+    if not isinstance(slot, Slot) or slot.bounds is None or slot.kind is not NumberKind.INTEGER:
         return None
     bounds = bounds_of(value)
     if not contains(ANY, bounds):
@@ -338,7 +338,7 @@ def load_slot(arithmetic: Arithmetic, slot: Value) -> Value:
     def found(part: Value) -> Value:
         if isinstance(part, Slot):
             text = arithmetic.text.value(f"load {part.kind.type}, ptr {part.pointer}")
-            return Number(part.kind, text, bounds=part.bounds if part.kind is Kind.INTEGER else None)
+            return Number(part.kind, text, bounds=part.bounds if part.kind is NumberKind.INTEGER else None)
         if isinstance(part, Array):
             pointer = arithmetic.text.value(f"load ptr, ptr {part.pointer}")
             return replace(

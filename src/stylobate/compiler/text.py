@@ -4,7 +4,7 @@ from dataclasses import dataclass, field
 
 
 @dataclass(slots=True, eq=False)
-class Block:
+class BasicBlock:
     """Basic block: instructions in sequence; the last one jumps or returns.
 
     `assigned` are the names that have a value on every path to the present instruction of the block.
@@ -23,7 +23,7 @@ class FunctionText:
     def __init__(self) -> None:
         self._count = 0
         self._allocations: list[str] = []
-        self._blocks = [Block("begin", reached=True)]
+        self._blocks = [BasicBlock("begin", reached=True)]
         self.block = self._blocks[0]
 
     def name(self) -> str:
@@ -47,29 +47,29 @@ class FunctionText:
         self._allocations.append(f"{name} = alloca {kind}")
         return name
 
-    def new_block(self) -> Block:
+    def new_block(self) -> BasicBlock:
         """Return a new block for branches; `begin` appends it to the function."""
         self._count += 1
-        return Block(f"b{self._count}")
+        return BasicBlock(f"b{self._count}")
 
-    def begin(self, block: Block) -> None:
+    def begin(self, block: BasicBlock) -> None:
         """Make this the current block; an unreachable block counts as ended."""
         self._blocks.append(block)
         self.block = block
         block.ended = not block.reached
 
-    def jump(self, block: Block) -> None:
+    def jump(self, block: BasicBlock) -> None:
         """Jump to a block, unless the current block has ended."""
         self.reach(block)
         self.end(f"br label %{block.label}")
 
-    def branch(self, condition: str, yes: Block, no: Block) -> None:
+    def branch(self, condition: str, yes: BasicBlock, no: BasicBlock) -> None:
         """Branch to one of two blocks."""
         self.reach(yes)
         self.reach(no)
         self.end(f"br i1 {condition}, label %{yes.label}, label %{no.label}")
 
-    def reach(self, block: Block) -> None:
+    def reach(self, block: BasicBlock) -> None:
         """Note that the current block, unless it has ended, leads to another one."""
         if not self.block.ended:
             block.assigned = block.assigned & self.block.assigned if block.reached else set(self.block.assigned)

@@ -14,7 +14,7 @@ from stylobate.compiler.memory import Need, WiderSlotError
 from stylobate.compiler.reads import Reads
 from stylobate.compiler.sources import CompileError, LanesRefusal, Refusal, Source, plain_function, source_of
 from stylobate.compiler.text import FunctionText, ModuleText
-from stylobate.compiler.values import Array, Element, Kind, Number, Value, parts, rebuilt
+from stylobate.compiler.values import Array, Element, Number, NumberKind, Value, parts, rebuilt
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,7 +74,7 @@ class Unit:
         self._known: list[Sequence[Value]] = []
         self._within: list[FunctionType] = []
 
-    def export(self, function: Callable[..., Any], name: str, arguments: Sequence[ArrayArgument | Kind]) -> None:
+    def export(self, function: Callable[..., Any], name: str, arguments: Sequence[ArrayArgument | NumberKind]) -> None:
         """Add an exported function, whose arguments are numbers and pointers, each followed by its unknown lengths.
 
         The function returns a whole number of 64 bits or a condition.
@@ -84,9 +84,9 @@ class Unit:
         arithmetic = Arithmetic(self.module, text, fast=False)
         values = [_argument(arithmetic, argument, head) for argument in arguments]
         result = _called(arithmetic, self._specialised(plain_function(function), values, fast=False), values)
-        if result is not None and not (isinstance(result, Number) and result.kind < Kind.FLOAT):
+        if result is not None and not (isinstance(result, Number) and result.kind < NumberKind.FLOAT):
             raise CompileError(f"{name} returns a whole number, a condition or nothing when it is called from outside")
-        text.end("ret i64 0" if result is None else f"ret {arithmetic.number(result, Kind.INTEGER).operand}")
+        text.end("ret i64 0" if result is None else f"ret {arithmetic.number(result, NumberKind.INTEGER).operand}")
         self.module.define(f"i64 @{name}({', '.join(head)})", text.body())
 
     def call(
@@ -171,16 +171,16 @@ class Unit:
             self._within.pop()
 
 
-def _argument(arithmetic: Arithmetic, argument: ArrayArgument | Kind, head: list[str]) -> Value:
+def _argument(arithmetic: Arithmetic, argument: ArrayArgument | NumberKind, head: list[str]) -> Value:
     """Return an argument of an exported function; its number, or pointer and lengths, are added to the head."""
-    if isinstance(argument, Kind):
+    if isinstance(argument, NumberKind):
         return _parameter(Number(argument, ""), head)
     pointer = f"%x{len(head)}"
     head.append(f"ptr {pointer}")
     shape: list[Value] = []
     for length in argument.shape:
         if length is None:
-            shape.append(Number(Kind.INTEGER, f"%x{len(head)}"))
+            shape.append(Number(NumberKind.INTEGER, f"%x{len(head)}"))
             head.append(shape[-1].operand)
         else:
             shape.append(length)

@@ -32,7 +32,7 @@ BEYOND_FLOATS = 2**53
 """Floats represent all whole numbers up to this one."""
 
 
-class Kind(IntEnum):
+class NumberKind(IntEnum):
     """Kind of a number; each kind can represent the numbers of the kinds before it."""
 
     BOOLEAN = 0
@@ -61,7 +61,7 @@ class Number:
         Bounds of a whole number, if they are known.
     """
 
-    kind: Kind
+    kind: NumberKind
     text: str
     lanes: int = 0
     bounds: Bounds | None = None
@@ -111,12 +111,12 @@ class LaneIndex:
 class Slot:
     """Memory of a number whose name control flow assigns to; `bounds` are those of all whole numbers stored in it."""
 
-    kind: Kind
+    kind: NumberKind
     pointer: str
     bounds: Bounds | None = None
 
 
-def type_of(kind: Kind, lanes: int = 0) -> str:
+def type_of(kind: NumberKind, lanes: int = 0) -> str:
     """Return the type of a number in LLVM."""
     return f"<{lanes} x {kind.type}>" if lanes else kind.type
 
@@ -126,24 +126,24 @@ def is_known_number(value: Value) -> bool:
     return isinstance(value, bool | int | float | np.bool_ | np.integer | np.floating)
 
 
-def kind_of(value: Value) -> Kind:
+def kind_of(value: Value) -> NumberKind:
     """Return the kind of a known or unknown number."""
     if isinstance(value, Number):
         return value.kind
     if isinstance(value, bool | np.bool_):
-        return Kind.BOOLEAN
-    return Kind.INTEGER if isinstance(value, int | np.integer) else Kind.FLOAT
+        return NumberKind.BOOLEAN
+    return NumberKind.INTEGER if isinstance(value, int | np.integer) else NumberKind.FLOAT
 
 
-def constant(value: float, kind: Kind, lanes: int = 0) -> Number:
+def constant(value: float, kind: NumberKind, lanes: int = 0) -> Number:
     """Return a known number as a number of the compiled code."""
-    if kind is Kind.FLOAT:
+    if kind is NumberKind.FLOAT:
         text = f"0x{struct.unpack('<Q', struct.pack('<d', value))[0]:016X}"
     else:
-        text = str(int(value)) if kind is Kind.INTEGER else str(bool(value)).lower()
+        text = str(int(value)) if kind is NumberKind.INTEGER else str(bool(value)).lower()
     if lanes:
         text = f"<{', '.join([f'{kind.type} {text}'] * lanes)}>"
-    return Number(kind, text, lanes, (int(value), int(value)) if kind is Kind.INTEGER else None)
+    return Number(kind, text, lanes, (int(value), int(value)) if kind is NumberKind.INTEGER else None)
 
 
 def parts(value: Value) -> Iterator[Number]:
@@ -187,7 +187,7 @@ def bounds_of(value: Value) -> Bounds:
     if is_known_number(value):
         return int(value), int(value)
     assert isinstance(value, Number)
-    if value.kind is Kind.BOOLEAN:
+    if value.kind is NumberKind.BOOLEAN:
         return 0, 1
     return value.bounds or ANY
 

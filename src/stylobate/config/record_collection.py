@@ -11,7 +11,7 @@ from stylobate.base_motions import Record
 from stylobate.config.description import Config
 from stylobate.config.records import Reading, RecordMotion
 from stylobate.errors import ConfigError, FileError, ParameterError
-from stylobate.records.events import Event, find_files
+from stylobate.records.events import EventFiles, find_files
 
 
 class EventConfig(Config):
@@ -93,7 +93,7 @@ class RecordsConfig(Reading):
         found = _collected(events, problems) if self.source else ()
         return [*samples, *stated, *(partial(self._found, event) for event in found or ())]
 
-    def _events(self, listed: Sequence[tuple[Path, ...]]) -> list[Event]:
+    def _events(self, listed: Sequence[tuple[Path, ...]]) -> list[EventFiles]:
         """Return the events in `source` without those that are listed."""
         source = (self.source,) if isinstance(self.source, str) else self.source
         events = self.find((*source, *listed), self.directions)
@@ -103,7 +103,7 @@ class RecordsConfig(Reading):
         directions = event.directions or self._own(paths)
         return self._motion(paths, name=event.name, directions=directions).build()
 
-    def _found(self, event: Event) -> Record:
+    def _found(self, event: EventFiles) -> Record:
         record = self.join(event)
         return self._motion(event.paths, directions=self._own(event.paths)).describe(record)
 

@@ -13,7 +13,7 @@ from stylobate.base_motions.record import RecordOrigin
 from stylobate.config.description import Config, Hertz, MetresPerSquareSecond, Radians, Seconds
 from stylobate.errors import FileError, ParameterError
 from stylobate.records import Lengths, RecordFormat, Steps, read_record, sample_record
-from stylobate.records.events import Event, RecordSource, find_events
+from stylobate.records.events import EventFiles, RecordSource, find_events
 from stylobate.records.joining import join_event, reader, remark_on_missing_components
 
 
@@ -206,11 +206,11 @@ class Reading(Config):
     one_component: bool = False
     processing: tuple[RecordStep, ...] = ()
 
-    def find(self, source: RecordSource, directions: Mapping[str, float | str]) -> tuple[Event, ...]:
+    def find(self, source: RecordSource, directions: Mapping[str, float | str]) -> tuple[EventFiles, ...]:
         """Return the events in these files; see `find_events`."""
         return find_events(source, reader(self.step, self.columns, self._format()), directions)
 
-    def join(self, event: Event) -> Record:
+    def join(self, event: EventFiles) -> Record:
         """Return the record of an event; see `join_event`."""
         return join_event(event, self.units, Lengths[self.lengths.upper()], Steps[self.steps.upper()])
 

@@ -129,7 +129,7 @@ class OneColumn(Config):
 _SCALED = "Give accelerations in g, times in 1/ω0 and frequencies in ω0, as plain numbers."
 
 
-class Case(OneColumn):
+class CaseConfig(OneColumn):
     """The case of a run: `column`, `model` and `motion`."""
 
     column: ColumnConfig
@@ -137,7 +137,7 @@ class Case(OneColumn):
     motion: MotionConfig = AT_REST
 
 
-class SteadyCase(Case):
+class SteadyCase(CaseConfig):
     """The case of steady rolling, whose closed forms are those of the slender model; its base moves."""
 
     model: SteadyModelConfig = described_model(STEADY_MODEL)
@@ -156,7 +156,7 @@ def _texts_with_units(values: Any, place: str = "") -> Iterator[tuple[str, str]]
         yield place, values
 
 
-class SimulationConfig(fields_of(SingleRun, "duration"), Case):  # type: ignore[misc]
+class SimulationConfig(fields_of(SingleRun, "duration"), CaseConfig):  # type: ignore[misc]
     """A run: `column`, `model`, `motion` and the arguments of `simulate`, with the same names.
 
     Under a record, a pulse or a sine sweep the duration is optional. The default is the duration of the motion and a
@@ -300,7 +300,7 @@ def refuse_own_classes(provenance: Mapping[str, Any]) -> None:
             )
 
 
-class ManyRuns(fields_of(SharedByRuns), Case):  # type: ignore[misc]
+class ManyRuns(fields_of(SharedByRuns), CaseConfig):  # type: ignore[misc]
     """The case that all runs share, with the argument names of `simulate_ensemble`.
 
     Parameters

@@ -30,7 +30,7 @@ from stylobate.run_arguments import SharedByRuns
 if TYPE_CHECKING:
     import xarray as xr
 
-    from stylobate.results.tables import Table
+    from stylobate.results.tables import ResultTable
 
 
 Complete = Callable[["xr.Dataset", Callable[[], Any], Mapping[str, Any]], "xr.Dataset"]
@@ -103,8 +103,8 @@ class Study:
         Options of the model and of the base motion.
     records
         Whether the base motion can be a record.
-    kinds, remedy
-        Kinds of saved results that the command shows, by default all; and the remedy for another one.
+    kinds
+        Kinds of saved results that the command shows, by default all; the store of such a study has bare runs.
     classes
         Classes of the runs, of which the first that a result has count. A study with classes over the axes x and y
         (`stylobate.studies.GRIDS`) is a job of the laboratory too, and a tab of its page.
@@ -120,7 +120,7 @@ class Study:
     name: str
     source: str
     help: str
-    table: "Callable[[xr.Dataset], Table]"
+    table: "Callable[[xr.Dataset], ResultTable]"
     summary: "Callable[[xr.Dataset], dict[str, Any]]"
     axes: tuple[str, ...] = ()
     scales: bool = False
@@ -135,7 +135,6 @@ class Study:
     motion: Group = MOTION
     records: bool = True
     kinds: tuple[str, ...] = ()
-    remedy: str = ""
     classes: tuple[Classes, ...] = ()
     completed: Complete = lambda saved, *_: saved
     arguments: Callable[[Any, Any], Mapping[str, Any]] = lambda *_: {}
@@ -179,7 +178,9 @@ class Analysis:
     source, help
         Help of the positional argument of the command, and of the command.
     groups
-        Options of the command; the part of an option of the study's own table is the name of the study.
+        Options of the command besides those of the study's own numbers.
+    renamed
+        Options whose argument has another name: the option by the name of the argument.
     numbers
         Group of the numbers at the top of a description, such as `OneRun`.
     arguments
@@ -195,7 +196,7 @@ class Analysis:
     chosen
         Function that checks the options of the command, and returns arguments that the description leaves open.
     instead
-        Options that choose another study in place of this one, with its place, such as "studies:exact_response".
+        A study that the command computes in place of this one.
     """
 
     name: str
@@ -204,13 +205,14 @@ class Analysis:
     groups: tuple[Group, ...]
     numbers: type
     arguments: Callable[[Any, Any], Mapping[str, Any]]
-    tables: "Callable[[xr.Dataset], Sequence[Table]]"
+    tables: "Callable[[xr.Dataset], Sequence[ResultTable]]"
     summary: "Callable[[xr.Dataset], dict[str, Any]]" = plain_variables
     steady: bool = False
     read: Callable[[Mapping[str, Any]], Mapping[str, Any]] = lambda values: values
     problems: Callable[[Any], Sequence[str]] = lambda _: ()
     chosen: Callable[[Mapping[str, Any]], Mapping[str, Any]] = lambda _: {}
-    instead: Mapping[str, str] = field(default_factory=dict)
+    renamed: Mapping[str, str] = field(default_factory=dict)
+    instead: Instead | None = None
 
 
 RANDOM = Group.of(
@@ -264,4 +266,4 @@ def several(number: Parameter) -> bool:
 
 
 def _kind(number: Parameter) -> Any:
-    return list[float] if several(number) else int if number.whole else float
+    return list[float] if several(number) else str if number.annotation is str else int if number.whole else float

@@ -11,7 +11,7 @@ from stylobate.config.axis import Axis, Scales
 from stylobate.config.description import Config, built
 from stylobate.config.simulation import (
     OF_OTHER_COMMANDS,
-    Case,
+    CaseConfig,
     ManyRuns,
     Setup,
     SimulationConfig,
@@ -133,7 +133,7 @@ class StudyConfig(ManyRuns):
         return setup
 
 
-class AnalysisConfig(Case):
+class AnalysisConfig(CaseConfig):
     """A study that is computed at once: `column`, `model`, `motion`, numbers at the top, and the table of the study."""
 
     study: ClassVar[Analysis]
@@ -274,7 +274,6 @@ def study_config(function: Callable[..., Any]) -> Any:
     if study.instead is not None:
         fields[study.instead.key] = (bool, False)
     numbers_of_study = declared_numbers(function)
-    numbers = _fields(numbers_of_study)
     room = study.name.title().replace("_", "")
     make: Any = create_model
     about = {"__doc__": (function.__doc__ or "").partition("\n")[0], "__module__": __name__}
@@ -284,7 +283,7 @@ def study_config(function: Callable[..., Any]) -> Any:
         __doc__=_about(study, numbers_of_study),
         __module__=__name__,
         **({} if study.starts else fields),
-        **numbers,
+        **_fields(numbers_of_study),
     )
     required = any(one.is_required() for one in made.model_fields.values())
     of_runs = () if study.numbers is None else (fields_of(study.numbers),)

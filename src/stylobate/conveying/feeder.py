@@ -10,7 +10,8 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from stylobate.base_motions import BaseMotion, Harmonic, as_harmonic
+from stylobate.base_motions import BaseMotion, Harmonic
+from stylobate.base_motions.harmonic import as_harmonic
 from stylobate.conveying.posture import PERIODS, PHASES, TILTS, Posture, upright
 from stylobate.conveying.transport import PERIODIC, TOLERANCE, Transport, drift, named, throw_number_of
 from stylobate.errors import UnsupportedError, require_positive

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from stylobate.base_motions import BaseMotion
-from stylobate.base_motions.declared import numbers_of, value_of
+from stylobate.base_motions.declared import numbers_of_motion, value_of
 from stylobate.config.options import MOTION_WITHOUT_RECORDS, SLIDING
 from stylobate.config.study import Study
 from stylobate.conveying.transport import require_conveyor, throw_number_of
@@ -19,7 +19,7 @@ from stylobate.models import Model
 from stylobate.quantities import Quantity
 from stylobate.results import OutcomeRules
 from stylobate.results.outcomes import NOT_COMPUTED, flag_attributes, lands_flat, stays_in_a_plane
-from stylobate.results.tables import DEGREES, Table
+from stylobate.results.tables import DEGREES, ResultTable
 from stylobate.results.verdict import CLEAR, VerdictWord, percent, word_of
 from stylobate.studies.proportions import fraction_interval, require_confidence
 from stylobate.studies.study import RunsOfOwnLength, options_of, study
@@ -84,13 +84,13 @@ def _by_tilt(result: "xr.Dataset") -> list[tuple[float, float, dict[str, float]]
     ]
 
 
-def _table(result: "xr.Dataset") -> Table:
+def _table(result: "xr.Dataset") -> ResultTable:
     rows = [
         [f"{mu:.4g}", f"{DEGREES.factor * tilt:.4g}°", *(percent(share) for share in shares.values())]
         for mu, tilt, shares in _by_tilt(result)
     ]
     header = ("friction coefficient", "initial tilt", *map(str, result["posture_name"].to_numpy()))
-    return Table(str(result.attrs["verdict"]), header, rows)
+    return ResultTable(str(result.attrs["verdict"]), header, rows)
 
 
 def _repeated(_: Mapping[str, Any], values: dict[str, Any]) -> dict[str, Any]:
@@ -127,7 +127,6 @@ _FRICTION = Quantity(text="friction coefficient; repeat it for several, each as 
         motion=MOTION_WITHOUT_RECORDS,
         records=False,
         kinds=(KIND,),
-        remedy="The runs of its store are shown by its description, with --output and --resume.",
         repeated=_repeated,
         table=_table,
         summary=_summary,
@@ -286,7 +285,7 @@ def _tilts(given: npt.ArrayLike) -> Floats:
 
 def _delayed(motion: BaseMotion, phase: Floats) -> dict[str, Floats]:
     """Return the quantity that makes a periodic motion start at each phase [rad] of its period."""
-    if "start_phase" in numbers_of(motion):
+    if "start_phase" in numbers_of_motion(motion):
         return {"start_phase": value_of(motion, "start_phase") + phase}
     return {"delay": -phase / (2.0 * math.pi) * _period_of(motion)}
 

@@ -85,7 +85,7 @@ def slipping_boundary(
           than available.
         * With `slipping_branch` instead: `slipping_amplitude` [rad], `slip_speed` [m/s], `slip_power` [W] and
           `slipping_stable` of steady rolling with slip, NaN without such rolling.
-        * Over the two: `steady_rolling`, a `RollingRegime`.
+        * Over the two: `steady_rolling`: which steady rolling exists and is stable, without slip, with slip or both.
         * Over `friction_coefficient`: `rolling_from`, `rolling_to`, `slipping_from` and `slipping_to` [rad/s], the
           lowest and the highest frequency at which rolling without and with slip is stable. They are NaN if rolling is
           stable nowhere, and the end of the given frequencies if rolling is stable there. A stable interval between two

@@ -28,7 +28,7 @@ from stylobate.progress import Progress
 from stylobate.quantities import Quantity
 from stylobate.results import OutcomeRules
 from stylobate.results.outcomes import NOT_COMPUTED, contact_classes, flag_attributes, knife_edge_remarks, lands_flat
-from stylobate.results.tables import DEGREES, Practical, Table, number_of_runs, practical
+from stylobate.results.tables import DEGREES, Practical, ResultTable, number_of_runs, practical
 from stylobate.run_arguments import RunOptions
 from stylobate.studies.proportions import require_confidence
 from stylobate.studies.study import RunsOfOwnLength, options_of, study
@@ -76,7 +76,7 @@ class Transport(Named, IntEnum):
 _ROWS, _FASTEST = 40, 12
 
 
-def _table(result: "xr.Dataset") -> Table:
+def _table(result: "xr.Dataset") -> ResultTable:
     rows = _rows(result)
     names = [str(dim) for dim in result["outcome"].dims]
     title = number_of_runs(result, f" over {' and '.join(names)}")
@@ -95,7 +95,7 @@ def _table(result: "xr.Dataset") -> Table:
         "contact class",
     )
     cells = [_cells(row, axes, pace, twist) for row in rows]
-    return Table("; ".join([title, *knife_edge_remarks(result)]), header, cells)
+    return ResultTable("; ".join([title, *knife_edge_remarks(result)]), header, cells)
 
 
 def _rows(result: "xr.Dataset") -> list[dict[str, Any]]:

@@ -1,25 +1,21 @@
-from . import config
 from .assessment.assess import assess
 from .assessment.report import assessment_report, assessment_tables
+from .config.assess import AssessConfig
 from .figures.incremental import plot_directions
 from .figures.spectra import plot_records
 from .fragility.annual_rate import HazardCurve, annual_rate
-from .fragility.dispersion import Samples, dispersion_parts
+from .fragility.dispersion import SampleDesign, dispersion_parts
 from .fragility.fit import fit_fragility, fragility_of_runs, lognormal_fragility
 from .fragility.likelihood import FitStatus
 from .fragility.observations import Counting, limit_states, reached_intervals
-from .fragility_study import FragilityStudy
 from .incremental import incremental_dynamic_analysis
-from .intensities import Intensity, SpectralAcceleration
+from .intensities import SpectralAcceleration
 from .planar_comparison import planar_bias
 from .property_spreads import (
-    LABELS,
-    VARIATIONS,
     Choice,
     LognormalSpread,
     LogUniformSpread,
     NormalSpread,
-    Spread,
     UniformSpread,
     property_samples,
 )
@@ -27,26 +23,21 @@ from .spectrum_study import overturning_intervals, rocking_spectrum
 from .verdict_study import repeat_verdict, verdict
 
 __all__ = [
-    "LABELS",
-    "VARIATIONS",
+    "AssessConfig",
     "Choice",
     "Counting",
     "FitStatus",
-    "FragilityStudy",
     "HazardCurve",
-    "Intensity",
     "LogUniformSpread",
     "LognormalSpread",
     "NormalSpread",
-    "Samples",
+    "SampleDesign",
     "SpectralAcceleration",
-    "Spread",
     "UniformSpread",
     "annual_rate",
     "assess",
     "assessment_report",
     "assessment_tables",
-    "config",
     "dispersion_parts",
     "fit_fragility",
     "fragility_of_runs",

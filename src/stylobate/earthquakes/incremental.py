@@ -17,7 +17,7 @@ from stylobate.engine.parameters import changed_model
 from stylobate.errors import Outcome, ParameterError, as_numbers, require_finite
 from stylobate.models import Model
 from stylobate.parameter_quantities import attributes_of, quantity_of
-from stylobate.records import HorizontalComponent
+from stylobate.records.intensities import HorizontalComponent
 from stylobate.results.outcomes import NOT_COMPUTED
 from stylobate.studies.checks import remark_on_lengths, require_no_limits
 from stylobate.studies.maps.integrity import UNRESOLVED
@@ -78,8 +78,9 @@ def incremental_dynamic_analysis(
         Free-vibration time after the end of the record [s]; by default 20/p with p = `frequency_parameter` of each
         column.
     intensity, component
-        The intensity measure of each run, and the definition of its horizontal component: "RotD50", "RotD100",
-        "geometric mean" or "larger component". For a motion along one line all definitions agree.
+        The intensity measure of each run: "peak ground acceleration", "peak ground velocity", "PGA/(g tan α)",
+        "p PGV/(g tan α)" or a `SpectralAcceleration`; and the definition of its horizontal component: "RotD50",
+        "RotD100", "geometric mean" or "larger component". For a motion along one line all definitions agree.
     **run
 
     Returns

@@ -12,7 +12,8 @@ from stylobate.base_motions.base import ACCELERATION, VELOCITY
 from stylobate.column import Column
 from stylobate.engine.forcing import common_line
 from stylobate.errors import ParameterError, UnsupportedError, require_not_negative, require_positive
-from stylobate.records import HorizontalComponent, response_spectra
+from stylobate.records import response_spectra
+from stylobate.records.intensities import HorizontalComponent
 from stylobate.records.intensities import horizontal_peak as peak_of_record
 from stylobate.studies.sweeps.designs import Floats
 

@@ -15,7 +15,6 @@ from stylobate.engine.parameters import COLUMN_NAMES, check_names, model_names, 
 from stylobate.errors import ParameterError, require_not_negative, require_positive, require_whole
 from stylobate.models import Model
 from stylobate.models.declared import dissipation_of
-from stylobate.results import verdict
 from stylobate.results.random_numbers import Rng, generator_of
 from stylobate.studies.sweeps.designs import Floats
 from stylobate.text import did_you_mean
@@ -238,7 +237,6 @@ tolerance
     Factor of the tolerance of the integration.
 """
 
-LABELS = verdict.LABELS
 """Names of variations in figures and sentences; another variation has the name of its parameter."""
 
 # Value of a variation that is not a parameter of column or model, before it is varied.

@@ -13,15 +13,17 @@ from stylobate.config.study import Instead, Study
 from stylobate.errors import ConfigError, ParameterError, require_whole
 from stylobate.models import Model
 from stylobate.quantities import Quantity
-from stylobate.results.outcomes import outcome_label
-from stylobate.results.tables import Table, model_named
+from stylobate.results.outcomes import NOT_COMPUTED, outcome_label
+from stylobate.results.tables import ResultTable, model_named
 from stylobate.studies.study import RunsOfOwnLength, options_of, study
 from stylobate.text import plural
 
 if TYPE_CHECKING:
     import xarray as xr
 
+    from stylobate.earthquakes.overturning_scales import Cases
     from stylobate.studies.sweeps import Sweep
+    from stylobate.studies.sweeps.designs import Floats
     from stylobate.studies.sweeps.running import Label
 
 _INTERVALS, _ROCKING = "overturning intervals", "rocking spectrum"
@@ -38,7 +40,7 @@ def _summary(result: "xr.Dataset") -> dict[str, Any]:
     return {"cases": cases, **{name: result.attrs[name] for name in _ACCURACY if name in result.attrs}}
 
 
-def _table(result: "xr.Dataset") -> Table:
+def _table(result: "xr.Dataset") -> ResultTable:
     return _table_of_intervals(result) if result.attrs["kind"] == _INTERVALS else _table_of_peaks(result)
 
 
@@ -74,7 +76,7 @@ def _peaks(result: "xr.Dataset") -> list[dict[str, Any]]:
     return rows
 
 
-def _table_of_intervals(result: "xr.Dataset") -> Table:
+def _table_of_intervals(result: "xr.Dataset") -> ResultTable:
     rows = sorted(_intervals(result), key=_least) if result["intervals"].size > _ROWS else _intervals(result)
     dims = [str(dim) for dim in result["intervals"].dims]
     table = [
@@ -90,7 +92,7 @@ def _table_of_intervals(result: "xr.Dataset") -> Table:
     title += [f"the {_FIRST} that overturn first"] if len(rows) > _ROWS else []
     unknown = int(result["unknown"].sum())
     title += [f"{unknown} of {plural(result['outcome'].size, 'run')} without an answer"] if unknown else []
-    return Table("; ".join([*title, result.attrs["resolution"]]), header, table)
+    return ResultTable("; ".join([*title, result.attrs["resolution"]]), header, table)
 
 
 def _least(row: Mapping[str, Any]) -> float:
@@ -104,7 +106,7 @@ def _interval(interval: Mapping[str, Any]) -> str:
     return f"{low}{interval['interval_from']:.4g} {high}{sure}"
 
 
-def _table_of_peaks(result: "xr.Dataset") -> Table:
+def _table_of_peaks(result: "xr.Dataset") -> ResultTable:
     rows = _peaks(result)
     if len(rows) > _ROWS:
         rows = sorted(rows, key=lambda row: -row["peak_tilt_ratio"] if row["outcome"] != "overturned" else -1e9)[
@@ -115,7 +117,7 @@ def _table_of_peaks(result: "xr.Dataset") -> Table:
     table = [tuple(_written(row[name]) for name in (*dims, *names)) for row in rows]
     shown = f"; the {len(rows)} that rock most" if len(rows) < result["outcome"].size else ""
     header = (*dims, "2π/p [s]", "outcome", "peak tilt / α", "peak rate of tilt / p")
-    return Table(f"{plural(result['outcome'].size, 'case')}, {model_named(result)}{shown}", header, table)
+    return ResultTable(f"{plural(result['outcome'].size, 'case')}, {model_named(result)}{shown}", header, table)
 
 
 def _written(value: Any) -> str:
@@ -167,7 +169,6 @@ def _repeated(provenance: Mapping[str, Any], values: dict[str, Any]) -> dict[str
         },
         renamed={"tail": "free_tail"},
         kinds=(_INTERVALS, _ROCKING),
-        remedy="Continue a store with its options, --output and --resume, or save a spectrum as .nc.",
         arguments=_arguments,
         repeated=_repeated,
         table=_table,
@@ -278,8 +279,7 @@ def overturning_intervals(
     >>> print(found["interval_from"].values.round(2), found["interval_to"].values.round(2), found["open_above"].values)
     [2.57 7.72] [ 6.9 20. ] [False  True]
     """
-    from stylobate.earthquakes.overturning_scales import find_intervals
-    from stylobate.earthquakes.rocking_spectra import Cases
+    from stylobate.earthquakes.overturning_scales import Cases, find_intervals
     from stylobate.studies.checks import require_no_limits
 
     require_no_limits(options_of(run))
@@ -340,7 +340,7 @@ def rocking_spectrum(
     >>> print(found["peak_tilt_ratio"].values.round(3))
     [  nan   nan 0.113]
     """
-    from stylobate.earthquakes.rocking_spectra import Cases, peaks_of_runs, provenance_of_spectrum
+    from stylobate.earthquakes.overturning_scales import Cases, provenance_of_spectrum
     from stylobate.studies.checks import require_no_limits
 
     require_no_limits(options_of(run))
@@ -350,4 +350,86 @@ def rocking_spectrum(
     run["samples"] = require_whole("samples", run["samples"] or _SAMPLES, least=2)
     sweep = cases.sweep(np.arange(cases.count), cases.durations(duration, tail), None, **options_of(run))
     provenance = provenance_of_spectrum(cases, run, tail=tail, duration=duration)
-    return sweep, partial(peaks_of_runs, cases=cases, provenance=provenance)
+    return sweep, partial(_peaks_of_runs, cases=cases, provenance=provenance)
+
+
+# Histories; the result keeps only the peak rate of them.
+_HISTORIES = ("sample_time", "sampled_tilt", "sampled_tilt_rate")
+
+
+def _peaks_of_runs(runs: "xr.Dataset", cases: "Cases", provenance: str) -> "xr.Dataset":
+    """Make the rocking spectrum of the runs of these cases, which have histories."""
+    import xarray as xr
+
+    from stylobate.studies.maps.uncertainty_exponent import overturned_or_not
+
+    runs = runs.load()
+    dims = tuple(cases.axes)
+    safe = overturned_or_not(runs) == 0
+    rate = peak_tilt_rate(*(runs[name].to_numpy() for name in _HISTORIES))
+    ratios = {
+        "peak_tilt_ratio": (runs["peak_tilt"].to_numpy() / cases.numbers["tipping_angle"], "1", "peak tilt / α_c"),
+        "peak_rate_ratio": (rate / cases.numbers["frequency_parameter"], "rad", "peak rate of tilt / p"),
+    }
+    kept = {
+        name: xr.Variable((*dims, *value.dims[1:]), cases.over_axes(value.to_numpy()), value.attrs)
+        for name, value in runs.drop_vars(_HISTORIES).data_vars.items()
+    }
+    peaks = {
+        name: xr.Variable(
+            dims, cases.over_axes(np.where(safe, values, np.nan)), {"units": unit, "long_name": long_name}
+        )
+        for name, (values, unit, long_name) in ratios.items()
+    }
+    period = cases.over_axes(2.0 * np.pi / cases.numbers["frequency_parameter"])
+    computed = int((runs["outcome"] != NOT_COMPUTED).sum())
+    return xr.Dataset(
+        {**peaks, **kept, "computed": ((), computed, {"units": "1", "long_name": "runs computed"})},
+        coords={
+            **cases.coordinates(),
+            "rocking_period": xr.Variable(dims, period, {"units": "s", "long_name": "period 2π/p"}),
+            "axis": runs["axis"],
+        },
+        attrs={"kind": "rocking spectrum", "provenance": provenance},
+    )
+
+
+def peak_tilt_rate(time: "Floats", tilt: "Floats", tilt_rate: "Floats") -> "Floats":
+    """Compute the peak of |d(tilt)/dt| of each run, to second order in the step between samples.
+
+    The tilt rate of a rocking column peaks just before or after it passes the vertical, and has a corner there. So the
+    rate is extrapolated to a passage from the samples on both sides of it.
+
+    Parameters
+    ----------
+    time
+        Times of the samples, shape (..., s) [s].
+    tilt, tilt_rate
+        Shape (..., s, 2) [rad], [rad/s]; NaN outside the run.
+
+    Returns
+    -------
+    numpy.ndarray
+        Shape (...,) [rad/s]; NaN if a run has no samples.
+    """
+    before = _largest(time, tilt, tilt_rate)
+    after = _largest(-time[..., ::-1], tilt[..., ::-1, :], -tilt_rate[..., ::-1, :])
+    return np.fmax(before, after)
+
+
+def _largest(time: "Floats", tilt: "Floats", tilt_rate: "Floats") -> "Floats":
+    """Return the largest rate of the samples and of the extrapolations from samples before a passage to the passage.
+
+    The square of the rate is extrapolated linearly in the tilt, because the potential energy depends on the tilt.
+    """
+    square, angle = (tilt_rate**2).sum(axis=-1), np.linalg.norm(tilt, axis=-1)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        until = -(tilt * tilt_rate).sum(axis=-1) / square
+        across = tilt[..., 0] * tilt_rate[..., 1] - tilt[..., 1] * tilt_rate[..., 0]
+        nearest = np.abs(across) / np.sqrt(square)  # smallest tilt on the tangent of the path
+        passed = (until[..., 1:-1] > 0.0) & (until[..., 1:-1] < np.diff(time)[..., 1:])
+        passed &= np.diff(angle)[..., :-1] < 0.0
+        slope = np.diff(square)[..., :-1] / np.diff(angle)[..., :-1]
+        continued = square[..., 1:-1] + slope * (nearest - angle)[..., 1:-1]
+    continued = np.where(passed, np.fmax(continued, 0.0), np.nan)
+    return np.asarray(np.sqrt(np.fmax.reduce(np.concatenate([square, continued], axis=-1), axis=-1)))

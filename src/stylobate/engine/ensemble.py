@@ -18,7 +18,16 @@ from stylobate.engine.cost import announce, expected_steps
 from stylobate.engine.ensembles.batch import Batch, Plan
 from stylobate.engine.ensembles.results import fallen, write_results
 from stylobate.engine.ensembles.run_columns import MotionPlan, terms_of
-from stylobate.engine.ensembles.runs import AXIS, COMPONENT, QUANTITIES, ArrayLike, Arrays, Runs, broadcast, empty
+from stylobate.engine.ensembles.runs import (
+    AXIS,
+    COMPONENT,
+    QUANTITIES,
+    ArrayLike,
+    Arrays,
+    EnsembleRuns,
+    broadcast,
+    empty,
+)
 from stylobate.engine.forcing import check_motion
 from stylobate.engine.parameters import changed_model, check_names, in_declared_units, own_numbers, split
 from stylobate.engine.starts import Turning, refuse_friction, require_nouns
@@ -32,7 +41,7 @@ from stylobate.errors import (
     require_whole,
 )
 from stylobate.models import Model
-from stylobate.models.consistency import check_once
+from stylobate.models.consistency.check import check_once
 from stylobate.processes import end_all
 from stylobate.progress import Progress, Report, beat, report_of, shows_progress, silent
 from stylobate.provenance import provenance_of_run
@@ -43,9 +52,9 @@ from stylobate.results.outcomes import NOT_COMPUTED
 from stylobate.run_arguments import (
     EnsembleOptions,
     FreeStart,
+    InitialConditions,
     OfEnsemble,
     SingleRun,
-    Start,
     arguments_of,
     checked_options,
     defaults_of,
@@ -236,7 +245,7 @@ def _given(**free: "ArrayLike | None") -> dict[str, Any]:
     }
 
 
-def _turnings(model: Model, runs: Runs) -> tuple[Turning, ...] | None:
+def _turnings(model: Model, runs: EnsembleRuns) -> tuple[Turning, ...] | None:
     """Return the other initial conditions of each run, checked as those of a single run; None if all are zero."""
     usual = {**defaults_of(FreeStart), "spin": 0.0}
     if not runs.free.keys() & usual.keys():
@@ -249,14 +258,14 @@ def _turnings(model: Model, runs: Runs) -> tuple[Turning, ...] | None:
     )
 
 
-def _check_own_model(model: Model, runs: Runs) -> None:
+def _check_own_model(model: Model, runs: EnsembleRuns) -> None:
     """Raise ModelError if the members of a user's own model contradict each other at the parameters of some runs."""
     own, _ = split(model, runs.values)
     for index in {round(share * (len(runs) - 1)) for share in (0.0, 0.25, 0.5, 0.75, 1.0)} if own and len(runs) else ():
         check_once(changed_model(model, {name: float(values[index]) for name, values in own.items()}))
 
 
-def _followed(plan: Plan, runs: Runs, arrays: Arrays, threads: int, progress: Report) -> bool:
+def _followed(plan: Plan, runs: EnsembleRuns, arrays: Arrays, threads: int, progress: Report) -> bool:
     """Fill `arrays`; return False after Ctrl-C."""
     done = 0
 
@@ -273,7 +282,7 @@ def _followed(plan: Plan, runs: Runs, arrays: Arrays, threads: int, progress: Re
     return run_parts(parts_of(len(runs), threads), compute, threads, count)
 
 
-def _rechecked(plan: Plan, runs: Runs, arrays: Arrays, threads: int) -> bool:
+def _rechecked(plan: Plan, runs: EnsembleRuns, arrays: Arrays, threads: int) -> bool:
     """Repeat the runs in doubt and mark those whose outcome changes; return False after Ctrl-C."""
     if not plan.options["recheck"]:
         return True
@@ -354,7 +363,7 @@ def usual_threads() -> int:
 
 
 def _provenance(model: Model, motion: BaseMotion, options: EnsembleOptions, same: Mapping[str, Any]) -> dict[str, Any]:
-    names = (*Start.__annotations__, *FreeStart.__annotations__, "duration", "friction_coefficient")
+    names = (*InitialConditions.__annotations__, *FreeStart.__annotations__, "duration", "friction_coefficient")
     starts = {name: same[name] for name in names if name in same}
     parameters = {name: value for name, value in same.items() if name not in starts}
     kept = {**options, "rules": asdict(options["rules"] or OutcomeRules()), **starts, "parameters": parameters}
@@ -362,7 +371,7 @@ def _provenance(model: Model, motion: BaseMotion, options: EnsembleOptions, same
 
 
 def _dataset(
-    runs: Runs,
+    runs: EnsembleRuns,
     arrays: Mapping[str, npt.NDArray[Any]],
     provenance: Mapping[str, Any],
     declared: Mapping[str, Parameter],

@@ -6,7 +6,7 @@ from typing import Any, TypeVar
 
 from stylobate.base_motions import BaseMotion, Harmonic
 from stylobate.base_motions.combined import BASE_AT_REST, Sum, Transformed, number_of, with_choice
-from stylobate.base_motions.declared import motion_quantities, numbers_of, stated_numbers, value_of, with_numbers
+from stylobate.base_motions.declared import motion_quantities, numbers_of_motion, stated_numbers, value_of, with_numbers
 from stylobate.column import Column
 from stylobate.engine.ensembles.runs import QUANTITIES
 from stylobate.errors import ParameterError, UnsupportedError, as_numbers, require_finite
@@ -65,7 +65,7 @@ def motion_names(model: Model, motion: BaseMotion | None) -> tuple[str, ...]:
     The prefix "motion." marks a name that the column, the model, a change of the motion or a result also has.
     """
     taken = {*COLUMN_NAMES, *model_names(model), "motion", "acceleration", *_CHANGES, *QUANTITIES}
-    names = motion_quantities() if motion is None else numbers_of(motion)
+    names = motion_quantities() if motion is None else numbers_of_motion(motion)
     return tuple(_OWN + name if name in taken else name for name in names)
 
 
@@ -79,7 +79,7 @@ def split(model: Model, values: Mapping[str, _T]) -> tuple[dict[str, _T], dict[s
 def own_numbers(model: object, motion: object) -> Mapping[str, Parameter]:
     """Return the declared numbers of a model and a base motion, by name; none of an object that is neither."""
     of_model = parameters_of(type(model)) if isinstance(model, Model) else {}
-    return {**of_model, **(numbers_of(motion) if isinstance(motion, BaseMotion) else {})}
+    return {**of_model, **(numbers_of_motion(motion) if isinstance(motion, BaseMotion) else {})}
 
 
 def in_declared_units(values: Mapping[str, Any], own: Mapping[str, Parameter]) -> dict[str, Any]:
@@ -100,7 +100,7 @@ def declared_names(motion: BaseMotion, values: Mapping[str, object]) -> dict[str
     changes = {*MOTION_NAMES, *ELLIPSE_NAMES} - {"angular_frequency", "start_phase"}
     names = {name: name.removeprefix(_OWN) for name in values if name not in changes}
     for name, own in names.items():
-        if own not in numbers_of(motion):
+        if own not in numbers_of_motion(motion):
             raise UnsupportedError(f"{name}: the base motion has no such number {_own_numbers(motion)}")
     _check_path(motion, values, names)
     return names
@@ -336,5 +336,5 @@ def _own_numbers(motion: BaseMotion) -> str:
         return (
             "(got a base at rest). Give a base motion, such as a circular one; on the command line --motion circular."
         )
-    names = ", ".join(numbers_of(motion))
+    names = ", ".join(numbers_of_motion(motion))
     return f"(got {motion!r}). {f'Its numbers are {names}.' if names else 'It has none.'}"

@@ -14,12 +14,19 @@ from stylobate.engine.cost import EVERY, LOG, announce, expected_steps, report, 
 from stylobate.engine.ensembles.batch import Batch, Plan
 from stylobate.engine.ensembles.results import Late, grounds_of, late_periods, results_of
 from stylobate.engine.ensembles.run_columns import MotionPlan
-from stylobate.engine.ensembles.runs import Runs, one_run
+from stylobate.engine.ensembles.runs import EnsembleRuns, one_run
 from stylobate.engine.forcing import check_motion, is_rest, without_dust
 from stylobate.engine.history import contact_measures, contact_warnings, history
 from stylobate.engine.kernel.columns import EVENTS_AT, STATE, TRACE_TERMS, Log, Setup, Trace
-from stylobate.engine.kernel.driver.events import EventSetup, Status, TraceKind
-from stylobate.engine.starts import Start, Turning, refuse_friction, require_below_level, require_nouns, require_plane
+from stylobate.engine.kernel.driver.events import EventSetup, RunStatus, TraceKind
+from stylobate.engine.starts import (
+    RunStart,
+    Turning,
+    refuse_friction,
+    require_below_level,
+    require_nouns,
+    require_plane,
+)
 from stylobate.engine.tolerances import CLOSE_PASSAGE, OVERTURNED_TILT
 from stylobate.engine.trajectory import EventFunction, Trajectory, checked_events, own_events
 from stylobate.engine.verdict import (
@@ -36,7 +43,7 @@ from stylobate.engine.verdict import (
 from stylobate.errors import Outcome, UnsupportedError, require_vector
 from stylobate.models import Model
 from stylobate.provenance import provenance_of_run
-from stylobate.results import Event, OutcomeRules, Response
+from stylobate.results import Event, OutcomeRules, Run
 from stylobate.run_arguments import Accuracy, EnsembleOptions, SingleRun, arguments_of, checked_options, takes
 from stylobate.text import plural
 
@@ -50,7 +57,7 @@ def simulate(
     *,
     events: Sequence[EventFunction | Callable[[float, dict[str, Any]], float]] = (),
     **run: Unpack[SingleRun],
-) -> Response:
+) -> Run:
     """Integrate one column from its initial state until its outcome is decided.
 
     The run is integrated by DOP853 (Hairer, Nørsett, Wanner, "Solving Ordinary Differential Equations I") between
@@ -67,12 +74,12 @@ def simulate(
     **run
     events
         Event functions, as `EventFunction` or plain functions of time and state with the optional attributes
-        `direction` and `terminal`. Their zeros are recorded in `Response.events`; a terminal one ends the run, which
+        `direction` and `terminal`. Their zeros are recorded in `Run.events`; a terminal one ends the run, which
         has the outcome STOPPED. Files keep the events, not the functions.
 
     Returns
     -------
-    Response
+    Run
         Outcome and history. OVERTURNED is proved by the no-return criterion of the model if it has one.
 
     Raises
@@ -114,11 +121,11 @@ def simulate(
         expected_steps(model, moved.highest_frequency * model.time_scale, duration / model.time_scale),
         options["max_steps"],
     )
-    result = run_result(model, moved, options, Start(start_tilt, start_rate, duration, turning), functions)
+    result = run_result(model, moved, options, RunStart(start_tilt, start_rate, duration, turning), functions)
     recorded = history(model, moved, result.trajectory, samples, friction_coefficient=friction_coefficient)
     knife_edges = contact_warnings(model, result.measures) if model.switches else ()
     changes, doubts = result.repeated() if run["recheck"] else (False, ())
-    return Response(
+    return Run(
         outcome=result.outcome,
         reason=result.reason,
         decided_at=result.decided_at,
@@ -158,7 +165,7 @@ class RunResult:
     Parameters
     ----------
     outcome, reason, decided_at, uncertain, planar, events, thresholds, measures
-        As in a `Response`.
+        As in a `Run`.
     trajectory
         Motion of the column.
     atol
@@ -181,7 +188,7 @@ class RunResult:
 
 
 def run_result(
-    model: Model, motion: BaseMotion, options: EnsembleOptions, start: Start, functions: Sequence[EventFunction]
+    model: Model, motion: BaseMotion, options: EnsembleOptions, start: RunStart, functions: Sequence[EventFunction]
 ) -> RunResult:
     """Compute a run by the kernels of ensembles, and return its result."""
     run = one_run(start)
@@ -255,7 +262,7 @@ def _not_repeated() -> tuple[bool, tuple[str, ...]]:
     return False, ()
 
 
-def _repeated(plan: Plan, run: Runs, outcome: Outcome, peak: float) -> tuple[bool, tuple[str, ...]]:
+def _repeated(plan: Plan, run: EnsembleRuns, outcome: Outcome, peak: float) -> tuple[bool, tuple[str, ...]]:
     """Repeat a run in doubt; return whether the outcome changes, with warnings about outcome and peak tilt."""
     again = plan.repeated()
     batch = Batch.of(again, run)
@@ -289,7 +296,7 @@ class Followed:
     last_guard: int
 
     @classmethod
-    def of(cls, plan: Plan, run: Runs, paused: Callable[[float, float], None]) -> "Followed":
+    def of(cls, plan: Plan, run: EnsembleRuns, paused: Callable[[float, float], None]) -> "Followed":
         """Compute the only run of `run`.
 
         Parameters
@@ -312,16 +319,16 @@ class Followed:
         trajectory = Trajectory(plan.model, stretches, (line[0], line[1]), carried, end)
         scale = plan.model.time_scale
         named = [(_event_in(plan.model, entry), float(entry[Trace.START])) for entry in entries[happened]]
-        named.append((Status(int(batch.log(Log.STATUS)[0])).event, end))
+        named.append((RunStatus(int(batch.log(Log.STATUS)[0])).event, end))
         events = tuple(Event(name, time * scale) for name, time in named if name)
         changes = entries[entries[:, Trace.KIND] == TraceKind.CONTACT]
         last_guard = int(changes[-1, len(Trace)]) if len(changes) else -1
         return cls(batch, trajectory, events, late_periods(batch), last_guard)
 
     @property
-    def status(self) -> Status:
+    def status(self) -> RunStatus:
         """Status at the end of the run."""
-        return Status(int(self.batch.log(Log.STATUS)[0]))
+        return RunStatus(int(self.batch.log(Log.STATUS)[0]))
 
     def log(self, column: Log) -> float:
         """Return a column of the log of the kernel."""
@@ -379,7 +386,7 @@ def reason_of(model: Model, motion: BaseMotion, followed: Followed, outcome: Out
         return f"the integration stopped: {_failure(model, followed)}{_RACING if _races(model, followed) else ''}"
     if outcome is Outcome.OVERTURNED and math.isinf(model.least_safe_tilt(*bounds_of(followed))):
         return _UNPROVED
-    if status is Status.RESTED:
+    if status is RunStatus.RESTED:
         return f"it stands, and the base motion to come {_STANDS[model.switches]}"
     return status.reason or _UPRIGHT.get(outcome) or _at_its_end(model, motion, followed, outcome)
 
@@ -398,11 +405,11 @@ def _failure(model: Model, followed: Followed) -> str:
     """Return the reason of a failed integration."""
     most = int(followed.batch.plan.options["max_steps"])
     match followed.status:
-        case Status.STEP_LIMIT:
+        case RunStatus.STEP_LIMIT:
             return step_limit(most)
-        case Status.UNSEEN:
+        case RunStatus.UNSEEN:
             return unseen(most)
-        case Status.ENDLESS:
+        case RunStatus.ENDLESS:
             planar = followed.log(Log.THREE_DIMENSIONAL) == 0.0
             remedy = "; it moves in exactly one vertical plane: pass a tilt out of it" if planar else ""
             return f"its contact changes without end ({model.guard_names[followed.last_guard]}){remedy}"

@@ -12,7 +12,7 @@ from stylobate.base_motions import BaseMotion
 from stylobate.engine.forcing import check_kinds, common_line
 from stylobate.errors import ParameterError, UnsupportedError
 from stylobate.models import Model
-from stylobate.models.consistency import check_once
+from stylobate.models.consistency.check import check_once
 from stylobate.quantities import QUARTER_TURN, degrees_meant
 from stylobate.run_arguments import SingleRun, arguments_of
 
@@ -90,7 +90,7 @@ class Turning:
 
 
 @dataclass(frozen=True, slots=True)
-class Start:
+class RunStart:
     """Initial conditions of a single run (tilt [rad], tilt rate [rad/s], others), and its duration [s]."""
 
     tilt: tuple[float, float]

@@ -17,7 +17,7 @@ from stylobate.engine.kernel.driver.events import TraceKind
 from stylobate.errors import ParameterError, as_float, require_whole
 from stylobate.models import Model
 from stylobate.results import Event
-from stylobate.results.response import EVENT_KINDS
+from stylobate.results.run import EVENT_KINDS
 
 Floats = npt.NDArray[np.float64]
 
@@ -220,10 +220,10 @@ class EventFunction:
     Parameters
     ----------
     name
-        Kind of the events in `Response.events`.
+        Kind of the events in `Run.events`.
     function
         Called with the time [s] and the state; returns a number that changes sign at an event, not a truth value. The
-        state is a dict of the variables of `Response.data` at that time, in SI units: "tilt" and "tilt_rate" (arrays of
+        state is a dict of the variables of `Run.data` at that time, in SI units: "tilt" and "tilt_rate" (arrays of
         x and y), "amplitude", "resting", "base_acceleration" (x, y and z), and outputs of the model such as "energy",
         "spin", "twist" and "footprint".
     direction

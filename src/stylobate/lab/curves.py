@@ -15,7 +15,7 @@ from stylobate.lab import answers
 from stylobate.lab.messages import Emit, Note
 from stylobate.models import Model
 from stylobate.orbits.orbit import SUPERCRITICAL_OF
-from stylobate.run_arguments import Start as RunStart
+from stylobate.run_arguments import InitialConditions as RunStart
 from stylobate.run_arguments import numbers_of
 from stylobate.text import plural
 from stylobate.theory.averaging import circular_components

@@ -12,6 +12,7 @@ import numpy.typing as npt
 import xarray as xr
 
 from stylobate import config
+from stylobate.config.simulation import Setup
 from stylobate.config.study import Study, declared_numbers, study_of
 from stylobate.engine.parameters import COLUMN_NAMES, present_value
 from stylobate.errors import Outcome, ParameterError, UnsupportedError
@@ -193,7 +194,7 @@ def case_numbers(values: Mapping[str, Any], over: Mapping[str, Floats]) -> dict[
 
 def case_grid(
     function: Callable[..., xr.Dataset],
-    setup: config.Setup,
+    setup: Setup,
     values: Mapping[str, Any],
     *,
     executor: Executor,
@@ -220,13 +221,13 @@ def case_grid(
     ConfigError, ParameterError
         If an axis has an impossible value.
     """
+    study: Study = study_of(function)
     own = {"over", *declared_numbers(function)}
     options = {name: value for name, value in setup.options.items() if name not in own}
     sweep = Sweep.points(_without_height(setup.model), setup.motion, at=_at(values, setup.options["over"]), **options)
 
     def label(runs: xr.Dataset) -> xr.Dataset:
-        found: xr.Dataset = study_of(function).completed(runs, lambda: setup, setup.options)
-        return found
+        return study.completed(runs, lambda: setup, setup.options)
 
     return labelled_sweep(sweep, label, executor=executor, progress=progress)
 
@@ -249,18 +250,18 @@ def _at(values: Mapping[str, Any], over: Mapping[str, Floats]) -> dict[str, Floa
     return found | cells
 
 
-def _with(values: Mapping[str, Any], part: str, numbers: Mapping[str, float]) -> config.Setup:
+def _with(values: Mapping[str, Any], part: str, numbers: Mapping[str, float]) -> Setup:
     """Return the setup of the case with other numbers of one part."""
     case = {name: values[name] for name in ("column", "model", "motion") if name in values}
     changed = {**case, part: {**case[part], **numbers}, "duration": 1.0}
     return config.SimulationConfig.parse(changed).build()
 
 
-def _body(setup: config.Setup) -> dict[str, float]:
+def _body(setup: Setup) -> dict[str, float]:
     return {name: float(getattr(setup.model.column, name)) for name in _BODY}
 
 
-def _moved(setup: config.Setup) -> dict[str, float]:
+def _moved(setup: Setup) -> dict[str, float]:
     found: dict[str, float] = {}
     for name in _MOVED:
         try:
@@ -270,4 +271,4 @@ def _moved(setup: config.Setup) -> dict[str, float]:
     return found
 
 
-_READ: Mapping[str, Callable[[config.Setup], dict[str, float]]] = {"column": _body, "motion": _moved}
+_READ: Mapping[str, Callable[[Setup], dict[str, float]]] = {"column": _body, "motion": _moved}

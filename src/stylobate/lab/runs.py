@@ -10,12 +10,13 @@ import numpy as np
 
 from stylobate import config
 from stylobate.base_motions import Record
+from stylobate.config.snippets import as_python, as_toml
 from stylobate.errors import UnlikelyInputWarning
 from stylobate.lab.answers import OF_ANY_COLUMN, ColumnNumbers, Measures, Peaks, Run, RunEvent, Series
 from stylobate.lab.requests import Description
 from stylobate.models import Model
-from stylobate.plots.animation import drawn_motion
-from stylobate.results import Response
+from stylobate.plots.animation.motion import drawn_motion
+from stylobate.results import Run as FinishedRun
 from stylobate.results.run_rows import column_rows, damping_rows, measure_rows
 
 _HISTORIES = (
@@ -24,7 +25,7 @@ _HISTORIES = (
 )
 
 
-def answered_run(run: Response, model: Model, given: Description, remarked: Iterable[str] = ()) -> Run:
+def answered_run(run: FinishedRun, model: Model, given: Description, remarked: Iterable[str] = ()) -> Run:
     """Convert a run to the answer: outcome, histories and motion to draw."""
     return Run(
         **snippets(given),
@@ -52,8 +53,8 @@ def answered_run(run: Response, model: Model, given: Description, remarked: Iter
 def snippets(given: Description) -> dict[str, str]:
     """Return the description as a TOML file and as a Python program."""
     return {
-        "toml": config.as_toml(given.shown),
-        "python": config.as_python(config.SimulationConfig.parse(given.shown)),
+        "toml": as_toml(given.shown),
+        "python": as_python(config.SimulationConfig.parse(given.shown)),
     }
 
 
@@ -64,7 +65,7 @@ def column_numbers(model: Model) -> ColumnNumbers:
     return ColumnNumbers({**found, "uplift_acceleration": column.slenderness * column.gravity})
 
 
-def _series(run: Response, model: Model) -> Series:
+def _series(run: FinishedRun, model: Model) -> Series:
     """Return the histories for the page: numbers over time, and displacements along the plane from the start."""
     data = run.data
     histories: dict[str, Any] = {name: data[name].to_numpy() for name in _HISTORIES if name in data}

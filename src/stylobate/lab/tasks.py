@@ -7,6 +7,7 @@ from importlib import import_module
 from typing import Any
 
 from stylobate import config, engine
+from stylobate.config.simulation import Setup
 from stylobate.lab.messages import Emit, Progress
 from stylobate.lab.requests import GRIDS, Description
 from stylobate.lab.runs import answered_run, record_contents, remarks
@@ -28,7 +29,7 @@ def run(given: Description, emit: Emit) -> bytes:
     return answered_run(found, setup.model, given, remarked).as_json()
 
 
-def _enough(setup: config.Setup) -> int:
+def _enough(setup: Setup) -> int:
     """Return the number of samples for a smooth plot of a run; the page cannot show more."""
     frequency = max(setup.motion.highest_frequency, setup.model.column.frequency_scale)
     swings = setup.options["duration"] * frequency / (2.0 * math.pi)
@@ -45,7 +46,7 @@ def record(values: Mapping[str, Any], emit: Emit) -> dict[str, Any]:
 
 def animation(values: Mapping[str, Any], emit: Emit) -> bytes:
     """Animate a run as a GIF; long runs are shown faster."""
-    from stylobate.plots.animation import animate
+    from stylobate.plots.animation.animation import animate
 
     setup = config.SimulationConfig.parse(values).build()
     run = engine.simulate(setup.model, setup.motion, **setup.options)
@@ -54,7 +55,7 @@ def animation(values: Mapping[str, Any], emit: Emit) -> bytes:
     )
 
 
-def speed_of_pictures(setup: config.Setup, end: float) -> float:
+def speed_of_pictures(setup: Setup, end: float) -> float:
     """Return the speed of the animation of a run: about twelve seconds, but with each period of the base visible."""
     frequency = setup.motion.highest_frequency / (2.0 * math.pi)
     swings = setup.motion.period is not None and frequency > 0.0

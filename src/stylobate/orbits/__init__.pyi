@@ -1,22 +1,20 @@
-from .arclength import End, StepControl
-from .bifurcations import Bifurcation, Kind
+from .arclength import BranchEnd, StepControl
+from .bifurcations import Bifurcation, BifurcationKind
 from .branch import Branch, continue_branch, switch_branch
 from .curves import BifurcationCurve, bifurcation_curve
 from .finding import periodic_orbit, periodic_orbits
 from .orbit import PeriodicOrbit
-from .storage import load_orbits
 
 __all__ = [
     "Bifurcation",
     "BifurcationCurve",
+    "BifurcationKind",
     "Branch",
-    "End",
-    "Kind",
+    "BranchEnd",
     "PeriodicOrbit",
     "StepControl",
     "bifurcation_curve",
     "continue_branch",
-    "load_orbits",
     "periodic_orbit",
     "periodic_orbits",
     "switch_branch",

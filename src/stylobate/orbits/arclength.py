@@ -10,7 +10,7 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from stylobate.engine.flow.integration import Status
+from stylobate.engine.flow.integration import FlowStatus
 from stylobate.engine.flow.periodic import PeriodicSystem
 from stylobate.equality import ByContent
 from stylobate.errors import (
@@ -102,7 +102,7 @@ class Point(ByContent):
         return self.map_multipliers**2 if self.family.sense < 0.0 else self.map_multipliers
 
 
-def corrected(family: Family, u: Floats, normal: Floats) -> tuple[Point, int] | Status:
+def corrected(family: Family, u: Floats, normal: Floats) -> tuple[Point, int] | FlowStatus:
     """Return the point of the family in the plane through `u` across `normal`, and the number of Newton steps.
 
     Returns
@@ -119,10 +119,10 @@ def corrected(family: Family, u: Floats, normal: Floats) -> tuple[Point, int] | 
             value = float(here[-1] * units[-1])
             system, change = family.at(value), family.system.derivative(family.name, value)
         except StylobateError:  # the parameter has left its range
-            return Status.FAILED
+            return FlowStatus.FAILED
         states = (here[:-1] * units[:-1]).reshape(arcs, order)
         chain = shots(system, states, family.covered, sense=family.sense, change=change)
-        if chain.status is not Status.DONE:
+        if chain.status is not FlowStatus.DONE:
             return chain.status
         point = Point(family, value, chain)
         # The distance from the plane is zero after the first steps.
@@ -131,22 +131,22 @@ def corrected(family: Family, u: Floats, normal: Floats) -> tuple[Point, int] | 
         try:
             step = np.linalg.solve(matrix, -residual)
         except np.linalg.LinAlgError:
-            return Status.FAILED
+            return FlowStatus.FAILED
         if not np.all(np.isfinite(step)) or np.abs(step).max() > 1.0:
-            return Status.FAILED
+            return FlowStatus.FAILED
         if np.abs(step).max() < _CLOSE * max(float(np.abs(here).max()), 1e-3):
             return point, steps
         here = here + step
-    return Status.FAILED
+    return FlowStatus.FAILED
 
 
-def on_family(family: Family, states: Floats, value: float) -> Point | Status:
+def on_family(family: Family, states: Floats, value: float) -> Point | FlowStatus:
     """Return the point at this value of the parameter, from states near it."""
     u = np.append(states.ravel(), value) / family.units(states.size)
     normal = np.zeros(u.size)
     normal[-1] = 1.0
     found = corrected(family, u, normal)
-    return found if isinstance(found, Status) else found[0]
+    return found if isinstance(found, FlowStatus) else found[0]
 
 
 _log = logging.getLogger("stylobate")
@@ -162,7 +162,7 @@ ASTRAY = 0.5
 _CLOSED = 0.75
 
 
-class End(Named, Enum):
+class BranchEnd(Named, Enum):
     """Reason why a branch ends."""
 
     BOUND = "the parameter reached its bound"
@@ -215,7 +215,7 @@ class Stretch:
 
     points: tuple[Point, ...]
     directions: tuple[Floats, ...]
-    end: End
+    end: BranchEnd
 
 
 def trace(
@@ -227,49 +227,49 @@ def trace(
 ) -> Stretch:
     """Follow a family from `start` in the sense of `direction` until it ends, or until Ctrl-C."""
     passed = [(start, start.along(direction))]
-    end = End.STEPS
+    end = BranchEnd.STEPS
     broken = _asymmetry(start)
     try:
         for item in _points(start, direction, bounds, control):
-            if isinstance(item, End):
+            if isinstance(item, BranchEnd):
                 end = item
                 break
             point, _ = item
             before, broken = broken, _asymmetry(point)
             if float(before @ broken) < 0.0:
-                end = End.MERGED
+                end = BranchEnd.MERGED
                 break
             passed.append(item)
             _log.info("%d orbits of a branch, at %s = %.4g", len(passed), point.family.name, point.value)
             if seen is not None:
                 seen(point)
     except KeyboardInterrupt:
-        end = End.INTERRUPTED
+        end = BranchEnd.INTERRUPTED
     points, directions = zip(*passed, strict=True)
     return Stretch(points, directions, end)
 
 
 def _points(
     start: Point, direction: Floats, bounds: tuple[float, float], control: StepControl
-) -> Iterator[tuple[Point, Floats] | End]:
+) -> Iterator[tuple[Point, Floats] | BranchEnd]:
     point, sense, length = start, start.along(direction), min(control.first, control.largest)
     low, high = bounds
     if start.value >= high if sense[-1] > 0.0 else start.value <= low:
-        yield End.BOUND
+        yield BranchEnd.BOUND
         return
     for made in range(control.most):
         made_step = _step(point, sense, length, bounds, control.least)
-        if isinstance(made_step, End):
+        if isinstance(made_step, BranchEnd):
             yield made_step
             return
         following, after, length, steps = made_step
         yield following, after
         if following.value in bounds:
-            yield End.BOUND
+            yield BranchEnd.BOUND
             return
         near = np.linalg.norm(following.u - start.u) < _CLOSED * length
         if made >= _FEW and near and after @ start.along(direction) > 0.0:
-            yield End.CLOSED
+            yield BranchEnd.CLOSED
             return
         point, sense = following, after
         if steps <= _EASY:
@@ -280,7 +280,7 @@ def _points(
 
 def _step(
     point: Point, sense: Floats, length: float, bounds: tuple[float, float], least: float
-) -> tuple[Point, Floats, float, int] | End:
+) -> tuple[Point, Floats, float, int] | BranchEnd:
     """Return the point after a step of `length` or shorter, its tangent, the length and the number of Newton steps.
 
     The last point lies on the bound of the parameter.
@@ -290,23 +290,23 @@ def _step(
         guess = point.u + length * sense
         found = corrected(family, guess, sense)
         # A point farther away may lie on another family.
-        if not isinstance(found, Status) and np.linalg.norm(found[0].u - guess) > ASTRAY * length:
-            found = Status.FAILED
+        if not isinstance(found, FlowStatus) and np.linalg.norm(found[0].u - guess) > ASTRAY * length:
+            found = FlowStatus.FAILED
         # Between orbits with different turns about the vertical lies an orbit through the vertical.
-        if not isinstance(found, Status) and abs(found[0].chain.turns - point.chain.turns) > _SAME_TURNS:
-            found = Status.LOST
-        value = guess[-1] * family.span if isinstance(found, Status) else found[0].value
+        if not isinstance(found, FlowStatus) and abs(found[0].chain.turns - point.chain.turns) > _SAME_TURNS:
+            found = FlowStatus.LOST
+        value = guess[-1] * family.span if isinstance(found, FlowStatus) else found[0].value
         if not bounds[0] <= value <= bounds[1]:  # beyond the bound there may be no orbit
             last = _at_bound(family, point, sense, bounds[0] if value < bounds[0] else bounds[1])
             if last is not None and last.along(sense) @ sense > _STRAIGHT:
                 return last, last.along(sense), length, 0
-        elif not isinstance(found, Status):
+        elif not isinstance(found, FlowStatus):
             after = found[0].along(sense)
             if after @ sense >= _STRAIGHT or length <= _BENT * least:
                 return found[0], after, length, found[1]
         length *= _SHORTER
         if length < least:
-            return _why(found) if isinstance(found, Status) else End.SHORT
+            return _why(found) if isinstance(found, FlowStatus) else BranchEnd.SHORT
 
 
 _SAME_TURNS = 0.25
@@ -334,14 +334,16 @@ def _at_bound(family: Family, point: Point, sense: Floats, bound: float) -> Poin
     normal = np.zeros_like(sense)
     normal[-1] = 1.0
     found = corrected(family, guess, normal)
-    if not isinstance(found, Status) and np.linalg.norm(found[0].u - guess) > ASTRAY * np.linalg.norm(guess - point.u):
+    if not isinstance(found, FlowStatus) and np.linalg.norm(found[0].u - guess) > ASTRAY * np.linalg.norm(
+        guess - point.u
+    ):
         return None
     # The value is the bound itself, without rounding by the scaling.
-    return None if isinstance(found, Status) else replace(found[0], value=bound)
+    return None if isinstance(found, FlowStatus) else replace(found[0], value=bound)
 
 
-def _why(status: Status) -> End:
-    return {Status.LOST: End.LOST, Status.GONE: End.GONE}.get(status, End.SHORT)
+def _why(status: FlowStatus) -> BranchEnd:
+    return {FlowStatus.LOST: BranchEnd.LOST, FlowStatus.GONE: BranchEnd.GONE}.get(status, BranchEnd.SHORT)
 
 
 def control_of(control: StepControl | None) -> StepControl:

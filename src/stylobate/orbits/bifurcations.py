@@ -16,8 +16,8 @@ import numpy as np
 import numpy.typing as npt
 from scipy.optimize import brentq
 
-from stylobate.cards import Row, Section, card
-from stylobate.engine.flow.integration import Status
+from stylobate.cards import CardSection, Row, card
+from stylobate.engine.flow.integration import FlowStatus
 from stylobate.engine.flow.periodic import PeriodicSystem
 from stylobate.equality import ByContent
 from stylobate.errors import Named, ParameterError
@@ -114,7 +114,7 @@ class PeriodMap:
         """Return the derivative at the fixed point plus `offset` [c]."""
         start = self.state + self.system.scale * offset
         flow = self.system.carry(start, 0.0, float(self.periods), peak_tilt=np.pi)
-        if flow.status is not Status.DONE:
+        if flow.status is not FlowStatus.DONE:
             return np.full((self.system.order, self.system.order), np.nan)
         return self.system.image(self.sense)[:, np.newaxis] * flow.by_start
 
@@ -195,7 +195,7 @@ _LOCATED = 1e-13
 _CRITICAL = 1e-4
 
 
-class Kind(Named, Enum):
+class BifurcationKind(Named, Enum):
     """Kind of a bifurcation."""
 
     FOLD = "fold"
@@ -235,7 +235,7 @@ class Bifurcation(ByContent):
         Point of the branch, and the direction in which it was passed.
     """
 
-    kind: Kind
+    kind: BifurcationKind
     parameter: float
     orbit: PeriodicOrbit
     multiplier: complex
@@ -267,7 +267,7 @@ class Bifurcation(ByContent):
             Row("critical multiplier", f"{self.multiplier:.4g}"),
             Row("orbit", repr(self.orbit)),
         ]
-        return card("Bifurcation", [Section("", rows), *system_sections(self.orbit.system)])
+        return card("Bifurcation", [CardSection("", rows), *system_sections(self.orbit.system)])
 
 
 def between(first: Point, second: Point, sense: Floats) -> tuple[Bifurcation, ...]:
@@ -294,7 +294,7 @@ def _located(first: Point, second: Point, sense: Floats, condition: Condition) -
             guess = first.u + (second.u - first.u) * (at / length)
             guess = guess + sense * (at - float((guess - first.u) @ sense))
             found = corrected(first.family, guess, sense)
-            if isinstance(found, Status):
+            if isinstance(found, FlowStatus):
                 raise ArithmeticError
             points[at] = found[0]
         return condition(points[at], sense)
@@ -334,7 +334,7 @@ def _classified(point: Point, sense: Floats, name: str) -> Bifurcation | None:
         return None
     if name == "period doubling":
         # A period doubling of the half orbit is a loss of symmetry of the whole orbit.
-        kind = Kind.PITCHFORK if family.sense < 0.0 else kind
+        kind = BifurcationKind.PITCHFORK if family.sense < 0.0 else kind
         if not without_damping(point.multipliers):
             coefficient = period_doubling_coefficient(period_map)
             supercritical = coefficient > 0.0
@@ -346,10 +346,10 @@ def _classified(point: Point, sense: Floats, name: str) -> Bifurcation | None:
 
 
 _KINDS = {
-    "fold": Kind.FOLD,
-    "branch point": Kind.BRANCH_POINT,
-    "period doubling": Kind.PERIOD_DOUBLING,
-    "Neimark-Sacker": Kind.NEIMARK_SACKER,
+    "fold": BifurcationKind.FOLD,
+    "branch point": BifurcationKind.BRANCH_POINT,
+    "period doubling": BifurcationKind.PERIOD_DOUBLING,
+    "Neimark-Sacker": BifurcationKind.NEIMARK_SACKER,
 }
 _CRITICAL_VALUES = {
     "fold": 1.0 + 0.0j,

@@ -11,13 +11,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 import xarray as xr
 
-from stylobate.cards import Row, Section, card
-from stylobate.engine.flow.integration import Status
+from stylobate.cards import CardSection, Row, card
+from stylobate.engine.flow.integration import FlowStatus
 from stylobate.engine.parameters import present_value
 from stylobate.equality import ByContent
 from stylobate.errors import Interrupted, NoOrbitError, ParameterError, require_finite
 from stylobate.orbits.arclength import (
-    End,
+    BranchEnd,
     Family,
     Floats,
     Point,
@@ -30,7 +30,7 @@ from stylobate.orbits.arclength import (
     require_followed,
     trace,
 )
-from stylobate.orbits.bifurcations import Bifurcation, Kind, between, orbit_at, require_bifurcation
+from stylobate.orbits.bifurcations import Bifurcation, BifurcationKind, between, orbit_at, require_bifurcation
 from stylobate.orbits.orbit import (
     BRANCH,
     SUPERCRITICAL,
@@ -71,7 +71,7 @@ class Branch(ByContent):
     parameter: str
     path: tuple[Point, ...]
     bifurcations: tuple[Bifurcation, ...]
-    ends: tuple[End, End]
+    ends: tuple[BranchEnd, BranchEnd]
 
     def orbit(self, index: int) -> PeriodicOrbit:
         """Return the orbit of a point; negative numbers count from the end.
@@ -221,7 +221,7 @@ class Branch(ByContent):
             for one in self.bifurcations
         ]
         sections = system_sections(self.path[0].family.system)
-        return card("Branch of periodic orbits", [Section("", rows), Section("bifurcations", found), *sections])
+        return card("Branch of periodic orbits", [CardSection("", rows), CardSection("bifurcations", found), *sections])
 
 
 def _table_of(bifurcations: tuple[Bifurcation, ...]) -> dict[str, tuple[str, list[object]]]:
@@ -317,7 +317,7 @@ def continue_branch(
     value = present_value(orbit.model, orbit.motion, parameter)
     low, high = enclosing(orbit.system, bounds, parameter, value)
     start = _point_of(orbit, parameter, value, high - low)
-    if isinstance(start, Status):
+    if isinstance(start, FlowStatus):
         raise NoOrbitError(f"the continuation could not start at {parameter} = {value!r}: {WHY_LOST[start]}")
     up = np.zeros_like(start.u)
     up[-1] = 1.0
@@ -330,7 +330,7 @@ def _seen_by(progress: Progress) -> Callable[[Point], None]:
     return lambda point: report(point.value)
 
 
-def _point_of(orbit: PeriodicOrbit, parameter: str, value: float, span: float) -> Point | Status:
+def _point_of(orbit: PeriodicOrbit, parameter: str, value: float, span: float) -> Point | FlowStatus:
     """Return the orbit as a point of its family, which covers half the orbit if the orbit has the inversion."""
     states = orbit.chain.states
     if orbit.inversion:
@@ -359,10 +359,10 @@ def _branch_through(
         On Ctrl-C; `partial` is the branch so far.
     """
     forward = trace(start, direction, bounds, control, seen)
-    alone = forward.end in (End.CLOSED, End.INTERRUPTED) or not both_ways
+    alone = forward.end in (BranchEnd.CLOSED, BranchEnd.INTERRUPTED) or not both_ways
     backward = None if alone else trace(start, -start.along(direction), bounds, control, seen)
     branch = _joined(start.family.name, forward, backward)
-    if End.INTERRUPTED in branch.ends:
+    if BranchEnd.INTERRUPTED in branch.ends:
         message = f"stopped after {plural(len(branch.path), 'orbit')}; `partial` is the branch so far"
         raise Interrupted(message, branch)
     return branch
@@ -370,7 +370,7 @@ def _branch_through(
 
 def _joined(name: str, forward: Stretch, backward: Stretch | None) -> Branch:
     points, directions = list(forward.points), list(forward.directions)
-    first_end: End = End.CLOSED if forward.end is End.CLOSED else End.BEGUN
+    first_end: BranchEnd = BranchEnd.CLOSED if forward.end is BranchEnd.CLOSED else BranchEnd.BEGUN
     if backward is not None:
         points = [*reversed(backward.points[1:]), *points]
         directions = [*(-sense for sense in reversed(backward.directions[1:])), *directions]
@@ -422,13 +422,13 @@ def switch_branch(
     require_bifurcation(bifurcation)
     control = control_of(control)
     point, old = bifurcation.point, bifurcation.point.family
-    if bifurcation.kind in (Kind.FOLD, Kind.NEIMARK_SACKER):
+    if bifurcation.kind in (BifurcationKind.FOLD, BifurcationKind.NEIMARK_SACKER):
         raise ParameterError(
             f"bifurcation must be a pitchfork, a period doubling or a branch point, got {bifurcation.kind.value}: "
             "no other family of periodic orbits begins there"
         )
     bounds = enclosing(old.system, bounds, old.name, point.value)
-    periods = 2 * old.periods if bifurcation.kind is Kind.PERIOD_DOUBLING else old.periods
+    periods = 2 * old.periods if bifurcation.kind is BifurcationKind.PERIOD_DOUBLING else old.periods
     family = Family(old.at(point.value), periods, old.name, bounds[1] - bounds[0])
     states = arcs_of(family.system, point.chain.states[0], periods, periods)
     units = family.units(states.size)
@@ -441,7 +441,7 @@ def switch_branch(
     for _ in range(_DOUBLINGS):
         found = corrected(family, here + off * normal, normal)
         # The old family meets the plane across the disturbance at zero distance.
-        if not isinstance(found, Status) and abs((found[0].u - here) @ normal) > 0.5 * off:
+        if not isinstance(found, FlowStatus) and abs((found[0].u - here) @ normal) > 0.5 * off:
             start = found[0]
             return _branch_through(start, normal, bounds, control, _seen_by(progress), both_ways=False)
         off *= 2.0

@@ -11,16 +11,16 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from stylobate.cards import Row, Section, card
-from stylobate.engine.flow.integration import Status
-from stylobate.engine.flow.periodic import Numbers, PeriodicSystem
+from stylobate.cards import CardSection, Row, card
+from stylobate.engine.flow.integration import FlowStatus
+from stylobate.engine.flow.periodic import FlowNumbers, PeriodicSystem
 from stylobate.engine.parameters import present_value
 from stylobate.equality import ByContent
 from stylobate.errors import Interrupted, NoOrbitError, ParameterError, StylobateError
-from stylobate.orbits.arclength import ASTRAY, End, StepControl, control_of, enclosing, require_followed
+from stylobate.orbits.arclength import ASTRAY, BranchEnd, StepControl, control_of, enclosing, require_followed
 from stylobate.orbits.bifurcations import (
     Bifurcation,
-    Kind,
+    BifurcationKind,
     PeriodMap,
     neimark_sacker_coefficient,
     period_doubling_coefficient,
@@ -59,11 +59,11 @@ def _pair(matrix: Floats) -> float:
     return float(np.prod(values[first] * values[second] - 1.0).real)
 
 
-_CONDITIONS: dict[Kind, Callable[[Floats], float]] = {
-    Kind.FOLD: _one,
-    Kind.PITCHFORK: _minus_one,
-    Kind.PERIOD_DOUBLING: _minus_one,
-    Kind.NEIMARK_SACKER: _pair,
+_CONDITIONS: dict[BifurcationKind, Callable[[Floats], float]] = {
+    BifurcationKind.FOLD: _one,
+    BifurcationKind.PITCHFORK: _minus_one,
+    BifurcationKind.PERIOD_DOUBLING: _minus_one,
+    BifurcationKind.NEIMARK_SACKER: _pair,
 }
 
 
@@ -94,10 +94,10 @@ class BifurcationCurve(ByContent):
         The plane of the two parameters, with the system.
     """
 
-    kind: Kind
+    kind: BifurcationKind
     parameters: tuple[str, str]
     path: tuple[CurvePoint, ...]
-    ends: tuple[End, End]
+    ends: tuple[BranchEnd, BranchEnd]
     plane: "Plane"
 
     @cached_property
@@ -108,7 +108,7 @@ class BifurcationCurve(ByContent):
         orbit is unstable on both sides.
         """
         coefficient = np.array([self.plane.coefficient(point) for point in self.path])
-        supercritical = coefficient < 0.0 if self.kind is Kind.NEIMARK_SACKER else coefficient > 0.0
+        supercritical = coefficient < 0.0 if self.kind is BifurcationKind.NEIMARK_SACKER else coefficient > 0.0
         decided = np.array([_only_critical(point) for point in self.path]) & ~np.isnan(coefficient)
         angle = np.abs(np.angle([point.multiplier for point in self.path]))
         system = self.plane.system
@@ -173,7 +173,7 @@ class BifurcationCurve(ByContent):
             Row("points", str(len(self.path))),
             Row("ends", "; ".join(end.value for end in self.ends)),
         ]
-        return card("Bifurcation curve", [Section("", rows), *system_sections(self.plane.system)])
+        return card("Bifurcation curve", [CardSection("", rows), *system_sections(self.plane.system)])
 
     def _ranges(self) -> dict[str, str]:
         return {name: range_of(point.values[k] for point in self.path) for k, name in enumerate(self.parameters)}
@@ -246,16 +246,16 @@ def bifurcation_curve(
     )
     guess = np.concatenate([bifurcation.point.chain.states.ravel(), at])
     start = plane.corrected(guess / plane.units(guess.size - 2), None)
-    if isinstance(start, End):
+    if isinstance(start, BranchEnd):
         raise NoOrbitError(f"the curve could not start: {start.value}")
     seen = report_of(progress)
     path, last = _followed(plane, start, 1.0, bounds, control, seen)
-    begin: End = last if last is End.CLOSED else End.BEGUN
-    if last not in (End.CLOSED, End.INTERRUPTED):
+    begin: BranchEnd = last if last is BranchEnd.CLOSED else BranchEnd.BEGUN
+    if last not in (BranchEnd.CLOSED, BranchEnd.INTERRUPTED):
         backward, begin = _followed(plane, start, -1.0, bounds, control, seen)
         path = [*reversed(backward[1:]), *path]
     curve = BifurcationCurve(bifurcation.kind, plane.names, tuple(path), (begin, last), plane)
-    if End.INTERRUPTED in curve.ends:
+    if BranchEnd.INTERRUPTED in curve.ends:
         message = f"stopped after {plural(len(path), 'point')}; `partial` is the curve so far"
         raise Interrupted(message, curve)
     return curve
@@ -289,7 +289,7 @@ class Plane(ByContent):
     names: tuple[str, str]
     covered: float
     sense: float
-    kind: Kind
+    kind: BifurcationKind
     spans: tuple[float, ...]
 
     def units(self, count: int) -> Floats:
@@ -303,22 +303,22 @@ class Plane(ByContent):
     def coefficient(self, point: CurvePoint) -> float:
         """Return the coefficient of the normal form, NaN at a fold."""
         period_map = PeriodMap(self.at(np.array(point.values)), point.chain.states[0], self.covered, self.sense)
-        if self.kind is Kind.FOLD:
+        if self.kind is BifurcationKind.FOLD:
             return float("nan")
-        if self.kind is Kind.NEIMARK_SACKER:
+        if self.kind is BifurcationKind.NEIMARK_SACKER:
             return neimark_sacker_coefficient(period_map, point.multiplier)
         return period_doubling_coefficient(period_map)
 
-    def corrected(self, u: Floats, normal: Floats | None) -> _Step | End:
+    def corrected(self, u: Floats, normal: Floats | None) -> _Step | BranchEnd:
         """Return the point of the curve in the plane through `u` across `normal`, or without it the nearest to `u`."""
         here = u
         for steps in range(1, _MOST_STEPS + 1):
             try:
                 looked = self._looked(here)
             except StylobateError:
-                return End.SHORT
-            if isinstance(looked, Status):
-                return {Status.LOST: End.LOST, Status.GONE: End.GONE}.get(looked, End.SHORT)
+                return BranchEnd.SHORT
+            if isinstance(looked, FlowStatus):
+                return {FlowStatus.LOST: BranchEnd.LOST, FlowStatus.GONE: BranchEnd.GONE}.get(looked, BranchEnd.SHORT)
             residual, jacobian, chain = looked
             if normal is None:
                 step = np.linalg.lstsq(jacobian, -residual, rcond=None)[0]
@@ -327,16 +327,16 @@ class Plane(ByContent):
                 try:
                     step = np.linalg.solve(matrix, -np.append(residual, normal @ (here - u)))
                 except np.linalg.LinAlgError:
-                    return End.SHORT
+                    return BranchEnd.SHORT
             if not np.all(np.isfinite(step)) or np.abs(step).max() > 1.0:
-                return End.SHORT
+                return BranchEnd.SHORT
             if np.abs(step).max() < _CLOSE:
                 values = (float(here[-2] * self.spans[0]), float(here[-1] * self.spans[1]))
                 multiplier = self._critical(chain.map_derivative)
                 tangent = np.asarray(np.linalg.svd(jacobian)[2][-1])
                 return _Step(CurvePoint(values, chain, multiplier), here, tangent, steps)
             here = here + step
-        return End.SHORT
+        return BranchEnd.SHORT
 
     def _shots(self, here: Floats, name: str | None) -> Shots:
         units = self.units(here.size - 2)
@@ -345,16 +345,16 @@ class Plane(ByContent):
         change = None if name is None else self._derivative(name, here[-2:] * units[-2:])
         return shots(system, states, self.covered, sense=self.sense, change=change)
 
-    def _derivative(self, name: str, values: Floats) -> Numbers:
+    def _derivative(self, name: str, values: Floats) -> FlowNumbers:
         """Return the derivative of the numbers by one parameter at a fixed value of the other."""
         place = self.names.index(name)
         other = self.names[1 - place]
         return self.system.changed(**{other: float(values[1 - place])}).derivative(name, float(values[place]))
 
-    def _looked(self, here: Floats) -> tuple[Floats, Floats, Shots] | Status:
+    def _looked(self, here: Floats) -> tuple[Floats, Floats, Shots] | FlowStatus:
         units = self.units(here.size - 2)
         first, second = (self._shots(here, name) for name in self.names)
-        if first.status is not Status.DONE:
+        if first.status is not FlowStatus.DONE:
             return first.status
         scale = self._scale(first.map_derivative)
         value = _CONDITIONS[self.kind](first.map_derivative) / scale
@@ -375,10 +375,10 @@ class Plane(ByContent):
 
     def _critical(self, matrix: Floats) -> complex:
         values = np.linalg.eigvals(matrix)
-        if self.kind is Kind.NEIMARK_SACKER:
+        if self.kind is BifurcationKind.NEIMARK_SACKER:
             upper = values[values.imag > 0.0]
             return complex(upper[np.argmin(np.abs(np.abs(upper) - 1.0))]) if upper.size else complex("nan")
-        wanted = 1.0 if self.kind is Kind.FOLD else -1.0
+        wanted = 1.0 if self.kind is BifurcationKind.FOLD else -1.0
         return complex(values[np.argmin(np.abs(values - wanted))])
 
 
@@ -389,13 +389,13 @@ def _followed(
     bounds: tuple[tuple[float, float], tuple[float, float]],
     control: StepControl,
     seen: Report,
-) -> tuple[list[CurvePoint], End]:
+) -> tuple[list[CurvePoint], BranchEnd]:
     """Return the points of the curve from `start` in one sense, and the reason of its end, which may be Ctrl-C."""
     points = [start.point]
     try:
         return points, _follow(plane, start, sign, bounds, control, seen, points)
     except KeyboardInterrupt:
-        return points, End.INTERRUPTED
+        return points, BranchEnd.INTERRUPTED
 
 
 def _follow(
@@ -406,7 +406,7 @@ def _follow(
     control: StepControl,
     seen: Report,
     points: list[CurvePoint],
-) -> End:
+) -> BranchEnd:
     """Append the points of the curve to `points`, and return the reason of its end."""
     here, length = start, min(control.first, control.largest)
     sense = sign * start.tangent
@@ -415,30 +415,30 @@ def _follow(
         guess = here.u + length * sense
         found = plane.corrected(guess, sense)
         # A point farther away may lie on another curve.
-        if not isinstance(found, End) and np.linalg.norm(found.u - guess) > ASTRAY * length:
-            found = End.SHORT
-        bent = not isinstance(found, End) and abs(found.tangent @ sense) < _STRAIGHT
-        if isinstance(found, End) or bent:
+        if not isinstance(found, BranchEnd) and np.linalg.norm(found.u - guess) > ASTRAY * length:
+            found = BranchEnd.SHORT
+        bent = not isinstance(found, BranchEnd) and abs(found.tangent @ sense) < _STRAIGHT
+        if isinstance(found, BranchEnd) or bent:
             length *= _SHORTER
             if length < control.least:
-                return found if isinstance(found, End) else End.SHORT
+                return found if isinstance(found, BranchEnd) else BranchEnd.SHORT
             continue
         outside = [not low <= value <= high for value, (low, high) in zip(found.point.values, bounds, strict=True)]
         if any(outside):
             last = _at_bound(plane, here, found, bounds, outside.index(True))
             points += [] if last is None else [last]
-            return End.BOUND
-        if plane.kind is Kind.NEIMARK_SACKER and not _on_circle(found.point.multiplier):
-            return End.RESONANCE
+            return BranchEnd.BOUND
+        if plane.kind is BifurcationKind.NEIMARK_SACKER and not _on_circle(found.point.multiplier):
+            return BranchEnd.RESONANCE
         points.append(found.point)
         seen(*found.point.values)
         sense = found.tangent if found.tangent @ sense > 0.0 else -found.tangent
         if len(points) > 10 and np.linalg.norm(found.u - start.u) < 0.75 * length:  # noqa: PLR2004
-            return End.CLOSED
+            return BranchEnd.CLOSED
         here = found
         length = min(_LONGER * length, control.largest) if found.steps <= _EASY else length
         length = _SHORTER * length if found.steps >= _HARD else length
-    return End.STEPS
+    return BranchEnd.STEPS
 
 
 def _at_bound(
@@ -452,7 +452,7 @@ def _at_bound(
     normal = np.zeros_like(here.u)
     normal[entry] = 1.0
     found = plane.corrected(here.u + share * (beyond.u - here.u), normal)
-    return None if isinstance(found, End) else found.point
+    return None if isinstance(found, BranchEnd) else found.point
 
 
 def _only_critical(point: CurvePoint) -> bool:

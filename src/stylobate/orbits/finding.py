@@ -13,9 +13,10 @@ import numpy as np
 import numpy.typing as npt
 
 from stylobate import theory
-from stylobate.base_motions import BaseMotion, Harmonic, as_harmonic
+from stylobate.base_motions import BaseMotion, Harmonic
+from stylobate.base_motions.harmonic import as_harmonic
 from stylobate.column import Column
-from stylobate.engine.flow.integration import Status
+from stylobate.engine.flow.integration import FlowStatus
 from stylobate.engine.flow.periodic import PeriodicSystem, plane_of, require_periodic
 from stylobate.engine.forcing import common_line
 from stylobate.errors import NoOrbitError, ParameterError, UnsupportedError, as_numbers, require_positive, require_whole
@@ -23,7 +24,7 @@ from stylobate.models import Model
 from stylobate.models.model import ClosedForm, RollingLaw, closed_form_of
 from stylobate.orbits.orbit import PeriodicOrbit, require_subject
 from stylobate.orbits.shooting import Shots, arcs_of, closed, damped, newton_step, shots
-from stylobate.results import Response
+from stylobate.results import Run
 from stylobate.results.random_numbers import Rng, seed_of
 
 Floats = npt.NDArray[np.float64]
@@ -223,7 +224,7 @@ def periodic_orbit(
     model: Model,
     motion: BaseMotion,
     *,
-    guess: npt.ArrayLike | Response | None = None,
+    guess: npt.ArrayLike | Run | None = None,
     periods: int = 1,
     arcs: int | None = None,
     sense: int | None = None,
@@ -285,7 +286,7 @@ def periodic_orbit(
     if guess is None:
         state, line = _rolling_by_theory(model, motion, sense), None
     else:
-        lean = _of_run(guess, model, motion) if isinstance(guess, Response) else _checked(guess, model)
+        lean = _of_run(guess, model, motion) if isinstance(guess, Run) else _checked(guess, model)
         _require_moving(model, lean)
         state, line = _start(model, motion, lean)
     system = PeriodicSystem(model, motion, line, rtol)
@@ -379,7 +380,7 @@ def periodic_orbits(
 def _deflated(system: PeriodicSystem, state: Floats, periods: int, known: Sequence[Floats]) -> Shots | None:
     """Return the orbit that the deflated method finds, or None."""
     chain = shots(system, state[np.newaxis], periods)
-    if chain.status is not Status.DONE:
+    if chain.status is not FlowStatus.DONE:
         return None
     for _ in range(_DEFLATED_STEPS):
         step = newton_step(chain)
@@ -432,7 +433,7 @@ def _shortest(orbit: PeriodicOrbit) -> PeriodicOrbit:
     for periods in range(1, orbit.periods):
         if orbit.periods % periods == 0:
             flow = orbit.system.carry(orbit.state, 0.0, float(periods))
-            if flow.status is Status.DONE and np.abs(flow.end - orbit.state).max() <= _SAME * orbit.system.scale:
+            if flow.status is FlowStatus.DONE and np.abs(flow.end - orbit.state).max() <= _SAME * orbit.system.scale:
                 arcs = max(1, round(len(orbit.chain.states) * periods / orbit.periods))
                 chain = closed(orbit.system, arcs_of(orbit.system, orbit.state, periods, arcs), periods)
                 return replace(orbit, periods=periods, chain=chain)
@@ -477,7 +478,7 @@ def _checked(guess: npt.ArrayLike, model: Model) -> Floats:
     return lean
 
 
-def _of_run(run: Response, model: Model, motion: BaseMotion) -> Floats:
+def _of_run(run: Run, model: Model, motion: BaseMotion) -> Floats:
     period = motion.period
     time = run.data["time"].to_numpy()
     if period is None or time[-1] < period:

@@ -14,13 +14,13 @@ import numpy.typing as npt
 import xarray as xr
 
 from stylobate.base_motions import BASE_AT_REST, BaseMotion
-from stylobate.cards import Row, Section, card
+from stylobate.cards import CardSection, Row, card
 from stylobate.engine.flow.periodic import PeriodicSystem
 from stylobate.engine.forcing import common_line
 from stylobate.equality import ByContent
 from stylobate.errors import FileError, ParameterError, UnsupportedError
 from stylobate.models import Model
-from stylobate.models.consistency import check_once
+from stylobate.models.consistency.check import check_once
 from stylobate.orbits.shooting import Shots, is_stable
 from stylobate.provenance import provenance_of_run
 from stylobate.results.storage import write_netcdf
@@ -243,7 +243,7 @@ class PeriodicOrbit(ByContent):
             Row("tilt", f"{range_of([self.minimum_tilt, self.peak_tilt])} rad", "θ"),
             Row("largest multiplier", f"{four_digits(abs(largest))}{angle}"),
         ]
-        return card("Periodic orbit", [Section("", rows), *system_sections(self.system)])
+        return card("Periodic orbit", [CardSection("", rows), *system_sections(self.system)])
 
 
 def range_of(values: Iterable[float]) -> str:
@@ -252,9 +252,9 @@ def range_of(values: Iterable[float]) -> str:
     return f"{four_digits(min(values))}…{four_digits(max(values))}"
 
 
-def system_sections(system: PeriodicSystem) -> list[Section]:
+def system_sections(system: PeriodicSystem) -> list[CardSection]:
     """Return the rows of a card for the model and the base motion of a system."""
-    return [Section("system", [Row("model", repr(system.model)), Row("base motion", repr(system.motion))])]
+    return [CardSection("system", [Row("model", repr(system.model)), Row("base motion", repr(system.motion))])]
 
 
 def lean_of(system: PeriodicSystem, states: Floats) -> Floats:

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from stylobate.engine.flow.integration import Status
-from stylobate.engine.flow.periodic import Flow, Numbers, PeriodicSystem
+from stylobate.engine.flow.integration import FlowStatus
+from stylobate.engine.flow.periodic import Flow, FlowNumbers, PeriodicSystem
 from stylobate.equality import ByContent
 from stylobate.errors import NoOrbitError
 
@@ -20,9 +20,9 @@ _MOST_STEPS, _MOST_HALVINGS = 25, 8
 _GROWTH = 2.0
 
 WHY_LOST = {
-    Status.LOST: "it comes within 1e-6 c of the vertical, or so close that it loses energy",
-    Status.GONE: "it leaves for tilts from which no motion returns",
-    Status.FAILED: "the integration does not reach the tolerance",
+    FlowStatus.LOST: "it comes within 1e-6 c of the vertical, or so close that it loses energy",
+    FlowStatus.GONE: "it leaves for tilts from which no motion returns",
+    FlowStatus.FAILED: "the integration does not reach the tolerance",
 }
 
 
@@ -39,9 +39,9 @@ class Shots(ByContent):
     factor: Floats
 
     @property
-    def status(self) -> Status:
+    def status(self) -> FlowStatus:
         """DONE, or the status of the first arc that does not reach its end."""
-        return next((flow.status for flow in self.flows if flow.status is not Status.DONE), Status.DONE)
+        return next((flow.status for flow in self.flows if flow.status is not FlowStatus.DONE), FlowStatus.DONE)
 
     @property
     def residual(self) -> Floats:
@@ -109,7 +109,7 @@ class Shots(ByContent):
 
 
 def shots(
-    system: PeriodicSystem, states: Floats, periods: float, *, sense: float = 1.0, change: Numbers | None = None
+    system: PeriodicSystem, states: Floats, periods: float, *, sense: float = 1.0, change: FlowNumbers | None = None
 ) -> Shots:
     """Integrate each of `states`, shape (arcs, order), over its arc; the arcs cover `periods` base periods.
 
@@ -121,7 +121,7 @@ def shots(
     for arc, state in enumerate(states):
         flow = system.carry(state, ends[arc], ends[arc + 1], change=change, side=side)
         flows.append(flow)
-        if flow.status is not Status.DONE:
+        if flow.status is not FlowStatus.DONE:
             # The other arcs are not integrated; this flow stands in for them.
             flows.extend([flow] * (arcs - arc - 1))
             break
@@ -137,7 +137,7 @@ def closed(system: PeriodicSystem, guess: Floats, periods: int) -> Shots:
         If Newton's method finds no orbit.
     """
     chain = shots(system, guess, periods)
-    if chain.status is not Status.DONE:
+    if chain.status is not FlowStatus.DONE:
         raise NoOrbitError(_lost("the guess", chain.status))
     for _ in range(_MOST_STEPS):
         step = newton_step(chain)
@@ -171,19 +171,19 @@ def damped(system: PeriodicSystem, chain: Shots, step: Floats, periods: int) -> 
     for _ in range(_MOST_HALVINGS):
         following = shots(system, chain.states + part * step, periods)
         after = float(np.linalg.norm(following.residual))
-        if following.status is Status.DONE and (after <= _GROWTH * before or after <= _CLOSE * system.scale):
+        if following.status is FlowStatus.DONE and (after <= _GROWTH * before or after <= _CLOSE * system.scale):
             return following
         part *= 0.5
     return None
 
 
-def chain_status(system: PeriodicSystem, chain: Shots, step: Floats, periods: int) -> Status:
+def chain_status(system: PeriodicSystem, chain: Shots, step: Floats, periods: int) -> FlowStatus:
     """Return the status of the chain after the whole `step`; FAILED if it is DONE."""
     status = shots(system, chain.states + step, periods).status
-    return status if status is not Status.DONE else Status.FAILED
+    return status if status is not FlowStatus.DONE else FlowStatus.FAILED
 
 
-def _lost(what: str, status: Status) -> str:
+def _lost(what: str, status: FlowStatus) -> str:
     return f"no periodic orbit was reached: {what} fails because {WHY_LOST[status]}; try another guess"
 
 
@@ -198,7 +198,7 @@ def arcs_of(system: PeriodicSystem, state: Floats, periods: float, arcs: int) ->
     states = [np.asarray(state, dtype=float)]
     for arc in range(arcs - 1):
         flow = system.carry(states[-1], periods * arc / arcs, periods * (arc + 1) / arcs)
-        if flow.status is not Status.DONE or not math.isfinite(float(flow.end.sum())):
+        if flow.status is not FlowStatus.DONE or not math.isfinite(float(flow.end.sum())):
             raise NoOrbitError(_lost("the guess", flow.status))
         states.append(flow.end)
     return np.stack(states)

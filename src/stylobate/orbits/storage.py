@@ -10,11 +10,11 @@ import numpy as np
 import xarray as xr
 
 from stylobate.config import config_of
-from stylobate.engine.flow.integration import Status
+from stylobate.engine.flow.integration import FlowStatus
 from stylobate.engine.flow.periodic import PeriodicSystem
 from stylobate.errors import FileError
-from stylobate.orbits.arclength import End, Family, Point
-from stylobate.orbits.bifurcations import Bifurcation, Kind, orbit_at
+from stylobate.orbits.arclength import BranchEnd, Family, Point
+from stylobate.orbits.bifurcations import Bifurcation, BifurcationKind, orbit_at
 from stylobate.orbits.branch import Branch
 from stylobate.orbits.curves import BifurcationCurve, CurvePoint, Plane
 from stylobate.orbits.orbit import BRANCH, CURVE, ORBIT, SUPERCRITICAL_OF, PeriodicOrbit, path_of
@@ -46,7 +46,7 @@ def load_orbits(path: str | Path) -> PeriodicOrbit | Branch | BifurcationCurve:
 
 def _content(data: xr.Dataset) -> str:
     written, kind = data.attrs.get("format"), data.attrs.get("kind")
-    if written is not None and str(written).startswith("stylobate response"):
+    if written is not None and str(written).startswith("stylobate run"):
         return "a run; stylobate.load reads it"
     if kind is not None:
         return f"a table of kind {kind!r}; xarray.open_dataset reads it"
@@ -62,7 +62,7 @@ def _system(data: xr.Dataset) -> PeriodicSystem:
 def _read_orbit(data: xr.Dataset) -> PeriodicOrbit:
     system, periods = _system(data), int(data.attrs["periods"])
     chain = shots(system, np.ascontiguousarray(data["states"].to_numpy()), periods)
-    if chain.status is not Status.DONE:
+    if chain.status is not FlowStatus.DONE:
         raise ValueError("its orbit cannot be recovered")
     return PeriodicOrbit(system.model, system.motion, periods, chain, system.line, system.rtol)
 
@@ -82,7 +82,7 @@ def _read_branch(data: xr.Dataset) -> Branch:
         point = _shot(family, one["bifurcation_states"], float(one["bifurcation_value"]))
         found.append(
             Bifurcation(
-                Kind[str(one["bifurcation_kind"])],
+                BifurcationKind[str(one["bifurcation_kind"])],
                 point.value,
                 orbit_at(point),
                 complex(float(one["bifurcation_multiplier_real"]), float(one["bifurcation_multiplier_imaginary"])),
@@ -93,7 +93,7 @@ def _read_branch(data: xr.Dataset) -> Branch:
                 one["bifurcation_direction"],
             )
         )
-    first, last = (End[end] for end in json.loads(data.attrs["ends"]))
+    first, last = (BranchEnd[end] for end in json.loads(data.attrs["ends"]))
     return Branch(name, path, tuple(found), (first, last))
 
 
@@ -101,13 +101,13 @@ def _shot(family: Family, states: Any, value: float) -> Point:
     system = family.at(value)
     change = family.system.derivative(family.name, value)
     chain = shots(system, np.ascontiguousarray(states), family.covered, sense=family.sense, change=change)
-    if chain.status is not Status.DONE:
+    if chain.status is not FlowStatus.DONE:
         raise ValueError(f"its orbit at {family.name} = {value!r} cannot be recovered")
     return Point(family, value, chain)
 
 
 def _read_curve(data: xr.Dataset) -> BifurcationCurve:
-    kind = Kind[str(data.attrs["bifurcation"])]
+    kind = BifurcationKind[str(data.attrs["bifurcation"])]
     first, second = (str(name) for name in json.loads(data.attrs["parameters"]))
     spans = tuple(float(span) for span in data.attrs["spans"])
     covered, sense = (float(data.attrs[name]) for name in ("covered", "sense"))
@@ -116,10 +116,10 @@ def _read_curve(data: xr.Dataset) -> BifurcationCurve:
     columns = (data[name].to_numpy() for name in ("states", "values", "multiplier"))
     for states, values, (real, imaginary) in zip(*columns, strict=True):
         chain = shots(plane.at(values), np.ascontiguousarray(states), covered, sense=sense)
-        if chain.status is not Status.DONE:
+        if chain.status is not FlowStatus.DONE:
             raise ValueError(f"its orbit at {first} = {values[0]!r}, {second} = {values[1]!r} cannot be recovered")
         path.append(CurvePoint((float(values[0]), float(values[1])), chain, complex(real, imaginary)))
-    begin, end = (End[name] for name in json.loads(data.attrs["ends"]))
+    begin, end = (BranchEnd[name] for name in json.loads(data.attrs["ends"]))
     return BifurcationCurve(kind, (first, second), tuple(path), (begin, end), plane)
 
 

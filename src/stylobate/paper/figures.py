@@ -301,20 +301,6 @@ def _number(axes: Axes, number: int, x: float, y: float, color: str = GREY) -> N
     )
 
 
-__all__ = [
-    "averaging",
-    "backbones",
-    "critical",
-    "figure_2",
-    "figure_3",
-    "kicks",
-    "modulated",
-    "pressure",
-    "runaway",
-    "sketch",
-]
-
-
 @styled
 def twist(data: xr.Dataset) -> Figure:
     """Draw steady rolling with free spin: tilt and spin against frequency, for several values of the spin damping."""

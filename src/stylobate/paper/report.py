@@ -10,9 +10,10 @@ from stylobate.errors import FileError
 from stylobate.files import write_whole
 from stylobate.paper import figures
 from stylobate.plots.orbits import plot_exact_response
-from stylobate.plots.page import Picture, Section, Table, page, png_of
+from stylobate.plots.page import PageSection, PageTable, Picture, page, png_of
 from stylobate.plots.responses import plot_stability_boundary
-from stylobate.results import Finding, PaperCheck, write_netcdf
+from stylobate.results.findings import Finding, PaperCheck
+from stylobate.results.storage import write_netcdf
 
 _TITLE = "A round column on a vibrating base: the source paper reproduced, checked and corrected"
 
@@ -27,7 +28,7 @@ _INTRODUCTION = (
     "of the paper's figures. Every number below was computed when this page was made.",
 )
 
-_SYMBOLS = Table(
+_SYMBOLS = PageTable(
     ("symbol", "meaning", "in the paper"),
     (
         (
@@ -191,10 +192,10 @@ def paper_report(check: PaperCheck, folder: str | Path) -> Path:
     return report
 
 
-def findings_table(findings: Sequence[Finding]) -> Table:
+def findings_table(findings: Sequence[Finding]) -> PageTable:
     """Convert the findings to a table."""
     header = ("where", "statement", "measured", "verdict")
-    return Table(header, [(f.source, f.statement, f.measured, f.verdict.value) for f in findings])
+    return PageTable(header, [(f.source, f.statement, f.measured, f.verdict.value) for f in findings])
 
 
 def _draw(check: PaperCheck, target: Path) -> dict[str, list[Picture]]:
@@ -206,11 +207,11 @@ def _draw(check: PaperCheck, target: Path) -> dict[str, list[Picture]]:
     return drawn
 
 
-def _sections(check: PaperCheck, pictures: dict[str, list[Picture]]) -> list[Section]:
+def _sections(check: PaperCheck, pictures: dict[str, list[Picture]]) -> list[PageSection]:
     return [
-        Section("The column and its symbols", [*pictures.get("The column and its symbols", []), _SYMBOLS]),
+        PageSection("The column and its symbols", [*pictures.get("The column and its symbols", []), _SYMBOLS]),
         *(
-            Section(heading, [*pictures.get(heading, []), findings_table(section.findings)])
+            PageSection(heading, [*pictures.get(heading, []), findings_table(section.findings)])
             for heading, section in check.sections.items()
         ),
     ]

@@ -21,7 +21,7 @@ from stylobate.plots.geometry import Floats, Shape, View, base_centres, frames, 
 from stylobate.plots.labels import axis_label, is_dimensionless, unit_label
 from stylobate.plots.result_figure import InAxes, ResultFigure, font_ratio, heading
 from stylobate.plots.style import BLACK, BLUE, GREY, VERMILION, new_figure, styled
-from stylobate.results import Response
+from stylobate.results import Run
 
 _HEIGHT, _FACE = 3.6, "#dcebf5"
 # Ground beside the base and room for dimensions [of the larger of height and diameter].
@@ -115,7 +115,7 @@ _PART, _APART = 0.42, 3.0
 
 @styled
 def plot_column_path(
-    run: Response,
+    run: Run,
     *,
     times: Sequence[float] | None = None,
     until: float | None = None,
@@ -170,7 +170,7 @@ def plot_column_path(
     return figure
 
 
-def _shown(run: Response, times: Sequence[float] | None, until: float | None) -> tuple[xr.Dataset, npt.NDArray[Any]]:
+def _shown(run: Run, times: Sequence[float] | None, until: float | None) -> tuple[xr.Dataset, npt.NDArray[Any]]:
     """Return the samples up to the end of the paths, and their indices at which the column is drawn."""
     end = float(run.data["time"][-1])
     last = until if until is not None else end if times is None else max(times, default=0.0)
@@ -181,7 +181,7 @@ def _shown(run: Response, times: Sequence[float] | None, until: float | None) ->
     return data, np.searchsorted(data["time"].to_numpy()[:-1], chosen)
 
 
-def _path(run: Response, last: float, chosen: Floats) -> xr.Dataset:
+def _path(run: Run, last: float, chosen: Floats) -> xr.Dataset:
     """Return samples close enough for smooth paths; for a loaded run, its own samples."""
     if run.sampler is None:
         return run.data.isel(time=run.data["time"].to_numpy() <= last)
@@ -345,7 +345,7 @@ def _draw_plan(
     axes.set_aspect("equal")
 
 
-def _name_plan(axes: Axes, run: Response) -> None:
+def _name_plan(axes: Axes, run: Run) -> None:
     """Label the axes, and explain the numbers in the plan if they have no unit."""
     axes.set_xlabel(axis_label(run.data["contact_point"], "$x$"))
     axes.set_ylabel(axis_label(run.data["contact_point"], "$y$"))

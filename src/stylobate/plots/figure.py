@@ -14,10 +14,10 @@ from stylobate.models import Model
 from stylobate.plots.base_motion import plot_motion
 from stylobate.plots.column_figures import plot_column
 from stylobate.plots.kinds import HasPoints, check_sequence, figure_for
-from stylobate.plots.orbits import Orbit, plot_bifurcation_curves, plot_branches, plot_orbit
+from stylobate.plots.orbits import DrawnOrbit, plot_bifurcation_curves, plot_branches, plot_orbit
 from stylobate.plots.result_figure import drawing
 from stylobate.plots.runs import plot_runs
-from stylobate.results import Assessment, Response, Verdict
+from stylobate.results import Assessment, Run, Verdict
 from stylobate.text import plural
 
 # Functions that draw several results of a kind in one figure.
@@ -28,14 +28,14 @@ _OBJECTS: tuple[tuple[type, Callable[[Any], Figure]], ...] = (
     (Column, plot_column),
     (Model, lambda model: plot_column(model.column)),
     (BaseMotion, plot_motion),
-    (Orbit, plot_orbit),
+    (DrawnOrbit, plot_orbit),
 )
 
-Plotted: TypeAlias = Column | Model | BaseMotion | Response | Verdict | xr.Dataset | HasPoints | Orbit
+Plotted: TypeAlias = Column | Model | BaseMotion | Run | Verdict | xr.Dataset | HasPoints | DrawnOrbit
 
 
 def plot(
-    result: Plotted | Sequence[Response] | Sequence[HasPoints],
+    result: Plotted | Sequence[Run] | Sequence[HasPoints],
     *,
     labels: Sequence[str] | None = None,
     size: float | tuple[float, float] | None = None,
@@ -77,7 +77,7 @@ def plot(
 
 def _check_labels(result: Any, labels: Sequence[str]) -> None:
     results = result if isinstance(result, Sequence) else [result]
-    if not all(isinstance(one, Response | HasPoints) for one in results):
+    if not all(isinstance(one, Run | HasPoints) for one in results):
         raise ParameterError(f"labels name runs, branches or curves (got {type(result).__name__}). Leave labels out")
     if isinstance(labels, str) or len(labels) != len(results):
         got = repr(labels) if isinstance(labels, str) else len(labels)
@@ -96,7 +96,7 @@ def _drawn(result: Any, labels: Sequence[str] | None) -> Figure:
     if isinstance(result, Sequence) and not isinstance(result, str):
         check_sequence(result)
         results = result
-    runs = [one for one in results if isinstance(one, Response)]
+    runs = [one for one in results if isinstance(one, Run)]
     if results and len(runs) == len(results):
         return plot_runs(runs, labels)
     tables = [one.points for one in results if isinstance(one, HasPoints)]

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from stylobate.column import Height, MassHeight, Radius, Slenderness, TopRadius
-from stylobate.results import Response
+from stylobate.results import Run
 
 # Relative tolerance of the axial inertia of a frustum with the same centre of mass.
 _SAME = 1e-9
@@ -38,7 +38,7 @@ class Shape:
     slenderness: Slenderness
 
     @classmethod
-    def of(cls, run: Response) -> Self:
+    def of(cls, run: Run) -> Self:
         """Return the shape of the column of `run`."""
         return cls.of_column(run.provenance["column"])
 

@@ -28,7 +28,7 @@ from stylobate.plots.runs import (
     panels_of,
 )
 from stylobate.plots.style import BLACK, GREY, PALETTE
-from stylobate.results import Response, Verdict
+from stylobate.results import Run, Verdict
 from stylobate.results.verdict import CONTACT_LAW, LABELS
 
 if TYPE_CHECKING:
@@ -58,7 +58,7 @@ _SIDE_BY_SIDE = 0.6
 
 
 def plot_interactive(
-    result: Response | Verdict | xr.Dataset | HasPoints | Sequence[Response] | Sequence[HasPoints],
+    result: Run | Verdict | xr.Dataset | HasPoints | Sequence[Run] | Sequence[HasPoints],
     *,
     labels: Sequence[str] | None = None,
 ) -> "Figure":
@@ -95,7 +95,7 @@ def plot_interactive(
         check_sequence(result)
         results = result
     shown = [in_own_units(one) for one in results]
-    if shown and all(isinstance(one, Response) for one in shown):
+    if shown and all(isinstance(one, Run) for one in shown):
         figure = _of_runs(shown, list(labels or what_varies(shown)))
     elif shown and all(isinstance(one, HasPoints) for one in shown):
         figure = _of_branches([in_own_units(one.points) for one in shown], labels)
@@ -114,7 +114,7 @@ def plot_interactive(
     return figure
 
 
-def _of_runs(runs: Sequence[Response], names: Sequence[str]) -> "Figure":
+def _of_runs(runs: Sequence[Run], names: Sequence[str]) -> "Figure":
     """Draw the panels of the static figure of runs; the time axes zoom together."""
     from plotly.subplots import make_subplots
 
@@ -183,7 +183,7 @@ class _Curve(NamedTuple):
     values: Floats
 
 
-def _curves(run: Response, panel: str, *, planar: bool) -> list[_Curve]:
+def _curves(run: Run, panel: str, *, planar: bool) -> list[_Curve]:
     """Return the curves of a panel, at most one for each component."""
     data = run.data
     if panel == "tilt":
@@ -208,7 +208,7 @@ def _curves(run: Response, panel: str, *, planar: bool) -> list[_Curve]:
     return [one for one in curves if np.any(one.values)]
 
 
-def _panel_label(run: Response, panel: str, unit: str) -> str:
+def _panel_label(run: Run, panel: str, unit: str) -> str:
     return (
         _plain(axis_label(run.data["base_acceleration"])).replace(" [", "<br>[")
         if panel == "base"
@@ -245,7 +245,7 @@ def _add_contact(figure: "Figure", history: ContactHistory, unit: str, row: int)
     figure.update_yaxes(categoryorder="array", categoryarray=names, row=row, col=1)
 
 
-def _draw_limits(figure: "Figure", runs: Sequence[Response], rows: Sequence[str], *, planar: bool, path: bool) -> None:
+def _draw_limits(figure: "Figure", runs: Sequence[Run], rows: Sequence[str], *, planar: bool, path: bool) -> None:
     """Draw the tilt c and the acceleration of uplift as dashed lines, where the static figure has them."""
     look: dict[str, Any] = {"line_dash": "dash", "line_color": GREY, "line_width": 1}
     peak = max(float(run.data["amplitude"].max()) for run in runs)
@@ -265,7 +265,7 @@ def _draw_limits(figure: "Figure", runs: Sequence[Response], rows: Sequence[str]
         figure.update_yaxes(title_text="tilt along y [rad]", scaleanchor=f"x{_PLANE}", constrain="domain", row=1, col=2)
 
 
-def _add_events(figure: "Figure", run: Response, unit: str, row: int, *, planar: bool) -> None:
+def _add_events(figure: "Figure", run: Run, unit: str, row: int, *, planar: bool) -> None:
     """Mark the events that decide a run, at its tilt."""
     events = [event for event in run.events if event.kind in EVENT_NAMES]
     (tilt,) = _curves(run, "tilt", planar=planar)

@@ -10,7 +10,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from stylobate.errors import ParameterError
-from stylobate.results import Response
+from stylobate.results import Run
 
 Draw: TypeAlias = Callable[[xr.Dataset], Figure]
 _Draw = TypeVar("_Draw", bound=Draw)
@@ -36,7 +36,7 @@ def check_sequence(results: Sequence[object]) -> None:
         raise ParameterError(
             f"result: nothing is in it (got {results!r}). Pass one run, branch or curve, or several of a kind."
         )
-    kind = next((kind for kind in (Response, HasPoints) if isinstance(results[0], kind)), None)
+    kind = next((kind for kind in (Run, HasPoints) if isinstance(results[0], kind)), None)
     for place, one in enumerate(results):
         if kind is None or not isinstance(one, kind):
             raise ParameterError(
@@ -58,7 +58,7 @@ def figure_of(*kinds: str) -> Callable[[_Draw], _Draw]:
     A figure for a study of your own:
 
     >>> from matplotlib.figure import Figure
-    >>> from stylobate.plots import figure_of
+    >>> from stylobate.plots.kinds import figure_of
     >>> @figure_of("peak displacements")
     ... def plot_peak_displacements(data):
     ...     return Figure()

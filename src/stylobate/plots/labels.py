@@ -13,7 +13,7 @@ import xarray as xr
 from stylobate.base_motions.declared import motion_quantities
 from stylobate.models.declared import column_quantities, model_quantities
 from stylobate.quantities import Quantity
-from stylobate.results import Response
+from stylobate.results import Run
 from stylobate.run_arguments import run_numbers
 from stylobate.text import unit_in_text
 
@@ -84,11 +84,11 @@ def in_own_units(result: _Result) -> _Result:
         A run, the Dataset of a study, or a sequence of either.
     """
     found: Any = result
-    if isinstance(found, Response) and is_dimensionless(found.provenance):
+    if isinstance(found, Run) and is_dimensionless(found.provenance):
         found = replace(found, data=_relabelled(found.data))
     elif isinstance(found, xr.Dataset) and is_dimensionless(json.loads(found.attrs.get("provenance", "{}"))):
         found = _relabelled(found)
-    elif isinstance(found, Sequence) and any(isinstance(one, Response | xr.Dataset) for one in found):
+    elif isinstance(found, Sequence) and any(isinstance(one, Run | xr.Dataset) for one in found):
         found = [in_own_units(one) for one in found]
     return found  # type: ignore[no-any-return]
 
@@ -144,7 +144,7 @@ _SILENT = (
 )
 
 
-def what_varies(runs: Sequence[Response]) -> list[str]:
+def what_varies(runs: Sequence[Run]) -> list[str]:
     """Return a name for each of several runs: the values of up to two inputs that differ; else the outcome.
 
     Inputs are compared as the provenance of the runs states them.

@@ -35,7 +35,7 @@ _NARROW, _ROOM = 3.6, 1.12
 
 
 @runtime_checkable
-class Orbit(Protocol):
+class DrawnOrbit(Protocol):
     """A periodic orbit, as far as its figure needs it."""
 
     @property
@@ -56,7 +56,7 @@ class Orbit(Protocol):
 
 
 @styled
-def plot_orbit(orbit: Orbit) -> Figure:
+def plot_orbit(orbit: DrawnOrbit) -> Figure:
     """Draw a periodic orbit: tilt over its period, path of the tilt vector, and multipliers in the unit circle.
 
     The line of a stable orbit is bold, that of an unstable one dashed. In given axes only the tilt is drawn.

@@ -47,7 +47,7 @@ class Picture:
 
 
 @dataclass(frozen=True, slots=True)
-class Table:
+class PageTable:
     """Rows of plain text below a `header`."""
 
     header: Sequence[str]
@@ -55,14 +55,14 @@ class Table:
 
 
 @dataclass(frozen=True, slots=True)
-class Section:
+class PageSection:
     """A heading with paragraphs, pictures and tables, in this order of `content`."""
 
     heading: str
-    content: Sequence[str | Picture | Table]
+    content: Sequence[str | Picture | PageTable]
 
 
-def page(title: str, introduction: Sequence[str | Picture | Table], sections: Sequence[Section]) -> str:
+def page(title: str, introduction: Sequence[str | Picture | PageTable], sections: Sequence[PageSection]) -> str:
     """Return the HTML of a page; all text is escaped, figures are embedded as PNG."""
     links = "".join(f'<a href="#s{i}">{escape(section.heading)}</a>' for i, section in enumerate(sections))
     body = "".join(_section(i, section) for i, section in enumerate(sections))
@@ -84,18 +84,18 @@ def _text(text: str) -> str:
     return escape(_EXPONENT.sub("\u2011", _MINUS.sub("−", text)))
 
 
-def _section(index: int, section: Section) -> str:
+def _section(index: int, section: PageSection) -> str:
     parts = "".join(_part(part) for part in section.content)
     return f'<section id="s{index}"><h2>{escape(section.heading)}</h2>{parts}</section>'
 
 
-def _part(part: str | Picture | Table) -> str:
+def _part(part: str | Picture | PageTable) -> str:
     match part:
         case str():
             return f"<p>{_text(part)}</p>"
         case Picture():
             return _picture(part)
-        case Table():
+        case PageTable():
             return _table(part)
 
 
@@ -114,7 +114,7 @@ def _picture(picture: Picture) -> str:
     )
 
 
-def _table(table: Table) -> str:
+def _table(table: PageTable) -> str:
     head = "".join(f"<th>{escape(name)}</th>" for name in table.header)
     rows = "".join("<tr>" + "".join(f"<td>{_text(cell)}</td>" for cell in row) + "</tr>" for row in table.rows)
     kind = "wide many" if len(table.header) >= _MANY_COLUMNS else "wide"

@@ -19,7 +19,7 @@ from stylobate.plots.geometry import Floats
 from stylobate.plots.labels import axis_label, unit_label, what_varies
 from stylobate.plots.result_figure import InAxes, ResultFigure, font_ratio, heading
 from stylobate.plots.style import BLACK, BLUE, DASHES, GREY, ORANGE, PALETTE, SKY, VERMILION, new_figure, styled
-from stylobate.results import Response
+from stylobate.results import Run
 
 COLOURS = {
     Contact.RESTING: GREY,
@@ -40,7 +40,7 @@ class ContactHistory:
     kinds: npt.NDArray[np.integer]
 
     @classmethod
-    def of(cls, run: Response) -> Self:
+    def of(cls, run: Run) -> Self:
         """Return the contact history of a run, with changes at its events or, if there is no event, between samples."""
         time = run.data["time"].to_numpy()
         if run.sampler is None:
@@ -108,7 +108,7 @@ _LIMIT: dict[str, Any] = {"color": GREY, "linewidth": 0.9, "linestyle": (0, (4, 
 
 
 @styled
-def plot_runs(runs: Sequence[Response], labels: Sequence[str] | None = None) -> Figure:
+def plot_runs(runs: Sequence[Run], labels: Sequence[str] | None = None) -> Figure:
     """Return a figure of one run, or of several compared.
 
     The panels show what moves, against time: the tilt (for planar motion with its sign), the azimuth of the lean,
@@ -152,7 +152,7 @@ def plot_runs(runs: Sequence[Response], labels: Sequence[str] | None = None) -> 
     return figure
 
 
-def panels_of(runs: Sequence[Response], *, planar: bool) -> dict[str, Any]:
+def panels_of(runs: Sequence[Run], *, planar: bool) -> dict[str, Any]:
     """Return the names of the panels that show something, in their order, with the contact history."""
     tilted = any(float(run.data["amplitude"].max()) > 0.0 for run in runs)
     found: dict[str, Any] = dict.fromkeys(["tilt"] if tilted else [])
@@ -166,7 +166,7 @@ def panels_of(runs: Sequence[Response], *, planar: bool) -> dict[str, Any]:
     return found or {"tilt": None}
 
 
-def _moves(run: Response, name: str) -> bool:
+def _moves(run: Run, name: str) -> bool:
     """Whether the column slides, flies or turns about its axis far enough to be seen."""
     data, radius = run.data, float(run.data.attrs.get("base_radius", 1.0))
     if "contact" not in data:
@@ -256,7 +256,7 @@ def _that_fit(heights: Mapping[str, float], height: float, *, beside: bool) -> l
     )
 
 
-def _looks(runs: Sequence[Response]) -> list[dict[str, Any]]:
+def _looks(runs: Sequence[Run]) -> list[dict[str, Any]]:
     """Return colour and dashes of each run."""
     colours = colours_of(len(runs))
     return [{"color": colour, "linestyle": DASHES[i % len(DASHES)]} for i, colour in enumerate(colours)]
@@ -267,7 +267,7 @@ def colours_of(count: int) -> list[Any]:
     return [*PALETTE[:count]] if count <= len(PALETTE) else [*colormaps["viridis"](np.linspace(0.0, 0.9, count))]
 
 
-def _with_other_bases(runs: Sequence[Response], lines: Sequence[dict[str, Any]]) -> list[tuple[Response, Any]]:
+def _with_other_bases(runs: Sequence[Run], lines: Sequence[dict[str, Any]]) -> list[tuple[Run, Any]]:
     """Return the runs with their looks, without repetition of a base motion; one of all runs is black."""
     first = {repr(run.provenance.get("motion")): (run, line) for run, line in zip(runs[::-1], lines[::-1], strict=True)}
     if len(first) == 1 and len(runs) > 1:
@@ -291,19 +291,19 @@ def draw_history(axes: Axes, time: Any, values: Floats, **line: Any) -> bool:
     return True
 
 
-def _draw_tilt(axes: Axes, run: Response, line: dict[str, Any]) -> None:
+def _draw_tilt(axes: Axes, run: Run, line: dict[str, Any]) -> None:
     draw_history(axes, run.data["time"], run.data["amplitude"].to_numpy(), linewidth=1.1, **line)
 
 
-def _draw_signed_tilt(axes: Axes, run: Response, line: dict[str, Any]) -> None:
+def _draw_signed_tilt(axes: Axes, run: Run, line: dict[str, Any]) -> None:
     draw_history(axes, run.data["time"], along_line(run.data["tilt"].to_numpy()), linewidth=1.1, **line)
 
 
-def _draw_azimuth(axes: Axes, run: Response, line: dict[str, Any]) -> None:
+def _draw_azimuth(axes: Axes, run: Run, line: dict[str, Any]) -> None:
     axes.plot(run.data["time"], run.data["azimuth"] / (2.0 * np.pi), linewidth=1.1, **line)
 
 
-def _draw_travel(axes: Axes, run: Response, line: dict[str, Any]) -> None:
+def _draw_travel(axes: Axes, run: Run, line: dict[str, Any]) -> None:
     travel = in_print(run.data["footprint"])
     moving = [along for along in (0, 1) if np.abs(travel[:, along]).max() > _ROUNDING * np.abs(travel).max()]
     higher = int(np.argmax(travel[-1]))
@@ -315,15 +315,15 @@ def _draw_travel(axes: Axes, run: Response, line: dict[str, Any]) -> None:
             axes.annotate("xy"[along], end, xytext=(4, 0), va="bottom" if along == higher else "top", **look)
 
 
-def _draw_clearance(axes: Axes, run: Response, line: dict[str, Any]) -> None:
+def _draw_clearance(axes: Axes, run: Run, line: dict[str, Any]) -> None:
     draw_history(axes, run.data["time"], in_print(run.data["clearance"]), linewidth=1.0, **line)
 
 
-def _draw_twist(axes: Axes, run: Response, line: dict[str, Any]) -> None:
+def _draw_twist(axes: Axes, run: Run, line: dict[str, Any]) -> None:
     draw_history(axes, run.data["time"], run.data["twist"].to_numpy() / (2.0 * np.pi), linewidth=1.0, **line)
 
 
-def _draw_base(axes: Axes, run: Response, line: dict[str, Any]) -> None:
+def _draw_base(axes: Axes, run: Run, line: dict[str, Any]) -> None:
     """Draw the horizontal acceleration of the base, with its sign if it has one direction; dotted the vertical one."""
     acceleration = run.data["base_acceleration"].to_numpy()
     plane = acceleration[:, :2]
@@ -342,7 +342,7 @@ def _draw_base(axes: Axes, run: Response, line: dict[str, Any]) -> None:
     axes.set_title("; ".join(notes), fontsize="small", pad=2.0)
 
 
-def _draw_path(axes: Axes, run: Response, line: dict[str, Any]) -> None:
+def _draw_path(axes: Axes, run: Run, line: dict[str, Any]) -> None:
     x, y = run.data["tilt"].sel(axis="x"), run.data["tilt"].sel(axis="y")
     axes.plot(x, y, linewidth=0.9, **line)
     axes.plot(x[:1], y[:1], marker="o", markersize=5, markerfacecolor="white", color=line["color"])
@@ -380,7 +380,7 @@ def along_line(vectors: Floats) -> Floats:
     return np.asarray(vectors @ (x, y) / (length if positive else -length))
 
 
-def _mark_events(axes: Axes, run: Response) -> None:
+def _mark_events(axes: Axes, run: Run) -> None:
     """Name the first and the last event above the panel, where they cover no curve."""
     # The first and the last only: a run may uplift and come to rest in every period.
     events = [event for event in run.events if not event.repeats]
@@ -404,7 +404,7 @@ def _mark_events(axes: Axes, run: Response) -> None:
         )
 
 
-def _finish(axes: Mapping[str, Axes], runs: Sequence[Response], *, planar: bool) -> None:
+def _finish(axes: Mapping[str, Axes], runs: Sequence[Run], *, planar: bool) -> None:
     """Label the panels and draw the limits in them."""
     data = runs[0].data
     limits = sorted({float(run.data.attrs["slenderness"]) for run in runs})
@@ -441,7 +441,7 @@ def _finish(axes: Mapping[str, Axes], runs: Sequence[Response], *, planar: bool)
         path.legend(handles=ends, loc="best", fontsize="small", handlelength=1.0, borderaxespad=0.0)
 
 
-def _finish_tilt(axes: Axes, runs: Sequence[Response], limits: Sequence[float], peak: float, *, planar: bool) -> None:
+def _finish_tilt(axes: Axes, runs: Sequence[Run], limits: Sequence[float], peak: float, *, planar: bool) -> None:
     axes.set_ylabel("tilt [rad]" if planar else r"tilt $\theta$ [rad]")
     axes.margins(y=0.15)
     # A limit far above the tilts would press them to the bottom.
@@ -473,7 +473,7 @@ def _base_label(quantity: xr.DataArray) -> str:
     return f"base acceleration\n{f'[{unit}]' if unit == 'm/s²' else '$a/g$'}"
 
 
-def _write(figure: Figure, runs: Sequence[Response], names: Sequence[str], lines: Sequence[dict[str, Any]]) -> None:
+def _write(figure: Figure, runs: Sequence[Run], names: Sequence[str], lines: Sequence[dict[str, Any]]) -> None:
     """Write outcome and reason above one run, and a key to several below them."""
     if isinstance(figure, InAxes):
         if len(runs) > 1 or names != what_varies(runs):

@@ -208,7 +208,7 @@ class EventFile:
 
 
 @dataclass(frozen=True, slots=True)
-class Event:
+class EventFiles:
     """Files of one event, and the name of the event; `stated` if the user lists the files together."""
 
     name: str
@@ -232,7 +232,7 @@ class Event:
 
 def find_events(
     source: RecordSource, read: Read, directions: Mapping[str, float | str] | None = None
-) -> tuple[Event, ...]:
+) -> tuple[EventFiles, ...]:
     """Group files into events.
 
     Parameters
@@ -277,11 +277,11 @@ def find_events(
     def files_of(paths: Iterable[Path]) -> list[EventFile]:
         return [EventFile.of(path, read, given.get(path.name)) for path in paths]
 
-    events = [Event.of(files_of(event.files), event.name, stated=True) for event in stated]
+    events = [EventFiles.of(files_of(event.files), event.name, stated=True) for event in stated]
     if not stated and is_list_of_files(source) and _are_one_event(loose, given):
-        events.append(Event.of(files_of(loose), stated=True))
+        events.append(EventFiles.of(files_of(loose), stated=True))
     else:
-        events += [Event.of(files) for files in _grouped(files_of(loose))]
+        events += [EventFiles.of(files) for files in _grouped(files_of(loose))]
     return tuple(sorted(events, key=lambda event: event.name))
 
 

@@ -179,7 +179,7 @@ def intensity_measures(record: Record) -> "xr.Dataset":
         Along `axis`, the axes x, y and z with acceleration: `pga` [m/s²], `pgv` [m/s], `pgd` [m], the peak absolute
         values; `pgv_over_pga` [s]; `residual_velocity` [m/s] at the last sample, and `residual_velocity_ratio`, the
         absolute residual velocity over `pgv`; `arias` [m/s]; `cav` [m/s]; `duration_5_75`, `duration_5_95` [s]. Along
-        `component`, the definitions of `HorizontalComponent`: `horizontal_pga` [m/s²], `horizontal_pgv` [m/s].
+        `component` (RotD50, RotD100, geometric mean or larger): `horizontal_pga` [m/s²], `horizontal_pgv` [m/s].
 
     Notes
     -----

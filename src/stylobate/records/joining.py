@@ -15,7 +15,7 @@ from stylobate.base_motions.record import Record, RecordOrigin
 from stylobate.base_motions.signal_processing import energy
 from stylobate.errors import FileError, ParameterError, StylobateError, UnlikelyInputWarning, require_positive
 from stylobate.records.directions import Component, Directed, Direction, along_axes
-from stylobate.records.events import Event, EventFile, Read, RecordSource, find_events
+from stylobate.records.events import EventFile, EventFiles, Read, RecordSource, find_events
 from stylobate.records.reading import RecordFormat, as_record, plain_reading, read_component
 from stylobate.text import did_you_mean
 
@@ -145,7 +145,7 @@ def reader(
 
 
 def join_event(
-    event: Event, units: str | None = None, lengths: Lengths = Lengths.TRIM, steps: Steps = Steps.REFUSE
+    event: EventFiles, units: str | None = None, lengths: Lengths = Lengths.TRIM, steps: Steps = Steps.REFUSE
 ) -> Record:
     """Join the components of an event into one record.
 
@@ -211,7 +211,7 @@ def _part(file: EventFile, units: str | None) -> _Part:
     return _Part(file.path, file.direction, record)
 
 
-def _require_one_title(event: Event) -> None:
+def _require_one_title(event: EventFiles) -> None:
     """Raise FileError if headers name several events; warn if the user lists such files as one."""
     titles = {file.title: file.path.name for file in event.files if file.title}
     if len(titles) < 2:  # noqa: PLR2004

@@ -18,7 +18,7 @@ from stylobate.files import write_whole
 from stylobate.records.databases import is_asc, is_at2, is_wrapped, read_asc, read_at2, read_waveform
 from stylobate.records.directions import Component
 from stylobate.records.events import require_path
-from stylobate.records.tables import Table, read_named_columns, read_table
+from stylobate.records.tables import TextTable, read_named_columns, read_table
 from stylobate.records.text_files import KNOWN, REMARKS, Text, in_si, is_binary, read_bytes, require_unit
 
 # Horizontal and vertical peaks of earthquakes are below, except a few close to the fault [g].
@@ -139,7 +139,7 @@ def _read_text(
         return read_at2(text, step)
     if format is RecordFormat.ASC or (format is None and is_asc(text)):
         return read_asc(text)
-    table = Table.of(text, named=columns is not None)
+    table = TextTable.of(text, named=columns is not None)
     if format is RecordFormat.CSV or (format is None and table.names is not None):
         return read_named_columns(table, columns, step)
     return read_table(table, step)

@@ -52,7 +52,7 @@ Line = tuple[int, str]
 
 
 @dataclass(frozen=True, slots=True)
-class Table:
+class TextTable:
     """Rows of fields with decimal points, each with the index of its line, below names and other lines of header.
 
     `names` are the names of the columns with their units in brackets, in the line at `names_at`; None without names.
@@ -64,7 +64,7 @@ class Table:
     names_at: int = 0
 
     @classmethod
-    def of(cls, text: Text, *, named: bool = False) -> "Table":
+    def of(cls, text: Text, *, named: bool = False) -> "TextTable":
         """Find the rows and names of a text table.
 
         Parameters
@@ -97,7 +97,7 @@ class Table:
         return cls(text, [(at, _fields(line, separator)) for at, line in body], names, header[-1][0])
 
     @classmethod
-    def _with_names_in_first_line(cls, text: Text, lines: list[Line], *, named: bool) -> "Table":
+    def _with_names_in_first_line(cls, text: Text, lines: list[Line], *, named: bool) -> "TextTable":
         """Return a table of quoted fields or of spoilt rows, whose first line may hold names of columns."""
         first = lines[0][1] if lines else ""
         if not named and (not re.search(r"[,;]", first) or any(map(is_number, re.split(r"[,;]", first)))):
@@ -190,7 +190,7 @@ def _header_fields(line: str, width: int, separator: str | None) -> list[str] | 
     return next((fields for fields in splits if len(fields) == width), None)
 
 
-def read_table(table: Table, step: float | None) -> Component:
+def read_table(table: TextTable, step: float | None) -> Component:
     """Read the component of a table without names: a column of accelerations, or times and accelerations.
 
     Raises
@@ -224,7 +224,7 @@ def read_table(table: Table, step: float | None) -> Component:
     return Component(samples=values[:, 1], step=own, start=start, unit=None, states_time_unit=False)
 
 
-def read_named_columns(table: Table, columns: Mapping[str, str] | None, step: float | None) -> Component:
+def read_named_columns(table: TextTable, columns: Mapping[str, str] | None, step: float | None) -> Component:
     """Read the component or components of a table with names.
 
     Parameters

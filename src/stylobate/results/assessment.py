@@ -8,7 +8,7 @@ from typing import Any
 
 import xarray as xr
 
-from stylobate.cards import Row, Section, card
+from stylobate.cards import CardSection, Row, card
 from stylobate.equality import ByContent
 from stylobate.errors import FileError
 from stylobate.results.plain import ByName, plain_value
@@ -60,7 +60,7 @@ class Assessment(ByContent):
             Row("scales", ", ".join(map(four_digits, self.setting.get("scales", ())))),
         ]
         verdicts = [Row(name, row) for name, row in self._verdicts().items()]
-        return card("Assessment", [Section("", rows), Section("records that overturn the column", verdicts)])
+        return card("Assessment", [CardSection("", rows), CardSection("records that overturn the column", verdicts)])
 
     def _verdicts(self) -> dict[str, str]:
         """Return for each column how many records overturn it at the first scale, in the central case."""

@@ -34,7 +34,7 @@ class Finding:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Section(ByContent):
+class PaperSection(ByContent):
     """The findings of one section and the data of its figures, by name."""
 
     findings: tuple[Finding, ...]
@@ -45,7 +45,7 @@ class Section(ByContent):
 class PaperCheck(ByContent):
     """Check of a publication: `sections` by heading, in the order of the publication."""
 
-    sections: Mapping[str, Section]
+    sections: Mapping[str, PaperSection]
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "sections", ByName(self.sections))

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from stylobate.cards import Row, Section, card
+from stylobate.cards import CardSection, Row, card
 from stylobate.errors import ParameterError, as_numbers
 from stylobate.text import four_digits
 
@@ -83,7 +83,7 @@ class KnownOrbit:
             Row(name.replace("_", " "), f"{(values | per_run)[name]} {_UNITS.get(name, '')}".rstrip())
             for name in self.__slots__
         ]
-        return card("Known orbit", [Section("", rows)])
+        return card("Known orbit", [CardSection("", rows)])
 
     def plain(self) -> dict[str, Any]:
         """Return the numbers of the orbit as plain values, without labels."""

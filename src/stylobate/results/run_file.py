@@ -10,7 +10,7 @@ import xarray as xr
 from stylobate.errors import FileError, Outcome
 from stylobate.results.storage import OWN_FORMATS, read_dataset, require_this_version
 
-_FORMAT = f"{OWN_FORMATS}response 1"
+_FORMAT = f"{OWN_FORMATS}run 1"
 _OF_ORBITS = ("orbit", "branch", "bifurcation")
 _WORDS, _FLAGS = ("reason", "decided_at"), ("uncertain", "planar")
 _AS_JSON = ("thresholds", "measures", "provenance", "warnings")
@@ -18,7 +18,7 @@ _OWN_ATTRIBUTES = ("format", "outcome", *_WORDS, *_FLAGS, "events", *_AS_JSON)
 
 
 def as_dataset(run: Any) -> xr.Dataset:
-    """Return the samples of a `Response` as a Dataset, with its other fields as attributes."""
+    """Return the samples of a `Run` as a Dataset, with its other fields as attributes."""
     attributes = {
         "format": _FORMAT,
         "outcome": run.outcome.name,
@@ -33,7 +33,7 @@ def as_dataset(run: Any) -> xr.Dataset:
 
 
 def fields_of(path: str | Path) -> dict[str, Any]:
-    """Return the fields of the `Response` saved in the netCDF file `path`; events are lists of kind and time.
+    """Return the fields of the `Run` saved in the netCDF file `path`; events are lists of kind and time.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Rows of text that state the results of a run, a `Response`: for its card, the command line and the laboratory."""
+"""Rows of text that state the results of a run, a `Run`: for its card, the command line and the laboratory."""
 
 import math
 from typing import TYPE_CHECKING, Any

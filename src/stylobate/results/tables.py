@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 _COMPONENTS = ("axis", "component", "direction", "part")
 
 
-class Table(NamedTuple):
+class ResultTable(NamedTuple):
     """A result as a table: its title, the names of its columns, its rows, and remarks below it."""
 
     title: str

@@ -9,7 +9,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Literal, Self
 
-from stylobate.cards import Row, Section, card
+from stylobate.cards import CardSection, Row, card
 from stylobate.equality import ByContent
 from stylobate.errors import MOST_RUNS, FileError, Named, ParameterError, require_whole
 from stylobate.results.plain import ByName, plain_value
@@ -217,7 +217,7 @@ class Verdict(ByContent):
             Row(law, f"{percent(share)} ({_ends(low, high)})")
             for law, share, low, high in zip(self.share_by_model, *of_models, strict=True)
         ]
-        return card("Verdict", [Section("", rows), Section("share by contact law, with interval", laws)])
+        return card("Verdict", [CardSection("", rows), CardSection("share by contact law, with interval", laws)])
 
     def to_dataframe(self) -> "pd.DataFrame":
         """Convert the variations to a table in pandas, with one row per variation; see `results.to_dataframe`."""

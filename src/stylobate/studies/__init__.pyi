@@ -13,10 +13,10 @@ from .responses.averaging_map import averaging_map
 from .responses.exact_response import exact_response
 from .responses.lyapunov import lyapunov_exponents
 from .responses.poincare_sections import poincare_section
-from .responses.response_curves import averaged_motion, response_curves, steady_start
+from .responses.response_curves import response_curves, steady_start
 from .responses.slow_sweep import slow_sweep
 from .responses.stability_boundary import stability_boundary
-from .sweeps import Dask, Sweep, Threads, executor_from, open_sweep, run_sweep
+from .sweeps import Dask, Sweep, Threads, run_sweep
 
 GRIDS: tuple[str, ...]
 
@@ -28,19 +28,16 @@ __all__ = [
     "Threads",
     "after_bifurcation",
     "attractors",
-    "averaged_motion",
     "averaging_map",
     "basin_fractions",
     "basins",
     "erosion",
     "exact_response",
-    "executor_from",
     "integrity",
     "label_attractors",
     "load",
     "lyapunov_exponents",
     "model_hierarchy",
-    "open_sweep",
     "outcome_differences",
     "overturning_map",
     "poincare_section",

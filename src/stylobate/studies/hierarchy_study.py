@@ -5,8 +5,8 @@
 
 import json
 import math
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import TYPE_CHECKING, Annotated, Any, Unpack
 
@@ -35,14 +35,14 @@ from stylobate.provenance import provenance_of_run
 from stylobate.quantities import Quantity
 from stylobate.results.outcomes import outcome_attributes, outcome_label
 from stylobate.results.plain import plain_variables
-from stylobate.results.tables import Table
+from stylobate.results.tables import ResultTable
 from stylobate.run_arguments import Accuracy, OneRun, duration_with_tail, numbers_of
 from stylobate.studies.study import analysis
 
 if TYPE_CHECKING:
     import xarray as xr
 
-    from stylobate.results import Response
+    from stylobate.results import Run
 
 
 class HierarchyArguments(Accuracy, total=False):
@@ -85,13 +85,12 @@ class Case:
         Height, transverse inertia and spin stay constant, and with them ω0 and κ.
         """
         factor = slenderness / self.column.slenderness
-        return Case(
+        return replace(
+            self,
             column=self.column.with_slenderness(slenderness),
             motion=self.motion.scaled(factor),
-            dissipation=self.dissipation,
             tilt=(factor * self.tilt[0], factor * self.tilt[1]),
             tilt_rate=(factor * self.tilt_rate[0], factor * self.tilt_rate[1]),
-            spin=self.spin,
         )
 
     @property
@@ -106,16 +105,15 @@ class Case:
     def models(self) -> tuple[Model, ...]:
         """Return the models, the simplest first; planar rocking is last, if the motion is planar."""
         models = (Slender, SlenderRolling, Wobbling, Rolling, *((PlanarRocking,) if self.in_a_plane else ()))
-        return tuple(self._model(model) for model in models)
-
-    def _model(self, model: Callable[..., Model]) -> Model:
-        declared = dissipation_of(model)
-        stated = {name: value for name, value in self.dissipation.items() if name in declared and value is not None}
-        return model(self.column, **stated)
+        stated = {name: value for name, value in self.dissipation.items() if value is not None}
+        return tuple(
+            model(self.column, **{name: value for name, value in stated.items() if name in dissipation_of(model)})
+            for model in models
+        )
 
     def run(
         self, model: Model, duration: float, friction_coefficient: float | None, arguments: Mapping[str, Any]
-    ) -> "Response":
+    ) -> "Run":
         """Run one model; a model without spin starts without spin."""
         return engine.simulate(
             model,
@@ -142,7 +140,7 @@ _TIMES_COMPARED = 400
 class Course:
     """A run and its requested duration [s]; a run that came to rest early stands until the end."""
 
-    run: "Response"
+    run: "Run"
     duration: float
 
     def history(self, time: Floats) -> tuple[Floats, Floats]:
@@ -167,11 +165,6 @@ class Course:
         start = self.duration - window
         tilt, spin = self.history(start + window * np.arange(_TIMES_COMPARED) / _TIMES_COMPARED)
         return {"mean_late_tilt": float(np.hypot(*tilt.T).mean()), "mean_late_spin": float(spin.mean())}
-
-
-def largest_distance(first: "xr.DataArray", second: "xr.DataArray") -> float:
-    """Return the maximum distance of two histories of the tilt vector while both are known [rad]."""
-    return float(np.nanmax(np.hypot(*(first.to_numpy() - second.to_numpy()).T)))
 
 
 # The most general model declares the dissipation parameters of all other models.
@@ -235,7 +228,7 @@ def _chosen(options: Mapping[str, Any]) -> Mapping[str, Any]:
 _DRAWN = 4000
 
 
-def _tables(result: "xr.Dataset") -> list[Table]:
+def _tables(result: "xr.Dataset") -> list[ResultTable]:
     several = "slenderness" in result.dims
     rows = []
     for index in range(result.sizes["slenderness"] if several else 1):
@@ -254,7 +247,7 @@ def _tables(result: "xr.Dataset") -> list[Table]:
     warned = zip(shown["model"].to_numpy(), shown["warnings"].to_numpy(), strict=True)
     remarks += [f"{model}: {line}" for model, line in warned if line]
     distance = f"distance: maximum deviation of the tilt vector from {result.attrs['reference']}"
-    return [Table(f"tilts over c; late: the last fifth of the run; {distance}", header, rows, remarks)]
+    return [ResultTable(f"tilts over c; late: the last fifth of the run; {distance}", header, rows, remarks)]
 
 
 _HEADER = ("model", "outcome", "peak tilt", "late mean", "spin rad/s", "friction", "pivoting", "min N", "distance")
@@ -302,30 +295,14 @@ _OF_SIMULATE = tuple(Accuracy.__annotations__)
     stylobate hierarchy run.toml --scaled-to 0.05 --scaled-to 0.1 --scaled-to 0.2
     """,
         groups=(
-            Group.of(
-                "Options",
-                Option(
-                    "scaled_to",
-                    "slenderness to which the case is scaled, with its tilts and base motion; can be repeated",
-                    list[float],
-                    part="hierarchy",
-                    number="slenderness",
-                ),
-                Option(
-                    "reference",
-                    "model from which distances are measured; rolling by default",
-                    str,
-                    part="hierarchy",
-                    number="reference",
-                ),
-                Option("model", type=str, hidden=True),
-            ),
+            Group.of("Options", Option("model", type=str, hidden=True)),
             run_numbers(OneRun),
             COLUMN,
             MODEL.reduced_to(*_SHARED),
             MOTION_WITHOUT_RECORDS,
             OUTPUT,
         ),
+        renamed={"slenderness": "scaled_to"},
         numbers=OneRun,
         read=_of_all_models,
         problems=_problems,
@@ -346,12 +323,11 @@ def model_hierarchy(
     slenderness: Annotated[
         float | Sequence[float] | Floats | None,
         Quantity(
-            text="slendernesses to which the case is scaled, with its tilts and base motion; "
-            "that of the column by default"
+            text="slenderness to which the case is scaled, with its tilts and base motion; can be repeated", gt=0.0
         ),
     ] = None,
     friction_coefficient: float | None = None,
-    reference: Annotated[str, Quantity(text="model from which differences are taken")] = Rolling.name,
+    reference: Annotated[str, Quantity(text="model from which distances are measured")] = Rolling.name,
     samples: int | None = None,
     **arguments: Unpack[HierarchyArguments],
 ) -> "xr.Dataset":
@@ -422,7 +398,12 @@ def model_hierarchy(
     moved = BASE_AT_REST if motion is None else motion
     given: dict[str, Any] = {**arguments}
     dissipation = {name: given.pop(name) for name in _SHARED if name in given}
-    case = _case(column, moved, dissipation, tilt, tilt_rate, spin)
+    require_column(column)
+    if not isinstance(moved, BaseMotion):
+        raise ParameterError(f"motion must be a base motion such as Harmonic.circular(...) or None, got {motion!r}")
+    (x, y), (vx, vy) = require_vector("tilt", tilt, 2, "rad"), require_vector("tilt_rate", tilt_rate, 2, "rad/s")
+    spin = require_finite("spin", spin, "rad/s")
+    case = Case(column=column, motion=moved, dissipation=dissipation, tilt=(x, y), tilt_rate=(vx, vy), spin=spin)
     duration = require_positive("duration", duration, "s")
     models = [model.name for model in case.models()]
     if reference not in models:
@@ -436,7 +417,9 @@ def model_hierarchy(
     if slenderness is None:
         found = compared(case)
     else:
-        scales = _slendernesses(slenderness)
+        scales = np.atleast_1d(np.asarray(as_numbers("slenderness", slenderness), dtype=float))
+        if scales.ndim != 1 or not scales.size or not np.all(np.isfinite(scales) & (scales > 0.0)):
+            raise ParameterError(f"slenderness must be a list of positive numbers, got {slenderness!r}")
         found = xr.concat([compared(one) for one in _scaled(case, scales)], dim="slenderness")
         found = found.assign_coords(slenderness=("slenderness", scales, {"units": "1", "long_name": "slenderness"}))
         found = _with_order(found) if scales.size > 1 else found
@@ -459,36 +442,6 @@ def model_hierarchy(
     if friction_coefficient is not None:
         attributes["friction_coefficient"] = friction_coefficient
     return found.assign_attrs(**attributes, provenance=json.dumps(provenance))
-
-
-def _case(
-    column: Column,
-    motion: BaseMotion,
-    dissipation: Mapping[str, float | None],
-    tilt: Sequence[float],
-    tilt_rate: Sequence[float],
-    spin: float,
-) -> Case:
-    require_column(column)
-    if not isinstance(motion, BaseMotion):
-        raise ParameterError(f"motion must be a base motion such as Harmonic.circular(...) or None, got {motion!r}")
-    x, y = require_vector("tilt", tilt, 2, "rad")
-    vx, vy = require_vector("tilt_rate", tilt_rate, 2, "rad/s")
-    return Case(
-        column=column,
-        motion=motion,
-        dissipation=dissipation,
-        tilt=(x, y),
-        tilt_rate=(vx, vy),
-        spin=require_finite("spin", spin, "rad/s"),
-    )
-
-
-def _slendernesses(given: npt.ArrayLike) -> Floats:
-    values = np.atleast_1d(np.asarray(as_numbers("slenderness", given), dtype=float))
-    if values.ndim != 1 or not values.size or not np.all(np.isfinite(values) & (values > 0.0)):
-        raise ParameterError(f"slenderness must be a list of positive numbers, got {given!r}")
-    return values
 
 
 def _scaled(case: Case, slendernesses: Floats) -> list[Case]:
@@ -522,7 +475,7 @@ _MEASURES = {
 _DIFFERENT = ("peak_tilt", "mean_late_tilt", "peak_friction_demand", "peak_pivoting_demand")
 
 
-def _compared(case: Case, runs: "Sequence[Response]", time: Floats, duration: float) -> "xr.Dataset":
+def _compared(case: Case, runs: "Sequence[Run]", time: Floats, duration: float) -> "xr.Dataset":
     """Summarise the `runs` of all models of a case."""
     import xarray as xr
 
@@ -532,13 +485,14 @@ def _compared(case: Case, runs: "Sequence[Response]", time: Floats, duration: fl
         for run, course in zip(runs, courses, strict=True)
     ]
     histories = [course.history(time) for course in courses]
-    tilt = xr.DataArray([tilt for tilt, _ in histories], dims=("model", "time", "axis"))
+    tilt = np.array([tilt for tilt, _ in histories])
     variables: dict[str, Any] = {
         name: ("model", [one.get(name, np.nan) for one in rows], {"units": units, "long_name": long_name})
         for name, (units, long_name) in _MEASURES.items()
     }
     models = [model.name for model in case.models()]
-    deviation = [[largest_distance(one, other) for other in tilt] for one in tilt]
+    # The maximum distance of two histories while both are known.
+    deviation = [[float(np.nanmax(np.hypot(*(one - other).T))) for other in tilt] for one in tilt]
     return xr.Dataset(
         {
             "outcome": ("model", np.array([run.outcome for run in runs], np.int8), outcome_attributes()),
@@ -552,7 +506,7 @@ def _compared(case: Case, runs: "Sequence[Response]", time: Floats, duration: fl
             ),
             "amplitude": (
                 ("model", "time"),
-                np.hypot(tilt[..., 0], tilt[..., 1]).data,
+                np.hypot(tilt[..., 0], tilt[..., 1]),
                 {"units": "rad", "long_name": "tilt angle"},
             ),
             "spin": (("model", "time"), [spin for _, spin in histories], {"units": "rad s-1", "long_name": "spin"}),

@@ -9,7 +9,8 @@ import numpy as np
 import numpy.typing as npt
 
 from stylobate import theory
-from stylobate.base_motions import BaseMotion, Harmonic, as_harmonic
+from stylobate.base_motions import BaseMotion, Harmonic
+from stylobate.base_motions.harmonic import as_harmonic
 from stylobate.engine.parameters import changed_model, split
 from stylobate.errors import ParameterError, UnsupportedError
 from stylobate.models import Model

@@ -6,13 +6,15 @@ import xarray as xr
 
 from stylobate import orbits, results
 from stylobate.errors import FileError, ParameterError
+from stylobate.orbits.storage import load_orbits
+from stylobate.results.storage import read_dataset
 from stylobate.results.verdict import KIND
-from stylobate.studies.sweeps import open_sweep
+from stylobate.studies.sweeps.store import open_sweep
 
 Orbits = orbits.PeriodicOrbit | orbits.Branch | orbits.BifurcationCurve
 
 
-Result = results.Response | results.Verdict | results.Assessment | Orbits | xr.Dataset
+Result = results.Run | results.Verdict | results.Assessment | Orbits | xr.Dataset
 
 
 def load(path: str | Path) -> Result:
@@ -25,7 +27,7 @@ def load(path: str | Path) -> Result:
 
     Returns
     -------
-    Response, Verdict, PeriodicOrbit, Branch, BifurcationCurve, Assessment or xarray.Dataset
+    Run, Verdict, PeriodicOrbit, Branch, BifurcationCurve, Assessment or xarray.Dataset
         The saved result; the result of a study or a sweep is a Dataset. Variables of a store are read on first use.
 
     Raises
@@ -39,14 +41,14 @@ def load(path: str | Path) -> Result:
         raise ParameterError(f"path: no name of a file (got {path!r}). Pass the path of a saved result.") from None
     if path.is_dir():
         return open_sweep(path)
-    data = results.read_dataset(path)
+    data = read_dataset(path)
     written = str(data.attrs.get("format", ""))
     if written.startswith("stylobate assessment"):
         return results.Assessment.load(path)
-    if written.startswith("stylobate response"):
-        return results.Response.load(path)
+    if written.startswith("stylobate run"):
+        return results.Run.load(path)
     if written.startswith("stylobate "):
-        return orbits.load_orbits(path)
+        return load_orbits(path)
     if data.attrs.get("kind") == KIND:
         return results.Verdict(data)
     if "kind" not in data.attrs:

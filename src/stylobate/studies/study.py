@@ -59,7 +59,7 @@ class Described(Lengths, RunOptions, total=False):
     """The arguments that describe the runs of a sweep."""
 
 
-class Runs(Described, Computing, total=False):
+class StudyArguments(Described, Computing, total=False):
     """The arguments of a study of many runs besides its own."""
 
 
@@ -67,7 +67,7 @@ class RunsOfOwnLength(RunOptions, Computing, total=False):
     """The arguments of a study whose own arguments state how long runs last, such as a number of periods."""
 
 
-def described(run: Runs) -> Described:
+def described(run: StudyArguments) -> Described:
     """Return the arguments that describe the runs, without those of their computation."""
     how = defaults_of(Computing)
     return cast("Described", {name: value for name, value in run.items() if name not in how})
@@ -75,7 +75,7 @@ def described(run: Runs) -> Described:
 
 def options_of(run: RunsOfOwnLength) -> RunOptions:
     """Return the options of the runs, without the arguments of their computation."""
-    return cast("RunOptions", described(cast("Runs", run)))
+    return cast("RunOptions", described(cast("StudyArguments", run)))
 
 
 _OPTIONS = f"""    **options
@@ -89,8 +89,8 @@ def study(
 ) -> "Callable[[Callable[_P, tuple[Sweep, Label] | xr.Dataset]], Callable[_P, xr.Dataset]]":
     """Make a study of a function that returns its sweep, and the function that labels the runs; a decorator.
 
-    The function takes `**run: Unpack[Runs]`, or another group in place of `Runs`, and gets all arguments of the group.
-    A function that computes several sweeps returns its result instead.
+    The function takes `**run: Unpack[StudyArguments]`, or another group in place of `StudyArguments`, and gets all
+    arguments of the group. A function that computes several sweeps returns its result instead.
 
     Parameters
     ----------

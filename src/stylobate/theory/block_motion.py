@@ -166,7 +166,7 @@ class BlockSegment:
 
 
 @dataclass(frozen=True, slots=True)
-class State:
+class BlockState:
     """State of a block in its cycle, with the phase of motion that begins."""
 
     tau: float
@@ -175,13 +175,13 @@ class State:
     rise: float
     phase: BlockPhase
 
-    def off(self, other: "State") -> float:
+    def off(self, other: "BlockState") -> float:
         """Compute the distance to another state at the same phase of the base motion."""
         return max(abs(self.u - other.u), abs(self.s - other.s), abs(self.rise - other.rise))
 
 
 @dataclass(frozen=True, slots=True)
-class Block:
+class BlockOnPlane:
     """A block, its plane and the base motion."""
 
     weight: HarmonicForce  # N in contact
@@ -203,7 +203,7 @@ class Block:
         *,
         normal_restitution: float,
         rest_speed: float,
-    ) -> "Block":
+    ) -> "BlockOnPlane":
         """Return the block, or raise ParameterError at the first invalid argument of `block_cycle`."""
         mu_s = float(not_negative("static_friction", static_friction))
         mu_k = mu_s if kinetic_friction is None else float(not_negative("kinetic_friction", kinetic_friction))
@@ -236,7 +236,7 @@ class Block:
         value, rounding = force.at(tau), _FORCE_ROUNDING * self.scale
         return value < -rounding or (value < rounding and force.slope(tau) < 0.0)
 
-    def landed(self, state: State) -> State:
+    def landed(self, state: BlockState) -> BlockState:
         """Return the state on the plane with the phase of motion that follows."""
         if self.lost(self.weight, state.tau):
             return replace(state, phase=BlockPhase.FLIGHT)
@@ -247,7 +247,7 @@ class Block:
                 return replace(state, phase=phase)
         return replace(state, phase=BlockPhase.STICK)
 
-    def turn(self, state: State) -> tuple[list[BlockSegment], State]:
+    def turn(self, state: BlockState) -> tuple[list[BlockSegment], BlockState]:
         """Return the segments of one period of the base motion from τ = 0, and the state after it."""
         segments = []
         while state.tau < TURN:
@@ -258,7 +258,7 @@ class Block:
             state = after
         return segments, replace(state, tau=0.0)
 
-    def stick(self, state: State, horizon: float) -> tuple[BlockSegment, State]:
+    def stick(self, state: BlockState, horizon: float) -> tuple[BlockSegment, BlockState]:
         """Return the segment of a block that sticks, up to a slip, a lift-off or the horizon, and the next state."""
         falls = {
             BlockPhase.FLIGHT: self.weight.next_fall(state.tau),
@@ -267,10 +267,10 @@ class Block:
         }
         first = min(falls, key=lambda phase: falls[phase])
         span = min(falls[first], horizon)
-        after = State(_later(state, span, horizon), 0.0, 0.0, 0.0, first if span < horizon else BlockPhase.STICK)
+        after = BlockState(_later(state, span, horizon), 0.0, 0.0, 0.0, first if span < horizon else BlockPhase.STICK)
         return _segment(state, after, 0.0), after
 
-    def slide(self, state: State, horizon: float) -> tuple[BlockSegment, State]:
+    def slide(self, state: BlockState, horizon: float) -> tuple[BlockSegment, BlockState]:
         """Return the segment of a block that slides, up to a stop, a lift-off or the horizon, and the next state."""
         sense = 1.0 if state.phase is BlockPhase.FORWARD else -1.0
         brake, speed, tau = self.margin(self.mu_k, sense), sense * state.u, state.tau
@@ -281,15 +281,15 @@ class Block:
         )
         if stops is None:
             u = state.u - sense * brake.gain(tau, span)
-            after = State(_later(state, span, horizon), u, 0.0, 0.0, state.phase)
+            after = BlockState(_later(state, span, horizon), u, 0.0, 0.0, state.phase)
             if span < horizon:
                 after = replace(after, phase=BlockPhase.FLIGHT)
         else:
             span = max(stops, 0.0 if speed > 0.0 else min(_LEAST_SPAN, span))
-            after = self.landed(State(_later(state, span, horizon), 0.0, 0.0, 0.0, BlockPhase.STICK))
+            after = self.landed(BlockState(_later(state, span, horizon), 0.0, 0.0, 0.0, BlockPhase.STICK))
         return _segment(state, after, sense * (speed * span - brake.travel(tau, span))), after
 
-    def fly(self, state: State, horizon: float) -> tuple[BlockSegment, State]:
+    def fly(self, state: BlockState, horizon: float) -> tuple[BlockSegment, BlockState]:
         """Return the segment of a block in flight, up to a landing or the horizon, and the next state."""
         tau, weight = state.tau, self.weight
 
@@ -308,13 +308,13 @@ class Block:
         span = horizon if lands is None else max(lands, least)
         u = state.u - self.pull.gain(tau, span)
         travel = state.u * span - self.pull.travel(tau, span)
-        end = State(_later(state, span, horizon), u, 0.0, rise(span), BlockPhase.FLIGHT)
+        end = BlockState(_later(state, span, horizon), u, 0.0, rise(span), BlockPhase.FLIGHT)
         if lands is None:
             end = replace(end, s=state.s + state.rise * span - weight.travel(tau, span))
             return _segment(state, end, travel), end
         return _segment(state, end, travel), self.impact(end)
 
-    def impact(self, state: State) -> State:
+    def impact(self, state: BlockState) -> BlockState:
         """Return the state after a landing."""
         speed = max(-state.rise, 0.0)
         stays = not self.lost(self.weight, state.tau) and self.normal_restitution * speed < self.rest_speed
@@ -325,7 +325,7 @@ class Block:
         return self.landed(after) if rebound == 0.0 else after
 
 
-def _later(state: State, span: float, horizon: float) -> float:
+def _later(state: BlockState, span: float, horizon: float) -> float:
     return TURN if span >= horizon else state.tau + span
 
 
@@ -339,7 +339,7 @@ def _first_zero(value: Callable[[float], float], slope: Callable[[float], float]
     return None
 
 
-def _segment(before: State, after: State, travel: float) -> BlockSegment:
+def _segment(before: BlockState, after: BlockState, travel: float) -> BlockSegment:
     return BlockSegment(
         phase=before.phase,
         start=before.tau,

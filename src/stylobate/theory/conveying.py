@@ -29,7 +29,7 @@ from stylobate.theory.arguments import (
     plain_results,
     positive,
 )
-from stylobate.theory.block_motion import TURN, Block, BlockPhase, BlockSegment, State
+from stylobate.theory.block_motion import TURN, BlockOnPlane, BlockPhase, BlockSegment, BlockState
 from stylobate.theory.starting import below_elastic, steepness
 
 # If a motion approaches its cycle by the factor −λ per period of the base motion, two periods repeat 1/(1 − λ) times
@@ -151,7 +151,7 @@ def block_cycle(
     >>> print(round(cycle.mean_speed, 6), cycle.period, [segment.phase.name for segment in cycle.segments])
     0.166664 1 ['BACKWARD', 'STICK', 'FORWARD', 'STICK', 'BACKWARD']
     """
-    block = Block.checked(
+    block = BlockOnPlane.checked(
         along,
         normal,
         phase,
@@ -165,7 +165,7 @@ def block_cycle(
         require_whole(name, count, least=1)
     near = float(positive("tolerance", tolerance)) * block.scale
     rise = float(not_negative("start_normal_velocity", start_normal_velocity))
-    state = State(0.0, float(finite("start_velocity", start_velocity)), 0.0, rise, BlockPhase.FLIGHT)
+    state = BlockState(0.0, float(finite("start_velocity", start_velocity)), 0.0, rise, BlockPhase.FLIGHT)
     state = state if rise > 0.0 else block.landed(state)
     seen, run = [state], list[list[BlockSegment]]()
     for _ in range(cycles):
@@ -245,7 +245,7 @@ def mean_block_speed(
     return speed
 
 
-def _repeats(seen: list[State], near: float) -> int:
+def _repeats(seen: list[BlockState], near: float) -> int:
     """Return the number of periods of the base motion after which the last state repeats, or 0."""
     off = [seen[-1].off(state) for state in seen[-2::-1]]
     for period, difference in enumerate(off, 1):
@@ -278,7 +278,7 @@ def _joined(first: BlockSegment, second: BlockSegment) -> BlockSegment:
     )
 
 
-def _escapes(block: Block, cycle: BlockCycle) -> bool:
+def _escapes(block: BlockOnPlane, cycle: BlockCycle) -> bool:
     """Return whether a block that friction cannot hold never stopped sliding down."""
     down = -math.copysign(1.0, block.pull.constant)
     steep = block.mu_k * block.weight.constant < abs(block.pull.constant)

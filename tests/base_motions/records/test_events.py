@@ -9,7 +9,7 @@ import stylobate as sb
 from stylobate.config import RecordsConfig
 from stylobate.config.parts import describe_motion
 from stylobate.errors import FileError, ParameterError, UnlikelyInputWarning
-from stylobate.records import Direction
+from stylobate.records.directions import Direction
 
 COUNT = 50
 WAVES = np.random.default_rng(11).normal(scale=0.2, size=(4, COUNT))

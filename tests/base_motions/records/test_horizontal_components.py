@@ -8,8 +8,8 @@ import pytest
 import stylobate as sb
 from stylobate.base_motions.base import ACCELERATION, VELOCITY
 from stylobate.errors import ParameterError
-from stylobate.records import HorizontalComponent, intensity_measures
-from stylobate.records.intensities import horizontal_peak, peak_velocity
+from stylobate.records import intensity_measures
+from stylobate.records.intensities import HorizontalComponent, horizontal_peak, peak_velocity
 
 ROTD50, ROTD100, GEOMETRIC_MEAN, LARGER = HorizontalComponent
 RECORD = sb.Record(samples=np.random.default_rng(5).normal(size=(60, 2)) * (1.5, 1.0), step=0.1, name="noise")

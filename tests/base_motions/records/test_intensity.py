@@ -8,13 +8,8 @@ from scipy.integrate import quad
 
 import stylobate as sb
 from stylobate.column import STANDARD_GRAVITY
-from stylobate.records import (
-    arias_intensity,
-    cumulative_absolute_velocity,
-    intensity_measures,
-    rocking_measures,
-    significant_duration,
-)
+from stylobate.records import intensity_measures, rocking_measures
+from stylobate.records.intensities import arias_intensity, cumulative_absolute_velocity, significant_duration
 
 STEP = 0.1
 RECORD = sb.Record(samples=np.random.default_rng(5).normal(size=(60, 2)), step=STEP, name="noise")

@@ -7,14 +7,8 @@ import pytest
 from scipy.signal import welch
 
 from stylobate.errors import ParameterError
-from stylobate.records import (
-    CloughPenzien,
-    EvolvingNoise,
-    arias_intensity,
-    intensity_measures,
-    random_vibration,
-    significant_duration,
-)
+from stylobate.records import CloughPenzien, EvolvingNoise, intensity_measures, random_vibration
+from stylobate.records.intensities import arias_intensity, significant_duration
 
 DENSITY = CloughPenzien(level=0.05)
 MODEL = EvolvingNoise(

@@ -5,7 +5,8 @@ import pytest
 
 import stylobate as sb
 from stylobate.errors import UnlikelyInputWarning
-from stylobate.records import Lengths, Steps, arias_intensity
+from stylobate.records import Lengths, Steps
+from stylobate.records.intensities import arias_intensity
 from stylobate.records.joining import lost_intensity
 
 STEP = 0.01

@@ -165,6 +165,7 @@ def resistance(vx, vy, k):
 """
 
 
+@pytest.mark.slow
 def test_a_model_whose_functions_call_helpers_and_read_constants_of_their_module(written):
     text = dragged("resistance(vx, vy, k)", HELPERS)
     model = written(text).Dragged(COLUMN, drag=5.0)
@@ -186,6 +187,7 @@ def law(vx, vy, k):
 """
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", ["ensemble", "single run", "taylor", "flow"])
 def test_a_constant_that_changes_after_a_run_is_seen_by_the_next(written, kind):
     def result(module):
@@ -206,6 +208,7 @@ def test_a_constant_that_changes_after_a_run_is_seen_by_the_next(written, kind):
     assert np.abs(expected - before).max() > 1e-5
 
 
+@pytest.mark.slow
 def test_a_model_whose_functions_branch(written):
     before = (
         "def resistance(vx, vy, k):\n    speed = math.hypot(vx, vy)\n    if speed > 0.05:\n        return k * speed\n"
@@ -252,6 +255,7 @@ class Counted(sb.Slender):
 """
 
 
+@pytest.mark.slow
 def test_a_model_whose_tilt_is_not_its_first_state(written):
     model = written(FURTHER).Counted(COLUMN, damping=0.1)
     data = expect_as_alone(model, CIRCLE, **{**TURNING, "rtol": 1e-10})
@@ -352,6 +356,7 @@ def test_a_change_of_another_models_function_changes_the_fingerprint_of_what_cal
     assert fingerprint(told) != before
 
 
+@pytest.mark.slow
 def test_functions_that_the_user_compiled_already_are_taken_and_told_apart(written):
     # As other compilers do it.
     before = "class Jit:\n    def __init__(self, function):\n        self.py_func = function\n\n"

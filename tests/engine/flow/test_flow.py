@@ -8,7 +8,7 @@ import pytest
 
 import stylobate as sb
 from stylobate.base_motions.base import ACCELERATION
-from stylobate.engine.flow.integration import Status
+from stylobate.engine.flow.integration import FlowStatus
 from stylobate.engine.flow.periodic import PeriodicSystem, plane_of
 from stylobate.errors import UnsupportedError
 
@@ -40,7 +40,7 @@ def central(function, at, step):
 @pytest.mark.parametrize(("system", "state"), SYSTEMS)
 def test_derivatives_by_the_start_equal_differences_of_the_flow(system, state):
     flow = system.carry(state, 0.0, 1.0)
-    assert flow.status is Status.DONE
+    assert flow.status is FlowStatus.DONE
     step = 1e-3 * C
     for j, unit in enumerate(np.eye(system.order)):
         found = central(lambda h, unit=unit: system.carry(state + h * unit, 0.0, 1.0).end, 0.0, step)
@@ -56,7 +56,7 @@ def test_derivatives_by_the_start_equal_differences_of_the_flow(system, state):
 def test_volumes_shrink_as_liouville_says(system, state, turns):
     """det = exp(∫ tr J): −2η in space, −η in a plane, where passing the upright leaves areas as they are."""
     flow = system.carry(state, 0.2, 0.2 + turns)
-    assert flow.status is Status.DONE
+    assert flow.status is FlowStatus.DONE
     trace = -ETA * system.order / 2.0
     expected = math.exp(trace * turns * system.numbers.period)
     # δ ln det = tr(M⁻¹ δM)
@@ -201,7 +201,7 @@ def test_tilts_met_are_those_of_a_dense_run():
 def test_a_run_through_the_upright_is_lost():
     system = PeriodicSystem(MODEL, STRAIGHT)
     flow = system.carry(np.array([0.02 * LINE[0], 0.02 * LINE[1], 0.0, 0.0]), 0.0, 1.0)
-    assert flow.status is Status.LOST
+    assert flow.status is FlowStatus.LOST
     assert flow.minimum_tilt < 1e-6 * C
 
 
@@ -209,12 +209,12 @@ def test_a_run_that_never_returns_is_gone():
     system = PeriodicSystem(MODEL, CIRCLE)
     assert system.safe_tilt == pytest.approx(C + 0.065, rel=1e-14)
     flow = system.carry(np.array([0.16, 0.0, 0.05, 0.0]), 0.0, 1.0)
-    assert flow.status is Status.GONE
+    assert flow.status is FlowStatus.GONE
     assert flow.peak_tilt > system.safe_tilt
     allowed = system.carry(np.array([0.16, 0.0, 0.05, 0.0]), 0.0, 0.1, peak_tilt=10.0)
-    assert allowed.status is Status.DONE
+    assert allowed.status is FlowStatus.DONE
     planar = PeriodicSystem(MODEL, STRAIGHT, LINE)
-    assert planar.carry(np.array([0.3, 0.1]), 0.0, 1.0).status is Status.GONE
+    assert planar.carry(np.array([0.3, 0.1]), 0.0, 1.0).status is FlowStatus.GONE
 
 
 # Base motions of a user's own.
@@ -339,7 +339,7 @@ def test_units_do_not_matter():
 @pytest.mark.parametrize("broken", [math.nan, math.inf])
 def test_a_state_that_is_no_number_fails(broken):
     system = PeriodicSystem(MODEL, CIRCLE)
-    assert system.carry(np.array([broken, 0.0, 0.0, 0.0]), 0.0, 1.0).status is Status.FAILED
+    assert system.carry(np.array([broken, 0.0, 0.0, 0.0]), 0.0, 1.0).status is FlowStatus.FAILED
 
 
 class LossyByItsSpeed(sb.Slender):
@@ -360,7 +360,7 @@ class LossyByItsSpeed(sb.Slender):
 def test_a_loss_that_is_not_proportional_to_the_speed_has_right_derivatives():
     system = PeriodicSystem(LossyByItsSpeed(MODEL.column, damping=ETA), STRAIGHT, LINE)
     flow = system.carry(IN_PLANE, 0.0, 1.0)
-    assert flow.status is Status.DONE
+    assert flow.status is FlowStatus.DONE
     assert flow.minimum_tilt == 0.0
     for j, unit in enumerate(np.eye(2)):
         found = central(lambda h, unit=unit: system.carry(IN_PLANE + h * unit, 0.0, 1.0).end, 0.0, 1e-5)

@@ -7,7 +7,7 @@ import pytest
 
 import stylobate as sb
 from stylobate.engine.kernel.columns import LOG, STATE, Log, Setup
-from stylobate.engine.kernel.driver.events import Status
+from stylobate.engine.kernel.driver.events import RunStatus
 
 SLENDER = sb.Slender(sb.Column.dimensionless(0.1))
 CIRCLE = sb.Harmonic.circular(acceleration=0.065, angular_frequency=3.0)
@@ -18,7 +18,7 @@ def batch(lane_of):
     """Make a buffer of idle lanes, with a table of five runs whose numbers are all different."""
     one = lane_of(SLENDER, CIRCLE)
     one.table = np.arange(5.0)[:, None] + 0.001 * np.arange(400.0)
-    one.table[:, LOG + Log.STATUS] = Status.WAITING
+    one.table[:, LOG + Log.STATUS] = RunStatus.WAITING
     for i in range(one.buffer.shape[1]):
         one.driver.set_idle(one.buffer, i)
     return one
@@ -50,11 +50,11 @@ def test_a_run_enters_a_lane_with_its_numbers_state_and_parameters(batch, monkey
     scope, called = batch.scope("enter"), []
     for name in ("set_look", "set_pair", "set_sample", "set_strobe", "set_break", "set_bounds", "set_leg"):
         monkeypatch.setitem(scope, name, lambda *_, name=name: called.append(name))
-    monkeypatch.setitem(scope, "begin", lambda *_: Status.LIFTED)
+    monkeypatch.setitem(scope, "begin", lambda *_: RunStatus.LIFTED)
     monkeypatch.setitem(scope, "square_of_speed", lambda _buf, _i, energy: 7.0 * energy)
     table = batch.table
     table[3, [Setup.SLENDERNESS, Setup.PERIOD, Setup.REST_ENERGY, Setup.REST_ENERGY_FOR_GOOD]] = 0.2, 4.0, 1e-3, 3e-3
-    assert batch.driver.enter(batch.buffer, 1, table, batch.pieces, 3) == Status.LIFTED
+    assert batch.driver.enter(batch.buffer, 1, table, batch.pieces, 3) == RunStatus.LIFTED
     lane = batch.buffer[:, 1]
     np.testing.assert_array_equal(lane[:STATE], table[3, :STATE])
     first = batch.row("y0")
@@ -70,7 +70,7 @@ def test_a_run_enters_a_lane_with_its_numbers_state_and_parameters(batch, monkey
     assert lane[batch.row("per_turn")] == 0.0
 
 
-@pytest.mark.parametrize("status", [Status.OVERTURNED, Status.RESTED, Status.TO_PLANE])
+@pytest.mark.parametrize("status", [RunStatus.OVERTURNED, RunStatus.RESTED, RunStatus.TO_PLANE])
 @pytest.mark.parametrize("stands", [0.0, 1.0])
 def test_a_run_leaves_its_record_and_state_in_the_table(batch, status, stands):
     batch.table[2] = 9.0
@@ -82,8 +82,8 @@ def test_a_run_leaves_its_record_and_state_in_the_table(batch, status, stands):
     row, log = batch.table[2], LOG
     assert (row[:log] == 9.0).all()
     assert row[log + Log.STATUS] == status
-    assert row[log + Log.DECIDED] == (5.0 if status == Status.OVERTURNED else 3.0)
-    moves = not stands and status != Status.TO_PLANE
+    assert row[log + Log.DECIDED] == (5.0 if status == RunStatus.OVERTURNED else 3.0)
+    moves = not stands and status != RunStatus.TO_PLANE
     assert row[log + Log.LAST_AZIMUTH] == pytest.approx(2.375 if moves else 0.1)
     assert list(row[STATE : STATE + 4]) == [batch[f"y{j}"] for j in range(4)]
     assert row[STATE - 1] == batch.buffer[STATE - 1, 0]
@@ -92,7 +92,7 @@ def test_a_run_leaves_its_record_and_state_in_the_table(batch, status, stands):
 def test_runs_that_end_at_once_leave_the_lane_to_the_next(batch, monkeypatch):
     begun, left = [], []
     scope = batch.scope("fill")
-    statuses = {0: Status.LIFTED, 1: Status.RESTED, 3: Status.WAITING, 4: Status.WAITING}
+    statuses = {0: RunStatus.LIFTED, 1: RunStatus.RESTED, 3: RunStatus.WAITING, 4: RunStatus.WAITING}
 
     def enter(buf, i, _table, _pieces, run):
         begun.append(run)
@@ -101,9 +101,9 @@ def test_runs_that_end_at_once_leave_the_lane_to_the_next(batch, monkeypatch):
 
     monkeypatch.setitem(scope, "enter", enter)
     monkeypatch.setitem(scope, "leave", lambda _buf, _i, _table, status: left.append(status))
-    batch.table[2, LOG + Log.STATUS] = Status.STOPPED  # has ended before
+    batch.table[2, LOG + Log.STATUS] = RunStatus.STOPPED  # has ended before
     assert batch.driver.fill(batch.buffer, 0, batch.table, batch.pieces, 0) == 4
-    assert (begun, left, batch["run"]) == ([0, 1, 3], [Status.LIFTED, Status.RESTED], 3.0)
+    assert (begun, left, batch["run"]) == ([0, 1, 3], [RunStatus.LIFTED, RunStatus.RESTED], 3.0)
     assert batch.driver.fill(batch.buffer, 1, batch.table, batch.pieces, 4) == 5
     assert batch.driver.fill(batch.buffer, 2, batch.table, batch.pieces, 5) == 5
     assert runs_of(batch)[:3] == [3, 4, -1]

@@ -7,7 +7,7 @@ import pytest
 
 import stylobate as sb
 from stylobate.engine.kernel.columns import Trace
-from stylobate.engine.kernel.driver.events import Status, TraceKind
+from stylobate.engine.kernel.driver.events import RunStatus, TraceKind
 from stylobate.models.sliding.balance import Contact
 
 MODEL = sb.Sliding(sb.Column.solid(radius=0.5, height=3.0, density=2700.0))
@@ -49,7 +49,7 @@ def test_guards_are_those_of_cubics_through_the_ends_of_the_step(lane, monkeypat
 @pytest.mark.parametrize("last", [math.nan, 2.3, -1.6])
 def test_the_azimuth_goes_on_from_the_last_one_without_a_jump(lane, last):
     one = lane(last_azimuth=last)
-    assert one.do("set_moving", one.table, one.pieces) == Status.WAITING
+    assert one.do("set_moving", one.table, one.pieces) == RunStatus.WAITING
     expected = 0.375 if math.isnan(last) else 0.375 + round(last - 0.375)
     assert (one.do("azimuth_now"), one["first_azimuth"]) == pytest.approx((expected, expected))
 
@@ -76,9 +76,9 @@ def test_explicit_steps_begin_with_the_reset_of_a_guard_that_is_broken(lane, mon
     one, resets = lane(time=1.0, samples_at=3.0, rejected=1.0, aimed=1.0), []
     scope = one.scope("go_on_explicitly")
     monkeypatch.setitem(scope, "broken_now", lambda *_: number)
-    monkeypatch.setitem(scope, "apply_resets", lambda *given: resets.append(given[-1]) or Status.LIMIT)
+    monkeypatch.setitem(scope, "apply_resets", lambda *given: resets.append(given[-1]) or RunStatus.LIMIT)
     status = one.driver.go_on_explicitly(one.buffer, 0, one.table, one.pieces, 1.0, pays=True)
-    assert (status, resets) == ((Status.LIMIT, [number]) if number >= 0 else (Status.WAITING, []))
+    assert (status, resets) == ((RunStatus.LIMIT, [number]) if number >= 0 else (RunStatus.WAITING, []))
     assert one["stop"] == (99.0 if number >= 0 else 3.0)
     assert (one["rejected"], one["aimed"]) == (0.0, 0.0)
 
@@ -90,10 +90,12 @@ def test_a_guard_broken_within_an_implicit_step_ends_the_kind_of_contact(lane, m
         for name, value in (("set_jacobian", None), ("fastest_rate", 1e5), ("attempt", 0.1)):
             monkeypatch.setitem(scope, name, lambda *_, value=value: value)
         monkeypatch.setitem(scope, "first_broken_guard", lambda *_, number=number: (0.05, number))
-        monkeypatch.setitem(scope, "end_contact", lambda *given, ended=ended: ended.append(given[-2:]) or Status.JAMMED)
-        monkeypatch.setitem(scope, "take_step", lambda *_: (Status.STEP_LIMIT, -1))
+        monkeypatch.setitem(
+            scope, "end_contact", lambda *given, ended=ended: ended.append(given[-2:]) or RunStatus.JAMMED
+        )
+        monkeypatch.setitem(scope, "take_step", lambda *_: (RunStatus.STEP_LIMIT, -1))
         status = one.do("follow_implicitly", one.table, one.pieces)
-        assert (status, ended) == ((Status.JAMMED, [(0.05, number)]) if number >= 0 else (Status.STEP_LIMIT, []))
+        assert (status, ended) == ((RunStatus.JAMMED, [(0.05, number)]) if number >= 0 else (RunStatus.STEP_LIMIT, []))
 
 
 def test_a_step_to_an_event_keeps_its_start_and_its_slopes(lane):
@@ -200,13 +202,13 @@ def test_resets_follow_each_other_until_no_guard_is_broken(lane, monkeypatch):
     rest = iter([GUARD["lift"], GUARD["friction"], -1])
     monkeypatch.setitem(scope, "apply_reset", lambda _buf, _i, _table, number: applied.append(number))
     monkeypatch.setitem(scope, "broken_now", lambda *_: next(rest))
-    monkeypatch.setitem(scope, "set_moving", lambda *_: Status.WAITING)
-    assert one.do("apply_resets", one.table, one.pieces, GUARD["rest"]) == Status.WAITING
+    monkeypatch.setitem(scope, "set_moving", lambda *_: RunStatus.WAITING)
+    assert one.do("apply_resets", one.table, one.pieces, GUARD["rest"]) == RunStatus.WAITING
     assert applied == [GUARD["rest"], GUARD["lift"], GUARD["friction"]]
-    assert one.do("apply_resets", one.table, one.pieces, GUARD["fallen"]) == Status.OVERTURNED
-    assert one.do("apply_resets", one.table, one.pieces, len(GUARD)) == Status.LIMIT
+    assert one.do("apply_resets", one.table, one.pieces, GUARD["fallen"]) == RunStatus.OVERTURNED
+    assert one.do("apply_resets", one.table, one.pieces, len(GUARD)) == RunStatus.LIMIT
     one["y15"] = float(Contact.JAMMED)
-    assert one.do("apply_resets", one.table, one.pieces, GUARD["jam"]) == Status.JAMMED
+    assert one.do("apply_resets", one.table, one.pieces, GUARD["jam"]) == RunStatus.JAMMED
     assert len(applied) == 4
 
 
@@ -241,9 +243,9 @@ def test_a_step_held_back_is_repeated_shortened_or_ends_the_contact(lane, monkey
     scope = one.scope("handle_held_step")
     for name, found in (("set_dense", None), ("first_broken_guard", (0.05, number)), ("slip_turns", turns)):
         monkeypatch.setitem(scope, name, lambda *_, found=found: found)
-    monkeypatch.setitem(scope, "end_contact", lambda *given: ended.append(given[-2:]) or Status.JAMMED)
+    monkeypatch.setitem(scope, "end_contact", lambda *given: ended.append(given[-2:]) or RunStatus.JAMMED)
     status = one.do("handle_held_step", one.table, one.pieces)
-    assert (status, ended) == ((Status.JAMMED, [(0.05, number)]) if outcome == "ends" else (Status.WAITING, []))
+    assert (status, ended) == ((RunStatus.JAMMED, [(0.05, number)]) if outcome == "ends" else (RunStatus.WAITING, []))
     assert (one["aimed"], one["rejected"]) == (float(outcome == "again"), float(outcome == "shorter"))
     if outcome != "ends":
         assert one["h"] == (0.2 if outcome == "again" else pytest.approx(scope["SLIP_SHORTER"] * 0.05))

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import stylobate as sb
-from stylobate.engine.kernel.driver.events import EVENTS, LIMITS, Status, Target, lean
+from stylobate.engine.kernel.driver.events import EVENTS, LIMITS, RunStatus, Target, lean
 
 COLUMN = sb.Column.dimensionless(0.1)
 SLENDER = sb.Slender(COLUMN)
@@ -101,7 +101,7 @@ def test_a_held_step_is_aimed_at_the_first_event_within_it(lane_of, limit, no_re
 
 def test_each_event_that_ends_runs_has_an_outcome_and_a_reason():
     assert len({event.target for event in EVENTS}) == len(EVENTS)
-    ends = [event.status for event in EVENTS if event.status is not Status.WAITING]
+    ends = [event.status for event in EVENTS if event.status is not RunStatus.WAITING]
     assert all(status.outcome is not None and status.event and status.reason for status in ends)
     assert all(event.status in ends for event in LIMITS)
 
@@ -122,9 +122,9 @@ def test_only_a_very_short_remaining_step_is_made_by_a_taylor_polynomial(lane_of
     one["y0"], one["y2"], one["k0_0"], one["last_slope0"], one["tilt_limit"] = 0.5, 1.0, 1.0, 1.0, 0.5 + further
     status = one.do("approach_target", one.table, one.pieces)
     if abs(share) > 1e-6:
-        assert (status, one["aimed"], one["h"]) == (Status.WAITING, 2.0, pytest.approx(further))
+        assert (status, one["aimed"], one["h"]) == (RunStatus.WAITING, 2.0, pytest.approx(further))
     else:
-        assert (status, one["time"]) == (Status.LIMIT, pytest.approx(further))
+        assert (status, one["time"]) == (RunStatus.LIMIT, pytest.approx(further))
         assert one["tilt"] == pytest.approx(0.5 + further, rel=1e-12)
 
 
@@ -153,7 +153,7 @@ def test_only_a_stop_at_the_end_of_a_leg_sets_a_new_one(lane_of, monkeypatch, gi
     one, called = lane_of(SLENDER, WEAK, time=2.0, **given), []
     for name in ("set_leg", "set_rates"):
         monkeypatch.setitem(one.scope("meet_stop"), name, lambda *_, name=name: called.append(name))
-    assert one.do("meet_stop", one.table, one.pieces, 2.0) == Status.WAITING
+    assert one.do("meet_stop", one.table, one.pieces, 2.0) == RunStatus.WAITING
     assert called == (["set_leg", "set_rates"] if sets else [])
 
 

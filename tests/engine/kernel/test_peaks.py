@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import stylobate as sb
-from stylobate.engine.kernel.driver.events import Status
+from stylobate.engine.kernel.driver.events import RunStatus
 
 COLUMN = sb.Column.dimensionless(0.1)
 SLENDER, ROLLING = sb.Slender(COLUMN), sb.Rolling(COLUMN)
@@ -129,7 +129,7 @@ def test_an_impact_at_the_closest_point_is_recorded_and_applied(lane_of):
     usual = {"atol": 1e-9, "atol_now": 1e-12, "rtol": 1e-8, "wanted": 0.01, "last_azimuth": math.nan}
     one = lane_of(model, CIRCLE, time=2.0, slenderness=0.1, **usual, **{f"y{j}": part for j, part in enumerate(state)})
     one["first_azimuth"], one["closest_passage"] = math.nan, 1.0
-    assert one.do("apply_impact", one.table, one.pieces) == Status.WAITING
+    assert one.do("apply_impact", one.table, one.pieces) == RunStatus.WAITING
     expected = model.impact_map(*state, *model.parameters)
     assert [one[f"y{j}"] for j in range(5)] == pytest.approx(list(expected))
     distance = (1e-5 * 0.1 + 2e-5 * 0.2) / math.hypot(0.2, 0.1)
@@ -148,9 +148,9 @@ def test_a_planar_passage_changes_the_side_loses_energy_or_ends_at_rest(lane_of,
     energy = 100.0 * model.rest_energy(0.0, 1e-3, 0.0, *model.parameters)
     usual |= {"slenderness": 0.1, "rest_energy": energy, "rest_energy_for_good": energy, "least_force": 0.1}
     one = lane_of(model, CIRCLE, planar=True, y0=1e-15, y1=speed, passage_tilt=1e-4 * losses, **usual)
-    monkeypatch.setitem(one.scope("cross_vertical"), "settle", lambda *_: Status.RESTED)
+    monkeypatch.setitem(one.scope("cross_vertical"), "settle", lambda *_: RunStatus.RESTED)
     status = one.do("cross_vertical", one.table, one.pieces)
-    assert (status, one["y0"], one["reached_vertical"]) == (Status.RESTED if rests else Status.WAITING, 0.0, 1.0)
+    assert (status, one["y0"], one["reached_vertical"]) == (RunStatus.RESTED if rests else RunStatus.WAITING, 0.0, 1.0)
     if not rests:
         after = model.impact_map(0.0, 0.0, speed, 0.0, 0.0, *model.parameters)[2] if losses else speed
         assert (one["y1"], one["side"], one["wanted"]) == (pytest.approx(after), -1.0, 0.03)

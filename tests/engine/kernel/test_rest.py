@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import stylobate as sb
-from stylobate.engine.kernel.driver.events import Status
+from stylobate.engine.kernel.driver.events import RunStatus
 
 COLUMN = sb.Column.dimensionless(0.1)
 SLENDER, ROLLING = sb.Slender(COLUMN), sb.Rolling(COLUMN)
@@ -44,8 +44,8 @@ def test_a_column_comes_to_rest_only_where_the_plane_holds_it(lane_of):
 @pytest.mark.parametrize(("capacity", "kept"), [(0.05, 0.7), (0.3, 0.0)])
 def test_a_column_that_stands_for_an_instant_keeps_its_spin(lane_of, monkeypatch, capacity, kept):
     one = lane_of(ROLLING, WEAK, **(STRONG | {"capacity": capacity, "y0": 1e-9, "y4": 0.7, "y": 1.0, "rests": 2.0}))
-    monkeypatch.setitem(one.scope("settle"), "stand", lambda *_: Status.RESTED)
-    assert one.do("settle", one.table, one.pieces, 0.0) == Status.RESTED
+    monkeypatch.setitem(one.scope("settle"), "stand", lambda *_: RunStatus.RESTED)
+    assert one.do("settle", one.table, one.pieces, 0.0) == RunStatus.RESTED
     assert [one[f"y{j}"] for j in range(5)] == [0.0, 0.0, 0.0, 0.0, kept]
     assert (one["rests"], one["stands"], one["reached_vertical"], one["last_azimuth"]) == (3.0, 1.0, 1.0, 0.25)
 
@@ -53,7 +53,7 @@ def test_a_column_that_stands_for_an_instant_keeps_its_spin(lane_of, monkeypatch
 def test_uplift_is_counted_once_and_starts_the_motion(lane_of):
     for rests in (0.0, 1.0):
         one = lane_of(SLENDER, WEAK, **(STRONG | {"stands": 1.0, "atol": 1e-9, "rtol": 1e-8, "rests": rests}))
-        assert one.do("stand", one.table, one.pieces, 0.0) == Status.WAITING
+        assert one.do("stand", one.table, one.pieces, 0.0) == RunStatus.WAITING
         assert (one["releases"], one["stands"], one["released_from_rest"]) == (1.0, 0.0, rests)
         assert 0.0 < one["time"] < 0.01
         assert one["x"] < 0.0
@@ -65,7 +65,7 @@ def test_a_motion_along_a_line_goes_on_in_its_plane(lane_of, line):
     lined = {"line_x": line[0], "line_y": line[1], "stands": 1.0, "atol": 1e-9, "rtol": 1e-8}
     one = lane_of(SLENDER, WEAK, **(STRONG | lined | (pushed if any(line) else {})))
     status = one.do("stand", one.table, one.pieces, 0.0)
-    assert status == (Status.TO_PLANE if any(line) else Status.WAITING)
+    assert status == (RunStatus.TO_PLANE if any(line) else RunStatus.WAITING)
     assert one["stands"] == 0.0
 
 

@@ -9,7 +9,7 @@ import pytest
 import stylobate as sb
 from stylobate.compiler import kept
 from stylobate.compiler.unit import ArrayArgument
-from stylobate.compiler.values import Kind
+from stylobate.compiler.values import NumberKind
 from stylobate.engine.ensembles.batch import Batch
 from stylobate.engine.ensembles.runs import broadcast
 from stylobate.engine.kernel.columns import TRACE_TERMS, Trace
@@ -60,7 +60,7 @@ def test_steps_have_the_bits_of_plain_python(case, draws, plan_of):
     plan = plan_of(model, motion, **options)
     kernel = kernel_of(type(model), plan.shape(planar=case.endswith("plane")))
     rows, width = kernel.shape.rows(), kernel.shape.width
-    arguments, kinds = [ArrayArgument((len(rows), width)), Kind.INTEGER], [ctypes.c_void_p, ctypes.c_int64]
+    arguments, kinds = [ArrayArgument((len(rows), width)), NumberKind.INTEGER], [ctypes.c_void_p, ctypes.c_int64]
     compiled = without_fast_arithmetic(kernel.compiled, "step", arguments, kinds)
     rng = np.random.default_rng(8)
     for draw in range(draws):
@@ -79,6 +79,7 @@ def test_steps_have_the_bits_of_plain_python(case, draws, plan_of):
         np.testing.assert_array_equal(one, other)
 
 
+@pytest.mark.slow
 def test_a_run_with_implicit_steps_has_the_bits_of_plain_python(plan_of):
     # A base that stands for 0.068 s and then slides, under a load that turns.
     line = sb.Harmonic.elliptic(amplitude=(1.2, 0.6), phase=1.0, angular_frequency=2.0, start_phase=-1.0)

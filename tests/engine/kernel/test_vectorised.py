@@ -9,7 +9,7 @@ from llvmlite import binding as llvm
 import stylobate as sb
 from stylobate.compiler import kept
 from stylobate.compiler.unit import ArrayArgument
-from stylobate.compiler.values import Kind
+from stylobate.compiler.values import NumberKind
 from stylobate.engine.kernel.kernels import kernel_of
 from stylobate.models.sliding import Sliding
 
@@ -86,7 +86,7 @@ def assembly_of(plan_of):
     ],
 )
 def test_steps_work_on_all_lanes_at_once(motion, method, planar, model, assembly_of):
-    counts, registers = arithmetic_of(assembly_of("step", motion, method, planar, model, after=(Kind.INTEGER,)))
+    counts, registers = arithmetic_of(assembly_of("step", motion, method, planar, model, after=(NumberKind.INTEGER,)))
     assert counts["pd"] > 100
     assert counts["sd"] == 0, counts
     assert registers["ymm"] + registers["zmm"] > registers["xmm"]
@@ -103,7 +103,7 @@ def test_steps_work_on_all_lanes_at_once(motion, method, planar, model, assembly
 )
 def test_steps_that_follow_loads_work_on_all_lanes_at_once(model, planar, assembly_of):
     counts, _ = arithmetic_of(
-        assembly_of("step", "harmonic", "dop853", planar, model, demands=True, after=(Kind.INTEGER,))
+        assembly_of("step", "harmonic", "dop853", planar, model, demands=True, after=(NumberKind.INTEGER,))
     )
     assert counts["pd"] > 100
     assert counts["sd"] == 0, counts
@@ -111,7 +111,7 @@ def test_steps_that_follow_loads_work_on_all_lanes_at_once(model, planar, assemb
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    ("name", "arguments"), [("evaluate", (Kind.FLOAT,)), ("evaluate_guards", ()), ("step", (Kind.INTEGER,))]
+    ("name", "arguments"), [("evaluate", (NumberKind.FLOAT,)), ("evaluate_guards", ()), ("step", (NumberKind.INTEGER,))]
 )
 def test_equations_and_margins_of_changing_contact_work_on_all_lanes_at_once(name, arguments, assembly_of):
     counts, _ = arithmetic_of(assembly_of(name, "harmonic", "dop853", False, Sliding, after=arguments))
@@ -126,7 +126,7 @@ INSTRUCTIONS_AT_NODES = 40
 
 @pytest.mark.parametrize(("motion", "method", "planar"), [kernel for kernel in KERNELS if kernel.values[1] == "taylor"])
 def test_observation_works_on_all_nodes_at_once(motion, method, planar, assembly_of):
-    assembly = assembly_of("observe", motion, method, planar, after=(Kind.INTEGER,))
+    assembly = assembly_of("observe", motion, method, planar, after=(NumberKind.INTEGER,))
     counts, registers = arithmetic_of(assembly)
     assert counts["pd"] >= INSTRUCTIONS_AT_NODES, counts
     assert registers["ymm"] + registers["zmm"] >= INSTRUCTIONS_AT_NODES, registers

@@ -13,8 +13,10 @@ from PIL import Image
 
 import stylobate as sb
 from stylobate.errors import FileError, ParameterError, UnlikelyInputWarning, UnsupportedError
-from stylobate.plots.animation import Animation, drawn_motion, formats
+from stylobate.plots.animation import formats
+from stylobate.plots.animation.animation import Animation
 from stylobate.plots.animation.drawing import Drawing
+from stylobate.plots.animation.motion import drawn_motion
 
 SMALL = {"size": (320, 280), "frames_per_second": 12}
 

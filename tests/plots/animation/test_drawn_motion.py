@@ -9,7 +9,7 @@ import pytest
 
 import stylobate as sb
 from stylobate.errors import ParameterError
-from stylobate.plots.animation import DrawnMotion, drawn_motion
+from stylobate.plots.animation.motion import DrawnMotion, drawn_motion
 from stylobate.plots.geometry import Shape
 
 COLUMN = sb.Column.solid(radius=0.1, height=0.6, density=2700.0)

@@ -12,9 +12,8 @@ from matplotlib.text import Text
 
 import stylobate as sb
 from stylobate.plots import body
-from stylobate.plots.animation import DrawnMotion
 from stylobate.plots.animation.drawing import Drawing, Look, Scene, round_length
-from stylobate.plots.animation.motion import contact_path
+from stylobate.plots.animation.motion import DrawnMotion, contact_path
 from stylobate.plots.body import MARKED, FlutedColumn, lit
 from stylobate.plots.geometry import Shape, View, direction, frames
 

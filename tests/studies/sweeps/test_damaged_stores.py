@@ -14,8 +14,9 @@ from tests.studies.sweeps.conftest import MODEL, MOTION
 
 import stylobate as sb
 from stylobate.errors import FileError
-from stylobate.studies.sweeps import Sweep, open_sweep, run_sweep, store
+from stylobate.studies.sweeps import Sweep, run_sweep, store
 from stylobate.studies.sweeps.chunks import CODECS, METADATA, Blocks, Chunks, decoded, encoded
+from stylobate.studies.sweeps.store import open_sweep
 
 FLIPS, EXCHANGES = 400, 25
 
@@ -42,6 +43,7 @@ def files_of(path):
     return {str(file.relative_to(path)): file.read_bytes() for file in path.rglob("*") if file.is_file()}
 
 
+@pytest.mark.slow
 def test_no_flipped_bit_is_accepted_and_all_that_can_be_are_mended(sweep, undamaged, path, assert_same_arrays):
     written, rng = files_of(undamaged), np.random.default_rng(22)
     data = open_sweep(undamaged, load=True)
@@ -149,6 +151,7 @@ def add_an_array(rng, path):
 DAMAGES = (exchange_files, exchange_metadata, exchange_arrays, append, truncate, remove, add_an_array)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("store", ["undamaged", "begun"])
 @pytest.mark.parametrize("damage", DAMAGES)
 def test_a_changed_store_is_refused_or_holds_what_was_written(store, damage, request, tmp_path, assert_same_arrays):

@@ -11,7 +11,8 @@ import xarray as xr
 
 import stylobate as sb
 from stylobate.errors import StylobateError
-from stylobate.studies.sweeps import Dask, Sweep, executor_from, run_sweep
+from stylobate.studies.sweeps import Dask, Sweep, run_sweep
+from stylobate.studies.sweeps.dask_executor import executor_from
 
 MODEL = sb.Slender(sb.Column.dimensionless(slenderness=0.1), damping=0.1)
 MOTION = sb.Harmonic.circular(acceleration=0.15, angular_frequency=1.0)

@@ -9,13 +9,14 @@ import sys
 import pytest
 
 from stylobate.studies.sweeps import Threads, run_sweep
-from stylobate.studies.sweeps.chunks import Blocks, Chunks, State
+from stylobate.studies.sweeps.chunks import Blocks, Chunks, ChunkState
 
 DRIVER = """
 import os, signal, sys, time
 import numpy as np
 import stylobate as sb
-from stylobate.studies.sweeps import Sweep, executor_from, run_sweep
+from stylobate.studies.sweeps import Sweep, run_sweep
+from stylobate.studies.sweeps.dask_executor import executor_from
 
 def stop(done, total):
     print(done, flush=True)
@@ -48,7 +49,7 @@ def test_a_driver_killed_and_started_again_changes_nothing(
         driver.communicate(timeout=120)
     assert driver.returncode == -signal.SIGKILL
     chunks = Chunks(tmp_path / "sweep.zarr", Blocks.of(grid.shape, 2), grid.layout.variables)
-    done = {index for index, state in chunks.states().items() if state is State.DONE}
+    done = {index for index, state in chunks.states().items() if state is ChunkState.DONE}
     assert done
     again = counting(Threads(1))
     data = run_sweep(grid, store=tmp_path / "sweep.zarr", resume=True, executor=again)

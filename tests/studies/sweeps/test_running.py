@@ -8,8 +8,10 @@ import xarray as xr
 
 import stylobate as sb
 from stylobate.errors import Interrupted, ParameterError, UnsupportedError
-from stylobate.studies.sweeps import Dask, Sweep, Threads, executor_from, open_sweep, run_sweep
+from stylobate.studies.sweeps import Dask, Sweep, Threads, run_sweep
 from stylobate.studies.sweeps.chunks import Chunks
+from stylobate.studies.sweeps.dask_executor import executor_from
+from stylobate.studies.sweeps.store import open_sweep
 
 MODEL = sb.Slender(sb.Column.dimensionless(slenderness=0.1), damping=0.1)
 MOTION = sb.Harmonic.circular(acceleration=0.15, angular_frequency=1.0)
@@ -195,7 +197,7 @@ def test_a_wait_for_workers_is_a_positive_number_of_seconds(wait):
         ({"chunk_size": 0}, "chunk_size must be a whole number of at least 1, got 0"),
         (
             {"executor": "dask"},
-            r"executor must be Threads\(...\) or Dask\(...\), got 'dask'. Make one from a text by executor_from\(",
+            r"executor must be Threads\(...\) or Dask\(...\), got 'dask'. Pass Dask\(address=",
         ),
         ({"store": ""}, "store must name the folder of a store, such as \"map.zarr\", or be None; got ''"),
         ({"store": 3}, "store must name the folder of a store, .* got 3"),

@@ -14,9 +14,9 @@ import zarr
 import stylobate as sb
 from stylobate.errors import FileError
 from stylobate.files import _MACHINE
-from stylobate.studies.sweeps import Sweep, open_sweep, run_sweep
+from stylobate.studies.sweeps import Sweep, run_sweep
 from stylobate.studies.sweeps.fingerprint import identity_of
-from stylobate.studies.sweeps.store import differences
+from stylobate.studies.sweeps.store import differences, open_sweep
 
 MODEL = sb.Slender(sb.Column.dimensionless(slenderness=0.1), damping=0.1)
 MOTION = sb.Harmonic.circular(acceleration=0.15, angular_frequency=1.0)

@@ -11,8 +11,8 @@ from stylobate.base_motions.record import AXES
 from stylobate.earthquakes.assessment.inputs import CENTRAL, Inputs, Parts, identities
 from stylobate.earthquakes.intensities import has_two_components, horizontal_peak, peak_horizontal_velocity
 from stylobate.progress import Report
-from stylobate.records import HorizontalComponent, response_spectra
-from stylobate.records.intensities import drifts
+from stylobate.records import response_spectra
+from stylobate.records.intensities import HorizontalComponent, drifts
 from stylobate.results.verdict import AMPLITUDES, damping_yardstick, side_of_yardstick
 from stylobate.studies.sweeps.designs import Floats
 

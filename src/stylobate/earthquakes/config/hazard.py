@@ -11,7 +11,7 @@ from typing import Any, TypeAlias, TypeVar
 
 from stylobate.config.description import Config
 from stylobate.errors import FileError, ParameterError, require_positive
-from stylobate.records import HorizontalComponent
+from stylobate.records.intensities import HorizontalComponent
 from stylobate.records.text_files import REMARKS, begins_with_a_number, in_si, unit_of
 
 _T = TypeVar("_T")

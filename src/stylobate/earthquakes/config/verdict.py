@@ -14,7 +14,7 @@ from stylobate.errors import LARGEST_SEED, MOST_RUNS, ConfigError, require_not_n
 from stylobate.studies.proportions import require_confidence
 
 if TYPE_CHECKING:
-    from stylobate.earthquakes import Spread
+    from stylobate.earthquakes.property_spreads import Spread
 
 
 class _Described(Config):

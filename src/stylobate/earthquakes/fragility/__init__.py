@@ -4,7 +4,7 @@ The functions accept runs of any origin: they need intensity, record and limit s
 """
 
 from stylobate.earthquakes.fragility.annual_rate import HazardCurve, annual_rate
-from stylobate.earthquakes.fragility.dispersion import Samples, dispersion_parts
+from stylobate.earthquakes.fragility.dispersion import SampleDesign, dispersion_parts
 from stylobate.earthquakes.fragility.fit import fit_fragility, lognormal_fragility
 from stylobate.earthquakes.fragility.likelihood import FitStatus
 from stylobate.earthquakes.fragility.observations import Counting, limit_states, reached_intervals
@@ -13,7 +13,7 @@ __all__ = [
     "Counting",
     "FitStatus",
     "HazardCurve",
-    "Samples",
+    "SampleDesign",
     "annual_rate",
     "dispersion_parts",
     "fit_fragility",

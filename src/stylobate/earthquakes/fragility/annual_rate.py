@@ -19,10 +19,10 @@ import numpy.typing as npt
 import xarray as xr
 from scipy.special import log_ndtr, ndtr
 
-from stylobate.cards import Row, Section, card
+from stylobate.cards import CardSection, Row, card
 from stylobate.earthquakes.fragility.observations import LIMIT_STATE, Floats
 from stylobate.errors import ParameterError, require_positive, require_whole
-from stylobate.records import HorizontalComponent
+from stylobate.records.intensities import HorizontalComponent
 from stylobate.text import four_digits, unit_in_text
 
 _LEAST = 2
@@ -134,7 +134,7 @@ class HazardCurve:
             Row("points", str(x.size)),
         ]
         rows += [Row(name, str(getattr(self, name))) for name in ("component", "origin") if getattr(self, name)]
-        return card("Hazard curve", [Section("", rows)])
+        return card("Hazard curve", [CardSection("", rows)])
 
     @property
     def log_intensity(self) -> Floats:

@@ -29,7 +29,7 @@ _LEAST = 2
 _ROUNDING = 1e-12
 
 
-class Samples(Enum):
+class SampleDesign(Enum):
     """Whether all records share the property samples."""
 
     CROSSED = "crossed"
@@ -85,7 +85,7 @@ def dispersion_parts(
     scale: npt.ArrayLike | xr.DataArray,
     reached: xr.DataArray,
     *,
-    samples: Samples = Samples.CROSSED,
+    samples: SampleDesign = SampleDesign.CROSSED,
     confidence: float = 0.95,
     resamples: int = 10_000,
     rng: Rng,
@@ -227,11 +227,11 @@ def _unknown_below(state: npt.NDArray[np.int64]) -> npt.NDArray[np.bool_]:
     return np.asarray(np.any(before & (state == NOT_KNOWN), axis=-1))
 
 
-def _mean_squares(capacity: Floats, step: Floats, samples: Samples) -> MeanSquares:
+def _mean_squares(capacity: Floats, step: Floats, samples: SampleDesign) -> MeanSquares:
     records, count = capacity.shape
     of_record = count * capacity.mean(axis=1).var(ddof=1)
     within = float(np.mean(step**2) / 12.0)
-    if samples is Samples.NESTED:
+    if samples is SampleDesign.NESTED:
         values = np.array([of_record, 1.0, capacity.var(axis=1, ddof=1).mean()])
         freedom = np.array([records - 1.0, np.nan, records * (count - 1.0)])
         return MeanSquares(values=values, freedom=freedom, records=records, samples=count, step=within)

@@ -18,7 +18,7 @@ from stylobate.earthquakes.fragility.likelihood import (
 )
 from stylobate.earthquakes.fragility.observations import LIMIT_STATE, Counting, Data, Floats, Integers, Observations
 from stylobate.errors import ParameterError, require_positive, require_whole
-from stylobate.records import HorizontalComponent
+from stylobate.records.intensities import HorizontalComponent
 from stylobate.results.outcomes import flag_attributes
 from stylobate.results.random_numbers import Rng, generator_of
 from stylobate.studies.proportions import require_confidence, wilson_interval

@@ -10,7 +10,7 @@ import numpy.typing as npt
 from stylobate.compiler.kept import runs_plain
 from stylobate.engine.ensembles.model_columns import ModelColumns
 from stylobate.engine.ensembles.run_columns import MotionColumns, MotionPlan
-from stylobate.engine.ensembles.runs import Runs
+from stylobate.engine.ensembles.runs import EnsembleRuns
 from stylobate.engine.forcing import is_rest, rest_energy_for_good, usual_rest_energy
 from stylobate.engine.kernel.columns import (
     EARLIER,
@@ -26,7 +26,7 @@ from stylobate.engine.kernel.columns import (
     Orbit,
     Setup,
 )
-from stylobate.engine.kernel.driver.events import Status, event_numbers
+from stylobate.engine.kernel.driver.events import RunStatus, event_numbers
 from stylobate.engine.kernel.driver.loop import CERTAIN, NEAR
 from stylobate.engine.kernel.expansion import series_integrals
 from stylobate.engine.kernel.kernels import kernel_of
@@ -143,7 +143,7 @@ class Batch:
     traces: list[Floats] = field(default_factory=list)
 
     @classmethod
-    def of(cls, plan: Plan, runs: Runs) -> "Batch":
+    def of(cls, plan: Plan, runs: EnsembleRuns) -> "Batch":
         """Return the batch of these runs, ready for computation.
 
         Raises
@@ -179,7 +179,7 @@ class Batch:
     @property
     def converged(self) -> "OrbitReached | None":
         """Runs that have converged to a known orbit, and the orbit of each; None if no run has."""
-        runs = np.flatnonzero(self.log(Log.STATUS) == Status.CONVERGED)
+        runs = np.flatnonzero(self.log(Log.STATUS) == RunStatus.CONVERGED)
         if self.orbits is None or not runs.size:
             return None
         return orbit_reached(self.table, self.plan.layout.orbits_at, self.orbits, runs)
@@ -216,7 +216,7 @@ class Batch:
         If there is a trace, `paused(steps, time [s])` is called whenever the trace is full.
         """
         finished = self._through(halt, paused, planar=False, chosen=~self.planar)
-        released = self.log(Log.STATUS) == Status.TO_PLANE
+        released = self.log(Log.STATUS) == RunStatus.TO_PLANE
         if released.any():
             self._to_plane(released)
             self.planar[released] = True
@@ -239,7 +239,7 @@ class Batch:
         self._take_trace(table)
         if not every_run:
             self.table[chosen] = table
-        if np.any(self.log(Log.STATUS) == Status.CANNOT_DEPART):
+        if np.any(self.log(Log.STATUS) == RunStatus.CANNOT_DEPART):
             raise cannot_depart(self.plan.model)
         return finished
 
@@ -261,7 +261,7 @@ class Batch:
         x, y, vx, vy = leans
         part[:, STATE] = x * line[0] + y * line[1]
         part[:, STATE + 1] = vx * line[0] + vy * line[1]
-        part[:, LOG + Log.STATUS] = Status.WAITING
+        part[:, LOG + Log.STATUS] = RunStatus.WAITING
         self.table[chosen] = part
 
 
@@ -301,7 +301,7 @@ def _empty_table(plan: Plan, shape: Shape, count: int, breaks: int, looks: int) 
 
 
 def _fill_setup(
-    table: Floats, plan: Plan, runs: Runs, models: ModelColumns, motions: MotionColumns, energy: Floats
+    table: Floats, plan: Plan, runs: EnsembleRuns, models: ModelColumns, motions: MotionColumns, energy: Floats
 ) -> None:
     options, traces = plan.options, plan.traces
     atol = ATOL_SHARE * options["rtol"] * models.slenderness if options["atol"] is None else options["atol"]
@@ -340,7 +340,7 @@ def _fill_setup(
 
 
 def _fill_starts(
-    table: Floats, model: Model, runs: Runs, models: ModelColumns, motions: MotionColumns
+    table: Floats, model: Model, runs: EnsembleRuns, models: ModelColumns, motions: MotionColumns
 ) -> npt.NDArray[np.bool_]:
     """Set states and lines; return which runs begin with planar motion."""
     states = models.states.copy()
@@ -378,7 +378,7 @@ def _fill_starts(
     return np.asarray(planar)
 
 
-def _keeps_to_plane(runs: Runs, models: ModelColumns, line: Floats) -> npt.NDArray[np.bool_]:
+def _keeps_to_plane(runs: EnsembleRuns, models: ModelColumns, line: Floats) -> npt.NDArray[np.bool_]:
     """Return which runs without spin, on planes that slope along their `line`, also start to slip along it."""
     slips = np.zeros((len(line), 2)) if runs.turning is None else np.array([one.velocity[:2] for one in runs.turning])
     vectors = np.stack([line, models.slope[:, :2], slips], axis=1)
@@ -390,7 +390,9 @@ def _not_zero(vectors: Floats) -> npt.NDArray[np.bool_]:
     return np.logical_or(vectors[:, 0], vectors[:, 1])
 
 
-def _check_starts(model: Model, runs: Runs, stands: npt.NDArray[np.bool_], in_a_plane: npt.NDArray[np.bool_]) -> None:
+def _check_starts(
+    model: Model, runs: EnsembleRuns, stands: npt.NDArray[np.bool_], in_a_plane: npt.NDArray[np.bool_]
+) -> None:
     """Raise ParameterError for a spin that the model does not support, or a start out of the plane that it needs."""
     spinning = runs.spin != 0.0
     if spinning.any():

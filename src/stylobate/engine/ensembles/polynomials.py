@@ -27,14 +27,14 @@ _ASIDE = 4.0 * float(np.finfo(float).eps)
 
 
 @dataclass(frozen=True, slots=True)
-class Table:
+class PolynomialTable:
     """Pieces of polynomials, a row each with the columns of `Piece`."""
 
     rows: Floats
     degree: int
 
     @classmethod
-    def of(cls, spans: Floats, bounds: Floats, coefficients: Floats) -> "Table":
+    def of(cls, spans: Floats, bounds: Floats, coefficients: Floats) -> "PolynomialTable":
         """Return the table of pieces with these starts and ends (n, 2), bounds (n, 3), coefficients (n, 3, powers)."""
         powers = coefficients.shape[-1]
         starts, ends = coefficients @ (-1.0) ** np.arange(powers), coefficients.sum(axis=-1)
@@ -49,21 +49,21 @@ class Table:
         """Coefficients of all pieces, shape (pieces, 3, degree + 1)."""
         return self.rows[:, len(Piece) :].reshape(len(self.rows), 3, -1)
 
-    def raised(self, degree: int) -> "Table":
+    def raised(self, degree: int) -> "PolynomialTable":
         """Return the same pieces as polynomials of a higher `degree`."""
         count = len(self.rows)
         coefficients = np.zeros((count, 3, degree + 1))
         coefficients[:, :, : self.degree + 1] = self.coefficients
-        return Table(np.column_stack([self.rows[:, : len(Piece)], coefficients.reshape(count, -1)]), degree)
+        return PolynomialTable(np.column_stack([self.rows[:, : len(Piece)], coefficients.reshape(count, -1)]), degree)
 
 
-def one_after_another(tables: Sequence[Table]) -> Table:
+def one_after_another(tables: Sequence[PolynomialTable]) -> PolynomialTable:
     """Join the pieces of all `tables` in one table with the highest of their degrees."""
     degree = max(table.degree for table in tables)
-    return Table(np.concatenate([table.raised(degree).rows for table in tables]), degree)
+    return PolynomialTable(np.concatenate([table.raised(degree).rows for table in tables]), degree)
 
 
-def tabulated(motion: BaseMotion, end: float) -> Table:
+def tabulated(motion: BaseMotion, end: float) -> PolynomialTable:
     """Return the table of `motion` from t = 0 to `end` [s].
 
     Raises
@@ -89,10 +89,10 @@ def tabulated(motion: BaseMotion, end: float) -> Table:
             pieces += _fitted(motion, a, b, size, _HALVINGS)
     starts, ends, coefficients = zip(*pieces, strict=True)
     bounds = np.array([(motion.peak_horizontal(time), *motion.vertical_range(time)) for time in starts])
-    return Table.of(np.column_stack([starts, ends]), bounds, np.stack(coefficients))
+    return PolynomialTable.of(np.column_stack([starts, ends]), bounds, np.stack(coefficients))
 
 
-def _linear(motion: BaseMotion) -> Table:
+def _linear(motion: BaseMotion) -> PolynomialTable:
     """Return the exact table of a motion that is linear between its breaks; the last piece has no end."""
     edges = np.array([0.0, *(time for time in motion.breaks if time > 0.0)])
     edges = np.append(edges, edges[-1] + 1.0)
@@ -105,7 +105,7 @@ def _linear(motion: BaseMotion) -> Table:
     horizontal, vertical = np.hypot(ends[..., 0], ends[..., 1]).max(axis=0), ends[..., 2]
     bounds = np.stack([horizontal, -vertical.min(axis=0), vertical.max(axis=0)])
     bounds = np.maximum.accumulate(bounds[:, ::-1], axis=1)[:, ::-1] * [[1.0], [-1.0], [1.0]]
-    return Table.of(np.column_stack([edges[:-1], edges[1:]]), bounds.T, coefficients)
+    return PolynomialTable.of(np.column_stack([edges[:-1], edges[1:]]), bounds.T, coefficients)
 
 
 def _cuts(low: float, high: float, longest: float, end: float) -> Floats:
@@ -151,7 +151,7 @@ _BEYOND = 1.0 + 1e-9
 _TEST_POINTS = np.array([-0.5, 0.0, 0.5])
 
 
-def tabulated_alike(motions: Sequence[BaseMotion], end: float) -> list[Table]:
+def tabulated_alike(motions: Sequence[BaseMotion], end: float) -> list[PolynomialTable]:
     """Return the tables of `motions` from t = 0 to `end` [s]; motions that stretch the first one are not fitted.
 
     Raises
@@ -168,7 +168,7 @@ def _edges(motion: BaseMotion) -> Floats:
     return np.array([0.0, *(time for time in motion.breaks if time > 0.0)])
 
 
-def _stretched(table: Table, of: BaseMotion, motion: BaseMotion, end: float) -> Table | None:
+def _stretched(table: PolynomialTable, of: BaseMotion, motion: BaseMotion, end: float) -> PolynomialTable | None:
     """Return the table of `motion` if it is `of` stretched between its breaks, else None."""
     before, after = _edges(of), _edges(motion)
     size = of.peak_horizontal(0.0)
@@ -184,11 +184,11 @@ def _stretched(table: Table, of: BaseMotion, motion: BaseMotion, end: float) -> 
     bounds = np.append(
         strength * table.rows[going, Piece.LARGEST_HORIZONTAL : Piece.CONTINUED], np.zeros((1, 3)), axis=0
     )
-    found = Table.of(np.vstack([spans, rest]), bounds, coefficients)
+    found = PolynomialTable.of(np.vstack([spans, rest]), bounds, coefficients)
     return found if _fits(found, motion, size * strength) else None
 
 
-def _fits(table: Table, motion: BaseMotion, size: float) -> bool:
+def _fits(table: PolynomialTable, motion: BaseMotion, size: float) -> bool:
     starts, ends = table.rows[:, Piece.START], table.rows[:, Piece.END]
     middle, half = 0.5 * (starts + ends), 0.5 * (ends - starts)
     times = middle[:, np.newaxis] + half[:, np.newaxis] * _TEST_POINTS

@@ -12,7 +12,7 @@ from stylobate.engine.ensembles.batch import Batch, OrbitReached, periods_of
 from stylobate.engine.ensembles.runs import CONTACT_KINDS, DEMANDS, TIMES_OF_CONTACTS, Arrays, empty
 from stylobate.engine.forcing import coarse
 from stylobate.engine.kernel.columns import EARLIER, LAGS, PAIRS, SLACK, STATE, Change, Log, Pair, Setup, pair_begins
-from stylobate.engine.kernel.driver.events import Status
+from stylobate.engine.kernel.driver.events import RunStatus
 from stylobate.engine.tolerances import CLOSE_PASSAGE
 from stylobate.engine.verdict import (
     FALLEN,
@@ -40,7 +40,7 @@ def results_of(batch: Batch) -> Arrays:
 
 def write_results(arrays: Arrays, batch: Batch) -> None:
     """Write the results of the ended runs of `batch` into `arrays`, which have a row for each run."""
-    ended = batch.log(Log.STATUS) != Status.WAITING
+    ended = batch.log(Log.STATUS) != RunStatus.WAITING
     every_run = bool(ended.all())
     for name, values in _all(batch).items():
         if every_run:
@@ -180,7 +180,7 @@ def _turns(batch: Batch) -> Floats:
 
 
 _OTHERS = -1
-_OUTCOME_OF_STATUS = np.array([_OTHERS if one.outcome is None else one.outcome for one in Status], dtype=np.int8)
+_OUTCOME_OF_STATUS = np.array([_OTHERS if one.outcome is None else one.outcome for one in RunStatus], dtype=np.int8)
 """Outcomes of runs that ended in the kernel; the last periods decide the other outcomes."""
 
 _OUTCOME_OF_GROUND = np.array([outcome_on(kind) for kind in Ground], dtype=np.int8)
@@ -208,7 +208,7 @@ def late_periods(batch: Batch) -> Late:
     """Return the measures of the last periods of each run."""
     rules, period = batch.plan.rules, batch.motions.period
     n, end = rules.periods, batch.table[:, Setup.END] * (1.0 + SLACK)
-    seen = (batch.log(Log.STATUS) == Status.STOPPED) & (period > 0.0) & (end >= (n + 1) * period)
+    seen = (batch.log(Log.STATUS) == RunStatus.STOPPED) & (period > 0.0) & (end >= (n + 1) * period)
 
     def known(values: Floats) -> Floats:
         return np.where(seen, values, np.nan)
@@ -258,7 +258,7 @@ def _reference(batch: Batch, azimuth: Floats) -> Floats:
 def _survive(batch: Batch, moving: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool_]:
     """Return which of the runs that are `moving` at their end have survived a base motion that ends; see `survival`."""
     lasts = batch.motions.duration
-    survive = moving & (batch.log(Log.STATUS) == Status.STOPPED) & (batch.log(Log.STANDS) == 0.0)
+    survive = moving & (batch.log(Log.STATUS) == RunStatus.STOPPED) & (batch.log(Log.STANDS) == 0.0)
     survive &= (lasts > 0.0) & has_ended(batch.log(Log.TIME) * batch.models.time_scale, lasts)
     chosen = np.flatnonzero(survive)
     if chosen.size:
@@ -493,7 +493,7 @@ def contact_arrays(batch: Batch, span: Floats) -> dict[str, npt.NDArray[Any]]:
 def upright_outcomes(batch: Batch, span: Floats, codes: npt.NDArray[np.int8]) -> npt.NDArray[np.int8]:
     """Replace the outcomes of columns that stay upright in the last periods, or at the end if there are none."""
     contacts = Contacts.of(batch)
-    seen, decided = ~np.isnan(span), batch.log(Log.STATUS) == Status.STOPPED
+    seen, decided = ~np.isnan(span), batch.log(Log.STATUS) == RunStatus.STOPPED
     names = [kind.name for kind in batch.plan.model.contact_kinds or ()]
     upright = ~np.any(contacts.state[:2], axis=0)
     rim = np.where(seen, contacts.late("rim"), ~upright)

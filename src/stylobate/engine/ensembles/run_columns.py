@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from stylobate.base_motions import BaseMotion, Delayed, Harmonic, Rotated, Scaled, Sum
-from stylobate.base_motions.combined import members_of
-from stylobate.base_motions.declared import is_pulse, numbers_of, stated_numbers
+from stylobate.base_motions import BaseMotion, Harmonic
+from stylobate.base_motions.combined import Delayed, Rotated, Scaled, Sum, members_of
+from stylobate.base_motions.declared import is_pulse, numbers_of_motion, stated_numbers
 from stylobate.engine.ensembles.model_columns import ModelColumns
-from stylobate.engine.ensembles.polynomials import Table, one_after_another, tabulated, tabulated_alike
+from stylobate.engine.ensembles.polynomials import PolynomialTable, one_after_another, tabulated, tabulated_alike
 from stylobate.engine.forcing import least_rest_energy
 from stylobate.engine.kernel.columns import Tabulated
 from stylobate.engine.kernel.shape import Harmonics, KernelForcing, Polynomials
@@ -202,7 +202,7 @@ class MotionPlan:
     levels: tuple[Floats, ...]
     combinations: npt.NDArray[np.intp]
     terms: tuple[tuple[Term, ...], ...] | None
-    table: Table | None
+    table: PolynomialTable | None
     first: npt.NDArray[np.intp]
     lengths: npt.NDArray[np.intp]
     windowed: bool
@@ -224,7 +224,7 @@ class MotionPlan:
         for name, own in declared.items():
             for value in (values[name].min(initial=math.inf), values[name].max(initial=-math.inf)):
                 if math.isfinite(value):
-                    numbers_of(motion)[own].quantity.checked(name, float(value))
+                    numbers_of_motion(motion)[own].quantity.checked(name, float(value))
         for number in np.unique(values["motion"]) if "motion" in values else ():
             changed_motion(motion, {"motion": float(number)})
         stated = tuple(name for name, own in declared.items() if own in stated_numbers(motion))

@@ -11,7 +11,7 @@ import numpy.typing as npt
 from stylobate.engine.cost import require_memory
 from stylobate.engine.forcing import without_dust
 from stylobate.engine.kernel.columns import Change
-from stylobate.engine.starts import Start, Turning, require_below_level
+from stylobate.engine.starts import RunStart, Turning, require_below_level
 from stylobate.errors import ParameterError, require_size
 from stylobate.models import Model
 from stylobate.results.known_orbits import KnownOrbit, OrbitsOfRuns
@@ -31,7 +31,7 @@ _MASS_NAMES = ("mass", "transverse_inertia", "axial_inertia")
 
 
 @dataclass(frozen=True, slots=True)
-class Runs:
+class EnsembleRuns:
     """Arguments that differ between the runs as flat arrays, and the layout of the results.
 
     Parameters
@@ -71,14 +71,14 @@ class Runs:
     def __len__(self) -> int:
         return math.prod(self.shape)
 
-    def part(self, chosen: slice | npt.NDArray[np.intp]) -> "Runs":
+    def part(self, chosen: slice | npt.NDArray[np.intp]) -> "EnsembleRuns":
         """Return some of the runs, without their layout."""
         length = len(self.duration[chosen])
         values = {name: value[chosen] for name, value in self.values.items()}
         starts = (self.tilt[chosen], self.tilt_rate[chosen], self.spin[chosen], self.duration[chosen])
         orbits = None if self.orbits is None else self.orbits.part(chosen)
         turning = self.turning and tuple(self.turning[k] for k in np.arange(len(self))[chosen])
-        return Runs((RUN,), (length,), *starts, values, {}, turning=turning, orbits=orbits)
+        return EnsembleRuns((RUN,), (length,), *starts, values, {}, turning=turning, orbits=orbits)
 
 
 def broadcast(
@@ -89,7 +89,7 @@ def broadcast(
     parameters: Mapping[str, ArrayLike],
     known_orbits: Sequence[KnownOrbit] = (),
     free: Mapping[str, ArrayLike] | None = None,
-) -> Runs:
+) -> EnsembleRuns:
     """Return the runs that these arguments describe; `free` are those that only some models or runs have.
 
     Raises
@@ -114,7 +114,7 @@ def broadcast(
     values = {name: flat[name] for name in parameters}
     coordinates = {name: array for name, array in given.items() if set(array.dims) - _COMPONENTS.keys()}
     orbits = [{name.split(".")[1]: _flat(array, dims, shape) for name, array in orbit.items()} for orbit in of_orbits]
-    return Runs(
+    return EnsembleRuns(
         *(dims, shape, without_dust(flat["tilt"]), flat["tilt_rate"], flat["spin"], flat["duration"]),
         *(values, coordinates),
         orbits=OrbitsOfRuns.of(orbits) if orbits else None,
@@ -131,11 +131,11 @@ def _numbers_of_orbit(orbit: KnownOrbit, place: str) -> "dict[str, xr.DataArray]
     }
 
 
-def one_run(start: Start) -> Runs:
+def one_run(start: RunStart) -> EnsembleRuns:
     """Return a single run, whose arguments have been checked."""
     vectors = (np.array([start.tilt]), np.array([start.tilt_rate]))
     numbers = (np.array([start.turning.spin]), np.array([start.duration]))
-    return Runs((RUN,), (1,), *vectors, *numbers, {}, {}, (start.turning,))
+    return EnsembleRuns((RUN,), (1,), *vectors, *numbers, {}, {}, (start.turning,))
 
 
 def _numbers(name: str, value: ArrayLike) -> "xr.DataArray":

@@ -25,7 +25,7 @@ from stylobate.engine.flow.bound import (
 )
 
 
-class Status(IntEnum):
+class FlowStatus(IntEnum):
     """Status of a flow at its end."""
 
     DONE = 0
@@ -37,7 +37,7 @@ class Status(IntEnum):
     """There were too many steps, or a step was too short."""
 
 
-class Record(IntEnum):
+class FlowLog(IntEnum):
     """Places of the record of a flow."""
 
     LEAST_TILT = 0
@@ -249,8 +249,8 @@ def record_tilt(y: Table, new: Table, duration: float, numbers: Vector, record: 
     if slope * end_slope < 0.0:
         at, extreme = turning_point(start, end, slope, end_slope, 1.0 if slope > 0.0 else -1.0)
         least, largest = min(least, extreme), max(largest, extreme)
-    record[Record.LEAST_TILT] = min(record[Record.LEAST_TILT], math.sqrt(max(least, 0.0)))
-    record[Record.PEAK_TILT] = max(record[Record.PEAK_TILT], math.sqrt(largest))
+    record[FlowLog.LEAST_TILT] = min(record[FlowLog.LEAST_TILT], math.sqrt(max(least, 0.0)))
+    record[FlowLog.PEAK_TILT] = max(record[FlowLog.PEAK_TILT], math.sqrt(largest))
     return at
 
 
@@ -258,7 +258,7 @@ def count_turns(y: Table, new: Table, numbers: Vector, record: Vector) -> None:
     """Count the passages of the tilt vector across the negative x axis, anticlockwise minus clockwise."""
     x0, y0, vx0, vy0 = lean_of(y[:, 0], numbers)
     x1, y1, vx1, vy1 = lean_of(new[:, 0], numbers)
-    record[Record.TURNS] += winding(x0, y0, x1, y1, x0 * vy0 - y0 * vx0 + x1 * vy1 - y1 * vx1)
+    record[FlowLog.TURNS] += winding(x0, y0, x1, y1, x0 * vy0 - y0 * vx0 + x1 * vy1 - y1 * vx1)
 
 
 def record_extremes(
@@ -278,10 +278,10 @@ def record_extremes(
 
     A cubic over the whole step has an accuracy of only 1e-4, so that an extreme is computed again from a state near it.
     """
-    least, largest = record[Record.LEAST_TILT], record[Record.PEAK_TILT]
+    least, largest = record[FlowLog.LEAST_TILT], record[FlowLog.PEAK_TILT]
     at = record_tilt(y, new, system.period * h, system.numbers, record)
     if 0.0 < at < 1.0:
-        record[Record.LEAST_TILT], record[Record.PEAK_TILT] = least, largest
+        record[FlowLog.LEAST_TILT], record[FlowLog.PEAK_TILT] = least, largest
         near[0] = k[0]
         make_step(y, s, at * h, side, system, room, near, middle)
         record_tilt(y, middle, system.period * at * h, system.numbers, record)
@@ -316,7 +316,7 @@ def step_to_vertical(
     return h
 
 
-def cross_vertical(y: Table, s: float, side: float, system: System, room: Room) -> bool:
+def cross_vertical_of_flow(y: Table, s: float, side: float, system: System, room: Room) -> bool:
     """Pass the vertical in planar motion: speed, acceleration and derivatives jump; return False at a grazing passage.
 
     With the loss v⁺ = f(v⁻) the derivatives are multiplied by the saltation matrix
@@ -367,14 +367,14 @@ def flow(
     limits: Vector,
     record: Vector,
 ) -> int:
-    """Integrate `y` from `begin` to `end` [turns of the base motion]; return the `Status`.
+    """Integrate `y` from `begin` to `end` [turns of the base motion]; return the `FlowStatus`.
 
     `limits` are the relative and absolute tolerance, and the minimum and maximum tilt. `record` has the places of
-    `Record`.
+    `FlowLog`.
     """
     before = azimuth(y, numbers)
     status = follow(y, begin, end, System(period, terms, numbers, change, term_change), limits, record)
-    record[Record.TURNS] += azimuth(y, numbers) - before
+    record[FlowLog.TURNS] += azimuth(y, numbers) - before
     return status
 
 
@@ -391,14 +391,14 @@ def follow(y: Table, begin: float, end: float, system: System, limits: Vector, r
     )
     k, new = np.zeros((STAGES + 1, ORDER, COLUMNS)), np.zeros((ORDER, COLUMNS))
     near, middle = np.zeros((STAGES + 1, ORDER, COLUMNS)), np.zeros((ORDER, COLUMNS))
-    side = record[Record.SIDE]
+    side = record[FlowLog.SIDE]
     s, h = begin, min(FIRST_STEP, end - begin)
     rejected = False
     slopes_into(y, s, side, system, room, k[0])
     while s < end:
         too_short = h < SHORTEST_STEP * max(1.0, abs(s)) and end - s > h
-        if too_short or record[Record.STEPS] >= MOST_STEPS:
-            return Status.FAILED
+        if too_short or record[FlowLog.STEPS] >= MOST_STEPS:
+            return FlowStatus.FAILED
         last = h >= end - s
         h = end - s if last else h
         make_step(y, s, h, side, system, room, k, new)
@@ -412,27 +412,27 @@ def follow(y: Table, begin: float, end: float, system: System, limits: Vector, r
             h = step_to_vertical(y, s, h, side, system, room, k, new)
         record_extremes(y, s, h, side, system, room, k, new, near, middle, record)
         if passed:
-            record[Record.LEAST_TILT] = 0.0
-            record[Record.STEPS] += 1
+            record[FlowLog.LEAST_TILT] = 0.0
+            record[FlowLog.STEPS] += 1
             s += h
             y[:, :] = new
-            if not cross_vertical(y, s, side, system, room):
-                return Status.LOST
-            side = record[Record.SIDE] = -side
+            if not cross_vertical_of_flow(y, s, side, system, room):
+                return FlowStatus.LOST
+            side = record[FlowLog.SIDE] = -side
             slopes_into(y, s, side, system, room, k[0])
             h, rejected = FIRST_STEP, False
             continue
         if not PLANAR:
             count_turns(y, new, system.numbers, record)
         s = end if last else s + h
-        record[Record.STEPS] += 1
+        record[FlowLog.STEPS] += 1
         y[:, :] = new
         k[0] = k[STAGES]
         factor = min(LARGEST_FACTOR, max(LEAST_FACTOR, SAFETY / max(error, LEAST_ERROR) ** 0.125))
         h = min(h * (min(factor, 1.0) if rejected else factor), LONGEST_STEP)
         rejected = False
-        if record[Record.PEAK_TILT] > largest:
-            return Status.GONE
-        if record[Record.LEAST_TILT] < least and not PLANAR:
-            return Status.LOST
-    return Status.DONE
+        if record[FlowLog.PEAK_TILT] > largest:
+            return FlowStatus.GONE
+        if record[FlowLog.LEAST_TILT] < least and not PLANAR:
+            return FlowStatus.LOST
+    return FlowStatus.DONE

@@ -13,12 +13,12 @@ from stylobate.base_motions import BaseMotion
 from stylobate.compiler.compiled import Compiled
 from stylobate.compiler.programs import Bound, Written
 from stylobate.compiler.unit import ArrayArgument
-from stylobate.compiler.values import Kind
+from stylobate.compiler.values import NumberKind
 from stylobate.engine import dop853, elementary
 from stylobate.engine.ensembles.run_columns import terms_of
 from stylobate.engine.expressions import Expression, Recording, recorded
 from stylobate.engine.flow import integration
-from stylobate.engine.flow.integration import Record, Status
+from stylobate.engine.flow.integration import FlowLog, FlowStatus
 from stylobate.engine.forcing import common_line
 from stylobate.engine.parameters import present_value, with_parameters
 from stylobate.equality import ByContent
@@ -82,7 +82,7 @@ def _flow(
         functions=of_model,
         arguments=(
             ArrayArgument((order, columns_of(order))),
-            *[Kind.FLOAT] * 3,
+            *[NumberKind.FLOAT] * 3,
             terms,
             vector,
             ArrayArgument((1 + numbers,)),
@@ -136,7 +136,7 @@ _ANGLES = ("phase_difference", "rotation", "start_phase")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Numbers(ByContent):
+class FlowNumbers(ByContent):
     """Inputs of the flow: the period, the parameters of the model, and the harmonic terms of the base motion [g].
 
     `terms` has a row for each term: its multiple of the frequency, then coefficients of cosine and sine for each axis.
@@ -154,7 +154,7 @@ class Flow(ByContent):
     `turns` counts the turns of the tilt vector about the vertical; it is 0 in planar motion.
     """
 
-    status: Status
+    status: FlowStatus
     end: Floats
     by_start: Floats
     by_parameter: Floats
@@ -183,7 +183,7 @@ class PeriodicSystem(ByContent):
     motion: BaseMotion
     line: tuple[float, float] | None = None
     rtol: float = 1e-12
-    numbers: Numbers = field(init=False, repr=False)
+    numbers: FlowNumbers = field(init=False, repr=False)
     safe_tilt: float = field(init=False, repr=False)
     """Point of no return for any periodic motion, at most a right angle."""
 
@@ -228,22 +228,22 @@ class PeriodicSystem(ByContent):
             factors[self.model.spin_state] = 1.0
         return factors
 
-    def derivative(self, name: str, at: float | None = None) -> Numbers:
+    def derivative(self, name: str, at: float | None = None) -> FlowNumbers:
         """Return the derivatives of the numbers with respect to `name` at the value `at`; present value by default."""
         value = self.value_of(name) if at is None else at
         step = _STEP * (1.0 if name in _ANGLES or value == 0.0 else abs(value))
         around, weights = self._around(name, value, step)
 
-        def combined(part: Callable[[Numbers], Any]) -> Any:
+        def combined(part: Callable[[FlowNumbers], Any]) -> Any:
             return sum(weight * part(numbers) for weight, numbers in zip(weights, around, strict=True)) / (12.0 * step)
 
         terms = combined(lambda numbers: numbers.terms)
         terms[:, 0] = self.numbers.terms[:, 0]
-        return Numbers(
+        return FlowNumbers(
             float(combined(lambda numbers: numbers.period)), combined(lambda numbers: numbers.parameters), terms
         )
 
-    def _around(self, name: str, value: float, step: float) -> tuple[list[Numbers], list[float]]:
+    def _around(self, name: str, value: float, step: float) -> tuple[list[FlowNumbers], list[float]]:
         """Return the numbers at values around `value`, or on one side of it at an edge, and the difference weights."""
         *inner, last = (_CENTRAL, _FORWARD, _BACKWARD)
         for rule in inner:
@@ -259,7 +259,7 @@ class PeriodicSystem(ByContent):
         begin: float,
         end: float,
         *,
-        change: Numbers | None = None,
+        change: FlowNumbers | None = None,
         side: float = 0.0,
         peak_tilt: float | None = None,
     ) -> Flow:
@@ -284,7 +284,7 @@ class PeriodicSystem(ByContent):
         table[:, 0] = state
         table[:, 1 : order + 1] = np.eye(order)
         if change is None:
-            change = Numbers(0.0, np.zeros_like(numbers.parameters), np.zeros_like(numbers.terms))
+            change = FlowNumbers(0.0, np.zeros_like(numbers.parameters), np.zeros_like(numbers.terms))
         limits = np.array(
             [
                 self.rtol,
@@ -295,8 +295,8 @@ class PeriodicSystem(ByContent):
         )
         if self.planar and side == 0.0:
             side = math.copysign(1.0, state[0] if state[0] != 0.0 else state[1])
-        record = np.zeros(len(Record))
-        record[Record.LEAST_TILT], record[Record.SIDE] = math.inf, side
+        record = np.zeros(len(FlowLog))
+        record[FlowLog.LEAST_TILT], record[FlowLog.SIDE] = math.inf, side
         status = flow(
             table,
             begin,
@@ -310,15 +310,15 @@ class PeriodicSystem(ByContent):
             record,
         )
         return Flow(
-            Status(status),
+            FlowStatus(status),
             table[:, 0].copy(),
             table[:, 1 : order + 1].copy(),
             table[:, order + 1].copy(),
-            float(record[Record.LEAST_TILT]),
-            float(record[Record.PEAK_TILT]),
-            int(record[Record.STEPS]),
-            float(record[Record.SIDE]),
-            float(record[Record.TURNS]),
+            float(record[FlowLog.LEAST_TILT]),
+            float(record[FlowLog.PEAK_TILT]),
+            int(record[FlowLog.STEPS]),
+            float(record[FlowLog.SIDE]),
+            float(record[FlowLog.TURNS]),
         )
 
 
@@ -340,7 +340,7 @@ def require_periodic(motion: BaseMotion) -> float:
     return period
 
 
-def _numbers(model: Model, motion: BaseMotion, line: tuple[float, float] | None) -> Numbers:
+def _numbers(model: Model, motion: BaseMotion, line: tuple[float, float] | None) -> FlowNumbers:
     period = require_periodic(motion)
     gravity = model.column.gravity
     rows = _harmonic_rows(motion, period)
@@ -350,7 +350,7 @@ def _numbers(model: Model, motion: BaseMotion, line: tuple[float, float] | None)
     if line is not None:
         along = line[0] * table[:, 1:3] + line[1] * table[:, 3:5]
         table = np.concatenate([table[:, :1], along, table[:, 5:7]], axis=1)
-    return Numbers(period / model.time_scale, np.array(model.parameters, dtype=float), np.ascontiguousarray(table))
+    return FlowNumbers(period / model.time_scale, np.array(model.parameters, dtype=float), np.ascontiguousarray(table))
 
 
 def _harmonic_rows(motion: BaseMotion, period: float) -> list[tuple[float, Floats]] | None:

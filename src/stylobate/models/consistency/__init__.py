@@ -1,5 +1,5 @@
 """Check that the members of a model agree with each other and with its equations."""
 
-from stylobate.models.consistency.check import CheckReport, check, check_once
+from stylobate.models.consistency.check import check
 
-__all__ = ["CheckReport", "check", "check_once"]
+__all__ = ["check"]

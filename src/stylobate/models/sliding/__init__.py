@@ -1,6 +1,6 @@
 """The model of a column that can slip, pivot, lift off and land."""
 
-from stylobate.models.sliding.balance import Contact, State
+from stylobate.models.sliding.balance import Contact
 from stylobate.models.sliding.model import Sliding
 
-__all__ = ["Contact", "Sliding", "State"]
+__all__ = ["Contact", "Sliding"]

@@ -52,7 +52,7 @@ RESTING, SLIDING, ROLLING, SLIPPING, FLYING, JAMMED = map(float, Contact)
 """The kinds of contact as the numbers in a state."""
 
 
-class State(NamedTuple):
+class SlidingState(NamedTuple):
     """The integrated state, in units of h and 1/ω0.
 
     Parameters
@@ -93,7 +93,7 @@ class State(NamedTuple):
     contact: float
 
 
-class Numbers(NamedTuple):
+class SlidingNumbers(NamedTuple):
     """The parameters of the model, dimensionless.
 
     Parameters
@@ -412,7 +412,7 @@ def balance(
 _RESULTS = 16
 
 
-def forces_along(states: Floats, accelerations: Floats, n: Numbers) -> Floats:
+def forces_along(states: Floats, accelerations: Floats, n: SlidingNumbers) -> Floats:
     """Compute the `balance` of each state, shape (16, number of states).
 
     Parameters
@@ -426,7 +426,7 @@ def forces_along(states: Floats, accelerations: Floats, n: Numbers) -> Floats:
     """
     from stylobate.compiler.compiled import over_rows
 
-    state = State(*states)
+    state = SlidingState(*states)
     rows = np.column_stack(np.broadcast_arrays(
         state.tilt_x, state.tilt_y, state.tilt_rate_x, state.tilt_rate_y, state.spin, state.velocity_x,
         state.velocity_y, state.heading_x, state.heading_y, state.heading_z, state.contact, *accelerations,

@@ -3,7 +3,16 @@
 import math
 
 from stylobate.models.finite_tilt import TINY, cosine, sine_over_angle
-from stylobate.models.sliding.balance import FLYING, RESTING, ROLLING, SLIDING, SLIPPING, Numbers, State, balance
+from stylobate.models.sliding.balance import (
+    FLYING,
+    RESTING,
+    ROLLING,
+    SLIDING,
+    SLIPPING,
+    SlidingNumbers,
+    SlidingState,
+    balance,
+)
 
 GUARDS = ("lift", "friction", "support", "rest", "jam", "fallen", "face_impact")
 """Names of the `guards` in their order, which are positive under these conditions.
@@ -316,7 +325,7 @@ Forces = tuple[
 ]
 
 
-def forces(state: State, now: Triple, n: Numbers) -> Forces:
+def forces(state: SlidingState, now: Triple, n: SlidingNumbers) -> Forces:
     """Return the `balance` of a state."""
     return balance(
         state.tilt_x, state.tilt_y, state.tilt_rate_x, state.tilt_rate_y, state.spin, state.velocity_x,
@@ -326,7 +335,7 @@ def forces(state: State, now: Triple, n: Numbers) -> Forces:
     )  # fmt: skip
 
 
-def rates_of(state: State, now: Triple, n: Numbers) -> Forces:
+def rates_of(state: SlidingState, now: Triple, n: SlidingNumbers) -> Forces:
     """Return the rates of a state."""
     return rates(
         state.tilt_x, state.tilt_y, state.tilt_rate_x, state.tilt_rate_y, state.spin, state.twist, state.footprint_x,
@@ -337,7 +346,7 @@ def rates_of(state: State, now: Triple, n: Numbers) -> Forces:
     )  # fmt: skip
 
 
-def guards_of(state: State, now: Triple, rest: float, n: Numbers) -> Guards:
+def guards_of(state: SlidingState, now: Triple, rest: float, n: SlidingNumbers) -> Guards:
     """Return the guards of a state, without impacts of the base face."""
     return guards(
         state.tilt_x, state.tilt_y, state.tilt_rate_x, state.tilt_rate_y, state.spin, state.twist, state.footprint_x,
@@ -348,9 +357,9 @@ def guards_of(state: State, now: Triple, rest: float, n: Numbers) -> Guards:
     )  # fmt: skip
 
 
-def advanced(state: State, by: Forces, elapsed: float) -> State:
+def advanced(state: SlidingState, by: Forces, elapsed: float) -> SlidingState:
     """Advance `state` by this time with the rates `by`."""
-    return State(
+    return SlidingState(
         state.tilt_x + elapsed * by[0], state.tilt_y + elapsed * by[1], state.tilt_rate_x + elapsed * by[2],
         state.tilt_rate_y + elapsed * by[3], state.spin + elapsed * by[4], state.twist + elapsed * by[5],
         state.footprint_x + elapsed * by[6], state.footprint_y + elapsed * by[7], state.velocity_x + elapsed * by[8],
@@ -359,39 +368,41 @@ def advanced(state: State, by: Forces, elapsed: float) -> State:
     )  # fmt: skip
 
 
-def placed(state: State, lean: tuple[float, float, float, float], spin: float, contact: float) -> State:
+def placed(state: SlidingState, lean: tuple[float, float, float, float], spin: float, contact: float) -> SlidingState:
     """Return `state` with this lean and its rate, spin and kind of contact."""
-    return State(
+    return SlidingState(
         lean[0], lean[1], lean[2], lean[3], spin, state.twist, state.footprint_x, state.footprint_y,
         state.velocity_x, state.velocity_y, state.rise, state.rise_rate, state.heading_x, state.heading_y,
         state.heading_z, contact,
     )  # fmt: skip
 
 
-def moving(state: State, velocity: tuple[float, float], rise: float, climb: float, contact: float) -> State:
+def moving(
+    state: SlidingState, velocity: tuple[float, float], rise: float, climb: float, contact: float
+) -> SlidingState:
     """Return `state` with this velocity, height and its rate, and kind of contact."""
-    return State(
+    return SlidingState(
         state.tilt_x, state.tilt_y, state.tilt_rate_x, state.tilt_rate_y, state.spin, state.twist,
         state.footprint_x, state.footprint_y, velocity[0], velocity[1], rise, climb, state.heading_x,
         state.heading_y, state.heading_z, contact,
     )  # fmt: skip
 
 
-def headed(state: State, heading: Triple, contact: float) -> State:
+def headed(state: SlidingState, heading: Triple, contact: float) -> SlidingState:
     """Return `state` with this heading and kind of contact."""
-    return State(
+    return SlidingState(
         state.tilt_x, state.tilt_y, state.tilt_rate_x, state.tilt_rate_y, state.spin, state.twist,
         state.footprint_x, state.footprint_y, state.velocity_x, state.velocity_y, state.rise, state.rise_rate,
         heading[0], heading[1], heading[2], contact,
     )  # fmt: skip
 
 
-def radius_of(state: State, n: Numbers) -> float:
+def radius_of(state: SlidingState, n: SlidingNumbers) -> float:
     """Return the radius of the contact: that of the patch, or of the base."""
     return n.c if state.contact == SLIDING else n.patch * n.c
 
 
-def lean_of(state: State) -> tuple[float, float, float, float]:
+def lean_of(state: SlidingState) -> tuple[float, float, float, float]:
     """Return the direction d of the lean, and sine and cosine of the tilt; at zero tilt, d of the tilt rate."""
     square = state.tilt_x**2 + state.tilt_y**2
     tilt = math.sqrt(square)
@@ -401,12 +412,12 @@ def lean_of(state: State) -> tuple[float, float, float, float]:
     return state.tilt_rate_x / speed, state.tilt_rate_y / speed, 0.0, 1.0
 
 
-def lean_with_rate(state: State) -> tuple[float, float, float, float]:
+def lean_with_rate(state: SlidingState) -> tuple[float, float, float, float]:
     """Return the tilt vector and its rate."""
     return state.tilt_x, state.tilt_y, state.tilt_rate_x, state.tilt_rate_y
 
 
-def turning(state: State) -> tuple[float, float]:
+def turning(state: SlidingState) -> tuple[float, float]:
     """Return w1 and w2."""
     ux, uy, _, _ = lean_of(state)
     square = state.tilt_x**2 + state.tilt_y**2
@@ -414,7 +425,7 @@ def turning(state: State) -> tuple[float, float]:
     return -sine_over_angle(square) * across, state.tilt_rate_x * ux + state.tilt_rate_y * uy
 
 
-def yaw(state: State) -> float:
+def yaw(state: SlidingState) -> float:
     """Return ω_z."""
     if state.tilt_x == 0.0 and state.tilt_y == 0.0:
         return state.spin
@@ -428,7 +439,7 @@ def height_of(sine: float, cos: float, c: float) -> float:
     return c * sine - sine * sine / (1.0 + cos)
 
 
-def headed_along_slip(state: State, n: Numbers) -> State:
+def headed_along_slip(state: SlidingState, n: SlidingNumbers) -> SlidingState:
     """Return `state` with its heading along its slip."""
     slip_z = radius_of(state, n) * yaw(state)
     size = math.sqrt(state.velocity_x**2 + state.velocity_y**2 + slip_z**2)
@@ -442,12 +453,12 @@ def slips(vx: float, vy: float, turning: float) -> bool:
     return math.sqrt(vx * vx + vy * vy + turning * turning) > KICK * STILL
 
 
-def tilt_speed(state: State) -> float:
+def tilt_speed(state: SlidingState) -> float:
     """Return |α̇| plus a tiny number, which keeps it above zero."""
     return math.hypot(state.tilt_rate_x, state.tilt_rate_y) + 1e-300
 
 
-def energy_of(state: State, n: Numbers) -> tuple[float, float]:
+def energy_of(state: SlidingState, n: SlidingNumbers) -> tuple[float, float]:
     """Return the kinetic energy, and the potential energy of the centre of mass above rest [m g h]."""
     kinetic = n.kappa * n.axial * (n.c * state.spin) ** 2
     mx, my, climb, lift = state.velocity_x, state.velocity_y, 0.0, 0.0
@@ -464,7 +475,7 @@ def energy_of(state: State, n: Numbers) -> tuple[float, float]:
     return 0.5 * kinetic, (1.0 - n.relief) * lift
 
 
-def with_energy_limit(energy: float, state: State, n: Numbers) -> State:
+def with_energy_limit(energy: float, state: SlidingState, n: SlidingNumbers) -> SlidingState:
     """Return `state` with all velocities reduced by one factor if its energy exceeds `energy`."""
     kinetic, lift = energy_of(state, n)
     if kinetic + lift <= energy:

@@ -23,7 +23,7 @@ from stylobate.models.declared import (
     StaticFrictionCoefficient,
 )
 from stylobate.models.model import RELEASE_MARGIN, ClosedForm, Floats, Model, Output, RollingLaw, tilt_of, zero
-from stylobate.models.sliding.balance import Contact, Numbers, State, forces_along
+from stylobate.models.sliding.balance import Contact, SlidingNumbers, SlidingState, forces_along
 from stylobate.models.sliding.equations import GUARDS, STRAIGHT, contact_loads, guards, rates
 from stylobate.models.sliding.rim_and_base import lifted
 from stylobate.models.sliding.transitions import project, reset_map
@@ -103,11 +103,11 @@ class Sliding(Model):
     ] = 0.0
 
     name: ClassVar[str] = "sliding"
-    state_names: ClassVar[tuple[str, ...]] = State._fields
-    spin_state: ClassVar[int | None] = State._fields.index("spin")
-    slip_states: ClassVar[tuple[int, ...]] = tuple(map(State._fields.index, ("velocity_x", "velocity_y")))
+    state_names: ClassVar[tuple[str, ...]] = SlidingState._fields
+    spin_state: ClassVar[int | None] = SlidingState._fields.index("spin")
+    slip_states: ClassVar[tuple[int, ...]] = tuple(map(SlidingState._fields.index, ("velocity_x", "velocity_y")))
     kept_states: ClassVar[tuple[int, ...]] = tuple(
-        map(State._fields.index, ("heading_x", "heading_y", "heading_z", "contact"))
+        map(SlidingState._fields.index, ("heading_x", "heading_y", "heading_z", "contact"))
     )
     guard_names: ClassVar[tuple[str, ...]] = GUARDS
     contact_kinds: ClassVar[type[IntEnum] | None] = Contact
@@ -134,11 +134,11 @@ class Sliding(Model):
     project = staticmethod(project)
 
     @property
-    def numbers(self) -> Numbers:
+    def numbers(self) -> SlidingNumbers:
         """The parameters by name."""
         column, kinetic = self.column, self.friction_coefficient
         down, half = sin(self.incline), sin(0.5 * self.incline)
-        return Numbers(
+        return SlidingNumbers(
             c=column.slenderness,
             eta=self.damping,
             zeta=self.spin_damping,
@@ -223,7 +223,7 @@ class Sliding(Model):
         length, scale = self.column.mass_height, self.time_scale
         vx, vy, vz = (part * scale / length for part in velocity)
         lean = (*tilt, tilt_rate[0] * scale, tilt_rate[1] * scale)
-        touching = State(
+        touching = SlidingState(
             *lean, spin * scale, twist, position[0] / length, position[1] / length, vx, vy, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
         )
         if clearance > 0.0 or vz != 0.0:
@@ -245,7 +245,7 @@ class Sliding(Model):
         """
         del resting
         column, scale, numbers = self.column, self.time_scale, self.numbers
-        length, named = column.mass_height, State(*states)
+        length, named = column.mass_height, SlidingState(*states)
         forces = forces_along(states, accelerations, numbers)
         pressing, friction, turning = forces[5], forces[6:8], forces[8]
         kind, weight = states[15].astype(np.int8), column.mass * column.gravity
@@ -272,14 +272,14 @@ class Sliding(Model):
             "painleve_denominator": Output(forces[11], "1", "Painlevé's denominator, 1 without slip on the rim"),
         }
 
-    def _gap(self, state: State) -> Floats:
+    def _gap(self, state: SlidingState) -> Floats:
         """Return the height of the lowest point above the plane [h]."""
         tilt = np.hypot(state.tilt_x, state.tilt_y)
         flying = np.asarray(state.contact) == Contact.FLYING
         gap: Floats = np.where(flying, state.rise - finite_tilt.potential(tilt, self.column.slenderness), 0.0)
         return gap
 
-    def _energy(self, state: State) -> Floats:
+    def _energy(self, state: SlidingState) -> Floats:
         """Return ½κ|V|² + ½(1 − κ)(w1² + w2²) + ½I_a w3² plus the potential energy, in units of m g h [J]."""
         column = self.column
         c, kappa = column.slenderness, column.inertia_ratio

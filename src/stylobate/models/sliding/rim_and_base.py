@@ -18,8 +18,8 @@ from stylobate.models.sliding.balance import (
     ROLLING,
     SLIDING,
     SLIPPING,
-    Numbers,
-    State,
+    SlidingNumbers,
+    SlidingState,
     sense_of,
 )
 from stylobate.models.sliding.equations import (
@@ -46,12 +46,12 @@ from stylobate.models.sliding.equations import (
 from stylobate.models.vertical import departure_with_spin
 
 
-def lifted(state: State, n: Numbers) -> State:
+def lifted(state: SlidingState, n: SlidingNumbers) -> SlidingState:
     """Return the column in the air at the instant of lift-off without an impact."""
     return lifted_with(state, 0.0, n)
 
 
-def lifted_with(state: State, opening: float, n: Numbers) -> State:
+def lifted_with(state: SlidingState, opening: float, n: SlidingNumbers) -> SlidingState:
     """Return a column in the air whose lowest point leaves the plane with this speed."""
     if state.tilt_x == 0.0 and state.tilt_y == 0.0:
         return headed(
@@ -66,7 +66,7 @@ def lifted_with(state: State, opening: float, n: Numbers) -> State:
     return headed(flying, (0.0, 0.0, 0.0), FLYING)
 
 
-def opens(state: State, now: Triple, n: Numbers) -> bool:
+def opens(state: SlidingState, now: Triple, n: SlidingNumbers) -> bool:
     """Return whether the rim would leave the plane: without contact forces its lowest point accelerates upwards."""
     free = rates_of(placed(state, lean_with_rate(state), state.spin, FLYING), now, n)
     ux, uy, sine, cos = lean_of(state)
@@ -86,7 +86,9 @@ STARTS = (0.0, 0.0, 0.0)
 _MOST_TURNS, _SMALL_TURN, _SAME = 20, 1e-7, 1e-9
 
 
-def begin_slip(state: State, now: Triple, later: Triple, ahead: float, n: Numbers) -> tuple[float, State]:
+def begin_slip(
+    state: SlidingState, now: Triple, later: Triple, ahead: float, n: SlidingNumbers
+) -> tuple[float, SlidingState]:
     """Return elapsed time and state a short time after a rolling column begins to slip.
 
     Friction acts with its limit along a slip that follows the load. The motion departs from rolling by the integral of
@@ -130,7 +132,7 @@ def _sooner(now: Triple, later: Triple, share: float) -> Triple:
     )
 
 
-def _slipping_along(state: State, heading: Triple, slip: float, n: Numbers) -> State:
+def _slipping_along(state: SlidingState, heading: Triple, slip: float, n: SlidingNumbers) -> SlidingState:
     """Return a column with the speed `slip` of slip along this heading."""
     started = moving(headed(state, heading, SLIPPING), (slip * heading[0], slip * heading[1]), 0.0, 0.0, SLIPPING)
     if n.patch == 0.0:
@@ -140,7 +142,7 @@ def _slipping_along(state: State, heading: Triple, slip: float, n: Numbers) -> S
     return placed(started, lean_with_rate(started), spin, SLIPPING)
 
 
-def load_direction(state: State, now: Triple, pull: Triple, n: Numbers) -> Triple:
+def load_direction(state: SlidingState, now: Triple, pull: Triple, n: SlidingNumbers) -> Triple:
     """Return the heading along which a rolling contact begins to slip: that of the acceleration of its slip.
 
     A slip that began earlier with the acceleration `pull` has the direction of the sum of the two accelerations.
@@ -195,7 +197,7 @@ def tilted(heading: Triple, way: Triple, angle: float) -> Triple:
     return x / size, y / size, z / size
 
 
-def slip_rate(state: State, heading: Triple, now: Triple, pull: Triple, n: Numbers) -> Triple:
+def slip_rate(state: SlidingState, heading: Triple, now: Triple, pull: Triple, n: SlidingNumbers) -> Triple:
     """Return the acceleration of a slip along a heading, plus `pull`."""
     found = forces(_slipping_along(state, heading, KICK * STILL, n), now, n)
     return found[3] + pull[0], found[4] + pull[1], found[9] + pull[2]
@@ -206,7 +208,7 @@ def dot(a: Triple, b: Triple) -> float:
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
-def _rolled_on(state: State, now: Triple, later: Triple, elapsed: float, n: Numbers) -> State:
+def _rolled_on(state: SlidingState, now: Triple, later: Triple, elapsed: float, n: SlidingNumbers) -> SlidingState:
     """Advance a rolling column by a short time, by the classical rule of Runge and Kutta."""
     middle = (0.5 * (now[0] + later[0]), 0.5 * (now[1] + later[1]), 0.5 * (now[2] + later[2]))
     first = rates_of(state, now, n)
@@ -275,7 +277,7 @@ def base_impulse(
     return (kept - 1.0) * vx, (kept - 1.0) * vy, (spun - 1.0) * w3
 
 
-def settle_rim(state: State, now: Triple, n: Numbers) -> State:
+def settle_rim(state: SlidingState, now: Triple, n: SlidingNumbers) -> SlidingState:
     """Return the next state of a column whose rim touches the plane without normal velocity.
 
     A column without slip rolls, even if friction is too weak: its slip then begins with the next event. Without
@@ -294,14 +296,16 @@ def settle_rim(state: State, now: Triple, n: Numbers) -> State:
     return lifted(still, n) if opens(still, now, n) else still
 
 
-def leaving(state: State, now: Triple, later: Triple, ahead: float, n: Numbers) -> tuple[float, State]:
+def leaving(
+    state: SlidingState, now: Triple, later: Triple, ahead: float, n: SlidingNumbers
+) -> tuple[float, SlidingState]:
     """Return elapsed time and state at a negative normal force: in the air, or slipping if slip presses the rim."""
     if state.contact == SLIPPING or opens(state, now, n):
         return 0.0, lifted(state, n)
     return begin_slip(state, now, later, ahead, n)
 
 
-def held(state: State, n: Numbers) -> State:
+def held(state: SlidingState, n: SlidingNumbers) -> SlidingState:
     """Return `state` rolling: its contact does not slip, and its patch does not turn."""
     spin = state.spin
     if n.patch > 0.0:
@@ -311,7 +315,7 @@ def held(state: State, n: Numbers) -> State:
     return headed(moving(rolling, (0.0, 0.0), 0.0, 0.0, ROLLING), (0.0, 0.0, 0.0), ROLLING)
 
 
-def jammed(state: State, n: Numbers) -> State:
+def jammed(state: SlidingState, n: SlidingNumbers) -> SlidingState:
     """Return the state after the impulse that ends slip at a zero of Painlevé's denominator (dynamic jamming).
 
     The impulse stops the contact and dissipates energy; it is the limit of an unbounded normal force.
@@ -325,7 +329,7 @@ def jammed(state: State, n: Numbers) -> State:
     return moving(struck, (0.0, 0.0), 0.0, 0.0, SLIPPING)
 
 
-def kicked(state: State, struck: Triple, n: Numbers) -> State:
+def kicked(state: SlidingState, struck: Triple, n: SlidingNumbers) -> SlidingState:
     """Return `state` with its angular velocity after an impulse along d, n and the vertical at its lowest point."""
     ux, uy, sine, cos = lean_of(state)
     w1, w2 = turning(state)
@@ -343,7 +347,9 @@ _REST = 3
 TRIPPED = 1e-9
 
 
-def settle_flat(state: State, now: Triple, later: Triple, ahead: float, n: Numbers) -> tuple[float, State]:
+def settle_flat(
+    state: SlidingState, now: Triple, later: Triple, ahead: float, n: SlidingNumbers
+) -> tuple[float, SlidingState]:
     """Return elapsed time and state of a column on its base: at rest, sliding, after uplift or in the air."""
     weight = 1.0 + now[2] - n.relief
     if weight <= 0.0:
@@ -365,19 +371,21 @@ def settle_flat(state: State, now: Triple, later: Triple, ahead: float, n: Numbe
     return uplifted(standing, now, later, ahead, n)
 
 
-def _set_flat(state: State, n: Numbers) -> State:
+def _set_flat(state: SlidingState, n: SlidingNumbers) -> SlidingState:
     """Return a column on its rim set down on its base; its velocity is the slip of the centre of the base."""
     ux, uy, _, _ = lean_of(state) if state.tilt_x != 0.0 or state.tilt_y != 0.0 else (0.0, 0.0, 0.0, 1.0)
     velocity = (state.velocity_x + n.c * state.spin * uy, state.velocity_y - n.c * state.spin * ux)
     return moving(placed(state, (0.0, 0.0, 0.0, 0.0), state.spin, SLIDING), velocity, 0.0, 0.0, SLIDING)
 
 
-def rests(state: State, now: Triple, rest: float, n: Numbers) -> bool:
+def rests(state: SlidingState, now: Triple, rest: float, n: SlidingNumbers) -> bool:
     """Return whether a column on its rim comes to rest by the guard "rest"."""
     return guards_of(state, now, rest, n)[_REST] < 0.0
 
 
-def set_down(state: State, now: Triple, later: Triple, ahead: float, n: Numbers) -> tuple[float, State]:
+def set_down(
+    state: SlidingState, now: Triple, later: Triple, ahead: float, n: SlidingNumbers
+) -> tuple[float, SlidingState]:
     """Return elapsed time and state of a column that comes to rest on its rim: at rest, or its base slides on."""
     flat = _set_flat(state, n)
     if n.kinetic > n.c:
@@ -385,7 +393,9 @@ def set_down(state: State, now: Triple, later: Triple, ahead: float, n: Numbers)
     return settle_flat(flat, now, later, ahead, n)
 
 
-def set_sliding(state: State, now: Triple, later: Triple, ahead: float, n: Numbers) -> tuple[float, State]:
+def set_sliding(
+    state: SlidingState, now: Triple, later: Triple, ahead: float, n: SlidingNumbers
+) -> tuple[float, SlidingState]:
     """Return elapsed time and state a short time after a column at rest begins to slide; at once without friction."""
     if n.static == 0.0:
         return 0.0, headed(state, (0.0, 0.0, 0.0), SLIDING)
@@ -402,14 +412,16 @@ def set_sliding(state: State, now: Triple, later: Triple, ahead: float, n: Numbe
     return ahead, headed_along_slip(begun, n) if forward > 0.0 else state
 
 
-def _set_off(state: State, px: float, py: float, slip: float) -> State:
+def _set_off(state: SlidingState, px: float, py: float, slip: float) -> SlidingState:
     """Return a standing column that slides with the speed `slip` against an acceleration."""
     pushed = math.hypot(px, py)
     way = (-px / pushed, -py / pushed)
     return moving(headed(state, (way[0], way[1], 0.0), SLIDING), (slip * way[0], slip * way[1]), 0.0, 0.0, SLIDING)
 
 
-def uplifted(state: State, now: Triple, later: Triple, ahead: float, n: Numbers) -> tuple[float, State]:
+def uplifted(
+    state: SlidingState, now: Triple, later: Triple, ahead: float, n: SlidingNumbers
+) -> tuple[float, SlidingState]:
     """Return elapsed time and state a short time after uplift."""
     ax, ay, weight = now[0] + n.slope_x, now[1] + n.slope_y, 1.0 + now[2] - n.relief
     bx, by, heavier = later[0] + n.slope_x, later[1] + n.slope_y, 1.0 + later[2] - n.relief
@@ -429,7 +441,7 @@ def uplifted(state: State, now: Triple, later: Triple, ahead: float, n: Numbers)
     return ahead, settle_rim(placed(state, (x, y, vx, vy), spin, ROLLING), later, n)
 
 
-def tripping(state: State, now: Triple, n: Numbers) -> tuple[float, State]:
+def tripping(state: SlidingState, now: Triple, n: SlidingNumbers) -> tuple[float, SlidingState]:
     """Return elapsed time and state of a sliding column that friction begins to tip."""
     sliding = forces(state, now, n)
     drag = math.hypot(sliding[6], sliding[7])

@@ -4,7 +4,16 @@ import math
 from typing import NamedTuple
 
 from stylobate.models.finite_tilt import TINY, cosine, sine_over_angle
-from stylobate.models.sliding.balance import FLYING, RESTING, ROLLING, SLIDING, SLIPPING, TWISTING_BASE, Numbers, State
+from stylobate.models.sliding.balance import (
+    FLYING,
+    RESTING,
+    ROLLING,
+    SLIDING,
+    SLIPPING,
+    TWISTING_BASE,
+    SlidingNumbers,
+    SlidingState,
+)
 from stylobate.models.sliding.equations import (
     KICK,
     STILL,
@@ -60,7 +69,9 @@ class _Body(NamedTuple):
     spin: float
 
 
-def face_impact(state: State, now: Triple, later: Triple, ahead: float, rest: float, n: Numbers) -> tuple[float, State]:
+def face_impact(
+    state: SlidingState, now: Triple, later: Triple, ahead: float, rest: float, n: SlidingNumbers
+) -> tuple[float, SlidingState]:
     """Return elapsed time and state after an impact of the base face, which is an impact of the opposite rim point.
 
     The passage is computed in the vertical plane of the motion with the energy of the state. If this energy is too
@@ -89,7 +100,7 @@ def face_impact(state: State, now: Triple, later: Triple, ahead: float, rest: fl
 
 
 def _coming_down(
-    state: State,
+    state: SlidingState,
     body: _Body,
     tilt: float,
     behind: float,
@@ -97,8 +108,8 @@ def _coming_down(
     later: Triple,
     ahead: float,
     rest: float,
-    n: Numbers,
-) -> tuple[float, State]:
+    n: SlidingNumbers,
+) -> tuple[float, SlidingState]:
     """Return elapsed time and state of a vertical column that has struck the plane and stays on it.
 
     The rim strikes again until the column rests on the rim point towards which it leans. The tilt is then `tilt`, or
@@ -125,7 +136,7 @@ def _coming_down(
     return _flattened(state, body, now, later, ahead, n)
 
 
-def _planar_speed(state: State, way: tuple[float, float], n: Numbers) -> float:
+def _planar_speed(state: SlidingState, way: tuple[float, float], n: SlidingNumbers) -> float:
     """Return the tilt rate of a planar passage of the vertical with the energy of `state`.
 
     The column then turns about the rim point behind it, with the slip of `state`. The result is −1 if this motion has
@@ -142,7 +153,7 @@ def _planar_speed(state: State, way: tuple[float, float], n: Numbers) -> float:
     return (math.sqrt(square) - along) / inertia if square >= 0.0 and math.sqrt(square) >= along else -1.0
 
 
-def in_plane(state: State, way: tuple[float, float], speed: float, n: Numbers) -> _Body:
+def in_plane(state: SlidingState, way: tuple[float, float], speed: float, n: SlidingNumbers) -> _Body:
     """Return a column that passes the vertical in this direction with this tilt rate, on the rim point behind it."""
     return _Body(
         state.velocity_x + speed * way[0] - n.c * state.spin * way[1],
@@ -154,7 +165,7 @@ def in_plane(state: State, way: tuple[float, float], speed: float, n: Numbers) -
     )
 
 
-def _as_it_is(state: State, n: Numbers) -> _Body:
+def _as_it_is(state: SlidingState, n: SlidingNumbers) -> _Body:
     """Return a column near the vertical with the velocities of `state`."""
     x, y, vx, vy = lean_with_rate(state)
     tilt = math.hypot(x, y)
@@ -170,7 +181,7 @@ def _as_it_is(state: State, n: Numbers) -> _Body:
     )
 
 
-def _struck_at(body: _Body, ux: float, uy: float, bounce: float, n: Numbers) -> _Body:
+def _struck_at(body: _Body, ux: float, uy: float, bounce: float, n: SlidingNumbers) -> _Body:
     """Return a vertical column after an impact of its rim point in the direction (ux, uy)."""
     c, kappa = n.c, n.kappa
     vx = body.velocity_x - body.rate_x - c * body.spin * uy
@@ -189,7 +200,7 @@ def _struck_at(body: _Body, ux: float, uy: float, bounce: float, n: Numbers) -> 
     )
 
 
-def _flying_from(state: State, body: _Body, lean: tuple[float, float], n: Numbers) -> State:
+def _flying_from(state: SlidingState, body: _Body, lean: tuple[float, float], n: SlidingNumbers) -> SlidingState:
     """Return a column with this lean in the air, just after a rebound from the plane."""
     tilt = math.hypot(lean[0], lean[1])
     square = tilt * tilt
@@ -199,7 +210,9 @@ def _flying_from(state: State, body: _Body, lean: tuple[float, float], n: Number
     return headed(flying, (0.0, 0.0, 0.0), FLYING)
 
 
-def _flattened(state: State, body: _Body, now: Triple, later: Triple, ahead: float, n: Numbers) -> tuple[float, State]:
+def _flattened(
+    state: SlidingState, body: _Body, now: Triple, later: Triple, ahead: float, n: SlidingNumbers
+) -> tuple[float, SlidingState]:
     """Return elapsed time and state of a column too squat to rock to its other side: its base stops on the plane."""
     approach, vx, vy = max(-body.climb, 0.0), body.velocity_x, body.velocity_y
     kx, ky, turned = base_impulse(vx, vy, body.spin, approach, n.kinetic, TWISTING_BASE, n.c, n.axial * n.c * n.c)
@@ -207,7 +220,9 @@ def _flattened(state: State, body: _Body, now: Triple, later: Triple, ahead: flo
     return settle_flat(moving(flat, (vx + kx, vy + ky), 0.0, 0.0, SLIDING), now, later, ahead, n)
 
 
-def land(state: State, now: Triple, later: Triple, ahead: float, rest: float, n: Numbers) -> tuple[float, State]:
+def land(
+    state: SlidingState, now: Triple, later: Triple, ahead: float, rest: float, n: SlidingNumbers
+) -> tuple[float, SlidingState]:
     """Return elapsed time and state after the lowest point of a column has landed on the plane."""
     if state.tilt_x == 0.0 and state.tilt_y == 0.0 and state.tilt_rate_x == 0.0 and state.tilt_rate_y == 0.0:
         return _land_flat(state, now, later, ahead, n)
@@ -233,12 +248,14 @@ def land(state: State, now: Triple, later: Triple, ahead: float, rest: float, n:
     return 0.0, settle_rim(struck, now, n)
 
 
-def touching(state: State, vd: float, vn: float, ux: float, uy: float) -> State:
+def touching(state: SlidingState, vd: float, vn: float, ux: float, uy: float) -> SlidingState:
     """Return a column whose lowest point touches the plane with this velocity."""
     return moving(state, (vd * ux - vn * uy, vd * uy + vn * ux), 0.0, 0.0, SLIPPING)
 
 
-def _land_flat(state: State, now: Triple, later: Triple, ahead: float, n: Numbers) -> tuple[float, State]:
+def _land_flat(
+    state: SlidingState, now: Triple, later: Triple, ahead: float, n: SlidingNumbers
+) -> tuple[float, SlidingState]:
     """Return elapsed time and state of a column that lands on its whole base: it may trip over its leading edge."""
     vx, vy, approach = state.velocity_x, state.velocity_y, max(-state.rise_rate, 0.0)
     bounce = rebound(n.normal_restitution, approach)
@@ -264,8 +281,8 @@ _WEIGHTLESS = 1e-12
 
 
 def _reaction(
-    state: State, event: int, now: Triple, later: Triple, ahead: float, rest: float, numbers: Numbers
-) -> tuple[float, State]:
+    state: SlidingState, event: int, now: Triple, later: Triple, ahead: float, rest: float, numbers: SlidingNumbers
+) -> tuple[float, SlidingState]:
     """Return elapsed time and state after the guard of this number has fallen below zero.
 
     Parameters
@@ -316,7 +333,9 @@ def _reaction(
     return settle_flat(state, now, later, ahead, numbers)
 
 
-def _stopped(state: State, now: Triple, later: Triple, ahead: float, n: Numbers) -> tuple[float, State]:
+def _stopped(
+    state: SlidingState, now: Triple, later: Triple, ahead: float, n: SlidingNumbers
+) -> tuple[float, SlidingState]:
     """Return elapsed time and state after the slip along the heading has ended.
 
     A slip that has turned across its heading continues along a new heading. Only a slip close to zero stops.
@@ -373,10 +392,10 @@ def reset_map(
     slope_x: float,
     slope_y: float,
     relief: float,
-) -> tuple[float, State]:
+) -> tuple[float, SlidingState]:
     """Return elapsed time and state after the end of a kind of contact; see `_reaction`."""
-    state = State(x, y, vx, vy, w3, twist, fx, fy, sx, sy, rise, climb, hx, hy, hz, contact)
-    numbers = Numbers(
+    state = SlidingState(x, y, vx, vy, w3, twist, fx, fy, sx, sy, rise, climb, hx, hy, hz, contact)
+    numbers = SlidingNumbers(
         c,
         eta,
         zeta,

@@ -18,7 +18,7 @@ from stylobate.paper.analyses.straight import check_straight
 from stylobate.paper.analyses.twist import check_twist
 from stylobate.processes import computed
 from stylobate.progress import News, Progress, report_of, shows_progress
-from stylobate.results import PaperCheck, Section
+from stylobate.results.findings import PaperCheck, PaperSection
 
 __all__ = ["check_paper"]
 
@@ -27,7 +27,7 @@ __all__ = ["check_paper"]
 class _Analysis:
     """Check of one section of the paper, and its typical processor time [s]."""
 
-    check: Callable[[], Section]
+    check: Callable[[], PaperSection]
     cost: float
 
 
@@ -98,7 +98,7 @@ def check_paper(
     return PaperCheck({heading: done[heading] for heading in _ANALYSES})
 
 
-def _computed(headings: list[str], workers: int) -> Generator[tuple[str, Section], None, None]:
+def _computed(headings: list[str], workers: int) -> Generator[tuple[str, PaperSection], None, None]:
     if workers == 1:
         for heading in headings:
             yield heading, _ANALYSES[heading].check()

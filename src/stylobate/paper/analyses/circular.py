@@ -8,10 +8,10 @@ import xarray as xr
 from stylobate import theory
 from stylobate.base_motions import Harmonic
 from stylobate.engine import simulate
-from stylobate.orbits import Bifurcation, Branch, Kind, continue_branch, periodic_orbit, switch_branch
+from stylobate.orbits import Bifurcation, BifurcationKind, Branch, continue_branch, periodic_orbit, switch_branch
 from stylobate.paper.analyses.setting import CIRCULAR_AMPLITUDES, DAMPING, SLENDERNESS, judged, paper_model
 from stylobate.paper.analyses.straight import AMPLITUDES
-from stylobate.results import ClaimStatus, Finding, Section
+from stylobate.results.findings import ClaimStatus, Finding, PaperSection
 from stylobate.studies.responses.exact_response import exact_response
 from stylobate.studies.responses.response_curves import steady_start
 from stylobate.studies.responses.stability_boundary import stability_boundary
@@ -21,7 +21,7 @@ _PARAMETERS = {"c": SLENDERNESS, "eta": DAMPING}
 _PERIODS = 50
 
 
-def check_circular() -> Section:
+def check_circular() -> PaperSection:
     """Check the paper's section on circular base motion."""
     findings = (
         _solution(),
@@ -32,7 +32,7 @@ def check_circular() -> Section:
         _critical_frequencies(),
         _undamped_limit(),
     )
-    return Section(findings, {"response": response_data(), "critical": critical_data()})
+    return PaperSection(findings, {"response": response_data(), "critical": critical_data()})
 
 
 def response_data() -> xr.Dataset:
@@ -178,7 +178,7 @@ _BOUNDS = (0.8, 8.0)
 _ELLIPSE = (0.08, 0.04)
 
 
-def check_exact() -> Section:
+def check_exact() -> PaperSection:
     """Check the paper's averaged results against exact orbits."""
     straight = {a1: _branch(Harmonic.straight(acceleration=a1, angular_frequency=3.0)) for a1 in AMPLITUDES}
     data = {
@@ -196,7 +196,7 @@ def check_exact() -> Section:
         ),
     }
     findings = (_circular(), _boundaries(straight), _bifurcating(straight), _error(straight))
-    return Section(findings, {name: _plain(found) for name, found in data.items()})
+    return PaperSection(findings, {name: _plain(found) for name, found in data.items()})
 
 
 def _plain(found: xr.Dataset) -> xr.Dataset:
@@ -234,7 +234,10 @@ def _circular() -> Finding:
         f"{lost.kind.value} bifurcation at ν = {lost.parameter:.9f}, {gap:.0e} from the closed form; supercritical: "
         "a stable modulated motion bifurcates.",
         judged(
-            max(errors) < 1e-8 and gap < 1e-7 and lost.kind is Kind.NEIMARK_SACKER and bool(lost.supercritical),  # noqa: PLR2004
+            max(errors) < 1e-8  # noqa: PLR2004
+            and gap < 1e-7  # noqa: PLR2004
+            and lost.kind is BifurcationKind.NEIMARK_SACKER
+            and bool(lost.supercritical),
             ClaimStatus.SHARPENED,
         ),
     )
@@ -250,7 +253,7 @@ def _boundaries(straight: dict[float, Branch]) -> Finding:
         averaged = float(theory.critical_frequency(part, c=_C, eta=DAMPING))
         lines.append(f"{name}: {one.parameter:.6f} (averaged {averaged:.4f})")
         higher.append(one.parameter > averaged)
-    pitchforks = all(one.kind is Kind.PITCHFORK and one.supercritical for one, _ in lost.values())
+    pitchforks = all(one.kind is BifurcationKind.PITCHFORK and one.supercritical for one, _ in lost.values())
     return Finding(
         "conclusion 4",
         "Averaging gives the frequency above which rolling is stable under straight-line motion.",

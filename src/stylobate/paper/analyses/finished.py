@@ -11,7 +11,7 @@ from pathlib import Path
 import xarray as xr
 
 from stylobate.errors import FileError
-from stylobate.results import ClaimStatus, Finding, Section
+from stylobate.results.findings import ClaimStatus, Finding, PaperSection
 from stylobate.results.keyed_store import KeyedStore
 
 _FINDINGS = "findings"
@@ -23,7 +23,7 @@ class FinishedAnalyses:
 
     folder: Path
 
-    def read(self, heading: str) -> Section | None:
+    def read(self, heading: str) -> PaperSection | None:
         """Read the section with this heading; None if it is missing, damaged or from other code."""
         tree = KeyedStore(self.folder).read(heading, {"code": fingerprint()})
         if tree is None:
@@ -32,9 +32,9 @@ class FinishedAnalyses:
         found = tuple(
             Finding(where, what, measured, ClaimStatus[verdict]) for where, what, measured, verdict in findings
         )
-        return Section(found, {str(name): child.to_dataset() for name, child in tree.children.items()})
+        return PaperSection(found, {str(name): child.to_dataset() for name, child in tree.children.items()})
 
-    def write(self, heading: str, section: Section) -> Section:
+    def write(self, heading: str, section: PaperSection) -> PaperSection:
         """Store a section in place of earlier ones; return the stored section.
 
         Raises

@@ -10,14 +10,14 @@ from stylobate.base_motions import Harmonic
 from stylobate.engine import simulate
 from stylobate.errors import Outcome
 from stylobate.paper.analyses.setting import SLENDERNESS, judged, paper_model
-from stylobate.results import ClaimStatus, Finding, Section
+from stylobate.results.findings import ClaimStatus, Finding, PaperSection
 
 _C = SLENDERNESS
 
 
-def check_standing() -> Section:
+def check_standing() -> PaperSection:
     """Check the paper's statements on a column that starts at rest or from other initial conditions."""
-    return Section((_sign_of_forces(), _stays(), _overturns()), {"pressure": pressure_data()})
+    return PaperSection((_sign_of_forces(), _stays(), _overturns()), {"pressure": pressure_data()})
 
 
 def pressure_data() -> xr.Dataset:
@@ -91,9 +91,9 @@ def _overturns() -> Finding:
     )
 
 
-def check_free() -> Section:
+def check_free() -> PaperSection:
     """Check the paper's statements about a base at rest."""
-    return Section((_planar(), _rolling(), _planar_rate(), _general(), _runaway()), {"runaway": runaway_data()})
+    return PaperSection((_planar(), _rolling(), _planar_rate(), _general(), _runaway()), {"runaway": runaway_data()})
 
 
 def runaway_data() -> xr.Dataset:

@@ -12,7 +12,7 @@ from stylobate.base_motions import Harmonic
 from stylobate.engine import simulate
 from stylobate.errors import Outcome
 from stylobate.paper.analyses.setting import CIRCULAR_AMPLITUDES, DAMPING, SLENDERNESS, judged, paper_model
-from stylobate.results import ClaimStatus, Finding, Section
+from stylobate.results.findings import ClaimStatus, Finding, PaperSection
 from stylobate.studies.responses.response_curves import steady_start
 
 _C = SLENDERNESS
@@ -24,9 +24,11 @@ _BEYOND_DOUBLING = 1.318
 _SEED = 20
 
 
-def check_modulated() -> Section:
+def check_modulated() -> PaperSection:
     """Check conclusion 3 of the paper."""
-    return Section((_supercritical(), _third_kind(), _followed_down(), _survivors()), {"modulated": modulated_data()})
+    return PaperSection(
+        (_supercritical(), _third_kind(), _followed_down(), _survivors()), {"modulated": modulated_data()}
+    )
 
 
 def modulated_data() -> xr.Dataset:

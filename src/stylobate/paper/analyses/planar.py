@@ -9,7 +9,7 @@ from stylobate import theory
 from stylobate.base_motions import Harmonic
 from stylobate.engine import simulate
 from stylobate.paper.analyses.setting import DAMPING, SLENDERNESS, judged, paper_model
-from stylobate.results import ClaimStatus, Finding, Section
+from stylobate.results.findings import ClaimStatus, Finding, PaperSection
 from stylobate.theory.planar import planar_kick_slope
 
 _C = SLENDERNESS
@@ -18,10 +18,10 @@ _PLANAR_A1, _ROLLING_A0 = 0.008, 0.008
 """Small amplitudes, so that each forced curve is close to its backbone."""
 
 
-def check_planar() -> Section:
+def check_planar() -> PaperSection:
     """Check the paper's statements on motion in the plane of excitation."""
     kicks = kick_data()
-    return Section(
+    return PaperSection(
         (_two_curves(), _planar_response(), _planar_loss(kicks)), {"backbones": backbone_data(), "kicks": kicks}
     )
 

@@ -2,7 +2,7 @@
 
 from stylobate.column import Column
 from stylobate.models import Slender
-from stylobate.results import ClaimStatus
+from stylobate.results.findings import ClaimStatus
 
 SLENDERNESS, DAMPING = 0.1, 0.1
 """c and η of the paper's figures."""

@@ -11,7 +11,8 @@ from stylobate.base_motions import Harmonic
 from stylobate.engine import simulate
 from stylobate.errors import Outcome
 from stylobate.paper.analyses.setting import DAMPING, SLENDERNESS, judged, paper_model
-from stylobate.results import ClaimStatus, Finding, Response, Section
+from stylobate.results import Run
+from stylobate.results.findings import ClaimStatus, Finding, PaperSection
 from stylobate.studies.responses.response_curves import averaged_motion, steady_start
 from stylobate.theory.averaging import high_frequency_rates
 
@@ -23,11 +24,11 @@ _PERIODS = 60
 _SETTLING_TIME = 180.0
 
 
-def check_straight() -> Section:
+def check_straight() -> PaperSection:
     """Check the paper's section on straight-line base motion, its rolling solution."""
     response = full_response_data()
     findings = (_sign_of_nine(), _both_senses(), _averaged_curves(response), _stable_motion(), _small_parameters())
-    return Section(findings, {"straight": response, "averaging": averaging_data()})
+    return PaperSection(findings, {"straight": response, "averaging": averaging_data()})
 
 
 def full_response_data() -> xr.Dataset:
@@ -68,7 +69,7 @@ def averaging_data() -> xr.Dataset:
     return xr.Dataset(fields, attrs={"nu": [case[0] for case in cases], "a1": [case[1] for case in cases], "c": _C})
 
 
-def _from_averaged(nu: float, a1: float, periods: int, sense: int = 1) -> Response:
+def _from_averaged(nu: float, a1: float, periods: int, sense: int = 1) -> Run:
     model = paper_model()
     motion = Harmonic.straight(acceleration=a1, angular_frequency=nu)
     start = steady_start(model, motion, sense=sense)

@@ -14,7 +14,8 @@ from stylobate.engine import simulate
 from stylobate.errors import Outcome
 from stylobate.models import Model, Rolling, SlenderRolling
 from stylobate.paper.analyses.setting import CIRCULAR_AMPLITUDES, DAMPING, SLENDERNESS, judged
-from stylobate.results import ClaimStatus, Finding, Response, Section
+from stylobate.results import Run
+from stylobate.results.findings import ClaimStatus, Finding, PaperSection
 
 A0, NU = CIRCULAR_AMPLITUDES[1], 3.0
 """a0 and ν of these runs."""
@@ -28,7 +29,7 @@ GONE = 0.01
 _PERIODS_WITHOUT = 15
 
 
-def run_from_paper(kind: type[Rolling | SlenderRolling], zeta: float, periods: float = PERIODS) -> Response:
+def run_from_paper(kind: type[Rolling | SlenderRolling], zeta: float, periods: float = PERIODS) -> Run:
     """Integrate a column with free spin from the paper's solution (8) without spin."""
     motion = Harmonic.circular(acceleration=A0, angular_frequency=NU)
     model = kind(Column.dimensionless(SLENDERNESS), damping=DAMPING, spin_damping=zeta)
@@ -136,12 +137,12 @@ _BOUNDARY, _LINEAR = 1e-6, 0.01
 """Tolerances of ν* from integration, and of the proportionality of ν* − ν*(η = 0) to η."""
 
 
-def check_twist() -> Section:
+def check_twist() -> PaperSection:
     """Check the moment required by the assumption of no rotation about the vertical, and (8) without it."""
     findings: tuple[Finding, ...] = (_needed(), _with_spin_damping(), _without())
     findings += (_stability(), _weak_damping(), _upper_frequency())
     findings += findings_at_finite_tilt()
-    return Section(findings, {"twist": twist_data(), "twist_boundary": boundary_data()})
+    return PaperSection(findings, {"twist": twist_data(), "twist_boundary": boundary_data()})
 
 
 def twist_data() -> xr.Dataset:

@@ -25,7 +25,7 @@ from stylobate.plots.animation.formats import gif_of, page_of, write_mp4
 from stylobate.plots.animation.motion import DrawnMotion
 from stylobate.plots.geometry import View
 from stylobate.progress import Progress, Report, report_of, shows_progress, silent
-from stylobate.results import Response
+from stylobate.results import Run
 
 # Maximum number of frames in an animation: a minute at the usual rate.
 _MOST = 1500
@@ -127,7 +127,7 @@ class Animation:
 
 
 def animate(
-    run: Response,
+    run: Run,
     path: str | Path | None = None,
     *,
     size: Sequence[int] = (640, 480),
@@ -207,7 +207,7 @@ def animate(
     return animation
 
 
-def _remark_on_few(run: Response, pictures: float) -> None:
+def _remark_on_few(run: Run, pictures: float) -> None:
     """Warn if there are too few `pictures` per second of the run to show the motion of its base."""
     frequency = run.provenance["motion"].get("angular_frequency")
     if not isinstance(frequency, float) or pictures * 2.0 * math.pi >= _FEWEST_IN_A_PERIOD * frequency:

@@ -11,7 +11,7 @@ import xarray as xr
 
 from stylobate.errors import Outcome, ParameterError, require_positive
 from stylobate.plots.geometry import Floats, Shape, base_centres, quaternions
-from stylobate.results import Response
+from stylobate.results import Run
 from stylobate.results.plain import plain_numbers
 
 # Maximum number of instants of a run: a page contains them all.
@@ -80,7 +80,7 @@ class DrawnMotion:
     @classmethod
     def of(
         cls,
-        run: Response,
+        run: Run,
         *,
         frames_per_second: float | None = None,
         title: str | None = None,
@@ -159,7 +159,7 @@ class DrawnMotion:
         }
 
 
-def drawn_motion(run: Response, *, frames_per_second: float | None = None, title: str | None = None) -> dict[str, Any]:
+def drawn_motion(run: Run, *, frames_per_second: float | None = None, title: str | None = None) -> dict[str, Any]:
     """Convert a run to poses as plain numbers, for a web page or another program to draw.
 
     Lengths are in m, angles in rad, times in s; z points up. Positions are in the frame of the base, whose displacement
@@ -197,14 +197,14 @@ def _without_advice(reason: str) -> str:
     return reason.partition(";")[0]
 
 
-def _require_run(run: Response) -> None:
-    if not isinstance(run, Response):
+def _require_run(run: Run) -> None:
+    if not isinstance(run, Run):
         raise ParameterError(f"run must be a run, as simulate returns it, got {type(run).__name__}")
     if run.data.sizes["time"] < 2:  # noqa: PLR2004  no motion in less
         raise ParameterError(f"run must have 2 samples at least, got {run.data.sizes['time']}")
 
 
-def _at_equal_steps(run: Response, frames_per_second: float | None, most: int) -> xr.Dataset:
+def _at_equal_steps(run: Run, frames_per_second: float | None, most: int) -> xr.Dataset:
     own, end = run.data["time"].to_numpy(), float(run.data["time"][-1])
     count = own.size
     if frames_per_second is not None:

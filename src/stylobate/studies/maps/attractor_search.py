@@ -302,23 +302,23 @@ class Attractor:
 
 
 @dataclass(frozen=True, slots=True)
-class Found:
+class FoundAttractors:
     """The `attractors` of some runs, and the index of the attractor of each run: `labels`, in the shape of the runs."""
 
     attractors: tuple[Attractor, ...]
     labels: Integers
 
-    def listed(self) -> "Found":
+    def listed(self) -> "FoundAttractors":
         """Return the result with unsettled runs, if any, listed last like an attractor."""
         unsettled = self.labels == UNSETTLED
         if not unsettled.any():
             return self
         place = len(self.attractors)
         row = Attractor(NOT_SETTLED, 0, np.nan, np.nan, np.empty((0, 2), dtype=complex))
-        return Found((*self.attractors, row), np.where(unsettled, place, self.labels))
+        return FoundAttractors((*self.attractors, row), np.where(unsettled, place, self.labels))
 
 
-def find_attractors(runs: xr.Dataset, scales: OrbitScales, rules: AttractorRules) -> Found:
+def find_attractors(runs: xr.Dataset, scales: OrbitScales, rules: AttractorRules) -> FoundAttractors:
     """Find the attractors of `runs` of one column under one base motion, and the attractor of each run.
 
     The outcome identifies rest, overturning and other ends of a run. A run that moves until its end is on a periodic
@@ -337,7 +337,7 @@ def find_attractors(runs: xr.Dataset, scales: OrbitScales, rules: AttractorRules
 
     Returns
     -------
-    Found
+    FoundAttractors
         The attractors in an order that depends only on them, and labels: UNSETTLED, NOT_COMPUTED, or their index.
 
     Raises
@@ -357,7 +357,7 @@ def find_attractors(runs: xr.Dataset, scales: OrbitScales, rules: AttractorRules
     groups = sorted(_groups(flat, rules), key=lambda group: rank(group[0], rules.match_tolerance))
     for place, (_, members) in enumerate(groups):
         labels[members] = place
-    return Found(tuple(attractor for attractor, _ in groups), labels.reshape(shape))
+    return FoundAttractors(tuple(attractor for attractor, _ in groups), labels.reshape(shape))
 
 
 @dataclass(frozen=True, slots=True)
@@ -461,7 +461,7 @@ def kind_of_orbit(turns: float) -> str:
     return ROLLING[int(np.sign(turns))] if turns else ROCKING
 
 
-def with_turns(found: Found, turns: Floats, tolerance: float) -> tuple[Found, Integers]:
+def with_turns(found: FoundAttractors, turns: Floats, tolerance: float) -> tuple[FoundAttractors, Integers]:
     """Return `found` with kinds by these `turns` for orbits whose turns were unknown, and the new order.
 
     The order holds for each index the previous index of its attractor.
@@ -479,7 +479,7 @@ def with_turns(found: Found, turns: Floats, tolerance: float) -> tuple[Found, In
     place[order] = np.arange(order.size)
     labels, settled = found.labels.copy(), found.labels >= 0
     labels[settled] = place[found.labels[settled]]
-    return Found(tuple(attractors[old] for old in order), labels), order
+    return FoundAttractors(tuple(attractors[old] for old in order), labels), order
 
 
 def _ordered(cycle: Complexes) -> Complexes:

@@ -20,7 +20,7 @@ from stylobate.studies.maps.attractor_search import (
     Attractor,
     AttractorRules,
     Floats,
-    Found,
+    FoundAttractors,
     OrbitScales,
     find_attractors,
     names_of,
@@ -28,7 +28,7 @@ from stylobate.studies.maps.attractor_search import (
     with_turns,
 )
 from stylobate.studies.proportions import fraction_interval
-from stylobate.studies.study import Runs, described, study
+from stylobate.studies.study import StudyArguments, described, study
 from stylobate.studies.sweeps import Sweep
 from stylobate.studies.sweeps.running import Label
 
@@ -127,7 +127,7 @@ def attractors(
     rng: Rng = 0,
     attractor_rules: AttractorRules | None = None,
     confidence: float = 0.95,
-    **run: Unpack[Runs],
+    **run: Unpack[StudyArguments],
 ) -> tuple[Sweep, Label]:
     """Find the attractors of a column under one base motion, and their fractions, from random initial conditions.
 
@@ -273,7 +273,7 @@ def attractor_table(attractors: Sequence[Attractor], scales: OrbitScales) -> xr.
     )
 
 
-def shares(found: Found, confidence: float) -> xr.Dataset:
+def shares(found: FoundAttractors, confidence: float) -> xr.Dataset:
     """Return the number of runs that reach each attractor, and the fraction with its interval.
 
     The attractor of an unsettled run is unknown: the lower end counts no unsettled run towards the attractor, the upper
@@ -309,7 +309,7 @@ def rule_attributes(rules: AttractorRules, confidence: float) -> dict[str, Any]:
     }
 
 
-def _label_attributes(found: Found) -> dict[str, Any]:
+def _label_attributes(found: FoundAttractors) -> dict[str, Any]:
     names = ["not computed", *names_of(found.attractors)]
     meanings = (name.replace(",", "").replace(" ", "_") for name in names)
     return flag_attributes("attractor", meanings, first=NOT_COMPUTED, dtype=np.int16)

@@ -24,7 +24,7 @@ from stylobate.studies.maps.attractor_search import (
     REMEDY,
     Attractor,
     AttractorRules,
-    Found,
+    FoundAttractors,
     OrbitScales,
     cycle_distance,
     find_attractors,
@@ -32,7 +32,7 @@ from stylobate.studies.maps.attractor_search import (
 )
 from stylobate.studies.maps.attractors import attractor_table, rule_attributes
 from stylobate.studies.proportions import fraction_interval, require_confidence
-from stylobate.studies.study import Runs, described, study
+from stylobate.studies.study import StudyArguments, described, study
 from stylobate.studies.sweeps import Sweep
 from stylobate.studies.sweeps.designs import Box, whole
 from stylobate.studies.sweeps.running import Label
@@ -119,7 +119,7 @@ def basin_fractions(
     rng: Rng = 0,
     attractor_rules: AttractorRules | None = None,
     confidence: float = 0.95,
-    **run: Unpack[Runs],
+    **run: Unpack[StudyArguments],
 ) -> tuple[Sweep, Label]:
     """Compute basin fractions along one parameter, from random initial conditions.
 
@@ -205,7 +205,7 @@ def fractions_along(
     )
 
 
-def _fractions(name: str, found: Sequence[Found], branches: Branches, confidence: float) -> xr.Dataset:
+def _fractions(name: str, found: Sequence[FoundAttractors], branches: Branches, confidence: float) -> xr.Dataset:
     count = np.zeros((len(found), len(branches.last)), dtype=np.int64)
     present = np.zeros(count.shape, dtype=bool)
     for i, (one, places) in enumerate(zip(found, branches.places, strict=True)):
@@ -236,7 +236,9 @@ def _fractions(name: str, found: Sequence[Found], branches: Branches, confidence
     )
 
 
-def _states(name: str, found: Sequence[Found], branches: Branches, scales: Sequence[OrbitScales]) -> xr.Dataset:
+def _states(
+    name: str, found: Sequence[FoundAttractors], branches: Branches, scales: Sequence[OrbitScales]
+) -> xr.Dataset:
     points = max([1, *(branch.period for branch in branches.last)])
     tilt = np.full((len(found), len(branches.last), points, 2), np.nan)
     tilt_rate, mean_tilt = tilt.copy(), tilt[:, :, 0, 0].copy()

@@ -12,9 +12,9 @@ from stylobate.config.study import Classes, Study
 from stylobate.errors import MOST_RUNS, FileError, ParameterError, require_whole
 from stylobate.models import Model
 from stylobate.results.random_numbers import Rng
-from stylobate.results.tables import Table, number_of_runs
+from stylobate.results.tables import ResultTable, number_of_runs
 from stylobate.run_arguments import Stroboscopic
-from stylobate.studies.study import Runs, described, study
+from stylobate.studies.study import StudyArguments, described, study
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -50,7 +50,7 @@ def _attractor(one: "xr.Dataset") -> dict[str, Any]:
     }
 
 
-def _table(result: "xr.Dataset") -> Table:
+def _table(result: "xr.Dataset") -> ResultTable:
     from stylobate.studies.maps.attractor_search import REMEDY
 
     rows = [
@@ -67,7 +67,7 @@ def _table(result: "xr.Dataset") -> Table:
     confidence = f"{100.0 * float(result.attrs['confidence']):g} % interval"
     header = ("attractor", "turns per period", "mean tilt", "runs", "fraction", confidence)
     remarks = [REMEDY] if int(result["unsettled"]) else []
-    return Table(number_of_runs(result, word="initial condition"), header, rows, remarks)
+    return ResultTable(number_of_runs(result, word="initial condition"), header, rows, remarks)
 
 
 def _completed(saved: "xr.Dataset", setup: Callable[[], Any], options: Mapping[str, Any]) -> "xr.Dataset":
@@ -128,7 +128,7 @@ def basins(
     attractor_rules: "AttractorRules | None" = None,
     confidence: float = 0.95,
     orbits: "Sequence[PeriodicOrbit]" = (),
-    **run: Unpack[Runs],
+    **run: Unpack[StudyArguments],
 ) -> "tuple[Sweep, Label]":
     """Compute basins of attraction, on a grid of two initial conditions or from a random sample.
 

@@ -16,7 +16,7 @@ from stylobate.parameter_quantities import quantity_of
 from stylobate.results.outcomes import NOT_COMPUTED
 from stylobate.studies.checks import SYSTEM_STARTS, one_parameter, require_no_limits, require_starts, require_values
 from stylobate.studies.maps.attractor_search import Floats
-from stylobate.studies.study import Runs, described, study
+from stylobate.studies.study import StudyArguments, described, study
 from stylobate.studies.sweeps import Sweep
 from stylobate.studies.sweeps.designs import STARTS, checked_values
 from stylobate.studies.sweeps.running import Label
@@ -163,7 +163,7 @@ def integrity(
     *,
     over: Mapping[str, npt.ArrayLike],
     reference: Mapping[str, float] | None = None,
-    **run: Unpack[Runs],
+    **run: Unpack[StudyArguments],
 ) -> tuple[Sweep, Label]:
     """Compute the distance from a state to the nearest initial condition that overturns.
 
@@ -217,7 +217,7 @@ def erosion(
     along: Mapping[str, npt.ArrayLike],
     over: Mapping[str, npt.ArrayLike],
     reference: Mapping[str, float] | None = None,
-    **run: Unpack[Runs],
+    **run: Unpack[StudyArguments],
 ) -> tuple[Sweep, Label]:
     """Compute the integrity measure along a parameter, such as a growing amplitude.
 

@@ -82,19 +82,8 @@ def outcome_differences(
     >>> print(found["comparison"].dims, int(found["count"].sum()))
     ('angular_frequency', 'acceleration') 4
     """
-    maps = [
-        overturning_map(
-            model,
-            motion,
-            over=over,
-            duration=duration,
-            periods=periods,
-            executor=executor,
-            progress=progress,
-            **options,
-        )
-        for model in (first, second)
-    ]
+    shared: dict[str, Any] = {"duration": duration, "periods": periods, "executor": executor, "progress": progress}
+    maps = [overturning_map(model, motion, over=over, **shared, **options) for model in (first, second)]
     codes = _compared_pair(*(found["outcome"].to_numpy() for found in maps))
     return _dataset(maps, codes, (first, second))
 
@@ -126,12 +115,10 @@ def _dataset(maps: "list[xr.Dataset]", codes: npt.NDArray[np.int8], models: tupl
         "count": ("comparison_name", count, {"units": "1", "long_name": "runs compared so"}),
         "share": ("comparison_name", count / max(codes.size, 1), {"units": "1", "long_name": "share of the runs"}),
     }
+    provenance = {}
     for place, found in zip(("first", "second"), maps, strict=True):
-        shared = [name for name in _COMPARED if name in found]
-        variables |= {f"{place}_{name}": found[name].variable for name in shared}
-    provenance = {
-        place: json.loads(found.attrs["provenance"]) for place, found in zip(("first", "second"), maps, strict=True)
-    }
+        variables |= {f"{place}_{name}": found[name].variable for name in _COMPARED if name in found}
+        provenance[place] = json.loads(found.attrs["provenance"])
     return xr.Dataset(
         variables,
         coords={**{dim: maps[0][dim] for dim in dims}, "comparison_name": names},

@@ -20,9 +20,9 @@ from stylobate.results.outcomes import (
     knife_edge_remarks,
     lands_flat,
 )
-from stylobate.results.tables import Table, number_of_runs
+from stylobate.results.tables import ResultTable, number_of_runs
 from stylobate.run_arguments import duration_with_tail
-from stylobate.studies.study import Runs, described, study
+from stylobate.studies.study import StudyArguments, described, study
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -47,14 +47,14 @@ def _summary(result: "xr.Dataset") -> dict[str, Any]:
     return {"outcomes": outcomes, "uncertain": int(result["uncertain"].sum())}
 
 
-def _table(result: "xr.Dataset") -> Table:
+def _table(result: "xr.Dataset") -> ResultTable:
     rows = [(name, str(count), f"{100.0 * share:.2f} %") for name, count, share in _shares(result) if count]
     title = number_of_runs(result, f" over {' and '.join(map(str, result['outcome'].dims))}")
     uncertain = int(result["uncertain"].sum())
     remarks = [f"{uncertain} numerically uncertain: rounding could alter them"] if uncertain else []
     if "class_name" in result:
         remarks = [f"{one}, count outcomes with `upright`" for one in remarks] + knife_edge_remarks(result)
-    return Table("; ".join([title, *remarks]), ("outcome", "runs", "share"), rows)
+    return ResultTable("; ".join([title, *remarks]), ("outcome", "runs", "share"), rows)
 
 
 def _arguments(config: Any, setup: Any) -> Mapping[str, Any]:
@@ -99,7 +99,7 @@ def overturning_map(
     *,
     over: Mapping[str, npt.ArrayLike],
     least_share: Annotated[float | None, _SHARE] = None,
-    **run: Unpack[Runs],
+    **run: Unpack[StudyArguments],
 ) -> "tuple[Sweep, Label]":
     """Compute the outcome of a column over two parameters, from rest or a given initial state.
 

@@ -30,7 +30,7 @@ from stylobate.studies.maps.attractor_search import (
 )
 from stylobate.studies.maps.integrity import UNRESOLVED
 from stylobate.studies.proportions import require_confidence, wilson_interval
-from stylobate.studies.study import Runs, described, study
+from stylobate.studies.study import StudyArguments, described, study
 from stylobate.studies.sweeps import Sweep
 from stylobate.studies.sweeps.designs import Box, checked_values, whole
 from stylobate.studies.sweeps.running import Label
@@ -146,7 +146,7 @@ def uncertainty_exponent(
     overturning_only: bool = False,
     attractor_rules: AttractorRules | None = None,
     confidence: float = 0.95,
-    **run: Unpack[Runs],
+    **run: Unpack[StudyArguments],
 ) -> tuple[Sweep, Label]:
     """Estimate the uncertainty exponent υ of a basin boundary, f(ε) ~ ε^υ, and the boundary's dimension.
 

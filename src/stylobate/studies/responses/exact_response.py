@@ -13,17 +13,18 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from stylobate.base_motions import BaseMotion, as_harmonic
+from stylobate.base_motions import BaseMotion
+from stylobate.base_motions.harmonic import as_harmonic
 from stylobate.engine import with_parameters
-from stylobate.engine.flow.integration import Status
+from stylobate.engine.flow.integration import FlowStatus
 from stylobate.engine.parameters import present_value
 from stylobate.errors import Interrupted, NoOrbitError, ParameterError, UnsupportedError, require_whole
 from stylobate.models import Model
 from stylobate.orbits import (
     Bifurcation,
+    BifurcationKind,
     Branch,
-    End,
-    Kind,
+    BranchEnd,
     PeriodicOrbit,
     StepControl,
     continue_branch,
@@ -37,7 +38,7 @@ from stylobate.orbits.shooting import arcs_of, shots
 from stylobate.progress import Progress, at_value, shows_progress
 from stylobate.provenance import provenance_of_run
 from stylobate.results.outcomes import LOSSES, stability_of
-from stylobate.results.tables import Table
+from stylobate.results.tables import ResultTable
 from stylobate.studies.checks import require_frequencies
 from stylobate.studies.responses.response_curves import RESPONSE, response_curves
 from stylobate.studies.study import analysis
@@ -96,7 +97,7 @@ def _sentence(reason: Exception | None) -> str:
     return str(reason).removeprefix(_ASKED)
 
 
-_BORN = (Kind.PITCHFORK, Kind.PERIOD_DOUBLING, Kind.BRANCH_POINT)
+_BORN = (BifurcationKind.PITCHFORK, BifurcationKind.PERIOD_DOUBLING, BifurcationKind.BRANCH_POINT)
 # Two orbits are related by symmetry if their tilts agree to this fraction of c, and the sums of their multipliers to
 # this relative tolerance. Orbits are known much better, and different orbits differ by much more.
 _ALIKE, _ALIKE_MULTIPLIERS = 1e-6, 1e-3
@@ -135,7 +136,7 @@ def born(
             continue
         siblings.append(whole)
         family = _from_birth_to_death(whole, one, branch.bifurcations)
-        name = "asymmetric" if one.kind is Kind.PITCHFORK else f"period {family.path[0].family.periods}"
+        name = "asymmetric" if one.kind is BifurcationKind.PITCHFORK else f"period {family.path[0].family.periods}"
         yield Followed(f"{name}, from {one.parameter:.6g} rad/s", family)
         yield from born(family, bounds, generations - 1, control, progress)
 
@@ -161,7 +162,7 @@ def _middle(first: Point, second: Point) -> Point | None:
     if length == 0.0:
         return None
     found = corrected(first.family, first.u + 0.5 * chord, chord / length)
-    return None if isinstance(found, Status) else found[0]
+    return None if isinstance(found, FlowStatus) else found[0]
 
 
 def _meet(probe: Branch, other: Branch) -> bool:
@@ -190,14 +191,14 @@ def _from_birth_to_death(family: Branch, birth: Bifurcation, known: tuple[Bifurc
     """
     path, found, ends = list(family.path), family.bifurcations, family.ends
     death: tuple[Point, ...] = ()
-    gaps = [_halves_apart(point) for point in path] if birth.kind is Kind.PERIOD_DOUBLING else []
+    gaps = [_halves_apart(point) for point in path] if birth.kind is BifurcationKind.PERIOD_DOUBLING else []
     last = next((k for k, (one, after) in enumerate(pairwise(gaps)) if float(one @ after) < 0.0), None)
     if last is not None:
         path = path[: last + 1]
         inside = {id(point) for point in path}
         found = tuple(one for one in found if id(one.point) in inside)
-        ends = (End.BEGUN, End.MERGED)
-    if ends[1] is End.MERGED:
+        ends = (BranchEnd.BEGUN, BranchEnd.MERGED)
+    if ends[1] is BranchEnd.MERGED:
         death = _at(_nearest(path[-1], [one for one in known if one.kind is birth.kind]), family)
     return replace(family, path=(*_at(birth, family), *path, *death), bifurcations=found, ends=ends)
 
@@ -225,7 +226,7 @@ def _at(bifurcation: Bifurcation, of: Branch) -> tuple[Point, ...]:
     states = arcs_of(system, orbit_at(bifurcation.point).state, family.periods, len(of.path[0].chain.states))
     change = family.system.derivative(family.name, bifurcation.parameter)
     chain = shots(system, states, family.covered, sense=family.sense, change=change)
-    return (Point(family, bifurcation.parameter, chain),) if chain.status is Status.DONE else ()
+    return (Point(family, bifurcation.parameter, chain),) if chain.status is FlowStatus.DONE else ()
 
 
 _AVERAGED_POINTS = 400
@@ -242,7 +243,7 @@ def _chosen(options: Mapping[str, Any]) -> Mapping[str, Any]:
     return {}
 
 
-def _tables(curves: xr.Dataset) -> list[Table]:
+def _tables(curves: xr.Dataset) -> list[ResultTable]:
     names = curves["branch_name"].to_numpy()
     columns = (
         curves[f"bifurcation_{name}"].to_numpy()
@@ -254,12 +255,12 @@ def _tables(curves: xr.Dataset) -> list[Table]:
     ]
     stable = [row for index, name in enumerate(names) for row in _stable_ranges(curves, index, str(name))]
     return [
-        Table(
+        ResultTable(
             f"{curves.sizes['point']} exact orbits on {len(names)} branches; their bifurcations",
             ("bifurcation", "Ω", "branch", "mean tilt", "loss of stability"),
             bifurcations,
         ),
-        Table(f"where orbits are {stability_of(curves)}", ("branch", "Ω", "mean tilt"), stable),
+        ResultTable(f"where orbits are {stability_of(curves)}", ("branch", "Ω", "mean tilt"), stable),
     ]
 
 
@@ -281,7 +282,7 @@ def _stable_ranges(curves: xr.Dataset, index: int, name: str) -> Iterator[list[s
         RESPONSE,
         arguments=lambda config, _: {"angular_frequency": config.angular_frequency_range},
         chosen=_chosen,
-        instead={},
+        instead=None,
         tables=_tables,
     )
 )

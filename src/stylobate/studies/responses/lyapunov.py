@@ -8,7 +8,7 @@ import numpy.typing as npt
 import xarray as xr
 
 from stylobate.base_motions import BaseMotion
-from stylobate.engine.flow.integration import Status
+from stylobate.engine.flow.integration import FlowStatus
 from stylobate.engine.flow.periodic import PeriodicSystem, plane_of
 from stylobate.errors import Interrupted, ParameterError, as_numbers, require_positive, require_vector, require_whole
 from stylobate.models import Model
@@ -20,10 +20,10 @@ from stylobate.text import plural
 Floats = npt.NDArray[np.float64]
 
 _ENDINGS = {
-    Status.DONE: "reached the end",
-    Status.LOST: "passed through the vertical",
-    Status.GONE: "overturned",
-    Status.FAILED: "the integration failed",
+    FlowStatus.DONE: "reached the end",
+    FlowStatus.LOST: "passed through the vertical",
+    FlowStatus.GONE: "overturned",
+    FlowStatus.FAILED: "the integration failed",
 }
 _LEAST_BLOCKS = 2
 
@@ -117,13 +117,13 @@ def lyapunov_exponents(
     skipped, growths, stopped = 0, list[Floats](), False
     report = report_of(progress)
     try:
-        while frame.status is Status.DONE and skipped < skip:
+        while frame.status is FlowStatus.DONE and skipped < skip:
             frame = frame.following()
-            skipped += frame.status is Status.DONE
+            skipped += frame.status is FlowStatus.DONE
             report(skipped, skip + periods)
-        while frame.status is Status.DONE and len(growths) < periods:
+        while frame.status is FlowStatus.DONE and len(growths) < periods:
             frame = frame.following()
-            if frame.status is Status.DONE:
+            if frame.status is FlowStatus.DONE:
                 growths.append(frame.growth)
             report(skip + len(growths), skip + periods)
     except KeyboardInterrupt:
@@ -157,14 +157,14 @@ class _Frame:
     side: float
     directions: Floats
     growth: Floats
-    status: Status = Status.DONE
+    status: FlowStatus = FlowStatus.DONE
 
     def following(self) -> "_Frame":
         """Return the frame one period later; a frame that has ended does not change."""
-        if self.status is not Status.DONE:
+        if self.status is not FlowStatus.DONE:
             return self
         flow = self.system.carry(self.state, 0.0, 1.0, side=self.side)
-        if flow.status is not Status.DONE:
+        if flow.status is not FlowStatus.DONE:
             return _Frame(self.system, self.state, self.side, self.directions, self.growth, flow.status)
         directions, stretched = np.linalg.qr(flow.by_start @ self.directions)
         side = flow.side if self.system.planar else 0.0

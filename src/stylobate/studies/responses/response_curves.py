@@ -12,32 +12,18 @@ from typing import TYPE_CHECKING, Annotated, Any, TypedDict
 import numpy as np
 import numpy.typing as npt
 
-from stylobate.base_motions import BaseMotion, Harmonic, as_harmonic
+from stylobate.base_motions import BaseMotion, Harmonic
 from stylobate.base_motions.declared import kinds_by_acceleration
-from stylobate.config.options import (
-    COLUMN,
-    HORIZONTAL_MOTION,
-    MODEL_OF_STEADY_ROLLING,
-    OUTPUT,
-    Group,
-    Option,
-    run_numbers,
-)
-from stylobate.config.study import Analysis
-from stylobate.errors import (
-    ConfigError,
-    ParameterError,
-    UnsupportedError,
-    as_numbers,
-    require_positive,
-    require_vector,
-)
+from stylobate.base_motions.harmonic import as_harmonic
+from stylobate.config.options import COLUMN, HORIZONTAL_MOTION, MODEL_OF_STEADY_ROLLING, OUTPUT, run_numbers
+from stylobate.config.study import Analysis, Instead
+from stylobate.errors import ConfigError, ParameterError, UnsupportedError, as_numbers, require_positive, require_vector
 from stylobate.models import Model, Slender
 from stylobate.models.declared import name_by_symbol
 from stylobate.models.model import ClosedForm, RollingLaw, closed_form_of
 from stylobate.provenance import provenance_of_run
 from stylobate.quantities import Quantity, states
-from stylobate.results.tables import Table
+from stylobate.results.tables import ResultTable
 from stylobate.run_arguments import Argument, numbers_of
 from stylobate.studies.study import analysis
 
@@ -57,6 +43,7 @@ class Frequencies(TypedDict, total=False):
 
 
 FREQUENCIES = run_numbers(Frequencies, panel="Options")
+STEADY_CASE = (COLUMN, MODEL_OF_STEADY_ROLLING, HORIZONTAL_MOTION, OUTPUT)
 
 
 def _with_frequency(values: Mapping[str, Any]) -> Mapping[str, Any]:
@@ -84,7 +71,7 @@ def _problems(config: Any) -> list[str]:
     low, high = config.angular_frequency_range
     if not 0.0 < low < high:
         problems.append(f"angular_frequency_range must rise from above zero, got {low!r} to {high!r} rad/s")
-    for end in (low, high) if 0.0 < low < high else ():
+    for end in (low, high) if not problems else ():
         built("angular_frequency_range", partial(require_positive, "an end", end, "rad/s"), problems)
     built("points", partial(numbers_of(Frequencies)["points"].checked, config.points), problems)
     return problems
@@ -95,7 +82,7 @@ def _frequencies_of(config: Any, _: object) -> dict[str, Any]:
     return {"angular_frequency": np.linspace(low, high, config.points)}
 
 
-def _tables(curves: "xr.Dataset") -> list[Table]:
+def _tables(curves: "xr.Dataset") -> list[ResultTable]:
     shown = np.unique(np.linspace(0, curves.sizes["angular_frequency"] - 1, _ROWS).round().astype(int))
     senses = curves["sense"].to_numpy()
     columns = [(sense, branch) for sense in senses for branch in curves["branch"].to_numpy()]
@@ -108,7 +95,7 @@ def _tables(curves: "xr.Dataset") -> list[Table]:
     known = zip(senses, curves["critical_frequency"].to_numpy(), strict=True)
     critical = ", ".join(f"{float(value):.6f} rad/s ({sense})" for sense, value in known)
     exact = "averaged: the full motion may overturn where this is stable" if curves.attrs["averaged"] else "exact"
-    return [Table(f"stable where marked * ({exact}); critical frequency {critical}", header, rows)]
+    return [ResultTable(f"stable where marked * ({exact}); critical frequency {critical}", header, rows)]
 
 
 _ROWS = 17
@@ -134,20 +121,18 @@ RESPONSE = Analysis(
     stylobate response --exact --slenderness 0.1 --damping 0.1 --motion straight --acceleration 0.13
     --angular-frequency-range 0.8 8 --figure exact.png
     """,
-    groups=(
-        FREQUENCIES,
-        Group.of("Options", Option("exact", "exact periodic orbits and bifurcations, no theory", bool, default=False)),
-        COLUMN,
-        MODEL_OF_STEADY_ROLLING,
-        HORIZONTAL_MOTION,
-        OUTPUT,
-    ),
+    groups=(FREQUENCIES, *STEADY_CASE),
     numbers=Frequencies,
     steady=True,
     read=_with_frequency,
     problems=_problems,
     arguments=_frequencies_of,
-    instead={"exact": "studies:exact_response"},
+    instead=Instead(
+        key="exact",
+        text="exact periodic orbits and bifurcations, no theory",
+        place="stylobate.studies:exact_response",
+        kind="exact response",
+    ),
     tables=_tables,
 )
 
@@ -327,7 +312,7 @@ def averaged_motion(
     >>> model = sb.Slender(sb.Column.dimensionless(slenderness=0.1), damping=0.1)
     >>> motion = sb.Harmonic.straight(acceleration=0.04, angular_frequency=3.0)
     >>> start = sb.studies.steady_start(model, motion)
-    >>> slow = sb.studies.averaged_motion(model, motion, **start, duration=20.0)
+    >>> slow = averaged_motion(model, motion, **start, duration=20.0)
     >>> round(float(slow["amplitude"].max() - slow["amplitude"].min()), 9)
     0.0
     """
@@ -378,20 +363,20 @@ _SMALLEST, _LARGEST = 1e-6, 100.0
 _BRANCHES = ("upper", "lower")
 
 
-class Start(TypedDict):
+class SteadyStart(TypedDict):
     """Initial condition of a run, as keyword arguments of `simulate`."""
 
     tilt: tuple[float, float]
     tilt_rate: tuple[float, float]
 
 
-class TurningStart(Start):
+class TurningStart(SteadyStart):
     """Initial condition of a column with axial rotation (spin)."""
 
     spin: float
 
 
-def steady_start(model: Model, motion: Harmonic, *, branch: str = "upper", sense: int | None = None) -> Start:
+def steady_start(model: Model, motion: Harmonic, *, branch: str = "upper", sense: int | None = None) -> SteadyStart:
     """Compute the initial condition of steady rolling under a harmonic motion without ramp.
 
     It is exact for circular motion and averaged for elliptic and straight motion: (8) for the slender model, and
@@ -411,7 +396,7 @@ def steady_start(model: Model, motion: Harmonic, *, branch: str = "upper", sense
 
     Returns
     -------
-    Start
+    SteadyStart
         `tilt` [rad], `tilt_rate` [rad/s]. For a model with a spin a `TurningStart`, which also has `spin` [rad/s].
 
     Raises

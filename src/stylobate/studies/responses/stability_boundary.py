@@ -12,15 +12,15 @@ import numpy as np
 
 from stylobate import engine, orbits
 from stylobate.base_motions import BaseMotion
-from stylobate.config.options import COLUMN, HORIZONTAL_MOTION, MODEL_OF_STEADY_ROLLING, OUTPUT, Group, Option
+from stylobate.config.options import Group, Option
 from stylobate.errors import Interrupted, NoOrbitError, ParameterError, UnsupportedError, as_numbers, require_positive
 from stylobate.models import Model
 from stylobate.parameter_quantities import attributes_of, quantity_of
 from stylobate.progress import Progress, report_of, shows_progress
 from stylobate.provenance import provenance_of_run
 from stylobate.results.outcomes import LOSSES
-from stylobate.results.tables import Table
-from stylobate.studies.responses.response_curves import FREQUENCIES, RESPONSE, response_curves
+from stylobate.results.tables import ResultTable
+from stylobate.studies.responses.response_curves import FREQUENCIES, RESPONSE, STEADY_CASE, response_curves
 from stylobate.studies.study import analysis
 from stylobate.text import plural
 
@@ -39,6 +39,18 @@ _BOUNDS = Option(
     "bounds", "lowest and highest value of the second parameter; required", tuple[str, str], metavar="NUMBER NUMBER"
 )
 
+_PARAMETER = Option(
+    "parameter",
+    "second parameter: acceleration (by default), amplitude-y, damping, slenderness",
+    str,
+    default="acceleration",
+)
+_AT = Option(
+    "at",
+    "value of the second parameter at which the search begins; repeat it; five across the bounds by default",
+    list[float],
+)
+
 
 def _chosen(options: Mapping[str, Any]) -> Mapping[str, Any]:
     """Return the second parameter and its values; the unit of its bounds is that of the parameter."""
@@ -50,7 +62,7 @@ def _chosen(options: Mapping[str, Any]) -> Mapping[str, Any]:
     return {"parameter": parameter, "bounds": bounds.read(options["bounds"]), "values": options["at"]}
 
 
-def _tables(result: "xr.Dataset") -> list[Table]:
+def _tables(result: "xr.Dataset") -> list[ResultTable]:
     parameter = str(result.attrs["parameter"])
     name = parameter.replace("_", " ")
     if not result.sizes["curve_index"]:
@@ -59,7 +71,7 @@ def _tables(result: "xr.Dataset") -> list[Table]:
             f"no loss of stability was found: rolling is {result.attrs['rolling']} wherever it was found from "
             f"{low:.6g} to {high:.6g} rad/s and {name} {least:.6g} to {most:.6g}"
         )
-        return [Table("", (), (), (none,))]
+        return [ResultTable("", (), (), (none,))]
     unit = str(result[parameter].attrs.get("units", "")).replace(" s-2", "/s²").replace(" s-1", "/s")
     rows = []
     for index, kind in enumerate(result["curve_kind"].to_numpy()):
@@ -70,7 +82,7 @@ def _tables(result: "xr.Dataset") -> list[Table]:
             loss = LOSSES[int(at["supercritical"])]
             rows.append([str(kind), f"{float(at['angular_frequency']):.8g} rad/s", value, loss])
     title = f"{plural(result.sizes['curve_index'], 'curve')}, a few points of each"
-    return [Table(title, ("bifurcation", "Ω", name, "loss of stability"), rows)]
+    return [ResultTable(title, ("bifurcation", "Ω", name, "loss of stability"), rows)]
 
 
 _ROWS_OF_A_CURVE = 9
@@ -88,32 +100,10 @@ _ROWS_OF_A_CURVE = 9
     stylobate boundary --slenderness 0.1 --damping 0.1 --motion straight --acceleration 0.1
     --angular-frequency-range 0.5 6 --bounds 0.02 0.4 --figure boundary.png
     """,
-        groups=(
-            Group.of(
-                "Options",
-                _BOUNDS,
-                Option(
-                    "parameter",
-                    "second parameter: acceleration (by default), amplitude-y, damping, slenderness",
-                    str,
-                    default="acceleration",
-                ),
-                Option(
-                    "at",
-                    "value of the second parameter at which the search begins; repeat it; five across the bounds by "
-                    "default",
-                    list[float],
-                ),
-            ),
-            FREQUENCIES.without("points"),
-            COLUMN,
-            MODEL_OF_STEADY_ROLLING,
-            HORIZONTAL_MOTION,
-            OUTPUT,
-        ),
+        groups=(Group.of("Options", _BOUNDS, _PARAMETER, _AT), FREQUENCIES.without("points"), *STEADY_CASE),
         arguments=lambda config, _: {"angular_frequency": config.angular_frequency_range},
         chosen=_chosen,
-        instead={},
+        instead=None,
         tables=_tables,
     )
 )
@@ -184,6 +174,7 @@ def stability_boundary(
     from stylobate.orbits.orbit import require_subject
     from stylobate.orbits.shooting import is_stable
     from stylobate.studies.checks import require_bounds, require_frequencies
+    from stylobate.studies.responses.exact_response import between_bifurcations, first_orbit
 
     require_subject(model, motion)
     low, high = require_bounds(bounds, parameter)
@@ -206,7 +197,9 @@ def stability_boundary(
                 parameter=parameter,
                 bounds=[low, high],
                 angular_frequency_range=list(frequencies),
-                rolling=_everywhere(looked_at),
+                rolling=" or ".join(
+                    name for name, seen in (("stable", True), ("unstable", False)) if seen in looked_at
+                ),
                 provenance=json.dumps(provenance_of_run(model, motion)),
             )
         )
@@ -215,13 +208,20 @@ def stability_boundary(
         try:
             report_of(progress)(done, chosen.size)
             at = engine.with_parameters(model, motion, **{parameter: float(value)})
-            branch = _rolling(*at, frequencies, sense)
-            if isinstance(branch, NoOrbitError):
-                reason = branch
+            try:
+                orbit = first_orbit(*at, frequencies, sense)
+            except NoOrbitError as error:
+                reason = error
                 continue
+            branch = between_bifurcations(orbits.continue_branch(orbit, "angular_frequency", bounds=frequencies))
             looked_at |= {is_stable(point.multipliers) for point in branch.path}
-            _add_curves(curves, branch, parameter, float(value), (frequencies, (low, high)), control)
-        except KeyboardInterrupt:
+            for one in losses(branch):
+                if not any(_on(curve, one, float(value), frequencies, (low, high)) for curve in curves):
+                    both = (frequencies, (low, high))
+                    curves.append(orbits.bifurcation_curve(one, parameter, bounds=both, control=control))
+        except KeyboardInterrupt as stop:
+            partial = getattr(stop, "partial", None)
+            curves += [partial] if isinstance(partial, orbits.BifurcationCurve) else []
             if not curves:
                 raise
             raise Interrupted(
@@ -232,43 +232,11 @@ def stability_boundary(
     return result()
 
 
-def _rolling(
-    model: Model, motion: BaseMotion, frequencies: tuple[float, float], sense: int | None
-) -> "Branch | NoOrbitError":
-    """Continue rolling over the frequency; return the reason if no orbit was found."""
-    from stylobate.studies.responses.exact_response import between_bifurcations, first_orbit
-
-    try:
-        orbit = first_orbit(model, motion, frequencies, sense)
-    except NoOrbitError as error:
-        return error
-    return between_bifurcations(orbits.continue_branch(orbit, "angular_frequency", bounds=frequencies))
-
-
-def _add_curves(
-    curves: "list[BifurcationCurve]",
-    branch: "Branch",
-    parameter: str,
-    value: float,
-    bounds: tuple[tuple[float, float], tuple[float, float]],
-    control: "StepControl | None",
-) -> None:
-    """Append curves from the losses of stability that lie on no known curve; after Ctrl-C the last one so far."""
-    for one in losses(branch):
-        if any(_on(curve, one, value, *bounds) for curve in curves):
-            continue
-        try:
-            curves.append(orbits.bifurcation_curve(one, parameter, bounds=bounds, control=control))
-        except Interrupted as stop:
-            curves.append(stop.partial)
-            raise
-
-
 def losses(branch: "Branch") -> "list[Bifurcation]":
     """Return the bifurcations of a branch at which stability is lost or gained."""
     from stylobate.orbits.shooting import is_stable
 
-    kinds = orbits.Kind
+    kinds = orbits.BifurcationKind
     followed = (kinds.FOLD, kinds.PITCHFORK, kinds.PERIOD_DOUBLING, kinds.NEIMARK_SACKER)
     found = []
     for one in branch.bifurcations:
@@ -281,7 +249,6 @@ def losses(branch: "Branch") -> "list[Bifurcation]":
 
 
 def _require_damping(model: Model, parameter: str, least: float) -> None:
-    """Raise ParameterError without damping: orbits are then neutrally stable at best."""
     if parameter == "damping":
         require_positive("bounds: damping", least)
     elif not model.comes_to_rest:
@@ -289,11 +256,6 @@ def _require_damping(model: Model, parameter: str, least: float) -> None:
             "damping must be above zero, got 0.0: without damping rolling is neutrally stable at best, and has no "
             "stability boundary"
         )
-
-
-def _everywhere(stable: set[bool]) -> str:
-    """Describe the stability of rolling at all points checked."""
-    return " or ".join(name for name, seen in (("stable", True), ("unstable", False)) if seen in stable)
 
 
 def _on(

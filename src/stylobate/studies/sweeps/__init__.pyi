@@ -1,7 +1,6 @@
-from .dask_executor import Dask, executor_from
+from .dask_executor import Dask
 from .executors import Executor, Threads
 from .running import run_sweep
-from .store import open_sweep
 from .sweep import Sweep
 
-__all__ = ["Dask", "Executor", "Sweep", "Threads", "executor_from", "open_sweep", "run_sweep"]
+__all__ = ["Dask", "Executor", "Sweep", "Threads", "run_sweep"]

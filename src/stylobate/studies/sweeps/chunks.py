@@ -80,7 +80,7 @@ _USUAL_COUNT, _SMALLEST, _LARGEST = 64, 1024, 16384
 
 
 @dataclass(frozen=True, slots=True)
-class Block:
+class GridBlock:
     """A rectangular piece of the array of runs; `index` is its number among all blocks."""
 
     index: int
@@ -124,16 +124,16 @@ class Blocks:
     def __len__(self) -> int:
         return math.prod(self.counts)
 
-    def __getitem__(self, index: int) -> Block:
+    def __getitem__(self, index: int) -> GridBlock:
         if not 0 <= index < len(self):
             raise IndexError(index)
         rest, slices = index, []
         for count, length, edge in zip(reversed(self.counts), reversed(self.shape), reversed(self.edges), strict=True):
             rest, place = divmod(rest, count)
             slices.append(slice(place * edge, min((place + 1) * edge, length)))
-        return Block(index, tuple(reversed(slices)))
+        return GridBlock(index, tuple(reversed(slices)))
 
-    def __iter__(self) -> Iterator[Block]:
+    def __iter__(self) -> Iterator[GridBlock]:
         return (self[index] for index in range(len(self)))
 
 
@@ -223,7 +223,7 @@ def bytes_on_disk(layout: Layout, design: Design, blocks: Blocks) -> int:
     return len(blocks) * bytes_of_block(layout, blocks[0]) + coordinates
 
 
-def bytes_of_block(layout: Layout, block: Block) -> int:
+def bytes_of_block(layout: Layout, block: GridBlock) -> int:
     """Return the maximum size of one `block` on disk, with its mark [bytes]."""
     sizes = (variable.bytes_of_a_run * block.size for variable in layout.variables)
     return DISK_BLOCK + sum(_on_disk(size) for size in sizes)
@@ -241,7 +241,7 @@ Arrays = dict[str, npt.NDArray[Any]]
 class Task:
     """One block of runs with the values of the quantities that vary."""
 
-    block: Block
+    block: GridBlock
     values: Mapping[str, Floats]
 
 
@@ -289,7 +289,7 @@ _CHECKSUM = 4
 _NO_SEAL = -1
 
 
-class State(Enum):
+class ChunkState(Enum):
     """State of the chunk files of a block."""
 
     DONE = auto()
@@ -317,31 +317,31 @@ class Chunks:
     blocks: Blocks
     variables: tuple[Variable, ...]
 
-    def state(self, index: int) -> State:
+    def state(self, index: int) -> ChunkState:
         """Return the state of a block: DAMAGED if a file is missing or is not the file that was written there."""
         while True:
             seal = self._seal(index)
             found = self._state(index, seal)
             # Another process may be writing this block.
-            if found is not State.DAMAGED or self._seal(index) == seal:
+            if found is not ChunkState.DAMAGED or self._seal(index) == seal:
                 return found
 
-    def _state(self, index: int, seal: int | None) -> State:
+    def _state(self, index: int, seal: int | None) -> ChunkState:
         checksums = {name: checksum(file) for name, file in self.files(index).items() if file.exists()}
         if None in checksums.values() or (OUTCOME in checksums and len(checksums) < len(self.variables)):
-            return State.DAMAGED
+            return ChunkState.DAMAGED
         if seal is None:
-            return State.OPEN
+            return ChunkState.OPEN
         done = bool(seal & 1)
         if len(checksums) < len(self.variables) or seal != _seal_of(index, checksums, done=done):
-            return State.DAMAGED
-        return State.DONE if done else State.BEGUN
+            return ChunkState.DAMAGED
+        return ChunkState.DONE if done else ChunkState.BEGUN
 
-    def states(self) -> dict[int, State]:
+    def states(self) -> dict[int, ChunkState]:
         """Return the state of each block."""
         return {index: self.state(index) for index in range(len(self.blocks))}
 
-    def write(self, block: Block, arrays: Mapping[str, npt.NDArray[Any]], *, done: bool) -> None:
+    def write(self, block: GridBlock, arrays: Mapping[str, npt.NDArray[Any]], *, done: bool) -> None:
         """Write the results of a `block`, flat over its runs: data, then outcomes, then the seal.
 
         Raises
@@ -359,7 +359,7 @@ class Chunks:
         seal = np.array([_seal_of(block.index, checksums, done=done)], SEAL.dtype)
         _write(self._seal_file(block.index), encoded(seal))
 
-    def read(self, block: Block) -> Arrays:
+    def read(self, block: GridBlock) -> Arrays:
         """Return the results of a complete `block`, flat over its runs."""
         files = self.files(block.index)
         return {one.name: self._decoded(block, one, files[one.name].read_bytes()) for one in self.variables}
@@ -391,13 +391,13 @@ class Chunks:
             return _NO_SEAL
         return int(seal)
 
-    def _encoded(self, block: Block, variable: Variable, values: npt.NDArray[Any]) -> bytes:
+    def _encoded(self, block: GridBlock, variable: Variable, values: npt.NDArray[Any]) -> bytes:
         """Return the chunk of a variable; the last chunk along a dimension is filled up, as Zarr does."""
         whole = variable.empty(self.blocks.edges)
         whole[_inner(block)] = np.asarray(values).reshape(*block.shape, *variable.shape)
         return encoded(whole)
 
-    def _decoded(self, block: Block, variable: Variable, content: bytes) -> npt.NDArray[Any]:
+    def _decoded(self, block: GridBlock, variable: Variable, content: bytes) -> npt.NDArray[Any]:
         whole = decoded(content, variable.dtype).reshape(*self.blocks.edges, *variable.shape)
         return whole[_inner(block)].reshape(block.size, *variable.shape)
 
@@ -452,7 +452,7 @@ def _seal_of(index: int, checksums: Mapping[str, bytes | None], *, done: bool) -
     return int.from_bytes(digest.digest()[:8], "little") & ~1 | done
 
 
-def _inner(block: Block) -> tuple[slice, ...]:
+def _inner(block: GridBlock) -> tuple[slice, ...]:
     return tuple(slice(length) for length in block.shape)
 
 

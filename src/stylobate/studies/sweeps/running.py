@@ -15,13 +15,13 @@ from stylobate.progress import Progress, Report, report_of, shows_progress
 from stylobate.studies.sweeps.chunks import (
     OUTCOME,
     Arrays,
-    Block,
     Blocks,
     Chunks,
+    ChunkState,
     Computed,
+    GridBlock,
     Layout,
     Recipe,
-    State,
     Task,
     compute,
     dataset,
@@ -35,7 +35,7 @@ class Sink(Protocol):
     """Destination of the results of a sweep."""
 
     @property
-    def todo(self) -> Iterable[Block]:
+    def todo(self) -> Iterable[GridBlock]:
         """The blocks that remain to be computed."""
 
     @property
@@ -69,7 +69,7 @@ class InMemory:
         object.__setattr__(self, "arrays", empty)
 
     @property
-    def todo(self) -> Iterable[Block]:
+    def todo(self) -> Iterable[GridBlock]:
         """All blocks."""
         return self.blocks
 
@@ -103,7 +103,7 @@ class OnDisk:
     done: frozenset[int]
 
     @property
-    def todo(self) -> Iterator[Block]:
+    def todo(self) -> Iterator[GridBlock]:
         """The blocks that are not done."""
         return (block for block in self.chunks.blocks if block.index not in self.done)
 
@@ -147,10 +147,10 @@ class _ComputeAndStore:
 
     def _stored(self, task: Task, threads: int | None, progress: Report | None) -> Computed:
         state = self.chunks.state(task.block.index)
-        if state is State.DONE:  # by another process
+        if state is ChunkState.DONE:  # by another process
             return Computed({})
         # Without a seal the files are those of a writer that was killed.
-        arrays = self.chunks.read(task.block) if state is State.BEGUN else None
+        arrays = self.chunks.read(task.block) if state is ChunkState.BEGUN else None
         missing = np.ones(task.block.size, bool) if arrays is None else arrays[OUTCOME] < 0
         values = {name: array[missing] for name, array in task.values.items()}
         result = compute(self.recipe, values, threads, progress)
@@ -167,7 +167,7 @@ class _ComputeAndStore:
         return Computed({}, result.interrupted)
 
 
-def tasks_of(sweep: Sweep, blocks: Iterable[Block]) -> Iterator[Task]:
+def tasks_of(sweep: Sweep, blocks: Iterable[GridBlock]) -> Iterator[Task]:
     """Yield a task for each of `blocks`, on demand."""
     return (Task(block, {n: np.asarray(v) for n, v in sweep.design.values(block.slices).items()}) for block in blocks)
 
@@ -231,7 +231,7 @@ def run_sweep(
     if executor is not None and not hasattr(executor, "results"):
         raise ParameterError(
             f"executor must be Threads(...) or Dask(...), got {executor!r}. "
-            'Make one from a text by executor_from("dask://host:port")'
+            'Pass Dask(address="tcp://host:port") for the workers of a scheduler'
         )
     if chunk_size is not None:
         chunk_size = require_whole("chunk_size", chunk_size, least=1, most=MOST_RUNS)

@@ -28,8 +28,8 @@ from stylobate.studies.sweeps.chunks import (
     SEAL,
     Blocks,
     Chunks,
+    ChunkState,
     Layout,
-    State,
     Variable,
     bytes_of_block,
     bytes_on_disk,
@@ -155,10 +155,10 @@ def continue_store(path: Path, sweep: Sweep, layout: Layout, chunk_size: int | N
         raise FileError(f"{path} has chunks of {list(blocks.edges)} runs, not of {chunk_size}. Leave chunk_size out")
     chunks = Chunks(path, blocks, layout.variables)
     states = chunks.states()
-    _compute_again(chunks, [index for index, state in states.items() if state is State.DAMAGED])
-    if missing := [index for index, state in states.items() if state is not State.DONE]:
+    _compute_again(chunks, [index for index, state in states.items() if state is ChunkState.DAMAGED])
+    if missing := [index for index, state in states.items() if state is not ChunkState.DONE]:
         _require_room(path, len(missing) * bytes_of_block(layout, blocks[0]))
-    return chunks, frozenset(index for index, state in states.items() if state is State.DONE)
+    return chunks, frozenset(index for index, state in states.items() if state is ChunkState.DONE)
 
 
 def _compute_again(chunks: Chunks, damaged: list[int]) -> None:
@@ -168,7 +168,7 @@ def _compute_again(chunks: Chunks, damaged: list[int]) -> None:
     _log.warning("%s is damaged: %s are computed again", chunks.path, plural(runs, "run"))
     try:
         for index in damaged:
-            if chunks.state(index) is State.DAMAGED:  # another process may have computed it in the meantime
+            if chunks.state(index) is ChunkState.DAMAGED:  # another process may have computed it in the meantime
                 chunks.forget(index)
     except OSError as error:
         raise FileError(f"cannot write {chunks.path}: {error.strerror or error}. Begin another store") from error
@@ -199,9 +199,9 @@ def open_sweep(path: str | Path, *, load: bool = False) -> xr.Dataset:
     attributes = _read_attributes(path)
     chunks = Chunks(path, Blocks(tuple(attributes["shape"]), tuple(attributes["chunks"])), _variables(attributes))
     states = chunks.states()
-    if damaged := sum(chunks.blocks[index].size for index, state in states.items() if state is State.DAMAGED):
+    if damaged := sum(chunks.blocks[index].size for index, state in states.items() if state is ChunkState.DAMAGED):
         raise FileError(f"{path} is damaged: {plural(damaged, 'run')} cannot be read. Continue it with resume=True")
-    runs_done = sum(chunks.blocks[index].size for index, state in states.items() if state is State.DONE)
+    runs_done = sum(chunks.blocks[index].size for index, state in states.items() if state is ChunkState.DONE)
     try:
         data: xr.Dataset = xr.open_zarr(
             path, chunks=None, consolidated=False, zarr_format=3, decode_cf=False, drop_variables=SEAL.name

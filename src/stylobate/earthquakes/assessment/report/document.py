@@ -39,7 +39,7 @@ from stylobate.earthquakes.assessment.report.wording import (
 )
 from stylobate.errors import FileError
 from stylobate.files import csv_text, write_whole
-from stylobate.plots.page import Picture, Section, Table, page, png_of
+from stylobate.plots.page import PageSection, PageTable, Picture, page, png_of
 from stylobate.progress import Progress, Report, report_of, shows_progress
 from stylobate.results.assessment import Assessment
 from stylobate.results.verdict import few_records, yardstick_text
@@ -118,7 +118,7 @@ _APART = 2.0
 """Smallest factor between the highest and the lowest level of damping that tests whether it decides."""
 
 
-def verdict_table(assessment: Assessment) -> Table:
+def verdict_table(assessment: Assessment) -> PageTable:
     """Tabulate the verdict on each column in one line, at the scale nearest to 1."""
     rows = []
     for name in labels(assessment.data["columns"], "column"):
@@ -126,10 +126,10 @@ def verdict_table(assessment: Assessment) -> Table:
         margin = f" {least_overturning_scale(assessment, name)}" if found.describes else ""
         sentence = f"{found.sentence[0].upper()}{found.sentence[1:]}{margin}{_levels_remark(assessment, name)}"
         rows.append((name, found.verdict.value, sentence))
-    return Table(("column", "verdict", "in one line"), rows)
+    return PageTable(("column", "verdict", "in one line"), rows)
 
 
-def column_findings(assessment: Assessment, name: str) -> Table:
+def column_findings(assessment: Assessment, name: str) -> PageTable:
     """Tabulate the findings on one column, one row for each subject."""
     own = assessment.data["summary"].sel(column=name)
     first = recorded_scale(assessment)
@@ -142,10 +142,10 @@ def column_findings(assessment: Assessment, name: str) -> Table:
     subjects["margin"] = _margin(assessment, name, own) if described else ""
     subjects["contact"] = _contact(assessment, name, own)
     subjects["damping"] = _damping(assessment, name)
-    return Table((name, ""), [(subject, words) for subject, words in subjects.items() if words])
+    return PageTable((name, ""), [(subject, words) for subject, words in subjects.items() if words])
 
 
-def summary_text(assessment: Assessment, heads: Sequence[Table]) -> str:
+def summary_text(assessment: Assessment, heads: Sequence[PageTable]) -> str:
     """Write the summary as plain text: the tables `heads`, the findings on each column, and a guide to them."""
     blocks = ["\n".join(": ".join(row) for row in table.rows) for table in heads]
     for name in labels(assessment.data["columns"], "column"):
@@ -305,10 +305,10 @@ def _how_to_read(assessment: Assessment) -> str:
     )
 
 
-Part = str | Picture | Table
+Part = str | Picture | PageTable
 
 
-def document_table(assessment: Assessment) -> Table:
+def document_table(assessment: Assessment) -> PageTable:
     """Tabulate project, author, date, study file and program, if stated."""
     details = assessment.setting.get("details", {})
     study = details.get("study_file", "")
@@ -319,12 +319,12 @@ def document_table(assessment: Assessment) -> Table:
         "study file": f"{study}, SHA-256 {details.get('study_sha256', '')}" if study else "",
         "computed with": f"stylobate {assessment.setting['version']}",
     }
-    return Table(("document", ""), [(name, str(words)) for name, words in lines.items() if words])
+    return PageTable(("document", ""), [(name, str(words)) for name, words in lines.items() if words])
 
 
 def report_sections(
-    assessment: Assessment, tables: Mapping[str, Table], pictures: Mapping[str, Picture]
-) -> list[Section]:
+    assessment: Assessment, tables: Mapping[str, PageTable], pictures: Mapping[str, Picture]
+) -> list[PageSection]:
     """Return the sections of the report that have content."""
 
     def drawn(name: str) -> list[Part]:
@@ -336,45 +336,45 @@ def report_sections(
     columns = labels(assessment.data["columns"], "column")
     planar = PLANAR if "planar" in assessment.data else ["Not computed (planar = false)."]
     found = [
-        Section("Verdicts", [*shown("verdicts"), Table(("class of verdict", "meaning"), VERDICT_CLASSES)]),
-        Section(
+        PageSection("Verdicts", [*shown("verdicts"), PageTable(("class of verdict", "meaning"), VERDICT_CLASSES)]),
+        PageSection(
             "The columns one by one",
             [
                 *(column_findings(assessment, name) for name in columns),
                 _how_to_read(assessment),
             ],
         ),
-        Section("Records", [_record_text(assessment), *shown("events"), *drawn("records"), *drawn("spectra")]),
-        Section("Intensities of the records", [INTENSITIES, *shown("records", "spectra")]),
-        Section(
+        PageSection("Records", [_record_text(assessment), *shown("events"), *drawn("records"), *drawn("spectra")]),
+        PageSection("Intensities of the records", [INTENSITIES, *shown("records", "spectra")]),
+        PageSection(
             "Margins",
             [
                 _margin_text(assessment),
                 *(*shown("margin-intensities", "governing"), *drawn("margins"), *drawn("history"), *shown("margins")),
             ],
         ),
-        Section("Tilt and displacement", [TILT, *drawn("tilts"), *shown("tilts")]),
-        Section(
+        PageSection("Tilt and displacement", [TILT, *drawn("tilts"), *shown("tilts")]),
+        PageSection(
             "Dissipation and vertical component",
             [_verdict_text(assessment), *shown("summary", "verdicts-by-record")],
         ),
-        Section(
+        PageSection(
             "Contact demand",
             [_contact_text(assessment), *drawn("contact"), *shown("contact-by-record", "contact-to-margin", "sliding")],
         ),
-        Section(
+        PageSection(
             "Small variations and near scales",
             [_variations_text(assessment), *drawn("variations"), *shown("variations", "near-scales")],
         ),
-        Section("Comparison with the planar calculation", [*planar, *shown("planar", "planar-bias")]),
-        Section("Fragility", [_fragility_text(assessment), *drawn("fragility"), *shown("fragility")]),
-        Section("Columns and damping", [_model_text(assessment), *shown("columns", "dissipation")]),
-        Section("Assumptions", [_assumptions(assessment)]),
-        Section("What is not covered", [not_covered(assessment)]),
-        Section("References", [Table(("subject", "source"), REFERENCES)]),
-        Section("Software", [_software(assessment)]),
-        Section("Appendix: origin of the records", shown("record-provenance")),
-        Section("Appendix: every run at the stated scales, with the given contact law", shown("runs")),
+        PageSection("Comparison with the planar calculation", [*planar, *shown("planar", "planar-bias")]),
+        PageSection("Fragility", [_fragility_text(assessment), *drawn("fragility"), *shown("fragility")]),
+        PageSection("Columns and damping", [_model_text(assessment), *shown("columns", "dissipation")]),
+        PageSection("Assumptions", [_assumptions(assessment)]),
+        PageSection("What is not covered", [not_covered(assessment)]),
+        PageSection("References", [PageTable(("subject", "source"), REFERENCES)]),
+        PageSection("Software", [_software(assessment)]),
+        PageSection("Appendix: origin of the records", shown("record-provenance")),
+        PageSection("Appendix: every run at the stated scales, with the given contact law", shown("runs")),
     ]
     return [section for section in found if section.content]
 
@@ -486,17 +486,19 @@ def _model_text(assessment: Assessment) -> str:
     )
 
 
-def _assumptions(assessment: Assessment) -> Table:
+def _assumptions(assessment: Assessment) -> PageTable:
     notes = [
         ("records, as read" if note.startswith("Warning: ") else "stated by the author", note)
         for note in map(str, assessment.setting["notes"])
     ]
-    return Table(("subject", "what is assumed"), [*ASSUMPTIONS, *notes])
+    return PageTable(("subject", "what is assumed"), [*ASSUMPTIONS, *notes])
 
 
-def not_covered(assessment: Assessment) -> Table:
+def not_covered(assessment: Assessment) -> PageTable:
     """Tabulate the subjects that the assessment does not cover."""
-    return Table(("subject", "why it matters"), [*NOT_COVERED, SLIP_AND_FLIGHT[bool(assessment.setting["sliding"])]])
+    return PageTable(
+        ("subject", "why it matters"), [*NOT_COVERED, SLIP_AND_FLIGHT[bool(assessment.setting["sliding"])]]
+    )
 
 
 def _software(assessment: Assessment) -> str:

@@ -38,7 +38,7 @@ from stylobate.earthquakes.assessment.report.wording import (
     tilt_cells,
     verdict,
 )
-from stylobate.plots.page import Table
+from stylobate.plots.page import PageTable
 from stylobate.results.assessment import Assessment
 from stylobate.results.verdict import LABELS, interval_text, percent
 
@@ -53,7 +53,7 @@ _SHOWN_PERIODS = (0.1, 0.2, 0.3, 0.5, 1.0, 2.0, 3.0)
 _READ = re.compile(r"read from (?P<file>.+?), in [^:]+(?:: (?P<title>.+))?")
 
 
-def _verdicts(assessment: Assessment) -> Table:
+def _verdicts(assessment: Assessment) -> PageTable:
     """Tabulate the class of each verdict, and the records that decide it."""
     header = (
         *("column", "scale", "verdict", "overturned it (central dissipation)", "only at another dissipation"),
@@ -75,10 +75,10 @@ def _verdicts(assessment: Assessment) -> Table:
         names = (cases.overturned, at_other, with_other_law, without, *nearby, undecided, tuple(cases.slipping))
         label = column_verdict(assessment, column, scale).verdict.value
         rows.append((column, f"{scale:g}", label, *(", ".join(one) or "none" for one in names)))
-    return Table(header, rows)
+    return PageTable(header, rows)
 
 
-def _summary(assessment: Assessment) -> Table:
+def _summary(assessment: Assessment) -> PageTable:
     own = assessment.data["summary"]
     names = ("stood", "overturned", "undecided", "overturned_in_some", "on_dissipation", "on_vertical")
     optional = {
@@ -99,10 +99,10 @@ def _summary(assessment: Assessment) -> Table:
     for where, one in cells(own, "column", "scale"):
         tilted = tilt_cells(float(one["peak_tilt_ratio"]), assessment.data["columns"].sel(column=where[0]))
         rows.append((*where, *counts(one, *names, *optional), *tilted, number(float(one["friction_demand"]))))
-    return Table(header, rows)
+    return PageTable(header, rows)
 
 
-def _events(assessment: Assessment) -> Table:
+def _events(assessment: Assessment) -> PageTable:
     """Tabulate event, station and files of each record."""
     about = assessment.setting.get("details", {}).get("about_records", {})
     rows = []
@@ -114,7 +114,7 @@ def _events(assessment: Assessment) -> Table:
             titles = lines[:1]
         stated = [str(about[name])] if name in about else []
         rows.append((name, "; ".join([*stated, *titles]) or "–", ", ".join(found["file"] for found in read) or "–"))
-    return Table(("record", "event and station, as stated and in the files", "files"), rows)
+    return PageTable(("record", "event and station, as stated and in the files", "files"), rows)
 
 
 def _without_component(title: str) -> str:
@@ -122,7 +122,7 @@ def _without_component(title: str) -> str:
     return title.rpartition(",")[0] if title.count(",") > 1 else title
 
 
-def _intensities(assessment: Assessment) -> Table:
+def _intensities(assessment: Assessment) -> PageTable:
     """Tabulate the intensities of each record as recorded."""
     own, period = assessment.data["records"], _period(assessment)
     spectral = _spectral(assessment)
@@ -148,16 +148,16 @@ def _intensities(assessment: Assessment) -> Table:
                 "yes" if name in drifting(assessment) else "no",
             )
         )
-    return Table(header, rows)
+    return PageTable(header, rows)
 
 
-def _spectra(assessment: Assessment) -> Table:
+def _spectra(assessment: Assessment) -> PageTable:
     """Tabulate spectral accelerations of the records at some periods, their mean and the design spectrum.
 
     The spectra of the records have 5 % damping: their mean is divided only by a design spectrum of the same damping.
     """
     if "spectra" not in assessment.data:
-        return Table((), [])
+        return PageTable((), [])
     own = assessment.data["spectra"]["spectral_acceleration"]
     design = assessment.setting.get("details", {}).get("design_spectrum")
     alike = design is not None and math.isclose(design["damping"], _DAMPING)
@@ -174,10 +174,10 @@ def _spectra(assessment: Assessment) -> Table:
             aim = float(np.interp(period, design["period"], design["acceleration"])) if inside else math.nan
             row += [in_g(aim), number(values.mean() / aim) if aim and alike else "–"]
         rows.append(tuple(row))
-    return Table(tuple(header), rows)
+    return PageTable(tuple(header), rows)
 
 
-def margin_intensities(assessment: Assessment) -> Table:
+def margin_intensities(assessment: Assessment) -> PageTable:
     """Tabulate PGA, PGV and Sa of each record times the smallest overturning scale of a column.
 
     One row has the smallest scale of the central case; another has the smallest scale of all cases if that is smaller.
@@ -209,7 +209,7 @@ def margin_intensities(assessment: Assessment) -> Table:
                 where = (str(column), name, "yes" if name == governing else "", case)
                 highest = largest_decided(assessment, str(column), name, case)
                 rows.append((*where, *_at_scale(assessment, name, scale, highest)))
-    return Table(header, rows)
+    return PageTable(header, rows)
 
 
 def _at_scale(assessment: Assessment, record: str, scale: float, highest: float) -> tuple[str, ...]:
@@ -225,7 +225,7 @@ def _at_scale(assessment: Assessment, record: str, scale: float, highest: float)
     return (stated, str(own["definition"].item()), *(f"{above}{value}" for value in shown))
 
 
-def _governing(assessment: Assessment) -> Table:
+def _governing(assessment: Assessment) -> PageTable:
     """Tabulate the governing record of each column, and the peak tilt of each run that is drawn."""
     own, runs = assessment.data["summary"], assessment.data["histories"]
     header = (
@@ -244,7 +244,7 @@ def _governing(assessment: Assessment) -> Table:
             azimuth = degrees(float(run["azimuth"])) if ratio > 0.0 else "–"
             at = number(float(run["time_of_peak_tilt"]))
             rows.append((*first, number(scale, 4), *tilt_cells(ratio, body), azimuth, at))
-    return Table(header, rows)
+    return PageTable(header, rows)
 
 
 def _drawn_runs(histories: xr.Dataset) -> list[tuple[float, xr.Dataset]]:
@@ -253,7 +253,7 @@ def _drawn_runs(histories: xr.Dataset) -> list[tuple[float, xr.Dataset]]:
     return [(float(run["scale"]), run) for run in runs if math.isfinite(float(run["scale"]))]
 
 
-def _intervals_by_record(assessment: Assessment) -> Table:
+def _intervals_by_record(assessment: Assessment) -> PageTable:
     """Tabulate the overturning intervals of each column, by record and case."""
     own = assessment.data["margins"]
     header = (
@@ -269,10 +269,10 @@ def _intervals_by_record(assessment: Assessment) -> Table:
         for where, one in cells(own, "column", "record", "case")
         if acts_in(assessment, *where[1:])
     ]
-    return Table(header, rows)
+    return PageTable(header, rows)
 
 
-def _tilts(assessment: Assessment) -> Table:
+def _tilts(assessment: Assessment) -> PageTable:
     """Tabulate the peak tilts by record: at the central dissipation, and the largest of all cases."""
     header = (
         *("column", "record", "scale", *(f"{name}, central" for name in TILT_HEADER)),
@@ -283,10 +283,10 @@ def _tilts(assessment: Assessment) -> Table:
         body = assessment.data["columns"].sel(column=where[0])
         central = tilt_cells(float(one["tilt_ratio"].sel(dissipation=CENTRAL, vertical=_ACTS)), body)
         rows.append((*where, *central, *tilt_cells(float(one["tilt_ratio"].max()), body), shown_point(body)[1]))
-    return Table(header, rows)
+    return PageTable(header, rows)
 
 
-def _verdicts_by_record(assessment: Assessment) -> Table:
+def _verdicts_by_record(assessment: Assessment) -> PageTable:
     """Tabulate the outcome under each record at each dissipation, with and without the vertical component."""
     own = assessment.data["verdicts"]
     levels, acting = (own[dim].to_numpy() for dim in ("dissipation", "vertical"))
@@ -296,23 +296,23 @@ def _verdicts_by_record(assessment: Assessment) -> Table:
         (*where, *(verdict(float(runs["overturned"].sel(dissipation=level, vertical=acts))) for level, acts in cases))
         for where, runs in cells(own, *_PLACES)
     ]
-    return Table(header, rows)
+    return PageTable(header, rows)
 
 
-def _friction_by_record(assessment: Assessment) -> Table:
+def _friction_by_record(assessment: Assessment) -> PageTable:
     """Tabulate the largest friction that the runs under each record needed."""
     header, rows = (*_PLACES, "largest friction needed, given contact law", "stated friction", "sufficient"), []
     for where, one in cells(assessment.data["summary"], *_PLACES) if assessment.setting["contact"] else ():
         need, stated = float(one["friction_by_record"]), stated_friction(assessment, where[0])
         rows.append((*where, number(need), number(stated), _enough(need, stated)))
-    return Table(header, rows)
+    return PageTable(header, rows)
 
 
 def _enough(need: float, stated: float) -> str:
     return "–" if math.isnan(need) else "yes" if need <= stated else "no"
 
 
-def _friction_to_margin(assessment: Assessment) -> Table:
+def _friction_to_margin(assessment: Assessment) -> PageTable:
     """Tabulate the friction needed below the smallest overturning scale, and the smallest scale that needs too much."""
     header = (
         *("column", "record", "case", "smallest overturning scale", "friction needed below it"),
@@ -326,10 +326,10 @@ def _friction_to_margin(assessment: Assessment) -> Table:
         stated = stated_friction(assessment, where[0])
         first = "none that was run" if math.isnan(slipping) else number(slipping)
         rows.append((*where, least_scale(one), number(need), number(stated), first))
-    return Table(header, rows)
+    return PageTable(header, rows)
 
 
-def _sliding(assessment: Assessment) -> Table:
+def _sliding(assessment: Assessment) -> PageTable:
     """Tabulate the runs with the sliding model, for the columns that slide before they rock."""
     header = (
         *("column", "record", "scale", "verdict with the sliding model", "peak slip [mm]", "residual slip [mm]"),
@@ -340,10 +340,10 @@ def _sliding(assessment: Assessment) -> Table:
         if not math.isnan(float(run["time_sliding"])):
             slips = (number(1000.0 * float(run[name])) for name in ("peak_slip", "residual_slip"))
             rows.append((*where, verdict(float(run["overturned"])), *slips, number(float(run["time_sliding"]))))
-    return Table(header, rows)
+    return PageTable(header, rows)
 
 
-def _small_variations(assessment: Assessment) -> Table:
+def _small_variations(assessment: Assessment) -> PageTable:
     """Tabulate the share of small variations that overturn each column, and the word that follows from it."""
     header = (
         *("column", "record", "scale", "under small variations", "share that overturns it", "90 % sampling interval"),
@@ -363,10 +363,10 @@ def _small_variations(assessment: Assessment) -> Table:
                 *(tilt(float(one[f"tilt_ratio_{end}"])) for end in ("median", "high")),
             )
         )
-    return Table(header, rows)
+    return PageTable(header, rows)
 
 
-def _near_scales(assessment: Assessment) -> Table:
+def _near_scales(assessment: Assessment) -> PageTable:
     """Tabulate the share of overturning scales within 10 % of each stated scale, by case."""
     own = assessment.data["margins"][["band_share"]]
     cases = labels(own, "case")
@@ -374,17 +374,17 @@ def _near_scales(assessment: Assessment) -> Table:
         (*where, *(percent(float(one["band_share"].sel(case=case))) for case in cases))
         for where, one in cells(own, *_PLACES)
     ]
-    return Table((*_PLACES, *cases), rows)
+    return PageTable((*_PLACES, *cases), rows)
 
 
-def _planar(assessment: Assessment) -> Table:
+def _planar(assessment: Assessment) -> PageTable:
     """Tabulate the verdicts in three dimensions beside those of the planar column."""
     header = (
         *("column", "record", "scale", "three-dimensional", "peak tilt / α_c", "planar (worse component)"),
         "planar peak tilt / α_c",
     )
     if "planar" not in assessment.data:
-        return Table(header, [])
+        return PageTable(header, [])
     spatial = assessment.data["verdicts"].sel(dissipation=CENTRAL, vertical=_ACTS)
     runs = spatial.assign(planar_tilt_ratio=assessment.data["planar"]["planar_tilt_ratio"])
     rows = []
@@ -392,10 +392,10 @@ def _planar(assessment: Assessment) -> Table:
         flat = float(run["planar_tilt_ratio"])
         state = "not decided" if math.isnan(flat) else verdict(float(math.isinf(flat)))
         rows.append((*where, verdict(float(run["overturned"])), tilt(float(run["tilt_ratio"])), state, tilt(flat)))
-    return Table(header, rows)
+    return PageTable(header, rows)
 
 
-def _planar_bias(assessment: Assessment) -> Table:
+def _planar_bias(assessment: Assessment) -> PageTable:
     """Tabulate the mean logarithm of the tilts in three dimensions over those of the planar column."""
     header = (
         *("column", "scale", "mean ln(tilt in three dimensions / planar)", "standard error", "records compared"),
@@ -407,10 +407,10 @@ def _planar_bias(assessment: Assessment) -> Table:
         words = "too few records" if math.isnan(mean) else number(mean)
         compared = counts(one, "compared", "only_space", "only_planar")
         rows.append((*where, words, *numbers(one, "standard_error"), *compared))
-    return Table(header, rows)
+    return PageTable(header, rows)
 
 
-def _fragility(assessment: Assessment) -> Table:
+def _fragility(assessment: Assessment) -> PageTable:
     header = (
         *("column", "limit state", "median PGA, RotD50 [m/s²]", "median from", "median to", "dispersion β_f"),
         *("β_f from", "β_f to", "runs", "runs that reached it", "records with survival above an overturning scale"),
@@ -421,10 +421,10 @@ def _fragility(assessment: Assessment) -> Table:
     for where, one in cells_of(assessment, "fragility", "column", "limit_state"):
         column, state = where[0], where[1].replace("α", "α_c")  # the symbol of the report
         rows.append((column, state, *numbers(one, *fitted), *counts(one, *seen)))
-    return Table(header, rows)
+    return PageTable(header, rows)
 
 
-def _columns(assessment: Assessment) -> Table:
+def _columns(assessment: Assessment) -> PageTable:
     header = (
         *("column", "radius [m]", "height [m]", "centre of mass [m]", "mass [kg]", "c = r/h", "α_c [°]", "R [m]"),
         *("p [1/s]", "rocks above [m/s²]", "stated friction", "displaced point"),
@@ -438,10 +438,10 @@ def _columns(assessment: Assessment) -> Table:
         values = {name: float(one[name]) for name in names}
         values["tipping_angle"] = math.degrees(values["tipping_angle"])
         rows.append((*where, *(number(value, 4) for value in values.values()), shown_point(one)[1]))
-    return Table(header, rows)
+    return PageTable(header, rows)
 
 
-def _dissipation(assessment: Assessment) -> Table:
+def _dissipation(assessment: Assessment) -> PageTable:
     rows = [
         (column, level, name, number(value, 4))
         for column, levels in assessment.setting["dissipation"].items()
@@ -456,10 +456,10 @@ def _dissipation(assessment: Assessment) -> Table:
             own["amplitude"].to_numpy(), own["housner_damping"].sel(column=column).to_numpy(), strict=True
         )
     ]
-    return Table(("column", "level", "parameter of the model", "value"), rows)
+    return PageTable(("column", "level", "parameter of the model", "value"), rows)
 
 
-def _provenance(assessment: Assessment) -> Table:
+def _provenance(assessment: Assessment) -> PageTable:
     """Tabulate origin, processing and digests of each record."""
     rows = []
     for name, record in assessment.setting["records"].items():
@@ -469,10 +469,10 @@ def _provenance(assessment: Assessment) -> Table:
         ]
         if record["digest"]:
             rows.append((name, f"SHA-256 of its numbers: {record['digest']}"))
-    return Table(("record", "origin and processing"), rows)
+    return PageTable(("record", "origin and processing"), rows)
 
 
-def _every_run(assessment: Assessment) -> Table:
+def _every_run(assessment: Assessment) -> PageTable:
     """Tabulate every run at the stated scales."""
     header = (
         *("column", "record", "scale", "dissipation", "vertical", "verdict", *TILT_HEADER),
@@ -490,7 +490,7 @@ def _every_run(assessment: Assessment) -> Table:
         vertical = ("yes" if acts == _ACTS else "no") if rises(assessment, record) else NO_COMPONENT
         state = (vertical, verdict(float(one["overturned"])))
         rows.append((*where[:-1], *state, *tilted, *friction, *more))
-    return Table(header, rows)
+    return PageTable(header, rows)
 
 
 # What several tables need
@@ -525,7 +525,7 @@ def _columns_and_scales(assessment: Assessment) -> Iterator[tuple[str, float]]:
             yield str(column), float(scale)
 
 
-_TABLES: dict[str, Callable[[Assessment], Table]] = {
+_TABLES: dict[str, Callable[[Assessment], PageTable]] = {
     "verdicts": _verdicts,
     "summary": _summary,
     "events": _events,
@@ -551,7 +551,7 @@ _TABLES: dict[str, Callable[[Assessment], Table]] = {
 }
 
 
-def assessment_tables(assessment: Assessment) -> dict[str, Table]:
+def assessment_tables(assessment: Assessment) -> dict[str, PageTable]:
     """Format all tables of an assessment, by name."""
     made = {name: make(assessment) for name, make in _TABLES.items()}
     return {name: table for name, table in made.items() if table.rows}

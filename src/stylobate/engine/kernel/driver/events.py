@@ -1,8 +1,8 @@
 """Events of a run: the status of each end, the entries of a trace, and the events at which a step is to end.
 
-A new event that ends runs is declared here and nowhere else: its `Status`, a column of `EventSetup` for a number of the
-run and its value in `event_numbers`, a `Target`, and an `Event` with its laws in `EVENTS`. Kernels call the laws from
-that list. What happens at an event after which the motion goes on is in `smooth`.
+A new event that ends runs is declared here and nowhere else: its `RunStatus`, a column of `EventSetup` for a number of
+the run and its value in `event_numbers`, a `Target`, and a `KernelEvent` with its laws in `EVENTS`. Kernels call the
+laws from that list. What happens at an event after which the motion goes on is in `smooth`.
 """
 
 import math
@@ -18,10 +18,10 @@ from stylobate.engine.tolerances import OVERTURNED_TILT
 from stylobate.errors import Outcome
 
 
-class Status(IntEnum):
+class RunStatus(IntEnum):
     """Status of a run in its kernel, with the outcome, the event and the reason of a run that ends with it.
 
-    `outcome` is None if the last periods decide it or the run goes on, `event` is empty if `Response.events` gets none,
+    `outcome` is None if the last periods decide it or the run goes on, `event` is empty if `Run.events` gets none,
     and `reason` is empty if it depends on the run.
     """
 
@@ -65,7 +65,7 @@ class Status(IntEnum):
 
 
 class TraceKind(IntEnum):
-    """Kind of a trace entry: a segment of motion, or an event, with the name of the event in `Response.events`."""
+    """Kind of a trace entry: a segment of motion, or an event, with the name of the event in `Run.events`."""
 
     event: str
 
@@ -135,7 +135,7 @@ class Lean(NamedTuple):
     radial: float
 
 
-class Event(NamedTuple):
+class KernelEvent(NamedTuple):
     """Laws of an event within a step, as functions of the buffer and a lane.
 
     Parameters
@@ -158,7 +158,7 @@ class Event(NamedTuple):
     """
 
     target: Target
-    status: Status
+    status: RunStatus
     past: Callable[[Table, int, Lean], float]
     ahead: Callable[[Table, int, float, Lean], float]
     left: Callable[[Table, int, Lean], float]
@@ -288,10 +288,10 @@ def left_to_vertical(buf: Table, i: int, _before: Lean) -> float:
 
 
 EVENTS = (
-    Event(Target.LIMIT, Status.LIMIT, past_limit, time_to_limit, left_to_limit, margin=margin_of_limit),
-    Event(Target.OVERTURNING, Status.OVERTURNED, past_return, time_to_overturning, left_to_overturning),
-    Event(Target.GROWTH, Status.OVERTURNED, past_return, time_to_growth, left_to_growth),
-    Event(Target.VERTICAL, Status.WAITING, past_vertical, time_to_vertical, left_to_vertical, planar=True),
+    KernelEvent(Target.LIMIT, RunStatus.LIMIT, past_limit, time_to_limit, left_to_limit, margin=margin_of_limit),
+    KernelEvent(Target.OVERTURNING, RunStatus.OVERTURNED, past_return, time_to_overturning, left_to_overturning),
+    KernelEvent(Target.GROWTH, RunStatus.OVERTURNED, past_return, time_to_growth, left_to_growth),
+    KernelEvent(Target.VERTICAL, RunStatus.WAITING, past_vertical, time_to_vertical, left_to_vertical, planar=True),
 )
 """Events for which steps are held back; of two at the same time the first one counts."""
 
@@ -341,7 +341,7 @@ def time_left(buf: Table, i: int, before: Lean) -> float:
 
 def status_at_target(buf: Table, i: int) -> int:
     """Return the status with which the run ends at the target of the aimed steps; WAITING if the motion goes on."""
-    status = int(Status.WAITING)
+    status = int(RunStatus.WAITING)
     for event in EVENTS:
         if buf[R.TARGET, i] == event.target:
             status = int(event.status)
@@ -350,7 +350,7 @@ def status_at_target(buf: Table, i: int) -> int:
 
 def limit_passed(buf: Table, i: int) -> int:
     """Return the status with which a run ends at its start because of a limit, or WAITING."""
-    now, status = present_lean(buf, i), int(Status.WAITING)
+    now, status = present_lean(buf, i), int(RunStatus.WAITING)
     for event in LIMITS:
         if event.margin(buf, i, now) < 0.0:  # type: ignore[misc]
             status = int(event.status)

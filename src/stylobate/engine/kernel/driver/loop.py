@@ -22,7 +22,7 @@ from stylobate.engine.kernel.bound import (
 )
 from stylobate.engine.kernel.columns import EVENTS_AT, LOG, ORBIT, SLACK, STATE, Orbit
 from stylobate.engine.kernel.driver.equations import lean_of_new, set_bounds, set_leg
-from stylobate.engine.kernel.driver.events import Status
+from stylobate.engine.kernel.driver.events import RunStatus
 from stylobate.engine.kernel.driver.motion import azimuth_now, square_of_speed
 from stylobate.engine.kernel.driver.records import (
     observe,
@@ -63,7 +63,7 @@ def advance(table: Table, pieces: Table, halt: npt.NDArray[np.uint8], buf: Table
         for i in range(width):
             if buf[R.FLAG, i] > 0.0 and buf[R.RUN, i] >= 0.0:
                 status = status_of(buf, i, table, pieces)
-                if status != Status.WAITING:
+                if status != RunStatus.WAITING:
                     leave(buf, i, table, status)
                     set_idle(buf, i)
                     waiting = fill(buf, i, table, pieces, waiting)
@@ -92,9 +92,9 @@ def fill(buf: Table, i: int, table: Table, pieces: Table, waiting: int) -> int:
     while waiting < len(table):
         run = waiting
         waiting += 1
-        if table[run, R.STATUS] == Status.WAITING:
+        if table[run, R.STATUS] == RunStatus.WAITING:
             status = enter(buf, i, table, pieces, run)
-            if status == Status.WAITING:
+            if status == RunStatus.WAITING:
                 break
             leave(buf, i, table, status)
             set_idle(buf, i)
@@ -138,9 +138,9 @@ def leave(buf: Table, i: int, table: Table, status: int) -> None:
     """Write the present state of the run of lane `i` to the table."""
     run = int(buf[R.RUN, i])
     buf[R.STATUS, i] = status
-    if status not in (Status.RESTED, Status.TO_PLANE):
+    if status not in (RunStatus.RESTED, RunStatus.TO_PLANE):
         buf[R.DECIDED, i] = buf[R.TIME, i]
-    if not PLANAR and buf[R.STANDS, i] == 0.0 and status != Status.TO_PLANE:
+    if not PLANAR and buf[R.STANDS, i] == 0.0 and status != RunStatus.TO_PLANE:
         buf[R.LAST_AZIMUTH, i] = azimuth_now(buf, i)
     for column in range(R.STATUS, STATE):
         table[run, column] = buf[column, i]
@@ -188,7 +188,7 @@ def is_due(buf: Table, i: int, table: Table, pieces: Table) -> bool:
 def status_of(buf: Table, i: int, table: Table, pieces: Table) -> int:
     """Handle the event of a flagged lane; return its status."""
     if ORBITS and buf[R.CONVERGED, i] > 0.0:
-        return Status.CONVERGED
+        return RunStatus.CONVERGED
     return handle(buf, i, table, pieces)
 
 

@@ -32,7 +32,7 @@ from stylobate.engine.kernel.driver.equations import (
     row_state,
     set_leg,
 )
-from stylobate.engine.kernel.driver.events import Status, TraceKind
+from stylobate.engine.kernel.driver.events import RunStatus, TraceKind
 from stylobate.engine.kernel.driver.guards import record_window
 from stylobate.engine.kernel.driver.motion import azimuth_now, set_rates
 from stylobate.engine.kernel.driver.stages import series_terms, set_dense
@@ -448,9 +448,9 @@ def meet_stop(buf: Table, i: int, table: Table, pieces: Table, t: float) -> int:
         buf[R.NEXT_STROBE, i] += 1.0
         set_strobe(buf, i)
     if t >= buf[R.LIFTS_AT, i]:
-        return Status.LIFTED
+        return RunStatus.LIFTED
     if t >= buf[R.END, i]:
-        return Status.STOPPED
+        return RunStatus.STOPPED
     if t >= buf[R.LEG_ENDS, i] or t >= buf[R.BREAKS_AT, i]:
         while buf[R.BREAKS_AT, i] <= t:
             buf[R.NEXT_BREAK, i] += 1.0
@@ -458,17 +458,17 @@ def meet_stop(buf: Table, i: int, table: Table, pieces: Table, t: float) -> int:
         set_leg(buf, i, table, pieces, t)
         if buf[R.STANDS, i] == 0.0:
             set_rates(buf, i, t)
-    return Status.WAITING
+    return RunStatus.WAITING
 
 
 def resume(buf: Table, i: int, table: Table, pieces: Table) -> int:
     """Continue after an event, which may be beyond a stop by rounding; return as `meet_stop` does."""
     while next_stop(buf, i) <= buf[R.TIME, i]:
         status = meet_stop(buf, i, table, pieces, next_stop(buf, i))
-        if status != Status.WAITING:
+        if status != RunStatus.WAITING:
             return status
     set_next_stop(buf, i)
-    return Status.WAITING
+    return RunStatus.WAITING
 
 
 def stand_to_the_end(buf: Table, i: int, table: Table, pieces: Table, t: float) -> int:
@@ -480,4 +480,4 @@ def stand_to_the_end(buf: Table, i: int, table: Table, pieces: Table, t: float) 
         if t >= leg_ends:
             record_standing_loads(buf, i, t, leg_end(buf, i))
     buf[R.TIME, i] = t
-    return Status.RESTED
+    return RunStatus.RESTED

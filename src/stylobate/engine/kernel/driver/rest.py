@@ -25,7 +25,7 @@ from stylobate.engine.kernel.driver.equations import (
     model_rest_energy,
     set_leg,
 )
-from stylobate.engine.kernel.driver.events import Status, TraceKind
+from stylobate.engine.kernel.driver.events import RunStatus, TraceKind
 from stylobate.engine.kernel.driver.motion import azimuth_now, is_at_rest, set_state, start_moving
 from stylobate.engine.kernel.driver.records import (
     leg_end,
@@ -334,15 +334,15 @@ def stand(buf: Table, i: int, table: Table, pieces: Table, t: float) -> int:
             return stand_to_the_end(buf, i, table, pieces, t)
         if math.isnan(release):
             buf[R.TIME, i] = search_end(buf, i, t)
-            return Status.UNSEEN
+            return RunStatus.UNSEEN
         stop = next_stop(buf, i)
         t = stop
         if release < stop:
             if 1.0 + accelerations(buf, i, release)[2] <= RELEASE_MARGIN:  # lift-off, not uplift
                 buf[R.TIME, i] = release
-                return Status.LIFTED
+                return RunStatus.LIFTED
             if not CAN_DEPART:
-                return Status.CANNOT_DEPART
+                return RunStatus.CANNOT_DEPART
             t = min(depart(buf, i, release), buf[R.END, i])
             if t < buf[R.END, i]:
                 buf[R.RELEASES, i] += 1.0
@@ -354,7 +354,7 @@ def stand(buf: Table, i: int, table: Table, pieces: Table, t: float) -> int:
         again = release < stop or t >= leg_end(buf, i)
         while next_stop(buf, i) <= t:
             status = meet_stop(buf, i, table, pieces, next_stop(buf, i))
-            if status != Status.WAITING:
+            if status != RunStatus.WAITING:
                 return status
         if again:
             release = release_within_leg(buf, i, t)
@@ -407,7 +407,7 @@ def leave_rest(buf: Table, i: int, table: Table, pieces: Table, t: float) -> int
     buf[R.TIME, i] = t
     if CAN_GO_TO_PLANE and (buf[R.LINE_X, i] != 0.0 or buf[R.LINE_Y, i] != 0.0):
         buf[R.STANDS, i] = 0.0
-        return Status.TO_PLANE
+        return RunStatus.TO_PLANE
     start_moving(buf, i, t, 0.0)
     set_next_stop(buf, i)
-    return Status.WAITING
+    return RunStatus.WAITING

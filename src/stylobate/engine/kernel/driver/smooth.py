@@ -13,7 +13,7 @@ from stylobate.engine.kernel.driver.equations import (
     row_state,
 )
 from stylobate.engine.kernel.driver.events import (
-    Status,
+    RunStatus,
     Target,
     TraceKind,
     first_event,
@@ -54,7 +54,7 @@ def begin(buf: Table, i: int, table: Table, pieces: Table) -> int:
         return stand(buf, i, table, pieces, t)
     start_moving(buf, i, t, 0.0)
     status = limit_passed(buf, i)
-    return resume(buf, i, table, pieces) if status == Status.WAITING else status
+    return resume(buf, i, table, pieces) if status == RunStatus.WAITING else status
 
 
 # Maximum number of steps aimed at an event. A remaining step below the second number, in units of the longest step, is
@@ -86,7 +86,7 @@ def handle_held_step(buf: Table, i: int, table: Table, pieces: Table) -> int:
         buf[R.STATE, i] = 0.0
         return settle(buf, i, table, pieces, buf[R.TIME, i])
     aim(buf, i, target, ahead)
-    return Status.WAITING
+    return RunStatus.WAITING
 
 
 def aim(buf: Table, i: int, target: int, ahead: float) -> None:
@@ -103,7 +103,7 @@ def approach_target(buf: Table, i: int, table: Table, pieces: Table) -> int:
     if not short and buf[R.AIMED, i] < MOST_AIMS:
         buf[R.H, i] = further
         buf[R.AIMED, i] += 1.0
-        return Status.WAITING
+        return RunStatus.WAITING
     advance_briefly(buf, i, further)
     buf[R.AIMED, i] = 0.0
     if buf[R.TILT, i] > buf[R.PEAK_TILT, i]:
@@ -132,32 +132,32 @@ def handle(buf: Table, i: int, table: Table, pieces: Table) -> int:
     if buf[R.HELD, i] > 0.0:
         return handle_held_step(buf, i, table, pieces)
     if buf[R.GO, i] == 0.0:
-        return Status.STEP_TOO_SMALL
+        return RunStatus.STEP_TOO_SMALL
     if buf[R.PEAK, i] > 0.0:
         ahead = measure_peak(buf, i)
         if ahead > 0.0 and buf[R.AIMED, i] == 0.0:  # only the peak within the step exceeds the limit
             undo_step(buf, i)
             remove_trace_entry(buf, i)
             aim(buf, i, Target.LIMIT, ahead)
-            return Status.WAITING
+            return RunStatus.WAITING
     if buf[R.AIMED, i] > 0.0:
         return approach_target(buf, i, table, pieces)
     if buf[R.STEPS, i] >= buf[R.MOST_STEPS, i]:
-        return Status.STEP_LIMIT
+        return RunStatus.STEP_LIMIT
     if not PLANAR:
         if CAN_LOSE and loses_energy(buf, i):
             aim(buf, i, Target.IMPACT, -max(closest_within(buf, i), SHORTEST_AIM * buf[R.MADE, i]))
-            return Status.WAITING
+            return RunStatus.WAITING
         rest = handle_near_vertical(buf, i, table)
         if not math.isnan(rest):
             return settle(buf, i, table, pieces, rest)
     t = buf[R.TIME, i]
     if t >= buf[R.STOP, i]:
         status = meet_stop(buf, i, table, pieces, t)
-        if status != Status.WAITING:
+        if status != RunStatus.WAITING:
             return status
     set_next_stop(buf, i)
-    return Status.WAITING
+    return RunStatus.WAITING
 
 
 # A tilt that falls at less than this fraction of the speed is at its minimum.

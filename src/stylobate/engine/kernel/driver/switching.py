@@ -26,7 +26,7 @@ from stylobate.engine.kernel.bound import (
     Table,
 )
 from stylobate.engine.kernel.driver.equations import accelerations, held_for_good, lean_of_new, row_state
-from stylobate.engine.kernel.driver.events import STATUSES_AT_LIMITS, Status, TraceKind, limit_passed
+from stylobate.engine.kernel.driver.events import STATUSES_AT_LIMITS, RunStatus, TraceKind, limit_passed
 from stylobate.engine.kernel.driver.guards import (
     broken_now,
     first_broken_guard,
@@ -84,7 +84,7 @@ def begin(buf: Table, i: int, table: Table, pieces: Table) -> int:
     buf[R.STIFF_WAIT, i] = LOOK_EVERY
     set_lean(buf, i)
     status = limit_passed(buf, i)
-    if status != Status.WAITING:
+    if status != RunStatus.WAITING:
         return status
     if buf[R.CONTACT, i] != FLYING:
         return apply_resets(buf, i, table, pieces, BEGINS)
@@ -99,23 +99,23 @@ def handle(buf: Table, i: int, table: Table, pieces: Table) -> int:
         return handle_held_step(buf, i, table, pieces)
     if buf[R.GO, i] == 0.0:
         number = nearly_broken(buf, i)
-        return apply_resets(buf, i, table, pieces, number) if number >= 0 else Status.STEP_TOO_SMALL
+        return apply_resets(buf, i, table, pieces, number) if number >= 0 else RunStatus.STEP_TOO_SMALL
     record_peak_tilt(buf, i)
     if buf[R.PEAK, i] > 0.0:
         beyond = measure_peak(buf, i)
         if beyond > 0.0:
             return end_at_limit(buf, i, beyond)
     if buf[R.STEPS, i] >= buf[R.MOST_STEPS, i]:
-        return Status.STEP_LIMIT
+        return RunStatus.STEP_LIMIT
     stiff = detect_stiffness(buf, i)
     buf[R.AIMED, i] = 0.0
     status, number = meet_reached_stop(buf, i, table, pieces)
-    if status != Status.WAITING:
+    if status != RunStatus.WAITING:
         return status
     if number >= 0:
         return apply_resets(buf, i, table, pieces, number)
     set_next_stop(buf, i)
-    return follow_implicitly(buf, i, table, pieces) if stiff else Status.WAITING
+    return follow_implicitly(buf, i, table, pieces) if stiff else RunStatus.WAITING
 
 
 def handle_held_step(buf: Table, i: int, table: Table, pieces: Table) -> int:
@@ -125,11 +125,11 @@ def handle_held_step(buf: Table, i: int, table: Table, pieces: Table) -> int:
     if number < 0:  # only the cubics broke the guard: the step is repeated and accepted
         buf[R.H, i] = buf[R.TRIED, i]
         buf[R.AIMED, i] = 1.0
-        return Status.WAITING
+        return RunStatus.WAITING
     if number == FRICTION and slip_turns(buf, i, elapsed):
         buf[R.H, i] = SLIP_SHORTER * elapsed
         buf[R.REJECTED, i] = 1.0
-        return Status.WAITING
+        return RunStatus.WAITING
     return end_contact(buf, i, table, pieces, elapsed, number)
 
 
@@ -190,7 +190,7 @@ def end_contact(buf: Table, i: int, table: Table, pieces: Table, elapsed: float,
     if number == LAST or buf[R.CONTACT, i] == FLYING:
         buf[R.WANTED, i] = 0.0
     if buf[R.STEPS, i] >= buf[R.MOST_STEPS, i]:
-        return Status.STEP_LIMIT
+        return RunStatus.STEP_LIMIT
     return apply_resets(buf, i, table, pieces, number)
 
 
@@ -201,7 +201,7 @@ def end_at_limit(buf: Table, i: int, beyond: float) -> int:
     buf[R.TIME, i] += beyond - buf[R.MADE, i]
     set_lean(buf, i)
     record_peak_tilt(buf, i)
-    return Status.LIMIT
+    return RunStatus.LIMIT
 
 
 def meet_reached_stop(buf: Table, i: int, table: Table, pieces: Table) -> tuple[int, int]:
@@ -211,10 +211,10 @@ def meet_reached_stop(buf: Table, i: int, table: Table, pieces: Table) -> tuple[
     """
     t = buf[R.TIME, i]
     if t < buf[R.STOP, i]:
-        return Status.WAITING, -1
+        return RunStatus.WAITING, -1
     jumps = t >= leg_end(buf, i)
     status = meet_stop(buf, i, table, pieces, t)
-    return status, broken_now(buf, i) if jumps and status == Status.WAITING else -1
+    return status, broken_now(buf, i) if jumps and status == RunStatus.WAITING else -1
 
 
 # Steps between checks, the same in runs that have been stiff, number of successive steps near the stability boundary
@@ -243,17 +243,17 @@ def apply_resets(buf: Table, i: int, table: Table, pieces: Table, number: int) -
     """Apply the reset map of a broken guard and of each guard broken after it; return WAITING or the final status."""
     while True:
         if number == FALLEN:
-            return Status.OVERTURNED
+            return RunStatus.OVERTURNED
         if number >= LIMIT:
             return STATUSES_AT_LIMITS[number - LIMIT]
         if endless(buf, i):
-            return Status.ENDLESS
+            return RunStatus.ENDLESS
         apply_reset(buf, i, table, number)
         if buf[R.CONTACT, i] == JAMMED:
-            return Status.JAMMED
+            return RunStatus.JAMMED
         if buf[R.CONTACT, i] == RESTING:
             status, number = stand(buf, i, table, pieces)
-            if status != Status.WAITING:
+            if status != RunStatus.WAITING:
                 return status
         else:
             number = broken_now(buf, i)
@@ -392,7 +392,7 @@ def stand(buf: Table, i: int, table: Table, pieces: Table) -> tuple[int, int]:
         while next_stop(buf, i) <= t:
             searched = searched and t < leg_end(buf, i)
             status = meet_stop(buf, i, table, pieces, next_stop(buf, i))
-            if status != Status.WAITING:
+            if status != RunStatus.WAITING:
                 return status, BEGINS
         if held_for_good(buf, i):
             buf[R.DECIDED, i] = t
@@ -403,11 +403,11 @@ def stand(buf: Table, i: int, table: Table, pieces: Table) -> tuple[int, int]:
             searched = True
         if math.isnan(release):
             buf[R.TIME, i] = search_end(buf, i, t)
-            return Status.UNSEEN, BEGINS
+            return RunStatus.UNSEEN, BEGINS
         t = min(release, next_stop(buf, i))
         buf[R.TIME, i] = t
         if release <= t:
-            return Status.WAITING, broken_at_release(buf, i)
+            return RunStatus.WAITING, broken_at_release(buf, i)
 
 
 def broken_at_release(buf: Table, i: int) -> int:
@@ -458,7 +458,7 @@ def follow_implicitly(buf: Table, i: int, table: Table, pieces: Table) -> int:
             return end_contact(buf, i, table, pieces, elapsed, number)
         before = h
         status, number = take_step(buf, i, table, pieces)
-        if status != Status.WAITING:
+        if status != RunStatus.WAITING:
             return status
         if number >= 0:
             return apply_resets(buf, i, table, pieces, number)
@@ -512,7 +512,7 @@ def take_step(buf: Table, i: int, table: Table, pieces: Table) -> tuple[int, int
     set_state(buf, i, model_project(buf, i))
     set_rates(buf, i, buf[R.TIME, i])
     if buf[R.STEPS, i] >= buf[R.MOST_STEPS, i]:
-        return Status.STEP_LIMIT, -1
+        return RunStatus.STEP_LIMIT, -1
     return meet_reached_stop(buf, i, table, pieces)
 
 
@@ -527,4 +527,4 @@ def go_on_explicitly(buf: Table, i: int, table: Table, pieces: Table, rate: floa
     if number >= 0:
         return apply_resets(buf, i, table, pieces, number)
     set_next_stop(buf, i)
-    return Status.WAITING
+    return RunStatus.WAITING

@@ -82,7 +82,7 @@ def test_a_run_is_changed_into_one_with_another_dataset(run):
 def test_a_response_without_data_cannot_be_made(run):
     kept = {name: value for name, value in vars(run).items() if name != "data"}
     with pytest.raises(TypeError, match="'data'"):
-        sb.Response(**kept)
+        sb.Run(**kept)
 
 
 def test_numbers_of_other_kinds_can_be_saved(tmp_path):
@@ -142,7 +142,7 @@ def write_foreign(path):
 
 
 def write_unfinished(path):
-    xr.Dataset({"a": ("x", [1.0])}, attrs={"format": "stylobate response 1"}).to_netcdf(path, engine="h5netcdf")
+    xr.Dataset({"a": ("x", [1.0])}, attrs={"format": "stylobate run 1"}).to_netcdf(path, engine="h5netcdf")
 
 
 @pytest.mark.parametrize(
@@ -198,14 +198,14 @@ def test_the_data_agree_among_themselves(run):
 
 
 def test_a_run_says_what_became_of_the_column(run):
-    assert repr(run) == f"Response({run.outcome.name} at {run.decided_at:.6g} s: {run.reason})"
+    assert repr(run) == f"Run({run.outcome.name} at {run.decided_at:.6g} s: {run.reason})"
 
 
 def test_the_result_of_a_study_is_told_from_a_run(tmp_path):
     path = tmp_path / "map.nc"
     xr.Dataset({"outcome": ("run", [0])}, attrs={"kind": "overturning map"}).to_netcdf(path, engine="h5netcdf")
     with pytest.raises(FileError, match=r"of kind 'overturning map', not a run; stylobate\.load reads it$"):
-        sb.Response.load(path)
+        sb.Run.load(path)
 
 
 def test_codes_are_those_of_outcomes():

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Self
 
 import numpy.typing as npt
 
-from stylobate.cards import Row, Section, card
+from stylobate.cards import CardSection, Row, card
 from stylobate.equality import ByContent
 from stylobate.errors import Outcome, UnsupportedError
 from stylobate.results.plain import plain_value
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 _PLAIN = ("decided_at", "uncertain", "planar", "thresholds", "measures", "provenance", "warnings")
-"""Fields of a response that are converted to plain Python values."""
+"""Fields of a run that are converted to plain Python values."""
 
 
 EVENT_KINDS = (
@@ -53,22 +53,22 @@ class Event:
 
 
 class _Data:
-    """The field `data` of a response: a Dataset, made from the samples at first use."""
+    """The field `data` of a run: a Dataset, made from the samples at first use."""
 
-    def __get__(self, response: "Response | None", owner: type | None = None) -> "xr.Dataset":
-        if response is None:  # dataclasses asks the class for a default, which does not exist
+    def __get__(self, run: "Run | None", owner: type | None = None) -> "xr.Dataset":
+        if run is None:  # dataclasses asks the class for a default, which does not exist
             raise AttributeError
-        data: xr.Dataset | Samples = vars(response)["data"]
+        data: xr.Dataset | Samples = vars(run)["data"]
         if isinstance(data, Samples):
-            data = vars(response)["data"] = data.as_dataset()
+            data = vars(run)["data"] = data.as_dataset()
         return data
 
-    def __set__(self, response: "Response", data: "xr.Dataset | Samples") -> None:
-        vars(response)["data"] = data
+    def __set__(self, run: "Run", data: "xr.Dataset | Samples") -> None:
+        vars(run)["data"] = data
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Response(ByContent):
+class Run(ByContent):
     """Result of one run: outcome, history, events and provenance.
 
     Attributes
@@ -171,7 +171,7 @@ class Response(ByContent):
     def __reduce__(self) -> tuple[Any, ...]:
         # The dense output cannot be pickled: a run in another process has its samples only.
         kept = {name: value for name, value in vars(self).items() if name != "sampler"}
-        return partial(Response, **kept), ()
+        return partial(Run, **kept), ()
 
     def __copy__(self) -> Self:
         return replace(self)
@@ -182,7 +182,7 @@ class Response(ByContent):
     def __repr__(self) -> str:
         more = f" (and {len(self.warnings) - 1} more)" if len(self.warnings) > 1 else ""
         warning = f"; warning: {self.warnings[0]}{more}" if self.warnings else ""
-        return f"Response({self.outcome.name} at {four_digits(self.decided_at)} s: {self.reason}{warning})"
+        return f"Run({self.outcome.name} at {four_digits(self.decided_at)} s: {self.reason}{warning})"
 
     def _repr_html_(self) -> str:
         """Render the card that notebooks show."""
@@ -192,5 +192,5 @@ class Response(ByContent):
         rows = [("outcome", outcome_of(self)), *reason_rows(self), *flags]
         warnings = [("", warning) for warning in self.warnings]
         named = {"": rows, "measures": measure_rows(self), "warnings": warnings, "thresholds": threshold_rows(self)}
-        *shown, folded = (Section(heading, [Row(*row) for row in rows]) for heading, rows in named.items())
-        return card("Response", shown, folded)
+        *shown, folded = (CardSection(heading, [Row(*row) for row in rows]) for heading, rows in named.items())
+        return card("Run", shown, folded)
