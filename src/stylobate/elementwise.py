@@ -11,12 +11,13 @@ from typing import Any
 import numpy as np
 
 
-def _elementwise(function: Callable[..., float], count: int) -> Callable[..., Any]:
+def _elementwise(function: Callable[..., float], count: int) -> Callable[..., float]:
     over = np.frompyfunc(function, count, 1)
 
-    def of(*numbers: Any) -> Any:
+    def of(*numbers: Any) -> float:
         if any(isinstance(number, np.ndarray) for number in numbers):
-            return over(*numbers).astype(float)
+            array: Any = over(*numbers).astype(float)
+            return array  # type: ignore[no-any-return]  # the type of a property of one object
         return function(*numbers)
 
     return of

@@ -8,7 +8,7 @@ import warnings
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cache
-from typing import Any, cast
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -139,13 +139,14 @@ def _of_arrays(model: Model, values: Mapping[str, Floats]) -> Model:
     if "size" in values:
         column = unchecked(column, **column.numbers_at_size(values["size"]))
     own = {name: one for name, one in values.items() if name not in COLUMN_NAMES}
-    return cast("Model", unchecked(model, column=column, **own))
+    return unchecked(model, column=column, **own)
 
 
 def _plain(made: Model | Column) -> npt.NDArray[np.bool_]:
     """Return for which runs the numbers of `made` are accepted without a question."""
     plain = np.asarray(made.consistent)
-    for name, one in parameters_of(type(made)).items():
+    kind: Any = type(made)
+    for name, one in parameters_of(kind).items():
         values = getattr(made, name)
         if isinstance(values, np.ndarray):
             simple = not (one.choices or one.whole) and one.quantity.components == 1
@@ -197,7 +198,7 @@ class ModelColumns:
         def numbers(changed: Model, runs: Runs) -> dict[str, Arrays]:
             column, count = changed.column, len(spin[runs])
             vectors = (*tilt[runs].T, *tilt_rate[runs].T)
-            states = [*changed.start((vectors[0], vectors[1]), (vectors[2], vectors[3]))]
+            states: list[Any] = [*changed.start((vectors[0], vectors[1]), (vectors[2], vectors[3]))]
             if changed.spin_state is not None:
                 states[changed.spin_state] = spin[runs] * changed.time_scale
             flat = {

@@ -267,7 +267,7 @@ def _survive(batch: Batch, moving: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool
             lambda changed, runs: {"over": energy_over_balance(changed, states[:, runs], remaining[runs])}
         )
         survive[chosen] = energy["over"] < 1.0
-    return survive
+    return np.asarray(survive)
 
 
 def _states(batch: Batch) -> Floats:
