@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 # Default number of samples: per period of the forcing, per unit of time of the column, minimum and maximum.
 _PER_PERIOD, _PER_UNIT = 48, 24
-_FEWEST, _MOST = 1001, 50_001
+_FEWEST, _MOST = 1001, 5_001
 
 
 @dataclass(frozen=True, slots=True)

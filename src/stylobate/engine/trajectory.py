@@ -147,15 +147,8 @@ class Trajectory:
         return np.asarray((tau - self.starts[which]) / self.stretches[which, Trace.LENGTH])
 
     def _within(self, which: npt.NDArray[np.intp], share: Floats) -> Floats:
-        """Return the values of the polynomials of these stretches: states, or tilt and rate for planar motion.
-
-        E. Hairer, S. P. Nørsett, G. Wanner, "Solving Ordinary Differential Equations I", 2nd ed., section II.6.
-        """
-        change = np.zeros((self._terms.shape[1], which.size))
-        for power in reversed(range(1, TRACE_TERMS)):
-            change += np.take(self._terms[power], which, axis=1)
-            change *= share if power % 2 else 1.0 - share
-        return np.asarray(np.take(self._terms[0], which, axis=1) + change)
+        """Return the values of the polynomials of these stretches: states, or tilt and rate for planar motion."""
+        return _polynomial([np.take(terms, which, axis=1) for terms in self._terms], share)
 
     def _lifted(self, states: Floats, which: npt.NDArray[np.intp]) -> Floats:
         """Return the states of the model from the `states` of these stretches."""
@@ -180,8 +173,8 @@ class Trajectory:
         terms = np.zeros((len(_NODES) + 1, carried, count))
         steps = np.flatnonzero(self._kinds == TraceKind.STEP)
         if steps.size:
-            each, nodes = np.repeat(steps, len(_NODES)), np.tile(_NODES, steps.size)
-            rates = self._carried_rates(self._within(each, nodes).T).reshape(steps.size, len(_NODES), carried)
+            states = _polynomial(self._terms[:, :, steps, np.newaxis], _NODES)
+            rates = self._carried_rates(states.reshape(len(states), -1).T).reshape(steps.size, len(_NODES), carried)
             terms[..., steps] = np.einsum("nkc,kp->pcn", rates, _ANTIDERIVATIVES)
         analytical = np.flatnonzero(self._kinds == TraceKind.ANALYTICAL_STEP)
         if analytical.size:
@@ -196,6 +189,18 @@ class Trajectory:
         parameters = np.broadcast_to(self.model.parameters, (len(states), len(self.model.parameters)))
         rows = np.hstack([states[:, : len(self.model.state_names)], parameters])
         return over_rows(self.model.carried_rates, rows, name=self.model.name)
+
+
+def _polynomial(terms: Sequence[Floats], share: Floats) -> Floats:
+    """Return the values at `share` of the polynomial of a step with these terms, of any shape.
+
+    E. Hairer, S. P. Nørsett, G. Wanner, "Solving Ordinary Differential Equations I", 2nd ed., section II.6.
+    """
+    change = np.zeros(np.broadcast_shapes(terms[0].shape, share.shape))
+    for power in reversed(range(1, TRACE_TERMS)):
+        change += terms[power]
+        change *= share if power % 2 else 1.0 - share
+    return np.asarray(terms[0] + change)
 
 
 def _polynomials(terms: Floats, which: npt.NDArray[np.intp], share: Floats) -> Floats:

@@ -94,7 +94,7 @@ def tabulated(motion: BaseMotion, end: float) -> PolynomialTable:
 
 def _linear(motion: BaseMotion) -> PolynomialTable:
     """Return the exact table of a motion that is linear between its breaks; the last piece has no end."""
-    edges = np.array([0.0, *(time for time in motion.breaks if time > 0.0)])
+    edges = _edges(motion)
     edges = np.append(edges, edges[-1] + 1.0)
     middle, quarter = 0.5 * (edges[:-1] + edges[1:]), 0.25 * np.diff(edges)
     first = np.stack(motion.derivative(middle - quarter, ACCELERATION))
@@ -165,7 +165,8 @@ def tabulated_alike(motions: Sequence[BaseMotion], end: float) -> list[Polynomia
 
 
 def _edges(motion: BaseMotion) -> Floats:
-    return np.array([0.0, *(time for time in motion.breaks if time > 0.0)])
+    breaks = np.asarray(motion.breaks, dtype=float)
+    return np.append(0.0, breaks[breaks > 0.0])
 
 
 def _stretched(table: PolynomialTable, of: BaseMotion, motion: BaseMotion, end: float) -> PolynomialTable | None:
