@@ -49,6 +49,18 @@ def _pages(patterns: Sequence[str], excludes: Sequence[str] = (), fixtures: Sequ
     )
 
 
+_LONG = ("docs/how-to/bifurcation-studies.md", "docs/results/earthquakes.md")
+"""Pages whose programs take a minute and more: they run with the slow tests."""
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Mark the programs of long pages as slow, before slow tests are left out."""
+    for item in items:
+        if item.path.is_relative_to(item.config.rootpath) and item.path.as_posix().endswith(_LONG):
+            item.add_marker(pytest.mark.slow)
+
+
 _OF_THE_LABORATORY = "docs/reference/http-api.md"
 
 pytest_collect_file = (

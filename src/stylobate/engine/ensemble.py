@@ -8,6 +8,7 @@ from dataclasses import asdict, replace
 from typing import Any, Unpack
 
 import numpy as np
+import pandas as pd
 import numpy.typing as npt
 import xarray as xr
 
@@ -370,6 +371,11 @@ def _provenance(model: Model, motion: BaseMotion, options: EnsembleOptions, same
     return provenance_of_run(model, motion, **kept)
 
 
+def _index(dim: str, *labels: str) -> xr.DataArray:
+    index = xr.indexes.PandasIndex(pd.Index(np.array(labels)), dim, coord_dtype=np.dtype("<U1"))
+    return xr.Coordinates.from_xindex(index)[dim]
+
+
 def _dataset(
     runs: EnsembleRuns,
     arrays: Mapping[str, npt.NDArray[Any]],
@@ -377,19 +383,20 @@ def _dataset(
     declared: Mapping[str, Parameter],
 ) -> xr.Dataset:
     variables = {
-        name: (
+        name: xr.Variable(
             (*runs.dims, *QUANTITIES[name].dims),
             values.reshape(*runs.shape, *values.shape[1:]),
             dict(QUANTITIES[name].attributes),
+            fastpath=True,
         )
         for name, values in arrays.items()
     }
-    coordinates: dict[str, Any] = {AXIS: ["x", "y"]}
+    coordinates: dict[str, Any] = {AXIS: _index(AXIS, "x", "y")}
     if any(COMPONENT in array.dims for array in runs.coordinates.values()):
-        coordinates[COMPONENT] = ["x", "y", "z"]
+        coordinates[COMPONENT] = _index(COMPONENT, "x", "y", "z")
     for name, array in runs.coordinates.items():
         for label, index in array.coords.items():
-            coordinates.setdefault(str(label), index)
+            coordinates.setdefault(label, index)
         # An array along a dimension of its own name is the index, which exists already.
         if name not in coordinates:
             coordinates[name] = array.variable

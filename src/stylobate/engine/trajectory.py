@@ -191,7 +191,7 @@ class Trajectory:
         return over_rows(self.model.carried_rates, rows, name=self.model.name)
 
 
-def _polynomial(terms: Sequence[Floats], share: Floats) -> Floats:
+def _polynomial(terms: Floats | Sequence[Floats], share: Floats) -> Floats:
     """Return the values at `share` of the polynomial of a step with these terms, of any shape.
 
     E. Hairer, S. P. Nørsett, G. Wanner, "Solving Ordinary Differential Equations I", 2nd ed., section II.6.

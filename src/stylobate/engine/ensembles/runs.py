@@ -63,7 +63,7 @@ class EnsembleRuns:
     spin: Floats
     duration: Floats
     values: Mapping[str, Floats]
-    coordinates: Mapping[str, "xr.DataArray"]
+    coordinates: Mapping[str, "Given"]
     turning: tuple[Turning, ...] | None = None
     orbits: OrbitsOfRuns | None = None
     free: Mapping[str, Floats] = field(default_factory=dict)
@@ -122,7 +122,28 @@ def broadcast(
     )
 
 
-def _numbers_of_orbit(orbit: KnownOrbit, place: str) -> "dict[str, xr.DataArray]":
+@dataclass(frozen=True, slots=True)
+class Given:
+    """An argument: its values with the names of their dimensions, and the labels along these.
+
+    A `DataArray` made of plain values would ask whether they are of Dask, and import it for half a second.
+    """
+
+    variable: "xr.Variable"
+    coords: Mapping[str, "xr.DataArray"] = field(default_factory=dict)
+
+    @property
+    def dims(self) -> tuple[str, ...]:
+        """Names of the dimensions."""
+        return tuple(map(str, self.variable.dims))
+
+    @property
+    def sizes(self) -> Mapping[str, int]:
+        """Length of each dimension."""
+        return dict(zip(self.dims, self.variable.shape, strict=True))
+
+
+def _numbers_of_orbit(orbit: KnownOrbit, place: str) -> dict[str, Given]:
     """Return the numbers of a known orbit, named by its position in the arguments."""
     vectors = ("tilt", "tilt_rate")
     return {
@@ -138,31 +159,31 @@ def one_run(start: RunStart) -> EnsembleRuns:
     return EnsembleRuns((RUN,), (1,), *vectors, *numbers, {}, {}, (start.turning,))
 
 
-def _numbers(name: str, value: ArrayLike) -> "xr.DataArray":
+def _numbers(name: str, value: ArrayLike) -> Given:
     import xarray as xr
 
     if isinstance(value, xr.DataArray):
-        return _as_float(name, value)
+        return _labelled(name, value)
     array = _array(name, value)
     if array.ndim > 1:
         raise ParameterError(
             f"{name} must be a number, a list or a DataArray with named dimensions, got shape {array.shape}"
         )
-    return xr.DataArray(array, dims=(RUN,) * array.ndim)
+    return Given(xr.Variable((RUN,) * array.ndim, array, fastpath=True))
 
 
-def _vectors(name: str, value: ArrayLike, axis: str = AXIS) -> "xr.DataArray":
+def _vectors(name: str, value: ArrayLike, axis: str = AXIS) -> Given:
     import xarray as xr
 
     size = _COMPONENTS[axis]
     if isinstance(value, xr.DataArray):
         if value.sizes.get(axis) != size:
             raise ParameterError(f'{name} must have a dimension "{axis}" of length {size}, got {dict(value.sizes)}')
-        return _as_float(name, value).drop_vars(axis, errors="ignore")
+        return _labelled(name, value.drop_vars(axis, errors="ignore"))
     array = _array(name, value)
     if array.ndim not in (1, 2) or array.shape[-1] != size:
         raise ParameterError(f"{name} must have shape ({size},) or (n, {size}), got {array.shape}")
-    return xr.DataArray(array, dims=(*((RUN,) * (array.ndim - 1)), axis))
+    return Given(xr.Variable((*((RUN,) * (array.ndim - 1)), axis), array, fastpath=True))
 
 
 def _array(name: str, value: Any) -> Floats:
@@ -172,16 +193,19 @@ def _array(name: str, value: Any) -> Floats:
         raise ParameterError(f"{name} must be a number or an array of numbers, got {value!r}") from None
 
 
-def _as_float(name: str, value: "xr.DataArray") -> "xr.DataArray":
-    return value.copy(data=_array(name, value.to_numpy()))
+def _labelled(name: str, value: "xr.DataArray") -> Given:
+    return Given(
+        value.variable.copy(data=_array(name, value.to_numpy())),
+        {str(label): one for label, one in value.coords.items()},
+    )
 
 
-def _common(given: Mapping[str, "xr.DataArray"]) -> tuple[tuple[str, ...], tuple[int, ...]]:
+def _common(given: Mapping[str, Given]) -> tuple[tuple[str, ...], tuple[int, ...]]:
     labels: dict[str, tuple[str, xr.DataArray]] = {}
     for name, array in given.items():
         for dim in set(array.dims) & set(array.coords):
-            other, index = labels.setdefault(str(dim), (name, array[dim]))
-            if array.sizes[dim] == index.size and not np.array_equal(array[dim].to_numpy(), index.to_numpy()):
+            other, index = labels.setdefault(dim, (name, array.coords[dim]))
+            if array.sizes[dim] == index.size and not np.array_equal(array.coords[dim].to_numpy(), index.to_numpy()):
                 raise ParameterError(f"{name} must have the same labels along {dim} as {other}; align them first")
     sizes: dict[str, int] = {}
     first: dict[str, str] = {}
@@ -189,19 +213,17 @@ def _common(given: Mapping[str, "xr.DataArray"]) -> tuple[tuple[str, ...], tuple
         for dim, size in array.sizes.items():
             if dim in _COMPONENTS:
                 continue
-            if sizes.setdefault(str(dim), size) != size:
-                raise ParameterError(
-                    f"{name} must have {sizes[str(dim)]} values along {dim} as {first[str(dim)]}, got {size}"
-                )
-            first.setdefault(str(dim), name)
+            if sizes.setdefault(dim, size) != size:
+                raise ParameterError(f"{name} must have {sizes[dim]} values along {dim} as {first[dim]}, got {size}")
+            first.setdefault(dim, name)
     return tuple(sizes), tuple(sizes.values())
 
 
-def _flat(array: "xr.DataArray", dims: tuple[str, ...], shape: tuple[int, ...]) -> Floats:
+def _flat(array: Given, dims: tuple[str, ...], shape: tuple[int, ...]) -> Floats:
     own = [dim for dim in dims if dim in array.dims]
     tail = tuple(dim for dim in _COMPONENTS if dim in array.dims)
     order = (*own, *tail)
-    values = (array if array.dims == order else array.transpose(*order)).to_numpy()
+    values = (array.variable if array.dims == order else array.variable.transpose(*order)).values
     lengths = [array.sizes[dim] if dim in own else 1 for dim in dims]
     wide = np.broadcast_to(values.reshape(*lengths, *values.shape[len(own) :]), (*shape, *values.shape[len(own) :]))
     return wide.reshape(math.prod(shape), *values.shape[len(own) :])
