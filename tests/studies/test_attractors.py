@@ -8,7 +8,6 @@ import xarray as xr
 
 import stylobate as sb
 from stylobate.errors import Outcome, ParameterError
-from stylobate.studies import shares, turns_of_paths
 from stylobate.studies.maps.attractor_search import (
     UNSETTLED,
     Attractor,
@@ -23,7 +22,7 @@ from stylobate.studies.maps.attractor_search import (
     with_strobes,
     with_turns,
 )
-from stylobate.studies.maps.attractors import label_attractors
+from stylobate.studies.maps.attractors import label_attractors, shares, turns_of_paths
 from stylobate.studies.maps.basin_fractions import follow_branches
 from stylobate.studies.proportions import wilson_interval
 from stylobate.studies.sweeps import Sweep
