@@ -8,8 +8,8 @@ from dataclasses import asdict, replace
 from typing import Any, Unpack
 
 import numpy as np
-import pandas as pd
 import numpy.typing as npt
+import pandas as pd
 import xarray as xr
 
 from stylobate.base_motions import BASE_AT_REST, BaseMotion

@@ -2,6 +2,7 @@
 
 import hashlib
 import math
+import os
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from enum import Enum, auto
@@ -19,7 +20,7 @@ from stylobate.base_motions.combined import members_of
 from stylobate.base_motions.declared import stated_numbers, with_numbers
 from stylobate.engine import simulate_ensemble
 from stylobate.errors import Interrupted
-from stylobate.files import written_aside
+from stylobate.files import remove_left_behind, replace_in_store
 from stylobate.models import Model
 from stylobate.parameter_quantities import attributes_of
 from stylobate.progress import Report
@@ -327,6 +328,8 @@ class Chunks:
                 return found
 
     def _state(self, index: int, seal: int | None) -> ChunkState:
+        if seal is None and not self._file(self._outcome, index).exists():
+            return ChunkState.OPEN  # whatever an interrupted writer has left
         checksums = {name: checksum(file) for name, file in self.files(index).items() if file.exists()}
         if None in checksums.values() or (OUTCOME in checksums and len(checksums) < len(self.variables)):
             return ChunkState.DAMAGED
@@ -355,9 +358,9 @@ class Chunks:
         for variable in sorted(self.variables, key=lambda variable: variable.name == OUTCOME):
             content = self._encoded(block, variable, arrays[variable.name])
             checksums[variable.name] = content[-_CHECKSUM:]
-            _write(files[variable.name], content)
+            replace_in_store(str(files[variable.name]), content)
         seal = np.array([_seal_of(block.index, checksums, done=done)], SEAL.dtype)
-        _write(self._seal_file(block.index), encoded(seal))
+        replace_in_store(str(self._seal_file(block.index)), encoded(seal))
 
     def read(self, block: GridBlock) -> Arrays:
         """Return the results of a complete `block`, flat over its runs."""
@@ -371,9 +374,21 @@ class Chunks:
 
     def files(self, index: int) -> dict[str, Path]:
         """Return the files of the results of a block by the name of the array, the outcomes first."""
-        place = [int(number) for number in np.unravel_index(index, self.blocks.counts)]
         variables = sorted(self.variables, key=lambda variable: variable.name != OUTCOME)
-        return {one.name: chunk_file(self.path / one.name, (*place, *(0 for _ in one.shape))) for one in variables}
+        return {one.name: self._file(one, index) for one in variables}
+
+    def remove_left_behind(self) -> None:
+        """Remove the parts of files that killed writers on this machine have left."""
+        for folder, _, _ in os.walk(self.path):
+            remove_left_behind(folder)
+
+    @property
+    def _outcome(self) -> Variable:
+        return next(one for one in self.variables if one.name == OUTCOME)
+
+    def _file(self, variable: Variable, index: int) -> Path:
+        place = map(int, np.unravel_index(index, self.blocks.counts))
+        return chunk_file(self.path / variable.name, (*place, *(0 for _ in variable.shape)))
 
     def _seal_file(self, index: int) -> Path:
         return chunk_file(self.path / SEAL.name, (index,))
@@ -454,9 +469,3 @@ def _seal_of(index: int, checksums: Mapping[str, bytes | None], *, done: bool) -
 
 def _inner(block: GridBlock) -> tuple[slice, ...]:
     return tuple(slice(length) for length in block.shape)
-
-
-def _write(file: Path, content: bytes) -> None:
-    file.parent.mkdir(parents=True, exist_ok=True)
-    with written_aside(file) as beside:
-        beside.write_bytes(content)

@@ -154,6 +154,7 @@ def continue_store(path: Path, sweep: Sweep, layout: Layout, chunk_size: int | N
     if chunk_size is not None and Blocks.of(sweep.shape, chunk_size) != blocks:
         raise FileError(f"{path} has chunks of {list(blocks.edges)} runs, not of {chunk_size}. Leave chunk_size out")
     chunks = Chunks(path, blocks, layout.variables)
+    chunks.remove_left_behind()
     states = chunks.states()
     _compute_again(chunks, [index for index, state in states.items() if state is ChunkState.DAMAGED])
     if missing := [index for index, state in states.items() if state is not ChunkState.DONE]:
