@@ -514,3 +514,9 @@ def test_states_in_another_order_are_followed(outcome_in):
     assert outcome_in(data) is sb.Outcome.STILL_MOVING
     expected = [0.03 * cos - 0.01 * sin, 0.01 * cos + 0.02 * sin]
     np.testing.assert_allclose(data["end_tilt"][0], expected, rtol=0.0, atol=1e-11)
+
+
+@pytest.mark.parametrize(("kind", "advised"), [(sb.Slender, False), (sb.SlenderRolling, False), (sb.Wobbling, True)])
+def test_series_are_advised_against_where_they_are_slower(kind, advised, caplog):
+    sb.simulate_ensemble(kind(COLUMN, damping=ETA), CIRCLE, tilt=(0.05, 0.0), duration=0.1, method="taylor")
+    assert ("'taylor' takes two to four times the time of 'dop853'" in caplog.text) is advised
