@@ -76,7 +76,7 @@ class RunModels:
         together = self._together(numbers) if self.values and self.count > _FEWEST else None
         if together is None:
             if self.values and self.count > _MANY:
-                _tell(type(self.model))
+                _report_objects(type(self.model))
             return _assembled(self.count, [(numbers(model, runs), runs) for model, runs in self.each()])
         found, alone = together
         if not alone.size:
@@ -115,7 +115,7 @@ _FEWEST, _MANY = 4, 256
 
 
 @cache
-def _tell(kind: type[Model]) -> None:
+def _report_objects(kind: type[Model]) -> None:
     """Log once for a class of models that its runs wait for Python."""
     LOG.warning(
         "%s: an object is made for each run, one after the other, since its properties or its checks do not compute "
