@@ -4,7 +4,6 @@ Models whose numbers differ from run to run are evaluated at once: their propert
 numbers. A run whose numbers are refused or questioned, and a user's model that computes otherwise, has its own object.
 """
 
-import warnings
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cache
@@ -94,8 +93,7 @@ class RunModels:
         if not _checks_by_declaration(type(self.model)):
             return None
         try:
-            with np.errstate(all="ignore"), warnings.catch_warnings():
-                warnings.simplefilter("error")
+            with np.errstate(all="ignore"):
                 model = _of_arrays(self.model, self.values)
                 plain = _plain(model.column) & _plain(model)
                 found = numbers(model, slice(None))
