@@ -38,7 +38,7 @@ def fresh(code):
 def test_importing_takes_no_numpy_and_little_time():
     code = (
         "import sys, time; start = time.process_time(); import stylobate; took = time.process_time() - start; "
-        "heavy = {'numpy', 'scipy', 'xarray', 'matplotlib', 'pydantic', 'typer'} & set(sys.modules); "
+        "heavy = {'numpy', 'scipy', 'xarray', 'matplotlib', 'pydantic', 'click'} & set(sys.modules); "
         "print(sorted(heavy), took < 0.3)"
     )
     assert fresh(code) == "[] True"
@@ -47,6 +47,15 @@ def test_importing_takes_no_numpy_and_little_time():
 def test_theory_needs_no_scipy_and_no_xarray():
     code = (
         "import sys, stylobate; stylobate.theory; print(sorted({'scipy', 'xarray', 'matplotlib'} & set(sys.modules)))"
+    )
+    assert fresh(code) == "[]"
+
+
+def test_an_ensemble_imports_neither_dask_nor_scipy():
+    code = (
+        "import sys, stylobate as sb; model = sb.Slender(sb.Column.dimensionless(slenderness=0.1), damping=0.1); "
+        "sb.simulate_ensemble(model, tilt=[(0.05, 0.0)], duration=1.0, parameters={'damping': [0.1]}); "
+        "print(sorted({'dask', 'scipy', 'pint', 'matplotlib'} & set(sys.modules)))"
     )
     assert fresh(code) == "[]"
 

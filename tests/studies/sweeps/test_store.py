@@ -2,6 +2,7 @@
 
 import importlib
 import linecache
+import os
 import shutil
 import sys
 from dataclasses import replace
@@ -49,6 +50,17 @@ def test_data_torn_before_the_outcomes_are_computed_again(grid, path, assert_sam
         (path / file).unlink()
     zarr.open_group(path)["end_tilt"][1] = 7.0
     assert_same_arrays(run_sweep(grid, store=path, resume=True), undisturbed(grid))
+
+
+def test_parts_of_dead_writers_are_removed_and_those_of_living_ones_stay(grid, path, assert_same_arrays, undisturbed):
+    run_sweep(grid, store=path, chunk_size=5)
+    folder = path / "outcome" / "c"
+    dead, living = (folder / f".0.{_MACHINE}-{process}-a1.part" for process in (2**30, os.getpid()))
+    for part in (dead, living):
+        part.write_bytes(b"torn")
+    assert_same_arrays(run_sweep(grid, store=path, resume=True), undisturbed(grid))
+    assert not dead.exists()
+    assert living.exists()
 
 
 def test_resume_begins_where_there_is_no_store(points, path, assert_same_arrays, undisturbed):
