@@ -60,6 +60,14 @@ def test_an_ensemble_imports_neither_dask_nor_scipy():
     assert fresh(code) == "[]"
 
 
+def test_of_all_models_only_the_defaults_are_built_as_descriptions():
+    code = (
+        "import stylobate.config.simulation; from stylobate.config.parts import DESCRIBED_MODELS; "
+        "print(*(one.__name__ for one in DESCRIBED_MODELS if one.__pydantic_complete__))"
+    )
+    assert fresh(code) == "SlenderModel WobblingModel"
+
+
 def test_dir_lists_the_public_names():
     assert dir(stylobate) == sorted(stylobate.__all__)
     assert len(set(stylobate.__all__)) == len(stylobate.__all__)

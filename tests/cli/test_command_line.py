@@ -4,14 +4,20 @@ import json
 import os
 import subprocess
 import sys
+from io import StringIO
+from itertools import chain
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from PIL import Image
+from rich.console import Console
+from rich.table import Table
 
 import stylobate as sb
 from stylobate.cli.commands import COMMANDS
 from stylobate.cli.main import run
-from stylobate.cli.output import print_table
+from stylobate.cli.output import print_table, table_lines
 
 COLUMN = ["--slenderness", "0.1", "--damping", "0.1"]
 MOTION = ["--motion", "circular", "--acceleration", "0.065", "--angular-frequency", "1.8"]
@@ -209,7 +215,8 @@ def test_the_table_of_a_run_imports_nothing_that_only_data_and_figures_need(caps
     run(command)  # the compiled code is kept
     code = (
         "import sys; from stylobate.cli.main import run; run(sys.argv[1:]); "
-        "heavy = {'xarray', 'pandas', 'dask', 'zarr', 'h5py', 'scipy', 'sympy', 'matplotlib', 'filelock', 'asyncio'}; "
+        "heavy = {'xarray', 'pandas', 'dask', 'zarr', 'h5py', 'scipy', 'sympy', 'matplotlib', 'filelock', 'asyncio', "
+        "'rich', 'stylobate.records.directions'}; "
         "print(sorted(heavy & set(sys.modules)))"
     )
     shown = subprocess.run([sys.executable, "-c", code, *command], capture_output=True, text=True, check=True).stdout
@@ -221,6 +228,31 @@ def test_a_table_shows_texts_as_they_are(capsys):
     print_table("names", [[":boom:.toml", "[red]", "π/2"]])
     shown = capsys.readouterr().out
     assert all(text in shown for text in (":boom:.toml", "[red]", "π/2"))
+
+
+words = st.text("ab-,µ ", max_size=30).map(str.strip).filter(bool)
+
+
+@given(st.data(), st.integers(1, 4), st.booleans(), st.sampled_from([24, 60, 120]))
+def test_a_table_has_all_words_in_lines_of_one_length_within_the_width(data, count, headed, width):
+    cells = st.lists(words, min_size=count, max_size=count)
+    header, rows = data.draw(cells) if headed else None, data.draw(st.lists(cells, min_size=1, max_size=3))
+    lines = table_lines(rows, header, width)
+    assert len({len(line) for line in lines}) == 1
+    assert len(lines[0]) <= width
+    stated = "".join([*(header or ()), *chain.from_iterable(rows)])
+    assert all("".join(lines).count(one) == stated.count(one) for one in "ab-,µ")
+
+
+@pytest.mark.parametrize("header", [None, ("name", "number")])
+def test_a_table_that_fits_is_that_of_rich(header):
+    rows = [["mean", "0.1 µm"], ["多い", "b\nc"]]
+    table = Table(*(header or ("", "")), show_header=header is not None)
+    for row in rows:
+        table.add_row(*row)
+    drawn = StringIO()
+    Console(file=drawn, width=60).print(table)
+    assert table_lines(rows, header, 60) == drawn.getvalue().splitlines()
 
 
 def test_an_interrupt_ends_without_a_traceback(monkeypatch, capsys):

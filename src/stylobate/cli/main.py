@@ -2,6 +2,7 @@
 
 import difflib
 import gc
+import os
 import shutil
 import sys
 import textwrap
@@ -25,6 +26,7 @@ _EXAMPLES = (
 
 def main() -> None:
     """Run the command line and end the process; bad input ends with status 2 and one line for each mistake."""
+    os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "true")  # or pydantic searches all installed packages for them
     with interrupted_by_signals():
         try:
             status = run(sys.argv[1:])

@@ -3,12 +3,16 @@
 import json
 import math
 import os
+import shutil
 import sys
-from collections.abc import Callable, Collection, Mapping, Sequence
+import textwrap
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from importlib.util import find_spec
 from io import BytesIO
+from itertools import zip_longest
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+from unicodedata import combining, east_asian_width
 
 from stylobate.errors import FileError, ParameterError, require_positive
 from stylobate.files import write_whole
@@ -24,6 +28,10 @@ PAGE = ".html"
 FIGURES = (".png", ".pdf", ".svg", PAGE)
 """Endings of figures."""
 
+_PLAIN_WIDTH = 120
+# The lines of tables where the terminal or the file has no Unicode.
+_ASCII = str.maketrans("┏━┳┓┃┡╇┩┌─┬┐│└┴┘", "+-++|++++-++|+++")
+
 
 def print_json(values: Any) -> None:
     """Print `values` as JSON; a number that is not finite becomes null."""
@@ -32,19 +40,38 @@ def print_json(values: Any) -> None:
 
 def print_table(title: str, rows: Sequence[Sequence[str]], header: Sequence[str] | None = None) -> None:
     """Print `rows` as a table with the width of the terminal; a table with a header has its title below."""
-    from rich.console import Console
-    from rich.table import Table
+    width = shutil.get_terminal_size().columns if sys.stdout.isatty() else _PLAIN_WIDTH
+    lines = [*table_lines(rows, header, width), *([] if header is None else [title])]
+    unicode = (sys.stdout.encoding or "utf").lower().startswith("utf")
+    print("\n".join(lines if unicode else (line.translate(_ASCII) for line in lines)))
 
-    table = Table(show_header=header is not None)
-    for name in header or [""] * len(rows[0] if rows else ()):
-        table.add_column(name, overflow="fold")
-    for row in rows:
-        table.add_row(*row)
-    width = None if sys.stdout.isatty() else _PLAIN_WIDTH
-    console = Console(width=width, markup=False, emoji=False, highlight=False)
-    console.print(table)
-    if header is not None:
-        console.print(title, soft_wrap=True)
+
+def table_lines(rows: Sequence[Sequence[str]], header: Sequence[str] | None, width: int) -> list[str]:
+    """Return the lines of a table of at most `width` characters; its widest columns are folded."""
+    columns = [*zip(*([] if header is None else [header]), *rows, strict=True)]
+    widths = [max(1, *(_width(line) for cell in column for line in cell.split("\n"))) for column in columns]
+    while sum(widths) > max(width - 3 * len(widths) - 1, len(widths)):
+        widths[widths.index(max(widths))] -= 1
+
+    def rule(left: str, line: str, between: str, right: str) -> str:
+        return left + between.join(line * (one + 2) for one in widths) + right
+
+    def folded(cells: Sequence[str], bar: str) -> Iterator[str]:
+        for parts in zip_longest(*map(_fold, cells, widths), fillvalue=""):
+            padded = (part + " " * (one - _width(part)) for part, one in zip(parts, widths, strict=True))
+            yield f"{bar} {f' {bar} '.join(padded)} {bar}"
+
+    top = [rule(*"┌─┬┐")] if header is None else [rule(*"┏━┳┓"), *folded(header, "┃"), rule(*"┡━╇┩")]
+    return [*top, *(line for row in rows for line in folded(row, "│")), rule(*"└─┴┘")]
+
+
+def _fold(cell: str, width: int) -> list[str]:
+    return [part for line in cell.split("\n") for part in textwrap.wrap(line, width, break_on_hyphens=False) or [""]]
+
+
+def _width(text: str) -> int:
+    """Count the columns of a text on a terminal, on which the characters of East Asian scripts are wide."""
+    return sum(2 if east_asian_width(one) in "WF" else not combining(one) for one in text)
 
 
 def deliver(
@@ -195,9 +222,6 @@ def _finite(values: Any) -> Any:
         case float() if not math.isfinite(values):
             return None
     return values
-
-
-_PLAIN_WIDTH = 120
 
 
 def open_saved(source: Path | None) -> "xr.Dataset | None":

@@ -85,7 +85,8 @@ _WANTED = {
 class Config(BaseModel):
     """A part of a TOML or JSON description; unknown keys are mistakes."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True)
+    # Most descriptions are never used by one process; pydantic builds those that are.
+    model_config = ConfigDict(extra="forbid", frozen=True, defer_build=True)
 
     make: ClassVar[Callable[..., Any]]
     """Described class or named constructor; only for a kind of column, model or motion."""

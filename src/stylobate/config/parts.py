@@ -266,9 +266,6 @@ if TYPE_CHECKING:
 else:
     MotionConfig = one_of(_MOTIONS_BY_KIND.values(), "kind", _own_motion)
 
-for _one in _MOTIONS_BY_KIND.values():
-    _one.model_rebuild()
-
 AT_REST: Any = _MOTIONS_BY_KIND["rest"].parse({"kind": "rest"})
 """The description of a base at rest."""
 

@@ -4,7 +4,7 @@ import hashlib
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import Annotated, Any, ClassVar, Literal, cast
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, cast
 
 from pydantic import Field
 
@@ -12,9 +12,10 @@ from stylobate.base_motions import Record
 from stylobate.base_motions.record import RecordOrigin
 from stylobate.config.description import Config, Hertz, MetresPerSquareSecond, Radians, Seconds
 from stylobate.errors import FileError, ParameterError
-from stylobate.records import Lengths, RecordFormat, Steps, read_record, sample_record
-from stylobate.records.events import EventFiles, RecordSource, find_events
-from stylobate.records.joining import join_event, reader, remark_on_missing_components
+
+if TYPE_CHECKING:
+    from stylobate.records import RecordFormat
+    from stylobate.records.events import EventFiles, RecordSource
 
 
 def relocated(values: Any, folder: Path) -> Any:
@@ -206,15 +207,22 @@ class Reading(Config):
     one_component: bool = False
     processing: tuple[RecordStep, ...] = ()
 
-    def find(self, source: RecordSource, directions: Mapping[str, float | str]) -> tuple[EventFiles, ...]:
+    def find(self, source: "RecordSource", directions: Mapping[str, float | str]) -> "tuple[EventFiles, ...]":
         """Return the events in these files; see `find_events`."""
+        from stylobate.records.events import find_events
+        from stylobate.records.joining import reader
+
         return find_events(source, reader(self.step, self.columns, self._format()), directions)
 
-    def join(self, event: EventFiles) -> Record:
+    def join(self, event: "EventFiles") -> Record:
         """Return the record of an event; see `join_event`."""
+        from stylobate.records.joining import Lengths, Steps, join_event
+
         return join_event(event, self.units, Lengths[self.lengths.upper()], Steps[self.steps.upper()])
 
-    def _format(self) -> RecordFormat | None:
+    def _format(self) -> "RecordFormat | None":
+        from stylobate.records import RecordFormat
+
         return None if self.format is None else RecordFormat[self.format.upper()]
 
 
@@ -287,6 +295,8 @@ class RecordMotion(Reading):
             If the record lacks a component, unless `one_component` is true, or an axis or columns of one file are
             chosen.
         """
+        from stylobate.records.joining import remark_on_missing_components
+
         if not (self.one_component or self.axis or (self.columns and isinstance(self.path, str))):
             remark_on_missing_components(record)
         steps = (*self.processing, *self._last())
@@ -333,6 +343,8 @@ class RecordMotion(Reading):
             raise FileError(f"cannot read {path}: {error.strerror or error}{remedy}") from None
 
     def _read(self) -> Record:
+        from stylobate.records import read_record, sample_record
+
         if self.sample is not None:
             self._refuse(("units", "step", "columns", "axis", "directions", "format", "name"), "a sample")
             return sample_record(self.sample)
