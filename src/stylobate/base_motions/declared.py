@@ -107,7 +107,7 @@ def numbers_of_motion(motion: BaseMotion) -> Mapping[str, Parameter]:
     `Offset` have no numbers of their own, since they apply to every motion. A number of the class comes before one of
     its constructor of the same name.
     """
-    found = {name: one for part in _parts(motion) for name, one in _declared(part).items() if _is_number(one)}
+    found = {name: one for part in _parts(motion) for name, one in _own_numbers(part).items()}
     return {"angular_frequency": _FREQUENCY, **found} if "frequency" in found else found
 
 
@@ -192,20 +192,31 @@ def _declared(part: object) -> Mapping[str, Parameter]:
     return {**parameters_of(make), **_stated(part)}
 
 
+def _own_numbers(part: object) -> Mapping[str, Parameter]:
+    return {**_numbers(type(part)), **_stated(part)}
+
+
 def _stated(part: Any) -> Mapping[str, Parameter]:
     """Return the numbers that the named constructor of an object has, and its class has not."""
     stated = getattr(part, "stated", None)
-    if stated is None:
-        return {}
-    kind: Callable[..., Any] = type(part)
-    of_class = {name for name, one in parameters_of(kind).items() if _is_number(one)}
-    made_with = parameters_of(getattr(type(part), stated.constructor))
-    return {name: one for name, one in made_with.items() if _is_number(one) and name not in of_class}
+    return {} if stated is None else _stated_by(type(part), stated.constructor)
+
+
+@cache
+def _stated_by(kind: Callable[..., Any], constructor: str) -> Mapping[str, Parameter]:
+    of_class = _numbers(kind)
+    return {name: one for name, one in _numbers(getattr(kind, constructor)).items() if name not in of_class}
+
+
+@cache
+def _numbers(make: Callable[..., Any]) -> Mapping[str, Parameter]:
+    """Return the declared arguments that are single numbers without choices."""
+    return {
+        name: one
+        for name, one in parameters_of(make).items()
+        if one.annotation in (float, int) and one.quantity.components == 1 and not one.choices
+    }
 
 
 def _is_own(part: object) -> bool:
     return type(part) not in (Scaled, Rotated, Delayed, Offset, OneOf)
-
-
-def _is_number(parameter: Parameter) -> bool:
-    return parameter.annotation in (float, int) and parameter.quantity.components == 1 and not parameter.choices

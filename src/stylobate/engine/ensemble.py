@@ -5,6 +5,7 @@ import os
 from collections.abc import Callable, Mapping
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from dataclasses import asdict, replace
+from functools import cache
 from typing import Any, Unpack
 
 import numpy as np
@@ -377,6 +378,7 @@ def _provenance(model: Model, motion: BaseMotion, options: EnsembleOptions, same
     return provenance_of_run(model, motion, **kept)
 
 
+@cache
 def _index(dim: str, *labels: str) -> xr.DataArray:
     index = xr.indexes.PandasIndex(pd.Index(np.array(labels)), dim, coord_dtype=np.dtype("<U1"))
     return xr.Coordinates.from_xindex(index)[dim]

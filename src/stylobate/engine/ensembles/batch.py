@@ -3,6 +3,7 @@
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
@@ -55,7 +56,7 @@ SWITCHING_WIDTH = 8
 """Lanes of a kernel that changes between kinds of contact; its lanes have many more rows."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Plan:
     """Settings that all runs of an ensemble share.
 
@@ -119,7 +120,7 @@ class Plan:
             return 1
         return SWITCHING_WIDTH if self.model.switches else WIDTH
 
-    @property
+    @cached_property
     def layout(self) -> Shape:
         """Shape that defines the columns of the table of a batch, the same for both kernels."""
         return self.shape(planar=False)

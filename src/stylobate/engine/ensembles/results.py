@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
+from numpy.lib.stride_tricks import sliding_window_view
 
 from stylobate.engine.ensembles.batch import Batch, OrbitReached, periods_of
 from stylobate.engine.ensembles.runs import CONTACT_KINDS, DEMANDS, TIMES_OF_CONTACTS, Arrays, empty
@@ -340,10 +341,10 @@ class Units:
         """Return the larger of two differences in their units, shape (…, n) as the differences."""
         return np.maximum(tilt_change / self.tilt, rate_change / self.rate)
 
-    def returns(self, looks: Floats, last: int, lag: int) -> Floats:
-        """Return the maximum distance of the `last` looks from those earlier by this lag, shape (n,)."""
-        first = looks.shape[1] - last
-        return self.distances(*_largest(looks[:, first:] - looks[:, first - lag : looks.shape[1] - lag]))
+    def returns(self, looks: Floats, last: int, lags: int) -> Floats:
+        """Return the maximum distance of the `last` looks from those earlier by 1, 2, … `lags`, shape (lags, n)."""
+        groups = np.moveaxis(sliding_window_view(looks, last, axis=1), -1, 1)
+        return self.distances(*_largest(groups[:, :, -1:] - groups[:, :, -2 : -2 - lags : -1]))
 
 
 def evidence_of(batch: Batch, runs: Integers, turned: Floats, minimum_tilt: Floats, mean_tilt: Floats) -> Evidence:
@@ -365,7 +366,7 @@ def evidence_of(batch: Batch, runs: Integers, turned: Floats, minimum_tilt: Floa
     steady = held >= steady_periods(rules)
     last = _looks_of(batch, runs, EARLIER + LAGS - 1)
     units = Units.of(last[:, 1:], mean_tilt, period)
-    after_one = units.returns(last, rules.periods, 1)
+    after_one = units.returns(last, rules.periods, 1)[0]
     after_one[~np.any(last[:, 1:], axis=(0, 1))] = np.inf  # the motion between the looks is unknown
     evidence.returns[:, 0] = after_one
     moves = np.flatnonzero(steady & ~(after_one < rules.repeat_tolerance))
@@ -390,21 +391,18 @@ def _looks_of(batch: Batch, runs: Integers, first: int = 0) -> Floats:
 
 def _near_repeats(looks: Floats, units: Units, tolerance: float) -> npt.NDArray[np.bool_]:
     """Return which runs are within the tolerance after several periods, by their last look alone."""
-    near = [units.returns(looks, 1, lag) < tolerance for lag in range(2, LAGS + 1)]
-    return np.asarray(np.any(near, axis=0))
+    return np.asarray(np.any(units.returns(looks, 1, LAGS)[1:] < tolerance, axis=0))
 
 
 def _fill_returns(evidence: Evidence, kept: Integers, looks: Floats, units: Units, periods: int) -> None:
     """Compare these runs over several periods, at their end and a quarter of the run before."""
-    few = EARLIER - LAGS
+    few, lags = EARLIER - LAGS, np.arange(1, LAGS + 1)[:, np.newaxis]
     held, back = evidence.held[kept], evidence.back[kept]
-    for lag in range(1, LAGS + 1):
-        if lag > 1:
-            returns = units.returns(looks, periods, lag)
-            evidence.returns[kept, lag - 1] = np.where(held < periods + lag, np.nan, returns)
-        evidence.returns_latest[kept, lag - 1] = units.returns(looks, few, lag)
-        before = units.returns(looks[:, :EARLIER], few, lag)
-        evidence.returns_before[kept, lag - 1] = np.where(back == 0.0, np.nan, before)
+    returns = np.where(held < periods + lags, np.nan, units.returns(looks, periods, LAGS))
+    evidence.returns[kept, 1:] = returns[1:].T
+    evidence.returns_latest[kept] = units.returns(looks, few, LAGS).T
+    before = units.returns(looks[:, :EARLIER], few, LAGS)
+    evidence.returns_before[kept] = np.where(back == 0.0, np.nan, before).T
 
 
 def _fill_change(evidence: Evidence, batch: Batch, runs: Integers, kept: Integers, units: Units) -> None:
@@ -431,7 +429,7 @@ def _pairs_of(batch: Batch, runs: Integers, held: Floats) -> tuple[Floats, Float
 
 
 def _largest(vectors: Floats) -> tuple[Floats, Floats]:
-    """Return the maximum lengths of tilts and of rates among vectors of shape (4, number, n), each of shape (n,)."""
+    """Return the maximum lengths of tilts and of rates among vectors of shape (4, number, …, n), each (…, n)."""
     squares = vectors * vectors
     tilt, rate = squares[0] + squares[1], squares[2] + squares[3]
     return np.sqrt(tilt.max(axis=0)), np.sqrt(rate.max(axis=0))
