@@ -145,7 +145,8 @@ class Accuracy(TypedDict, total=False):
 _DURATION = Quantity(unit="s", text="duration of a run", gt=0.0)
 Samples = Annotated[int | None, Quantity(text="number of samples kept", ge=2)]
 Method = Annotated[
-    Literal["dop853", "taylor"], Quantity(text="integration method; taylor is faster for columns in steady rolling")
+    Literal["dop853", "taylor"],
+    Quantity(text="integration method; taylor is faster for slender models that roll"),
 ]
 
 
@@ -203,7 +204,7 @@ class EnsembleOptions(Accuracy, total=False):
             "dop853",
             'Integration of three-dimensional motion: "dop853" as in `simulate`, or "taylor", Taylor series of order '
             '16. Columns in steady rolling take less than half of the steps with "taylor". Runs that pass near the '
-            'vertical, as in most maps, are faster with "dop853".',
+            'vertical, as in most maps, and all runs at finite tilt are faster with "dop853".',
         ),
     ]
     samples: Annotated[

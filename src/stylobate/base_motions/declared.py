@@ -193,13 +193,15 @@ def _declared(part: object) -> Mapping[str, Parameter]:
 
 
 def _own_numbers(part: object) -> Mapping[str, Parameter]:
-    return {**_numbers(type(part)), **_stated(part)}
+    make: Callable[..., Any] = type(part)
+    return {**_numbers(make), **_stated(part)}
 
 
 def _stated(part: Any) -> Mapping[str, Parameter]:
     """Return the numbers that the named constructor of an object has, and its class has not."""
     stated = getattr(part, "stated", None)
-    return {} if stated is None else _stated_by(type(part), stated.constructor)
+    make: Callable[..., Any] = type(part)
+    return {} if stated is None else _stated_by(make, stated.constructor)
 
 
 @cache

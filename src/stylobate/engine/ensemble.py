@@ -237,7 +237,7 @@ def _options(model: Model, run: Mapping[str, Any], *, with_orbits: bool, with_fr
         raise UnsupportedError(f"model {model.name} changes between kinds of contact: leave out {asked}")
     if options["method"] == "taylor" and isinstance(model, FiniteTiltModel):
         LOG.warning(
-            "method 'taylor' takes two to four times the time of 'dop853' with the equations of model %s: leave it out",
+            "method 'taylor' takes two to eight times the time of 'dop853' for the equations of model %s: omit it",
             model.name,
         )
     return options
