@@ -264,11 +264,7 @@ UNITS = Option("units", "unit of files that do not state it: g, m/s2 or cm/s2", 
 STEP = Option("step", "time step of files that do not state it", unit="s")
 EARLY_END = Group.of(
     "Run",
-    Option(
-        "end_converged",
-        "end converged runs early: circular motion, 300 periods or more",
-        bool,
-    ),
+    Option("end_converged", "end converged runs early: circular motion, 300 periods or more", bool),
 )
 ONE_COMPONENT = Option("one_component", "accept records of one component without a warning", bool)
 SAMPLE = 'record that comes with the package: "el centro 1940", or "el centro 1940 corrected"'
