@@ -230,21 +230,29 @@ def nearest_turn(azimuth: float, previous: float) -> float:
 
 
 class NewtonRoom(NamedTuple):
-    """Work arrays of an implicit step: the Jacobian, the matrix of all stages, and vectors of the same length."""
+    """Work arrays of an implicit step of n equations.
 
-    jacobian: Table
-    matrix: Table
-    pivots: Row
+    `changes` and `corrections` of the state at the three nodes of the step, 3n; the Jacobian, n x n, and the `coupled`
+    states, on which the rates depend; factors of the matrices of Newton's method for these states, n x n and 2n x 2n,
+    with their row exchanges, and a vector of 2n.
+    """
+
     change: Row
     correction: Row
+    jacobian: Table
+    coupled: Row
+    single: Table
+    single_pivots: Row
+    double: Table
+    double_pivots: Row
+    vector: Row
 
 
-def factor(matrix: Table, pivots: Row) -> bool:
-    """Replace a square matrix by its factors L and U, and record the row exchanges; return False if it is singular.
+def factor(matrix: Table, pivots: Row, n: int) -> bool:
+    """Replace the first n rows and columns of a matrix by their factors L and U; return False if they are singular.
 
-    A matrix with numbers that are not finite counts as singular. Zeros below the diagonal cost no operations.
+    `pivots` records the row exchanges. A matrix with numbers that are not finite counts as singular.
     """
-    n = len(matrix)
     for k in range(n):
         largest = k
         for row in range(k + 1, n):
@@ -258,27 +266,23 @@ def factor(matrix: Table, pivots: Row) -> bool:
                 matrix[k, column], matrix[largest, column] = matrix[largest, column], matrix[k, column]
         per = 1.0 / matrix[k, k]
         for row in range(k + 1, n):
-            if matrix[row, k] != 0.0:
-                share = matrix[row, k] * per
-                matrix[row, k] = share
-                for column in range(k + 1, n):
-                    matrix[row, column] -= share * matrix[k, column]
+            share = matrix[row, k] * per
+            matrix[row, k] = share
+            for column in range(k + 1, n):
+                matrix[row, column] -= share * matrix[k, column]
     return True
 
 
-def solve(factors: Table, pivots: Row, x: Row) -> None:
-    """Replace the right-hand side `x` by the solution of the equations with the `factors` from `factor`."""
-    n = len(x)
+def solve(factors: Table, pivots: Row, x: Row, n: int) -> None:
+    """Replace the first n numbers of `x` by the solution of the equations with the `factors` from `factor`."""
     for k in range(n):
         largest = int(pivots[k])
         x[k], x[largest] = x[largest], x[k]
     for k in range(n):
-        if x[k] != 0.0:
-            for row in range(k + 1, n):
-                x[row] -= factors[row, k] * x[k]
+        for row in range(k + 1, n):
+            x[row] -= factors[row, k] * x[k]
     for done in range(n):
         k = n - 1 - done
-        if x[k] != 0.0:
-            x[k] /= factors[k, k]
-            for row in range(k):
-                x[row] -= factors[row, k] * x[k]
+        x[k] /= factors[k, k]
+        for row in range(k):
+            x[row] -= factors[row, k] * x[k]

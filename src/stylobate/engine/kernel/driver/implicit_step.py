@@ -35,8 +35,26 @@ def _slopes() -> tuple[tuple[float, ...], ...]:
 SLOPES = np.array(_slopes())
 """A⁻¹: maps the changes from the start to the nodes to the slopes of their cubic at the nodes, in units of 1/h."""
 
-EIGENVECTOR = np.array([0.09443876248897524, 0.25021312296533332, 1.0])
-"""Eigenvector of A⁻¹ for its real eigenvalue γ₀⁻¹ = 3 + 3^⅔ − 3^⅓."""
+REAL = 3.0 + 3.0 ** (2.0 / 3.0) - 3.0 ** (1.0 / 3.0)
+TURNED_REAL = 0.5 * (9.0 - REAL)
+TURNED_IMAGINARY = math.sqrt(60.0 / REAL - TURNED_REAL * TURNED_REAL)
+"""γ, α and β: the eigenvalues γ and α ± iβ of A⁻¹, the roots of s³ − 9s² + 36s − 60."""
+
+
+def _eigenvector(value: complex) -> list[complex]:
+    """Return the eigenvector of A⁻¹ for an eigenvalue; its last component is 1."""
+    first, second = SLOPES[:2, :2] - value * np.eye(2)
+    one, two = -SLOPES[:2, 2]
+    per = 1.0 / (first[0] * second[1] - first[1] * second[0])
+    return [(one * second[1] - two * first[1]) * per, (two * first[0] - one * second[0]) * per, 1.0]
+
+
+_TURNED = np.array(_eigenvector(complex(TURNED_REAL, TURNED_IMAGINARY)))
+MODES = np.array([_eigenvector(REAL), _TURNED.real, _TURNED.imag]).T
+"""Columns v, u and w: the eigenvectors v of γ and u + iw of α + iβ. Changes at the nodes are sums of these."""
+
+TO_MODES = np.linalg.inv(MODES)
+"""Inverse of `MODES`."""
 
 ERROR = np.array([-(13.0 + 7.0 * _ROOT) / 3.0, -(13.0 - 7.0 * _ROOT) / 3.0, -1.0 / 3.0])
 """Weights of the changes at the nodes in the error estimate of order 3."""
@@ -94,18 +112,17 @@ def fastest_rate(jacobian: Table) -> float:
     return growth
 
 
-def solve_step(buf: Table, i: int, h: float, room: NewtonRoom) -> int:
+def solve_step(buf: Table, i: int, h: float, number: int, room: NewtonRoom) -> int:
     """Solve the equations of a step from a guess of its changes; return the number of iterations, or 0 on failure."""
-    _, matrix, pivots, change, correction = room
-    set_matrix(h, room)
-    if not factor(matrix, pivots):
+    change, correction = room.change, room.correction
+    if not factor_matrices(h, number, room):
         return 0
     rtol = buf[R.RTOL, i]
     tolerance = max(SOLVED_ROUNDINGS / rtol, min(WELL_SOLVED, math.sqrt(rtol)))
     before = math.inf
     for iteration in range(1, MOST_ITERATIONS + 1):
         set_defect(buf, i, h, change, correction)
-        solve(matrix, pivots, correction)
+        correct(h, number, room)
         size = size_of_correction(buf, i, correction)
         ratio = size / before
         ahead = size if iteration == 1 else size * ratio / (1.0 - ratio)
@@ -119,19 +136,85 @@ def solve_step(buf: Table, i: int, h: float, room: NewtonRoom) -> int:
     return 0
 
 
-def set_matrix(h: float, room: NewtonRoom) -> None:
-    """Set the matrix A⁻¹/h ⊗ I − I ⊗ J of Newton's method."""
-    jacobian, matrix, _, _, _ = room
-    for row in range(CHANGES):
-        for column in range(CHANGES):
-            matrix[row, column] = 0.0
-    for stage in range(STAGES):
-        first = stage * ORDER
+# Newton's equations (A⁻¹/h ⊗ I − I ⊗ J) δ = r fall apart in the modes of A⁻¹: (γ/h − J) δ₀ = r₀ and, with the complex
+# eigenvalue α + iβ, (α/h − J) δ₁ + β/h δ₂ = r₁ and −β/h δ₁ + (α/h − J) δ₂ = r₂. They are solved for the coupled states,
+# on which rates depend; the others follow from these.
+
+
+def set_coupled(jacobian: Table, coupled: Row) -> int:
+    """Set the indices of the states on which rates depend; return their number."""
+    number = 0
+    for column in range(ORDER):
+        size = 0.0
         for j in range(ORDER):
-            for k in range(ORDER):
-                matrix[first + j, first + k] = -jacobian[j, k]
-            for other in range(STAGES):
-                matrix[first + j, other * ORDER + j] += SLOPES[stage, other] / h
+            size += abs(jacobian[j, column])
+        if size != 0.0:  # NaN counts too
+            coupled[number] = column
+            number += 1
+    return number
+
+
+def factor_matrices(h: float, number: int, room: NewtonRoom) -> bool:
+    """Factor the matrices of Newton's method for the coupled states; return False if one is singular."""
+    single, double = room.single, room.double
+    turn = TURNED_IMAGINARY / h
+    for row in range(number):
+        for column in range(number):
+            rate = room.jacobian[int(room.coupled[row]), int(room.coupled[column])]
+            diagonal = 1.0 if row == column else 0.0
+            single[row, column] = diagonal * (REAL / h) - rate
+            double[row, column] = diagonal * (TURNED_REAL / h) - rate
+            double[number + row, number + column] = double[row, column]
+            double[row, number + column] = diagonal * turn
+            double[number + row, column] = -diagonal * turn
+    return factor(single, room.single_pivots, number) and factor(double, room.double_pivots, 2 * number)
+
+
+def correct(h: float, number: int, room: NewtonRoom) -> None:
+    """Replace the defects r at the nodes, in `room.correction`, by the corrections δ."""
+    correction, vector = room.correction, room.vector
+    to_basis(TO_MODES, correction)
+    correct_real(h, number, room)
+    for row in range(number):
+        j = int(room.coupled[row])
+        vector[row], vector[number + row] = correction[ORDER + j], correction[2 * ORDER + j]
+    solve(room.double, room.double_pivots, vector, 2 * number)
+    real, turn = TURNED_REAL / h, TURNED_IMAGINARY / h
+    per = 1.0 / (real * real + turn * turn)
+    for j in range(ORDER):
+        one, two = correction[ORDER + j], correction[2 * ORDER + j]
+        for row in range(number):
+            rate = room.jacobian[j, int(room.coupled[row])]
+            one, two = one + rate * vector[row], two + rate * vector[number + row]
+        correction[ORDER + j] = (real * one - turn * two) * per
+        correction[2 * ORDER + j] = (turn * one + real * two) * per
+    for row in range(number):
+        j = int(room.coupled[row])
+        correction[ORDER + j], correction[2 * ORDER + j] = vector[row], vector[number + row]
+    to_basis(MODES, correction)
+
+
+def correct_real(h: float, number: int, room: NewtonRoom) -> None:
+    """Replace r in the first third of `room.correction` by the solution of (γ/h − J) δ = r."""
+    correction, vector = room.correction, room.vector
+    for row in range(number):
+        vector[row] = correction[int(room.coupled[row])]
+    solve(room.single, room.single_pivots, vector, number)
+    for j in range(ORDER):
+        total = correction[j]
+        for row in range(number):
+            total += room.jacobian[j, int(room.coupled[row])] * vector[row]
+        correction[j] = total * h / REAL
+    for row in range(number):
+        correction[int(room.coupled[row])] = vector[row]
+
+
+def to_basis(basis: Table, parts: Row) -> None:
+    """Multiply the three components of each state by a matrix of order 3."""
+    for j in range(ORDER):
+        one, two, three = parts[j], parts[ORDER + j], parts[2 * ORDER + j]
+        for stage in range(STAGES):
+            parts[stage * ORDER + j] = basis[stage, 0] * one + basis[stage, 1] * two + basis[stage, 2] * three
 
 
 def set_defect(buf: Table, i: int, h: float, change: Row, defect: Row) -> None:
@@ -165,35 +248,35 @@ def size_of_correction(buf: Table, i: int, correction: Row) -> float:
     return math.sqrt(total / CHANGES)
 
 
-def error_of_changes(buf: Table, i: int, h: float, slopes: tuple[float, ...], room: NewtonRoom) -> float:
-    """Return the error of a step in tolerances, and store its components in the last third of `correction`.
+def error_of_changes(
+    buf: Table, i: int, h: float, slopes: tuple[float, ...], number: int, room: NewtonRoom
+) -> float:
+    """Return the error of a step in tolerances, and store its components in the first third of `room.correction`.
 
-    `slopes` are the rates at the start. The embedded formula needs (γ₀⁻¹/h − J)⁻¹; on multiples of the eigenvector of
-    A⁻¹, the matrix of all stages acts as γ₀⁻¹/h − J.
+    `slopes` are the rates at the start.
     """
-    _, matrix, pivots, change, correction = room
+    change, error = room.change, room.correction
     for j in range(ORDER):
         defect = slopes[j]
         for stage in range(STAGES):
             defect += ERROR[stage] * change[stage * ORDER + j] / h
-        for stage in range(STAGES):
-            correction[stage * ORDER + j] = EIGENVECTOR[stage] * defect
-    solve(matrix, pivots, correction)
+        error[j] = defect
+    correct_real(h, number, room)
     total, last = 0.0, CHANGES - ORDER
     for j in range(ORDER):
         here = buf[R.STATE + j, i]
         size = max(abs(here), abs(here + change[last + j]))
-        part = correction[last + j] / (absolute_tolerance(buf, i, j) + buf[R.RTOL, i] * size)
+        part = error[j] / (absolute_tolerance(buf, i, j) + buf[R.RTOL, i] * size)
         total += part * part
     return math.sqrt(total / ORDER)
 
 
-def damped_error(buf: Table, i: int, h: float, room: NewtonRoom) -> float:
+def damped_error(buf: Table, i: int, h: float, number: int, room: NewtonRoom) -> float:
     """Return the error estimate with rates at the corrected start, for an estimate that is stiff itself."""
     for j in range(ORDER):
-        buf[R.NEW + j, i] = buf[R.STATE + j, i] + room.correction[CHANGES - ORDER + j]
+        buf[R.NEW + j, i] = buf[R.STATE + j, i] + room.correction[j]
     slopes = rates_at(buf, i, buf[R.TIME, i], row_state(buf, i, R.NEW))
-    return error_of_changes(buf, i, h, slopes, room)
+    return error_of_changes(buf, i, h, slopes, number, room)
 
 
 def set_cubic(buf: Table, i: int, change: Row) -> None:

@@ -42,6 +42,7 @@ from stylobate.engine.kernel.driver.implicit_step import (
     error_of_changes,
     fastest_rate,
     guess_changes,
+    set_coupled,
     set_cubic,
     set_jacobian,
     solve_step,
@@ -434,16 +435,25 @@ LARGEST_IMPLICIT_FACTOR, UNSOLVED_FACTOR = 8.0, 0.5
 def follow_implicitly(buf: Table, i: int, table: Table, pieces: Table) -> int:
     """Make implicit steps while they pay; return the final status if the run ends, else WAITING."""
     room = NewtonRoom(
-        np.zeros((ORDER, ORDER)), np.zeros((CHANGES, CHANGES)), np.zeros(CHANGES), np.zeros(CHANGES), np.zeros(CHANGES)
+        change=np.zeros(CHANGES),
+        correction=np.zeros(CHANGES),
+        jacobian=np.zeros((ORDER, ORDER)),
+        coupled=np.zeros(ORDER),
+        single=np.zeros((ORDER, ORDER)),
+        single_pivots=np.zeros(ORDER),
+        double=np.zeros((2 * ORDER, 2 * ORDER)),
+        double_pivots=np.zeros(2 * ORDER),
+        vector=np.zeros(2 * ORDER),
     )
     buf[R.STIFF_LOOKS, i] = 0.0
     buf[R.STIFF_WAIT, i] = LOOK_AGAIN
-    before, unpaid, rate, begins, pays = 0.0, 0, 0.0, True, True
+    before, unpaid, rate, coupled, begins, pays = 0.0, 0, 0.0, 0, True, True
     for _ in range(STRETCH):
         if begins:
             set_jacobian(buf, i, room.jacobian)
+            coupled = set_coupled(room.jacobian, room.coupled)
             rate = fastest_rate(room.jacobian)
-        h = attempt(buf, i, before, rate, room)
+        h = attempt(buf, i, before, rate, coupled, room)
         unpaid = 0 if h * rate > PAYS else unpaid + 1
         pays = h > 0.0 and unpaid <= MOST_UNPAID
         if not pays:
@@ -465,20 +475,21 @@ def follow_implicitly(buf: Table, i: int, table: Table, pieces: Table) -> int:
     return go_on_explicitly(buf, i, table, pieces, rate, pays=pays)
 
 
-def attempt(buf: Table, i: int, before: float, rate: float, room: NewtonRoom) -> float:
+def attempt(buf: Table, i: int, before: float, rate: float, coupled: int, room: NewtonRoom) -> float:
     """Compute a step whose error is acceptable; return its length, or 0 if no step pays.
 
-    `before` is the length of the step whose dense output is stored, or 0; `rate` is the fastest rate of the equations.
+    `before` is the length of the step whose dense output is stored, or 0; `rate` is the fastest rate of the equations,
+    and `coupled` the number of coupled states.
     """
     h = min(buf[R.WANTED, i], buf[R.LONGEST_STEP, i], buf[R.STOP, i] - buf[R.TIME, i])
     slopes = row_state(buf, i, R.SLOPE)
     rejected = False
     while True:
         guess_changes(buf, i, h / before if before > 0.0 else 0.0, room.change)
-        iterations = solve_step(buf, i, h, room)
-        error = error_of_changes(buf, i, h, slopes, room) if iterations > 0 else math.inf
+        iterations = solve_step(buf, i, h, coupled, room)
+        error = error_of_changes(buf, i, h, slopes, coupled, room) if iterations > 0 else math.inf
         if rejected and 1.0 < error < math.inf:
-            error = damped_error(buf, i, h, room)
+            error = damped_error(buf, i, h, coupled, room)
         factor = factor_of(error, iterations)
         if error <= 1.0:
             break
