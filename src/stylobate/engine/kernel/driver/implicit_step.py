@@ -88,25 +88,25 @@ def set_jacobian(buf: Table, i: int, jacobian: Table) -> None:
         buf[R.NEW + column, i] = here
 
 
-def fastest_rate(jacobian: Table) -> float:
-    """Estimate the largest modulus of the eigenvalues of the Jacobian by power iteration."""
+def fastest_rate(jacobian: Table, coupled: Row, number: int) -> float:
+    """Estimate the largest modulus of the eigenvalues of the Jacobian by power iteration, on the coupled states."""
     vector, product = np.zeros(ORDER), np.zeros(ORDER)
-    for j in range(ORDER):
-        vector[j] = 1.0
+    for row in range(number):
+        vector[row] = 1.0
     growth = 1.0
     for power in range(FADING + 4):
         square = 0.0
-        for j in range(ORDER):
+        for row in range(number):
             total = 0.0
-            for k in range(ORDER):
-                total += jacobian[j, k] * vector[k]
-            product[j] = total
+            for column in range(number):
+                total += jacobian[int(coupled[row]), int(coupled[column])] * vector[column]
+            product[row] = total
             square += total * total
         size = math.sqrt(square)
         if not 0.0 < size < math.inf:
             return size
-        for j in range(ORDER):
-            vector[j] = product[j] / size
+        for row in range(number):
+            vector[row] = product[row] / size
         if power >= FADING:
             growth *= math.sqrt(math.sqrt(size))
     return growth
