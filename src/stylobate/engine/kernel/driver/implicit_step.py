@@ -70,26 +70,39 @@ MOST_ITERATIONS, WELL_SOLVED, SOLVED_ROUNDINGS = 7, 0.03, 2e-15
 FADING = 4
 
 
-def set_jacobian(buf: Table, i: int, jacobian: Table) -> None:
-    """Set the Jacobian of the rates by differences from the slopes at the state; the kind of contact is constant."""
+def set_jacobian(buf: Table, i: int, number: int, room: NewtonRoom) -> int:
+    """Set the Jacobian of the rates by differences from the slopes at the state; return the number of coupled states.
+
+    Column k belongs to the state `room.coupled[k]`. With `number` 0 the coupled states are found anew: those on which
+    rates depend. The kind of contact is constant.
+    """
+    jacobian, coupled = room.jacobian, room.coupled
     t = buf[R.TIME, i]
     slip = max(math.hypot(buf[R.STATE + SLIP_X, i], buf[R.STATE + SLIP_Y, i]), SLIP_SHARE * buf[R.ATOL_NOW, i])
     small = min(PART_OF_SLIP * slip, LARGEST_DIFFERENCE)
     for j in range(ORDER):
         buf[R.NEW + j, i] = buf[R.STATE + j, i]
-    for column in range(ORDER - 1):
+    found = 0
+    for k in range(number if number > 0 else ORDER - 1):
+        column = int(coupled[k]) if number > 0 else k
         here = buf[R.STATE + column, i]
         least = 0.0 if column in (SLIP_X, SLIP_Y) else LEAST_DIFFERENCE * (1.0 + abs(here))
         buf[R.NEW + column, i] = here + max(small, least)
         per = 1.0 / (buf[R.NEW + column, i] - here)
         rates = rates_at(buf, i, t, row_state(buf, i, R.NEW))
+        size = 0.0
         for j in range(ORDER):
-            jacobian[j, column] = (rates[j] - buf[R.SLOPE + j, i]) * per
+            jacobian[j, found] = (rates[j] - buf[R.SLOPE + j, i]) * per
+            size += abs(jacobian[j, found])
+        if number > 0 or size != 0.0:  # NaN counts too
+            coupled[found] = column
+            found += 1
         buf[R.NEW + column, i] = here
+    return found
 
 
-def fastest_rate(jacobian: Table, coupled: Row, number: int) -> float:
-    """Estimate the largest modulus of the eigenvalues of the Jacobian by power iteration, on the coupled states."""
+def fastest_rate(number: int, room: NewtonRoom) -> float:
+    """Estimate the largest modulus of the eigenvalues of the Jacobian by power iteration."""
     vector, product = np.zeros(ORDER), np.zeros(ORDER)
     for row in range(number):
         vector[row] = 1.0
@@ -97,9 +110,9 @@ def fastest_rate(jacobian: Table, coupled: Row, number: int) -> float:
     for power in range(FADING + 4):
         square = 0.0
         for row in range(number):
-            total = 0.0
+            j, total = int(room.coupled[row]), 0.0
             for column in range(number):
-                total += jacobian[int(coupled[row]), int(coupled[column])] * vector[column]
+                total += room.jacobian[j, column] * vector[column]
             product[row] = total
             square += total * total
         size = math.sqrt(square)
@@ -141,26 +154,14 @@ def solve_step(buf: Table, i: int, h: float, number: int, room: NewtonRoom) -> i
 # on which rates depend; the others follow from these.
 
 
-def set_coupled(jacobian: Table, coupled: Row) -> int:
-    """Set the indices of the states on which rates depend; return their number."""
-    number = 0
-    for column in range(ORDER):
-        size = 0.0
-        for j in range(ORDER):
-            size += abs(jacobian[j, column])
-        if size != 0.0:  # NaN counts too
-            coupled[number] = column
-            number += 1
-    return number
-
-
 def factor_matrices(h: float, number: int, room: NewtonRoom) -> bool:
     """Factor the matrices of Newton's method for the coupled states; return False if one is singular."""
     single, double = room.single, room.double
     turn = TURNED_IMAGINARY / h
     for row in range(number):
+        j = int(room.coupled[row])
         for column in range(number):
-            rate = room.jacobian[int(room.coupled[row]), int(room.coupled[column])]
+            rate = room.jacobian[j, column]
             diagonal = 1.0 if row == column else 0.0
             single[row, column] = diagonal * (REAL / h) - rate
             double[row, column] = diagonal * (TURNED_REAL / h) - rate
@@ -184,7 +185,7 @@ def correct(h: float, number: int, room: NewtonRoom) -> None:
     for j in range(ORDER):
         one, two = correction[ORDER + j], correction[2 * ORDER + j]
         for row in range(number):
-            rate = room.jacobian[j, int(room.coupled[row])]
+            rate = room.jacobian[j, row]
             one, two = one + rate * vector[row], two + rate * vector[number + row]
         correction[ORDER + j] = (real * one - turn * two) * per
         correction[2 * ORDER + j] = (turn * one + real * two) * per
@@ -203,7 +204,7 @@ def correct_real(h: float, number: int, room: NewtonRoom) -> None:
     for j in range(ORDER):
         total = correction[j]
         for row in range(number):
-            total += room.jacobian[j, int(room.coupled[row])] * vector[row]
+            total += room.jacobian[j, row] * vector[row]
         correction[j] = total * h / REAL
     for row in range(number):
         correction[int(room.coupled[row])] = vector[row]

@@ -42,7 +42,6 @@ from stylobate.engine.kernel.driver.implicit_step import (
     error_of_changes,
     fastest_rate,
     guess_changes,
-    set_coupled,
     set_cubic,
     set_jacobian,
     solve_step,
@@ -452,6 +451,7 @@ def follow_implicitly(buf: Table, i: int, table: Table, pieces: Table) -> int:
     )
     buf[R.STIFF_LOOKS, i] = 0.0
     buf[R.STIFF_WAIT, i] = LOOK_AGAIN
+    set_rates(buf, i, buf[R.TIME, i])  # in lanes they have other roundings, which differences would show
     before, unpaid, iterations, coupled, rate, pays = 0.0, 0, 0, 0, 0.0, True
     for _ in range(STRETCH):
         h = 0.0
@@ -460,9 +460,8 @@ def follow_implicitly(buf: Table, i: int, table: Table, pieces: Table) -> int:
         else:
             iterations = 0
         if iterations == 0:
-            set_jacobian(buf, i, room.jacobian)
-            coupled = set_coupled(room.jacobian, room.coupled)
-            rate = fastest_rate(room.jacobian, room.coupled, coupled)
+            coupled = set_jacobian(buf, i, coupled, room)
+            rate = fastest_rate(coupled, room)
             h, iterations = attempt(buf, i, before, rate, coupled, room, renewed=True)
         unpaid = 0 if h * rate > PAYS else unpaid + 1
         pays = h > 0.0 and unpaid <= MOST_UNPAID
