@@ -183,6 +183,11 @@ def even(speed: float, twisting: float) -> tuple[float, float]:
     return slipping / larger, turning / larger
 
 
+def pointed(speed: float, twisting: float) -> tuple[float, float]:
+    """Return |T|/|v| and |M|/(ε s) over μN for Hertz's pressure in a small contact; arguments as for `even`."""
+    return 1.0 / _cubic_sum(speed, SLOWED * twisting), TWISTING / _cubic_sum(twisting, EASED * speed)
+
+
 def per_normal(
     vx: float,
     vy: float,
@@ -191,7 +196,7 @@ def per_normal(
     hy: float,
     hz: float,
     radius: float,
-    on_base: float,
+    on_base: bool,
     coefficient: float,
 ) -> tuple[float, float, float]:
     """Return force and moment about the vertical per normal force of a contact that slips.
@@ -205,20 +210,15 @@ def per_normal(
     radius
         ε [h]; 0 for a point, which resists no turning.
     on_base
-        1 if the base stands on the plane, 0 if its rim touches.
+        Whether the base stands on the plane; else its rim touches.
     coefficient
         μ.
     """
     sense = 1.0 if vx * hx + vy * hy + radius * turning * hz >= 0.0 else -1.0
     sx, sy, sz = sense * vx + _TRACE * hx, sense * vy + _TRACE * hy, sense * radius * turning + _TRACE * hz
     speed, twisting = math.sqrt(sx * sx + sy * sy), abs(sz)
-    even_along, even_about = even(speed, twisting)
-    pointed_along, pointed_about = (
-        1.0 / _cubic_sum(speed, SLOWED * twisting),
-        TWISTING / _cubic_sum(twisting, EASED * speed),
-    )
-    along = coefficient * (even_along if on_base > 0.0 else pointed_along)
-    about = coefficient * radius * (even_about if on_base > 0.0 else pointed_about)
+    per_speed, per_twisting = even(speed, twisting) if on_base else pointed(speed, twisting)
+    along, about = coefficient * per_speed, coefficient * radius * per_twisting
     return -along * sx, -along * sy, -about * sz
 
 
@@ -300,11 +300,9 @@ def balance(
         the slip; the friction reserve (`reserve`); Painlevé's denominator; rate of the twist; rate of the centre of the
         footprint without slip (2); ω_z.
     """
-    rolls = 1.0 if contact == ROLLING else 0.0
-    slips = 1.0 if contact == SLIPPING else 0.0
-    flies = 1.0 if contact == FLYING else 0.0
-    slides = 1.0 if contact == SLIDING else 0.0
-    rim, base = rolls + slips, 1.0 - rolls - slips - flies
+    rolls, slips, slides, flies = contact == ROLLING, contact == SLIPPING, contact == SLIDING, contact == FLYING
+    rim = rolls or slips
+    base = not (rim or flies)
     ax, ay, weight = ax + slope_x, ay + slope_y, 1.0 + az - relief
     # Kinematics
     square = x * x + y * y + TINY
@@ -337,10 +335,10 @@ def balance(
     given = axial / freedom * (kappa * sine - transverse * cos / (axial * c))
     spun = (c * unturned + held_m3) / inertia * cos - sine * ((unturned + held_m1 - gyro) / transverse + w3 * w2)
     answer = cos * (c * given + cos) / inertia - sine * (given - sine) / transverse
-    pivot = (-spun / answer if patch > 0.0 else 0.0) * rolls
+    pivot = -spun / answer if rolls and patch > 0.0 else 0.0
     held_n = unturned + given * pivot
     # With slip: T = Nτ, and N from its own equation after ẇ2 is eliminated
-    tau_x, tau_y, tau_z = per_normal(slip_x, slip_y, yawing, hx, hy, hz, base * c + rim * patch * c, base, kinetic)
+    tau_x, tau_y, tau_z = per_normal(slip_x, slip_y, yawing, hx, hy, hz, c if base else patch * c, base, kinetic)
     tau_d, tau_n = tau_x * ux + tau_y * uy, tau_y * ux - tau_x * uy
     lever = c * resistance / math.sqrt(w2 * w2 + rolling * rolling + FADING * FADING)
     falls = whirl - eta * w2
@@ -353,41 +351,39 @@ def balance(
     slip_m1 = m1 - lever * slip_normal * rolling * cos - tau_z * slip_normal * sine
     slip_m3 = m3 - lever * slip_normal * rolling * sine + tau_z * slip_normal * cos
     # Select rolling, slip, flight or base
-    normal = rolls * held_normal + slips * slip_normal + base * weight
-    falling = rolls * held_fall + slips * slip_fall + flies * whirl / transverse
-    force_n = rolls * held_n + slips * slip_normal * tau_n
-    c1 = rolls * (held_m1 - pivot * sine) + slips * slip_m1
-    c3 = rolls * (held_m3 + pivot * cos) + slips * slip_m3 + slides * tau_z * weight
+    normal = held_normal if rolls else slip_normal if slips else weight if base else 0.0
+    falling = held_fall if rolls else slip_fall if slips else whirl / transverse
+    force_n = held_n if rolls else slip_normal * tau_n if slips else 0.0
+    c1 = held_m1 - pivot * sine if rolls else slip_m1 if slips else 0.0
+    c3 = held_m3 + pivot * cos if rolls else slip_m3 if slips else tau_z * weight if slides else 0.0
     driven = (force_n + c1 - gyro) / transverse
     inward = falling - tilt * around * around
     sideways = 2.0 * w2 * around * (1.0 - cos / per_angle) - driven / per_angle
-    moving = rim + flies
-    bx, by = moving * (inward * ux - sideways * uy), moving * (inward * uy + sideways * ux)
+    bx = 0.0 if base else inward * ux - sideways * uy
+    by = 0.0 if base else inward * uy + sideways * ux
     spin_rate = (c * force_n + c3) / inertia
     # Forces along x and y; a column at rest moves with the plane.
     held_d = outward + kappa * (height * held_fall + slope * w2 * w2 + around * swing)
-    force_d = rolls * held_d + slips * slip_normal * tau_d
-    standing_x = ax + slides * (tau_x * weight - ax)
-    standing_y = ay + slides * (tau_y * weight - ay)
-    tx = force_d * ux - force_n * uy + base * standing_x
-    ty = force_d * uy + force_n * ux + base * standing_y
-    moment = rolls * pivot + (slips * slip_normal + slides * weight) * tau_z - rim * drained
+    force_d = held_d if rolls else slip_normal * tau_d if slips else 0.0
+    tx = force_d * ux - force_n * uy if rim else tau_x * weight if slides else ax if base else 0.0
+    ty = force_d * uy + force_n * ux if rim else tau_y * weight if slides else ay if base else 0.0
+    moment = pivot - drained if rolls else slip_normal * tau_z - drained if slips else tau_z * weight if slides else 0.0
     # Velocity: v̇ of C, or that of the centre of mass, or of the base
     swung = c * spin_rate + w2 * around * cos + driven  # ẇ
     left_d = -kappa * (height * slip_fall + slope * w2 * w2 + around * swing)
     left_n = kappa * (swung - height * around * w2)
-    free = 1.0 - rolls
-    ox = free * (tx - ax + slips * (left_d * ux - left_n * uy)) / kappa
-    oy = free * (ty - ay + slips * (left_d * uy + left_n * ux)) / kappa
+    ox = 0.0 if rolls else (tx - ax + (left_d * ux - left_n * uy if slips else 0.0)) / kappa
+    oy = 0.0 if rolls else (ty - ay + (left_d * uy + left_n * ux if slips else 0.0)) / kappa
     # ω̇_z, and ε ω̇_z of a patch or base
     yaw_rate = spin_rate * cos - sine * (driven + w3 * w2)
-    oz = slides * c * spin_rate + slips * patch * c * yaw_rate
+    oz = patch * c * yaw_rate if slips else c * spin_rate if slides else 0.0
     drag = math.sqrt(tx * tx + ty * ty)
-    kept = reserve(drag, abs(pivot), normal, patch * c * rim, static)
+    kept = reserve(drag, abs(pivot), normal, patch * c if rim else 0.0, static)
     # χ̇ = w3 − w1 tan(θ/2); Ḃ0 = v − r χ̇ n, in the air V − (ρ'θ̇ d + ρβ̇ n)
     twisting = w3 + (1.0 - cos) * around
     past = sine + c * (1.0 - cos)  # ρ
-    back_d, back_n = flies * height * w2, rim * c * twisting + flies * past * around
+    back_d = height * w2 if flies else 0.0
+    back_n = c * twisting if rim else past * around if flies else 0.0
     return (
         bx,
         by,
@@ -400,7 +396,7 @@ def balance(
         moment,
         oz,
         kept,
-        slips * denominator + 1.0 - slips,
+        denominator if slips else 1.0,
         twisting,
         -back_d * ux + back_n * uy,
         -back_d * uy - back_n * ux,
