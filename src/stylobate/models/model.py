@@ -187,7 +187,16 @@ class Model(Declared, ABC):
     """Indices of the slip velocity, which needs finer integration while a contact slips: its direction matters."""
 
     kept_states: ClassVar[tuple[int, ...]] = ()
-    """Indices of the states that are constant within a step: those that `project` updates, and the kind of contact."""
+    """Indices of the states that are constant within a step: those that `project` updates, and the kind of contact.
+
+    They are the last states.
+    """
+
+    rolling_states: ClassVar[int] = 0
+    """Number of leading states that change while the contact rolls; their rates depend on no other state.
+
+    Runs that roll are then computed together, by fewer operations. 0 computes all kinds of contact alike.
+    """
 
     contact_kinds: ClassVar[type[IntEnum] | None] = None
     """The kinds of contact; the last state has one of them as its value.

@@ -111,6 +111,7 @@ class Plan:
             guards=len(self.model.guard_names),
             slip=self.model.slip_states,
             kept=self.model.kept_states,
+            rolling=self.model.rolling_states,
             orbits=self.orbits,
         )
 
@@ -235,8 +236,7 @@ class Batch:
         pieces, plain = self.plan.motion.pieces, self.plan.plain
         while not (finished := kernel.advance(table, pieces, halt, buffer, plain=plain)) and not halt[0]:
             self._take_trace(table)
-            rows = kernel.shape.rows()
-            paused(buffer[rows["steps"], 0], buffer[rows["time"], 0] * self.models.time_scale[0])
+            paused(table[0, LOG + Log.STEPS], table[0, LOG + Log.TIME] * self.models.time_scale[0])
         self._take_trace(table)
         if not every_run:
             self.table[chosen] = table

@@ -64,7 +64,7 @@ class Kernel:
 
     def buffer(self) -> Table:
         """Return a new buffer, in which no batch has begun."""
-        rows, width = len(self.shape.rows()), self.shape.width
+        rows, width = _size(self.shape)
         room: Row = np.full(rows * width + _EDGE, np.nan)
         return room[(-room.ctypes.data // room.itemsize) % _EDGE :][: rows * width].reshape(rows, width)
 
@@ -93,12 +93,17 @@ def _kernel(model: type[Model], shape: Shape, functions: tuple[tuple[str, Callab
             imported=_USED_AS_THEY_ARE,
         ),
         functions=dict(functions),
-        arguments=(table, table, ArrayArgument((1,), Element.SIGNAL), ArrayArgument((len(shape.rows()), shape.width))),
+        arguments=(table, table, ArrayArgument((1,), Element.SIGNAL), ArrayArgument(_size(shape))),
         model=model.name,
         description=_in_words(model, shape),
         fast=_IN_LANES,
     )
     return Kernel(shape, compiled)
+
+
+def _size(shape: Shape) -> tuple[int, int]:
+    """Return the shape of the buffer, which has a second group of lanes for runs that roll on their rims."""
+    return len(shape.rows()) * (2 if shape.rolling else 1), shape.width
 
 
 def _rows(shape: Shape) -> SimpleNamespace:
@@ -160,6 +165,10 @@ def _constants(model: type[Model], shape: Shape) -> dict[str, Any]:
         "ORBITS_AT": shape.orbits_at,
         "SPIN": -1 if model.spin_state is None else model.spin_state,
         "KEPT": shape.order + len(shape.changes),
+        "ROWS": len(shape.rows()),
+        "GROUPED": shape.rolling > 0,
+        "MOVING": shape.order - len(shape.kept),
+        "MOVING_ROLLING": shape.rolling,
         **shape.forcing.constants(shape.rows()),
         **_series_constants(shape),
         **_contact_constants(model, shape),

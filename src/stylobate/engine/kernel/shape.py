@@ -170,7 +170,9 @@ class Shape:
     guards
         Number of guards of a model that changes between kinds of contact; else 0.
     slip, kept
-        Indices of the slip velocity, and of the states that are constant within a step.
+        Indices of the slip velocity, and of the states that are constant within a step, the last ones.
+    rolling
+        Number of leading states that change while the rim rolls.
     orbits
         Number of known orbits with which each run is compared.
     """
@@ -185,6 +187,7 @@ class Shape:
     guards: int = 0
     slip: tuple[int, ...] = ()
     kept: tuple[int, ...] = ()
+    rolling: int = 0
     orbits: int = 0
 
     @property

@@ -109,6 +109,7 @@ class Sliding(Model):
     kept_states: ClassVar[tuple[int, ...]] = tuple(
         map(SlidingState._fields.index, ("heading_x", "heading_y", "heading_z", "contact"))
     )
+    rolling_states: ClassVar[int] = SlidingState._fields.index("velocity_x")
     guard_names: ClassVar[tuple[str, ...]] = GUARDS
     contact_kinds: ClassVar[type[IntEnum] | None] = Contact
 

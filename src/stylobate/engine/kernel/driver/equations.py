@@ -16,9 +16,12 @@ from stylobate.engine.kernel.bound import (
     FORCING_ROWS,
     KEEPS_AT_REST,
     MOTION_AT,
+    MOVING,
+    MOVING_ROLLING,
     ORDER,
     PARAMETERS,
     PLANAR,
+    ROLLING,
     TERMS,
     VERTICAL,
     WINDOWED,
@@ -174,6 +177,19 @@ def numbers(buf: Table, i: int) -> tuple[float, ...]:
 def row_state(buf: Table, i: int, row: int) -> State:
     """Return the state stored from this row on."""
     return tuple(buf[row + j, i] for j in range(ORDER))
+
+
+def moving(rolls: bool) -> int:
+    """Return the number of leading states that can change within a step; fewer in lanes whose runs all roll."""
+    return MOVING_ROLLING if rolls else MOVING
+
+
+def stage_state(buf: Table, i: int, rolls: bool) -> State:
+    """Return the state at a stage. In lanes whose runs all roll the kind of contact is known when this is compiled."""
+    moved = tuple(buf[R.STAGE + j, i] for j in range(moving(rolls)))
+    if rolls:
+        return *moved, *(0.0 for _ in range(MOVING_ROLLING, ORDER - 1)), float(ROLLING)
+    return *moved, *(buf[R.STATE + j, i] for j in range(MOVING, ORDER))
 
 
 def rates_under(buf: Table, i: int, state: State, push: Accelerations) -> State:

@@ -24,7 +24,16 @@ from stylobate.engine.kernel.bound import (
     project,
     reset_map,
 )
-from stylobate.engine.kernel.driver.equations import Accelerations, State, accelerations, lean_of, numbers, row_state
+from stylobate.engine.kernel.driver.equations import (
+    Accelerations,
+    State,
+    accelerations,
+    lean_of,
+    moving,
+    numbers,
+    row_state,
+    stage_state,
+)
 from stylobate.engine.kernel.driver.events import LIMITS, lean, margins_of_limits
 from stylobate.engine.kernel.driver.stages import dense_state
 from stylobate.engine.kernel.shape import GUARD_PLACES
@@ -96,19 +105,19 @@ def record_window(buf: Table, i: int, t: float) -> None:
 
 
 @fast
-def evaluate_guards(buf: Table) -> None:
+def evaluate_guards(buf: Table, rolls: bool) -> None:
     """Mark the lanes with a broken guard within the step, on cubics through its ends."""
     for place in PLACES:
-        evaluate_guards_within(buf, place / GUARD_PLACES)
+        evaluate_guards_within(buf, place / GUARD_PLACES, rolls)
 
 
 @fast
-def evaluate_guards_within(buf: Table, share: float) -> None:
+def evaluate_guards_within(buf: Table, share: float, rolls: bool) -> None:
     """Evaluate the guards at this fraction of the step."""
     block = flat(buf)
     rest = 1.0 - share
     of_start, of_end = rest * rest * (1.0 + 2.0 * share), share * share * (3.0 - 2.0 * share)
-    for n in lanes(ORDER * WIDTH):
+    for n in lanes(moving(rolls) * WIDTH):
         end = block[R.NEW * WIDTH + n]
         if share == 1.0:
             block[R.STAGE * WIDTH + n] = of_end * end
@@ -117,14 +126,14 @@ def evaluate_guards_within(buf: Table, share: float) -> None:
             change = change + -share * share * rest * block[(R.SLOPE + STAGES * ORDER) * WIDTH + n]
             value = of_start * block[R.STATE * WIDTH + n] + of_end * end
             block[R.STAGE * WIDTH + n] = value + block[R.STEP * WIDTH + n] * change
-    mark_broken_guards(buf, share)
+    mark_broken_guards(buf, share, rolls)
 
 
 @fast
-def mark_broken_guards(buf: Table, share: float) -> None:
+def mark_broken_guards(buf: Table, share: float, rolls: bool) -> None:
     """Mark the lanes with a broken guard, or beyond a limit, at this fraction of the step."""
     for i in lanes(WIDTH):
-        state = row_state(buf, i, R.STAGE)
+        state = stage_state(buf, i, rolls)
         margins = guards_under(buf, i, state, accelerations(buf, i, buf[R.TIME, i] + share * buf[R.H, i]))
         limits = margins_of_limits(buf, i, lean(*lean_of(buf, i, state)))
         least = limits[0]
@@ -140,14 +149,15 @@ def mark_broken_guards(buf: Table, share: float) -> None:
 
 
 @fast
-def project_states(buf: Table) -> None:
-    """Apply the projection of the model to the states of lanes whose step was accepted."""
+def project_states(buf: Table, rolls: bool) -> None:
+    """Apply the projection of the model to the states of lanes whose step was accepted; none if all roll."""
     for i in lanes(WIDTH):
         go = buf[R.GO, i]
-        projected = model_project(buf, i)
-        for j in range(ORDER):
-            old = buf[R.STATE + j, i]
-            buf[R.STATE + j, i] = projected[j] if go > 0.0 else old
+        if not rolls:
+            projected = model_project(buf, i)
+            for j in range(ORDER):
+                old = buf[R.STATE + j, i]
+                buf[R.STATE + j, i] = projected[j] if go > 0.0 else old
         now, old = buf[R.GUARD_NOW, i], buf[R.LAST_GUARD, i]
         kept = now if go > 0.0 else old
         buf[R.LAST_GUARD, i] = kept

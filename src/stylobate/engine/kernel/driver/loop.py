@@ -5,14 +5,20 @@ import math
 import numpy as np
 import numpy.typing as npt
 
+from stylobate.engine.dop853 import STAGES
 from stylobate.engine.kernel.bound import (
     GRAIN,
+    GROUPED,
     KEPT,
+    MOVING_ROLLING,
     ORBITS,
     ORBITS_AT,
+    ORDER,
     PARAMETERS,
     PARAMETERS_AT,
     PLANAR,
+    ROLLING,
+    ROWS,
     SPIN,
     WIDTH,
     R,
@@ -45,46 +51,113 @@ def advance(table: Table, pieces: Table, halt: npt.NDArray[np.uint8], buf: Table
     The batch stops early if another thread sets `halt[0]` to 1, or if a trace is full. After the caller has emptied the
     trace, a call with the same buffer continues. `table` has a row for each run, see `columns`; a new `buf` is NaN.
     """
-    waiting = begin_or_continue(buf, table, pieces)
+    some = buf[:ROWS]
+    rolling = buf[ROWS:] if GROUPED else some
+    waiting = begin_or_continue(some, table)
+    if GROUPED:
+        waiting = max(waiting, begin_or_continue(rolling, table))
+    while True:
+        goes_on, waiting = follow(some, rolling, table, pieces, halt, waiting, False)
+        if GROUPED and goes_on:
+            goes_on, waiting = follow(rolling, some, table, pieces, halt, waiting, True)
+        if not goes_on:
+            pause(some, table)
+            if GROUPED:
+                pause(rolling, table)
+            return False
+        if gather(some) == 0 and gather(rolling) == 0:
+            return True
+
+
+def begin_or_continue(buf: Table, table: Table) -> int:
+    """Prepare the lanes of a new buffer, or continue those of a paused batch; return the run after the last of them."""
+    waiting = 0
+    begins = math.isnan(buf[R.RUN, 0])
+    for i in range(WIDTH):
+        if begins:
+            set_idle(buf, i)
+        run = int(buf[R.RUN, i])
+        waiting = max(waiting, run + 1)
+        if run >= 0:
+            buf[R.NEXT_TRACE, i] = table[run, R.NEXT_TRACE]
+    return waiting
+
+
+def follow(
+    buf: Table, others: Table, table: Table, pieces: Table, halt: npt.NDArray[np.uint8], waiting: int, rolls: bool
+) -> tuple[bool, int]:
+    """Make steps in a group of lanes until none of its runs can go on before the other group has.
+
+    Return whether the batch goes on, and the next waiting run. It does not go on if a trace is full, or on a signal.
+    """
     traced = table[0, R.TRACES] > 0.0
     while True:
+        ready, waiting = assign(buf, others, table, pieces, waiting, rolls)
         width = gather(buf)
-        if width == 0:
-            return True
+        if width == 0 or not ready:
+            return True, waiting
         met = full = False
         while not met:
-            step(buf, width)
+            step(buf, width, rolls)
             full = traced and trace_steps(buf, table)
             met = full
             for i in range(width):
                 met = is_due(buf, i, table, pieces) or met
             if halt[0] != 0:
-                return False
+                return False, waiting
         for i in range(width):
             if buf[R.FLAG, i] > 0.0 and buf[R.RUN, i] >= 0.0:
                 status = status_of(buf, i, table, pieces)
                 if status != RunStatus.WAITING:
                     leave(buf, i, table, status)
                     set_idle(buf, i)
-                    waiting = fill(buf, i, table, pieces, waiting)
         if full:
-            return pause(buf, table)
+            return False, waiting
 
 
-def begin_or_continue(buf: Table, table: Table, pieces: Table) -> int:
-    """Fill the lanes of a new buffer, or continue a paused batch; return the next waiting run."""
-    waiting = 0
-    if math.isnan(buf[R.RUN, 0]):
-        for i in range(WIDTH):
-            set_idle(buf, i)
-            waiting = fill(buf, i, table, pieces, waiting)
-        return waiting
+def assign(
+    buf: Table, others: Table, table: Table, pieces: Table, waiting: int, rolls: bool
+) -> tuple[bool, int]:
+    """Fill idle lanes, and exchange runs whose kind of contact belongs to the other group.
+
+    Return False if such a run remains, because the other group has no lane for it, and the next waiting run.
+    """
+    ready = True
     for i in range(WIDTH):
-        run = int(buf[R.RUN, i])
-        waiting = max(waiting, run + 1)
-        if run >= 0:
-            buf[R.NEXT_TRACE, i] = table[run, R.NEXT_TRACE]
-    return waiting
+        if buf[R.RUN, i] < 0.0:
+            waiting = fill(buf, i, table, pieces, waiting)
+        if GROUPED:
+            while ready and buf[R.RUN, i] >= 0.0 and rolls != (buf[R.CONTACT, i] == ROLLING):
+                k = lane_for(others, rolls)
+                ready = k >= 0
+                if ready:
+                    exchange(buf, i, others, k, rolls)
+                    if buf[R.RUN, i] < 0.0:
+                        waiting = fill(buf, i, table, pieces, waiting)
+    return ready, waiting
+
+
+def lane_for(others: Table, rolls: bool) -> int:
+    """Return an idle lane of the other group, or one whose run belongs to the group that `rolls`, or −1."""
+    found = -1
+    for k in range(WIDTH):
+        if others[R.RUN, k] < 0.0:
+            return k
+        if rolls == (others[R.CONTACT, k] == ROLLING):
+            found = k
+    return found
+
+
+def exchange(buf: Table, i: int, others: Table, k: int, rolls: bool) -> None:
+    """Exchange a lane with one of the other group."""
+    for row in range(ROWS):
+        buf[row, i], others[row, k] = others[row, k], buf[row, i]
+    for stage in range(STAGES + 1):  # steps of lanes that roll leave these alone
+        for j in range(MOVING_ROLLING, ORDER):
+            if rolls:
+                buf[R.SLOPE + stage * ORDER + j, i] = 0.0
+            else:
+                others[R.SLOPE + stage * ORDER + j, k] = 0.0
 
 
 def fill(buf: Table, i: int, table: Table, pieces: Table, waiting: int) -> int:
@@ -192,12 +265,12 @@ def status_of(buf: Table, i: int, table: Table, pieces: Table) -> int:
     return handle(buf, i, table, pieces)
 
 
-def pause(buf: Table, table: Table) -> bool:
-    """Prepare the table so that the caller can empty the traces; return False, since the batch has not ended."""
+def pause(buf: Table, table: Table) -> None:
+    """Prepare the table so that the caller can empty the traces and report progress."""
     for i in range(WIDTH):
         if buf[R.RUN, i] >= 0.0:
-            table[int(buf[R.RUN, i]), R.NEXT_TRACE] = buf[R.NEXT_TRACE, i]
-    return False
+            for column in (R.NEXT_TRACE, R.TIME, R.STEPS):
+                table[int(buf[R.RUN, i]), column] = buf[column, i]
 
 
 # Convergence to a known orbit

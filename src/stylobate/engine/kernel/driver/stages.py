@@ -22,11 +22,13 @@ from stylobate.engine.kernel.driver.equations import (
     accelerations,
     end_push,
     keep_end_push,
+    moving,
     numbers,
     push_series,
     rates_at,
     rates_under,
     row_state,
+    stage_state,
 )
 from stylobate.engine.kernel.shape import DENSE_TERMS, SERIES_ORDER
 
@@ -64,25 +66,25 @@ def make_stage(buf: Table, stage: int, width: int) -> None:
 
 
 @fast
-def make_long_stage(buf: Table, stage: int) -> None:
+def make_long_stage(buf: Table, stage: int, rolls: bool) -> None:
     """Evaluate a stage as `make_stage` does, with one compiled copy of the equations for all stages."""
     block = flat(buf)
-    for n in lanes(ORDER * WIDTH):
+    for n in lanes(moving(rolls) * WIDTH):
         slopes = tuple(block[(R.SLOPE + earlier * ORDER) * WIDTH + n] for earlier in range(stage))
         step = block[R.STEP * WIDTH + n]
         block[R.STAGE * WIDTH + n] = block[R.STATE * WIDTH + n] + step * weighted(STAGE_WEIGHTS[stage], slopes)
-    evaluate(buf, 1.0 if stage == STAGES else C[stage])
-    for n in lanes(ORDER * WIDTH):
+    evaluate(buf, 1.0 if stage == STAGES else C[stage], rolls)
+    for n in lanes(moving(rolls) * WIDTH):
         block[(R.SLOPE + stage * ORDER) * WIDTH + n] = block[R.RATE * WIDTH + n]
 
 
 @fast
-def evaluate(buf: Table, share: float) -> None:
+def evaluate(buf: Table, share: float, rolls: bool) -> None:
     """Evaluate the equations in all lanes at this fraction of the step."""
     for i in lanes(WIDTH):
         push = accelerations(buf, i, buf[R.TIME, i] + share * buf[R.H, i])
-        slopes = rates_under(buf, i, row_state(buf, i, R.STAGE), push)
-        for j in range(ORDER):
+        slopes = rates_under(buf, i, stage_state(buf, i, rolls), push)
+        for j in range(moving(rolls)):
             buf[R.RATE + j, i] = slopes[j]
 
 

@@ -19,7 +19,7 @@ from stylobate.engine.kernel.bound import (
     R,
     Table,
 )
-from stylobate.engine.kernel.driver.equations import lean_of_new
+from stylobate.engine.kernel.driver.equations import lean_of_new, moving
 from stylobate.engine.kernel.driver.events import lean, overshoot_of
 from stylobate.engine.kernel.driver.guards import evaluate_guards, project_states
 from stylobate.engine.kernel.driver.motion import follow_demands
@@ -37,34 +37,37 @@ from stylobate.engine.tolerances import PASSAGE_FROM, PASSAGE_OFFSET, SLIP_SHARE
 
 
 @fast
-def step(buf: Table, width: int) -> None:
-    """Try a step in each of the first `width` lanes; accept it if its error is small and it contains no event."""
+def step(buf: Table, width: int, rolls: bool) -> None:
+    """Try a step in each of the first `width` lanes; accept it if its error is small and it contains no event.
+
+    `rolls` is known when this is compiled: whether the runs of all lanes roll.
+    """
     if SERIES:
         make_series_step(buf, width)
     elif SWITCHING:
-        make_long_step(buf)
+        make_long_step(buf, rolls)
     else:
         for stage in STAGE_NUMBERS:
             make_stage(buf, stage, width)
-    control_step(buf, width)
+    control_step(buf, width, rolls)
     if SWITCHING:
-        project_states(buf)
+        project_states(buf, rolls)
     if DEMANDS:
         follow_demands(buf, width)
 
 
 @fast
-def make_long_step(buf: Table) -> None:
+def make_long_step(buf: Table, rolls: bool) -> None:
     """Make a step of a model with long equations, and evaluate its guards within the step."""
     for i in lanes(WIDTH):
-        for j in range(ORDER):
+        for j in range(moving(rolls)):
             buf[R.STEP + j, i] = buf[R.H, i]
     for stage in STAGE_NUMBERS:
-        make_long_stage(buf, stage)
+        make_long_stage(buf, stage, rolls)
     for i in lanes(WIDTH):
         for j in range(ORDER):
-            buf[R.NEW + j, i] = buf[R.STAGE + j, i]
-    evaluate_guards(buf)
+            buf[R.NEW + j, i] = buf[(R.STAGE if j < moving(rolls) else R.STATE) + j, i]
+    evaluate_guards(buf, rolls)
 
 
 # Factor for a second attempt after a step by series that gave NaN.
@@ -78,12 +81,12 @@ TINY = 1e-300
 
 
 @fast
-def control_step(buf: Table, width: int) -> None:
+def control_step(buf: Table, width: int, rolls: bool) -> None:
     """Accept or reject the step of each lane, record extremes and events, and choose the next step."""
     # Short loops would leave registers unused; one long loop would spill them.
     for i in lanes(width):
         if not SERIES:  # steps by series have computed their error
-            find_error(buf, i)
+            find_error(buf, i, rolls)
         accept(buf, i)
     for i in lanes(width):
         record_extremes(buf, i)
@@ -91,7 +94,7 @@ def control_step(buf: Table, width: int) -> None:
             follow_azimuth(buf, i)
     for i in lanes(width):
         nearer = approach(buf, i)
-        keep_step(buf, i)
+        keep_step(buf, i, rolls)
         choose_next_step(buf, i, nearer)
         flag_lane(buf, i)
 
@@ -99,11 +102,11 @@ def control_step(buf: Table, width: int) -> None:
 # Error
 
 
-def find_error(buf: Table, i: int) -> None:
+def find_error(buf: Table, i: int, rolls: bool) -> None:
     """Compute the error of the step in tolerances."""
-    scales = reciprocals(tuple(scale_of(buf, i, j) for j in range(ORDER)))
+    scales = reciprocals(tuple(scale_of(buf, i, j) for j in range(moving(rolls))))
     e5 = e3 = 0.0
-    for j in range(ORDER):
+    for j in range(moving(rolls)):
         slopes = slopes_of(buf, i, j)
         of_order_5, of_order_3 = weighted(E5, slopes) * scales[j], weighted(E3, slopes) * scales[j]
         e5 = e5 + of_order_5 * of_order_5
@@ -251,11 +254,12 @@ def follow_azimuth(buf: Table, i: int) -> None:
 # Acceptance of the step, and the next step
 
 
-def keep_step(buf: Table, i: int) -> None:
+def keep_step(buf: Table, i: int, rolls: bool) -> None:
     """Replace the state by the new state if the step is accepted."""
     go = buf[R.GO, i]
     for j in range(ORDER):
         buf[R.LAST_STATE + j, i] = buf[R.STATE + j, i]
+    for j in range(moving(rolls)):
         keep(buf, i, R.STATE + j, R.NEW + j, go)
         if not SERIES:
             buf[R.LAST_SLOPE + j, i] = buf[R.SLOPE + j, i]
