@@ -5,6 +5,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from enum import Enum, IntEnum
+from types import MappingProxyType
 from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
@@ -192,10 +193,10 @@ class Model(Declared, ABC):
     They are the last states.
     """
 
-    rolling_states: ClassVar[int] = 0
-    """Number of leading states that change while the contact rolls; their rates depend on no other state.
+    moving_states: ClassVar[Mapping[IntEnum, int]] = MappingProxyType({})
+    """Number of leading states that change in some kinds of contact; while one lasts, the others are constant.
 
-    Runs that roll are then computed together, by fewer operations. 0 computes all kinds of contact alike.
+    Runs with such a contact are computed together, by the operations that it needs.
     """
 
     contact_kinds: ClassVar[type[IntEnum] | None] = None

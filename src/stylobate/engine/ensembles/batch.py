@@ -31,7 +31,7 @@ from stylobate.engine.kernel.driver.events import RunStatus, event_numbers
 from stylobate.engine.kernel.driver.loop import CERTAIN, NEAR
 from stylobate.engine.kernel.expansion import series_integrals
 from stylobate.engine.kernel.kernels import kernel_of
-from stylobate.engine.kernel.shape import Shape
+from stylobate.engine.kernel.shape import ANY_KIND, Shape
 from stylobate.engine.starts import cannot_depart, out_of_plane, refuse_spin
 from stylobate.engine.tolerances import ATOL_SHARE, FIRST_STEP_OFF, PARALLEL_ULP
 from stylobate.engine.verdict import FINER_PASSAGE, FINER_REST, other_tolerance, steady_periods
@@ -111,9 +111,15 @@ class Plan:
             guards=len(self.model.guard_names),
             slip=self.model.slip_states,
             kept=self.model.kept_states,
-            rolling=self.model.rolling_states,
+            groups=self._groups(planar=planar),
             orbits=self.orbits,
         )
+
+    def _groups(self, *, planar: bool) -> tuple[tuple[int, int], ...]:
+        """Return the groups of lanes: those of single kinds of contact, and the one for all others."""
+        states = len(self.model.state_names)
+        own = tuple((int(kind), number) for kind, number in self.model.moving_states.items())
+        return *own, (ANY_KIND, 2 if planar else states - len(self.model.kept_states))
 
     @property
     def _width(self) -> int:

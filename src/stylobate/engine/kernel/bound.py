@@ -64,13 +64,13 @@ ORDER: int
 """Number of equations."""
 KEPT: int
 """Number of columns of the state and of the record of contact changes."""
-MOVING: int
-MOVING_ROLLING: int
-"""Number of leading states that can change within a step, and while the rim rolls."""
+GROUPS: tuple[int, ...]
+"""The numbers of the groups of lanes."""
+GROUP_KINDS: tuple[int, ...]
+GROUP_MOVING: tuple[int, ...]
+"""For each group of lanes: the kind of contact of its runs, and the number of leading states that change in a step."""
 ROWS: int
-"""Number of rows of a group of lanes."""
-GROUPED: bool
-"""Whether there are two groups of lanes: for runs that roll on their rims, and for others."""
+"""Number of rows of a group."""
 KEPT_STATES: tuple[int, ...]
 """States that are constant within a step, among them the kind of contact."""
 PARAMETERS: int

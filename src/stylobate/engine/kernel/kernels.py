@@ -102,8 +102,8 @@ def _kernel(model: type[Model], shape: Shape, functions: tuple[tuple[str, Callab
 
 
 def _size(shape: Shape) -> tuple[int, int]:
-    """Return the shape of the buffer, which has a second group of lanes for runs that roll on their rims."""
-    return len(shape.rows()) * (2 if shape.rolling else 1), shape.width
+    """Return the shape of the buffer: one group of lanes after the other."""
+    return len(shape.rows()) * len(shape.groups), shape.width
 
 
 def _rows(shape: Shape) -> SimpleNamespace:
@@ -166,9 +166,9 @@ def _constants(model: type[Model], shape: Shape) -> dict[str, Any]:
         "SPIN": -1 if model.spin_state is None else model.spin_state,
         "KEPT": shape.order + len(shape.changes),
         "ROWS": len(shape.rows()),
-        "GROUPED": shape.rolling > 0,
-        "MOVING": shape.order - len(shape.kept),
-        "MOVING_ROLLING": shape.rolling,
+        "GROUPS": tuple(range(len(shape.groups))),
+        "GROUP_KINDS": tuple(kind for kind, _ in shape.groups),
+        "GROUP_MOVING": tuple(moving for _, moving in shape.groups),
         **shape.forcing.constants(shape.rows()),
         **_series_constants(shape),
         **_contact_constants(model, shape),

@@ -139,8 +139,8 @@ STAGES = 12
 DENSE_TERMS = 7
 """Terms of the polynomial that gives the state within a step of DOP853."""
 
-GUARD_PLACES = 4
-"""Number of equal parts of a step; the guards are evaluated at the end of each part."""
+ANY_KIND = -2
+"""Not a kind of contact: that of a group of lanes for all kinds without a group of their own."""
 
 SERIES_ORDER = 16
 """Order of Taylor series."""
@@ -171,8 +171,8 @@ class Shape:
         Number of guards of a model that changes between kinds of contact; else 0.
     slip, kept
         Indices of the slip velocity, and of the states that are constant within a step, the last ones.
-    rolling
-        Number of leading states that change while the rim rolls.
+    groups
+        Groups of lanes: kind of contact, and number of leading states that change within a step.
     orbits
         Number of known orbits with which each run is compared.
     """
@@ -187,7 +187,7 @@ class Shape:
     guards: int = 0
     slip: tuple[int, ...] = ()
     kept: tuple[int, ...] = ()
-    rolling: int = 0
+    groups: tuple[tuple[int, int], ...] = ()
     orbits: int = 0
 
     @property

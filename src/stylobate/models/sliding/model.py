@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import IntEnum
+from types import MappingProxyType
 from typing import Annotated, Any, ClassVar
 
 import numpy as np
@@ -109,7 +110,9 @@ class Sliding(Model):
     kept_states: ClassVar[tuple[int, ...]] = tuple(
         map(SlidingState._fields.index, ("heading_x", "heading_y", "heading_z", "contact"))
     )
-    rolling_states: ClassVar[int] = SlidingState._fields.index("velocity_x")
+    moving_states: ClassVar[Mapping[IntEnum, int]] = MappingProxyType(
+        {Contact.ROLLING: SlidingState._fields.index("velocity_x"), Contact.SLIPPING: SlidingState._fields.index("rise")}
+    )
     guard_names: ClassVar[tuple[str, ...]] = GUARDS
     contact_kinds: ClassVar[type[IntEnum] | None] = Contact
 

@@ -14,14 +14,13 @@ from stylobate.engine.kernel.bound import (
     DEMANDS,
     FIRST_FORCING,
     FORCING_ROWS,
+    GROUP_KINDS,
+    GROUP_MOVING,
     KEEPS_AT_REST,
     MOTION_AT,
-    MOVING,
-    MOVING_ROLLING,
     ORDER,
     PARAMETERS,
     PLANAR,
-    ROLLING,
     TERMS,
     VERTICAL,
     WINDOWED,
@@ -31,6 +30,7 @@ from stylobate.engine.kernel.bound import (
     contact,
     departure,
     from_plane,
+    guards,
     impact_map,
     no_return_tilt,
     passage,
@@ -38,6 +38,7 @@ from stylobate.engine.kernel.bound import (
     rest_energy,
     tilt_of,
 )
+from stylobate.engine.kernel.shape import ANY_KIND
 from stylobate.engine.kernel.columns import Piece, Tabulated, Wave
 from stylobate.models.model import Push
 
@@ -179,17 +180,11 @@ def row_state(buf: Table, i: int, row: int) -> State:
     return tuple(buf[row + j, i] for j in range(ORDER))
 
 
-def moving(rolls: bool) -> int:
-    """Return the number of leading states that can change within a step; fewer in lanes whose runs all roll."""
-    return MOVING_ROLLING if rolls else MOVING
-
-
-def stage_state(buf: Table, i: int, rolls: bool) -> State:
-    """Return the state at a stage. In lanes whose runs all roll the kind of contact is known when this is compiled."""
-    moved = tuple(buf[R.STAGE + j, i] for j in range(moving(rolls)))
-    if rolls:
-        return *moved, *(0.0 for _ in range(MOVING_ROLLING, ORDER - 1)), float(ROLLING)
-    return *moved, *(buf[R.STATE + j, i] for j in range(MOVING, ORDER))
+def stage_state(buf: Table, i: int, group: int) -> State:
+    """Return the state at a stage; where a group has one kind of contact, it is known when this is compiled."""
+    moved = tuple(buf[R.STAGE + j, i] for j in range(GROUP_MOVING[group]))
+    kept = tuple(buf[R.STATE + j, i] for j in range(GROUP_MOVING[group], ORDER - 1))
+    return *moved, *kept, buf[R.CONTACT, i] if GROUP_KINDS[group] == ANY_KIND else float(GROUP_KINDS[group])
 
 
 def rates_under(buf: Table, i: int, state: State, push: Accelerations) -> State:
@@ -198,6 +193,11 @@ def rates_under(buf: Table, i: int, state: State, push: Accelerations) -> State:
     if PLANAR:
         return rates(*state, buf[R.SIDE, i], ax, az, *numbers(buf, i))
     return rates(*state, ax, ay, az, *numbers(buf, i))
+
+
+def guards_under(buf: Table, i: int, state: State, push: Accelerations) -> tuple[float, ...]:
+    """Return the guards of a state under these accelerations."""
+    return guards(*state, *push, buf[R.REST_ENERGY, i], buf[R.PASSAGE_TILT, i], *numbers(buf, i))
 
 
 def rates_at(buf: Table, i: int, t: float, state: State) -> State:

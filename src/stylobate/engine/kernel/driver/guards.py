@@ -2,10 +2,13 @@
 
 import math
 
-from stylobate.compiler.marks import fast, flat, lanes
-from stylobate.engine.dop853 import STAGES
+import numpy as np
+
+from stylobate.compiler.marks import fast, lanes
+from stylobate.engine.dop853 import STAGES, C
 from stylobate.engine.kernel.bound import (
     FLYING,
+    GROUP_KINDS,
     GUARDS,
     LAST,
     LIMIT,
@@ -28,24 +31,18 @@ from stylobate.engine.kernel.driver.equations import (
     Accelerations,
     State,
     accelerations,
+    guards_under,
     lean_of,
-    moving,
     numbers,
     row_state,
-    stage_state,
 )
 from stylobate.engine.kernel.driver.events import LIMITS, lean, margins_of_limits
-from stylobate.engine.kernel.driver.stages import dense_state
-from stylobate.engine.kernel.shape import GUARD_PLACES
+from stylobate.engine.kernel.driver.stages import GUARD_STAGES, dense_state
 
-PLACES = tuple(range(1, GUARD_PLACES + 1))
+PLACES = np.array([1.0 if stage == STAGES else C[stage] for stage in GUARD_STAGES])
+"""Fractions of a step at which its guards are evaluated."""
 # First states of the tilt vector and of its rate.
 TILT, TILT_RATE = 0, 2
-
-
-def guards_under(buf: Table, i: int, state: State, push: Accelerations) -> tuple[float, ...]:
-    """Return the guards of a state under these accelerations."""
-    return guards(*state, *push, buf[R.REST_ENERGY, i], buf[R.PASSAGE_TILT, i], *numbers(buf, i))
 
 
 def guards_at(buf: Table, i: int, t: float, state: State) -> tuple[float, ...]:
@@ -105,55 +102,11 @@ def record_window(buf: Table, i: int, t: float) -> None:
 
 
 @fast
-def evaluate_guards(buf: Table, rolls: bool) -> None:
-    """Mark the lanes with a broken guard within the step, on cubics through its ends."""
-    for place in PLACES:
-        evaluate_guards_within(buf, place / GUARD_PLACES, rolls)
-
-
-@fast
-def evaluate_guards_within(buf: Table, share: float, rolls: bool) -> None:
-    """Evaluate the guards at this fraction of the step."""
-    block = flat(buf)
-    rest = 1.0 - share
-    of_start, of_end = rest * rest * (1.0 + 2.0 * share), share * share * (3.0 - 2.0 * share)
-    for n in lanes(moving(rolls) * WIDTH):
-        end = block[R.NEW * WIDTH + n]
-        if share == 1.0:
-            block[R.STAGE * WIDTH + n] = of_end * end
-        else:
-            change = share * rest * rest * block[R.SLOPE * WIDTH + n]
-            change = change + -share * share * rest * block[(R.SLOPE + STAGES * ORDER) * WIDTH + n]
-            value = of_start * block[R.STATE * WIDTH + n] + of_end * end
-            block[R.STAGE * WIDTH + n] = value + block[R.STEP * WIDTH + n] * change
-    mark_broken_guards(buf, share, rolls)
-
-
-@fast
-def mark_broken_guards(buf: Table, share: float, rolls: bool) -> None:
-    """Mark the lanes with a broken guard, or beyond a limit, at this fraction of the step."""
-    for i in lanes(WIDTH):
-        state = stage_state(buf, i, rolls)
-        margins = guards_under(buf, i, state, accelerations(buf, i, buf[R.TIME, i] + share * buf[R.H, i]))
-        limits = margins_of_limits(buf, i, lean(*lean_of(buf, i, state)))
-        least = limits[0]
-        for limit in limits[1:]:
-            least = min(least, limit)
-        for k in range(GUARDS - 1):
-            least = min(least, margins[k])
-        # The last guard counts only if it falls through zero.
-        last, before = margins[GUARDS - 1], buf[R.GUARD_NOW, i]
-        buf[R.GUARD_NOW, i] = last
-        crossed = (1.0 if last < 0.0 else 0.0) * (0.0 if before < 0.0 else 1.0)
-        buf[R.BROKEN, i] = max(buf[R.BROKEN, i], crossed, 1.0 if least < 0.0 else 0.0)
-
-
-@fast
-def project_states(buf: Table, rolls: bool) -> None:
+def project_states(buf: Table, group: int) -> None:
     """Apply the projection of the model to the states of lanes whose step was accepted; none if all roll."""
     for i in lanes(WIDTH):
         go = buf[R.GO, i]
-        if not rolls:
+        if GROUP_KINDS[group] != ROLLING:
             projected = model_project(buf, i)
             for j in range(ORDER):
                 old = buf[R.STATE + j, i]
@@ -184,8 +137,8 @@ def first_broken_guard(buf: Table, i: int) -> tuple[float, int]:
     """Return the time into the step held back at which a guard first breaks, and its index; −1 for none."""
     h = buf[R.TRIED, i]
     past, before = 0.0, guards_within(buf, i, 0.0)
-    for place in range(1, GUARD_PLACES + 1):
-        now = h if place == GUARD_PLACES else h * place / GUARD_PLACES
+    for place in range(len(PLACES)):
+        now = PLACES[place] * h
         guards = guards_within(buf, i, now)
         first, number = math.inf, -1
         for k in range(LIMIT + len(LIMITS)):

@@ -8,18 +8,19 @@ import numpy.typing as npt
 from stylobate.engine.dop853 import STAGES
 from stylobate.engine.kernel.bound import (
     GRAIN,
-    GROUPED,
+    GROUP_KINDS,
+    GROUP_MOVING,
+    GROUPS,
     KEPT,
-    MOVING_ROLLING,
     ORBITS,
     ORBITS_AT,
     ORDER,
     PARAMETERS,
     PARAMETERS_AT,
     PLANAR,
-    ROLLING,
     ROWS,
     SPIN,
+    SWITCHING,
     WIDTH,
     R,
     Table,
@@ -51,21 +52,20 @@ def advance(table: Table, pieces: Table, halt: npt.NDArray[np.uint8], buf: Table
     The batch stops early if another thread sets `halt[0]` to 1, or if a trace is full. After the caller has emptied the
     trace, a call with the same buffer continues. `table` has a row for each run, see `columns`; a new `buf` is NaN.
     """
-    some = buf[:ROWS]
-    rolling = buf[ROWS:] if GROUPED else some
-    waiting = begin_or_continue(some, table)
-    if GROUPED:
-        waiting = max(waiting, begin_or_continue(rolling, table))
+    waiting = 0
+    for group in GROUPS:
+        waiting = max(waiting, begin_or_continue(buf[group * ROWS : (group + 1) * ROWS], table))
     while True:
-        goes_on, waiting = follow(some, rolling, table, pieces, halt, waiting, False)
-        if GROUPED and goes_on:
-            goes_on, waiting = follow(rolling, some, table, pieces, halt, waiting, True)
-        if not goes_on:
-            pause(some, table)
-            if GROUPED:
-                pause(rolling, table)
-            return False
-        if gather(some) == 0 and gather(rolling) == 0:
+        live = 0
+        for group in GROUPS:
+            goes_on, waiting = follow(buf, table, pieces, halt, waiting, group)
+            if not goes_on:
+                for other in GROUPS:
+                    pause(buf[other * ROWS : (other + 1) * ROWS], table)
+                return False
+        for group in GROUPS:
+            live += gather(buf[group * ROWS : (group + 1) * ROWS])
+        if live == 0:
             return True
 
 
@@ -84,21 +84,22 @@ def begin_or_continue(buf: Table, table: Table) -> int:
 
 
 def follow(
-    buf: Table, others: Table, table: Table, pieces: Table, halt: npt.NDArray[np.uint8], waiting: int, rolls: bool
+    groups: Table, table: Table, pieces: Table, halt: npt.NDArray[np.uint8], waiting: int, group: int
 ) -> tuple[bool, int]:
-    """Make steps in a group of lanes until none of its runs can go on before the other group has.
+    """Make steps in a group of lanes until none of its runs can go on before another group has.
 
     Return whether the batch goes on, and the next waiting run. It does not go on if a trace is full, or on a signal.
     """
+    buf = groups[group * ROWS : (group + 1) * ROWS]
     traced = table[0, R.TRACES] > 0.0
     while True:
-        ready, waiting = assign(buf, others, table, pieces, waiting, rolls)
+        ready, waiting = assign(groups, table, pieces, waiting, group)
         width = gather(buf)
         if width == 0 or not ready:
             return True, waiting
         met = full = False
         while not met:
-            step(buf, width, rolls)
+            step(buf, width, group)
             full = traced and trace_steps(buf, table)
             met = full
             for i in range(width):
@@ -115,49 +116,63 @@ def follow(
             return False, waiting
 
 
-def assign(
-    buf: Table, others: Table, table: Table, pieces: Table, waiting: int, rolls: bool
-) -> tuple[bool, int]:
-    """Fill idle lanes, and exchange runs whose kind of contact belongs to the other group.
+def assign(groups: Table, table: Table, pieces: Table, waiting: int, group: int) -> tuple[bool, int]:
+    """Fill the idle lanes of a group, and move runs whose kind of contact belongs to another group.
 
-    Return False if such a run remains, because the other group has no lane for it, and the next waiting run.
+    Return False if such a run remains, because its group has no lane for it, and the next waiting run.
     """
+    buf = groups[group * ROWS : (group + 1) * ROWS]
     ready = True
     for i in range(WIDTH):
         if buf[R.RUN, i] < 0.0:
             waiting = fill(buf, i, table, pieces, waiting)
-        if GROUPED:
-            while ready and buf[R.RUN, i] >= 0.0 and rolls != (buf[R.CONTACT, i] == ROLLING):
-                k = lane_for(others, rolls)
+        if SWITCHING:
+            target = group_of(groups, group, i)
+            while ready and target != group:
+                k = lane_for(groups, target)
                 ready = k >= 0
                 if ready:
-                    exchange(buf, i, others, k, rolls)
+                    exchange(groups, group, i, target, k)
                     if buf[R.RUN, i] < 0.0:
                         waiting = fill(buf, i, table, pieces, waiting)
+                    target = group_of(groups, group, i)
     return ready, waiting
 
 
-def lane_for(others: Table, rolls: bool) -> int:
-    """Return an idle lane of the other group, or one whose run belongs to the group that `rolls`, or −1."""
+def group_of(groups: Table, group: int, i: int) -> int:
+    """Return the group to which the run in a lane belongs; the present one for an idle lane."""
+    if groups[group * ROWS + R.RUN, i] < 0.0:
+        return group
+    kind = groups[group * ROWS + R.CONTACT, i]
+    for other in GROUPS[:-1]:
+        if kind == GROUP_KINDS[other]:
+            return other
+    return GROUPS[-1]
+
+
+def lane_for(groups: Table, target: int) -> int:
+    """Return a lane of a group for another run: an idle one, or one whose run belongs to another group, or −1."""
     found = -1
     for k in range(WIDTH):
-        if others[R.RUN, k] < 0.0:
+        if groups[target * ROWS + R.RUN, k] < 0.0:
             return k
-        if rolls == (others[R.CONTACT, k] == ROLLING):
+        if group_of(groups, target, k) != target:
             found = k
     return found
 
 
-def exchange(buf: Table, i: int, others: Table, k: int, rolls: bool) -> None:
-    """Exchange a lane with one of the other group."""
+def exchange(groups: Table, one: int, i: int, other: int, k: int) -> None:
+    """Exchange the contents of lane `i` of a group and lane `k` of another."""
+    first, second = one * ROWS, other * ROWS
     for row in range(ROWS):
-        buf[row, i], others[row, k] = others[row, k], buf[row, i]
-    for stage in range(STAGES + 1):  # steps of lanes that roll leave these alone
-        for j in range(MOVING_ROLLING, ORDER):
-            if rolls:
-                buf[R.SLOPE + stage * ORDER + j, i] = 0.0
-            else:
-                others[R.SLOPE + stage * ORDER + j, k] = 0.0
+        groups[first + row, i], groups[second + row, k] = groups[second + row, k], groups[first + row, i]
+    for stage in range(STAGES + 1):  # the slopes of states that do not change in a group are not written there
+        row = R.SLOPE + stage * ORDER
+        for j in range(ORDER):
+            if j >= GROUP_MOVING[one]:
+                groups[first + row + j, i] = 0.0
+            if j >= GROUP_MOVING[other]:
+                groups[second + row + j, k] = 0.0
 
 
 def fill(buf: Table, i: int, table: Table, pieces: Table, waiting: int) -> int:

@@ -8,6 +8,8 @@ from stylobate.engine.elementary import cubic, polynomial, reciprocals, turning_
 from stylobate.engine.kernel.bound import (
     COEFFICIENTS,
     DEGREES,
+    GROUP_MOVING,
+    GUARDS,
     INTEGRALS,
     ORDER,
     RATES_OF,
@@ -21,8 +23,9 @@ from stylobate.engine.kernel.driver.equations import (
     State,
     accelerations,
     end_push,
+    guards_under,
     keep_end_push,
-    moving,
+    lean_of,
     numbers,
     push_series,
     rates_at,
@@ -30,11 +33,14 @@ from stylobate.engine.kernel.driver.equations import (
     row_state,
     stage_state,
 )
+from stylobate.engine.kernel.driver.events import Lean, lean, margins_of_limits
 from stylobate.engine.kernel.shape import DENSE_TERMS, SERIES_ORDER
 
 STAGE_NUMBERS = tuple(range(1, STAGES + 1))
 STAGE_WEIGHTS = (*A, B)
 """Weights of the slopes in each stage; the last stage is the end of the step."""
+GUARD_STAGES = (6, 9, 10, STAGES)
+"""Stages at which the guards are evaluated, in the order of their times: about 1/4, 3/5, 6/7 and the end of a step."""
 
 
 def slopes_of(buf: Table, i: int, j: int) -> tuple[float, ...]:
@@ -66,26 +72,56 @@ def make_stage(buf: Table, stage: int, width: int) -> None:
 
 
 @fast
-def make_long_stage(buf: Table, stage: int, rolls: bool) -> None:
+def make_long_stage(buf: Table, stage: int, group: int) -> None:
     """Evaluate a stage as `make_stage` does, with one compiled copy of the equations for all stages."""
     block = flat(buf)
-    for n in lanes(moving(rolls) * WIDTH):
+    for n in lanes(GROUP_MOVING[group] * WIDTH):
         slopes = tuple(block[(R.SLOPE + earlier * ORDER) * WIDTH + n] for earlier in range(stage))
         step = block[R.STEP * WIDTH + n]
         block[R.STAGE * WIDTH + n] = block[R.STATE * WIDTH + n] + step * weighted(STAGE_WEIGHTS[stage], slopes)
-    evaluate(buf, 1.0 if stage == STAGES else C[stage], rolls)
-    for n in lanes(moving(rolls) * WIDTH):
+    share = 1.0 if stage == STAGES else C[stage]
+    if stage in GUARD_STAGES:
+        evaluate_with_guards(buf, share, group)
+    else:
+        evaluate(buf, share, group)
+    for n in lanes(GROUP_MOVING[group] * WIDTH):
         block[(R.SLOPE + stage * ORDER) * WIDTH + n] = block[R.RATE * WIDTH + n]
 
 
 @fast
-def evaluate(buf: Table, share: float, rolls: bool) -> None:
+def evaluate(buf: Table, share: float, group: int) -> None:
     """Evaluate the equations in all lanes at this fraction of the step."""
     for i in lanes(WIDTH):
         push = accelerations(buf, i, buf[R.TIME, i] + share * buf[R.H, i])
-        slopes = rates_under(buf, i, stage_state(buf, i, rolls), push)
-        for j in range(moving(rolls)):
+        slopes = rates_under(buf, i, stage_state(buf, i, group), push)
+        for j in range(GROUP_MOVING[group]):
             buf[R.RATE + j, i] = slopes[j]
+
+
+@fast
+def evaluate_with_guards(buf: Table, share: float, group: int) -> None:
+    """Evaluate the equations as `evaluate` does, and mark the lanes with a broken guard or beyond a limit."""
+    for i in lanes(WIDTH):
+        push = accelerations(buf, i, buf[R.TIME, i] + share * buf[R.H, i])
+        state = stage_state(buf, i, group)
+        slopes = rates_under(buf, i, state, push)
+        for j in range(GROUP_MOVING[group]):
+            buf[R.RATE + j, i] = slopes[j]
+        mark_broken_guards(buf, i, guards_under(buf, i, state, push), lean(*lean_of(buf, i, state)))
+
+
+def mark_broken_guards(buf: Table, i: int, margins: tuple[float, ...], here: Lean) -> None:
+    limits = margins_of_limits(buf, i, here)
+    least = limits[0]
+    for limit in limits[1:]:
+        least = min(least, limit)
+    for k in range(GUARDS - 1):
+        least = min(least, margins[k])
+    # The last guard counts only if it falls through zero.
+    last, before = margins[GUARDS - 1], buf[R.GUARD_NOW, i]
+    buf[R.GUARD_NOW, i] = last
+    crossed = (1.0 if last < 0.0 else 0.0) * (0.0 if before < 0.0 else 1.0)
+    buf[R.BROKEN, i] = max(buf[R.BROKEN, i], crossed, 1.0 if least < 0.0 else 0.0)
 
 
 # One lane

@@ -7,6 +7,7 @@ from stylobate.engine.dop853 import E3, E5, LARGEST_FACTOR, LEAST_ERROR, LEAST_F
 from stylobate.engine.elementary import reciprocals, turning_point, weighted, winding
 from stylobate.engine.kernel.bound import (
     DEMANDS,
+    GROUP_MOVING,
     ORDER,
     PLANAR,
     SERIES,
@@ -19,9 +20,9 @@ from stylobate.engine.kernel.bound import (
     R,
     Table,
 )
-from stylobate.engine.kernel.driver.equations import lean_of_new, moving
+from stylobate.engine.kernel.driver.equations import lean_of_new
 from stylobate.engine.kernel.driver.events import lean, overshoot_of
-from stylobate.engine.kernel.driver.guards import evaluate_guards, project_states
+from stylobate.engine.kernel.driver.guards import project_states
 from stylobate.engine.kernel.driver.motion import follow_demands
 from stylobate.engine.kernel.driver.stages import (
     STAGE_NUMBERS,
@@ -37,37 +38,36 @@ from stylobate.engine.tolerances import PASSAGE_FROM, PASSAGE_OFFSET, SLIP_SHARE
 
 
 @fast
-def step(buf: Table, width: int, rolls: bool) -> None:
+def step(buf: Table, width: int, group: int) -> None:
     """Try a step in each of the first `width` lanes; accept it if its error is small and it contains no event.
 
-    `rolls` is known when this is compiled: whether the runs of all lanes roll.
+    The group of lanes is known when this is compiled.
     """
     if SERIES:
         make_series_step(buf, width)
     elif SWITCHING:
-        make_long_step(buf, rolls)
+        make_long_step(buf, group)
     else:
         for stage in STAGE_NUMBERS:
             make_stage(buf, stage, width)
-    control_step(buf, width, rolls)
+    control_step(buf, width, group)
     if SWITCHING:
-        project_states(buf, rolls)
+        project_states(buf, group)
     if DEMANDS:
         follow_demands(buf, width)
 
 
 @fast
-def make_long_step(buf: Table, rolls: bool) -> None:
-    """Make a step of a model with long equations, and evaluate its guards within the step."""
+def make_long_step(buf: Table, group: int) -> None:
+    """Make a step of a model with long equations."""
     for i in lanes(WIDTH):
-        for j in range(moving(rolls)):
+        for j in range(GROUP_MOVING[group]):
             buf[R.STEP + j, i] = buf[R.H, i]
     for stage in STAGE_NUMBERS:
-        make_long_stage(buf, stage, rolls)
+        make_long_stage(buf, stage, group)
     for i in lanes(WIDTH):
         for j in range(ORDER):
-            buf[R.NEW + j, i] = buf[(R.STAGE if j < moving(rolls) else R.STATE) + j, i]
-    evaluate_guards(buf, rolls)
+            buf[R.NEW + j, i] = buf[(R.STAGE if j < GROUP_MOVING[group] else R.STATE) + j, i]
 
 
 # Factor for a second attempt after a step by series that gave NaN.
@@ -81,12 +81,12 @@ TINY = 1e-300
 
 
 @fast
-def control_step(buf: Table, width: int, rolls: bool) -> None:
+def control_step(buf: Table, width: int, group: int) -> None:
     """Accept or reject the step of each lane, record extremes and events, and choose the next step."""
     # Short loops would leave registers unused; one long loop would spill them.
     for i in lanes(width):
         if not SERIES:  # steps by series have computed their error
-            find_error(buf, i, rolls)
+            find_error(buf, i, group)
         accept(buf, i)
     for i in lanes(width):
         record_extremes(buf, i)
@@ -94,7 +94,7 @@ def control_step(buf: Table, width: int, rolls: bool) -> None:
             follow_azimuth(buf, i)
     for i in lanes(width):
         nearer = approach(buf, i)
-        keep_step(buf, i, rolls)
+        keep_step(buf, i, group)
         choose_next_step(buf, i, nearer)
         flag_lane(buf, i)
 
@@ -102,11 +102,11 @@ def control_step(buf: Table, width: int, rolls: bool) -> None:
 # Error
 
 
-def find_error(buf: Table, i: int, rolls: bool) -> None:
+def find_error(buf: Table, i: int, group: int) -> None:
     """Compute the error of the step in tolerances."""
-    scales = reciprocals(tuple(scale_of(buf, i, j) for j in range(moving(rolls))))
+    scales = reciprocals(tuple(scale_of(buf, i, j) for j in range(GROUP_MOVING[group])))
     e5 = e3 = 0.0
-    for j in range(moving(rolls)):
+    for j in range(GROUP_MOVING[group]):
         slopes = slopes_of(buf, i, j)
         of_order_5, of_order_3 = weighted(E5, slopes) * scales[j], weighted(E3, slopes) * scales[j]
         e5 = e5 + of_order_5 * of_order_5
@@ -254,12 +254,12 @@ def follow_azimuth(buf: Table, i: int) -> None:
 # Acceptance of the step, and the next step
 
 
-def keep_step(buf: Table, i: int, rolls: bool) -> None:
+def keep_step(buf: Table, i: int, group: int) -> None:
     """Replace the state by the new state if the step is accepted."""
     go = buf[R.GO, i]
     for j in range(ORDER):
         buf[R.LAST_STATE + j, i] = buf[R.STATE + j, i]
-    for j in range(moving(rolls)):
+    for j in range(GROUP_MOVING[group]):
         keep(buf, i, R.STATE + j, R.NEW + j, go)
         if not SERIES:
             buf[R.LAST_SLOPE + j, i] = buf[R.SLOPE + j, i]
