@@ -234,7 +234,7 @@ class NewtonRoom(NamedTuple):
 
     `changes` and `corrections` of the state at the three nodes of the step, 3n; the Jacobian, n x n, and the `coupled`
     states, on which the rates depend; factors of the matrices of Newton's method for these states, n x n and 2n x 2n,
-    with their row exchanges, and a vector of 2n.
+    with their row exchanges; and parts of vectors in the real and in the complex modes, n and 2n.
     """
 
     change: Row
@@ -245,7 +245,8 @@ class NewtonRoom(NamedTuple):
     single_pivots: Row
     double: Table
     double_pivots: Row
-    vector: Row
+    real: Row
+    turned: Row
 
 
 def factor(matrix: Table, pivots: Row, n: int) -> bool:

@@ -53,8 +53,8 @@ _TURNED = np.array(_eigenvector(complex(TURNED_REAL, TURNED_IMAGINARY)))
 MODES = np.array([_eigenvector(REAL), _TURNED.real, _TURNED.imag]).T
 """Columns v, u and w: the eigenvectors v of γ and u + iw of α + iβ. Changes at the nodes are sums of these."""
 
-TO_MODES = np.linalg.inv(MODES)
-"""Inverse of `MODES`."""
+TO_MODES, WEIGHTS = np.linalg.inv(MODES), np.linalg.inv(SLOPES)
+"""Inverse of `MODES`, and A."""
 
 ERROR = np.array([-(13.0 + 7.0 * _ROOT) / 3.0, -(13.0 - 7.0 * _ROOT) / 3.0, -1.0 / 3.0])
 """Weights of the changes at the nodes in the error estimate of order 3."""
@@ -125,6 +125,11 @@ def fastest_rate(number: int, room: NewtonRoom) -> float:
     return growth
 
 
+# Newton's equations (A⁻¹/h ⊗ I − I ⊗ J) δ = r fall apart in the modes of A⁻¹: (γ/h − J) δ₀ = r₀ and, with the complex
+# eigenvalue α + iβ, (α/h − J) δ₁ + β/h δ₂ = r₁ and −β/h δ₁ + (α/h − J) δ₂ = r₂. They are solved for the coupled states;
+# the others follow from these at the end.
+
+
 def solve_step(buf: Table, i: int, h: float, number: int, room: NewtonRoom) -> int:
     """Solve the equations of a step from a guess of its changes; return the number of iterations, or 0 on failure."""
     change, correction = room.change, room.correction
@@ -135,23 +140,23 @@ def solve_step(buf: Table, i: int, h: float, number: int, room: NewtonRoom) -> i
     before = math.inf
     for iteration in range(1, MOST_ITERATIONS + 1):
         set_defect(buf, i, h, change, correction)
-        correct(h, number, room)
-        size = size_of_correction(buf, i, correction)
+        correct(number, room)
+        size = size_of_correction(buf, i, number, room)
         ratio = size / before
         ahead = size if iteration == 1 else size * ratio / (1.0 - ratio)
         if not ratio < 1.0 or ahead * ratio ** float(MOST_ITERATIONS - iteration) > tolerance:
             return 0
-        for n in range(CHANGES):
-            change[n] += correction[n]
-        if ahead < tolerance and (iteration > 1 or size == 0.0):
+        done = ahead < tolerance and (iteration > 1 or size == 0.0)
+        if done:
+            correct_others(h, number, room)
+        for row in range(ORDER if done else number):
+            j = row if done else int(room.coupled[row])
+            for stage in range(STAGES):
+                change[stage * ORDER + j] += correction[stage * ORDER + j]
+        if done:
             return iteration
         before = size
     return 0
-
-
-# Newton's equations (A⁻¹/h ⊗ I − I ⊗ J) δ = r fall apart in the modes of A⁻¹: (γ/h − J) δ₀ = r₀ and, with the complex
-# eigenvalue α + iβ, (α/h − J) δ₁ + β/h δ₂ = r₁ and −β/h δ₁ + (α/h − J) δ₂ = r₂. They are solved for the coupled states,
-# on which rates depend; the others follow from these.
 
 
 def factor_matrices(h: float, number: int, room: NewtonRoom) -> bool:
@@ -171,51 +176,39 @@ def factor_matrices(h: float, number: int, room: NewtonRoom) -> bool:
     return factor(single, room.single_pivots, number) and factor(double, room.double_pivots, 2 * number)
 
 
-def correct(h: float, number: int, room: NewtonRoom) -> None:
-    """Replace the defects r at the nodes, in `room.correction`, by the corrections δ."""
-    correction, vector = room.correction, room.vector
-    to_basis(TO_MODES, correction)
-    correct_real(h, number, room)
+def correct(number: int, room: NewtonRoom) -> None:
+    """Replace the defects r of the coupled states at the nodes, in `room.correction`, by the corrections δ."""
+    correction, real, turned = room.correction, room.real, room.turned
     for row in range(number):
         j = int(room.coupled[row])
-        vector[row], vector[number + row] = correction[ORDER + j], correction[2 * ORDER + j]
-    solve(room.double, room.double_pivots, vector, 2 * number)
-    real, turn = TURNED_REAL / h, TURNED_IMAGINARY / h
-    per = 1.0 / (real * real + turn * turn)
-    for j in range(ORDER):
-        one, two = correction[ORDER + j], correction[2 * ORDER + j]
-        for row in range(number):
-            rate = room.jacobian[j, row]
-            one, two = one + rate * vector[row], two + rate * vector[number + row]
-        correction[ORDER + j] = (real * one - turn * two) * per
-        correction[2 * ORDER + j] = (turn * one + real * two) * per
+        one, two, three = correction[j], correction[ORDER + j], correction[2 * ORDER + j]
+        real[row] = TO_MODES[0, 0] * one + TO_MODES[0, 1] * two + TO_MODES[0, 2] * three
+        turned[row] = TO_MODES[1, 0] * one + TO_MODES[1, 1] * two + TO_MODES[1, 2] * three
+        turned[number + row] = TO_MODES[2, 0] * one + TO_MODES[2, 1] * two + TO_MODES[2, 2] * three
+    solve(room.single, room.single_pivots, real, number)
+    solve(room.double, room.double_pivots, turned, 2 * number)
     for row in range(number):
         j = int(room.coupled[row])
-        correction[ORDER + j], correction[2 * ORDER + j] = vector[row], vector[number + row]
-    to_basis(MODES, correction)
-
-
-def correct_real(h: float, number: int, room: NewtonRoom) -> None:
-    """Replace r in the first third of `room.correction` by the solution of (γ/h − J) δ = r."""
-    correction, vector = room.correction, room.vector
-    for row in range(number):
-        vector[row] = correction[int(room.coupled[row])]
-    solve(room.single, room.single_pivots, vector, number)
-    for j in range(ORDER):
-        total = correction[j]
-        for row in range(number):
-            total += room.jacobian[j, row] * vector[row]
-        correction[j] = total * h / REAL
-    for row in range(number):
-        correction[int(room.coupled[row])] = vector[row]
-
-
-def to_basis(basis: Table, parts: Row) -> None:
-    """Multiply the three components of each state by a matrix of order 3."""
-    for j in range(ORDER):
-        one, two, three = parts[j], parts[ORDER + j], parts[2 * ORDER + j]
         for stage in range(STAGES):
-            parts[stage * ORDER + j] = basis[stage, 0] * one + basis[stage, 1] * two + basis[stage, 2] * three
+            parts = MODES[stage, 1] * turned[row] + MODES[stage, 2] * turned[number + row]
+            correction[stage * ORDER + j] = MODES[stage, 0] * real[row] + parts
+
+
+def correct_others(h: float, number: int, room: NewtonRoom) -> None:
+    """Replace the defects r of the states on which no rate depends by their corrections δ = h A (r + J δ)."""
+    correction, real = room.correction, room.real
+    coupled = 0
+    for j in range(ORDER):
+        if coupled < number and room.coupled[coupled] == j:
+            coupled += 1
+            continue
+        for stage in range(STAGES):
+            real[stage] = correction[stage * ORDER + j]
+            for row in range(number):
+                real[stage] += room.jacobian[j, row] * correction[stage * ORDER + int(room.coupled[row])]
+        for stage in range(STAGES):
+            parts = WEIGHTS[stage, 1] * real[1] + WEIGHTS[stage, 2] * real[2]
+            correction[stage * ORDER + j] = h * (WEIGHTS[stage, 0] * real[0] + parts)
 
 
 def set_defect(buf: Table, i: int, h: float, change: Row, defect: Row) -> None:
@@ -238,10 +231,11 @@ def absolute_tolerance(buf: Table, i: int, j: int) -> float:
     return buf[R.ATOL_NOW, i] * (SLIP_SHARE if j in (SLIP_X, SLIP_Y) else 1.0)
 
 
-def size_of_correction(buf: Table, i: int, correction: Row) -> float:
-    """Return the mean size of corrections to all changes, in tolerances."""
-    total = 0.0
-    for j in range(ORDER):
+def size_of_correction(buf: Table, i: int, number: int, room: NewtonRoom) -> float:
+    """Return the mean size of the corrections of the coupled states, in tolerances."""
+    correction, total = room.correction, 0.0
+    for row in range(number):
+        j = int(room.coupled[row])
         scale = absolute_tolerance(buf, i, j) + buf[R.RTOL, i] * abs(buf[R.STATE + j, i])
         for stage in range(STAGES):
             part = correction[stage * ORDER + j] / scale
@@ -254,17 +248,26 @@ def error_of_changes(
 ) -> float:
     """Return the error of a step in tolerances, and store its components in the first third of `room.correction`.
 
-    `slopes` are the rates at the start.
+    `slopes` are the rates at the start. The error is (γ/h − J)⁻¹ times a combination of these and of the changes.
     """
-    change, error = room.change, room.correction
+    change, error, real = room.change, room.correction, room.real
     for j in range(ORDER):
         defect = slopes[j]
         for stage in range(STAGES):
             defect += ERROR[stage] * change[stage * ORDER + j] / h
         error[j] = defect
-    correct_real(h, number, room)
-    total, last = 0.0, CHANGES - ORDER
+    for row in range(number):
+        real[row] = error[int(room.coupled[row])]
+    solve(room.single, room.single_pivots, real, number)
+    total, last, coupled = 0.0, CHANGES - ORDER, 0
     for j in range(ORDER):
+        if coupled < number and room.coupled[coupled] == j:
+            error[j] = real[coupled]
+            coupled += 1
+        else:
+            for row in range(number):
+                error[j] += room.jacobian[j, row] * real[row]
+            error[j] *= h / REAL
         here = buf[R.STATE + j, i]
         size = max(abs(here), abs(here + change[last + j]))
         part = error[j] / (absolute_tolerance(buf, i, j) + buf[R.RTOL, i] * size)

@@ -447,7 +447,8 @@ def follow_implicitly(buf: Table, i: int, table: Table, pieces: Table) -> int:
         single_pivots=np.zeros(ORDER),
         double=np.zeros((2 * ORDER, 2 * ORDER)),
         double_pivots=np.zeros(2 * ORDER),
-        vector=np.zeros(2 * ORDER),
+        real=np.zeros(ORDER),
+        turned=np.zeros(2 * ORDER),
     )
     buf[R.STIFF_LOOKS, i] = 0.0
     buf[R.STIFF_WAIT, i] = LOOK_AGAIN
