@@ -252,7 +252,8 @@ class NewtonRoom(NamedTuple):
 def factor(matrix: Table, pivots: Row, n: int) -> bool:
     """Replace the first n rows and columns of a matrix by their factors L and U; return False if they are singular.
 
-    `pivots` records the row exchanges. A matrix with numbers that are not finite counts as singular.
+    `pivots` records the row exchanges, and the diagonal of U holds reciprocals. A matrix with numbers that are not finite
+    counts as singular.
     """
     for k in range(n):
         largest = k
@@ -265,9 +266,9 @@ def factor(matrix: Table, pivots: Row, n: int) -> bool:
         if largest != k:
             for column in range(n):
                 matrix[k, column], matrix[largest, column] = matrix[largest, column], matrix[k, column]
-        per = 1.0 / matrix[k, k]
+        matrix[k, k] = 1.0 / matrix[k, k]
         for row in range(k + 1, n):
-            share = matrix[row, k] * per
+            share = matrix[row, k] * matrix[k, k]
             matrix[row, k] = share
             for column in range(k + 1, n):
                 matrix[row, column] -= share * matrix[k, column]
@@ -284,6 +285,6 @@ def solve(factors: Table, pivots: Row, x: Row, n: int) -> None:
             x[row] -= factors[row, k] * x[k]
     for done in range(n):
         k = n - 1 - done
-        x[k] /= factors[k, k]
+        x[k] *= factors[k, k]
         for row in range(k):
             x[row] -= factors[row, k] * x[k]
