@@ -438,7 +438,9 @@ def uplifted(
     x, y, vx, vy, spin = departure_with_spin(push, ahead, terms, n.c, n.kappa, n.axial)
     if x == 0.0 and y == 0.0:
         return ahead, state
-    return ahead, settle_rim(placed(state, (x, y, vx, vy), spin, ROLLING), later, n)
+    leaning = placed(state, (x, y, vx, vy), spin, ROLLING)
+    # Beyond π/2 the column has overturned at once, and its forces mean nothing.
+    return ahead, settle_rim(leaning, later, n) if math.hypot(x, y) < 0.5 * math.pi else leaning
 
 
 def tripping(state: SlidingState, now: Triple, n: SlidingNumbers) -> tuple[float, SlidingState]:

@@ -259,11 +259,12 @@ def keep_step(buf: Table, i: int, group: int) -> None:
     go = buf[R.GO, i]
     for j in range(ORDER):
         buf[R.LAST_STATE + j, i] = buf[R.STATE + j, i]
-    for j in range(GROUP_MOVING[group]):
-        keep(buf, i, R.STATE + j, R.NEW + j, go)
         if not SERIES:
             buf[R.LAST_SLOPE + j, i] = buf[R.SLOPE + j, i]
-            keep(buf, i, R.SLOPE + j, R.SLOPE + STAGES * ORDER + j, go)
+        if j < GROUP_MOVING[group]:
+            keep(buf, i, R.STATE + j, R.NEW + j, go)
+            if not SERIES:
+                keep(buf, i, R.SLOPE + j, R.SLOPE + STAGES * ORDER + j, go)
     keep(buf, i, R.TILT, R.NEW_TILT, go)
     keep(buf, i, R.RADIAL, R.NEW_RADIAL, go)
     keep(buf, i, R.X, R.NEW_X, go)
