@@ -17,9 +17,13 @@ def test_the_stages_are_collocation_of_order_five():
         np.testing.assert_allclose(stages[-1] @ NODES ** (power - 1), 1.0 / power, rtol=1e-14)
 
 
-def test_the_eigenvector_belongs_to_the_real_eigenvalue():
-    vector = np.array(implicit_step.EIGENVECTOR)
-    np.testing.assert_allclose(SLOPES @ vector, scipys.MU_REAL * vector, rtol=1e-14)
+def test_the_modes_are_the_eigenvectors():
+    real, one, two = implicit_step.MODES.T
+    np.testing.assert_allclose(SLOPES @ real, scipys.MU_REAL * real, rtol=1e-13)
+    turned = one + 1j * two
+    value = complex(implicit_step.TURNED_REAL, implicit_step.TURNED_IMAGINARY)
+    np.testing.assert_allclose(value, np.conj(scipys.MU_COMPLEX), rtol=1e-14)
+    np.testing.assert_allclose(SLOPES @ turned, value * turned, rtol=1e-13)
 
 
 def test_the_error_is_estimated_as_by_scipy():

@@ -74,9 +74,12 @@ class Unit:
         self._known: list[Sequence[Value]] = []
         self._within: list[FunctionType] = []
 
-    def export(self, function: Callable[..., Any], name: str, arguments: Sequence[ArrayArgument | NumberKind]) -> None:
+    def export(
+        self, function: Callable[..., Any], name: str, arguments: Sequence[ArrayArgument | NumberKind | int]
+    ) -> None:
         """Add an exported function, whose arguments are numbers and pointers, each followed by its unknown lengths.
 
+        A whole number among the arguments is known when the function is compiled, and is not passed.
         The function returns a whole number of 64 bits or a condition.
         """
         text = FunctionText()
@@ -171,10 +174,12 @@ class Unit:
             self._within.pop()
 
 
-def _argument(arithmetic: Arithmetic, argument: ArrayArgument | NumberKind, head: list[str]) -> Value:
+def _argument(arithmetic: Arithmetic, argument: ArrayArgument | NumberKind | int, head: list[str]) -> Value:
     """Return an argument of an exported function; its number, or pointer and lengths, are added to the head."""
     if isinstance(argument, NumberKind):
         return _parameter(Number(argument, ""), head)
+    if isinstance(argument, int):
+        return argument
     pointer = f"%x{len(head)}"
     head.append(f"ptr {pointer}")
     shape: list[Value] = []

@@ -252,8 +252,8 @@ class NewtonRoom(NamedTuple):
 def factor(matrix: Table, pivots: Row, n: int) -> bool:
     """Replace the first n rows and columns of a matrix by their factors L and U; return False if they are singular.
 
-    `pivots` records the row exchanges, and the diagonal of U holds reciprocals. A matrix with numbers that are not finite
-    counts as singular.
+    `pivots` records the row exchanges, and the diagonal of U holds reciprocals. A matrix with numbers that are not
+    finite counts as singular.
     """
     for k in range(n):
         largest = k

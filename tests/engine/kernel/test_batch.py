@@ -8,6 +8,7 @@ import pytest
 import stylobate as sb
 from stylobate.engine.kernel.columns import LOG, STATE, Log, Setup
 from stylobate.engine.kernel.driver.events import RunStatus
+from stylobate.models.sliding import Contact
 
 SLENDER = sb.Slender(sb.Column.dimensionless(0.1))
 CIRCLE = sb.Harmonic.circular(acceleration=0.065, angular_frequency=3.0)
@@ -113,10 +114,93 @@ def test_a_paused_batch_goes_on_behind_its_last_run(batch):
     for i, run in enumerate((3, 1)):
         batch.buffer[batch.row("run"), i] = run
         batch.buffer[batch.row("next_trace"), i] = 7.0
-    assert not batch.driver.pause(batch.buffer, batch.table)
+        batch.buffer[[batch.row("steps"), batch.row("time")], i] = 40.0, 2.5
+    batch.driver.pause(batch.buffer, batch.table)
     column = LOG + Log.NEXT_TRACE
-    assert list(batch.table[[3, 1], column]) == [7.0, 7.0]
+    for name, value in ((Log.NEXT_TRACE, 7.0), (Log.STEPS, 40.0), (Log.TIME, 2.5)):
+        assert list(batch.table[[3, 1], LOG + name]) == [value, value]
     batch.table[:, column] = 0.0
-    assert batch.driver.begin_or_continue(batch.buffer, batch.table, batch.pieces) == 4
+    assert batch.driver.begin_or_continue(batch.buffer, batch.table) == 4
     assert batch.buffer[batch.row("next_trace"), :2].tolist() == [0.0, 0.0]
     assert math.isfinite(batch["run"])
+
+
+# Groups of lanes: runs that roll, runs that slip, and all others.
+
+ROLLS, SLIPS, FLIES = (float(kind) for kind in (Contact.ROLLING, Contact.SLIPPING, Contact.FLYING))
+
+
+@pytest.fixture
+def groups(lane_of):
+    """Make the groups of lanes of a sliding column, all idle, and a table without runs that wait."""
+    one = lane_of(sb.Sliding(sb.Column.dimensionless(0.1)), CIRCLE)
+    one.table = np.zeros((0, 400))
+    one.rows = len(one.shape.rows())
+    one.kind = one.row("y0") + one.shape.order - 1
+    one.buffer[one.row("run") :: one.rows] = -1.0
+    return one
+
+
+def put(groups, group, i, run, kind):
+    groups.buffer[group * groups.rows : (group + 1) * groups.rows, i] = run + 0.5
+    groups.buffer[group * groups.rows + groups.row("run"), i] = run
+    groups.buffer[group * groups.rows + groups.kind, i] = kind
+
+
+def runs_in(groups, group):
+    return groups.buffer[group * groups.rows + groups.row("run")].astype(int).tolist()
+
+
+def assigned(groups, group):
+    return groups.driver.assign(groups.buffer, groups.table, groups.pieces, 0, group)[0]
+
+
+def test_a_run_whose_contact_has_changed_moves_with_all_its_numbers(groups):
+    assert [kind for kind, _ in groups.shape.groups[:2]] == [ROLLS, SLIPS]
+    put(groups, 0, 1, 7, SLIPS)
+    put(groups, 0, 2, 8, ROLLS)
+    assert assigned(groups, 0)
+    assert (runs_in(groups, 0)[:3], runs_in(groups, 1)[0]) == ([-1, -1, 8], 7)
+    lane = groups.buffer[groups.rows : 2 * groups.rows, 0]
+    assert np.sum(lane == 7.5) > 0.8 * groups.rows
+    # What does not change while it slips has no slopes left.
+    moving = groups.shape.groups[1][1]
+    for stage in range(13):
+        slopes = lane[groups.row(f"k{stage}_0") :][: groups.shape.order]
+        assert (slopes[:moving] == 7.5).all()
+        assert not slopes[moving:].any()
+
+
+def test_runs_change_places_if_no_lane_is_idle_and_wait_if_there_is_none_for_them(groups):
+    width = groups.buffer.shape[1]
+    for i in range(width):
+        put(groups, 0, i, i, ROLLS)
+        put(groups, 1, i, 100 + i, SLIPS)
+    put(groups, 0, 3, 3, SLIPS)
+    assert not assigned(groups, 0)  # all that slip fill their group
+    assert assigned(groups, 1)
+    put(groups, 1, 5, 105, ROLLS)
+    assert assigned(groups, 0)
+    assert (runs_in(groups, 0)[3], runs_in(groups, 1)[5]) == (105, 3)
+
+
+def test_three_full_groups_whose_runs_go_round_do_not_block_each_other(groups):
+    width = groups.buffer.shape[1]
+    for group, kind in enumerate((ROLLS, SLIPS, FLIES)):
+        for i in range(width):
+            put(groups, group, i, 100 * group + i, kind)
+    for group, kind in enumerate((SLIPS, FLIES, ROLLS)):  # each has one that belongs to the next
+        put(groups, group, 0, 100 * group, kind)
+    assert assigned(groups, 0)
+    assert [runs_in(groups, group)[0] for group in range(3)] == [200, 0, 100]
+
+
+@pytest.mark.parametrize("kind", [Contact.ROLLING, Contact.SLIPPING])
+def test_states_that_a_group_leaves_alone_have_no_rates(kind):
+    model, rng = sb.Sliding(sb.Column.dimensionless(0.1), 0.4, patch=0.1), np.random.default_rng(2)
+    moving = model.moving_states[kind]
+    for _ in range(50):
+        state = [*(0.1 * rng.normal(size=len(model.state_names) - 1)), float(kind)]
+        rates = model.rates(*state, *rng.normal(size=3), *model.parameters)
+        assert not any(rates[moving:])
+        assert all(rates[:moving])

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import stylobate as sb
+from stylobate.engine import dop853
 from stylobate.engine.kernel.columns import Trace
 from stylobate.engine.kernel.driver.events import RunStatus, TraceKind
 from stylobate.models.sliding.balance import Contact
@@ -27,20 +28,25 @@ def lane(lane_of):
 # Guards within a step.
 
 
-@pytest.mark.parametrize("share", [0.25, 0.5, 0.75, 1.0])
-def test_guards_are_those_of_cubics_through_the_ends_of_the_step(lane, monkeypatch, share):
-    one, h = lane(h=0.3), 0.3
-    cubics = np.random.default_rng(6).normal(size=(ORDER, 4))
-    for j, powers in enumerate(cubics):
-        one[f"y{j}"], one[f"new{j}"] = np.polyval(powers, [0.0, h])
-        one[f"k0_{j}"], one[f"k12_{j}"] = np.polyval(np.polyder(powers), [0.0, h])
-        one[f"step{j}"] = h
-    seen = []
-    monkeypatch.setitem(one.scope("evaluate_guards_within"), "mark_broken_guards", lambda _buf, at: seen.append(at))
-    one.driver.evaluate_guards_within(one.buffer, share)
-    assert seen == [share]
-    expected = [np.polyval(powers, share * h) for powers in cubics]
-    np.testing.assert_allclose([one[f"stage{j}"] for j in range(ORDER)], expected, rtol=1e-12, atol=1e-14)
+def test_guards_are_evaluated_at_stages_in_the_order_of_their_times(lane):
+    scope = lane().scope("first_broken_guard")
+    stages, places = scope["GUARD_STAGES"], scope["PLACES"]
+    np.testing.assert_array_equal(places, [*(dop853.C[stage] for stage in stages[:-1]), 1.0])
+    assert (np.diff([0.0, *places]) > 0.0).all()
+    assert stages[-1] == dop853.STAGES  # the end of the step, whose state and rates are those of the next one
+
+
+@pytest.mark.parametrize(
+    ("name", "before", "marks"), [("lift", 1.0, 1.0), ("face_impact", 1.0, 1.0), ("face_impact", -1.0, 0.0)]
+)
+def test_a_broken_guard_marks_the_lane_the_last_one_only_if_it_falls(lane, name, before, marks):
+    one = lane(guard_now=before)
+    margins = tuple(-0.1 if guard == name else 1.0 for guard in GUARD)
+    lean = one.scope("mark_broken_guards")["lean"](0.01, 0.0, 0.0, 0.0)
+    one.do("mark_broken_guards", margins, lean)
+    assert (one["broken"], one["guard_now"]) == (marks, margins[-1])
+    one.do("mark_broken_guards", (1.0,) * len(GUARD), lean)
+    assert one["broken"] == marks  # until the end of the step
 
 
 # Motion after a change.
@@ -87,7 +93,7 @@ def test_a_guard_broken_within_an_implicit_step_ends_the_kind_of_contact(lane, m
     for number in (-1, GUARD["lift"]):
         one, ended = lane(time=1.0), []
         scope = one.scope("follow_implicitly")
-        for name, value in (("set_jacobian", None), ("fastest_rate", 1e5), ("attempt", 0.1)):
+        for name, value in (("set_rates", None), ("set_jacobian", 7), ("fastest_rate", 1e5), ("attempt", 0.1)):
             monkeypatch.setitem(scope, name, lambda *_, value=value: value)
         monkeypatch.setitem(scope, "first_broken_guard", lambda *_, number=number: (0.05, number))
         monkeypatch.setitem(
@@ -215,22 +221,22 @@ def test_resets_follow_each_other_until_no_guard_is_broken(lane, monkeypatch):
 # Stiffness.
 
 
-def test_twenty_steps_near_the_boundary_of_stability_show_stiffness(lane, monkeypatch):
+def test_some_successive_steps_near_the_boundary_of_stability_show_stiffness(lane, monkeypatch):
     one = lane(steps=500.0, stiff_look_at=500.0, stiff_wait=500.0, y15=float(Contact.SLIPPING))
     monkeypatch.setitem(one.scope("detect_stiffness"), "stability", lambda *_: 3.1)
     found = []
-    for _ in range(20):
+    for _ in range(8):
         found.append(one.do("detect_stiffness"))
         one["steps"] += 1.0
-    assert found == [False] * 19 + [True]
+    assert found == [False] * 7 + [True]
     one["y15"] = float(Contact.ROLLING)
     assert not one.do("detect_stiffness")
-    assert (one["stiff_looks"], one["stiff_look_at"]) == (0.0, 1020.0)
+    assert (one["stiff_looks"], one["stiff_look_at"]) == (0.0, 1008.0)
     one["y15"] = float(Contact.SLIPPING)
     assert not one.do("detect_stiffness")
     assert one["stiff_looks"] == 0.0  # no check is due
     monkeypatch.setitem(one.scope("detect_stiffness"), "stability", lambda *_: 2.9)
-    one["steps"] = 1020.0
+    one["steps"] = 1008.0
     assert not one.do("detect_stiffness")
     assert one["stiff_looks"] == 0.0
 

@@ -205,7 +205,7 @@ def test_an_accepted_step_replaces_the_state_and_a_rejected_one_leaves_it(lane, 
     one = lane(go=go, **{name: float(k) for k, pair in enumerate(pairs) for name in pair[:1]})
     for k, (_, name) in enumerate(pairs):
         one[name] = 100.0 + k
-    one.do("keep_step")
+    one.do("keep_step", 0)
     assert [one[name] for name, _ in pairs] == [100.0 * go + k for k in range(len(pairs))]
     assert [one[f"last{j}"] for j in range(4)] == [0.0, 1.0, 2.0, 3.0]
     assert [one[f"last_slope{j}"] for j in range(4)] == [10.0, 11.0, 12.0, 13.0]

@@ -1,6 +1,7 @@
 """Steps of compiled kernels have the bits of their plain-Python twins, where no arithmetic is fast."""
 
 import ctypes
+import itertools
 from dataclasses import replace
 
 import numpy as np
@@ -60,10 +61,16 @@ def test_steps_have_the_bits_of_plain_python(case, draws, plan_of):
     plan = plan_of(model, motion, **options)
     kernel = kernel_of(type(model), plan.shape(planar=case.endswith("plane")))
     rows, width = kernel.shape.rows(), kernel.shape.width
-    arguments, kinds = [ArrayArgument((len(rows), width)), NumberKind.INTEGER], [ctypes.c_void_p, ctypes.c_int64]
-    compiled = without_fast_arithmetic(kernel.compiled, "step", arguments, kinds)
+    kinds = [ctypes.c_void_p, ctypes.c_int64]
+    groups = range(len(kernel.shape.groups))
+    compiled = [
+        without_fast_arithmetic(
+            kernel.compiled, "step", [ArrayArgument((len(rows), width)), NumberKind.INTEGER, group], kinds
+        )
+        for group in groups
+    ]
     rng = np.random.default_rng(8)
-    for draw in range(draws):
+    for draw, group in itertools.product(range(draws), groups):
         scale = 0.05 if draw == 0 else 10.0 ** rng.uniform(-6.0, 0.0)
         buf = rng.normal(scale=scale, size=(len(rows), width))
         for name in ("h", "rtol", "atol", "atol_now", "longest_step", "stop"):
@@ -71,9 +78,9 @@ def test_steps_have_the_bits_of_plain_python(case, draws, plan_of):
         for j, number in enumerate(model.parameters):
             buf[rows[f"p{j}"]] = number
         one, other = buf.copy(), buf.copy()
-        compiled(one.ctypes.data, width)
+        compiled[group](one.ctypes.data, width)
         with np.errstate(all="ignore"):
-            kernel.compiled.module.step(other, width)
+            kernel.compiled.module.step(other, width, group)
         assert draw or np.isfinite(other).mean() > 0.9
         assert (other != buf).any(axis=1).sum() > 40
         np.testing.assert_array_equal(one, other)
@@ -88,7 +95,7 @@ def test_a_run_with_implicit_steps_has_the_bits_of_plain_python(plan_of):
     batch = Batch.of(plan, broadcast((0.0, 0.0), (0.0, 0.0), 0.0, np.array([0.07]), {}))
     kernel = kernel_of(sb.Sliding, plan.shape(planar=False))
     # Looks come early, so that few steps are explicit.
-    early = {"LOOK_EVERY": 5.0, "LOOK_AGAIN": 5.0, "STIFF_STEPS": 2.0}
+    early = {"LOOK_EVERY": 5.0, "LOOK_AGAIN": 5.0, "LOOK_FIRST": 5.0, "STIFF_STEPS": 2.0}
     program = kernel.compiled.program()
     compiled = replace(kernel.compiled, program=lambda: replace(program, names={**program.names, **early}))
     tables, halt = (batch.table.copy(), batch.table.copy()), np.zeros(1, dtype=np.uint8)

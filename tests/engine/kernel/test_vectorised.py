@@ -86,7 +86,7 @@ def assembly_of(plan_of):
     ],
 )
 def test_steps_work_on_all_lanes_at_once(motion, method, planar, model, assembly_of):
-    counts, registers = arithmetic_of(assembly_of("step", motion, method, planar, model, after=(NumberKind.INTEGER,)))
+    counts, registers = arithmetic_of(assembly_of("step", motion, method, planar, model, after=(NumberKind.INTEGER, 0)))
     assert counts["pd"] > 100
     assert counts["sd"] == 0, counts
     assert registers["ymm"] + registers["zmm"] > registers["xmm"]
@@ -103,7 +103,7 @@ def test_steps_work_on_all_lanes_at_once(motion, method, planar, model, assembly
 )
 def test_steps_that_follow_loads_work_on_all_lanes_at_once(model, planar, assembly_of):
     counts, _ = arithmetic_of(
-        assembly_of("step", "harmonic", "dop853", planar, model, demands=True, after=(NumberKind.INTEGER,))
+        assembly_of("step", "harmonic", "dop853", planar, model, demands=True, after=(NumberKind.INTEGER, 0))
     )
     assert counts["pd"] > 100
     assert counts["sd"] == 0, counts
@@ -111,10 +111,12 @@ def test_steps_that_follow_loads_work_on_all_lanes_at_once(model, planar, assemb
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    ("name", "arguments"), [("evaluate", (NumberKind.FLOAT,)), ("evaluate_guards", ()), ("step", (NumberKind.INTEGER,))]
+    ("name", "argument"),
+    [("evaluate", NumberKind.FLOAT), ("evaluate_with_guards", NumberKind.FLOAT), ("step", NumberKind.INTEGER)],
 )
-def test_equations_and_margins_of_changing_contact_work_on_all_lanes_at_once(name, arguments, assembly_of):
-    counts, _ = arithmetic_of(assembly_of(name, "harmonic", "dop853", False, Sliding, after=arguments))
+@pytest.mark.parametrize("group", range(3))
+def test_equations_and_margins_of_changing_contact_work_on_all_lanes_at_once(name, argument, group, assembly_of):
+    counts, _ = arithmetic_of(assembly_of(name, "harmonic", "dop853", False, Sliding, after=(argument, group)))
     assert counts["pd"] > 100
     assert counts["sd"] == 0, counts
 

@@ -111,7 +111,10 @@ class Sliding(Model):
         map(SlidingState._fields.index, ("heading_x", "heading_y", "heading_z", "contact"))
     )
     moving_states: ClassVar[Mapping[IntEnum, int]] = MappingProxyType(
-        {Contact.ROLLING: SlidingState._fields.index("velocity_x"), Contact.SLIPPING: SlidingState._fields.index("rise")}
+        {
+            Contact.ROLLING: SlidingState._fields.index("velocity_x"),
+            Contact.SLIPPING: SlidingState._fields.index("rise"),
+        }
     )
     guard_names: ClassVar[tuple[str, ...]] = GUARDS
     contact_kinds: ClassVar[type[IntEnum] | None] = Contact

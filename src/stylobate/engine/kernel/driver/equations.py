@@ -38,8 +38,8 @@ from stylobate.engine.kernel.bound import (
     rest_energy,
     tilt_of,
 )
-from stylobate.engine.kernel.shape import ANY_KIND
 from stylobate.engine.kernel.columns import Piece, Tabulated, Wave
+from stylobate.engine.kernel.shape import ANY_KIND
 from stylobate.models.model import Push
 
 Accelerations = tuple[float, float, float]

@@ -9,7 +9,6 @@ from stylobate.engine.dop853 import STAGES, C
 from stylobate.engine.kernel.bound import (
     FLYING,
     GROUP_KINDS,
-    GUARDS,
     LAST,
     LIMIT,
     ORDER,
@@ -23,7 +22,6 @@ from stylobate.engine.kernel.bound import (
     WINDOW_ENDS,
     R,
     Table,
-    guards,
     project,
     reset_map,
 )

@@ -243,9 +243,7 @@ def size_of_correction(buf: Table, i: int, number: int, room: NewtonRoom) -> flo
     return math.sqrt(total / CHANGES)
 
 
-def error_of_changes(
-    buf: Table, i: int, h: float, slopes: tuple[float, ...], number: int, room: NewtonRoom
-) -> float:
+def error_of_changes(buf: Table, i: int, h: float, slopes: tuple[float, ...], number: int, room: NewtonRoom) -> float:
     """Return the error of a step in tolerances, and store its components in the first third of `room.correction`.
 
     `slopes` are the rates at the start. The error is (γ/h − J)⁻¹ times a combination of these and of the changes.

@@ -217,8 +217,9 @@ def meet_reached_stop(buf: Table, i: int, table: Table, pieces: Table) -> tuple[
     return status, broken_now(buf, i) if jumps and status == RunStatus.WAITING else -1
 
 
-# Steps between checks, the same in runs that have been stiff, number of successive steps near the stability boundary
-# (hλ = 6) that show stiffness (one could be near it by chance), and the hλ that counts as near.
+# Steps between checks for stiffness, the same in runs that have been stiff, and from the start of a slip to its first
+# check; number of successive steps near the stability boundary (hλ = 6) that show stiffness (one could be near it by
+# chance), and the hλ that counts as near.
 LOOK_EVERY, LOOK_AGAIN, LOOK_FIRST, STIFF_STEPS, NEAR_BOUNDARY = 500.0, 50.0, 20.0, 8.0, 3.0
 
 
@@ -286,7 +287,7 @@ def apply_reset(buf: Table, i: int, table: Table, number: int) -> None:
     for j in range(ORDER):
         buf[R.LAST_STATE + j, i] = buf[R.STATE + j, i]
     set_state(buf, i, state)
-    if buf[R.CONTACT, i] in (SLIDING, SLIPPING):
+    if buf[R.CONTACT, i] in (SLIDING, SLIPPING) and buf[R.CONTACT, i] != before:
         buf[R.STIFF_LOOKS, i] = 0.0
         buf[R.STIFF_LOOK_AT, i] = buf[R.STEPS, i] + LOOK_FIRST
     buf[R.TIME_RESTING + before, i] += t - buf[R.SINCE, i]
@@ -428,8 +429,6 @@ def broken_at_release(buf: Table, i: int) -> int:
 # An implicit step costs as much as explicit steps over this hλ; a shorter one does not pay. After so many such steps in
 # sequence the explicit method continues, with the interval between stiffness checks of a run that has not been stiff.
 PAYS, MOST_UNPAID = 20.0, 5
-# Maximum number of Newton's iterations after which the next step keeps the Jacobian.
-FEW_ITERATIONS = 2
 # Maximum number of implicit steps in one call, so that other lanes and a halt signal are served.
 STRETCH = 1000
 # Largest ratio of successive implicit steps, as in RADAU5 of Hairer and Wanner, and the ratio after a failed solution.
@@ -453,23 +452,19 @@ def follow_implicitly(buf: Table, i: int, table: Table, pieces: Table) -> int:
     buf[R.STIFF_LOOKS, i] = 0.0
     buf[R.STIFF_WAIT, i] = LOOK_AGAIN
     set_rates(buf, i, buf[R.TIME, i])  # in lanes they have other roundings, which differences would show
-    before, unpaid, iterations, coupled, rate, pays = 0.0, 0, 0, 0, 0.0, True
+    before, unpaid, coupled, rate, begins, pays = 0.0, 0, 0, 0.0, True, True
     for _ in range(STRETCH):
-        h = 0.0
-        if 0 < iterations <= FEW_ITERATIONS:
-            h, iterations = attempt(buf, i, before, rate, coupled, room, renewed=False)
-        else:
-            iterations = 0
-        if iterations == 0:
+        if begins:
             coupled = set_jacobian(buf, i, coupled, room)
             rate = fastest_rate(coupled, room)
-            h, iterations = attempt(buf, i, before, rate, coupled, room, renewed=True)
+        h = attempt(buf, i, before, rate, coupled, room)
         unpaid = 0 if h * rate > PAYS else unpaid + 1
         pays = h > 0.0 and unpaid <= MOST_UNPAID
         if not pays:
             break
         elapsed, number = first_broken_guard(buf, i)
-        if number == FRICTION and slip_turns(buf, i, elapsed):  # repeated with a shorter step
+        begins = number != FRICTION or not slip_turns(buf, i, elapsed)
+        if not begins:  # repeated with a shorter step
             buf[R.WANTED, i] = SLIP_SHORTER * elapsed
             before = 0.0
             continue
@@ -484,19 +479,11 @@ def follow_implicitly(buf: Table, i: int, table: Table, pieces: Table) -> int:
     return go_on_explicitly(buf, i, table, pieces, rate, pays=pays)
 
 
-def attempt(
-    buf: Table, i: int, before: float, rate: float, coupled: int, room: NewtonRoom, *, renewed: bool
-) -> tuple[float, int]:
-    """Compute a step whose error is acceptable; return its length and the number of Newton's iterations.
+def attempt(buf: Table, i: int, before: float, rate: float, coupled: int, room: NewtonRoom) -> float:
+    """Compute a step whose error is acceptable; return its length, or 0 if no step pays.
 
-    The length is 0 if no step pays. The number is 0 if iterations with a Jacobian that is not `renewed` failed.
-
-    Parameters
-    ----------
-    before
-        Length of the step whose dense output is stored, or 0.
-    rate, coupled
-        Fastest rate of the equations, and number of coupled states.
+    `before` is the length of the step whose dense output is stored, or 0; `rate` is the fastest rate of the equations,
+    and `coupled` the number of coupled states.
     """
     h = min(buf[R.WANTED, i], buf[R.LONGEST_STEP, i], buf[R.STOP, i] - buf[R.TIME, i])
     slopes = row_state(buf, i, R.SLOPE)
@@ -504,8 +491,6 @@ def attempt(
     while True:
         guess_changes(buf, i, h / before if before > 0.0 else 0.0, room.change)
         iterations = solve_step(buf, i, h, coupled, room)
-        if iterations == 0 and not renewed:
-            return 0.0, 0
         error = error_of_changes(buf, i, h, slopes, coupled, room) if iterations > 0 else math.inf
         if rejected and 1.0 < error < math.inf:
             error = damped_error(buf, i, h, coupled, room)
@@ -515,11 +500,11 @@ def attempt(
         h *= factor
         rejected = True
         if not h * rate > NEAR_BOUNDARY:
-            return 0.0, MOST_ITERATIONS
+            return 0.0
     buf[R.WANTED, i] = h * (min(factor, 1.0) if rejected else factor)
     buf[R.TRIED, i] = h
     set_cubic(buf, i, room.change)
-    return h, iterations
+    return h
 
 
 def factor_of(error: float, iterations: int) -> float:
