@@ -73,7 +73,7 @@ FADING = 4
 def set_jacobian(buf: Table, i: int, number: int, room: NewtonRoom) -> int:
     """Set the Jacobian of the rates by differences from the slopes at the state; return the number of coupled states.
 
-    Column k belongs to the state `room.coupled[k]`. With `number` 0 the coupled states are found anew: those on which
+    Column k belongs to the state `room.coupled[k]`. With `number` 0 the coupled states are found again: those on which
     rates depend. The kind of contact is constant.
     """
     jacobian, coupled = room.jacobian, room.coupled
