@@ -428,7 +428,7 @@ def broken_at_release(buf: Table, i: int) -> int:
 
 # An implicit step costs as much as explicit steps over this hλ; a shorter one does not pay. After so many such steps in
 # sequence the explicit method continues, with the interval between stiffness checks of a run that has not been stiff.
-PAYS, MOST_UNPAID = 20.0, 5
+PAYS, MOST_UNPAID = 40.0, 5
 # Maximum number of implicit steps in one call, so that other lanes and a halt signal are served.
 STRETCH = 1000
 # Largest ratio of successive implicit steps, as in RADAU5 of Hairer and Wanner, and the ratio after a failed solution.
