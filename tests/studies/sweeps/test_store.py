@@ -2,7 +2,6 @@
 
 import importlib
 import linecache
-import os
 import shutil
 import sys
 from dataclasses import replace
@@ -16,6 +15,7 @@ import stylobate as sb
 from stylobate.errors import FileError
 from stylobate.files import _MACHINE
 from stylobate.studies.sweeps import Sweep, run_sweep
+from stylobate.studies.sweeps.chunks import Blocks, Chunks, encoded
 from stylobate.studies.sweeps.fingerprint import identity_of
 from stylobate.studies.sweeps.store import differences, open_sweep
 
@@ -28,6 +28,10 @@ def path(tmp_path):
     return tmp_path / "folder" / "sweep.zarr"
 
 
+def chunks_of(sweep, path):
+    return Chunks(path, Blocks.of(sweep.shape, 5), sweep.layout.variables)
+
+
 def test_a_finished_store_is_read_and_not_computed(sweep, path, counting, assert_same_arrays):
     first, second = counting(), counting()
     data = run_sweep(sweep, store=path, chunk_size=3, executor=first)
@@ -38,7 +42,8 @@ def test_a_finished_store_is_read_and_not_computed(sweep, path, counting, assert
 
 def test_only_missing_blocks_are_computed(grid, path, counting, assert_same_arrays, undisturbed):
     run_sweep(grid, store=path, chunk_size=5)
-    (path / "seal" / "c" / "2").unlink()
+    with chunks_of(grid, path).shards("r+b") as shards:
+        shards["seal"].forget(2)
     again = counting()
     assert_same_arrays(run_sweep(grid, store=path, resume=True, executor=again), undisturbed(grid))
     assert again.blocks == [2]
@@ -46,21 +51,24 @@ def test_only_missing_blocks_are_computed(grid, path, counting, assert_same_arra
 
 def test_data_torn_before_the_outcomes_are_computed_again(grid, path, assert_same_arrays, undisturbed):
     run_sweep(grid, store=path, chunk_size=5)
-    for file in ("seal/c/1", "outcome/c/1/0"):  # written last: the process died before
-        (path / file).unlink()
-    zarr.open_group(path)["end_tilt"][1] = 7.0
+    with chunks_of(grid, path).shards("r+b") as shards:
+        for name in ("seal", "outcome"):  # written last: the process died before
+            shards[name].forget(1)
+        shards["end_tilt"].write(1, encoded(np.full((1, 5, 2), 7.0)))
     assert_same_arrays(run_sweep(grid, store=path, resume=True), undisturbed(grid))
 
 
-def test_parts_of_dead_writers_are_removed_and_those_of_living_ones_stay(grid, path, assert_same_arrays, undisturbed):
-    run_sweep(grid, store=path, chunk_size=5)
-    folder = path / "outcome" / "c"
-    dead, living = (folder / f".0.{_MACHINE}-{process}-a1.part" for process in (2**30, os.getpid()))
-    for part in (dead, living):
-        part.write_bytes(b"torn")
-    assert_same_arrays(run_sweep(grid, store=path, resume=True), undisturbed(grid))
-    assert not dead.exists()
-    assert living.exists()
+def test_a_store_gains_no_file_whatever_the_number_of_chunks(grid, path):
+    files = []
+
+    def look(done, total):
+        files.append({str(file.relative_to(path)) for file in path.rglob("*")})
+
+    run_sweep(grid, store=path, chunk_size=3, progress=look)
+    assert len(files) > 5
+    shutil.rmtree(path)
+    run_sweep(grid, store=path, progress=look)
+    assert all(found == files[0] for found in files)
 
 
 def test_resume_begins_where_there_is_no_store(points, path, assert_same_arrays, undisturbed):

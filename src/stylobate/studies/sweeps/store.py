@@ -8,13 +8,11 @@ import json
 import logging
 import shutil
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
 from importlib.metadata import version
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
-import lazy_loader
 import numpy as np
 import xarray as xr
 
@@ -31,10 +29,13 @@ from stylobate.studies.sweeps.chunks import (
     ChunkState,
     Layout,
     Variable,
+    blocks_of_axis,
     bytes_of_block,
     bytes_on_disk,
     checksum,
     chunk_file,
+    chunk_shape,
+    encoded,
 )
 from stylobate.studies.sweeps.designs import whole
 from stylobate.studies.sweeps.sweep import Sweep
@@ -91,12 +92,9 @@ def _shown(value: Any) -> str:
     return "not given" if value is None else repr(value)
 
 
-zarr: Any = lazy_loader.load("zarr")
-"""Loaded when the first store is opened, which saves other sweeps a tenth of a second."""
-
 _log = logging.getLogger("stylobate")
 
-_FORMAT = "stylobate sweep 3"
+_FORMAT = "stylobate sweep 4"
 _SOFTWARE = ("numpy", "scipy", "llvmlite", "zarr")
 _SEAL = "metadata_sha256"
 
@@ -118,10 +116,8 @@ def create_store(path: Path, sweep: Sweep, layout: Layout, blocks: Blocks) -> Ch
         raise FileError(f"cannot write {path}: {error.strerror or error}") from error
     _require_room(path, bytes_on_disk(layout, sweep.design, blocks))
     try:
-        with written_aside(path) as beside, _every_chunk_written():
-            group = zarr.create_group(beside, attributes=_attributes(sweep, layout, blocks))
-            _fill_new(group, sweep, layout, blocks)
-            group.attrs[_SEAL] = _digest(beside, _metadata(beside))
+        with written_aside(path) as beside:
+            _fill_new(beside, sweep, layout, blocks)
     except FileError:
         _require_new(path)  # another process may have created it in the meantime
         raise
@@ -154,11 +150,10 @@ def continue_store(path: Path, sweep: Sweep, layout: Layout, chunk_size: int | N
     if chunk_size is not None and Blocks.of(sweep.shape, chunk_size) != blocks:
         raise FileError(f"{path} has chunks of {list(blocks.edges)} runs, not of {chunk_size}. Leave chunk_size out")
     chunks = Chunks(path, blocks, layout.variables)
-    chunks.remove_left_behind()
     states = chunks.states()
     _compute_again(chunks, [index for index, state in states.items() if state is ChunkState.DAMAGED])
     if missing := [index for index, state in states.items() if state is not ChunkState.DONE]:
-        _require_room(path, len(missing) * bytes_of_block(layout, blocks[0]))
+        _require_room(path, len(missing) * bytes_of_block(layout, blocks))
     return chunks, frozenset(index for index, state in states.items() if state is ChunkState.DONE)
 
 
@@ -220,44 +215,65 @@ def open_sweep(path: str | Path, *, load: bool = False) -> xr.Dataset:
     return data.load() if load else data
 
 
-def _fill_new(group: Any, sweep: Sweep, layout: Layout, blocks: Blocks) -> None:
-    for variable in layout.variables:
-        group.create_array(
-            variable.name,
-            shape=(*blocks.shape, *variable.shape),
-            chunks=(*blocks.edges, *(max(1, length) for length in variable.shape)),
-            dtype=variable.dtype,
-            fill_value=variable.fill,
-            dimension_names=(*sweep.dims, *variable.dims),
-            compressors=CODECS,
-            attributes=_plain(variable.attributes),
+def _fill_new(path: Path, sweep: Sweep, layout: Layout, blocks: Blocks) -> None:
+    chunks, design = Chunks(path, blocks, layout.variables), sweep.design
+    path.mkdir()
+    for variable, own in chunks.arrays:
+        inner = chunk_shape(variable, own)
+        counts = (*(max(1, count) for count in own.counts), *(1 for _ in variable.shape))
+        configuration = {"chunk_shape": inner, "codecs": CODECS, "index_codecs": CODECS[:1], "index_location": "start"}
+        _describe_array(
+            path / variable.name,
+            variable,
+            shape=(*own.shape, *variable.shape),
+            chunks=tuple(count * edge for count, edge in zip(counts, inner, strict=True)),
+            codecs=({"name": "sharding_indexed", "configuration": configuration},),
+            dims=("chunk",) if variable is SEAL else (*design.dims, *variable.dims),
         )
-    group.create_array(
-        SEAL.name,
-        shape=(len(blocks),),
-        chunks=(1,),
-        dtype=SEAL.dtype,
-        fill_value=SEAL.fill,
-        dimension_names=("chunk",),
-        compressors=CODECS,
-    )
-    design = sweep.design
-    for name, dim in design.coordinate_dims.items():
-        place = design.dims.index(dim)
-        group.create_array(
-            name,
-            shape=(blocks.shape[place],),
-            chunks=(blocks.edges[place],),
-            dtype=float,
-            fill_value=np.nan,
-            dimension_names=(dim,),
-            compressors=CODECS,
-            attributes=dict(attributes_of(name)),
-        )
-    # Random and given points may be numerous: they are written piece by piece.
-    for slices in (block.slices for block in blocks) if design.dims == ("run",) else (whole(design),):
-        for name, values in design.coordinates(slices).items():
-            group[name][slices[design.dims.index(design.coordinate_dims[name])]] = values
+    chunks.create()
+    for place, (dim, length) in enumerate(zip(design.dims, design.shape, strict=True)):
+        own, names = blocks_of_axis(length), [name for name, along in design.coordinate_dims.items() if along == dim]
+        for name in names:
+            axis = Variable(name, np.dtype(float), (), (), attributes_of(name))
+            _describe_array(path / name, axis, shape=own.shape, chunks=own.edges, codecs=CODECS, dims=(dim,))
+        for block in own:  # random and given points may be numerous
+            slices = (*whole(design)[:place], *block.slices, *whole(design)[place + 1 :])
+            values = design.coordinates(slices)
+            for name in names:
+                chunk = np.pad(values[name], (0, own.edges[0] - block.size), constant_values=np.nan)
+                chunk_file(path / name, (block.index,)).write_bytes(encoded(chunk))
+    attributes = _attributes(sweep, layout, blocks)
+    metadata = {"attributes": attributes, "zarr_format": 3, "node_type": "group"}
+    attributes[_SEAL] = _digest(path, json.loads(json.dumps(metadata)))
+    (path / METADATA).write_text(json.dumps(metadata, indent=2), "utf-8")
+
+
+def _describe_array(
+    path: Path,
+    variable: Variable,
+    *,
+    shape: tuple[int, ...],
+    chunks: tuple[int, ...],
+    codecs: tuple[dict[str, Any], ...],
+    dims: tuple[str, ...],
+) -> None:
+    """Make the folder of an array with its metadata."""
+    fill = variable.fill
+    metadata = {
+        "shape": shape,
+        "data_type": variable.dtype.name,
+        "chunk_grid": {"name": "regular", "configuration": {"chunk_shape": chunks}},
+        "chunk_key_encoding": {"name": "default", "configuration": {"separator": "."}},
+        "fill_value": "NaN" if np.isnan(fill) else np.asarray(fill).item(),
+        "codecs": codecs,
+        "attributes": _plain(variable.attributes),
+        "dimension_names": dims,
+        "zarr_format": 3,
+        "node_type": "array",
+        "storage_transformers": (),
+    }
+    path.mkdir()
+    (path / METADATA).write_text(json.dumps(metadata, indent=2), "utf-8")
 
 
 def _attributes(sweep: Sweep, layout: Layout, blocks: Blocks) -> dict[str, Any]:
@@ -328,10 +344,7 @@ def _digest(path: Path, metadata: Mapping[str, Any]) -> str | None:
             digest.update(f" {name} {len(content)} ".encode() + content)
         for name in axes:
             for index in range(_count(path / name)):
-                found = checksum(chunk_file(path / name, (index,)))
-                if found is None:
-                    return None
-                digest.update(found)
+                digest.update(checksum(chunk_file(path / name, (index,)).read_bytes()))
     except (OSError, ValueError, KeyError, TypeError, AttributeError):
         return None
     return digest.hexdigest()
@@ -342,13 +355,6 @@ def _count(array: Path) -> int:
     metadata = json.loads((array / METADATA).read_bytes())
     (length,), (edge,) = metadata["shape"], metadata["chunk_grid"]["configuration"]["chunk_shape"]
     return -(-int(length) // int(edge))
-
-
-@contextmanager
-def _every_chunk_written() -> Iterator[None]:
-    """Let Zarr write also chunks of fill values only, so that an absent chunk is a lost chunk."""
-    with zarr.config.set({"array.write_empty_chunks": True}):
-        yield
 
 
 def _require_room(path: Path, needed: int) -> None:
