@@ -37,12 +37,12 @@ def main() -> None:
     files = dict.fromkeys(_CHUNKS, 0)
     wait_for_quiet()
     for _ in range(arguments.rounds):
-        for size, stored in found:
+        for (size, stored), seconds in found.items():
             with TemporaryDirectory(dir=arguments.disk) as folder:
                 path = Path(folder) / "map.zarr"
                 begun = time.perf_counter()
                 run_sweep(sweep, store=path if stored else None, chunk_size=size, progress=False)
-                found[size, stored].append(time.perf_counter() - begun)
+                seconds.append(time.perf_counter() - begun)
                 files[size] = sum(file.is_file() for file in path.rglob("*"))
     best = {way: min(seconds) for way, seconds in found.items()}
     rows = ["| runs in a chunk | memory [s] | store [s] | ratio | files |", "|---|---|---|---|---|"]

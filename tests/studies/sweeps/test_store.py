@@ -3,6 +3,7 @@
 import importlib
 import linecache
 import shutil
+import subprocess
 import sys
 from dataclasses import replace
 
@@ -199,6 +200,29 @@ def test_a_disk_that_fills_up_is_told_and_the_store_goes_on(points, path, monkey
         with pytest.raises(FileError, match=r"No space left on device\. Continue it with resume=True"):
             run_sweep(points, store=path)
     assert_same_arrays(run_sweep(points, store=path, resume=True), undisturbed(points))
+
+
+KEYS = ({}, {"run": 4}, {"run": -1}, {"run": slice(None, None, -3)}, {"run": [5, 0, 5]}, {"run": slice(2, 2)})
+
+
+@pytest.mark.parametrize("key", [*KEYS, {"axis": 1}, {"axis": [1, 0], "run": slice(1, 9, 2)}])
+def test_a_selection_is_that_of_the_arrays_in_memory(random, path, key, assert_same_arrays):
+    whole = run_sweep(random)
+    run_sweep(random, store=path, chunk_size=3)
+    assert_same_arrays(sb.load(path).isel(key).load(), whole.isel(key))
+    assert_same_arrays(sb.load(path).chunk(run=2).isel(key).load(), whole.isel(key))
+
+
+def test_a_store_is_written_and_read_without_zarr(path):
+    program = (
+        "import sys; import stylobate as sb; from stylobate.studies.sweeps import Sweep, run_sweep; "
+        "model = sb.Slender(sb.Column.dimensionless(slenderness=0.1)); "
+        "sweep = Sweep.points(model, at={'tilt_x': [0.01, 0.02]}, duration=1.0); "
+        "run_sweep(sweep, store=sys.argv[1]); sb.load(sys.argv[1]).load(); "
+        "print(sorted({'zarr', 'numcodecs'} & set(sys.modules)))"
+    )
+    done = subprocess.run([sys.executable, "-c", program, str(path)], capture_output=True, text=True, check=True)
+    assert done.stdout == "[]\n"
 
 
 def test_other_software_opens_a_store(random, path):

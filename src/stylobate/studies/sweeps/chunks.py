@@ -1,6 +1,7 @@
 """Computation of a sweep in chunks: recipe of a run, blocks of runs, layout of the results."""
 
 import hashlib
+import json
 import math
 import struct
 from collections.abc import Iterator, Mapping
@@ -8,6 +9,7 @@ from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from enum import Enum, auto
 from io import BytesIO
+from itertools import product
 from pathlib import Path
 from typing import IO, Any
 
@@ -251,9 +253,9 @@ SEAL = Variable("seal", np.dtype(np.uint64), (), (), {})
 """The array with the seal of each block, written last; it marks the block as finished or begun."""
 CODECS: tuple[dict[str, Any], ...] = ({"name": "bytes", "configuration": {"endian": "little"}}, {"name": "crc32c"})
 """The codecs of a chunk, as Zarr names them; without compression all chunks of an array have one size."""
-# Sizes of a checksum, of a value of an axis, and of the smallest file on disk [bytes].
-_CHECKSUM, _FLOAT, _DISK_BLOCK = 4, 8, 4096
-# Maximum number of values in a file of an axis.
+# Sizes of a checksum and of the smallest file on disk [bytes].
+_CHECKSUM, _DISK_BLOCK = 4, 4096
+# Maximum number of values in a chunk of an axis.
 _AXIS_CHUNK = 2**17
 # An entry of the index of a shard: place and size of a chunk [bytes]; or the entry for a chunk that is not written.
 _ENTRY = struct.Struct("<QQ")
@@ -290,7 +292,7 @@ class Shard:
         """Return whether a chunk is written; raise ValueError if its entry is damaged."""
         entry = self.entry(index)
         if entry not in (_ABSENT, self._entry_of(index)):
-            raise ValueError("the index is damaged")
+            raise ValueError("a file of a store is damaged: its index is not as it was written")
         return entry != _ABSENT
 
     def content(self, index: int) -> bytes:
@@ -327,6 +329,106 @@ class Shard:
 
 
 @dataclass(frozen=True, slots=True)
+class StoredArray:
+    """The array of a `variable` over `blocks` in the store at `path`: a folder with metadata and one shard."""
+
+    path: Path
+    variable: Variable
+    blocks: Blocks
+
+    @property
+    def folder(self) -> Path:
+        """Folder of the array."""
+        return self.path / self.variable.name
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Lengths of the dimensions."""
+        return (*self.blocks.shape, *self.variable.shape)
+
+    @property
+    def chunk(self) -> tuple[int, ...]:
+        """Lengths of a chunk."""
+        return (*self.blocks.edges, *(max(1, length) for length in self.variable.shape))
+
+    @property
+    def chunk_size(self) -> int:
+        """Size of a chunk with its checksum [bytes]."""
+        return self.variable.bytes_of_a_run * math.prod(self.blocks.edges) + _CHECKSUM
+
+    @property
+    def file_size(self) -> int:
+        """Size of the complete shard [bytes]."""
+        return len(self.blocks) * (_ENTRY.size + self.chunk_size)
+
+    @property
+    def _file(self) -> Path:
+        return self.folder / ".".join(("c", *("0" for _ in self.shape)))
+
+    def create(self, dims: tuple[str, ...]) -> None:
+        """Write the metadata, for `dims` as names of the dimensions, and the shard without chunks."""
+        counts = (*(max(1, count) for count in self.blocks.counts), *(1 for _ in self.variable.shape))
+        codecs = {"chunk_shape": self.chunk, "codecs": CODECS, "index_codecs": CODECS[:1], "index_location": "start"}
+        grid = {"chunk_shape": [count * edge for count, edge in zip(counts, self.chunk, strict=True)]}
+        attributes, fill = self.variable.attributes, self.variable.fill
+        metadata = {
+            "shape": self.shape,
+            "data_type": self.variable.dtype.name,
+            "chunk_grid": {"name": "regular", "configuration": grid},
+            "chunk_key_encoding": {"name": "default", "configuration": {"separator": "."}},
+            "fill_value": "NaN" if np.isnan(fill) else np.asarray(fill).item(),
+            "codecs": [{"name": "sharding_indexed", "configuration": codecs}],
+            "attributes": {n: v.tolist() if isinstance(v, np.ndarray) else v for n, v in attributes.items()},
+            "dimension_names": dims,
+            "zarr_format": 3,
+            "node_type": "array",
+            "storage_transformers": [],
+        }
+        self.folder.mkdir()
+        (self.folder / METADATA).write_text(json.dumps(metadata, indent=2), "utf-8")
+        self._file.write_bytes(_ABSENT * len(self.blocks))
+
+    @contextmanager
+    def shard(self, mode: str = "rb") -> Iterator[Shard]:
+        """Open the shard; a lost file is an empty one."""
+        with _opened(self._file, mode) as file:
+            yield Shard(file, len(self.blocks), self.chunk_size)
+
+    def encoded(self, block: GridBlock, values: npt.NDArray[Any]) -> bytes:
+        """Return the chunk with these values of a block; the last one along a dimension is filled up, as Zarr does."""
+        whole = self.variable.empty(self.blocks.edges)
+        whole[_inner(block)] = np.asarray(values).reshape(*block.shape, *self.variable.shape)
+        return encoded(whole)
+
+    def decoded(self, chunk: bytes) -> npt.NDArray[Any]:
+        """Return the values of a chunk; raise ValueError if it does not match its checksum."""
+        checksum(chunk)
+        values = np.frombuffer(chunk[:-_CHECKSUM], self.variable.dtype)
+        return values.reshape(*self.blocks.edges, *self.variable.shape)
+
+    def read(self, key: tuple[Any, ...]) -> npt.NDArray[Any]:
+        """Return a part of the array, from the chunks that it touches; `key` selects along each dimension by itself."""
+        places = [np.atleast_1d(np.arange(length)[part]) for length, part in zip(self.shape, key, strict=True)]
+        owners = [place // edge for place, edge in zip(places, self.chunk, strict=True)]
+        found = np.full([place.size for place in places], self.variable.fill, self.variable.dtype)
+        with self.shard() as shard:
+            for corner in product(*map(np.unique, owners)):
+                index = int(np.ravel_multi_index(corner[: len(self.blocks.shape)], self.blocks.counts))
+                if shard.holds(index):
+                    inside = [np.flatnonzero(owner == one) for owner, one in zip(owners, corner, strict=True)]
+                    parts = zip(places, inside, corner, self.chunk, strict=True)
+                    source = [place[chosen] - one * edge for place, chosen, one, edge in parts]
+                    found[np.ix_(*inside)] = self.decoded(shard.content(index))[np.ix_(*source)]
+        return found[tuple(0 if isinstance(part, (int, np.integer)) else slice(None) for part in key)]
+
+
+def axis(path: Path, name: str, length: int) -> StoredArray:
+    """Return the array of an axis with `length` values in the store at `path`."""
+    variable = Variable(name, np.dtype(float), (), (), attributes_of(name))
+    return StoredArray(path, variable, Blocks.of((length,), _AXIS_CHUNK))
+
+
+@dataclass(frozen=True, slots=True)
 class Chunks:
     """The chunks of the results in the store at `path`: one in the shard of each array for each block.
 
@@ -345,15 +447,12 @@ class Chunks:
     variables: tuple[Variable, ...]
 
     @property
-    def arrays(self) -> tuple[tuple[Variable, Blocks], ...]:
-        """The arrays and their blocks, in the order of writing: data, outcomes, seals."""
+    def arrays(self) -> dict[str, StoredArray]:
+        """The arrays in the order of writing: data, outcomes, seals."""
         results = sorted(self.variables, key=lambda variable: variable.name == OUTCOME)
-        return (*((variable, self.blocks) for variable in results), (SEAL, blocks_of_seals(self.blocks)))
-
-    def create(self) -> None:
-        """Write the shards without chunks; later no file is created."""
-        for variable, blocks in self.arrays:
-            self._file(variable, blocks).write_bytes(_ABSENT * len(blocks))
+        arrays = [StoredArray(self.path, variable, self.blocks) for variable in results]
+        seals = StoredArray(self.path, SEAL, Blocks((len(self.blocks),), (1,)))
+        return {array.variable.name: array for array in (*arrays, seals)}
 
     def state(self, index: int) -> ChunkState:
         """Return the state of a block: DAMAGED if a chunk is missing or is not the chunk that was written there."""
@@ -373,7 +472,8 @@ class Chunks:
         OSError
             If a file cannot be written.
         """
-        chunks = {one.name: encoded(self._whole(block, one, arrays[one.name])) for one in self.variables}
+        stored = self.arrays
+        chunks = {one.name: stored[one.name].encoded(block, arrays[one.name]) for one in self.variables}
         checksums = {name: chunk[-_CHECKSUM:] for name, chunk in chunks.items()}
         chunks[SEAL.name] = _seal_of(block.index, checksums, done=done)
         with self.shards("r+b") as shards:
@@ -383,8 +483,10 @@ class Chunks:
 
     def read(self, block: GridBlock) -> Arrays:
         """Return the results of a complete `block`, flat over its runs."""
+        inner, stored = _inner(block), self.arrays
         with self.shards() as shards:
-            return {one.name: self._flat(block, one, shards[one.name].content(block.index)) for one in self.variables}
+            wholes = [(one, stored[one.name].decoded(shards[one.name].content(block.index))) for one in self.variables]
+        return {one.name: whole[inner].reshape(block.size, *one.shape).copy() for one, whole in wholes}
 
     def forget(self, index: int) -> None:
         """Remove the chunks of a block, in the reverse order of writing."""
@@ -395,27 +497,7 @@ class Chunks:
     def shards(self, mode: str = "rb") -> Iterator[dict[str, Shard]]:
         """Open the shards, by the name of the array in the order of writing; a lost file is an empty one."""
         with ExitStack() as stack:
-            yield {
-                variable.name: Shard(
-                    stack.enter_context(_opened(self._file(variable, blocks), mode)),
-                    len(blocks),
-                    chunk_size(variable, blocks),
-                )
-                for variable, blocks in self.arrays
-            }
-
-    def _file(self, variable: Variable, blocks: Blocks) -> Path:
-        return chunk_file(self.path / variable.name, (0,) * len(chunk_shape(variable, blocks)))
-
-    def _whole(self, block: GridBlock, variable: Variable, values: npt.NDArray[Any]) -> npt.NDArray[Any]:
-        """Return the values of a chunk; the last chunk along a dimension is filled up, as Zarr does."""
-        whole = variable.empty(self.blocks.edges)
-        whole[_inner(block)] = np.asarray(values).reshape(*block.shape, *variable.shape)
-        return whole
-
-    def _flat(self, block: GridBlock, variable: Variable, chunk: bytes) -> npt.NDArray[Any]:
-        whole = decoded(chunk, variable.dtype).reshape(*self.blocks.edges, *variable.shape)
-        return whole[_inner(block)].reshape(block.size, *variable.shape)
+            yield {name: stack.enter_context(array.shard(mode)) for name, array in self.arrays.items()}
 
 
 def _opened(path: Path, mode: str) -> IO[bytes]:
@@ -465,47 +547,16 @@ def _forget(shards: dict[str, Shard], index: int) -> None:
         shard.forget(index)
 
 
-def chunk_file(array: Path, place: tuple[int, ...]) -> Path:
-    """Return the file of the chunk of an `array` at this index."""
-    return array / ".".join(("c", *map(str, place)))
-
-
-def chunk_shape(variable: Variable, blocks: Blocks) -> tuple[int, ...]:
-    """Return the shape of the chunks of an array over `blocks`."""
-    return (*blocks.edges, *(max(1, length) for length in variable.shape))
-
-
-def chunk_size(variable: Variable, blocks: Blocks) -> int:
-    """Return the size of the chunks of an array over `blocks`, with checksum [bytes]."""
-    return variable.bytes_of_a_run * math.prod(blocks.edges) + _CHECKSUM
-
-
-def blocks_of_seals(blocks: Blocks) -> Blocks:
-    """Return the blocks of the array with one seal for each of `blocks`."""
-    return Blocks((len(blocks),), (1,))
-
-
-def blocks_of_axis(length: int) -> Blocks:
-    """Return the blocks of an axis, one for each of its files."""
-    return Blocks.of((length,), _AXIS_CHUNK)
-
-
 def encoded(values: npt.NDArray[Any]) -> bytes:
     """Return a chunk as its file holds it."""
     data = values.tobytes()
     return data + _crc(data)
 
 
-def decoded(chunk: bytes, dtype: np.dtype[Any]) -> npt.NDArray[Any]:
-    """Return the values of a chunk, flat; raise ValueError if it does not match its checksum."""
-    checksum(chunk)
-    return np.frombuffer(chunk[:-_CHECKSUM], dtype).copy()
-
-
 def checksum(chunk: bytes) -> bytes:
     """Return the checksum of a chunk; raise ValueError if the chunk does not match it."""
     if _crc(chunk[:-_CHECKSUM]) != chunk[-_CHECKSUM:]:
-        raise ValueError("the checksum differs")
+        raise ValueError("a chunk of a store is damaged: its checksum differs")
     return chunk[-_CHECKSUM:]
 
 
@@ -527,13 +578,12 @@ def _inner(block: GridBlock) -> tuple[slice, ...]:
 
 def bytes_on_disk(layout: Layout, design: Design, blocks: Blocks) -> int:
     """Return the size of results, coordinates and metadata on disk [bytes], in whole disk blocks."""
-    lengths = (design.shape[design.dims.index(dim)] for dim in design.coordinate_dims.values())
-    axes = (len(own) * (_FLOAT * own.edges[0] + _CHECKSUM) for own in map(blocks_of_axis, lengths))
-    arrays = Chunks(Path(), blocks, layout.variables).arrays
-    shards = (len(own) * (_ENTRY.size + chunk_size(variable, own)) for variable, own in arrays)
-    return _DISK_BLOCK * sum(1 - (-size // _DISK_BLOCK) for size in (0, *axes, *shards))
+    lengths = {name: design.shape[design.dims.index(dim)] for name, dim in design.coordinate_dims.items()}
+    axes = [axis(Path(), name, length) for name, length in lengths.items()]
+    arrays = (*axes, *Chunks(Path(), blocks, layout.variables).arrays.values())
+    return _DISK_BLOCK * sum(1 - (-size // _DISK_BLOCK) for size in (0, *(array.file_size for array in arrays)))
 
 
 def bytes_of_block(layout: Layout, blocks: Blocks) -> int:
     """Return the size of the results of one block on disk [bytes]."""
-    return sum(chunk_size(variable, blocks) for variable in layout.variables)
+    return sum(array.chunk_size for array in Chunks(Path(), blocks, layout.variables).arrays.values())

@@ -15,27 +15,25 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
+from xarray.backends import BackendArray, BackendEntrypoint
+from xarray.core import indexing
 
 from stylobate.errors import FileError
 from stylobate.files import written_aside
-from stylobate.parameter_quantities import attributes_of
 from stylobate.results.storage import require_this_version
 from stylobate.studies.sweeps.chunks import (
-    CODECS,
     METADATA,
     SEAL,
     Blocks,
     Chunks,
     ChunkState,
     Layout,
+    StoredArray,
     Variable,
-    blocks_of_axis,
+    axis,
     bytes_of_block,
     bytes_on_disk,
     checksum,
-    chunk_file,
-    chunk_shape,
-    encoded,
 )
 from stylobate.studies.sweeps.designs import whole
 from stylobate.studies.sweeps.sweep import Sweep
@@ -95,7 +93,7 @@ def _shown(value: Any) -> str:
 _log = logging.getLogger("stylobate")
 
 _FORMAT = "stylobate sweep 4"
-_SOFTWARE = ("numpy", "scipy", "llvmlite", "zarr")
+_SOFTWARE = ("numpy", "scipy", "llvmlite")
 _SEAL = "metadata_sha256"
 
 
@@ -198,81 +196,65 @@ def open_sweep(path: str | Path, *, load: bool = False) -> xr.Dataset:
     if damaged := sum(chunks.blocks[index].size for index, state in states.items() if state is ChunkState.DAMAGED):
         raise FileError(f"{path} is damaged: {plural(damaged, 'run')} cannot be read. Continue it with resume=True")
     runs_done = sum(chunks.blocks[index].size for index, state in states.items() if state is ChunkState.DONE)
-    try:
-        data: xr.Dataset = xr.open_zarr(
-            path, chunks=None, consolidated=False, zarr_format=3, decode_cf=False, drop_variables=SEAL.name
-        )
-    except Exception as error:  # of any class, for example for another array that was added to the store
-        raise FileError(f"cannot read {path}: {' '.join(str(error).split())}. Begin another store") from error
-    for variable in data.variables.values():
-        variable.attrs.pop("_FillValue", None)
-        if "flag_values" in variable.attrs:
-            variable.attrs["flag_values"] = np.array(variable.attrs["flag_values"], dtype=variable.dtype)
-    data = data.set_coords(attributes["coordinates"].split()).assign_coords(attributes["labels"])
-    data = data[list(attributes["variables"])]  # in the order of the sweep, with coordinates
+    axes, labels = attributes["coordinates"].split(), attributes["labels"]
+    data = xr.open_dataset(
+        path, engine=_Backend, arrays=[chunks.arrays[name] for name in attributes["variables"]], axes=axes
+    )
+    data = data.assign_coords(labels)
     kept = {name: attributes[name] for name in ("kind", "provenance")}
     data.attrs = {**kept, "runs_done": runs_done}
     return data.load() if load else data
 
 
+class _Backend(BackendEntrypoint):
+    """Read a store without Zarr, whose import takes some tenths of a second."""
+
+    def open_dataset(  # type: ignore[override]
+        self, path: Path, *, drop_variables: None = None, arrays: list[StoredArray], axes: list[str]
+    ) -> xr.Dataset:
+        del drop_variables
+        data = {array.variable.name: _lazy(array) for array in arrays}
+        lengths = {name: _metadata(path / name)["shape"][0] for name in axes}
+        return xr.Dataset(data, {name: _lazy(axis(path, name, length)) for name, length in lengths.items()})
+
+
+class _LazyArray(BackendArray):
+    """An array that is read when it is used."""
+
+    def __init__(self, array: StoredArray) -> None:
+        self.array, self.shape, self.dtype = array, array.shape, array.variable.dtype
+
+    def __getitem__(self, key: indexing.ExplicitIndexer) -> Any:
+        outer = indexing.IndexingSupport.OUTER
+        return indexing.explicit_indexing_adapter(key, self.shape, outer, self.array.read)
+
+
+def _lazy(array: StoredArray) -> xr.Variable:
+    described = _metadata(array.folder)
+    dims, attributes = described["dimension_names"], described["attributes"]
+    if "flag_values" in attributes:
+        attributes["flag_values"] = np.array(attributes["flag_values"], dtype=array.variable.dtype)
+    chunks = {"preferred_chunks": dict(zip(dims, array.chunk, strict=True))}
+    return xr.Variable(dims, indexing.LazilyIndexedArray(_LazyArray(array)), attributes, chunks)
+
+
 def _fill_new(path: Path, sweep: Sweep, layout: Layout, blocks: Blocks) -> None:
-    chunks, design = Chunks(path, blocks, layout.variables), sweep.design
     path.mkdir()
-    for variable, own in chunks.arrays:
-        inner = chunk_shape(variable, own)
-        counts = (*(max(1, count) for count in own.counts), *(1 for _ in variable.shape))
-        configuration = {"chunk_shape": inner, "codecs": CODECS, "index_codecs": CODECS[:1], "index_location": "start"}
-        _describe_array(
-            path / variable.name,
-            variable,
-            shape=(*own.shape, *variable.shape),
-            chunks=tuple(count * edge for count, edge in zip(counts, inner, strict=True)),
-            codecs=({"name": "sharding_indexed", "configuration": configuration},),
-            dims=("chunk",) if variable is SEAL else (*design.dims, *variable.dims),
-        )
-    chunks.create()
+    design, everything = sweep.design, whole(sweep.design)
+    for array in Chunks(path, blocks, layout.variables).arrays.values():
+        array.create(("chunk",) if array.variable is SEAL else (*design.dims, *array.variable.dims))
     for place, (dim, length) in enumerate(zip(design.dims, design.shape, strict=True)):
-        own, names = blocks_of_axis(length), [name for name, along in design.coordinate_dims.items() if along == dim]
-        for name in names:
-            axis = Variable(name, np.dtype(float), (), (), attributes_of(name))
-            _describe_array(path / name, axis, shape=own.shape, chunks=own.edges, codecs=CODECS, dims=(dim,))
-        for block in own:  # random and given points may be numerous
-            slices = (*whole(design)[:place], *block.slices, *whole(design)[place + 1 :])
-            values = design.coordinates(slices)
-            for name in names:
-                chunk = np.pad(values[name], (0, own.edges[0] - block.size), constant_values=np.nan)
-                chunk_file(path / name, (block.index,)).write_bytes(encoded(chunk))
+        axes = [axis(path, name, length) for name, along in design.coordinate_dims.items() if along == dim]
+        for one in axes:
+            one.create((dim,))
+        for block in axes[0].blocks:  # random and given points may be numerous
+            values = design.coordinates((*everything[:place], *block.slices, *everything[place + 1 :]))
+            for one in axes:
+                with one.shard("r+b") as shard:
+                    shard.write(block.index, one.encoded(block, values[one.variable.name]))
     attributes = _attributes(sweep, layout, blocks)
     metadata = {"attributes": attributes, "zarr_format": 3, "node_type": "group"}
     attributes[_SEAL] = _digest(path, json.loads(json.dumps(metadata)))
-    (path / METADATA).write_text(json.dumps(metadata, indent=2), "utf-8")
-
-
-def _describe_array(
-    path: Path,
-    variable: Variable,
-    *,
-    shape: tuple[int, ...],
-    chunks: tuple[int, ...],
-    codecs: tuple[dict[str, Any], ...],
-    dims: tuple[str, ...],
-) -> None:
-    """Make the folder of an array with its metadata."""
-    fill = variable.fill
-    metadata = {
-        "shape": shape,
-        "data_type": variable.dtype.name,
-        "chunk_grid": {"name": "regular", "configuration": {"chunk_shape": chunks}},
-        "chunk_key_encoding": {"name": "default", "configuration": {"separator": "."}},
-        "fill_value": "NaN" if np.isnan(fill) else np.asarray(fill).item(),
-        "codecs": codecs,
-        "attributes": _plain(variable.attributes),
-        "dimension_names": dims,
-        "zarr_format": 3,
-        "node_type": "array",
-        "storage_transformers": (),
-    }
-    path.mkdir()
     (path / METADATA).write_text(json.dumps(metadata, indent=2), "utf-8")
 
 
@@ -343,18 +325,15 @@ def _digest(path: Path, metadata: Mapping[str, Any]) -> str | None:
             content = (path / name / METADATA).read_bytes()
             digest.update(f" {name} {len(content)} ".encode() + content)
         for name in axes:
-            for index in range(_count(path / name)):
-                digest.update(checksum(chunk_file(path / name, (index,)).read_bytes()))
+            array = axis(path, name, _metadata(path / name)["shape"][0])
+            with array.shard() as shard:
+                for index in range(len(array.blocks)):
+                    if not shard.holds(index):
+                        return None
+                    digest.update(checksum(shard.content(index)))
     except (OSError, ValueError, KeyError, TypeError, AttributeError):
         return None
     return digest.hexdigest()
-
-
-def _count(array: Path) -> int:
-    """Return the number of chunks of an `array` of one dimension, from its metadata."""
-    metadata = json.loads((array / METADATA).read_bytes())
-    (length,), (edge,) = metadata["shape"], metadata["chunk_grid"]["configuration"]["chunk_shape"]
-    return -(-int(length) // int(edge))
 
 
 def _require_room(path: Path, needed: int) -> None:
@@ -371,7 +350,3 @@ def _size(count: int) -> str:
     while size >= 1000.0 and len(units) > 1:  # noqa: PLR2004  SI prefixes
         size, units = size / 1000.0, units[1:]
     return f"{size:.3g} {units[0]}"
-
-
-def _plain(attributes: Mapping[str, Any]) -> dict[str, Any]:
-    return {name: value.tolist() if isinstance(value, np.ndarray) else value for name, value in attributes.items()}
