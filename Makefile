@@ -105,6 +105,7 @@ bench: $(VENV)/.core $(VENV)/.test  ## the benchmarks, beside the engines that c
 	$(BIN)/python -m pytest benchmarks --benchmark-enable --benchmark-only
 	$(BIN)/python -m benchmarks.ensembles
 	$(BIN)/python -m benchmarks.ensembles.columns
+	$(BIN)/python -m benchmarks.ensembles.stores
 	$(BIN)/python -m benchmarks.ensembles.levels
 	$(BIN)/python -m benchmarks.ensembles.shares
 	$(BIN)/python -m benchmarks.ensembles.precision

@@ -8,7 +8,6 @@ import re
 import secrets
 import shutil
 import stat
-import threading
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
 from io import StringIO
@@ -79,35 +78,6 @@ def written_aside(path: str | Path) -> Iterator[Path]:
         raise FileError(f"cannot write {path}: {error.strerror or error}") from None
 
 
-def replace_in_store(path: str, content: bytes) -> None:
-    """Write a file of a store, whole or not at all, with as few calls of the system as that takes.
-
-    `remove_left_behind` removes the parts that killed processes left in a folder.
-    """
-    folder, name = os.path.split(path)
-    stem, suffix = os.path.splitext(name)  # noqa: PTH122  pathlib takes longer than the disk, as below
-    token = f"{_MACHINE}-{os.getpid()}-{threading.get_ident():x}"
-    beside = os.path.join(folder, f".{stem[:_STEM]}.{token}.part{suffix}")  # noqa: PTH118
-    try:
-        try:
-            _fill(beside, content)
-        except FileNotFoundError:
-            os.makedirs(folder, exist_ok=True)  # noqa: PTH103
-            _fill(beside, content)
-        os.replace(beside, path)  # noqa: PTH105
-    except BaseException as error:
-        with suppress(OSError):
-            os.unlink(beside)  # noqa: PTH108
-        if isinstance(error, OSError):
-            raise FileError(f"cannot write {path}: {error.strerror or error}") from None
-        raise
-
-
-def _fill(path: str, content: bytes) -> None:
-    with open(path, "wb", buffering=0) as file:  # noqa: PTH123
-        file.write(content)
-
-
 def _target(path: str | Path) -> Path:
     try:
         target = Path(os.path.realpath(path))
@@ -127,19 +97,12 @@ def _remove(path: Path) -> None:
 
 def _remove_left_behind(target: Path) -> None:
     """Remove the parts of the file `target` whose writers, on this machine, are no longer alive."""
-    remove_left_behind(target.parent, re.escape(target.stem[:_STEM]), re.escape(target.suffix))
-
-
-def remove_left_behind(folder: str | Path, stem: str = ".*", suffix: str = ".*") -> None:
-    """Remove the parts of files in a folder whose writers, on this machine, are no longer alive.
-
-    `stem` and `suffix` are regular expressions for the names of the files.
-    """
+    stem, suffix = re.escape(target.stem[:_STEM]), re.escape(target.suffix)
     name = re.compile(rf"\.{stem}\.{_MACHINE}-(\d+)-[0-9a-f]+\.part{suffix}")
     with suppress(OSError):  # the folder cannot be listed, or a part belongs to another user
-        for other in os.listdir(folder):  # noqa: PTH208  a store may have many thousand files in a folder
-            if other[0] == "." and (match := name.fullmatch(other)) and not _is_alive(int(match[1])):
-                _remove(Path(folder) / other)
+        for other in target.parent.iterdir():
+            if (match := name.fullmatch(other.name)) and not _is_alive(int(match[1])):
+                _remove(other)
 
 
 def _is_alive(process: int) -> bool:

@@ -43,6 +43,20 @@ def test_a_scheduler_is_reached_by_its_address(points, client, assert_same_array
     assert_same_arrays(run_sweep(points, executor=executor, chunk_size=1), undisturbed(points))
 
 
+def test_short_blocks_travel_together(client, counting, monkeypatch):
+    sweep, sent, submit = Sweep.points(MODEL, MOTION, at={"tilt_x": [0.01] * 150}, duration=0.01), [], client.submit
+
+    def counted(*arguments, **options):
+        sent.append(options["key"])
+        return submit(*arguments, **options)
+
+    monkeypatch.setattr(client, "submit", counted)
+    workers = counting(Dask(client=client))
+    run_sweep(sweep, executor=workers, chunk_size=1)
+    assert sorted(workers.blocks) == list(range(150))
+    assert len(sent) < 75
+
+
 def test_a_result_is_saved_while_a_dask_client_is_active(client, tmp_path):
     run = sb.simulate(MODEL, MOTION, tilt=(0.01, 0.0), duration=1.0)
     with client.as_current():

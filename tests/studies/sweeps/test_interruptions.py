@@ -5,11 +5,14 @@ import re
 import signal
 import subprocess
 import sys
+from contextlib import suppress
 
+import numpy as np
 import pytest
 
 from stylobate.studies.sweeps import Threads, run_sweep
-from stylobate.studies.sweeps.chunks import Blocks, Chunks, ChunkState
+from stylobate.studies.sweeps.chunks import Blocks, Chunks, ChunkState, Shard
+from stylobate.studies.sweeps.store import open_sweep
 
 DRIVER = """
 import os, signal, sys, time
@@ -74,3 +77,43 @@ def test_ctrl_c_in_a_terminal_stops_at_once_and_leaves_a_store_to_go_on_with(
     assert int(stopped[1]) < 20
     data = run_sweep(grid, store=tmp_path / "sweep.zarr", resume=True, executor=Threads(1))
     assert_same_arrays(data, undisturbed(grid))
+
+
+class KilledError(BaseException):
+    """The process ends here."""
+
+
+@pytest.mark.parametrize("begun", [False, True])
+def test_a_writer_killed_at_any_write_leaves_a_store_that_goes_on(grid, tmp_path, undisturbed, monkeypatch, begun):
+    path, left, write = tmp_path / "sweep.zarr", 0, Shard._write
+    run_sweep(grid, store=path, chunk_size=5)
+    chunks, whole = Chunks(path, Blocks.of(grid.shape, 5), grid.layout.variables), undisturbed(grid)
+    block = chunks.blocks[1]
+    arrays = chunks.read(block)
+    some = {one.name: np.where(np.arange(5) < 3, arrays[one.name].T, one.fill).T for one in chunks.variables}
+
+    def dying(shard, place, content):
+        nonlocal left
+        left -= 1
+        if left < 0:
+            write(shard, place, content[: len(content) // 2] if len(content) > 16 else b"")
+            raise KilledError
+        write(shard, place, content)
+
+    for writes in range(200):
+        chunks.forget(1)
+        if begun:
+            chunks.write(block, some, done=False)
+        left = writes
+        with monkeypatch.context() as patch, suppress(KilledError):
+            patch.setattr(Shard, "_write", dying)
+            chunks.write(block, arrays, done=True)
+        found = open_sweep(path, load=True)
+        computed = found["outcome"] >= 0
+        for name in found.data_vars:
+            assert found[name].where(computed).equals(whole[name].where(computed)), name
+        if left >= 0:
+            break
+        chunks.write(block, arrays, done=True)
+        assert chunks.state(1) is ChunkState.DONE
+    assert 50 < writes < 200

@@ -2,8 +2,8 @@
 
 import importlib
 import linecache
-import os
 import shutil
+import subprocess
 import sys
 from dataclasses import replace
 
@@ -16,6 +16,7 @@ import stylobate as sb
 from stylobate.errors import FileError
 from stylobate.files import _MACHINE
 from stylobate.studies.sweeps import Sweep, run_sweep
+from stylobate.studies.sweeps.chunks import Blocks, Chunks, encoded
 from stylobate.studies.sweeps.fingerprint import identity_of
 from stylobate.studies.sweeps.store import differences, open_sweep
 
@@ -28,6 +29,10 @@ def path(tmp_path):
     return tmp_path / "folder" / "sweep.zarr"
 
 
+def chunks_of(sweep, path):
+    return Chunks(path, Blocks.of(sweep.shape, 5), sweep.layout.variables)
+
+
 def test_a_finished_store_is_read_and_not_computed(sweep, path, counting, assert_same_arrays):
     first, second = counting(), counting()
     data = run_sweep(sweep, store=path, chunk_size=3, executor=first)
@@ -38,7 +43,8 @@ def test_a_finished_store_is_read_and_not_computed(sweep, path, counting, assert
 
 def test_only_missing_blocks_are_computed(grid, path, counting, assert_same_arrays, undisturbed):
     run_sweep(grid, store=path, chunk_size=5)
-    (path / "seal" / "c" / "2").unlink()
+    with chunks_of(grid, path).shards("r+b") as shards:
+        shards["seal"].forget(2)
     again = counting()
     assert_same_arrays(run_sweep(grid, store=path, resume=True, executor=again), undisturbed(grid))
     assert again.blocks == [2]
@@ -46,21 +52,24 @@ def test_only_missing_blocks_are_computed(grid, path, counting, assert_same_arra
 
 def test_data_torn_before_the_outcomes_are_computed_again(grid, path, assert_same_arrays, undisturbed):
     run_sweep(grid, store=path, chunk_size=5)
-    for file in ("seal/c/1", "outcome/c/1/0"):  # written last: the process died before
-        (path / file).unlink()
-    zarr.open_group(path)["end_tilt"][1] = 7.0
+    with chunks_of(grid, path).shards("r+b") as shards:
+        for name in ("seal", "outcome"):  # written last: the process died before
+            shards[name].forget(1)
+        shards["end_tilt"].write(1, encoded(np.full((1, 5, 2), 7.0)))
     assert_same_arrays(run_sweep(grid, store=path, resume=True), undisturbed(grid))
 
 
-def test_parts_of_dead_writers_are_removed_and_those_of_living_ones_stay(grid, path, assert_same_arrays, undisturbed):
-    run_sweep(grid, store=path, chunk_size=5)
-    folder = path / "outcome" / "c"
-    dead, living = (folder / f".0.{_MACHINE}-{process}-a1.part" for process in (2**30, os.getpid()))
-    for part in (dead, living):
-        part.write_bytes(b"torn")
-    assert_same_arrays(run_sweep(grid, store=path, resume=True), undisturbed(grid))
-    assert not dead.exists()
-    assert living.exists()
+def test_a_store_gains_no_file_whatever_the_number_of_chunks(grid, path):
+    files = []
+
+    def look(done, total):
+        files.append({str(file.relative_to(path)) for file in path.rglob("*")})
+
+    run_sweep(grid, store=path, chunk_size=3, progress=look)
+    assert len(files) > 5
+    shutil.rmtree(path)
+    run_sweep(grid, store=path, progress=look)
+    assert all(found == files[0] for found in files)
 
 
 def test_resume_begins_where_there_is_no_store(points, path, assert_same_arrays, undisturbed):
@@ -191,6 +200,29 @@ def test_a_disk_that_fills_up_is_told_and_the_store_goes_on(points, path, monkey
         with pytest.raises(FileError, match=r"No space left on device\. Continue it with resume=True"):
             run_sweep(points, store=path)
     assert_same_arrays(run_sweep(points, store=path, resume=True), undisturbed(points))
+
+
+KEYS = ({}, {"run": 4}, {"run": -1}, {"run": slice(None, None, -3)}, {"run": [5, 0, 5]}, {"run": slice(2, 2)})
+
+
+@pytest.mark.parametrize("key", [*KEYS, {"axis": 1}, {"axis": [1, 0], "run": slice(1, 9, 2)}])
+def test_a_selection_is_that_of_the_arrays_in_memory(random, path, key, assert_same_arrays):
+    whole = run_sweep(random)
+    run_sweep(random, store=path, chunk_size=3)
+    assert_same_arrays(sb.load(path).isel(key).load(), whole.isel(key))
+    assert_same_arrays(sb.load(path).chunk(run=2).isel(key).load(), whole.isel(key))
+
+
+def test_a_store_is_written_and_read_without_zarr(path):
+    program = (
+        "import sys; import stylobate as sb; from stylobate.studies.sweeps import Sweep, run_sweep; "
+        "model = sb.Slender(sb.Column.dimensionless(slenderness=0.1)); "
+        "sweep = Sweep.points(model, at={'tilt_x': [0.01, 0.02]}, duration=1.0); "
+        "run_sweep(sweep, store=sys.argv[1]); sb.load(sys.argv[1]).load(); "
+        "print(sorted({'zarr', 'numcodecs'} & set(sys.modules)))"
+    )
+    done = subprocess.run([sys.executable, "-c", program, str(path)], capture_output=True, text=True, check=True)
+    assert done.stdout == "[]\n"
 
 
 def test_other_software_opens_a_store(random, path):

@@ -1,16 +1,19 @@
 """Computation of a sweep in chunks: recipe of a run, blocks of runs, layout of the results."""
 
 import hashlib
+import json
 import math
-import os
+import struct
 from collections.abc import Iterator, Mapping
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from enum import Enum, auto
+from io import BytesIO
+from itertools import product
 from pathlib import Path
-from typing import Any
+from typing import IO, Any
 
 import google_crc32c
-import lazy_loader
 import numpy as np
 import numpy.typing as npt
 import xarray as xr
@@ -20,7 +23,6 @@ from stylobate.base_motions.combined import members_of
 from stylobate.base_motions.declared import stated_numbers, with_numbers
 from stylobate.engine import simulate_ensemble
 from stylobate.errors import Interrupted
-from stylobate.files import remove_left_behind, replace_in_store
 from stylobate.models import Model
 from stylobate.parameter_quantities import attributes_of
 from stylobate.progress import Report
@@ -72,9 +74,6 @@ class Recipe:
             return self.periods * np.array([motion.period for motion in changed], dtype=float)[which.ravel()]
         return self.periods * self.motion.period
 
-
-DISK_BLOCK = 4096
-"""Size of the smallest file on disk [bytes]."""
 
 # Target number of blocks of a sweep; minimum and maximum number of runs in a block.
 _USUAL_COUNT, _SMALLEST, _LARGEST = 64, 1024, 16384
@@ -141,10 +140,6 @@ class Blocks:
 def usual_size(runs: int) -> int:
     """Return the default maximum number of runs in a block of a sweep of `runs` runs."""
     return min(max(_SMALLEST, -(-runs // _USUAL_COUNT)), _LARGEST)
-
-
-# Size of a value of a coordinate [bytes].
-_FLOAT = 8
 
 
 @dataclass(frozen=True, slots=True)
@@ -215,26 +210,6 @@ def dataset(
     return xr.Dataset(data, coords={**coordinates, **layout.labels}, attrs=dict(attributes))
 
 
-def bytes_on_disk(layout: Layout, design: Design, blocks: Blocks) -> int:
-    """Return the maximum size of results and coordinates on disk [bytes]: no compression, whole disk blocks."""
-    if not len(blocks):
-        return DISK_BLOCK
-    places = [design.dims.index(dim) for dim in design.coordinate_dims.values()]
-    coordinates = sum(blocks.counts[place] * _on_disk(_FLOAT * blocks.edges[place]) for place in places)
-    return len(blocks) * bytes_of_block(layout, blocks[0]) + coordinates
-
-
-def bytes_of_block(layout: Layout, block: GridBlock) -> int:
-    """Return the maximum size of one `block` on disk, with its mark [bytes]."""
-    sizes = (variable.bytes_of_a_run * block.size for variable in layout.variables)
-    return DISK_BLOCK + sum(_on_disk(size) for size in sizes)
-
-
-def _on_disk(size: int) -> int:
-    """Return the maximum size of a chunk on disk; its compressed form can be larger by 1/256 and 72 bytes."""
-    return -(-(size + size // 256 + 72) // DISK_BLOCK) * DISK_BLOCK
-
-
 Arrays = dict[str, npt.NDArray[Any]]
 
 
@@ -270,28 +245,25 @@ def _arrays(result: xr.Dataset) -> Arrays:
     return {str(name): np.asarray(array.values) for name, array in result.data_vars.items()}
 
 
-numcodecs: Any = lazy_loader.load("numcodecs")
-"""Loaded when the first store is opened."""
-
 METADATA = "zarr.json"
 """Name of the file with the metadata of an array or a store."""
 OUTCOME = "outcome"
 """Name of the array that is written after the other data."""
 SEAL = Variable("seal", np.dtype(np.uint64), (), (), {})
-"""The array with the seal of each block, written last; its lowest bit is 1 if all runs of the block are computed."""
-CODECS: tuple[dict[str, Any], ...] = (
-    {"name": "zstd", "configuration": {"level": 0, "checksum": False}},
-    {"name": "crc32c"},
-)
-"""The codecs of a chunk, as Zarr names them."""
-# Size of a checksum [bytes].
-_CHECKSUM = 4
-# A number that is no seal.
-_NO_SEAL = -1
+"""The array with the seal of each block, written last; it marks the block as finished or begun."""
+CODECS: tuple[dict[str, Any], ...] = ({"name": "bytes", "configuration": {"endian": "little"}}, {"name": "crc32c"})
+"""The codecs of a chunk, as Zarr names them; without compression all chunks of an array have one size."""
+# Sizes of a checksum and of the smallest file on disk [bytes].
+_CHECKSUM, _DISK_BLOCK = 4, 4096
+# Maximum number of values in a chunk of an axis.
+_AXIS_CHUNK = 2**17
+# An entry of the index of a shard: place and size of a chunk [bytes]; or the entry for a chunk that is not written.
+_ENTRY = struct.Struct("<QQ")
+_ABSENT = b"\xff" * _ENTRY.size
 
 
 class ChunkState(Enum):
-    """State of the chunk files of a block."""
+    """State of the chunks of a block."""
 
     DONE = auto()
     BEGUN = auto()
@@ -301,8 +273,164 @@ class ChunkState(Enum):
 
 
 @dataclass(frozen=True, slots=True)
+class Shard:
+    """An open file with the `count` chunks of one array, each of `size` bytes with its checksum, behind their index.
+
+    It is a shard of Zarr that is written in place, because a disk takes many times longer to create a file. An entry
+    is written after its chunk, and removed before its chunk is written again: a reader finds no part of a chunk.
+    """
+
+    file: IO[bytes]
+    count: int
+    size: int
+
+    def entry(self, index: int) -> bytes:
+        """Return the entry of a chunk."""
+        return self._read(_ENTRY.size * index, _ENTRY.size)
+
+    def holds(self, index: int) -> bool:
+        """Return whether a chunk is written; raise ValueError if its entry is damaged."""
+        entry = self.entry(index)
+        if entry not in (_ABSENT, self._entry_of(index)):
+            raise ValueError("a file of a store is damaged: its index is not as it was written")
+        return entry != _ABSENT
+
+    def content(self, index: int) -> bytes:
+        """Return the bytes in the place of a chunk."""
+        return self._read(self._place(index), self.size)
+
+    def write(self, index: int, content: bytes) -> None:
+        """Write a chunk that is not in the index."""
+        self._write(self._place(index), content)
+        self._write(_ENTRY.size * index, self._entry_of(index))
+
+    def forget(self, index: int) -> None:
+        """Remove a chunk from the index."""
+        self._write(_ENTRY.size * index, _ABSENT)
+
+    def _place(self, index: int) -> int:
+        return _ENTRY.size * self.count + self.size * index
+
+    def _entry_of(self, index: int) -> bytes:
+        return _ENTRY.pack(self._place(index), self.size)
+
+    def _read(self, place: int, size: int) -> bytes:
+        self.file.seek(place)
+        content = self.file.read(size)
+        while len(content) < size and (more := self.file.read(size - len(content))):
+            content += more
+        return content
+
+    def _write(self, place: int, content: bytes) -> None:
+        self.file.seek(place)
+        rest = memoryview(content)
+        while rest:
+            rest = rest[self.file.write(rest) :]
+
+
+@dataclass(frozen=True, slots=True)
+class StoredArray:
+    """The array of a `variable` over `blocks` in the store at `path`: a folder with metadata and one shard."""
+
+    path: Path
+    variable: Variable
+    blocks: Blocks
+
+    @property
+    def folder(self) -> Path:
+        """Folder of the array."""
+        return self.path / self.variable.name
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Lengths of the dimensions."""
+        return (*self.blocks.shape, *self.variable.shape)
+
+    @property
+    def chunk(self) -> tuple[int, ...]:
+        """Lengths of a chunk."""
+        return (*self.blocks.edges, *(max(1, length) for length in self.variable.shape))
+
+    @property
+    def chunk_size(self) -> int:
+        """Size of a chunk with its checksum [bytes]."""
+        return self.variable.bytes_of_a_run * math.prod(self.blocks.edges) + _CHECKSUM
+
+    @property
+    def file_size(self) -> int:
+        """Size of the complete shard [bytes]."""
+        return len(self.blocks) * (_ENTRY.size + self.chunk_size)
+
+    @property
+    def _file(self) -> Path:
+        return self.folder / ".".join(("c", *("0" for _ in self.shape)))
+
+    def create(self, dims: tuple[str, ...]) -> None:
+        """Write the metadata, for `dims` as names of the dimensions, and the shard without chunks."""
+        counts = (*(max(1, count) for count in self.blocks.counts), *(1 for _ in self.variable.shape))
+        codecs = {"chunk_shape": self.chunk, "codecs": CODECS, "index_codecs": CODECS[:1], "index_location": "start"}
+        grid = {"chunk_shape": [count * edge for count, edge in zip(counts, self.chunk, strict=True)]}
+        attributes, fill = self.variable.attributes, self.variable.fill
+        metadata = {
+            "shape": self.shape,
+            "data_type": self.variable.dtype.name,
+            "chunk_grid": {"name": "regular", "configuration": grid},
+            "chunk_key_encoding": {"name": "default", "configuration": {"separator": "."}},
+            "fill_value": "NaN" if np.isnan(fill) else np.asarray(fill).item(),
+            "codecs": [{"name": "sharding_indexed", "configuration": codecs}],
+            "attributes": {n: v.tolist() if isinstance(v, np.ndarray) else v for n, v in attributes.items()},
+            "dimension_names": dims,
+            "zarr_format": 3,
+            "node_type": "array",
+            "storage_transformers": [],
+        }
+        self.folder.mkdir()
+        (self.folder / METADATA).write_text(json.dumps(metadata, indent=2), "utf-8")
+        self._file.write_bytes(_ABSENT * len(self.blocks))
+
+    @contextmanager
+    def shard(self, mode: str = "rb") -> Iterator[Shard]:
+        """Open the shard; a lost file is an empty one."""
+        with _opened(self._file, mode) as file:
+            yield Shard(file, len(self.blocks), self.chunk_size)
+
+    def encoded(self, block: GridBlock, values: npt.NDArray[Any]) -> bytes:
+        """Return the chunk with these values of a block; the last one along a dimension is filled up, as Zarr does."""
+        whole = self.variable.empty(self.blocks.edges)
+        whole[_inner(block)] = np.asarray(values).reshape(*block.shape, *self.variable.shape)
+        return encoded(whole)
+
+    def decoded(self, chunk: bytes) -> npt.NDArray[Any]:
+        """Return the values of a chunk; raise ValueError if it does not match its checksum."""
+        checksum(chunk)
+        values = np.frombuffer(chunk[:-_CHECKSUM], self.variable.dtype)
+        return values.reshape(*self.blocks.edges, *self.variable.shape)
+
+    def read(self, key: tuple[Any, ...]) -> npt.NDArray[Any]:
+        """Return a part of the array, from the chunks that it touches; `key` selects along each dimension by itself."""
+        places = [np.atleast_1d(np.arange(length)[part]) for length, part in zip(self.shape, key, strict=True)]
+        owners = [place // edge for place, edge in zip(places, self.chunk, strict=True)]
+        found = np.full([place.size for place in places], self.variable.fill, self.variable.dtype)
+        with self.shard() as shard:
+            for corner in product(*map(np.unique, owners)):
+                index = int(np.ravel_multi_index(corner[: len(self.blocks.shape)], self.blocks.counts))
+                if shard.holds(index):
+                    inside = [np.flatnonzero(owner == one) for owner, one in zip(owners, corner, strict=True)]
+                    parts = zip(places, inside, corner, self.chunk, strict=True)
+                    source = [place[chosen] - one * edge for place, chosen, one, edge in parts]
+                    found[np.ix_(*inside)] = self.decoded(shard.content(index))[np.ix_(*source)]
+        return found[tuple(0 if isinstance(part, (int, np.integer)) else slice(None) for part in key)]
+
+
+def axis(path: Path, name: str, length: int) -> StoredArray:
+    """Return the array of an axis with `length` values in the store at `path`."""
+    variable = Variable(name, np.dtype(float), (), (), attributes_of(name))
+    return StoredArray(path, variable, Blocks.of((length,), _AXIS_CHUNK))
+
+
+@dataclass(frozen=True, slots=True)
 class Chunks:
-    """The chunk files of the results in the store at `path`.
+    """The chunks of the results in the store at `path`: one in the shard of each array for each block.
 
     Parameters
     ----------
@@ -318,154 +446,144 @@ class Chunks:
     blocks: Blocks
     variables: tuple[Variable, ...]
 
-    def state(self, index: int) -> ChunkState:
-        """Return the state of a block: DAMAGED if a file is missing or is not the file that was written there."""
-        while True:
-            seal = self._seal(index)
-            found = self._state(index, seal)
-            # Another process may be writing this block.
-            if found is not ChunkState.DAMAGED or self._seal(index) == seal:
-                return found
+    @property
+    def arrays(self) -> dict[str, StoredArray]:
+        """The arrays in the order of writing: data, outcomes, seals."""
+        results = sorted(self.variables, key=lambda variable: variable.name == OUTCOME)
+        arrays = [StoredArray(self.path, variable, self.blocks) for variable in results]
+        seals = StoredArray(self.path, SEAL, Blocks((len(self.blocks),), (1,)))
+        return {array.variable.name: array for array in (*arrays, seals)}
 
-    def _state(self, index: int, seal: int | None) -> ChunkState:
-        if seal is None and not self._file(self._outcome, index).exists():
-            return ChunkState.OPEN  # whatever an interrupted writer has left
-        checksums = {name: checksum(file) for name, file in self.files(index).items() if file.exists()}
-        if None in checksums.values() or (OUTCOME in checksums and len(checksums) < len(self.variables)):
-            return ChunkState.DAMAGED
-        if seal is None:
-            return ChunkState.OPEN
-        done = bool(seal & 1)
-        if len(checksums) < len(self.variables) or seal != _seal_of(index, checksums, done=done):
-            return ChunkState.DAMAGED
-        return ChunkState.DONE if done else ChunkState.BEGUN
+    def state(self, index: int) -> ChunkState:
+        """Return the state of a block: DAMAGED if a chunk is missing or is not the chunk that was written there."""
+        with self.shards() as shards:
+            return _state(shards, index)
 
     def states(self) -> dict[int, ChunkState]:
         """Return the state of each block."""
-        return {index: self.state(index) for index in range(len(self.blocks))}
+        with self.shards() as shards:
+            return {index: _state(shards, index) for index in range(len(self.blocks))}
 
     def write(self, block: GridBlock, arrays: Mapping[str, npt.NDArray[Any]], *, done: bool) -> None:
         """Write the results of a `block`, flat over its runs: data, then outcomes, then the seal.
 
         Raises
         ------
-        FileError
+        OSError
             If a file cannot be written.
         """
-        files = self.files(block.index)
-        self._seal_file(block.index).unlink(missing_ok=True)  # of the runs that an interrupted task had stored
-        checksums = {}
-        for variable in sorted(self.variables, key=lambda variable: variable.name == OUTCOME):
-            content = self._encoded(block, variable, arrays[variable.name])
-            checksums[variable.name] = content[-_CHECKSUM:]
-            replace_in_store(str(files[variable.name]), content)
-        seal = np.array([_seal_of(block.index, checksums, done=done)], SEAL.dtype)
-        replace_in_store(str(self._seal_file(block.index)), encoded(seal))
+        stored = self.arrays
+        chunks = {one.name: stored[one.name].encoded(block, arrays[one.name]) for one in self.variables}
+        checksums = {name: chunk[-_CHECKSUM:] for name, chunk in chunks.items()}
+        chunks[SEAL.name] = _seal_of(block.index, checksums, done=done)
+        with self.shards("r+b") as shards:
+            _forget(shards, block.index)  # the runs that an interrupted task had stored
+            for name, shard in shards.items():
+                shard.write(block.index, chunks[name])
 
     def read(self, block: GridBlock) -> Arrays:
         """Return the results of a complete `block`, flat over its runs."""
-        files = self.files(block.index)
-        return {one.name: self._decoded(block, one, files[one.name].read_bytes()) for one in self.variables}
+        inner, stored = _inner(block), self.arrays
+        with self.shards() as shards:
+            wholes = [(one, stored[one.name].decoded(shards[one.name].content(block.index))) for one in self.variables]
+        return {one.name: whole[inner].reshape(block.size, *one.shape).copy() for one, whole in wholes}
 
     def forget(self, index: int) -> None:
-        """Remove the files of a block, in the reverse order of writing."""
-        for file in (self._seal_file(index), *self.files(index).values()):
-            file.unlink(missing_ok=True)
+        """Remove the chunks of a block, in the reverse order of writing."""
+        with self.shards("r+b") as shards:
+            _forget(shards, index)
 
-    def files(self, index: int) -> dict[str, Path]:
-        """Return the files of the results of a block by the name of the array, the outcomes first."""
-        variables = sorted(self.variables, key=lambda variable: variable.name != OUTCOME)
-        return {one.name: self._file(one, index) for one in variables}
-
-    def remove_left_behind(self) -> None:
-        """Remove the parts of files that killed writers on this machine have left."""
-        for folder, _, _ in os.walk(self.path):
-            remove_left_behind(folder)
-
-    @property
-    def _outcome(self) -> Variable:
-        return next(one for one in self.variables if one.name == OUTCOME)
-
-    def _file(self, variable: Variable, index: int) -> Path:
-        place = map(int, np.unravel_index(index, self.blocks.counts))
-        return chunk_file(self.path / variable.name, (*place, *(0 for _ in variable.shape)))
-
-    def _seal_file(self, index: int) -> Path:
-        return chunk_file(self.path / SEAL.name, (index,))
-
-    def _seal(self, index: int) -> int | None:
-        """Return the seal of a block; None if it has none, −1 if its file is damaged."""
-        file = self._seal_file(index)
-        if not file.exists():
-            return None
-        try:
-            (seal,) = decoded(file.read_bytes(), SEAL.dtype)
-        except FileNotFoundError:
-            return None
-        except (OSError, ValueError):
-            return _NO_SEAL
-        return int(seal)
-
-    def _encoded(self, block: GridBlock, variable: Variable, values: npt.NDArray[Any]) -> bytes:
-        """Return the chunk of a variable; the last chunk along a dimension is filled up, as Zarr does."""
-        whole = variable.empty(self.blocks.edges)
-        whole[_inner(block)] = np.asarray(values).reshape(*block.shape, *variable.shape)
-        return encoded(whole)
-
-    def _decoded(self, block: GridBlock, variable: Variable, content: bytes) -> npt.NDArray[Any]:
-        whole = decoded(content, variable.dtype).reshape(*self.blocks.edges, *variable.shape)
-        return whole[_inner(block)].reshape(block.size, *variable.shape)
+    @contextmanager
+    def shards(self, mode: str = "rb") -> Iterator[dict[str, Shard]]:
+        """Open the shards, by the name of the array in the order of writing; a lost file is an empty one."""
+        with ExitStack() as stack:
+            yield {name: stack.enter_context(array.shard(mode)) for name, array in self.arrays.items()}
 
 
-def chunk_file(array: Path, place: tuple[int, ...]) -> Path:
-    """Return the file of the chunk of an `array` at this index."""
-    return array.joinpath("c", *map(str, place))
-
-
-def checksum(file: Path) -> bytes | None:
-    """Return the checksum of a chunk file; None if the file cannot be read or does not match its checksum."""
+def _opened(path: Path, mode: str) -> IO[bytes]:
     try:
-        return _checked(file.read_bytes())[1]
-    except (OSError, ValueError):
-        return None
+        return path.open(mode, buffering=0)
+    except OSError:
+        if mode == "rb":
+            return BytesIO()
+    path.touch()
+    return path.open(mode, buffering=0)
+
+
+def _state(shards: dict[str, Shard], index: int) -> ChunkState:
+    while True:
+        marks = _marks(shards, index)
+        found = _state_now(shards, index)
+        # Another process may be writing this block.
+        if found is not ChunkState.DAMAGED or _marks(shards, index) == marks:
+            return found
+
+
+def _marks(shards: Mapping[str, Shard], index: int) -> list[bytes]:
+    """Return the bytes of a block that each of its writers changes."""
+    return [shards[SEAL.name].content(index), *(shard.entry(index) for shard in shards.values())]
+
+
+def _state_now(shards: Mapping[str, Shard], index: int) -> ChunkState:
+    try:
+        held = {name for name, shard in shards.items() if shard.holds(index)}
+        if OUTCOME not in held and SEAL.name not in held:
+            return ChunkState.OPEN  # whatever an interrupted writer has left
+        checksums = {name: checksum(shards[name].content(index)) for name in shards if name != SEAL.name}
+    except ValueError:
+        return ChunkState.DAMAGED
+    if not held.issuperset(checksums):
+        return ChunkState.DAMAGED
+    if SEAL.name not in held:
+        return ChunkState.OPEN
+    for state, done in ((ChunkState.DONE, True), (ChunkState.BEGUN, False)):
+        if shards[SEAL.name].content(index) == _seal_of(index, checksums, done=done):
+            return state
+    return ChunkState.DAMAGED
+
+
+def _forget(shards: dict[str, Shard], index: int) -> None:
+    for shard in reversed(shards.values()):
+        shard.forget(index)
 
 
 def encoded(values: npt.NDArray[Any]) -> bytes:
     """Return a chunk as its file holds it."""
-    data = bytes(numcodecs.Zstd(level=0, checksum=False).encode(np.ascontiguousarray(values)))
+    data = values.tobytes()
     return data + _crc(data)
 
 
-def decoded(content: bytes, dtype: np.dtype[Any]) -> npt.NDArray[Any]:
-    """Return the values in the file of a chunk, flat.
-
-    Raises
-    ------
-    ValueError
-        If the file does not match its checksum, or holds no values of this type.
-    """
-    return np.frombuffer(numcodecs.Zstd().decode(_checked(content)[0]), dtype).copy()
-
-
-def _checked(content: bytes) -> tuple[bytes, bytes]:
-    """Return the data and the checksum of a chunk file, or raise ValueError if they do not match."""
-    data, end = content[:-_CHECKSUM], content[-_CHECKSUM:]
-    if _crc(data) != end:
-        raise ValueError("the checksum differs")
-    return data, end
+def checksum(chunk: bytes) -> bytes:
+    """Return the checksum of a chunk; raise ValueError if the chunk does not match it."""
+    if _crc(chunk[:-_CHECKSUM]) != chunk[-_CHECKSUM:]:
+        raise ValueError("a chunk of a store is damaged: its checksum differs")
+    return chunk[-_CHECKSUM:]
 
 
 def _crc(data: bytes) -> bytes:
     return int(google_crc32c.value(data)).to_bytes(_CHECKSUM, "little")
 
 
-def _seal_of(index: int, checksums: Mapping[str, bytes | None], *, done: bool) -> int:
-    """Return the seal of the block at `index` with files of these checksums, by the name of the array."""
-    digest = hashlib.sha256(f"{index}".encode())
+def _seal_of(index: int, checksums: Mapping[str, bytes], *, done: bool) -> bytes:
+    """Return the seal of the block at `index` with chunks of these checksums, by the name of the array."""
+    digest = hashlib.sha256(f"{index} {done}".encode())
     for name in sorted(checksums):
-        digest.update(f" {name} ".encode() + (checksums[name] or b""))
-    return int.from_bytes(digest.digest()[:8], "little") & ~1 | done
+        digest.update(f" {name} ".encode() + checksums[name])
+    return encoded(np.frombuffer(digest.digest()[: SEAL.dtype.itemsize], SEAL.dtype))
 
 
 def _inner(block: GridBlock) -> tuple[slice, ...]:
     return tuple(slice(length) for length in block.shape)
+
+
+def bytes_on_disk(layout: Layout, design: Design, blocks: Blocks) -> int:
+    """Return the size of results, coordinates and metadata on disk [bytes], in whole disk blocks."""
+    lengths = {name: design.shape[design.dims.index(dim)] for name, dim in design.coordinate_dims.items()}
+    axes = [axis(Path(), name, length) for name, length in lengths.items()]
+    arrays = (*axes, *Chunks(Path(), blocks, layout.variables).arrays.values())
+    return _DISK_BLOCK * sum(1 - (-size // _DISK_BLOCK) for size in (0, *(array.file_size for array in arrays)))
+
+
+def bytes_of_block(layout: Layout, blocks: Blocks) -> int:
+    """Return the size of the results of one block on disk [bytes]."""
+    return sum(array.chunk_size for array in Chunks(Path(), blocks, layout.variables).arrays.values())

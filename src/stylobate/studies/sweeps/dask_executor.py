@@ -5,7 +5,7 @@ import logging
 import pickle
 import signal
 import uuid
-from collections.abc import Generator, Iterable, Iterator
+from collections.abc import Generator, Iterable, Iterator, Sequence
 from concurrent.futures import CancelledError
 from contextlib import ExitStack
 from dataclasses import dataclass, field
@@ -62,27 +62,27 @@ def source_digest(package: Path) -> str:
     return digest.hexdigest()
 
 
-class SealedTask:
-    """A task that becomes its result when it is loaded with `pickle.loads`.
+class SealedTasks:
+    """Tasks that become their results when they are loaded with `pickle.loads`.
 
-    Loading imports stylobate inside the task, so that a worker without the package raises ImportError there and
-    the scheduler needs no package. What the task computes is opened only after `perform` has compared the packages.
+    Loading imports stylobate inside the worker, so that a worker without the package raises ImportError there and
+    the scheduler needs no package. What the tasks compute is opened only after `perform` has compared the packages.
     """
 
-    def __init__(self, package: PackageIdentity, work: bytes, task: Task) -> None:
-        self.parts = (package.version, package.source, work, pickle.dumps(task))
+    def __init__(self, package: PackageIdentity, work: bytes, tasks: Sequence[Task]) -> None:
+        self.parts = (package.version, package.source, work, pickle.dumps(tasks))
 
     def __reduce__(self) -> tuple[Any, ...]:
         return perform, self.parts
 
 
-def perform(version: str, source: str, work: bytes, task: bytes) -> Computed:
-    """Compute a task on one thread.
+def perform(version: str, source: str, work: bytes, tasks: bytes) -> tuple[list[Computed], float]:
+    """Compute tasks on one thread, and return their results and the time that they took [s].
 
     Raises
     ------
     StylobateError
-        If version or source of the package differ from those of the process that made the task.
+        If version or source of the package differ from those of the process that made the tasks.
     """
     theirs, here = PackageIdentity(version, source), package_identity()
     if here != theirs:
@@ -90,7 +90,9 @@ def perform(version: str, source: str, work: bytes, task: bytes) -> Computed:
             f"a Dask worker has {here}, but this process has {theirs}. "
             "Install the same version for both, and start the workers again."
         )
-    return _opened(work)(pickle.loads(task), threads=1, progress=None)  # noqa: S301  as below
+    begun, function = monotonic(), _opened(work)
+    results = [function(task, threads=1, progress=None) for task in pickle.loads(tasks)]  # noqa: S301  as below
+    return results, monotonic() - begun
 
 
 @lru_cache(maxsize=1)
@@ -100,17 +102,19 @@ def _opened(work: bytes) -> "Work":
     return function
 
 
-# Number of tasks that wait for each thread of the workers, so that no thread is idle.
+# Number of messages that wait for each thread of the workers, so that no thread is idle.
 _AHEAD = 2
+# Dask takes some 10 ms for a message: so many seconds of short tasks travel in one.
+_TOGETHER = 0.2
 # While no result arrives, workers are counted once in so many seconds.
 _COUNT_WORKERS = 0.5
 
 
 @dataclass(frozen=True, slots=True)
 class Dask:
-    """Compute each block as a task of Dask distributed, on one thread.
+    """Compute each block on one thread of Dask distributed; several blocks that take little time are one task of Dask.
 
-    If a worker dies, its block is computed again by another one. With a store the workers write into it directly, so
+    If a worker dies, its blocks are computed again by another one. With a store the workers write into it directly, so
     they must see the same disk; without a store the results are sent to this process. A script that starts workers on
     this machine must do so under `if __name__ == "__main__":`, because each worker imports it. Each block carries the
     version and a digest of the source of stylobate; a worker with another version or source refuses it.
@@ -211,30 +215,35 @@ def _flow(
     """Yield results while a bounded number of tasks is submitted."""
     sweep = uuid.uuid4().hex
     package, packed = package_identity(), distributed.protocol.pickle.dumps(work)
-    waiting: dict[Any, Task] = {}
+    waiting: dict[Any, tuple[Task, ...]] = {}
     finished: SimpleQueue[Any] = SimpleQueue()
-
-    def submit(count: int) -> None:
-        for task in islice(tasks, count):
-            # A unique key: Dask must not return the result of an earlier sweep.
-            key = f"stylobate-{sweep}-{task.block.index}"
-            sealed = pickle.dumps(SealedTask(package, packed, task))
-            future = client.submit(pickle.loads, sealed, key=key, pure=False)
-            waiting[future] = task
-            future.add_done_callback(finished.put)
+    together = 1
 
     def room() -> int:
         # The number of workers may change.
         threads = int(sum(client.nthreads().values()))
         return _AHEAD * max(1, threads) - len(waiting)
 
-    submit(room())
+    def submit() -> None:
+        for _ in range(room()):
+            if not (group := tuple(islice(tasks, together))):
+                return
+            # A unique key: Dask must not return the result of an earlier sweep.
+            key = f"stylobate-{sweep}-{group[0].block.index}"
+            sealed = pickle.dumps(SealedTasks(package, packed, group))
+            future = client.submit(pickle.loads, sealed, key=key, pure=False)
+            waiting[future] = group
+            future.add_done_callback(finished.put)
+
+    submit()
     try:
         while waiting:
             future = _finished(client, finished, wait)
-            task = waiting.pop(future)
-            yield task, _result(distributed, future, task)
-            submit(max(0, room()))
+            group = waiting.pop(future)
+            results, seconds = _results(distributed, future, group)
+            yield from zip(group, results, strict=True)
+            together = max(1, min(2 * len(group), int(len(group) * _TOGETHER / max(seconds, 1e-9))))
+            submit()
     finally:
         client.cancel(list(waiting))
 
@@ -264,22 +273,23 @@ def _finished(client: Any, finished: "SimpleQueue[Any]", wait: float | None) -> 
             )
 
 
-def _result(distributed: "ModuleType", future: Any, task: Task) -> Computed:
+def _results(distributed: "ModuleType", future: Any, group: tuple[Task, ...]) -> tuple[list[Computed], float]:
     try:
-        result: Computed = future.result()
+        results: tuple[list[Computed], float] = future.result()
     except distributed.KilledWorker as error:
+        chunks = " to ".join(map(str, dict.fromkeys((group[0].block.index, group[-1].block.index))))
         raise StylobateError(
-            f"{error.allowed_failures + 1} workers died on chunk {task.block.index} of {task.block.size} runs. "
+            f"{error.allowed_failures + 1} workers died on chunk {chunks} of {group[0].block.size} runs. "
             "Give them more memory, or reduce chunk_size"
         ) from error
     except (ImportError, AttributeError) as error:
-        if SealedTask.__module__ not in str(error) and getattr(error, "name", None) != "stylobate":
+        if SealedTasks.__module__ not in str(error) and getattr(error, "name", None) != "stylobate":
             raise
         raise StylobateError(
             f"a Dask worker lacks {package_identity()} ({error}). "
             "Install this version for the workers, and start them again."
         ) from error
-    return result
+    return results
 
 
 def _distributed() -> "ModuleType":

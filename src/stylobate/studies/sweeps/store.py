@@ -8,33 +8,32 @@ import json
 import logging
 import shutil
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
 from importlib.metadata import version
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
-import lazy_loader
 import numpy as np
 import xarray as xr
+from xarray.backends import BackendArray, BackendEntrypoint
+from xarray.core import indexing
 
 from stylobate.errors import FileError
 from stylobate.files import written_aside
-from stylobate.parameter_quantities import attributes_of
 from stylobate.results.storage import require_this_version
 from stylobate.studies.sweeps.chunks import (
-    CODECS,
     METADATA,
     SEAL,
     Blocks,
     Chunks,
     ChunkState,
     Layout,
+    StoredArray,
     Variable,
+    axis,
     bytes_of_block,
     bytes_on_disk,
     checksum,
-    chunk_file,
 )
 from stylobate.studies.sweeps.designs import whole
 from stylobate.studies.sweeps.sweep import Sweep
@@ -91,13 +90,10 @@ def _shown(value: Any) -> str:
     return "not given" if value is None else repr(value)
 
 
-zarr: Any = lazy_loader.load("zarr")
-"""Loaded when the first store is opened, which saves other sweeps a tenth of a second."""
-
 _log = logging.getLogger("stylobate")
 
-_FORMAT = "stylobate sweep 3"
-_SOFTWARE = ("numpy", "scipy", "llvmlite", "zarr")
+_FORMAT = "stylobate sweep 4"
+_SOFTWARE = ("numpy", "scipy", "llvmlite")
 _SEAL = "metadata_sha256"
 
 
@@ -118,10 +114,8 @@ def create_store(path: Path, sweep: Sweep, layout: Layout, blocks: Blocks) -> Ch
         raise FileError(f"cannot write {path}: {error.strerror or error}") from error
     _require_room(path, bytes_on_disk(layout, sweep.design, blocks))
     try:
-        with written_aside(path) as beside, _every_chunk_written():
-            group = zarr.create_group(beside, attributes=_attributes(sweep, layout, blocks))
-            _fill_new(group, sweep, layout, blocks)
-            group.attrs[_SEAL] = _digest(beside, _metadata(beside))
+        with written_aside(path) as beside:
+            _fill_new(beside, sweep, layout, blocks)
     except FileError:
         _require_new(path)  # another process may have created it in the meantime
         raise
@@ -154,11 +148,10 @@ def continue_store(path: Path, sweep: Sweep, layout: Layout, chunk_size: int | N
     if chunk_size is not None and Blocks.of(sweep.shape, chunk_size) != blocks:
         raise FileError(f"{path} has chunks of {list(blocks.edges)} runs, not of {chunk_size}. Leave chunk_size out")
     chunks = Chunks(path, blocks, layout.variables)
-    chunks.remove_left_behind()
     states = chunks.states()
     _compute_again(chunks, [index for index, state in states.items() if state is ChunkState.DAMAGED])
     if missing := [index for index, state in states.items() if state is not ChunkState.DONE]:
-        _require_room(path, len(missing) * bytes_of_block(layout, blocks[0]))
+        _require_room(path, len(missing) * bytes_of_block(layout, blocks))
     return chunks, frozenset(index for index, state in states.items() if state is ChunkState.DONE)
 
 
@@ -203,61 +196,66 @@ def open_sweep(path: str | Path, *, load: bool = False) -> xr.Dataset:
     if damaged := sum(chunks.blocks[index].size for index, state in states.items() if state is ChunkState.DAMAGED):
         raise FileError(f"{path} is damaged: {plural(damaged, 'run')} cannot be read. Continue it with resume=True")
     runs_done = sum(chunks.blocks[index].size for index, state in states.items() if state is ChunkState.DONE)
-    try:
-        data: xr.Dataset = xr.open_zarr(
-            path, chunks=None, consolidated=False, zarr_format=3, decode_cf=False, drop_variables=SEAL.name
-        )
-    except Exception as error:  # of any class, for example for another array that was added to the store
-        raise FileError(f"cannot read {path}: {' '.join(str(error).split())}. Begin another store") from error
-    for variable in data.variables.values():
-        variable.attrs.pop("_FillValue", None)
-        if "flag_values" in variable.attrs:
-            variable.attrs["flag_values"] = np.array(variable.attrs["flag_values"], dtype=variable.dtype)
-    data = data.set_coords(attributes["coordinates"].split()).assign_coords(attributes["labels"])
-    data = data[list(attributes["variables"])]  # in the order of the sweep, with coordinates
+    axes, labels = attributes["coordinates"].split(), attributes["labels"]
+    data = xr.open_dataset(
+        path, engine=_Backend, arrays=[chunks.arrays[name] for name in attributes["variables"]], axes=axes
+    )
+    data = data.assign_coords(labels)
     kept = {name: attributes[name] for name in ("kind", "provenance")}
     data.attrs = {**kept, "runs_done": runs_done}
     return data.load() if load else data
 
 
-def _fill_new(group: Any, sweep: Sweep, layout: Layout, blocks: Blocks) -> None:
-    for variable in layout.variables:
-        group.create_array(
-            variable.name,
-            shape=(*blocks.shape, *variable.shape),
-            chunks=(*blocks.edges, *(max(1, length) for length in variable.shape)),
-            dtype=variable.dtype,
-            fill_value=variable.fill,
-            dimension_names=(*sweep.dims, *variable.dims),
-            compressors=CODECS,
-            attributes=_plain(variable.attributes),
-        )
-    group.create_array(
-        SEAL.name,
-        shape=(len(blocks),),
-        chunks=(1,),
-        dtype=SEAL.dtype,
-        fill_value=SEAL.fill,
-        dimension_names=("chunk",),
-        compressors=CODECS,
-    )
-    design = sweep.design
-    for name, dim in design.coordinate_dims.items():
-        place = design.dims.index(dim)
-        group.create_array(
-            name,
-            shape=(blocks.shape[place],),
-            chunks=(blocks.edges[place],),
-            dtype=float,
-            fill_value=np.nan,
-            dimension_names=(dim,),
-            compressors=CODECS,
-            attributes=dict(attributes_of(name)),
-        )
-    # Random and given points may be numerous: they are written piece by piece.
-    for slices in (block.slices for block in blocks) if design.dims == ("run",) else (whole(design),):
-        for name, values in design.coordinates(slices).items():
-            group[name][slices[design.dims.index(design.coordinate_dims[name])]] = values
+class _Backend(BackendEntrypoint):
+    """Read a store without Zarr, whose import takes some tenths of a second."""
+
+    def open_dataset(  # type: ignore[override]
+        self, path: Path, *, drop_variables: None = None, arrays: list[StoredArray], axes: list[str]
+    ) -> xr.Dataset:
+        del drop_variables
+        data = {array.variable.name: _lazy(array) for array in arrays}
+        lengths = {name: _metadata(path / name)["shape"][0] for name in axes}
+        return xr.Dataset(data, {name: _lazy(axis(path, name, length)) for name, length in lengths.items()})
+
+
+class _LazyArray(BackendArray):
+    """An array that is read when it is used."""
+
+    def __init__(self, array: StoredArray) -> None:
+        self.array, self.shape, self.dtype = array, array.shape, array.variable.dtype
+
+    def __getitem__(self, key: indexing.ExplicitIndexer) -> Any:
+        outer = indexing.IndexingSupport.OUTER
+        return indexing.explicit_indexing_adapter(key, self.shape, outer, self.array.read)
+
+
+def _lazy(array: StoredArray) -> xr.Variable:
+    described = _metadata(array.folder)
+    dims, attributes = described["dimension_names"], described["attributes"]
+    if "flag_values" in attributes:
+        attributes["flag_values"] = np.array(attributes["flag_values"], dtype=array.variable.dtype)
+    chunks = {"preferred_chunks": dict(zip(dims, array.chunk, strict=True))}
+    return xr.Variable(dims, indexing.LazilyIndexedArray(_LazyArray(array)), attributes, chunks)
+
+
+def _fill_new(path: Path, sweep: Sweep, layout: Layout, blocks: Blocks) -> None:
+    path.mkdir()
+    design, everything = sweep.design, whole(sweep.design)
+    for array in Chunks(path, blocks, layout.variables).arrays.values():
+        array.create(("chunk",) if array.variable is SEAL else (*design.dims, *array.variable.dims))
+    for place, (dim, length) in enumerate(zip(design.dims, design.shape, strict=True)):
+        axes = [axis(path, name, length) for name, along in design.coordinate_dims.items() if along == dim]
+        for one in axes:
+            one.create((dim,))
+        for block in axes[0].blocks:  # random and given points may be numerous
+            values = design.coordinates((*everything[:place], *block.slices, *everything[place + 1 :]))
+            for one in axes:
+                with one.shard("r+b") as shard:
+                    shard.write(block.index, one.encoded(block, values[one.variable.name]))
+    attributes = _attributes(sweep, layout, blocks)
+    metadata = {"attributes": attributes, "zarr_format": 3, "node_type": "group"}
+    attributes[_SEAL] = _digest(path, json.loads(json.dumps(metadata)))
+    (path / METADATA).write_text(json.dumps(metadata, indent=2), "utf-8")
 
 
 def _attributes(sweep: Sweep, layout: Layout, blocks: Blocks) -> dict[str, Any]:
@@ -327,28 +325,15 @@ def _digest(path: Path, metadata: Mapping[str, Any]) -> str | None:
             content = (path / name / METADATA).read_bytes()
             digest.update(f" {name} {len(content)} ".encode() + content)
         for name in axes:
-            for index in range(_count(path / name)):
-                found = checksum(chunk_file(path / name, (index,)))
-                if found is None:
-                    return None
-                digest.update(found)
+            array = axis(path, name, _metadata(path / name)["shape"][0])
+            with array.shard() as shard:
+                for index in range(len(array.blocks)):
+                    if not shard.holds(index):
+                        return None
+                    digest.update(checksum(shard.content(index)))
     except (OSError, ValueError, KeyError, TypeError, AttributeError):
         return None
     return digest.hexdigest()
-
-
-def _count(array: Path) -> int:
-    """Return the number of chunks of an `array` of one dimension, from its metadata."""
-    metadata = json.loads((array / METADATA).read_bytes())
-    (length,), (edge,) = metadata["shape"], metadata["chunk_grid"]["configuration"]["chunk_shape"]
-    return -(-int(length) // int(edge))
-
-
-@contextmanager
-def _every_chunk_written() -> Iterator[None]:
-    """Let Zarr write also chunks of fill values only, so that an absent chunk is a lost chunk."""
-    with zarr.config.set({"array.write_empty_chunks": True}):
-        yield
 
 
 def _require_room(path: Path, needed: int) -> None:
@@ -365,7 +350,3 @@ def _size(count: int) -> str:
     while size >= 1000.0 and len(units) > 1:  # noqa: PLR2004  SI prefixes
         size, units = size / 1000.0, units[1:]
     return f"{size:.3g} {units[0]}"
-
-
-def _plain(attributes: Mapping[str, Any]) -> dict[str, Any]:
-    return {name: value.tolist() if isinstance(value, np.ndarray) else value for name, value in attributes.items()}
