@@ -1,0 +1,31 @@
+"""Compute all comparisons and write their tables: `python -m validation [name ...]`, `make validation`."""
+
+import argparse
+import importlib
+import time
+from pathlib import Path
+
+from .finding import table
+
+_FOLDER = Path(__file__).parents[1] / "docs" / "_static" / "validation"
+PARTS = ("frozen", "practice", "engines")
+"""Modules of this folder; each has a function `findings`."""
+
+
+def main() -> None:
+    """Compute the chosen comparisons."""
+    parser = argparse.ArgumentParser(prog="python -m validation", description=__doc__)
+    parser.add_argument("parts", nargs="*", choices=[[], *PARTS], help="which comparisons; all by default")
+    parser.add_argument("--into", type=Path, default=_FOLDER, help="folder for the tables")
+    arguments = parser.parse_args()
+    arguments.into.mkdir(parents=True, exist_ok=True)
+    for name in arguments.parts or PARTS:
+        begun = time.perf_counter()
+        found = list(importlib.import_module(f"validation.{name}").findings())
+        (arguments.into / f"{name}.txt").write_text(table(found), encoding="utf-8")
+        agree = sum(one.agrees for one in found)
+        print(f"{name}: {agree} of {len(found)} agree, {time.perf_counter() - begun:.0f} s")
+
+
+if __name__ == "__main__":
+    main()
