@@ -183,13 +183,15 @@ def test_warnings_and_demands_are_saved_and_loaded(tmp_path):
 
 
 class _Quiet(sb.Wobbling):
-    """A model whose outputs leave out what its contact bears."""
+    """A model without equations for what its contact bears."""
+
+    contact = None
 
     def outputs(self, states, accelerations, resting):
         return {}
 
 
-def test_a_model_that_does_not_tell_its_demands_has_none():
+def test_a_model_without_contact_forces_has_no_demands():
     run = sb.simulate(_Quiet(COLUMN), CIRCLE, tilt=(0.05, 0.0), duration=1.0, friction_coefficient=0.01)
     assert run.warnings == ()
     assert "peak_friction_demand" not in run.measures

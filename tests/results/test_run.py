@@ -10,7 +10,6 @@ import xarray as xr
 
 import stylobate as sb
 from stylobate.errors import FileError, ParameterError, UnsupportedError
-from stylobate.results.samples import Samples
 
 MODEL = sb.Slender(sb.Column.solid(radius=0.5, height=10.0, density=2700.0), damping=0.1)
 MOTION = sb.Harmonic.circular(acceleration=0.7, angular_frequency=2.5, ramp=2.0).delayed(1.0) + sb.Harmonic.vertical(
@@ -62,9 +61,8 @@ def test_saving_leaves_the_run_as_it_is(run, tmp_path):
 
 def test_the_dataset_of_a_run_is_made_when_it_is_used_and_stays_the_same():
     run = sb.simulate(MODEL, MOTION, tilt=(0.03, 0.01), duration=1.0)
+    assert not isinstance(vars(run)["data"], xr.Dataset)
     sent = pickle.loads(pickle.dumps(run))  # noqa: S301  of our own
-    assert isinstance(vars(run)["data"], Samples)
-    assert isinstance(vars(sent)["data"], Samples)
     run.data.attrs["note"] = "of the user"
     assert run.data is run.data
     assert run.data.attrs.pop("note") == "of the user"

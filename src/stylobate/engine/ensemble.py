@@ -355,7 +355,7 @@ def run_parts(
 
 # Size of parts: small enough that every thread has one, all threads end together and progress is visible; large enough
 # to fill the lanes and to keep the overhead of Python small.
-_FEWEST, _ENOUGH, _MOST, _PARTS_PER_THREAD = 32, 1024, 4096, 4
+_FEWEST, _ENOUGH, _MOST, _PARTS_PER_THREAD = 32, 512, 4096, 4
 
 
 def parts_of(count: int, threads: int) -> list[slice]:

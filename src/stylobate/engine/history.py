@@ -20,7 +20,6 @@ from stylobate.models import Model, Sliding
 from stylobate.models.contact import contact_loads, per_normal_force
 from stylobate.models.sliding import Contact
 from stylobate.models.sliding.equations import JAM
-from stylobate.results.samples import Labelled, Samples
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -32,9 +31,9 @@ _FEWEST, _MOST = 1001, 5_001
 
 @dataclass(frozen=True, slots=True)
 class Recorded:
-    """Samples of a run, contact demands, warnings, and a function for samples at other times."""
+    """Contact demands and warnings of a run, and functions for its samples and for samples at other times."""
 
-    data: Samples
+    data: Callable[[], "xr.Dataset"]
     measures: dict[str, float]
     warnings: tuple[str, ...]
     sampler: Callable[[npt.ArrayLike], "xr.Dataset"]
@@ -48,7 +47,7 @@ def history(
     *,
     friction_coefficient: float | None,
 ) -> Recorded:
-    """Return the samples of a run at equal steps, `samples` of them or enough to draw every swing."""
+    """Return the history of a run; its samples are at equal steps, `samples` of them or enough to draw every swing."""
     end = trajectory.end * model.time_scale
     usual = default_count(model, motion, trajectory.end)
 
@@ -56,19 +55,19 @@ def history(
         t = np.atleast_1d(np.asarray(as_numbers("time", time, "s"), dtype=float))
         if t.size and not (t.min() >= 0.0 and t.max() <= end * (1.0 + 1e-12)):
             raise ParameterError(f"time must lie within the run, 0 to {end!r} s, got {t.min()!r} to {t.max()!r} s")
-        return _samples(model, motion, trajectory, t).as_dataset()
+        return _samples(model, motion, trajectory, t)
 
-    def spread(count: int) -> Samples:
-        return _samples(model, motion, trajectory, np.linspace(0.0, end, count))
+    def data() -> "xr.Dataset":
+        return _samples(model, motion, trajectory, np.linspace(0.0, end, samples or usual))
 
     # The measures must not depend on the number of samples in the result.
-    seen = spread(usual)
-    data = seen if samples in (None, usual) else spread(samples)
-    demands = Demands.of(model, Forcing.of(model, motion), trajectory, seen, friction_coefficient)
+    demands = Demands.of(model, Forcing.of(model, motion), trajectory, usual, friction_coefficient)
     return Recorded(data, demands.measures, demands.warnings, sampler)
 
 
-def _samples(model: Model, motion: BaseMotion, trajectory: Trajectory, time: Floats) -> Samples:
+def _samples(model: Model, motion: BaseMotion, trajectory: Trajectory, time: Floats) -> "xr.Dataset":
+    import xarray as xr
+
     column = model.column
     tau = np.minimum(time / model.time_scale, trajectory.end)
     acceleration = motion.acceleration(time)
@@ -85,7 +84,7 @@ def _samples(model: Model, motion: BaseMotion, trajectory: Trajectory, time: Flo
         "amplitude_rate": _along_time(radial, "rad s-1", "rate of the tilt angle"),
         "azimuth": _along_time(trajectory.azimuth(tau, tilt), "rad", "azimuth of the lean"),
         "rolling_rate": _along_time(rolling, "rad s-1", "rate of the azimuth"),
-        "resting": Labelled(("time",), resting, {"long_name": "stands on its base"}),
+        "resting": (("time",), resting, {"long_name": "stands on its base"}),
         "base_displacement": _of_base(motion.displacement(time), "m", "base displacement"),
         "base_velocity": _of_base(motion.velocity(time), "m s-1", "base velocity"),
         "base_acceleration": _of_base(acceleration, "m s-2", "base acceleration"),
@@ -98,19 +97,20 @@ def _samples(model: Model, motion: BaseMotion, trajectory: Trajectory, time: Flo
         "base_radius": column.radius,
         "uplift_acceleration": column.slenderness * column.gravity,
     }
-    return Samples(time, variables, attributes)
+    coordinates = {"time": _along_time(time, "s", "time"), "axis": ["x", "y"], "direction": ["x", "y", "z"]}
+    return xr.Dataset(variables, coords=coordinates, attrs=attributes)
 
 
-def _along_time(values: Floats, units: str, long_name: str) -> Labelled:
-    return Labelled(("time",), values, {"units": units, "long_name": long_name})
+def _along_time(values: Floats, units: str, long_name: str) -> tuple[Any, ...]:
+    return ("time",), values, {"units": units, "long_name": long_name}
 
 
-def _along_axis(values: Floats, units: str, long_name: str) -> Labelled:
-    return Labelled(("time", "axis"), values, {"units": units, "long_name": long_name})
+def _along_axis(values: Floats, units: str, long_name: str) -> tuple[Any, ...]:
+    return ("time", "axis"), values, {"units": units, "long_name": long_name}
 
 
-def _of_base(values: Floats, units: str, long_name: str) -> Labelled:
-    return Labelled(("time", "direction"), values, {"units": units, "long_name": long_name})
+def _of_base(values: Floats, units: str, long_name: str) -> tuple[Any, ...]:
+    return ("time", "direction"), values, {"units": units, "long_name": long_name}
 
 
 def default_count(model: Model, motion: BaseMotion, end: float) -> int:
@@ -155,16 +155,16 @@ class Demands:
         model: Model,
         forcing: Forcing,
         trajectory: Trajectory,
-        samples: Samples,
+        count: int,
         friction_coefficient: float | None,
     ) -> "Demands":
-        """Return the demands of a run, from the dense output near the maximum over `samples` and steps.
+        """Return the demands of a run, from the dense output near the maximum over `count` equal steps and its own.
 
-        Close to the vertical a load can have a short peak, which steps resolve and samples may miss.
+        Close to the vertical a load can have a short peak, which steps resolve and equal steps may miss.
         """
-        if model.contact is None or model.switches or "friction_demand" not in samples.variables:
+        if model.contact is None or model.switches:
             return cls({}, ())
-        loads = _Loads.of(model, forcing, trajectory, samples)
+        loads = _Loads.of(model, forcing, trajectory, count)
         friction, pivoting, pull = loads.largest().tolist()
         measures = {
             "peak_friction_demand": friction,
@@ -208,7 +208,7 @@ def _from(time: float | None) -> str:
 
 @dataclass(frozen=True, slots=True)
 class _Loads:
-    """Contact loads of a run at samples and steps, and at any other time.
+    """Contact loads of a run at some times, and at any other time.
 
     Parameters
     ----------
@@ -223,18 +223,13 @@ class _Loads:
     values: Floats
 
     @classmethod
-    def of(cls, model: Model, forcing: Forcing, trajectory: Trajectory, samples: Samples) -> "_Loads":
-        """Return the loads at the samples, at the ends of the steps, and at more times while the column stands."""
-        steps = np.append(trajectory.starts, trajectory.end)
-        weight = model.column.mass * model.column.gravity
-        sampled = [
-            samples.variables[name].values / unit
-            for name, unit in (("friction_demand", 1.0), ("pivoting_demand", 1.0), ("normal_force", -weight))
-        ]
+    def of(cls, model: Model, forcing: Forcing, trajectory: Trajectory, count: int) -> "_Loads":
+        """Return the loads at `count` equal steps, at the run's own, and at more times while the column stands."""
+        known = np.concatenate([np.linspace(0.0, trajectory.end, count), trajectory.starts, [trajectory.end]])
         stands = [loads_while_standing(forcing, start, end) for start, end in trajectory.standing]
         still = [np.stack([one.friction, np.zeros_like(one.friction), -one.normal]) for one in stands]
-        times = [samples.time / model.time_scale, steps, *(one.tau for one in stands)]
-        values = [np.stack(sampled), _loads(model, forcing, trajectory, steps), *still]
+        times = [known, *(one.tau for one in stands)]
+        values = [_loads(model, forcing, trajectory, known), *still]
         tau, order = np.unique(np.concatenate(times), return_index=True)
         return cls(model, forcing, trajectory, tau, np.concatenate(values, axis=1)[:, order])
 
@@ -277,7 +272,7 @@ class _Loads:
 def _loads(model: Model, forcing: Forcing, trajectory: Trajectory, tau: Floats) -> Floats:
     """Return the loads at times of a run, shape (3, n), numbered by `Load`."""
     with np.errstate(invalid="ignore", over="ignore"):  # infinite next to rest, and if the base would pull
-        loads = contact_loads(model, trajectory.states(tau), forcing.along(tau), trajectory.resting(tau))
+        loads = contact_loads(model, trajectory.own_states(tau), forcing.along(tau), trajectory.resting(tau))
     return np.stack([loads.friction, loads.pivoting, -loads.normal])
 
 

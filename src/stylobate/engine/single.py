@@ -466,4 +466,4 @@ _SAMPLES = 64
 def _peak_tilt(followed: Followed) -> float:
     trajectory, periods = followed.trajectory, followed.batch.plan.rules.periods
     tau = np.linspace(trajectory.end - float(followed.late.span[0]), trajectory.end, periods * _SAMPLES + 1)
-    return float(np.hypot(*trajectory.model.tilt(trajectory.states(tau))).max())
+    return float(np.hypot(*trajectory.model.tilt(trajectory.own_states(tau))).max())

@@ -105,11 +105,18 @@ class Trajectory:
         At the time of an impact the velocities are those after the impact, or those of the stretch with the index
         `stretch`.
         """
-        which = self._at(tau) if stretch is None else np.full(tau.shape, stretch)
-        states = self._lifted(self._within(which, self._share(which, tau)), which)
+        states = self.own_states(tau, stretch)
         if not self.carried:
             return states
-        return np.concatenate([states, self._carried_at(which, tau)])
+        return np.concatenate([states, self._carried_at(self._which(tau, stretch), tau)])
+
+    def own_states(self, tau: Floats, stretch: int | None = None) -> Floats:
+        """Return the states that the equations determine, without passive ones; as `states` does."""
+        which = self._which(tau, stretch)
+        return self._lifted(self._within(which, self._share(which, tau)), which)
+
+    def _which(self, tau: Floats, stretch: int | None) -> npt.NDArray[np.intp]:
+        return self._at(tau) if stretch is None else np.full(tau.shape, stretch)
 
     def resting(self, tau: Floats) -> npt.NDArray[np.bool_]:
         """Return whether the column stands on its base, shape (n,)."""

@@ -49,7 +49,7 @@ def survival(model: Model, motion: BaseMotion, trajectory: Trajectory) -> tuple[
     after = max(0.0, end - motion.duration)
     moving = f"still moving {after:.4g} s after the base motion ended" if motion.duration > 0.0 else "still moving"
     push = remaining_acceleration(motion) / model.column.gravity
-    share = float(energy_over_balance(model, trajectory.states(np.array([trajectory.end])), push)[0])
+    share = float(energy_over_balance(model, trajectory.own_states(np.array([trajectory.end])), push)[0])
     if share >= 1.0:
         return Outcome.STILL_MOVING, f"{moving}; {_OPEN}"
     outcome = Outcome.SURVIVED if motion.duration > 0.0 else Outcome.STILL_MOVING

@@ -12,7 +12,6 @@ from stylobate.cards import CardSection, Row, card
 from stylobate.equality import ByContent
 from stylobate.errors import Outcome, UnsupportedError
 from stylobate.results.plain import plain_value
-from stylobate.results.samples import Samples
 from stylobate.text import four_digits
 
 if TYPE_CHECKING:
@@ -53,17 +52,17 @@ class Event:
 
 
 class _Data:
-    """The field `data` of a run: a Dataset, made from the samples at first use."""
+    """The field `data` of a run: a Dataset, or the function that makes it at first use."""
 
     def __get__(self, run: "Run | None", owner: type | None = None) -> "xr.Dataset":
         if run is None:  # dataclasses asks the class for a default, which does not exist
             raise AttributeError
-        data: xr.Dataset | Samples = vars(run)["data"]
-        if isinstance(data, Samples):
-            data = vars(run)["data"] = data.as_dataset()
+        data: xr.Dataset | Callable[[], xr.Dataset] = vars(run)["data"]
+        if callable(data):
+            data = vars(run)["data"] = data()
         return data
 
-    def __set__(self, run: "Run", data: "xr.Dataset | Samples") -> None:
+    def __set__(self, run: "Run", data: "xr.Dataset | Callable[[], xr.Dataset]") -> None:
         vars(run)["data"] = data
 
 
@@ -170,7 +169,7 @@ class Run(ByContent):
 
     def __reduce__(self) -> tuple[Any, ...]:
         # The dense output cannot be pickled: a run in another process has its samples only.
-        kept = {name: value for name, value in vars(self).items() if name != "sampler"}
+        kept = {name: value for name, value in vars(self).items() if name != "sampler"} | {"data": self.data}
         return partial(Run, **kept), ()
 
     def __copy__(self) -> Self:
