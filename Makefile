@@ -6,7 +6,7 @@ BIN    := $(VENV)/bin
 .DEFAULT_GOAL := help
 # Without files of bytecode, each process that a test starts compiles all modules again.
 unexport PYTHONDONTWRITEBYTECODE
-.PHONY: help demo lab page test test-all test-python test-lowest uv coverage mutants lint docs figures sheet bench clean
+.PHONY: help demo lab page test test-all test-python test-lowest uv coverage mutants lint docs figures sheet bench validation clean
 
 help:  ## list the targets
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## /\t/' | expand -t 14
@@ -115,6 +115,9 @@ bench: $(VENV)/.core $(VENV)/.test  ## the benchmarks, beside the engines that c
 	$(BIN)/python -m benchmarks.early_ends
 	$(BIN)/python -m benchmarks.orbits
 	$(BIN)/python -m benchmarks.page
+
+validation: $(VENV)/.core $(VENV)/.validation  ## comparisons with other people's numbers, into the documentation
+	$(BIN)/python -m validation
 
 clean:  ## remove what the targets made
 	rm -rf $(VENV) .venv-* .mutants docs/_build docs/gallery docs/tutorials stylobate-paper

@@ -30,14 +30,14 @@ from .one_core import use_one_core
 from .workloads import MIX_DISTINCT, WORKLOADS, Workload
 
 _FOLDER = Path(__file__).parents[2] / "docs" / "_static" / "benchmarks"
-_OBSERVATION, _STEP = "        observe(buf, i)\n", "            step(buf, width)\n"
+_OBSERVATION, _STEP = "        observe(buf, i)\n", "            step(buf, width, group)\n"
 # Number of steps of all runs of "rolling" before other work is due.
 _STEPS = 1000
 _STEPS_ALONE = """
 
 def steps_alone(buf, count):
     for _ in range(count):
-        step(buf, WIDTH)
+        step(buf, WIDTH, 0)
 """
 
 
@@ -152,7 +152,7 @@ def _without_observation(kernel: Kernel) -> Kernel:
 
 @cache
 def _with_counter(kernel: Kernel) -> Kernel:
-    return _rewritten(kernel, _STEP, _STEP + _STEP.replace("step(buf, width)", "pieces[0, 0] += width"))
+    return _rewritten(kernel, _STEP, _STEP + _STEP.replace("step(buf, width, group)", "pieces[0, 0] += width"))
 
 
 def _rewritten(kernel: Kernel, old: str, new: str) -> Kernel:

@@ -15,7 +15,7 @@ from . import (
 )
 from .base_motions import BaseMotion, Harmonic, MachineRun, OneOf, Pulse, Record, SineSweep
 from .column import Column
-from .earthquakes import verdict
+from .earthquakes import calibrate, verdict
 from .engine import EventFunction, simulate, simulate_ensemble, with_parameters
 from .errors import Interrupted, Outcome
 from .models import Contact, Model, PlanarRocking, Rolling, Slender, SlenderRolling, Sliding, Wobbling
@@ -55,6 +55,7 @@ __all__ = [
     "__version__",
     "animate",
     "base_motions",
+    "calibrate",
     "config",
     "conveying",
     "earthquakes",

@@ -1,5 +1,6 @@
 from .assessment.assess import assess
 from .assessment.report import assessment_report, assessment_tables
+from .calibration import Calibration, calibrate, reliability, scores
 from .config.assess import AssessConfig
 from .figures.incremental import plot_directions
 from .figures.spectra import plot_records
@@ -24,6 +25,7 @@ from .verdict_study import repeat_verdict, verdict
 
 __all__ = [
     "AssessConfig",
+    "Calibration",
     "Choice",
     "Counting",
     "FitStatus",
@@ -38,6 +40,7 @@ __all__ = [
     "assess",
     "assessment_report",
     "assessment_tables",
+    "calibrate",
     "dispersion_parts",
     "fit_fragility",
     "fragility_of_runs",
@@ -50,7 +53,9 @@ __all__ = [
     "plot_records",
     "property_samples",
     "reached_intervals",
+    "reliability",
     "repeat_verdict",
     "rocking_spectrum",
+    "scores",
     "verdict",
 ]
