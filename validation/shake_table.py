@@ -1,8 +1,7 @@
-"""582 shake-table tests of two granite specimens, run by run, beside a planar block whose numbers are learnt from others.
+"""Shake-table tests of two granite specimens, run by run, beside a planar block whose numbers are learnt from others.
 
-The tests are of Z. Chen and others, "Virtual Shake Robot: Simulating Dynamics of Precariously Balanced Rocks for
-Overturning and Large-Displacement Processes", Seismica 3(1), 2024, doi 10.26443/seismica.v3i1.692. Their files are under
-the GPL and not part of this project:
+The 582 tests are of Z. Chen and others, "Virtual Shake Robot", Seismica 3(1), 2024, doi 10.26443/seismica.v3i1.692.
+Their files are under the GPL and not part of this project:
 
     git clone https://github.com/ZhiangChen/virtual_shake_robot_pybullet
     STYLOBATE_SHAKE_TABLE=virtual_shake_robot_pybullet python -m validation shake_table
@@ -67,8 +66,8 @@ def findings() -> Iterator[Finding]:
             theirs=best,
             ours=float(same.mean()),
             kind=Kind.EXPERIMENT,
-            remark=f"foretold from four fifths of the tests, {REPEATS} times: {same.min():.3f} to {same.max():.3f}; Brier "
-            f"score {brier:.3f}, {rate * (1.0 - rate):.3f} by the rate of overturning alone",
+            remark=f"foretold from four fifths of the tests, {REPEATS} times: {same.min():.3f} to {same.max():.3f}; "
+            f"Brier score {brier:.3f}, {rate * (1.0 - rate):.3f} by the rate of overturning alone",
         )
 
 

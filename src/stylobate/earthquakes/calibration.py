@@ -27,6 +27,7 @@ Bools = npt.NDArray[np.bool_]
 _NARROWEST = 0.02
 # Fraction of outcomes that have nothing to do with the model: that at which a search begins, and at most.
 _USUAL_LAPSE, _MOST_LAPSES = 0.05, 0.5
+_EVEN = 0.5
 # Steps of the chain for each state that is kept, and its length before the first one.
 _THINNED, _WARM_UP = 10, 500
 
@@ -67,8 +68,8 @@ class Calibration:
         Returns
         -------
         xr.Dataset
-            `mean`, `spread` over `number` and `quantile` (0.025, 0.5, 0.975), in the units of the numbers; `lapse`, λ, over
-            `quantile`.
+            `mean`, `spread` over `number` and `quantile` (0.025, 0.5, 0.975), in the units of the numbers; `lapse`, λ,
+            over `quantile`.
         """
         low, width = _bounds(self.ranges)
         count, shares = len(low), [0.025, 0.5, 0.975]
@@ -146,8 +147,8 @@ def calibrate(
 ) -> Calibration:
     """Learn the numbers of an object from tests in which it stood or fell.
 
-    The object is simulated in each test with `count` draws of its numbers. The share of them that overturns, weighted by
-    a normal distribution of the numbers, is the probability of the outcome; means and standard deviations of this
+    The object is simulated in each test with `count` draws of its numbers. The share of them that overturns, weighted
+    by a normal distribution of the numbers, is the probability of the outcome; means and standard deviations of this
     distribution follow from the likelihood of all outcomes.
 
     Parameters
@@ -159,8 +160,8 @@ def calibrate(
     overturned
         Whether the object overturned in each test, shape (n,).
     ranges
-        Smallest and largest value of each number to be learnt, by the names of parameters of `simulate_ensemble`, such as
-        {"slenderness": (0.1, 0.2)}. `offset_x` is a constant acceleration [m/s²]; it stands for a base that slopes, or
+        Smallest and largest value of each number to be learnt, by the names of parameters of `simulate_ensemble`, such
+        as {"slenderness": (0.1, 0.2)}. `offset_x` is a constant acceleration [m/s²]; it stands for a base that slopes, or
         for a body that tips at different angles to both sides.
     count
         Number of draws.
@@ -243,7 +244,7 @@ def scores(probability: npt.ArrayLike, overturned: npt.ArrayLike) -> dict[str, f
     p, known = np.asarray(probability, dtype=float), np.asarray(overturned, dtype=bool)
     of_outcome = np.where(known, p, 1.0 - p)
     return {
-        "same_outcome": float(np.mean((p > 0.5) == known)),
+        "same_outcome": float(np.mean((p > _EVEN) == known)),
         "brier": float(np.mean((p - known) ** 2)),
         "log_loss": float(np.mean(-np.log(np.clip(of_outcome, 1e-12, None)))),
     }
@@ -321,12 +322,15 @@ def _most_probable(draws: Floats, fell: Bools, overturned: Bools) -> Floats:
         spread = _NARROWEST + (1.0 - _NARROWEST) * shares[count : 2 * count]
         return np.concatenate([shares[:count], spread, _MOST_LAPSES * shares[-1:]])
 
+    def unlikely(free: Floats) -> float:
+        return -_log_likelihood(state_of(free), draws, fell, overturned)
+
     best, largest = state_of(np.zeros(2 * count + 1)), -math.inf
     for start in draws[np.argsort(-same)[:3]]:
         inside = np.clip(start, 0.02, 0.98)
         begun = logit(np.concatenate([inside, np.full(count, 0.1), [_USUAL_LAPSE / _MOST_LAPSES]]))
         found = minimize(
-            lambda free: -_log_likelihood(state_of(free), draws, fell, overturned),
+            unlikely,
             begun,
             method="Nelder-Mead",
             options={"maxiter": 400 * count, "xatol": 1e-3, "fatol": 1e-3},
