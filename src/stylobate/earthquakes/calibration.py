@@ -161,8 +161,8 @@ def calibrate(
         Whether the object overturned in each test, shape (n,).
     ranges
         Smallest and largest value of each number to be learnt, by the names of parameters of `simulate_ensemble`, such
-        as {"slenderness": (0.1, 0.2)}. `offset_x` is a constant acceleration [m/s²]; it stands for a base that slopes, or
-        for a body that tips at different angles to both sides.
+        as {"slenderness": (0.1, 0.2)}. `offset_x` is a constant acceleration [m/s²]; it stands for a base that slopes,
+        or for a body that tips at different angles to both sides.
     count
         Number of draws.
     samples
