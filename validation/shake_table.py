@@ -34,7 +34,7 @@ RANGES = {
     "offset_x": (-0.5, 0.5),  # ± 0.05 rad between the tipping angles and their mean
 }
 BLOCK = sb.PlanarRocking.block(width=0.3, height=2.0, density=2700.0)
-DRAWS, REPEATS = 512, 10
+DRAWS, REPEATS = 512, 5
 
 
 def findings() -> Iterator[Finding]:

@@ -48,7 +48,7 @@ class Calibration:
     draws
         Draws of the numbers, evenly spread over their ranges, shape (k, d), in units of the ranges.
     fell
-        Whether the object of each draw overturned in each test, shape (k, n).
+        1 where the object of a draw overturned in a test, shape (k, n).
     overturned
         Outcomes of the tests, shape (n,).
     posterior
@@ -58,7 +58,7 @@ class Calibration:
     model: Model
     ranges: Mapping[str, tuple[float, float]]
     draws: Floats
-    fell: Bools
+    fell: Floats
     overturned: Bools
     posterior: Floats
 
@@ -84,13 +84,13 @@ class Calibration:
             coords={"quantile": shares, "number": list(self.ranges)},
         )
 
-    def probabilities(self, fell: Bools | None = None) -> Floats:
+    def probabilities(self, fell: Floats | None = None) -> Floats:
         """Return the probability that the object overturns in each test, shape (n,).
 
         Parameters
         ----------
         fell
-            Whether the object of each draw overturned, shape (k, n); by default in the tests of the calibration.
+            1 where the object of a draw overturned, shape (k, n); by default in the tests of the calibration.
         """
         fell = self.fell if fell is None else fell
         each = [_probabilities(state, self.draws, fell) for state in self.posterior]
@@ -279,11 +279,11 @@ def _fallen(
     draws: Floats,
     tail: float,
     progress: Progress,
-) -> Bools:
-    """Return whether the object of each draw overturns under each motion, shape (k, n)."""
+) -> Floats:
+    """Return 1 where the object of a draw overturns under a motion, shape (k, n)."""
     report, (low, width) = report_of(progress), _bounds(ranges)
     parameters: dict[str, Any] = dict(zip(ranges, (low + width * draws).T, strict=True))
-    fell = np.empty((len(draws), len(motions)), dtype=bool)
+    fell = np.empty((len(draws), len(motions)))
     for number, motion in enumerate(motions):
         runs = simulate_ensemble(model, motion, duration=motion.duration + tail, parameters=parameters, progress=False)
         fell[:, number] = runs["outcome"].values == Outcome.OVERTURNED
@@ -291,7 +291,7 @@ def _fallen(
     return fell
 
 
-def _probabilities(state: Floats, draws: Floats, fell: Bools) -> Floats:
+def _probabilities(state: Floats, draws: Floats, fell: Floats) -> Floats:
     """Return the probability of overturning in each test for means, standard deviations and λ."""
     count = draws.shape[1]
     mean, spread, lapse = state[:count], state[count : 2 * count], state[-1]
@@ -301,7 +301,7 @@ def _probabilities(state: Floats, draws: Floats, fell: Bools) -> Floats:
     return np.asarray(0.5 * lapse + (1.0 - lapse) * share)
 
 
-def _log_likelihood(state: Floats, draws: Floats, fell: Bools, overturned: Bools) -> float:
+def _log_likelihood(state: Floats, draws: Floats, fell: Floats, overturned: Bools) -> float:
     """Return the logarithm of the probability of all outcomes; −∞ outside the ranges."""
     count = draws.shape[1]
     mean, spread, lapse = state[:count], state[count : 2 * count], state[-1]
@@ -312,7 +312,7 @@ def _log_likelihood(state: Floats, draws: Floats, fell: Bools, overturned: Bools
     return float(np.sum(np.log(np.where(overturned, p, 1.0 - p))))
 
 
-def _most_probable(draws: Floats, fell: Bools, overturned: Bools) -> Floats:
+def _most_probable(draws: Floats, fell: Floats, overturned: Bools) -> Floats:
     """Return the state of the largest likelihood, from a search that begins at the best draws."""
     count = draws.shape[1]
     same = np.mean(fell == overturned, axis=1)
@@ -326,14 +326,14 @@ def _most_probable(draws: Floats, fell: Bools, overturned: Bools) -> Floats:
         return -_log_likelihood(state_of(free), draws, fell, overturned)
 
     best, largest = state_of(np.zeros(2 * count + 1)), -math.inf
-    for start in draws[np.argsort(-same)[:3]]:
+    for start in draws[np.argsort(-same)[:2]]:
         inside = np.clip(start, 0.02, 0.98)
         begun = logit(np.concatenate([inside, np.full(count, 0.1), [_USUAL_LAPSE / _MOST_LAPSES]]))
         found = minimize(
             unlikely,
             begun,
             method="Nelder-Mead",
-            options={"maxiter": 400 * count, "xatol": 1e-3, "fatol": 1e-3},
+            options={"maxiter": 200 * count, "xatol": 1e-2, "fatol": 1e-2},
         )
         if -found.fun > largest:
             best, largest = state_of(found.x), -found.fun
@@ -341,7 +341,7 @@ def _most_probable(draws: Floats, fell: Bools, overturned: Bools) -> Floats:
 
 
 def _chain(
-    begun: Floats, draws: Floats, fell: Bools, overturned: Bools, samples: int, generator: np.random.Generator
+    begun: Floats, draws: Floats, fell: Floats, overturned: Bools, samples: int, generator: np.random.Generator
 ) -> Floats:
     """Return samples of the posterior by a chain of Metropolis, whose steps adapt while it warms up."""
     state, now = begun, _log_likelihood(begun, draws, fell, overturned)
