@@ -1,12 +1,13 @@
 """Rules of practice beside the simulation: how often each is right, unsafe or needlessly strict."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any, Unpack
 
 import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
+from stylobate.column import Column
 from stylobate.earthquakes.fragility.observations import LIMIT_STATE
 from stylobate.earthquakes.incremental import incremental_dynamic_analysis
 from stylobate.earthquakes.planar_comparison import part_of
@@ -18,6 +19,7 @@ from stylobate.practice.shaking import Shaking
 from stylobate.progress import Progress, shows_progress
 from stylobate.run_arguments import RunOptions
 from stylobate.studies.sweeps import Executor
+from stylobate.studies.sweeps.designs import Floats
 
 _COUNTS = {
     "decided": "runs that overturn or stand",
@@ -93,36 +95,36 @@ def compare_rules(
             progress=part_of(progress, place * total // len(named), total),
             **options,
         )
-        compared.append(_answers(model, shaking, runs))
+        compared.append(_answers(model, shaking, runs).assign_attrs(provenance=runs.attrs["provenance"]))
     found = xr.concat(compared, "model", coords="minimal", compat="override")
     return _counted(found.assign_coords(model=[str(name) for name in named]))
 
 
 def _answers(model: Model, shaking: list[Shaking], runs: xr.Dataset) -> xr.Dataset:
     """Return the outcomes of runs over record and scale, with the answers of the rules."""
-    answers = [
-        [rules_of_practice(model.column, one.scaled(float(scale))) for scale in runs["scale"]] for one in shaking
-    ]
+    overturned = runs["reached"].sel({LIMIT_STATE: "overturning"}, drop=True)
+    return answers_of(model.column, shaking, runs["scale"].to_numpy()).assign(
+        overturned=overturned.assign_attrs(long_name="overturned", units="1"), tilt_ratio=runs["tilt_ratio"]
+    )
+
+
+def answers_of(column: Column, shaking: Sequence[Shaking], scales: Floats) -> xr.Dataset:
+    """Return the answers of the rules for a column: `safe` and `ratio` over `record`, `scale` and `rule`."""
+    answers = [[rules_of_practice(column, one.scaled(float(scale))) for scale in scales] for one in shaking]
     rules = answers[0][0]
-    dims = ("record", "scale", "rule")
+    texts = {"ratio": {"units": "1", "long_name": "demand / capacity"}, "safe": {"long_name": "called safe"}}
     values = {
-        name: np.array([[[getattr(answer, name) for answer in row] for row in rows] for rows in answers])
-        for name in ("safe", "ratio")
+        name: (
+            ("record", "scale", "rule"),
+            np.array([[[getattr(answer, name) for answer in row] for row in rows] for rows in answers]),
+            about,
+        )
+        for name, about in texts.items()
     }
-    about: dict[str, Any] = {
+    about_rules: dict[str, Any] = {
         name: ("rule", [getattr(answer, name) for answer in rules]) for name in ("clause", "source", "checked")
     }
-    overturned = runs["reached"].sel({LIMIT_STATE: "overturning"}, drop=True)
-    return xr.Dataset(
-        {
-            "overturned": overturned.assign_attrs(long_name="overturned", units="1"),
-            "tilt_ratio": runs["tilt_ratio"],
-            "safe": (dims, values["safe"], {"long_name": "the rule calls the column safe"}),
-            "ratio": (dims, values["ratio"], {"units": "1", "long_name": "demand / capacity of the rule"}),
-        },
-        coords={"rule": [answer.rule for answer in rules], **about},
-        attrs={"provenance": runs.attrs["provenance"]},
-    )
+    return xr.Dataset(values, coords={"rule": [answer.rule for answer in rules], **about_rules})
 
 
 def _counted(found: xr.Dataset) -> xr.Dataset:
