@@ -203,6 +203,7 @@ def test_shaking_grows_with_the_record():
     periods = np.array([0.01, 0.05, 0.3, 2.0, 10.0, 20.0])
     np.testing.assert_allclose(by_hand.at(periods, 0.05), scaled.at(periods, 0.05), rtol=1e-9)
     assert float(scaled.at(0.0, 0.05)) == pytest.approx(scaled.peak_acceleration)
+    assert float(REST.at(0.0, 0.05)) == 0.0
 
 
 def test_every_rule_has_clause_and_source_and_only_the_medians_are_checked():

@@ -97,7 +97,7 @@ class Shaking:
         between = np.clip(period, first, last)
         inside = np.interp(np.log(between), np.log(PERIODS), PERIODS * values) / between
         stiff = self.peak_acceleration + (values[0] - self.peak_acceleration) * period / first
-        with np.errstate(divide="ignore"):
+        with np.errstate(divide="ignore", invalid="ignore"):
             soft = values[-1] * (last / period) ** 2
         return np.asarray(np.where(period < first, stiff, np.where(period > last, soft, inside)))
 
