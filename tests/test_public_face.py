@@ -51,6 +51,14 @@ def test_theory_needs_no_scipy_and_no_xarray():
     assert fresh(code) == "[]"
 
 
+def test_rules_of_practice_need_no_scipy_and_no_xarray_before_they_see_a_base_motion():
+    code = (
+        "import sys, stylobate; stylobate.practice.west; stylobate.practice.Shaking; "
+        "print(sorted({'scipy', 'xarray', 'pydantic', 'matplotlib'} & set(sys.modules)))"
+    )
+    assert fresh(code) == "[]"
+
+
 def test_an_ensemble_imports_neither_dask_nor_scipy():
     code = (
         "import sys, stylobate as sb; model = sb.Slender(sb.Column.dimensionless(slenderness=0.1), damping=0.1); "

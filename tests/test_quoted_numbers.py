@@ -56,3 +56,10 @@ def test_the_errors_of_runs_are_those_of_the_table_of_accuracy():
     rows = re.findall(r"\d\.\de-\d+", section(VERIFICATION, "Error of a run"))
     assert rows
     assert set(rows) <= set(re.findall(r"\d\.\de-\d+", section(ACCURACY, "Accuracy")))
+
+
+def test_the_page_of_validation_quotes_the_frozen_scan_as_it_was_computed():
+    quoted = section(VERIFICATION, "Numbers frozen by others")
+    computed = (DOCS / "_static" / "validation" / "frozen.txt").read_text("utf-8")
+    assert {number.replace(" ", "") for number in numbers(quoted)} == {"2505", "13"}
+    assert {"2505", "13"} <= numbers(computed)

@@ -184,6 +184,16 @@ def test_the_tables_hold_the_numbers_of_the_assessment(found):
     assert needed == {"0.31": "yes", "0.712": "no"}
 
 
+def test_rules_of_practice_are_counted_over_the_records_beside_the_verdicts(found):
+    rows = assessment_tables(found)["rules-of-practice"].rows
+    practice, verdicts = found.data["practice"], found.data["verdicts"]["overturned"]
+    overturned = verdicts.sel(dissipation="central", vertical="with") == 1
+    assert len(rows) == practice["safe"].isel(record=0).size
+    assert all(int(row[3]) + int(row[5]) == practice.sizes["record"] for row in rows)
+    assert sum(int(row[6]) for row in rows) == int((practice["safe"] & overturned).sum())
+    assert all(int(row[4]) <= int(row[3]) for row in rows)
+
+
 def test_the_page_loads_nothing_from_elsewhere(folder, page):
     assert page.sources
     assert all(source.startswith("data:image/png;base64,") for source in page.sources)

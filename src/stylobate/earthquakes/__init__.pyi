@@ -12,6 +12,7 @@ from .fragility.observations import Counting, limit_states, reached_intervals
 from .incremental import incremental_dynamic_analysis
 from .intensities import SpectralAcceleration
 from .planar_comparison import planar_bias
+from .practice_study import compare_rules
 from .property_spreads import (
     Choice,
     LognormalSpread,
@@ -41,6 +42,7 @@ __all__ = [
     "assessment_report",
     "assessment_tables",
     "calibrate",
+    "compare_rules",
     "dispersion_parts",
     "fit_fragility",
     "fragility_of_runs",

@@ -118,7 +118,7 @@ def planar_bias(
     common: dict[str, Any] = {"scales": scales, "tail": tail, "executor": executor, **options}
     runs = np.size(scales) * len(named)
     space = incremental_dynamic_analysis(
-        model, named, intensity=intensity, progress=_part_of(progress, 0, runs * (1 + angles.size)), **common
+        model, named, intensity=intensity, progress=part_of(progress, 0, runs * (1 + angles.size)), **common
     )
     lines = {
         f"{name}, direction {place}": in_one_direction(motion, float(angle))
@@ -128,13 +128,14 @@ def planar_bias(
     flat = incremental_dynamic_analysis(
         planar_of(model) if planar is None else planar,
         lines,
-        progress=_part_of(progress, runs, runs * (1 + angles.size)),
+        progress=part_of(progress, runs, runs * (1 + angles.size)),
         **common,
     )
     return _compared(space, _by_direction(flat, list(named), angles), least_ratio)
 
 
-def _part_of(progress: Progress, before: int, total: int) -> Report:
+def part_of(progress: Progress, before: int, total: int) -> Report:
+    """Return the function to which a part of a computation reports, after `before` of `total` runs."""
     report = report_of(progress)
     return lambda done, _: report(before + done, total)
 

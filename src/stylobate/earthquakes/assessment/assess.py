@@ -21,7 +21,13 @@ from stylobate.earthquakes.assessment.margins import (
     margins_of,
     of_one_width,
 )
-from stylobate.earthquakes.assessment.records import column_properties, ground_motions, record_properties, spectra_of
+from stylobate.earthquakes.assessment.records import (
+    column_properties,
+    ground_motions,
+    practice_of,
+    record_properties,
+    spectra_of,
+)
 from stylobate.earthquakes.assessment.verdicts import (
     planar_of,
     planar_runs,
@@ -143,6 +149,7 @@ def assess(
         column, case, record and interval; "variations" over column, record and scale; "sliding" over
         column, record and scale; "planar"; "fragility" over column if there are enough records; "histories" over
         column and run, under the governing record of each column; "summary", counts;
+        "practice" over column, record, scale and rule, the answers of `stylobate.practice.rules_of_practice`;
         "spectra" over record and period, "ground_motions" over record and instant, for the figures of the report.
 
     Raises
@@ -211,6 +218,7 @@ def assess(
         "ground_motions": ground_motions(inputs),
         "verdicts": _over_columns(verdicts, names),
         "margins": _over_columns(of_one_width(margins), names),
+        "practice": _over_columns(practice_of(inputs), names),
     }
     if inputs.variations:
         data["variations"] = _over_columns([shares_of(inputs, name, parts, executor=executor) for name in names], names)

@@ -1,4 +1,4 @@
-"""Properties of columns and records of an assessment, response spectra and ground motions."""
+"""Properties of columns and records of an assessment, response spectra, ground motions and rules of practice."""
 
 import math
 
@@ -10,6 +10,8 @@ from stylobate.base_motions.base import ACCELERATION, VELOCITY
 from stylobate.base_motions.record import AXES
 from stylobate.earthquakes.assessment.inputs import CENTRAL, Inputs, Parts, identities
 from stylobate.earthquakes.intensities import has_two_components, horizontal_peak, peak_horizontal_velocity
+from stylobate.earthquakes.practice_study import answers_of
+from stylobate.practice.shaking import Shaking
 from stylobate.progress import Report
 from stylobate.records import response_spectra
 from stylobate.records.intensities import HorizontalComponent, drifts
@@ -83,6 +85,14 @@ def spectra_of(inputs: Inputs, parts: Parts, period: float) -> xr.Dataset:
 
     identity = {"records": identities(inputs.records), "periods": periods.tolist(), "damping": _DAMPING}
     return parts.get("records: response spectra", len(inputs.records), identity, compute)
+
+
+def practice_of(inputs: Inputs) -> list[xr.Dataset]:
+    """Return the answers of rules of practice for each column, over `record`, `scale` and `rule`."""
+    shaking = [Shaking.of(motion) for motion in inputs.records.values()]
+    along = {"record": list(inputs.records), "scale": inputs.scales}
+    bodies = [levels[CENTRAL].column for levels in inputs.columns.values()]
+    return [answers_of(body, shaking, inputs.scales).assign_coords(along) for body in bodies]
 
 
 def _spectrum(motion: BaseMotion, periods: Floats) -> Floats:

@@ -410,6 +410,24 @@ def _planar_bias(assessment: Assessment) -> PageTable:
     return PageTable(header, rows)
 
 
+def _practice(assessment: Assessment) -> PageTable:
+    """Count the answers of each rule of practice over the records, and the central verdicts that contradict them."""
+    header = (
+        *("column", "scale", "rule", "records called unsafe", "of these it survives", "records called safe"),
+        *("of these it overturns", "clause", "clause checked"),
+    )
+    if "practice" not in assessment.data:
+        return PageTable(header, [])
+    overturned = assessment.data["verdicts"]["overturned"].sel(dissipation=CENTRAL, vertical=_ACTS)
+    rows = []
+    for where, one in cells(assessment.data["practice"].assign(overturned=overturned), "column", "scale", "rule"):
+        safe, state = one["safe"].to_numpy().astype(bool), one["overturned"].to_numpy()
+        found = (~safe, ~safe & (state == 0), safe, safe & (state == 1))
+        checked = "yes" if one["checked"] else "no"
+        rows.append((*where, *(str(int(records.sum())) for records in found), str(one["clause"].item()), checked))
+    return PageTable(header, rows)
+
+
 def _fragility(assessment: Assessment) -> PageTable:
     header = (
         *("column", "limit state", "median PGA, RotD50 [m/s²]", "median from", "median to", "dispersion β_f"),
@@ -543,6 +561,7 @@ _TABLES: dict[str, Callable[[Assessment], PageTable]] = {
     "near-scales": _near_scales,
     "planar": _planar,
     "planar-bias": _planar_bias,
+    "rules-of-practice": _practice,
     "fragility": _fragility,
     "columns": _columns,
     "dissipation": _dissipation,

@@ -303,6 +303,13 @@ PLANAR = (
     "records under which only one of them overturns.",
 )
 
+RULES = (
+    "Hand formulas and clauses for unanchored bodies, beside the simulation at central dissipation with the vertical "
+    "component. No verdict depends on them. A rule of design is meant to be strict: it may call a column unsafe that "
+    "survives. Where the last column states no, the text of the clause was not compared: check it before quoting it."
+)
+"""Explanation of the rules of practice."""
+
 REFERENCES: tuple[tuple[str, str], ...] = (
     (
         "rocking, planar block",
