@@ -36,7 +36,7 @@ _THINNED, _WARM_UP = 10, 500
 class Calibration:
     """What tests with known outcomes say of an object.
 
-    Each test draws the numbers of the object anew, from normal distributions that its place, wear and impacts explain;
+    Each test draws the numbers of the object from normal distributions that its place, wear and impacts explain;
     a share λ of the outcomes has other reasons. Means, standard deviations and λ have a posterior distribution.
 
     Parameters
@@ -226,7 +226,7 @@ def _outcomes(overturned: Sequence[bool] | Bools, tests: int) -> Bools:
 
 
 def scores(probability: npt.ArrayLike, overturned: npt.ArrayLike) -> dict[str, float]:
-    """Return how well probabilities foretell outcomes.
+    """Return scores of probabilities beside outcomes.
 
     Parameters
     ----------
