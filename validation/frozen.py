@@ -75,7 +75,7 @@ def _under_a_sine() -> Iterator[Finding]:
         balance = column.mass * column.gravity * (column.rim_distance - column.mass_height)
         compared = f"energy at the end of the pulse over that of the balance, amplitude 2, R = {size:g} m"
         yield Finding(_PULSE, compared, _ENERGIES[size], float(end["energy"]) / balance, Kind.MATHEMATICS, allowed=1e-9)
-    compared = "equal outcomes at the points of the scan, as its transitions imply them: five sizes, 1.00 to 6.00, tilt beyond α"
+    compared = "equal outcomes at the points of the scan, as its transitions imply them (five sizes, 1.00 to 6.00)"
     remark = f"{back} of these blocks are pushed back by the end of the pulse and survive"
     yield Finding(_PULSE, compared, 5 * amplitudes.size, same, Kind.MATHEMATICS, remark=remark)
 
