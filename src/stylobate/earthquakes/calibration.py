@@ -96,6 +96,7 @@ class Calibration:
         each = [_probabilities(state, self.draws, fell) for state in self.posterior]
         return np.asarray(np.mean(each, axis=0))
 
+    @shows_progress("prediction")
     def predict(self, motions: Sequence[BaseMotion], *, tail: float = 2.0, progress: Progress = None) -> Floats:
         """Return the probability that the object overturns under further motions; arguments as for `calibrate`."""
         return self.probabilities(_fallen(self.model, motions, self.ranges, self.draws, tail, progress))
