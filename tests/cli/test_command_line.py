@@ -322,6 +322,14 @@ def test_help_offers_the_motions_that_have_their_options(command, capsys):
 
 
 @pytest.mark.parametrize("name", COMMANDS)
+def test_help_lists_each_argument_once_and_no_bound_that_is_none(name, capsys):
+    assert run([name, "--help"]) == 0
+    shown = capsys.readouterr().out
+    assert "None" not in shown
+    assert shown.count("rguments:\n") <= 1
+
+
+@pytest.mark.parametrize("name", COMMANDS)
 def test_the_table_of_commands_has_the_first_line_of_each_help(name):
     summary = COMMANDS[name].summary
     assert COMMANDS[name].load().help.partition("\n")[0] == summary

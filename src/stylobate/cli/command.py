@@ -103,7 +103,7 @@ def _as_parameter(option: Option) -> click.Option:
         kind = get_args(kind)
     elif kind is Path:
         kind = click.Path(path_type=Path)
-    elif kind is int:
+    elif kind is int and option.minimum is not None:
         kind = click.IntRange(min=option.minimum)
     callback = option.callback
     return _Panelled(
@@ -169,13 +169,12 @@ class _Program(click.Command):
         return super().parse_args(ctx, args)
 
     def format_options(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        """Write the options under their headings."""
+        """Write the options under their headings; the parser writes the arguments itself."""
         panels: dict[str, list[tuple[str, str]]] = {}
         for option in self.get_params(ctx):
             record = option.get_help_record(ctx)
-            if record is not None:
-                heading = "Arguments" if isinstance(option, click.Argument) else getattr(option, "panel", "Options")
-                panels.setdefault(heading, []).append(record)
+            if record is not None and not isinstance(option, click.Argument):
+                panels.setdefault(getattr(option, "panel", "Options"), []).append(record)
         for heading, records in panels.items():
             with formatter.section(heading):
                 formatter.write_dl(records)
