@@ -67,7 +67,7 @@ class Calibration:
 
         Returns
         -------
-        xr.Dataset
+        xarray.Dataset
             `mean`, `spread` over `number` and `quantile` (0.025, 0.5, 0.975), in the units of the numbers; `lapse`, λ,
             over `quantile`.
         """
@@ -256,7 +256,7 @@ def reliability(probability: npt.ArrayLike, overturned: npt.ArrayLike, *, bins: 
 
     Returns
     -------
-    xr.Dataset
+    xarray.Dataset
         Over `bin`: `foretold`, mean probability; `overturned`, fraction of outcomes; `tests`, number of tests.
     """
     p, known = np.asarray(probability, dtype=float).ravel(), np.asarray(overturned, dtype=float)
