@@ -23,8 +23,11 @@ def main() -> None:
         begun = time.perf_counter()
         found = list(importlib.import_module(f"validation.{name}").findings())
         (arguments.into / f"{name}.txt").write_text(table(found), encoding="utf-8")
-        agree = sum(one.agrees for one in found)
-        print(f"{name}: {agree} of {len(found)} agree, {time.perf_counter() - begun:.0f} s")
+        judged = [one for one in found if one.judged]
+        agree = sum(one.agrees for one in judged)
+        others = len(found) - len(judged)
+        took = time.perf_counter() - begun
+        print(f"{name}: {agree} of {len(judged)} agree, {others} without a bound, {took:.0f} s")
 
 
 if __name__ == "__main__":

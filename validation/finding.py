@@ -55,6 +55,11 @@ class Finding:
         return abs(self.ours - self.theirs) / scale if scale else 0.0
 
     @property
+    def judged(self) -> bool:
+        """Whether a bound judges the difference; a measurement without one is judged by its remark."""
+        return self.allowed is not None or math.isfinite(self.kind.value)
+
+    @property
     def agrees(self) -> bool:
         """Whether the difference is allowed."""
         return self.difference <= (self.kind.value if self.allowed is None else self.allowed)
@@ -65,7 +70,7 @@ def table(findings: Iterable[Finding]) -> str:
     head = "| source | compared | theirs | here | difference | |\n|---|---|---|---|---|---|\n"
     rows = (
         f"| {one.source} | {one.compared}{f'; {one.remark}' if one.remark else ''} | {one.theirs:.6g} | {one.ours:.6g} "
-        f"| {one.difference:.1e} | {'agrees' if one.agrees else '**differs**'} |\n"
+        f"| {one.difference:.1e} | {('agrees' if one.agrees else '**differs**') if one.judged else ''} |\n"
         for one in findings
     )
     return head + "".join(rows)
