@@ -102,7 +102,7 @@ sheet: $(VENV)/.core  ## all kinds of figures in light, dark, one column and as 
 
 bench: $(VENV)/.core $(VENV)/.test  ## the benchmarks, beside the engines that can be installed, into the documentation
 	-$(BIN)/python -m pip install --quiet --group bench
-	$(BIN)/python -m pytest benchmarks --benchmark-enable --benchmark-only
+	$(BIN)/python -m pytest benchmarks -n 0 --benchmark-enable --benchmark-only
 	$(BIN)/python -m benchmarks.ensembles
 	$(BIN)/python -m benchmarks.ensembles.columns
 	$(BIN)/python -m benchmarks.ensembles.stores

@@ -54,6 +54,9 @@ def main() -> None:
         "scaling": [asdict(cost) for cost in costs],
     }
     _write(arguments.into, engines, found, two_threads, costs, results)
+    rates = {timing.engine: timing.rate for timing in found if timing.workload == "rolling"}
+    if rates["taylor"] < rates["dop853"]:
+        raise SystemExit("Taylor series are slower than DOP853 in rolling")
 
 
 def _write(folder, engines, found, two_threads, costs, results) -> None:

@@ -198,10 +198,11 @@ def _steps_alone(method: str) -> Callable[[int], float]:
     A step has no branches, so its time does not depend on the run.
     """
     kernel, begun = _begun(method)
+    program = _OtherBatch(kernel.compiled.program(), text_of(loop) + _STEPS_ALONE)
     steps = replace(
         kernel.compiled,
         name="steps_alone",
-        program=_OtherBatch(kernel.compiled.program, text_of(loop) + _STEPS_ALONE),
+        program=lambda: program,
         arguments=(ArrayArgument(begun.shape), NumberKind.INTEGER),
     )
     buffer = kernel.buffer()
