@@ -11,19 +11,17 @@ import math
 import time
 from collections.abc import Callable, Iterator
 from functools import partial
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from stylobate.plots.style import BLACK, BLUE, GREEN, GREY, ORANGE, VERMILION, new_figure, styled
 
-from .finding import Finding, Kind
+from .finding import FOLDER, Finding, Kind
 from .rolling_rim import SAMPLE, Axes, Case, G, cases, followed
 
 Run = Callable[[], Axes]
 
-FOLDER = Path(__file__).parents[1] / "docs" / "_static" / "validation"
 STEPS = (1e-2, 2.5e-3, 1e-3, 2.5e-4, 1e-4)
 TOLERANCES = (1e-4, 1e-6, 1e-8, 1e-10)
 FRICTION = 2.0  # no case needs more than 0.4; PyBullet multiplies those of two bodies

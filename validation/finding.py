@@ -4,6 +4,10 @@ import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 from enum import Enum
+from pathlib import Path
+
+FOLDER = Path(__file__).parents[1] / "docs" / "_static" / "validation"
+"""Where tables and figures are written."""
 
 
 class Kind(Enum):
@@ -55,22 +59,34 @@ class Finding:
         return abs(self.ours - self.theirs) / scale if scale else 0.0
 
     @property
+    def bound(self) -> float:
+        """Largest difference that agrees; infinite for a measurement, which is judged by its remark."""
+        return self.kind.value if self.allowed is None else self.allowed
+
+    @property
     def judged(self) -> bool:
-        """Whether a bound judges the difference; a measurement without one is judged by its remark."""
-        return self.allowed is not None or math.isfinite(self.kind.value)
+        """Whether a bound judges the difference."""
+        return math.isfinite(self.bound)
 
     @property
     def agrees(self) -> bool:
         """Whether the difference is allowed."""
-        return self.difference <= (self.kind.value if self.allowed is None else self.allowed)
+        return self.difference <= self.bound
+
+    @property
+    def verdict(self) -> str:
+        """The kind of number, with the bound and whether it is kept."""
+        if not self.judged:
+            return self.kind.name.lower()
+        return f"{self.kind.name.lower()}, {self.bound:.0e}: {'agrees' if self.agrees else '**differs**'}"
 
 
 def table(findings: Iterable[Finding]) -> str:
     """Return a table in Markdown with a row for each finding."""
-    head = "| source | compared | theirs | here | difference | |\n|---|---|---|---|---|---|\n"
+    head = "| source | compared | theirs | here | difference | class |\n|---|---|---|---|---|---|\n"
     rows = (
         f"| {one.source} | {one.compared}{f'; {one.remark}' if one.remark else ''} | {one.theirs:.6g} | {one.ours:.6g} "
-        f"| {one.difference:.1e} | {('agrees' if one.agrees else '**differs**') if one.judged else ''} |\n"
+        f"| {one.difference:.1e} | {one.verdict} |\n"
         for one in findings
     )
     return head + "".join(rows)

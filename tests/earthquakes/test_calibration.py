@@ -58,6 +58,25 @@ def test_a_held_out_probability_does_not_know_the_outcome_of_its_test(learnt, kn
     np.testing.assert_array_equal(changed.held_out(folds=4, repeats=1, rng=3)[0, part], usual[0, part])
 
 
+def test_a_held_out_probability_does_not_know_the_outcomes_of_its_group(learnt, known):
+    group = np.repeat(["short", "medium", "long"], 20)
+    usual = learnt.held_out(folds=3, repeats=1, groups=group, rng=3)[0]
+    for name in np.unique(group):
+        other = np.where(group == name, ~known, known)
+        changed = learnt.relearnt(other, samples=1).held_out(folds=3, repeats=1, groups=group, rng=3)[0]
+        np.testing.assert_array_equal(changed[group == name], usual[group == name])
+        assert not np.array_equal(changed[group != name], usual[group != name])
+
+
+@pytest.mark.parametrize(
+    ("groups", "message"),
+    [(["a", "b"], "a label for each of 60 tests"), (["a"] * 30 + ["b"] * 30, "at least 3 labels")],
+)
+def test_groups_that_cannot_be_divided_are_refused(learnt, groups, message):
+    with pytest.raises(sb.errors.ParameterError, match=message):
+        learnt.held_out(folds=3, groups=groups)
+
+
 def test_predictions_are_the_probabilities_of_the_same_motions(learnt):
     some = [7, 30, 55]
     found = learnt.predict([PULSES[k] for k in some], tail=4.0, progress=False)

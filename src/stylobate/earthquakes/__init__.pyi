@@ -11,6 +11,7 @@ from .fragility.likelihood import FitStatus
 from .fragility.observations import Counting, limit_states, reached_intervals
 from .incremental import incremental_dynamic_analysis
 from .intensities import SpectralAcceleration
+from .intensity_comparison import compare_intensities
 from .planar_comparison import planar_bias
 from .practice_study import compare_rules
 from .property_spreads import (
@@ -42,6 +43,7 @@ __all__ = [
     "assessment_report",
     "assessment_tables",
     "calibrate",
+    "compare_intensities",
     "compare_rules",
     "dispersion_parts",
     "fit_fragility",

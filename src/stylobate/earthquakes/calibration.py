@@ -114,21 +114,42 @@ class Calibration:
         chain = _chain(best, self.draws, self.fell, known, require_whole("samples", samples, least=1), generator)
         return Calibration(self.model, self.ranges, self.draws, self.fell, known, chain)
 
-    def held_out(self, *, folds: int = 5, repeats: int = 10, rng: Rng = 0) -> Floats:
+    def held_out(
+        self, *, folds: int = 5, repeats: int = 10, groups: npt.ArrayLike | None = None, rng: Rng = 0
+    ) -> Floats:
         """Return the probabilities of tests that were not used, shape (repeats, n).
 
         The tests are divided at random into `folds` parts; those of each part are predicted from the others. Only the
         distributions are learnt again, from the same simulated outcomes.
+
+        Parameters
+        ----------
+        folds, repeats
+            Number of parts, and of divisions.
+        groups
+            Label of each test, such as the name of its motion, shape (n,): tests with one label are in one part. By
+            default each test is divided from all others.
+        rng
+            Seed or numpy.random.Generator.
+
+        Raises
+        ------
+        ParameterError
+            If there are fewer labels than parts, or not one for each test.
         """
         generator, count = generator_of(rng), len(self.overturned)
         folds, repeats = require_whole("folds", folds, least=2), require_whole("repeats", repeats, least=1)
+        labels = np.arange(count) if groups is None else np.unique(np.asarray(groups), return_inverse=True)[1].ravel()
+        if labels.shape != (count,):
+            raise ParameterError(f"groups: must have a label for each of {count} tests (got {labels.size}).")
+        kinds = int(labels.max()) + 1
+        if kinds < folds:
+            raise ParameterError(f"groups: must have at least {folds} labels, one a part (got {kinds}).")
         found = np.empty((repeats, count))
         for repeat in range(repeats):
-            parts = np.array_split(generator.permutation(count), folds)
-            for part in parts:
-                used = np.ones(count, dtype=bool)
-                used[part] = False
-                best = _most_probable(self.draws, self.fell[:, used], self.overturned[used])
+            for chosen in np.array_split(generator.permutation(kinds), folds):
+                part = np.isin(labels, chosen)
+                best = _most_probable(self.draws, self.fell[:, ~part], self.overturned[~part])
                 found[repeat, part] = _probabilities(best, self.draws, self.fell[:, part])
         return found
 

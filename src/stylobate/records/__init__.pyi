@@ -2,6 +2,7 @@ from .intensities import (
     intensity_measures,
     rocking_measures,
 )
+from .intensity_table import intensity_table
 from .joining import Lengths, Steps, read_records, sample_record
 from .reading import RecordFormat, read_record, write_at2, write_csv
 from .spectra import response_spectra
@@ -14,6 +15,7 @@ __all__ = [
     "RecordFormat",
     "Steps",
     "intensity_measures",
+    "intensity_table",
     "random_vibration",
     "read_record",
     "read_records",
