@@ -8,7 +8,7 @@ from pathlib import Path
 from .finding import table
 
 _FOLDER = Path(__file__).parents[1] / "docs" / "_static" / "validation"
-PARTS = ("frozen", "practice", "engines", "shake_table")
+PARTS = ("frozen", "practice", "engines", "shake_table", "round_bodies")
 """Modules of this folder; each has a function `findings`."""
 
 
