@@ -69,12 +69,15 @@ def test_the_angle_of_turn_does_not_depend_on_the_axial_inertia():
     assert near < 0.05 * far < 0.001
 
 
-def test_the_page_states_the_exponents_of_the_laws():
+def test_the_pages_state_the_exponents_of_the_laws():
     docs = Path(__file__).parents[1] / "docs"
     if not docs.is_dir():
         pytest.skip("the documentation is not here")
     settling = (docs / "results" / "validation.md").read_text("utf-8")
+    kitchen = (docs / "how-to" / "kitchen-experiments.md").read_text("utf-8")
     for loss in round_.LOSSES:
         numbers = (loss.power, loss.tilt_exponent, loss.rate_exponent)
         cells = " | ".join(str(Fraction(number).limit_denominator(9)).replace("-", "−") for number in numbers)
         assert f"| {cells} |" in settling
+        n = 2.0 + loss.power
+        assert f"| {n:g} | {2.0**-n:.3f} |" in kitchen
