@@ -36,4 +36,6 @@ for axes in (above, below):
 # %%
 # The tilt falls while the rate of the contact point rises. The page
 # :doc:`/how-to/animations` shows such a disc in motion, and
-# :func:`stylobate.theory.free_rolling` computes steady free rolling.
+# :func:`stylobate.theory.free_rolling` computes steady free rolling. A real coin ends
+# more abruptly: the page :doc:`/results/validation` compares the exponents of this law
+# of dissipation with those of measured disks.

@@ -210,7 +210,8 @@ class Rolling(SpinningModel, FiniteTiltModel):
         upright loses its spin at the rate ζ ω0.
     rolling_resistance
         Lever arm μ_r of the normal force, in units of the radius: a couple μ_r r N against the horizontal component of
-        the angular velocity, which fades out below the rate 1e-3 ω0.
+        the angular velocity, which fades out below the rate 1e-3 ω0. This loss falls while a flat body settles; that of
+        measured disks grows.
     restitution
         e, fraction of the tilt rate that remains after a passage of the vertical; 1 for no loss, the limit of grazing
         rolling. `theory.housner_restitution` computes Housner's value for planar impacts.
