@@ -9,9 +9,9 @@ import time
 import numpy as np
 import pytest
 
-from stylobate.compiler import kept
 from stylobate.compiler.compiled import Compiled
 from stylobate.compiler.kept import TrustedCache
+from stylobate.compiler.machine import Machine
 from stylobate.compiler.programs import Written
 from stylobate.compiler.unit import ArrayArgument
 from stylobate.errors import FileError, UnsupportedError
@@ -40,13 +40,13 @@ def folder(tmp_path, monkeypatch):
 @pytest.fixture
 def compilations(monkeypatch):
     """Texts that are compiled."""
-    texts, compile_it = [], kept.object_code
+    texts, compile_it = [], Machine.object_code
 
-    def compiled(text):
+    def compiled(machine, text):
         texts.append(text)
-        return compile_it(text)
+        return compile_it(machine, text)
 
-    monkeypatch.setattr(kept, "object_code", compiled)
+    monkeypatch.setattr(Machine, "object_code", compiled)
     return texts
 
 

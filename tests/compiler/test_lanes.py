@@ -6,7 +6,7 @@ import re
 import numpy as np
 import pytest
 
-from stylobate.compiler import kept
+from stylobate.compiler import machine
 from stylobate.compiler.marks import fast, lanes
 
 from .calling import both_ways, text_of
@@ -101,10 +101,10 @@ def test_fast_functions_differ_by_rounding_only_and_keep_what_is_no_number():
 PACKED, SINGLE = (rf"^\s+v?(?:add|sub|mul|div|sqrt|min|max|fn?m(?:add|sub)\d*)(?:{kind})\s" for kind in ("pd", "sd"))
 
 
-@pytest.mark.skipif(kept.vector_bits() < 256, reason="the machine has no AVX")
+@pytest.mark.skipif(machine.native().vector_bits < 256, reason="the machine has no AVX")
 @pytest.mark.parametrize(("function", "packed"), [(fused, True), (of_the_library, False)])
 def test_lanes_are_vector_code(function, packed):
-    assembly = kept.assembly(text_of(function, X, X, lanes=kept.lanes()))
+    assembly = machine.native().assembly(text_of(function, X, X, lanes=machine.native().lanes))
     assert re.search(PACKED, assembly, re.MULTILINE)
     assert bool(re.search(SINGLE, assembly, re.MULTILINE)) is not packed or function is of_the_library
     assert ("sin" in assembly) is not packed

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
 
-from stylobate.compiler import kept
+from stylobate.compiler import machine
 from stylobate.compiler.sources import CompileError, written_module
 from stylobate.compiler.unit import ArrayArgument, Unit
 
@@ -36,7 +36,7 @@ def compiled(text):
     module = written_module("random_program", text, names_of(plain=False))
     unit = Unit(lanes=LENGTH, exact=True)
     unit.export(module.program, "program", [ArrayArgument((LENGTH,))] * 2)
-    engine = kept.linked(kept.object_code(unit.module.text(kept.attributes())))
+    engine = machine.linked(machine.native().object_code(unit.module.text(machine.native().attributes)))
     x, out = np.array(X), np.full(LENGTH, 7.0)
     call = ctypes.CFUNCTYPE(ctypes.c_int64, ctypes.c_void_p, ctypes.c_void_p)(engine.get_function_address("program"))
     result = call(x.ctypes.data, out.ctypes.data)

@@ -6,8 +6,9 @@ from collections import namedtuple
 
 import numpy as np
 import pytest
+from llvmlite import binding as llvm
 
-from stylobate.compiler import kept
+from stylobate.compiler import machine
 from stylobate.compiler.marks import lanes
 from stylobate.compiler.sources import CompileError
 
@@ -148,11 +149,11 @@ def test_results_of_calls_that_are_not_inlined_are_those_of_python(threshold, mo
         tuning.inlining_threshold = threshold
         return tuning
 
-    own = kept.llvm.create_pipeline_tuning_options
-    monkeypatch.setattr(kept.llvm, "create_pipeline_tuning_options", tuned)
+    own = llvm.create_pipeline_tuning_options
+    monkeypatch.setattr(llvm, "create_pipeline_tuning_options", tuned)
     (compiled, _), (plain, _) = both_ways(many_calls, X, np.zeros(12))
     np.testing.assert_array_equal(compiled[1], plain[1])
-    assert "fld" not in kept.assembly(text_of(many_calls, X, np.zeros(12)))
+    assert "fld" not in machine.native().assembly(text_of(many_calls, X, np.zeros(12)))
 
 
 def value_of_or(x):

@@ -6,7 +6,7 @@ import math
 import numpy as np
 import pytest
 
-from stylobate.compiler import kept
+from stylobate.compiler import machine
 from stylobate.compiler.marks import lanes
 from stylobate.compiler.sources import CompileError
 from stylobate.compiler.unit import ArrayArgument, Unit
@@ -22,7 +22,7 @@ def compiled(function, width=8):
     """Compile a function of two rows of eight numbers as that of a model."""
     unit = Unit(lanes=width)
     unit.export(function, "exported", [ArrayArgument((8,))] * 2)
-    engine = kept.linked(kept.object_code(unit.module.text(kept.attributes())))
+    engine = machine.linked(machine.native().object_code(unit.module.text(machine.native().attributes)))
     call = ctypes.CFUNCTYPE(ctypes.c_int64, ctypes.c_void_p, ctypes.c_void_p)(engine.get_function_address("exported"))
     return lambda x, out: (call(x.ctypes.data, out.ctypes.data), engine)[0]
 

@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from stylobate.compiler import kept
+from stylobate.compiler.machine import Machine, native
 from stylobate.compiler.programs import Program, Written
 from stylobate.compiler.reads import Reads, Watch
 from stylobate.compiler.sources import CompileError
@@ -82,10 +83,11 @@ class Compiled:
             own["_texts"] = texts
         return own["_module"]  # type: ignore[no-any-return]
 
-    def unit(self, *, exact: bool = False, reads: Reads | None = None) -> Unit:
-        """Return a new unit for functions of the module."""
+    def unit(self, *, machine: Machine | None = None, exact: bool = False, reads: Reads | None = None) -> Unit:
+        """Return a new unit for functions of the module, with the lanes of a machine, by default of this one."""
         fast = [function for name, function in self.functions.items() if name in self.fast]
-        return Unit(lanes=kept.lanes(), fast=fast, exact=exact, reads=reads, trusted=True)
+        lanes = (machine or native()).lanes
+        return Unit(lanes=lanes, fast=fast, exact=exact, reads=reads, trusted=True)
 
     @property
     def _words(self) -> str:
@@ -104,7 +106,7 @@ class Compiled:
         def write(reads: Reads) -> str:
             unit = self.unit(reads=reads)
             unit.export(getattr(self._module_of(program), self.name), self.name, self.arguments)
-            return unit.module.text(kept.attributes())
+            return unit.module.text(native().attributes)
 
         try:
             parts = [repr((self.name, self.arguments, self.fast)), *program.texts]

@@ -11,8 +11,8 @@ import pytest
 
 import stylobate as sb
 from stylobate.base_motions import BaseMotion
-from stylobate.compiler import kept
 from stylobate.compiler.kept import PLAIN_VARIABLE, cache_folder
+from stylobate.compiler.machine import Machine
 from stylobate.engine.kernel import bound, kernels
 
 CIRCLE = sb.Harmonic.circular(acceleration=0.065, angular_frequency=1.8)
@@ -59,7 +59,7 @@ def test_a_second_process_compiles_nothing_and_computes_the_same_bits(tmp_path, 
     assert str(tmp_path) in first.stderr
     assert len(first.stderr.splitlines()) == 1
     monkeypatch.setenv("STYLOBATE_CACHE", str(tmp_path))
-    monkeypatch.delattr(kept, "object_code")
+    monkeypatch.delattr(Machine, "object_code")
     exec(SCRIPT, {})  # noqa: S102
     one, two = json.loads(first.stdout), json.loads(capsys.readouterr().out)
     assert two["took"] < one["took"]

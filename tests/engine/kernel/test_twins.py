@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import stylobate as sb
-from stylobate.compiler import kept
+from stylobate.compiler import machine
 from stylobate.compiler.unit import ArrayArgument
 from stylobate.compiler.values import NumberKind
 from stylobate.engine.ensembles.batch import Batch
@@ -43,7 +43,7 @@ def without_fast_arithmetic(compiled, name, arguments, kinds):
     """Return a compiled function that takes values of these kinds."""
     unit = compiled.unit(exact=True)
     unit.export(getattr(compiled.module, name), name, arguments)
-    engine = kept.linked(kept.object_code(unit.module.text(kept.attributes())))
+    engine = machine.linked(machine.native().object_code(unit.module.text(machine.native().attributes)))
     function = ctypes.CFUNCTYPE(ctypes.c_int64, *kinds)(engine.get_function_address(name))
     vars(function)["engine"] = engine  # keeps the code alive
     return function

@@ -7,7 +7,7 @@ import pytest
 from llvmlite import binding as llvm
 
 import stylobate as sb
-from stylobate.compiler import kept
+from stylobate.compiler import machine
 from stylobate.compiler.unit import ArrayArgument
 from stylobate.compiler.values import NumberKind
 from stylobate.engine.kernel.kernels import kernel_of
@@ -66,7 +66,7 @@ def assembly_of(plan_of):
         compiled = kernel_of(model, shape).compiled
         unit = compiled.unit()
         unit.export(getattr(compiled.module, name), name, [ArrayArgument((len(shape.rows()), shape.width)), *after])
-        return kept.assembly(unit.module.text(kept.attributes()))
+        return machine.native().assembly(unit.module.text(machine.native().attributes))
 
     return made
 

@@ -1,0 +1,144 @@
+"""Machines for which LLVM makes code: this one, and the virtual machine of web browsers.
+
+llvmlite is imported when something is compiled or linked.
+"""
+
+import threading
+from dataclasses import dataclass
+from functools import cache
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from llvmlite import binding as llvm
+
+# Level 2 of the passes takes a third longer, and does not speed up code that is already vectorised.
+_PASSES, _CODE = 1, 2
+# Maximum size of functions that are inlined. The default of LLVM, 225, takes a tenth longer, and its code is as fast.
+_INLINED = 60
+_BITS = 64
+
+_compiling = threading.Lock()
+
+
+@dataclass(frozen=True, slots=True)
+class Machine:
+    """A target of LLVM.
+
+    Parameters
+    ----------
+    triple
+        Architecture, vendor and system, as LLVM names them.
+    processor
+        Name of the processor.
+    features
+        Its features, with commas between them.
+    vector_bits
+        Length of the vector registers [bits].
+    code_model
+        Relocation model and code model of LLVM.
+    """
+
+    triple: str
+    processor: str
+    features: str
+    vector_bits: int
+    code_model: tuple[str, str] = ("pic", "default")
+
+    @property
+    def lanes(self) -> int:
+        """Number of floats in a vector register."""
+        return self.vector_bits // _BITS
+
+    @property
+    def attributes(self) -> str:
+        """LLVM attributes of functions."""
+        width = self.vector_bits
+        return f'nounwind "prefer-vector-width"="{width}" "min-legal-vector-width"="{width}"'
+
+    def described(self) -> str:
+        """Return all properties of the machine and of LLVM on which machine code depends."""
+        from llvmlite import binding as llvm
+
+        layout = str(_target(self).target_data)
+        return repr((self.triple, self.processor, self.features, layout, llvm.llvm_version_info))
+
+    def optimised(self, text: str) -> "llvm.ModuleRef":
+        """Return the optimised LLVM module of a text."""
+        from llvmlite import binding as llvm
+
+        target = _target(self)
+        module = llvm.parse_assembly(text)
+        module.triple, module.data_layout = target.triple, str(target.target_data)
+        module.verify()
+        options = llvm.create_pipeline_tuning_options(speed_level=_PASSES)
+        # The code is already vectorised; these passes would only cost time.
+        options.loop_vectorization = options.slp_vectorization = options.loop_unrolling = False
+        options.inlining_threshold = _INLINED
+        builder = llvm.create_pass_builder(target, options)
+        builder.getModulePassManager().run(module, builder)
+        return module
+
+    def object_code(self, text: str) -> bytes:
+        """Return the machine code of the module of a text."""
+        with _compiling:
+            return bytes(_target(self).emit_object(self.optimised(text)))
+
+    def assembly(self, text: str) -> str:
+        """Return the assembly of the module of a text."""
+        with _compiling:
+            return str(_target(self).emit_assembly(self.optimised(text)))
+
+
+WEB = Machine(
+    triple="wasm32-unknown-unknown",
+    processor="generic",
+    features="+simd128,+bulk-memory,+mutable-globals,+sign-ext,+nontrapping-fptoint",
+    vector_bits=128,
+    code_model=("static", "default"),
+)
+"""WebAssembly with vectors of 128 bits."""
+
+
+@cache
+def native() -> Machine:
+    """Return this machine."""
+    from llvmlite import binding as llvm
+
+    features = llvm.get_host_cpu_features()
+    bits = 512 if features.get("avx512f") else 256 if features.get("avx") else 128
+    # LLVM prefers half registers on processors whose earlier models slowed down with full ones.
+    features["prefer-256-bit"] = False
+    return Machine(llvm.get_default_triple(), llvm.get_host_cpu_name(), features.flatten(), bits)
+
+
+def linked(code: bytes) -> "llvm.ExecutionEngine":
+    """Return an engine whose machine code for this machine can be called as long as the engine exists."""
+    from llvmlite import binding as llvm
+
+    with _compiling:
+        engine = llvm.create_mcjit_compiler(
+            llvm.parse_assembly(""), _new_target(native())
+        )  # the engine owns its target
+        engine.add_object_file(llvm.ObjectFileRef.from_data(code))
+        engine.finalize_object()
+        return engine
+
+
+@cache
+def _target(machine: Machine) -> "llvm.TargetMachine":
+    return _new_target(machine)
+
+
+def _new_target(machine: Machine) -> "llvm.TargetMachine":
+    from llvmlite import binding as llvm
+
+    if machine == native():
+        llvm.initialize_native_target()
+        llvm.initialize_native_asmprinter()
+    else:
+        llvm.initialize_all_targets()
+        llvm.initialize_all_asmprinters()
+    relocation, model = machine.code_model
+    return llvm.Target.from_triple(machine.triple).create_target_machine(
+        cpu=machine.processor, features=machine.features, opt=_CODE, reloc=relocation, codemodel=model
+    )
