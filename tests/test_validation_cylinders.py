@@ -114,8 +114,8 @@ def test_cylinders_of_another_size_are_found_out(folders):
 def test_without_the_motions_the_laws_of_the_published_tables_remain(folders, monkeypatch, capsys):
     monkeypatch.delenv(cylinders.MOTIONS)
     found = list(cylinders.findings())
-    assert [one.agrees for one in found] == [True] * 3
-    assert "of 30 published runs" in found[1].remark
+    assert [one.agrees for one in found] == [True] * 2
+    assert "of 30 published runs" in found[0].remark
     assert "simulations left out" in capsys.readouterr().out
 
 
@@ -127,7 +127,7 @@ def test_an_uplift_that_depends_on_the_size_breaks_the_law(folders, monkeypatch)
         table[5, 2:] = 0.0
 
     rewritten(clone, 7, stands)
-    law = list(cylinders.findings())[1]
+    law = next(cylinders.findings())
     assert (law.theirs, law.ours, law.agrees) == (30, 29, False)
 
 
@@ -139,15 +139,15 @@ def test_an_uplift_beyond_the_published_peak_acceleration_is_found_out(folders, 
         table[3::5, 2:] = 1e-3 * np.array([table[3, 1], 1.0])
 
     rewritten(clone, 1, uplifts)
-    peak = list(cylinders.findings())[2]
+    peak = list(cylinders.findings())[1]
     assert peak.ours == pytest.approx(9.81 * math.tan(ANGLES[3]))
     assert not peak.agrees
 
 
 def test_without_any_data_the_frequency_parameter_remains(monkeypatch, capsys):
     monkeypatch.delenv(cylinders.PUBLISHED, raising=False)
-    (found,) = cylinders.findings()
-    assert found.agrees
+    assert list(cylinders.findings()) == []
+    assert cylinders.frequency_parameter().agrees
     assert "outcomes left out" in capsys.readouterr().out
 
 

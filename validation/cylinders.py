@@ -88,7 +88,6 @@ class Tilts:
 
 def findings() -> Iterator[Finding]:
     """Yield the laws that the published peak tilts must obey and, with the motions, the outcomes by `Wobbling`."""
-    yield frequency_parameter()
     folder = os.environ.get(PUBLISHED)
     if not folder:
         print(f"cylinders: outcomes left out; name the folder of a clone of {SOURCE} in ${PUBLISHED}")
