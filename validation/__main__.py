@@ -8,7 +8,10 @@ from pathlib import Path
 from . import document
 from .finding import FOLDER, table
 
-PARTS = ("problems", "frozen", "round_bodies", "practice", "engines", "shake_table", "intensities", "objects")
+PARTS = (
+    *("problems", "frozen", "round_bodies", "practice", "engines", "opensees", "hybrid_orbit", "shake_table"),
+    *("cylinders", "intensities", "objects"),
+)
 """Modules of this folder; each has a function `findings`."""
 
 

@@ -71,7 +71,7 @@ def write(into: Path, tables: Path) -> Path:
         PageSection("Classes of comparisons", [*_CLASSES, _summary(tables)]),
         PageSection("Verification problems", _part(tables, "problems")),
         PageSection("Numbers published by others", _part(tables, "frozen", "cylinders")),
-        PageSection("Other programs", _part(tables, "engines", "opensees")),
+        PageSection("Other programs", _part(tables, "engines", "opensees", "hybrid_orbit")),
         PageSection("Rules of practice", _part(tables, "practice")),
         PageSection(
             "Measurements",

@@ -18,7 +18,7 @@ import numpy as np
 from stylobate.plots.style import BLACK, BLUE, GREEN, GREY, ORANGE, VERMILION, new_figure, styled
 
 from .finding import FOLDER, Finding, Kind
-from .rolling_rim import SAMPLE, Axes, Case, G, cases, followed
+from .rolling_rim import SAMPLE, Axes, Case, G, cases, followed, settling
 
 Run = Callable[[], Axes]
 
@@ -31,7 +31,9 @@ def mujoco(case: Case, step: float, *, advised: bool) -> Run:
     """Set up MuJoCo."""
     import mujoco as mj
 
-    contact = f'friction="{FRICTION} 0 0"'
+    contact = f'friction="{FRICTION} 0 {case.resistance * case.column.radius}"'
+    if case.resistance:  # friction in all six directions; its third coefficient is the lever arm of rolling [m]
+        contact += ' condim="6"'
     options = f'timestep="{step}" gravity="0 0 {-G}"'
     if advised:  # the stiffest contact for the step; friction as firm as the normal force or firmer
         contact += f' solref="{2 * step} 1" solimp="0.9999 0.9999 0.001"'
@@ -286,7 +288,8 @@ def findings() -> Iterator[Finding]:
         lines = ",\n".join(json.dumps(point) for point in points)
         (FOLDER / "engines.json").write_text(f"[\n{lines}\n]\n", encoding="utf-8")
         draw(points)
-    return compared(points)
+    yield from compared(points)
+    yield from settled(engines)
 
 
 def compared(points: list[dict[str, Any]]) -> Iterator[Finding]:
@@ -308,6 +311,27 @@ def compared(points: list[dict[str, Any]]) -> Iterator[Finding]:
                 remark=f"at the end tilted by {ends[0]:.2f}° of {ends[1]:.2f}°; "
                 f"difference with steps of 1 ms {usual[point['case'], name]:.1e}",
             )
+
+
+RESISTING = ("MuJoCo", "MuJoCo, default contact")
+"""Engines whose rolling friction is a moment of one size in any direction, as that of `Rolling`."""
+
+
+def settled(engines: dict[str, Callable[[Case, float], Run]]) -> Iterator[Finding]:
+    """Yield a finding for each engine with the same law of rolling resistance, at the smallest step."""
+    case = settling()
+    for name in (name for name in RESISTING if name in engines):
+        *_, usual, _, theirs = (case.measured(engines[name](case, step)()) for step in STEPS)
+        product, _, choice = name.partition(", ")
+        yield Finding(
+            source=f"{product} {version(ENGINES[name][0])}{choice and f', {choice}'}",
+            compared=f"{case.title}: {case.compared}",
+            theirs=theirs,
+            ours=case.exact,
+            kind=Kind.CODE,
+            remark=f"at the start {math.degrees(case.tilt):.2f}°; "
+            f"difference with steps of 1 ms {abs(usual / case.exact - 1.0):.1e}",
+        )
 
 
 LOOKS = {

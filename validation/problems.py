@@ -9,6 +9,7 @@ from numpy.polynomial import Polynomial
 import stylobate as sb
 from stylobate.column import STANDARD_GRAVITY
 
+from .cylinders import frequency_parameter
 from .finding import Finding, Kind
 from .rolling_rim import cases
 
@@ -26,6 +27,7 @@ def findings() -> Iterator[Finding]:
     yield _precession()
     yield _steady_rolling()
     yield _slip()
+    yield frequency_parameter()
 
 
 def _solid() -> sb.Column:

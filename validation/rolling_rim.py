@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -43,6 +43,11 @@ def farthest(_times: Axes, tilt: Axes, _azimuth: Axes) -> float:
     return math.degrees(tilt[np.argmax(np.abs(tilt - tilt[0]))])
 
 
+def last(_times: Axes, tilt: Axes, _azimuth: Axes) -> float:
+    """Return the tilt at the end [degrees]."""
+    return math.degrees(tilt[-1])
+
+
 @dataclass(frozen=True, kw_only=True)
 class Case:
     """A motion without impact, and the number that is compared."""
@@ -56,6 +61,8 @@ class Case:
     """Initial rate of the azimuth [rad/s]; the tilt is at rest, and the column has no spin about its axis."""
     duration: float
     driven: bool = False
+    resistance: float = 0.0
+    """Lever arm of the normal force against the horizontal angular velocity, in radii."""
 
     @property
     def samples(self) -> int:
@@ -87,7 +94,8 @@ class Case:
         options = start | {"duration": self.duration, "samples": self.samples + 1, "rtol": rtol}
 
         def run() -> Axes:
-            x, y = sb.simulate(sb.Rolling(self.column), base, **options).data["tilt"].values.T
+            model = sb.Rolling(self.column, rolling_resistance=self.resistance)
+            x, y = sb.simulate(model, base, **options).data["tilt"].values.T
             tilt = np.hypot(x, y)
             return np.column_stack([np.sinc(tilt / np.pi) * x, np.sinc(tilt / np.pi) * y, np.cos(tilt)])
 
@@ -140,6 +148,12 @@ def cases() -> dict[str, Case]:
             tilt=0.2, turning=steady(coin, 0.2), duration=5.0,
         ),
     }  # fmt: skip
+
+
+def settling() -> Case:
+    """Return the case with loss: the rim that rolls as in "rolling", against rolling resistance."""
+    loss = {"title": "settling", "compared": "tilt at the end [°]", "scalar": last, "resistance": 1e-2}
+    return replace(cases()["rolling"], **loss)
 
 
 def followed(case: Case, step: float, advance: Callable[[float, int], None], axis: Callable[[], Axes]) -> Axes:
