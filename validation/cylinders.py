@@ -10,6 +10,7 @@ The motions are not part of the data. STYLOBATE_CYLINDER_MOTIONS names a folder 
 `7.csv`. Units and directions are those that `read_records` finds in the files.
 """
 
+import contextlib
 import math
 import os
 import warnings
@@ -108,8 +109,7 @@ def frequency_parameter() -> Finding:
     columns = cylinders(SIZES, ANGLES)
     model = _model(0.0)
     ours = np.empty_like(theirs)
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", UnlikelyInputWarning)  # radii up to 35 m
+    with _large():
         for i, j in np.ndindex(ours.shape):
             numbers = {name: float(values[i, j]) for name, values in columns.items()}
             ours[i, j] = replace(model.column, **numbers).frequency_parameter
@@ -134,6 +134,14 @@ def cylinders(sizes: Floats, angles: Floats) -> dict[str, xr.DataArray]:
 def _cylinder(angle: float) -> sb.Column:
     """Return the solid cylinder with R = 1 m and this tipping angle."""
     return sb.Column.solid(radius=math.sin(angle), height=2.0 * math.cos(angle), density=2500.0, gravity=GRAVITY)
+
+
+@contextlib.contextmanager
+def _large() -> Iterator[None]:
+    """Permit radii of up to 35 m, about which the package asks."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", UnlikelyInputWarning)
+        yield
 
 
 def _model(damping: float) -> sb.Wobbling:
@@ -240,13 +248,11 @@ def simulate(published: Tilts, motion: sb.Record, *, damped: bool) -> Tilts:
     """Simulate the published cylinders under a motion."""
     angles = published.angles
     damping = [_cylinder(angle).housner_damping() if damped else 0.0 for angle in angles]
-    runs = sb.simulate_ensemble(
-        _model(0.0),
-        motion,
-        duration=motion.duration + _TAIL,
-        parameters={**cylinders(published.sizes, angles), "damping": xr.DataArray(damping, dims="angle")},
-        progress=False,
-    ).transpose("size", "angle", ...)
+    varied = {**cylinders(published.sizes, angles), "damping": xr.DataArray(damping, dims="angle")}
+    with _large():
+        runs = sb.simulate_ensemble(
+            _model(0.0), motion, duration=motion.duration + _TAIL, parameters=varied, progress=False
+        ).transpose("size", "angle", ...)
     peak = runs["peak_tilt"].to_numpy() / angles
     overturned = runs["outcome"].to_numpy() == sb.Outcome.OVERTURNED
     return Tilts(published.sizes, angles, np.where(overturned, np.maximum(peak, 1.0), peak))
