@@ -2,11 +2,12 @@
 
 import math
 import shutil
+from html import escape
 
 import numpy as np
 import pytest
 from validation import document, frozen, objects, problems
-from validation.finding import Finding, Kind, table
+from validation.finding import FOLDER, Finding, Kind, table
 from validation.objects import MeasuredObject
 
 import stylobate as sb
@@ -47,6 +48,14 @@ def test_the_document_has_each_row_of_the_tables_and_counts_the_classes(tmp_path
         assert one.compared in written
     counts = document._summary(tmp_path).rows
     assert counts == [["code", "0", "1", "0"], ["experiment", "0", "0", "1"], ["mathematics", "1", "0", "0"]]
+
+
+def test_the_document_has_all_tables_of_the_page(tmp_path):
+    written = document.write(tmp_path / "report.html", FOLDER, ["problems"]).read_text("utf-8")
+    for path in FOLDER.glob("*.txt"):
+        last = path.read_text("utf-8").splitlines()[-1].split("|")[2].strip().replace("`", "`")
+        assert escape(last)[:40] in written, path.stem
+        assert path.stem == "problems" or path.stem in written.partition("Intended use")[0]
 
 
 @pytest.mark.parametrize("one", objects.objects(), ids=lambda one: one.folder.name)

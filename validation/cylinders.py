@@ -183,7 +183,7 @@ def laws(published: Mapping[int, Tilts]) -> Iterator[Finding]:
         f"cylinders that uplift as one peak acceleration of each of {len(published)} motions demands, at any size",
         total,
         sum(one.lawful for one in published.values()),
-        Kind.MATHEMATICS,
+        Kind.DATA,
         remark=f"of {total} published runs {shares}",
     )
     if 1 in published:
@@ -193,7 +193,7 @@ def laws(published: Mapping[int, Tilts]) -> Iterator[Finding]:
             "peak acceleration of motion 1: published, and the nearest by which the published cylinders uplift [m/s²]",
             FIRST_PEAK,
             min(max(FIRST_PEAK, low), high),
-            Kind.MATHEMATICS,
+            Kind.DATA,
             remark=f"they uplift up to g tan α = {low:.4f} and not at {high:.4f}",
         )
 

@@ -3,6 +3,7 @@
 import importlib.metadata
 import inspect
 import platform
+from collections.abc import Sequence
 from datetime import UTC, datetime
 from pathlib import Path
 
@@ -37,7 +38,8 @@ _THEORY = (
 _CLASSES = (
     "Each row states its class. Mathematics: a closed form, or a number printed to many digits, within 1e-6 of it"
     " unless the row has another bound. Code: another program with its own errors, within 1 %. Experiment: a "
-    "measurement, judged by the statistics in the row; it has no bound.",
+    "measurement, judged by the statistics in the row; it has no bound. Rule: a rule of practice, whose safety is "
+    "stated, not judged. Data: a check of published data. Regression: a result of an earlier version.",
 )
 _LIMITS = (
     "No round column has been compared with a shake-table test: the two measured specimens rock about two edges. "
@@ -47,9 +49,9 @@ _LIMITS = (
     "Differences in the tables stay there, with their reasons where they are known.",
 )
 _REPEAT = (
-    "make test runs the tests that hold these laws; make validation computes the tables of this document. Both "
-    "begin with a clone of the repository and need no other preparation. Data under licences that forbid to "
-    "include them are left out unless their folder is named; the program says where to get them.",
+    "make test runs the tests that hold these laws; make validation computes the tables of this document, from a "
+    "clone of the repository. Other programs, and data that may not be passed on, are left out unless they are "
+    "installed or their folder is named; the program says how.",
 )
 _MEASURED = (
     "round_bodies",
@@ -63,8 +65,11 @@ _MEASURED = (
 _PACKAGES = ("numpy", "scipy", "llvmlite", "xarray", "matplotlib")
 
 
-def write(into: Path, tables: Path) -> Path:
-    """Write the document from the tables and figures in a folder; return its path."""
+def write(into: Path, tables: Path, computed: Sequence[str] = ()) -> Path:
+    """Write the document from the tables and figures in a folder; return its path.
+
+    `computed` are the parts that were computed for it; the tables of others are named as older ones.
+    """
     sections = [
         PageSection("Intended use", [*_INTENDED, *_NOT_INTENDED]),
         PageSection("Theory", [*_THEORY, _models()]),
@@ -73,24 +78,16 @@ def write(into: Path, tables: Path) -> Path:
         PageSection("Numbers published by others", _part(tables, "frozen", "cylinders")),
         PageSection("Other programs", _part(tables, "engines", "opensees", "hybrid_orbit")),
         PageSection("Rules of practice", _part(tables, "practice")),
-        PageSection(
-            "Measurements",
-            _part(
-                tables,
-                "shake_table",
-                "shake_table_errors",
-                "objects",
-                "measures_of_tests",
-                "measures_held_out",
-                "measures_of_columns",
-            ),
-        ),
+        PageSection("Measurements", _part(tables, *_MEASURED)),
         PageSection("Limits", list(_LIMITS)),
         PageSection("Version and platform", [_platform(), *_REPEAT]),
     ]
     version = importlib.metadata.version("stylobate")
-    lead = f"stylobate {version}, computed on {datetime.now(UTC):%Y-%m-%d}. For a reviewer."
-    into.write_text(page("Verification and validation of stylobate", [lead], sections), encoding="utf-8")
+    lead = [f"stylobate {version}, written on {datetime.now(UTC):%Y-%m-%d}. For a reviewer."]
+    older = ", ".join(sorted({path.stem for path in tables.glob("*.txt")} - set(computed)))
+    if older:
+        lead.append(f"Computed earlier, on a machine that this document does not name: the tables {older}.")
+    into.write_text(page("Verification and validation of stylobate", lead, sections), encoding="utf-8")
     return into
 
 
@@ -108,7 +105,7 @@ def _part(tables: Path, *names: str) -> Content:
 _FIGURES = {
     "engines": ("engines.png", "Relative error against processor time per simulated second, four motions of a rim."),
     "round_bodies": ("settling.png", "Settling disks under six laws of loss."),
-    "shake_table": ("shake_table.png", "Tests that overturned, over the probability foretold from other tests."),
+    "shake_table": ("shake_table.png", "Tests that overturned, over the probability predicted from other tests."),
 }
 
 

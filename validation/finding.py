@@ -19,6 +19,12 @@ class Kind(Enum):
     """The result of another program, with its own errors of discretisation."""
     EXPERIMENT = math.inf
     """A measurement: judged by statistics, which the finding states in words."""
+    RULE = "rule"
+    """A rule of practice, which may be right, strict or unsafe: what it costs is stated, not judged."""
+    DATA = "data"
+    """A check of published data for laws that they must obey."""
+    REGRESSION = "regression"
+    """The result of an earlier version of this package, which a later one must reach."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,7 +67,9 @@ class Finding:
     @property
     def bound(self) -> float:
         """Largest difference that agrees; infinite for a measurement, which is judged by its remark."""
-        return self.kind.value if self.allowed is None else self.allowed
+        if self.allowed is not None:
+            return self.allowed
+        return self.kind.value if isinstance(self.kind.value, float) else math.inf
 
     @property
     def judged(self) -> bool:
@@ -78,7 +86,8 @@ class Finding:
         """The kind of number, with the bound and whether it is kept."""
         if not self.judged:
             return self.kind.name.lower()
-        return f"{self.kind.name.lower()}, {self.bound:.0e}: {'agrees' if self.agrees else '**differs**'}"
+        bound = f"{self.bound:.2g}{' absolute' if self.scale == 1.0 else ''}"
+        return f"{self.kind.name.lower()}, {bound}: {'agrees' if self.agrees else '**differs**'}"
 
 
 def table(findings: Iterable[Finding]) -> str:

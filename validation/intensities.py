@@ -1,4 +1,4 @@
-"""Intensity measures on measured tests and on simulated columns: what each foretells of overturning.
+"""Intensity measures on measured tests and on simulated columns: what each predicts of overturning.
 
 The measured tests are those of `shake_table`.
 """
@@ -53,7 +53,7 @@ def findings() -> Iterator[Finding]:
 
 
 def _held_out(known: shake_table.Tests, measures: xr.Dataset) -> str:
-    """Return a table of what each measure alone foretells of earthquakes that its fit does not know."""
+    """Return a table of what each measure alone predicts of earthquakes that its fit does not know."""
     head = [
         "measure",
         *(f"{name}: {column}" for name in known.overturned for column in ("same outcome", "Brier score")),
@@ -62,7 +62,7 @@ def _held_out(known: shake_table.Tests, measures: xr.Dataset) -> str:
     for measure, label in NAMES.items():
         row = [label]
         for fell in known.overturned.values():
-            each = _foretold(measures[measure].to_numpy(), fell, np.array(known.events))
+            each = _predicted(measures[measure].to_numpy(), fell, np.array(known.events))
             found = [scores(one, fell) for one in each]
             same = [one["same_outcome"] for one in found]
             row += [f"{np.mean(same):.3f}", f"{np.mean([one['brier'] for one in found]):.3f}"]
@@ -70,7 +70,7 @@ def _held_out(known: shake_table.Tests, measures: xr.Dataset) -> str:
     return "".join("| " + " | ".join(row) + " |\n" for row in rows)
 
 
-def _foretold(values: Floats, fell: npt.NDArray[np.bool_], events: npt.NDArray[np.str_]) -> Floats:
+def _predicted(values: Floats, fell: npt.NDArray[np.bool_], events: npt.NDArray[np.str_]) -> Floats:
     """Return the probabilities of tests from fits to the other four fifths of the earthquakes, shape (repeats, n)."""
     random, found = np.random.default_rng(0), np.empty((shake_table.REPEATS, len(fell)))
     for row in found:
@@ -128,7 +128,7 @@ def table(found: Mapping[str, xr.Dataset]) -> str:
 
 
 def _best_pair(compared: xr.Dataset) -> tuple[str, str, str]:
-    """Return dispersion, likelihood and names of the pair of measures that foretells best."""
+    """Return dispersion, likelihood and names of the pair of measures that predicts best."""
     pair = compared["pair_log_likelihood"]
     first, second = (str(one) for one in pair.stack(both=("measure", "other")).dropna("both").idxmax().item())
     one = compared.sel(measure=first, other=second)

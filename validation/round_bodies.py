@@ -216,7 +216,7 @@ def figure() -> Any:
     return drawn
 
 
-_JACKSON = "closed form; measured by Jackson et al. (2019), abstract read"
+_JACKSON = "closed form of this page, for the motion of Jackson et al. (2019)"
 
 
 def _spinning() -> Iterator[Finding]:
@@ -300,9 +300,9 @@ def _settling() -> Iterator[Finding]:
     yield Finding(closed, compared, -2.0, damped.loss_power, Kind.CODE, allowed=5e-3)
     remark = "the loss of the measured disk grows while it settles, with `rolling_resistance` it falls"
     compared = "power of Ω to which the loss of a settling disk is proportional, to the last cycle"
-    yield Finding(_MCDONALD, compared, 2.0, resisted.loss_power, Kind.EXPERIMENT, scale=1.0, allowed=0.5, remark=remark)
+    yield Finding(_MCDONALD, compared, 2.0, resisted.loss_power, Kind.EXPERIMENT, scale=1.0, remark=remark)
     compared = "exponent of Ω in the time before the end, measured “approximately”"
     yield Finding(
-        _SUMMARY, compared, -1.0 / 3.0, -1.0 / (2.0 + resisted.loss_power), Kind.EXPERIMENT, scale=1.0, allowed=0.04,
+        _SUMMARY, compared, -1.0 / 3.0, -1.0 / (2.0 + resisted.loss_power), Kind.EXPERIMENT, scale=1.0,
         remark="a constant loss for each length of the path of contact has −1/3",
     )  # fmt: skip

@@ -1,7 +1,7 @@
 """Shake-table tests of two granite specimens, run by run, beside a planar block whose numbers are learnt from others.
 
-The 582 tests are of Z. Chen and others, "Virtual Shake Robot", Seismica 3(1), 2024, doi 10.26443/seismica.v3i1.692.
-Their files are under the GPL and not part of this project:
+The files of 582 tests are in the repository of Z. Chen's "Virtual Shake Robot" (Seismica 3(1), 2024, doi
+10.26443/seismica.v3i1.692), under the GPL, and not part of this project:
 
     git clone https://github.com/ZhiangChen/virtual_shake_robot_pybullet
     STYLOBATE_SHAKE_TABLE=virtual_shake_robot_pybullet python -m validation shake_table
@@ -9,6 +9,7 @@ Their files are under the GPL and not part of this project:
 
 import os
 import re
+import sys
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -30,7 +31,7 @@ from .finding import FOLDER, Finding, Kind
 VARIABLE = "STYLOBATE_SHAKE_TABLE"
 """Environment variable with the folder of the clone."""
 
-SOURCE = "Chen et al., Seismica 3(1), 2024; files at github.com/ZhiangChen/virtual_shake_robot_pybullet"
+SOURCE = "github.com/ZhiangChen/virtual_shake_robot_pybullet (9f239e7)"
 # Rate of the files [Hz], corner of the low-pass filter, every so many samples kept, g, and corner
 # for velocities.
 _RATE, _CORNER, _KEPT, _G, _HIGHPASS = 800.0, 40.0, 4, 9.80665, 0.1
@@ -78,26 +79,26 @@ def clone() -> Path | None:
     folder = os.environ.get(VARIABLE)
     if folder:
         return Path(folder)
-    print(f"shake-table tests: left out; name the folder of a clone of {SOURCE.split('at ')[1]} in ${VARIABLE}")
+    print(f"shake-table tests: left out; name the folder of a clone of {SOURCE.partition(' ')[0]} in ${VARIABLE}")
     return None
 
 
 def findings() -> Iterator[Finding]:
-    """Yield the fraction of outcomes foretold in tests that were not used, beside that of the authors' own models."""
+    """Yield the fraction of outcomes predicted in tests that were not used, beside that of the authors' own models."""
     folder = clone()
     if folder is None:
         return
     known = tests(folder)
-    learnt, foretold = None, {}
+    learnt, predicted = None, {}
     for name, fell in known.overturned.items():
         if learnt is None:
             learnt = sb.calibrate(BLOCK, known.motions, fell, ranges=RANGES, count=DRAWS)
         else:
             learnt = learnt.relearnt(fell)
-        foretold[name] = learnt.held_out(folds=5, repeats=REPEATS)
-        yield _fraction(known, name, foretold[name], "foretold from four fifths of the tests")
+        predicted[name] = learnt.held_out(folds=5, repeats=REPEATS)
+        yield _fraction(known, name, predicted[name], "predicted from four fifths of the tests")
         by_event = learnt.held_out(folds=5, repeats=REPEATS, groups=known.events)
-        text = f"foretold from four fifths of the {len(set(known.events))} earthquakes"
+        text = f"predicted from four fifths of the {len(set(known.events))} earthquakes"
         yield _fraction(known, name, by_event, text)
         numbers = learnt.numbers()["mean"]
         print(name, numbers.to_dataframe().to_string())
@@ -106,19 +107,19 @@ def findings() -> Iterator[Finding]:
             least = angles[0].sel(quantile=0.5) - abs(angles[1].sel(quantile=0.5))
             yield Finding(
                 source=SOURCE,
-                compared=f"{name}: smallest tipping angle [rad]; theirs that of the scanned shape, in any direction",
+                compared=f"{name}: smaller tipping angle [rad]; theirs the smallest of the scanned shape",
                 theirs=scanned_angle(folder),
-                ours=float(least),
+                ours=round(float(least), 2),
                 kind=Kind.EXPERIMENT,
                 remark="the learnt angle is effective: it also stands for what the planar block leaves out",
             )
-    (FOLDER / "shake_table_errors.txt").write_text(errors(known, foretold), encoding="utf-8")
-    draw(known, foretold).savefig(FOLDER / "shake_table.png", dpi=150)
+    (FOLDER / "shake_table_errors.txt").write_text(errors(known, predicted), encoding="utf-8")
+    draw(known, predicted).savefig(FOLDER / "shake_table.png", dpi=150)
 
 
-def _fraction(known: Tests, name: str, foretold: npt.NDArray[np.float64], how: str) -> Finding:
+def _fraction(known: Tests, name: str, predicted: npt.NDArray[np.float64], how: str) -> Finding:
     fell = known.overturned[name]
-    each = [scores(one, fell) for one in foretold]
+    each = [scores(one, fell) for one in predicted]
     same = np.array([one["same_outcome"] for one in each])
     brier, rate = np.mean([one["brier"] for one in each]), fell.mean()
     return Finding(
@@ -132,18 +133,18 @@ def _fraction(known: Tests, name: str, foretold: npt.NDArray[np.float64], how: s
     )
 
 
-def errors(known: Tests, foretold: dict[str, npt.NDArray[np.float64]]) -> str:
+def errors(known: Tests, predicted: dict[str, npt.NDArray[np.float64]]) -> str:
     """Return a table in Markdown of what tests that end against the odds have in common."""
     measures = sb.records.intensity_table(known.without_drift())
     lines = [
-        "| specimen | group of tests | tests | against the odds | … although foretold above 0.9 |",
+        "| specimen | group of tests | tests | against the odds | … although predicted above 0.9 |",
         "|---|---|---|---|---|",
     ]
-    for name, probability in foretold.items():
+    for name, probability in predicted.items():
         fell = known.overturned[name]
         mean = probability.mean(axis=0)
         wrong, sure = (mean > 0.5) != fell, np.maximum(mean, 1.0 - mean) > _SURE
-        groups = {"all": np.ones(len(fell), dtype=bool), "foretold between 0.1 and 0.9": ~sure}
+        groups = {"all": np.ones(len(fell), dtype=bool), "predicted between 0.1 and 0.9": ~sure}
         groups |= {"stood": ~fell, "overturned": fell} | _thirds(measures)
         for group, chosen in groups.items():
             among = int(chosen.sum())
@@ -167,26 +168,26 @@ def _thirds(measures: xr.Dataset) -> dict[str, npt.NDArray[np.bool_]]:
 
 
 @styled
-def draw(known: Tests, foretold: dict[str, npt.NDArray[np.float64]]) -> Figure:
-    """Draw the fraction of tests that overturned over the probability foretold, with numbers of tests below."""
+def draw(known: Tests, predicted: dict[str, npt.NDArray[np.float64]]) -> Figure:
+    """Draw the fraction of tests that overturned over the probability predicted, with numbers of tests below."""
     figure = new_figure(4.4)
     shares, counts = figure.subplots(2, 1, sharex=True, height_ratios=(3, 1))
-    shares.plot([0.0, 1.0], [0.0, 1.0], color=GREY, linewidth=1.0, label="as foretold")
+    shares.plot([0.0, 1.0], [0.0, 1.0], color=GREY, linewidth=1.0, label="as predicted")
     width = 1.0 / BINS
-    for place, (name, colour, marker) in enumerate(zip(foretold, (BLUE, VERMILION), ("o", "s"), strict=True)):
-        found = reliability(foretold[name], known.overturned[name], bins=BINS)
+    for place, (name, colour, marker) in enumerate(zip(predicted, (BLUE, VERMILION), ("o", "s"), strict=True)):
+        found = reliability(predicted[name], known.overturned[name], bins=BINS)
         tests_a_bin = found["tests"] / REPEATS
         error = np.sqrt(found["overturned"] * (1.0 - found["overturned"]) / tests_a_bin)
         shift = 0.006 * (2 * place - 1)
         shares.errorbar(
-            found["foretold"] + shift, found["overturned"], yerr=error, color=colour, marker=marker, linestyle="none",
+            found["predicted"] + shift, found["overturned"], yerr=error, color=colour, marker=marker, linestyle="none",
             capsize=2.0, label=name,
         )  # fmt: skip
         middle = width * (np.arange(BINS) + 0.25 + 0.5 * place)
         counts.bar(middle, tests_a_bin, width=0.45 * width, color=colour)
     shares.set(ylabel="fraction that overturned", ylim=(-0.03, 1.03))
     counts.set(
-        xlabel="probability of overturning, foretold from other tests", ylabel="tests", yscale="log", xlim=(0, 1)
+        xlabel="probability of overturning, predicted from other tests", ylabel="tests", yscale="log", xlim=(0, 1)
     )
     counts.set_ylim(bottom=1)
     counts.set_axisbelow(True)
@@ -248,8 +249,10 @@ def _event(name: str) -> str:
 
 
 def _rows(path: Path, first: int) -> list[tuple[float, ...]]:
-    from openpyxl import load_workbook
-
+    try:
+        from openpyxl import load_workbook
+    except ModuleNotFoundError:
+        sys.exit("tables of outcomes: openpyxl reads them. Install it: pip install --group validation")
     sheet = load_workbook(path, data_only=True).worksheets[0]
     return [row for row in sheet.iter_rows(min_row=first, values_only=True) if row[0] is not None]
 

@@ -40,7 +40,7 @@ def test_the_numbers_of_the_object_lie_in_their_intervals(learnt):
     assert learnt.numbers()["lapse"].sel(quantile=0.025) < 0.05
 
 
-def test_outcomes_that_were_not_used_are_foretold(learnt, known):
+def test_outcomes_that_were_not_used_are_predicted(learnt, known):
     held_out = learnt.held_out(folds=5, repeats=2, rng=0)
     assert held_out.shape == (2, len(PULSES))
     rate = known.mean()
@@ -95,7 +95,7 @@ def test_reliability_counts_each_test_once_and_means_of_like_probability():
     probability = np.array([[0.1, 0.15, 0.9, 1.0], [0.1, 0.15, 0.9, 1.0]])
     found = reliability(probability, [False, True, True, True], bins=2)
     assert found["tests"].values.tolist() == [4, 4]
-    np.testing.assert_allclose(found["foretold"], [0.125, 0.95])
+    np.testing.assert_allclose(found["predicted"], [0.125, 0.95])
     np.testing.assert_allclose(found["overturned"], [0.5, 1.0])
 
 

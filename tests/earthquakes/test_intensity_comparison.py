@@ -1,4 +1,4 @@
-"""How well intensity measures foretell a limit state."""
+"""How well intensity measures predict a limit state."""
 
 import numpy as np
 import pytest

@@ -108,10 +108,11 @@ class MeasuredObject:
         found = scores(self.probabilities(motions), overturned)
         return Finding(
             source=self.source,
-            compared=f"{self.title}: fraction of {len(overturned)} tests with the measured outcome; theirs as expected",
+            compared=f"{self.title}: fraction of {len(overturned)} tests with the measured outcome; "
+            "theirs of the version that learnt its numbers",
             theirs=self.same_outcome,
             ours=found["same_outcome"],
-            kind=Kind.EXPERIMENT,
+            kind=Kind.REGRESSION,
             scale=1.0,
             allowed=self.tolerance,
             remark=f"Brier score {found['brier']:.3f}",

@@ -111,15 +111,19 @@ def native() -> Machine:
     return Machine(llvm.get_default_triple(), llvm.get_host_cpu_name(), features.flatten(), bits)
 
 
-def linked(code: bytes) -> "llvm.ExecutionEngine":
-    """Return an engine whose machine code for this machine can be called as long as the engine exists."""
+def linked(*codes: bytes) -> "llvm.ExecutionEngine":
+    """Return an engine whose machine code for this machine can be called as long as the engine exists.
+
+    A function that one code lacks is that of another, or else of the library of C.
+    """
     from llvmlite import binding as llvm
 
     with _compiling:
         engine = llvm.create_mcjit_compiler(
             llvm.parse_assembly(""), _new_target(native())
         )  # the engine owns its target
-        engine.add_object_file(llvm.ObjectFileRef.from_data(code))
+        for code in codes:
+            engine.add_object_file(llvm.ObjectFileRef.from_data(code))
         engine.finalize_object()
         return engine
 

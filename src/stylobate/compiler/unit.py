@@ -75,22 +75,29 @@ class Unit:
         self._within: list[FunctionType] = []
 
     def export(
-        self, function: Callable[..., Any], name: str, arguments: Sequence[ArrayArgument | NumberKind | int]
+        self,
+        function: Callable[..., Any],
+        name: str,
+        arguments: Sequence[ArrayArgument | NumberKind | int],
+        *,
+        returns: NumberKind = NumberKind.INTEGER,
     ) -> None:
         """Add an exported function, whose arguments are numbers and pointers, each followed by its unknown lengths.
 
         A whole number among the arguments is known when the function is compiled, and is not passed.
-        The function returns a whole number of 64 bits or a condition.
+        The function returns a whole number of 64 bits or a condition, or a float if it `returns` one.
         """
         text = FunctionText()
         head: list[str] = []
         arithmetic = Arithmetic(self.module, text, fast=False)
         values = [_argument(arithmetic, argument, head) for argument in arguments]
         result = _called(arithmetic, self._specialised(plain_function(function), values, fast=False), values)
-        if result is not None and not (isinstance(result, Number) and result.kind < NumberKind.FLOAT):
+        whole = result is None or (isinstance(result, Number) and result.kind < NumberKind.FLOAT)
+        if returns is NumberKind.INTEGER and not whole:
             raise CompileError(f"{name} returns a whole number, a condition or nothing when it is called from outside")
-        text.end("ret i64 0" if result is None else f"ret {arithmetic.number(result, NumberKind.INTEGER).operand}")
-        self.module.define(f"i64 @{name}({', '.join(head)})", text.body())
+        text.end("ret i64 0" if result is None else f"ret {arithmetic.number(result, returns).operand}")
+        kind = "double" if returns is NumberKind.FLOAT else "i64"
+        self.module.define(f"{kind} @{name}({', '.join(head)})", text.body())
 
     def call(
         self, caller: Body, function: Callable[..., Any], values: list[Value], keywords: Mapping[str, Value]

@@ -278,7 +278,7 @@ def reliability(probability: npt.ArrayLike, overturned: npt.ArrayLike, *, bins: 
     Returns
     -------
     xarray.Dataset
-        Over `bin`: `foretold`, mean probability; `overturned`, fraction of outcomes; `tests`, number of tests.
+        Over `bin`: `predicted`, mean probability; `overturned`, fraction of outcomes; `tests`, number of tests.
     """
     p, known = np.asarray(probability, dtype=float).ravel(), np.asarray(overturned, dtype=float)
     known = np.resize(known, p.shape)
@@ -286,7 +286,7 @@ def reliability(probability: npt.ArrayLike, overturned: npt.ArrayLike, *, bins: 
     tests = np.bincount(place, minlength=bins)
     with np.errstate(invalid="ignore"):
         means = [np.bincount(place, values, bins) / tests for values in (p, known)]
-    return xr.Dataset({"foretold": ("bin", means[0]), "overturned": ("bin", means[1]), "tests": ("bin", tests)})
+    return xr.Dataset({"predicted": ("bin", means[0]), "overturned": ("bin", means[1]), "tests": ("bin", tests)})
 
 
 def _bounds(ranges: Mapping[str, tuple[float, float]]) -> tuple[Floats, Floats]:

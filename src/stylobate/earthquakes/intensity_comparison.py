@@ -1,4 +1,4 @@
-"""How well intensity measures foretell a limit state: dispersion, likelihood, and what a second measure adds."""
+"""How well intensity measures predict a limit state: dispersion, likelihood, and what a second measure adds."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -26,7 +26,7 @@ def compare_intensities(
     *,
     record: npt.ArrayLike | None = None,
 ) -> xr.Dataset:
-    """Compare intensity measures by how well each foretells which runs or tests reach a limit state.
+    """Compare intensity measures by how well each predicts which runs or tests reach a limit state.
 
     Each measure x is fitted by P = Φ(ln(x/m)/β), as in a fragility, and each pair by P = Φ(ln(x yᵉ/m)/β).
 
