@@ -184,6 +184,7 @@ def laws(published: Mapping[int, Tilts]) -> Iterator[Finding]:
         total,
         sum(one.lawful for one in published.values()),
         Kind.DATA,
+        allowed=1e-6,
         remark=f"of {total} published runs {shares}",
     )
     if 1 in published:
@@ -194,6 +195,7 @@ def laws(published: Mapping[int, Tilts]) -> Iterator[Finding]:
             FIRST_PEAK,
             min(max(FIRST_PEAK, low), high),
             Kind.DATA,
+            allowed=1e-6,
             remark=f"they uplift up to g tan α = {low:.4f} and not at {high:.4f}",
         )
 
