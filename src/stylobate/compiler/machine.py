@@ -34,15 +34,15 @@ class Machine:
         Its features, with commas between them.
     vector_bits
         Length of the vector registers [bits].
-    code_model
-        Relocation model and code model of LLVM.
+    relocation
+        Relocation model of LLVM: "pic" for code that is loaded anywhere, or "static".
     """
 
     triple: str
     processor: str
     features: str
     vector_bits: int
-    code_model: tuple[str, str] = ("pic", "default")
+    relocation: str = "pic"
 
     @property
     def lanes(self) -> int:
@@ -94,7 +94,7 @@ WEB = Machine(
     processor="generic",
     features="+simd128,+bulk-memory,+mutable-globals,+sign-ext,+nontrapping-fptoint",
     vector_bits=128,
-    code_model=("static", "default"),
+    relocation="static",
 )
 """WebAssembly with vectors of 128 bits."""
 
@@ -142,7 +142,6 @@ def _new_target(machine: Machine) -> "llvm.TargetMachine":
     else:
         llvm.initialize_all_targets()
         llvm.initialize_all_asmprinters()
-    relocation, model = machine.code_model
     return llvm.Target.from_triple(machine.triple).create_target_machine(
-        cpu=machine.processor, features=machine.features, opt=_CODE, reloc=relocation, codemodel=model
+        cpu=machine.processor, features=machine.features, opt=_CODE, reloc=machine.relocation, codemodel="default"
     )

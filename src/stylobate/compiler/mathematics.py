@@ -31,32 +31,56 @@ _ARC_REST = (
 )
 
 
+# Coefficients of Taylor series in the square of the argument, the highest power first; of `exp` in the argument.
+_SINE = (
+    *(-8.22063524662433e-18, 2.8114572543455206e-15, -7.647163731819816e-13, 1.6059043836821613e-10),
+    *(-2.505210838544172e-08, 2.7557319223985893e-06, -0.0001984126984126984, 0.008333333333333333),
+    -0.16666666666666666,
+)
+_COSINE = (
+    *(-1.5619206968586225e-16, 4.779477332387385e-14, -1.1470745597729725e-11, 2.08767569878681e-09),
+    *(-2.755731922398589e-07, 2.48015873015873e-05, -0.001388888888888889, 0.041666666666666664),
+)
+_TANGENT = (
+    *(-0.06666666666666667, 0.07692307692307693, -0.09090909090909091, 0.1111111111111111),
+    *(-0.14285714285714285, 0.2, -0.3333333333333333),
+)
+_EXPONENTIAL = (
+    *(1.1470745597729725e-11, 1.6059043836821613e-10, 2.08767569878681e-09, 2.505210838544172e-08),
+    *(2.755731922398589e-07, 2.7557319223985893e-06, 2.48015873015873e-05, 0.0001984126984126984),
+    *(0.001388888888888889, 0.008333333333333333, 0.041666666666666664, 0.16666666666666666, 0.5),
+)
+_LOGARITHM = (
+    *(0.09523809523809523, 0.10526315789473684, 0.11764705882352941, 0.13333333333333333, 0.15384615384615385),
+    *(0.18181818181818182, 0.2222222222222222, 0.2857142857142857, 0.4, 0.6666666666666666),
+)
+
+
+def _series(coefficients: tuple[float, ...], z: float) -> float:
+    """Return the value of a polynomial, whose highest coefficient is first."""
+    value = coefficients[0]
+    for k in tuple(range(1, len(coefficients))):
+        value = z * value + coefficients[k]
+    return value
+
+
 def sin(x: float) -> float:
     """Return sin x."""
-    if x == 0.0:
-        return x
-    turns, high, low = _reduced(x)
-    side = turns - 4.0 * np.floor(0.25 * turns)
-    if side == 0.0:
-        return _sine(high, low)
-    if side == 1.0:
-        return _cosine(high, low)
-    if side == 2.0:  # noqa: PLR2004  half a turn
-        return -_sine(high, low)
-    return -_cosine(high, low)
+    return x if x == 0.0 else _wave(x, 0.0)
 
 
 def cos(x: float) -> float:
     """Return cos x."""
+    return _wave(x, 1.0)
+
+
+def _wave(x: float, quarters: float) -> float:
+    """Return the sine of x and so many quarter turns."""
     turns, high, low = _reduced(x)
-    side = turns - 4.0 * np.floor(0.25 * turns)
-    if side == 0.0:
-        return _cosine(high, low)
-    if side == 1.0:
-        return -_sine(high, low)
-    if side == 2.0:  # noqa: PLR2004  half a turn
-        return -_cosine(high, low)
-    return _sine(high, low)
+    side = (turns + quarters) - 4.0 * np.floor(0.25 * (turns + quarters))
+    sine = side in (0.0, 2.0)
+    value = _sine(high, low) if sine else _cosine(high, low)
+    return value if side < 2.0 else -value  # noqa: PLR2004  half a turn
 
 
 def _reduced(x: float) -> tuple[float, float, float]:
@@ -71,31 +95,14 @@ def _reduced(x: float) -> tuple[float, float, float]:
 
 def _sine(x: float, rest: float) -> float:
     z = x * x
-    series = -8.22063524662433e-18
-    series = z * series + 2.8114572543455206e-15
-    series = z * series - 7.647163731819816e-13
-    series = z * series + 1.6059043836821613e-10
-    series = z * series - 2.505210838544172e-08
-    series = z * series + 2.7557319223985893e-06
-    series = z * series - 0.0001984126984126984
-    series = z * series + 0.008333333333333333
-    series = z * series - 0.16666666666666666
-    return x + (z * x * series + rest * (1.0 - 0.5 * z))
+    return x + (z * x * _series(_SINE, z) + rest * (1.0 - 0.5 * z))
 
 
 def _cosine(x: float, rest: float) -> float:
     z = x * x
-    series = -1.5619206968586225e-16
-    series = z * series + 4.779477332387385e-14
-    series = z * series - 1.1470745597729725e-11
-    series = z * series + 2.08767569878681e-09
-    series = z * series - 2.755731922398589e-07
-    series = z * series + 2.48015873015873e-05
-    series = z * series - 0.001388888888888889
-    series = z * series + 0.041666666666666664
     half = 0.5 * z
     near = 1.0 - half
-    return near + (((1.0 - near) - half) + (z * z * series - x * rest))
+    return near + (((1.0 - near) - half) + (z * z * _series(_COSINE, z) - x * rest))
 
 
 def atan(x: float) -> float:
@@ -113,14 +120,7 @@ def _arc(x: float) -> float:
     near = 0.125 * place
     t = (x - near) / (1.0 + x * near)
     z = t * t
-    series = -0.06666666666666667
-    series = z * series + 0.07692307692307693
-    series = z * series - 0.09090909090909091
-    series = z * series + 0.1111111111111111
-    series = z * series - 0.14285714285714285
-    series = z * series + 0.2
-    series = z * series - 0.3333333333333333
-    return _ARC[place] + (t + (z * t * series + _ARC_REST[place]))
+    return _ARC[place] + (t + (z * t * _series(_TANGENT, z) + _ARC_REST[place]))
 
 
 def atan2(y: float, x: float) -> float:
@@ -159,21 +159,8 @@ def exp(x: float) -> float:
     powers = float(np.rint(1.4426950408889634 * x))
     high, low = x - powers * _LN2_1, powers * _LN2_2
     r = high - low
-    z = 1.1470745597729725e-11
-    z = r * z + 1.6059043836821613e-10
-    z = r * z + 2.08767569878681e-09
-    z = r * z + 2.505210838544172e-08
-    z = r * z + 2.755731922398589e-07
-    z = r * z + 2.7557319223985893e-06
-    z = r * z + 2.48015873015873e-05
-    z = r * z + 0.0001984126984126984
-    z = r * z + 0.001388888888888889
-    z = r * z + 0.008333333333333333
-    z = r * z + 0.041666666666666664
-    z = r * z + 0.16666666666666666
-    z = r * z + 0.5
     rest = (high - r) - low
-    return _scaled(1.0 + (r + (r * r * z + rest)), powers)
+    return _scaled(1.0 + (r + (r * r * _series(_EXPONENTIAL, r) + rest)), powers)
 
 
 def _scaled(value: float, powers: float) -> float:
@@ -223,19 +210,9 @@ def _near_one(f: float, powers: float) -> float:
     """Return ln(1 + f) + powers · ln 2, for f from √½ − 1 to √2 − 1."""
     s = f / (2.0 + f)
     z = s * s
-    series = 0.09523809523809523
-    series = z * series + 0.10526315789473684
-    series = z * series + 0.11764705882352941
-    series = z * series + 0.13333333333333333
-    series = z * series + 0.15384615384615385
-    series = z * series + 0.18181818181818182
-    series = z * series + 0.2222222222222222
-    series = z * series + 0.2857142857142857
-    series = z * series + 0.4
-    series = z * series + 0.6666666666666666
     half = 0.5 * f * f
-    # ln(1 + f) = f − f²/2 + s (f²/2 + z · series)
-    return powers * _LN2_1 - ((half - (s * (half + z * series) + powers * _LN2_2)) - f)
+    # ln(1 + f) = f − f²/2 + s (f²/2 + z · series in z)
+    return powers * _LN2_1 - ((half - (s * (half + z * _series(_LOGARITHM, z)) + powers * _LN2_2)) - f)
 
 
 def asinh(x: float) -> float:

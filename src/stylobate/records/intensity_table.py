@@ -10,7 +10,7 @@ import xarray as xr
 
 from stylobate.base_motions.base import ACCELERATION, VELOCITY
 from stylobate.base_motions.record import Record
-from stylobate.base_motions.signal_processing import Floats, integrals
+from stylobate.base_motions.signal_processing import Floats, filtered, integrals
 from stylobate.errors import ParameterError, as_numbers, require_positive
 from stylobate.records.intensities import (
     HorizontalComponent,
@@ -172,14 +172,15 @@ class _Horizontal:
 
 def filtered_incremental_velocity(acceleration: Floats, step: float, period: float) -> float:
     """Compute FIV3 of one component with samples of shape (n,) [m/s²]; zeros before and after it belong to it [m/s]."""
-    from scipy.signal import butter, find_peaks, sosfilt
+    from scipy.signal import find_peaks
 
     if step >= 0.5 / _CORNER:
         raise ParameterError(f"records: must have steps below {0.5 / _CORNER:g} s for FIV3 (got {step!r} s).")
     window = _WINDOW * period
     rest = np.zeros(math.ceil((window + 1.0 / _CORNER) / step) + 1)
-    filtered = sosfilt(butter(_ORDER, _CORNER, fs=1.0 / step, output="sos"), np.concatenate([rest, acceleration, rest]))
-    velocity = integrals(np.asarray(filtered)[:, np.newaxis], step)[0][:, 0]
+    extended = np.concatenate([rest, acceleration, rest])[:, np.newaxis]
+    passed, _ = filtered(extended, step, lowpass=_CORNER, order=_ORDER, causal=True)
+    velocity = integrals(passed, step)[0][:, 0]
     times = step * np.arange(len(velocity))
     gained = np.interp(times + window, times, velocity) - velocity
     # on a plateau, which a window longer than a pulse has, ripples by rounding are no maxima
