@@ -2,8 +2,8 @@
 
 The compiler reads the source of a function, finds the functions that it calls by name, and compiles them together, once
 for each structure of arguments. It writes text for LLVM (`unit`, `body`, `expressions`); llvmlite compiles the text for
-a `machine`. Code of this machine is stored on disk and loaded from there (`kept`, `compiled`); code for browsers becomes
-a module (`web`), with functions that round alike everywhere (`mathematics`). Without compilation the same functions are
+a `machine`. Code of this machine is stored on disk and loaded from there (`kept`, `compiled`); code for browsers is a
+module (`web`), with functions that round alike everywhere (`mathematics`). Without compilation the same functions are
 plain Python.
 
 The accepted language
