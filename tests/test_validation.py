@@ -46,6 +46,9 @@ def test_the_document_has_each_row_of_the_tables_and_counts_the_classes(tmp_path
     written = document.write(tmp_path / "report.html", tmp_path).read_text("utf-8")
     for one in rows:
         assert one.compared in written
+    assert written.count(document._TITLES["engines"]) == 1
+    assert document._sources(tmp_path).rows == [["someone", "engines, problems"]]
+    assert "<td>commit</td>" in written
     counts = document._summary(tmp_path).rows
     assert counts == [["code", "0", "1", "0"], ["experiment", "0", "0", "1"], ["mathematics", "1", "0", "0"]]
 
@@ -53,6 +56,9 @@ def test_the_document_has_each_row_of_the_tables_and_counts_the_classes(tmp_path
 def test_the_document_has_all_tables_of_the_page(tmp_path):
     written = document.write(tmp_path / "report.html", FOLDER, ["problems"]).read_text("utf-8")
     for path in FOLDER.glob("*.txt"):
+        assert path.stem in document._TITLES
+        if "**differs**" in path.read_text("utf-8"):
+            assert path.stem in document._REASONS
         last = path.read_text("utf-8").splitlines()[-1].split("|")[2].strip()
         assert escape(last)[:40] in written, path.stem
         assert path.stem == "problems" or path.stem in written.partition("Intended use")[0]

@@ -19,7 +19,7 @@ from .finding import FOLDER, Finding
 
 Floats = npt.NDArray[np.float64]
 
-_SEED, _RECORDS, _PERIOD = 20261128, 60, 1.0
+_SEED, _RECORDS, _PERIOD, _OTHER_PERIODS = 20261128, 60, 1.0, (0.5, 1.5)
 _SCALES = np.geomspace(0.3, 12.0, 12)
 _ADDS_NOTHING = 0.01
 _COLUMNS = {"column of 2 m": (0.2, 2.0), "column of 8 m": (0.6, 8.0)}
@@ -29,11 +29,13 @@ NAMES = {
     "pgv": "PGV",
     "pgv_over_pga": "PGV/PGA",
     "sa": "Sa(1 s)",
-    "sa_avg": "Sa_avg",
+    "sa_avg": "Sa_avg(1 s)",
     "fiv3": "FIV3",
     "cav": "CAV",
     "arias": "Arias",
 }
+_POWERS = {"pgv_over_pga": 0, "arias": 2}
+"""Powers of the motion by which measures grow, where it is not 1: dispersions are divided by them."""
 
 
 def findings() -> Iterator[Finding]:
@@ -41,28 +43,31 @@ def findings() -> Iterator[Finding]:
     folder = shake_table.clone()
     if folder is not None:
         known = shake_table.tests(folder)
-        measures = intensity_table(known.without_drift(), period=_PERIOD)[list(NAMES)].drop_vars("record")
+        measures = known.intensities(_PERIOD)[list(NAMES)]
         compared = {
             name: compare_intensities(measures, xr.DataArray(fell.astype(int), dims="record"), record=known.events)
             for name, fell in known.overturned.items()
         }
         (FOLDER / "measures_of_tests.txt").write_text(table(compared), encoding="utf-8")
-        (FOLDER / "measures_held_out.txt").write_text(_held_out(known, measures), encoding="utf-8")
+        labelled = {label: measures[name].to_numpy() for name, label in NAMES.items()}
+        for period in _OTHER_PERIODS:
+            labelled[f"Sa_avg({period:g} s)"] = known.intensities(period)["sa_avg"].to_numpy()
+        (FOLDER / "measures_held_out.txt").write_text(_held_out(known, labelled), encoding="utf-8")
     (FOLDER / "measures_of_columns.txt").write_text(table(_simulated()), encoding="utf-8")
     return iter(())
 
 
-def _held_out(known: shake_table.Tests, measures: xr.Dataset) -> str:
+def _held_out(known: shake_table.Tests, measures: Mapping[str, Floats]) -> str:
     """Return a table of what each measure alone predicts of earthquakes that its fit does not know."""
     head = [
         "measure",
         *(f"{name}: {column}" for name in known.overturned for column in ("same outcome", "Brier score")),
     ]
     rows = [head, ["---"] * len(head)]
-    for measure, label in NAMES.items():
+    for label, values in measures.items():
         row = [label]
         for fell in known.overturned.values():
-            each = _predicted(measures[measure].to_numpy(), fell, np.array(known.events))
+            each = _predicted(values, fell, np.array(known.events))
             found = [scores(one, fell) for one in each]
             same = [one["same_outcome"] for one in found]
             row += [f"{np.mean(same):.3f}", f"{np.mean([one['brier'] for one in found]):.3f}"]
@@ -116,7 +121,9 @@ def table(found: Mapping[str, xr.Dataset]) -> str:
         for compared in found.values():
             one = compared.sel(measure=measure)
             p = one["p_value"].to_series().drop(measure)
-            beta, fit = float(one["dispersion"]), -float(one["log_likelihood"])
+            power = _POWERS.get(measure, 1)
+            beta = float(one["dispersion"]) / power if power else np.nan
+            fit = -float(one["log_likelihood"])
             others = ", ".join(NAMES[str(other)] for other in p.index[p > _ADDS_NOTHING])
             row += [f"{beta:.2f}" if np.isfinite(beta) else "–", f"{fit:.1f}", others or "–"]
         rows.append(row)

@@ -77,6 +77,32 @@ def test_p_values_of_a_measure_that_adds_nothing_are_uniform():
     assert 0.4 < np.median(values) < 0.6
 
 
+def test_p_values_stay_uniform_where_runs_of_a_record_depend_on_each_other():
+    rng = np.random.default_rng(12)
+    values = []
+    for _ in range(100):
+        record = np.repeat(np.arange(50), 6)
+        x, w = np.exp(rng.normal(size=(2, 50)))[:, record] * np.exp(0.1 * rng.normal(size=(2, 300)))
+        hit = np.log(x) + 1.0 * rng.normal(size=50)[record] + 0.3 * rng.normal(size=300) > 0.0
+        values.append(
+            float(compare_intensities({"x": x, "w": w}, hit, record=record)["p_value"].sel(measure="x", other="w"))
+        )
+    assert np.mean(np.array(values) < 0.05) < 0.15  # 0.4 if runs were taken as independent
+
+
+def test_a_p_value_is_that_of_statsmodels_with_groups(runs):
+    import statsmodels.api as sm
+
+    measures, hit = runs
+    record = np.arange(N) // 30
+    found = compare_intensities(measures, hit, record=record)["p_value"].sel(measure="x", other="w")
+    design = sm.add_constant(np.log(np.column_stack([measures["x"], measures["w"]])))
+    groups = {"groups": record, "use_correction": False}
+    fit = sm.Probit(hit.astype(float), design).fit(disp=0, cov_type="cluster", cov_kwds=groups)
+    count = record.max() + 1
+    assert float(found) == pytest.approx(2.0 * norm.sf(abs(fit.tvalues[2]) * np.sqrt((count - 1) / count)), rel=1e-5)
+
+
 def test_records_that_are_not_monotonic_are_counted():
     x = np.array([1.0, 2.0, 3.0, 1.0, 2.0, 3.0])
     hit = [0, 1, 0, 0, 1, 1]

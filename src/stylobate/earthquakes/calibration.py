@@ -1,35 +1,30 @@
 """Calibration: the numbers of an object learnt from tests in which it stood or fell."""
 
 import math
+import warnings
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 import xarray as xr
-from scipy.optimize import minimize
-from scipy.special import expit, logit
-from scipy.stats import qmc
 
 from stylobate.base_motions import BaseMotion
 from stylobate.engine.ensemble import simulate_ensemble
 from stylobate.engine.parameters import check_names
-from stylobate.errors import Outcome, ParameterError, require_positive, require_whole
+from stylobate.errors import Outcome, ParameterError, UnlikelyInputWarning, require_positive, require_whole
 from stylobate.models import Model
 from stylobate.progress import Progress, report_of, shows_progress
 from stylobate.results.random_numbers import Rng, generator_of
 
-Floats = npt.NDArray[np.float64]
-Bools = npt.NDArray[np.bool_]
+from .weighted_draws import Bools, Draws, Floats, Mixture, r_hat
 
-# The spread of a number between tests is at least this fraction of its range: fewer draws than a few would count else.
-_NARROWEST = 0.02
-# Fraction of outcomes that have nothing to do with the model: that at which a search begins, and at most.
-_USUAL_LAPSE, _MOST_LAPSES = 0.05, 0.5
 _EVEN = 0.5
-# Steps of the chain for each state that is kept, and its length before the first one.
-_THINNED, _WARM_UP = 10, 500
+# Further draws come from distributions of so many states of the posterior, wider by this factor, and at least so wide.
+_STATES, _WIDER, _LEAST_WIDTH = 64, 1.5, 0.04
+# Effective number of draws below which a posterior is not known.
+_FEW = 50
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,19 +41,17 @@ class Calibration:
     ranges
         Range of each number.
     draws
-        Draws of the numbers, evenly spread over their ranges, shape (k, d), in units of the ranges.
-    fell
-        1 where the object of a draw overturned in a test, shape (k, n).
+        Draws of the numbers, and the tests in which each overturned.
     overturned
         Outcomes of the tests, shape (n,).
     posterior
-        Samples of the posterior, shape (m, 2d + 1): means and standard deviations in units of the ranges, and λ.
+        Samples of the posterior by chain, shape (chains, m, 2d + 1): means and standard deviations in units of the
+        ranges, and λ.
     """
 
     model: Model
     ranges: Mapping[str, tuple[float, float]]
-    draws: Floats
-    fell: Floats
+    draws: Draws
     overturned: Bools
     posterior: Floats
 
@@ -69,50 +62,49 @@ class Calibration:
         -------
         xarray.Dataset
             `mean`, `spread` over `number` and `quantile` (0.025, 0.5, 0.975), in the units of the numbers; `lapse`, λ,
-            over `quantile`.
+            over `quantile`. `effective_draws` is how many draws of equal weight would know the probabilities as well,
+            the mean over the posterior: below about 50 the intervals are too narrow. `r_hat` is the largest R̂ (Gelman
+            and Rubin 1992): above about 1.1 the chains have not met.
         """
         low, width = _bounds(self.ranges)
         count, shares = len(low), [0.025, 0.5, 0.975]
-        quantiles = np.quantile(self.posterior, shares, axis=0)
+        quantiles = np.quantile(self.posterior, shares, axis=(0, 1))
         axes = ("quantile", "number")
         return xr.Dataset(
             {
                 "mean": (axes, low + width * quantiles[:, :count]),
                 "spread": (axes, width * quantiles[:, count : 2 * count]),
                 "lapse": ("quantile", quantiles[:, -1]),
+                "effective_draws": self.effective_draws,
+                "r_hat": float(r_hat(self.posterior).max()),
             },
             coords={"quantile": shares, "number": list(self.ranges)},
         )
 
-    def probabilities(self, fell: Floats | None = None) -> Floats:
-        """Return the probability that the object overturns in each test, shape (n,).
-
-        Parameters
-        ----------
-        fell
-            1 where the object of a draw overturned, shape (k, n); by default in the tests of the calibration.
-        """
-        fell = self.fell if fell is None else fell
-        each = [_probabilities(state, self.draws, fell) for state in self.posterior]
-        return np.asarray(np.mean(each, axis=0))
+    def probabilities(self) -> Floats:
+        """Return the probability that the object overturns in each test, shape (n,)."""
+        return np.asarray(self.draws.probabilities(self.states).mean(axis=0))
 
     @shows_progress("prediction")
     def predict(self, motions: Sequence[BaseMotion], *, tail: float = 2.0, progress: Progress = None) -> Floats:
         """Return the probability that the object overturns under further motions; arguments as for `calibrate`."""
-        return self.probabilities(_fallen(self.model, motions, self.ranges, self.draws, tail, progress))
+        fell = _fallen(self.model, motions, self.ranges, self.draws.places, tail, progress)
+        return replace(self, draws=replace(self.draws, fell=fell)).probabilities()
 
-    def relearnt(self, overturned: Sequence[bool] | Bools, *, samples: int = 200, rng: Rng = 0) -> "Calibration":
-        """Learn from other outcomes of the same tests, such as those of a second object, without further runs.
+    def relearnt(self, overturned: Sequence[bool] | Bools, *, samples: int = 1000, rng: Rng = 0) -> "Calibration":
+        """Learn from other outcomes of the same tests without further runs.
+
+        The draws are where the first outcomes put them: a warning says if they are too few for the others.
 
         Parameters
         ----------
         overturned, samples, rng
             As for `calibrate`.
         """
-        known, generator = _outcomes(overturned, self.fell.shape[1]), generator_of(rng)
-        best = _most_probable(self.draws, self.fell, known)
-        chain = _chain(best, self.draws, self.fell, known, require_whole("samples", samples, least=1), generator)
-        return Calibration(self.model, self.ranges, self.draws, self.fell, known, chain)
+        known, samples = _outcomes(overturned, len(self.overturned)), require_whole("samples", samples, least=1)
+        found = replace(self, overturned=known, posterior=self.draws.posterior(known, samples, generator_of(rng)))
+        _remark(found)
+        return found
 
     def held_out(
         self, *, folds: int = 5, repeats: int = 10, groups: npt.ArrayLike | None = None, rng: Rng = 0
@@ -120,7 +112,8 @@ class Calibration:
         """Return the probabilities of tests that were not used, shape (repeats, n).
 
         The tests are divided at random into `folds` parts; those of each part are predicted from the others. Only the
-        distributions are learnt again, from the same simulated outcomes.
+        distributions are learnt again, from the same simulated outcomes. All tests decide where draws are dense; that
+        changes how well the probabilities are integrated, not what they are learnt from.
 
         Parameters
         ----------
@@ -149,9 +142,19 @@ class Calibration:
         for repeat in range(repeats):
             for chosen in np.array_split(generator.permutation(kinds), folds):
                 part = np.isin(labels, chosen)
-                best = _most_probable(self.draws, self.fell[:, ~part], self.overturned[~part])
-                found[repeat, part] = _probabilities(best, self.draws, self.fell[:, part])
+                best = self.draws.of_tests(~part).most_probable(self.overturned[~part])
+                found[repeat, part] = self.draws.of_tests(part).probabilities(best[np.newaxis])[0]
         return found
+
+    @property
+    def states(self) -> Floats:
+        """Samples of the posterior of all chains, shape (chains · m, 2d + 1)."""
+        return self.posterior.reshape(-1, self.posterior.shape[-1])
+
+    @property
+    def effective_draws(self) -> float:
+        """Number of draws of equal weight that would know the probabilities as well, the mean over the posterior."""
+        return float(self.draws.effective(self.states).mean())
 
 
 @shows_progress("calibration")
@@ -162,16 +165,18 @@ def calibrate(
     *,
     ranges: Mapping[str, tuple[float, float]],
     count: int = 256,
-    samples: int = 200,
+    rounds: int = 3,
+    samples: int = 1000,
     tail: float = 2.0,
     rng: Rng = 0,
     progress: Progress = None,
 ) -> Calibration:
     """Learn the numbers of an object from tests in which it stood or fell.
 
-    The object is simulated in each test with `count` draws of its numbers. The share of them that overturns, weighted
-    by a normal distribution of the numbers, is the probability of the outcome; means and standard deviations of this
-    distribution follow from the likelihood of all outcomes.
+    The object is simulated in each test with draws of its numbers. The share of them that overturns, weighted by a
+    normal distribution of the numbers, is the probability of the outcome; means and standard deviations of this
+    distribution follow from the likelihood of all outcomes. The first draws are spread over the ranges, further rounds
+    draw where the distributions are.
 
     Parameters
     ----------
@@ -186,9 +191,11 @@ def calibrate(
         as {"slenderness": (0.1, 0.2)}. `offset_x` is a constant acceleration [m/s²]; it stands for a base that slopes,
         or for a body that tips at different angles to both sides.
     count
-        Number of draws.
+        Number of draws in each round.
+    rounds
+        Number of rounds.
     samples
-        Number of samples of the posterior.
+        Least number of samples of the posterior.
     tail
         Time after the end of each motion in which the object may still fall [s].
     rng
@@ -208,9 +215,11 @@ def calibrate(
 
     Notes
     -----
-    The draws are points of Sobol's sequence. The weight of a draw is the density of the distribution there, so each
-    likelihood needs no further run. The posterior has flat priors within the ranges and is sampled by a chain of
-    Metropolis from the most probable state.
+    The draws are points of Sobol's sequence. The weight of a draw is the density of the distribution there, divided by
+    the density of the draws of all rounds, so each likelihood needs no further run. A warning says if the posterior
+    rests on too few of them. Its priors are flat, for standard
+    deviations in their logarithm; it is sampled by chains that propose differences of
+    each other (ter Braak 2006).
 
     Examples
     --------
@@ -220,7 +229,7 @@ def calibrate(
     >>> pulses = [sb.Pulse.one_sine(acceleration=a, angular_frequency=12.0) for a in np.linspace(0.5, 6.0, 30)]
     >>> fell = [sb.simulate(block, pulse, duration=5.0).outcome is sb.Outcome.OVERTURNED for pulse in pulses]
     >>> ranges = {"slenderness": (0.1, 0.25)}
-    >>> found = calibrate(block, pulses, fell, ranges=ranges, count=64, samples=50, tail=4.0, progress=False)
+    >>> found = calibrate(block, pulses, fell, ranges=ranges, count=64, tail=4.0, progress=False)
     >>> low, middle, high = found.numbers()["mean"].sel(number="slenderness").values
     >>> bool(low < block.column.slenderness < high)
     True
@@ -231,11 +240,50 @@ def calibrate(
             raise ParameterError(f"ranges[{name!r}] must be a smaller and a larger number, got {(low, high)!r}")
     check_names(model, None, ranges, where="ranges")
     generator = generator_of(rng)
-    number = require_whole("count", count, least=8)
-    draws = qmc.Sobol(len(ranges), rng=generator).random(number)
-    fell = _fallen(model, motions, ranges, draws, require_positive("tail", tail, "s"), progress)
-    begun = Calibration(model, dict(ranges), draws, fell, known, np.empty((0, 2 * len(ranges) + 1)))
-    return begun.relearnt(known, samples=samples, rng=generator)
+    number, rounds = require_whole("count", count, least=8), require_whole("rounds", rounds, least=1)
+    samples, tail = require_whole("samples", samples, least=1), require_positive("tail", tail, "s")
+    report, size = report_of(progress), len(ranges)
+    found = Calibration(
+        model=model,
+        ranges=dict(ranges),
+        draws=Draws(np.empty((0, size)), np.empty(0), np.empty((0, len(motions)))),
+        overturned=known,
+        posterior=np.empty((0, 0, 2 * size + 1)),
+    )
+    mixtures: list[Mixture] = []
+    for place in range(rounds):
+        mixtures.append(_around(found, generator) if place else Mixture.even(size))
+        new = mixtures[-1].draws(number, generator)
+
+        def counted(done: int, total: int, before: int = place) -> None:
+            report(before * total + done, rounds * total)
+
+        fell = np.concatenate([found.draws.fell, _fallen(model, motions, ranges, new, tail, counted)])
+        places = np.concatenate([found.draws.places, new])
+        draws = Draws(places, np.mean([one.density(places) for one in mixtures], axis=0), fell)
+        found = replace(
+            found, draws=draws, posterior=draws.posterior(known, samples if place == rounds - 1 else _STATES, generator)
+        )
+    _remark(found)
+    return found
+
+
+def _remark(found: Calibration) -> None:
+    """Warn if the posterior rests on few draws."""
+    effective = found.effective_draws
+    if effective < _FEW:
+        message = (
+            f"calibration: rests on few draws ({len(found.draws)} count as {effective:.0f}), so that intervals are too "
+            "narrow. Give a larger count, or more rounds."
+        )
+        warnings.warn(message, UnlikelyInputWarning, stacklevel=3)
+
+
+def _around(known: Calibration, generator: np.random.Generator) -> Mixture:
+    """Return distributions of the posterior, widened."""
+    states = known.states[generator.choice(len(known.states), _STATES)]
+    count = len(known.ranges)
+    return Mixture(states[:, :count], np.maximum(_WIDER * states[:, count : 2 * count], _LEAST_WIDTH))
 
 
 def _outcomes(overturned: Sequence[bool] | Bools, tests: int) -> Bools:
@@ -311,71 +359,3 @@ def _fallen(
         fell[:, number] = runs["outcome"].values == Outcome.OVERTURNED
         report(number + 1, len(motions))
     return fell
-
-
-def _probabilities(state: Floats, draws: Floats, fell: Floats) -> Floats:
-    """Return the probability of overturning in each test for means, standard deviations and λ."""
-    count = draws.shape[1]
-    mean, spread, lapse = state[:count], state[count : 2 * count], state[-1]
-    exponents = -0.5 * np.sum(((draws - mean) / spread) ** 2, axis=1)
-    weights = np.exp(exponents - exponents.max())
-    share = weights @ fell / weights.sum()
-    return np.asarray(0.5 * lapse + (1.0 - lapse) * share)
-
-
-def _log_likelihood(state: Floats, draws: Floats, fell: Floats, overturned: Bools) -> float:
-    """Return the logarithm of the probability of all outcomes; −∞ outside the ranges."""
-    count = draws.shape[1]
-    mean, spread, lapse = state[:count], state[count : 2 * count], state[-1]
-    inside = np.all((mean >= 0.0) & (mean <= 1.0) & (spread >= _NARROWEST) & (spread <= 1.0))
-    if not inside or not 0.0 < lapse <= _MOST_LAPSES:
-        return -math.inf
-    p = _probabilities(state, draws, fell)
-    return float(np.sum(np.log(np.where(overturned, p, 1.0 - p))))
-
-
-def _most_probable(draws: Floats, fell: Floats, overturned: Bools) -> Floats:
-    """Return the state of the largest likelihood, from a search that begins at the best draws."""
-    count = draws.shape[1]
-    same = np.mean(fell == overturned, axis=1)
-
-    def state_of(free: Floats) -> Floats:
-        shares = expit(free)
-        spread = _NARROWEST + (1.0 - _NARROWEST) * shares[count : 2 * count]
-        return np.concatenate([shares[:count], spread, _MOST_LAPSES * shares[-1:]])
-
-    def unlikely(free: Floats) -> float:
-        return -_log_likelihood(state_of(free), draws, fell, overturned)
-
-    best, largest = state_of(np.zeros(2 * count + 1)), -math.inf
-    for start in draws[np.argsort(-same)[:2]]:
-        inside = np.clip(start, 0.02, 0.98)
-        begun = logit(np.concatenate([inside, np.full(count, 0.1), [_USUAL_LAPSE / _MOST_LAPSES]]))
-        found = minimize(
-            unlikely,
-            begun,
-            method="Nelder-Mead",
-            options={"maxiter": 200 * count, "xatol": 1e-2, "fatol": 1e-2},
-        )
-        if -found.fun > largest:
-            best, largest = state_of(found.x), -found.fun
-    return best
-
-
-def _chain(
-    begun: Floats, draws: Floats, fell: Floats, overturned: Bools, samples: int, generator: np.random.Generator
-) -> Floats:
-    """Return samples of the posterior by a chain of Metropolis, whose steps adapt while it warms up."""
-    state, now = begun, _log_likelihood(begun, draws, fell, overturned)
-    size, kept = np.full(len(begun), 0.05), []
-    for step in range(_WARM_UP + samples * _THINNED):
-        proposed = state + size * generator.normal(size=len(state)) / math.sqrt(len(state))
-        then = _log_likelihood(proposed, draws, fell, overturned)
-        accepted = math.log(generator.random()) < then - now
-        if accepted:
-            state, now = proposed, then
-        if step < _WARM_UP:  # towards a quarter of the steps accepted
-            size = size * (1.05 if accepted else 0.983)
-        elif (step - _WARM_UP) % _THINNED == _THINNED - 1:
-            kept.append(state)
-    return np.array(kept)
