@@ -159,7 +159,9 @@ class OneRun(InitialConditions, Accuracy, total=False):
         Argument(
             None,
             "Duration of the run [s]. Under a base motion that ends, such as a record, a pulse or a sine sweep, the "
-            "default is the duration of the motion and a free-vibration tail of 20/`column.frequency_parameter`.",
+            "default is the duration of the motion and a free-vibration tail of 20/`column.frequency_parameter`. Under "
+            "a periodic motion that does not end, a run without `duration` goes on until its outcome is decided, for "
+            "at most 2000 periods.",
         ),
     ]
     friction_coefficient: Annotated[

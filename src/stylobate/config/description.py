@@ -74,12 +74,12 @@ MetresPerSquareSecond = Annotated[float, Quantity(unit="m/s²")]
 _UNION_FIELDS = ("column", "model", "motion")
 # Fields that are tables of such descriptions, by names that the user chooses.
 _UNION_TABLES = ("columns",)
-# Explanation of a missing part, added to its message.
-_WANTED = {
-    "duration": ": length of a run [s], such as 60; optional only under a base motion that ends",
+WANTED = {
+    "duration": ": length of a run [s], such as 60; optional only under a base motion that ends or has a period",
     "motion.kind": ': the kind of base motion, such as "stroke" or "circular"; on the command line --motion stroke',
     "motion.velocity": ": velocity of the pulse [m/s]; on the command line --pulse-velocity",
 }
+"""Explanation of a missing part, added to its message."""
 
 
 class Config(BaseModel):
@@ -129,13 +129,13 @@ def _line(problem: Any) -> str:
     tag = str(context.get("discriminator", "")).strip("'")
     match problem["type"]:
         case "missing":
-            return f"{name} is missing{_WANTED.get(name, '')}"
+            return f"{name} is missing{WANTED.get(name, '')}"
         case "extra_forbidden":
             return _unknown(name, problem["loc"])
         case "union_tag_invalid":
             return f"{name}.{tag} must be one of {context['expected_tags']}, got {context['tag']!r}{_meant(context)}"
         case "union_tag_not_found":
-            return f"{name}.{tag} is missing{_WANTED.get(f'{name}.{tag}', '')}"
+            return f"{name}.{tag} is missing{WANTED.get(f'{name}.{tag}', '')}"
         case "value_error":
             return f"{name} {context['error']}" if isinstance(context["error"], UnitError) else str(context["error"])
     return f"{name}: {problem['msg'][0].lower()}{problem['msg'][1:]}, got {given!r}"

@@ -283,6 +283,12 @@ def is_to_end(motion: object) -> bool:
     return states(make, "ends")
 
 
+def moves(motion: object) -> bool:
+    """Return whether a `motion`, described or in plain values, is not a base at rest."""
+    values = dict(motion) if isinstance(motion, (Mapping, Config)) else {}
+    return str(values.get("kind", "rest")) != "rest"
+
+
 def made_by(kind: object) -> Callable[..., Any] | None:
     """Return the class or constructor of a kind of motion in plain values; None for an unknown kind."""
     return MOTIONS[kind] if isinstance(kind, Place) or (isinstance(kind, str) and kind in MOTIONS) else None

@@ -1,7 +1,8 @@
 """Describe one run, or the case that many runs share: from TOML, from the command line, or from a saved result."""
 
+import math
 import tomllib
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields
 from itertools import islice
 from pathlib import Path
@@ -10,7 +11,7 @@ from typing import Annotated, Any, Self
 from pydantic import Field, model_validator
 
 from stylobate.base_motions import BaseMotion
-from stylobate.config.description import Config, built
+from stylobate.config.description import WANTED, Config, built
 from stylobate.config.parts import (
     ANY_COLUMN,
     AT_REST,
@@ -24,6 +25,7 @@ from stylobate.config.parts import (
     is_dimensionless,
     is_to_end,
     made_by,
+    moves,
 )
 from stylobate.config.records import RecordMotion, anchored
 from stylobate.errors import ConfigError, FileError, ParameterError, UnsupportedError
@@ -159,8 +161,7 @@ def _texts_with_units(values: Any, place: str = "") -> Iterator[tuple[str, str]]
 class SimulationConfig(fields_of(SingleRun, "duration"), CaseConfig):  # type: ignore[misc]
     """A run: `column`, `model`, `motion` and the arguments of `simulate`, with the same names.
 
-    Under a record, a pulse or a sine sweep the duration is optional. The default is the duration of the motion and a
-    free-vibration tail of 20/`column.frequency_parameter`.
+    Under a base motion that ends or has a period the duration is optional; the default is that of `simulate`.
 
     Parameters
     ----------
@@ -179,7 +180,7 @@ class SimulationConfig(fields_of(SingleRun, "duration"), CaseConfig):  # type: i
     def parse(cls, values: Mapping[str, Any]) -> Self:
         """Validate these `values`; those of other commands are ignored."""
         own = {name: value for name, value in values.items() if name not in OF_OTHER_COMMANDS}
-        return super().parse(with_default_duration(own))
+        return super().parse(with_default_duration(own, optional=moves))
 
     def build(self) -> Setup:
         """Build the described objects.
@@ -193,8 +194,10 @@ class SimulationConfig(fields_of(SingleRun, "duration"), CaseConfig):  # type: i
         rules = built("rules", lambda: built_rules(self.rules), problems)
         model, motion = built_parts(self.column, self.model, self.motion, problems)
         options = self.model_dump(exclude={"column", "model", "motion"}) | {"rules": rules}
-        if self.duration is None:
+        if self.duration is None and 0.0 < motion.duration < math.inf:
             options["duration"] = duration_with_tail(motion.duration, model.column.frequency_parameter)
+        elif self.duration is None and (motion.duration == 0.0 or motion.period is None):
+            raise ConfigError([f"duration is missing{WANTED['duration']}"])
         return Setup(model, motion, options)
 
 
@@ -219,12 +222,14 @@ def built_parts(
     return modelled, moved
 
 
-def with_default_duration(values: Mapping[str, Any]) -> dict[str, Any]:
-    """Return `values` with `duration` None if it is missing and the motion ends; without `duration` otherwise."""
+def with_default_duration(
+    values: Mapping[str, Any], *, optional: Callable[[object], bool] = is_to_end
+) -> dict[str, Any]:
+    """Return `values` with `duration` None if it is missing and `optional` for the motion, else without `duration`."""
     if values.get("duration") is not None:
         return dict(values)
     others = {name: value for name, value in values.items() if name != "duration"}
-    return others | ({"duration": None} if is_to_end(values.get("motion")) else {})
+    return others | ({"duration": None} if optional(values.get("motion")) else {})
 
 
 OF_OTHER_COMMANDS = (

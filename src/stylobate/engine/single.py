@@ -33,8 +33,10 @@ from stylobate.engine.verdict import (
     FALLEN,
     FIRST_DIGIT,
     MANY_PASSAGES,
+    MOST_PERIODS,
     UNSETTLED,
     Ground,
+    duration_needed,
     duration_of,
     reason_on,
     steady_periods,
@@ -85,7 +87,7 @@ def simulate(
     Raises
     ------
     ParameterError
-        If an argument is out of range, or there is no `duration` and the base motion does not end.
+        If an argument is out of range, or there is no `duration` and the base motion neither ends nor has a period.
 
     Examples
     --------
@@ -108,20 +110,24 @@ def simulate(
     turning = Turning.checked(model, run, standing=at_rest)
     friction_coefficient = arguments_of(SingleRun)["friction_coefficient"].checked(run["friction_coefficient"])
     refuse_friction(model, friction_coefficient)
-    duration = duration_of(run["duration"], model, moved)
     samples = arguments_of(SingleRun)["samples"].checked(run["samples"])
     options = checked_options({**run, "samples": None, "recheck": False})
     rules = options["rules"] or OutcomeRules()
-    check_motion(moved, duration)
+    duration = duration_of(run["duration"], model, moved, rules)
     functions = checked_events(events)
     if at_rest:
         start_tilt = start_rate = (0.0, 0.0)
     require_plane(model, moved, start_tilt, start_rate)
-    announce(
-        expected_steps(model, moved.highest_frequency * model.time_scale, duration / model.time_scale),
-        options["max_steps"],
-    )
-    result = run_result(model, moved, options, RunStart(start_tilt, start_rate, duration, turning), functions)
+
+    def followed_to(duration: float) -> RunResult:
+        check_motion(moved, duration)
+        frequency = moved.highest_frequency * model.time_scale
+        announce(expected_steps(model, frequency, duration / model.time_scale), options["max_steps"])
+        return run_result(model, moved, options, RunStart(start_tilt, start_rate, duration, turning), functions)
+
+    result = followed_to(duration)
+    if run["duration"] is None and moved.duration == math.inf:
+        result, duration = _decided(result, duration, followed_to, MOST_PERIODS * (moved.period or 0.0))
     recorded = history(model, moved, result.trajectory, samples, friction_coefficient=friction_coefficient)
     knife_edges = contact_warnings(model, result.measures) if model.switches else ()
     changes, doubts = result.repeated() if run["recheck"] else (False, ())
@@ -170,6 +176,8 @@ class RunResult:
         Motion of the column.
     atol
         Absolute tolerance [rad].
+    needed
+        Duration that suffices for an outcome of a run that moves at its end [s]; 0 if it is decided.
     repeated
         Repeats a run in doubt; returns whether the outcome changes, and warnings.
     """
@@ -184,7 +192,24 @@ class RunResult:
     measures: dict[str, float]
     trajectory: Trajectory
     atol: float
+    needed: float
     repeated: Callable[[], tuple[bool, tuple[str, ...]]]
+
+
+def _decided(
+    result: RunResult, duration: float, follow: Callable[[float], RunResult], most: float
+) -> tuple[RunResult, float]:
+    """Follow a run of `duration`, whose `result` is given, until its outcome is decided, at `most` to that time [s].
+
+    Returns the result with its duration; a longer run that fails does not count.
+    """
+    while duration < result.needed and duration < most:
+        longer = min(result.needed, most)
+        again = follow(longer)
+        if again.outcome is Outcome.FAILED:
+            break
+        result, duration = again, longer
+    return result, duration
 
 
 def run_result(
@@ -246,6 +271,7 @@ def run_result(
         },
         trajectory=trajectory,
         atol=float(table[Setup.ATOL]),
+        needed=_needed(motion, followed) if outcome is Outcome.STILL_MOVING else 0.0,
         repeated=partial(_repeated, plan, run, outcome, float(arrays["peak_tilt"]))
         if stopped_at is None and (arrays["in_doubt"] or _irregular(outcome, trajectory, events))
         else _not_repeated,
@@ -399,6 +425,14 @@ def _at_its_end(model: Model, motion: BaseMotion, followed: Followed, outcome: O
         return survival(model, motion, followed.trajectory)[1]
     ground = Ground(int(grounds_of(followed.batch, followed.late)[0]))
     return reason_on(ground, followed.late.evidence, followed.batch.plan.rules, motion.period or 0.0)
+
+
+def _needed(motion: BaseMotion, followed: Followed) -> float:
+    """Return the duration that suffices for an outcome of a run that moves at its end [s]; 0 without a period."""
+    if motion.period is None or followed.status is not RunStatus.STOPPED:
+        return 0.0
+    ground = Ground(int(grounds_of(followed.batch, followed.late)[0]))
+    return duration_needed(ground, followed.late.evidence, followed.batch.plan.rules, motion.period)
 
 
 def _failure(model: Model, followed: Followed) -> str:

@@ -20,18 +20,26 @@ from stylobate.run_arguments import RTOL_RANGE, duration_with_tail
 Floats = npt.NDArray[np.float64]
 
 
-def duration_of(duration: float | None, model: Model, motion: BaseMotion) -> float:
+MOST_PERIODS = 2000
+"""Maximum number of periods of a run that is followed until its outcome is decided."""
+
+
+def duration_of(duration: float | None, model: Model, motion: BaseMotion, rules: OutcomeRules) -> float:
     """Return the duration of a run [s]: `duration`, or the base motion and a free-vibration tail of 20/p.
+
+    Under a periodic motion that never ends, the default is the duration after which most outcomes are known.
 
     Raises
     ------
     ParameterError
-        If the duration is not positive; or if there is none, and the base is always at rest or never comes to rest.
+        If the duration is not positive; or if there is none, and the base is at rest or moves for ever without period.
     """
     if duration is not None:
         return require_positive("duration", duration, "s")
+    if motion.duration == math.inf and motion.period is not None:
+        return steady_periods(rules) * motion.period
     if not 0.0 < motion.duration < math.inf:
-        what = "a base at rest" if motion.duration == 0.0 else "a base motion that never ends"
+        what = "a base at rest" if motion.duration == 0.0 else "a base motion that never ends and has no period"
         raise ParameterError(f"duration must be given, in s, with {what}, such as duration=60.0; got None")
     return duration_with_tail(motion.duration, model.column.frequency_parameter)
 
@@ -329,7 +337,6 @@ def reason_on(ground: Ground, evidence: Evidence | None, rules: OutcomeRules, pe
         Period of the base motion [s].
     """
     steady, short = steady_periods(rules), rules.periods + 1
-    needed = short if evidence is None else _periods_needed(ground, evidence, rules)
     after = 0 if evidence is None else int(evidence.repeats_after(rules)[0] or evidence.nearest[0])
     return _VERDICTS[ground][1].format(
         n=rules.periods,
@@ -337,8 +344,14 @@ def reason_on(ground: Ground, evidence: Evidence | None, rules: OutcomeRules, pe
         steady=steady,
         most=LAGS,
         after="each period" if after == 1 else f"{after} periods",
-        needed=_rounded_up(needed * period),
+        needed=duration_needed(ground, evidence, rules, period),
     )
+
+
+def duration_needed(ground: Ground, evidence: Evidence | None, rules: OutcomeRules, period: float) -> float:
+    """Return the duration that suffices for an outcome of a run that moves at its end [s]; see `reason_on`."""
+    periods = rules.periods + 1 if evidence is None else _periods_needed(ground, evidence, rules)
+    return _rounded_up(periods * period)
 
 
 def _periods_needed(ground: Ground, evidence: Evidence, rules: OutcomeRules) -> float:
