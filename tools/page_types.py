@@ -13,6 +13,7 @@ from stylobate.base_motions import Harmonic
 from stylobate.base_motions.declared import MOTIONS, kinds_by_acceleration, kinds_with_response
 from stylobate.config.study import study_of
 from stylobate.lab.answers import schemas
+from stylobate.lab.grids import OFF_BRANCH
 from stylobate.lab.requests import GRIDS
 from stylobate.models.declared import MODELS
 from stylobate.quantities import parameters_of
@@ -64,6 +65,8 @@ def names() -> str:
     about = "By kind of harmonic motion: the number that holds the frequency, and its unit."
     kind = "Readonly<Record<string, readonly [name: string, unit: string]>>"
     parts += [f"/** {about} */\nexport const FREQUENCIES: {kind} = {{\n{''.join(rates)}}};\n"]
+    about = "A start on a branch is off it by this fraction of its tilt: a run leaves a motion that is not stable."
+    parts += [f"/** {about} */\nexport const OFF_BRANCH = {OFF_BRANCH!r};\n"]
     return "\n".join([_HEAD_OF_NAMES, *parts])
 
 

@@ -92,8 +92,21 @@ def shown(page: Page) -> None:
     page.wait_for_function("() => window.stylobate?.laboratory.answer && !document.querySelector('.stage.busy')")
 
 
+def in_own_case(page: Page) -> None:
+    """Leave the lesson with which the page opens for the first preset, with all controls in view."""
+    page.get_by_label("Preset").select_option("circle-strong")
+    page.wait_for_function("() => window.stylobate.state().lesson === null && document.querySelector('.lesson').hidden")
+    open_sections(page)
+    shown(page)
+
+
+def open_sections(page: Page) -> None:
+    """Unfold all controls."""
+    page.evaluate("() => document.querySelectorAll('details.section').forEach((one) => { one.open = true; })")
+
+
 def moved(page: Page, name: str, value: float) -> None:
     """Set the number of this name in its field."""
-    field = page.locator(f"input.number[id^='{name}']").first
+    field = page.locator(f".controls input.number[id^='{name}']").first
     field.fill(str(value))
     field.press("Enter")

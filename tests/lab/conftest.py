@@ -7,7 +7,7 @@ from contextlib import contextmanager
 
 import httpx
 import pytest
-from tests.lab.browser import Watched, new_page, open_browser, shown
+from tests.lab.browser import Watched, in_own_case, new_page, open_browser, shown
 from tests.lab.conformity import conforms
 
 from stylobate.lab import Limits, create_app
@@ -60,6 +60,7 @@ def watched(browser, address):
     found = Watched(new_page(context), address)
     found.page.goto(f"{address}/")
     shown(found.page)
+    in_own_case(found.page)
     yield found
     context.close()
     assert found.foreign == []

@@ -5,7 +5,7 @@ import statistics
 
 import numpy as np
 import pytest
-from tests.lab.browser import moved, new_page, shown
+from tests.lab.browser import in_own_case, moved, new_page, shown
 from tests.lab.conftest import laboratory
 
 import stylobate as sb
@@ -110,13 +110,15 @@ def test_a_part_that_slides_shows_how_far_and_the_numbers_of_the_command_line(wa
     assert table.get_by_text(moved_by, exact=True).is_visible()
 
 
-def test_a_run_under_a_pulse_lasts_as_long_as_that_and_one_under_shaking_needs_a_length(watched):
+def test_a_run_lasts_as_long_as_it_needs_and_over_a_base_at_rest_needs_a_length(watched):
     page = watched.page
     duration = "window.stylobate.state().description.duration"
+    moved(page, "duration", 20.0)
+    page.wait_for_function(f"() => {duration} === 20")
     motions = page.get_by_label("Base motion", exact=True)
     motions.select_option("ricker")
     page.wait_for_function(f"() => {duration} === null")
-    motions.select_option("circular")
+    motions.select_option("rest")
     page.wait_for_function(f"() => {duration} > 0")
 
 
@@ -223,6 +225,7 @@ def test_the_page_tells_when_the_server_is_gone_and_recovers(browser):
     with laboratory() as address:
         page.goto(f"{address}/")
         shown(page)
+        in_own_case(page)
     page.get_by_label("Damping, slider").press("ArrowRight")
     banner = page.get_by_text("The server does not answer")
     banner.wait_for()

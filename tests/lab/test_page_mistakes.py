@@ -9,7 +9,7 @@ STATE = "window.stylobate.state()"
 
 
 def field_of(page, name):
-    return page.locator(f"input.number[id^='{name}']").first
+    return page.locator(f".controls input.number[id^='{name}']").first
 
 
 def described(page, field):
@@ -167,8 +167,8 @@ def test_a_long_verdict_and_its_button_are_read_whole(page):
         route.fulfill(response=found, json={**found.json(), "reason": LONG, "warnings": warnings})
 
     page.route(re.compile("/api/simulate"), answer)
-    field_of(page, "damping").fill("0.11")
-    button = page.get_by_role("button", name=re.compile("^Simulate to"))
+    field_of(page, "duration").fill("60")
+    button = page.get_by_role("button", name="Simulate until decided")
     button.wait_for()
     verdict = page.locator(".verdict")
     for height in (860, 720):

@@ -23,7 +23,7 @@ def test_the_note_under_the_curves_names_the_model_that_they_are_of(page):
 
 
 def test_a_refusal_stands_beside_its_field_and_over_the_stage(page):
-    field = page.locator("input.number[id^='damping']").first
+    field = page.locator(".controls input.number[id^='damping']").first
     field.fill("-1")
     line = "damping must be zero or positive"
     page.locator(".old-note").get_by_text(line).wait_for()
@@ -74,7 +74,7 @@ def test_straight_shaking_is_followed_along_the_upper_branch_and_back(page):
     )
     for frequency in (2.5, 2.0, 1.9, 3.0):
         before = page.evaluate(f"() => {STATE}.description.tilt[0]")
-        page.locator("input.number[id^='angular_frequency']").first.fill(str(frequency))
+        page.locator(".controls input.number[id^='angular_frequency']").first.fill(str(frequency))
         page.wait_for_function(f"() => {STATE}.description.tilt[0] !== {before}")
         shown(page)
         assert page.evaluate(f"() => [{ANSWER}.outcome, {ANSWER}.warnings]") == ["ROLLING", []]
@@ -87,9 +87,9 @@ def test_a_start_on_an_unstable_orbit_is_named_so_and_still_is_when_the_length_c
     page.wait_for_function(f"() => {STATE}.description.motion.kind === 'straight'")
     shown(page)
     remark = page.locator(".verdict .warning").filter(has_text="Start: the exact orbit is unstable")
-    page.locator("input.number[id^='angular_frequency']").first.fill("1.4")
+    page.locator(".controls input.number[id^='angular_frequency']").first.fill("1.4")
     remark.wait_for()
-    page.locator("input.number[id^='duration']").first.fill("30")
+    page.locator(".controls input.number[id^='duration']").first.fill("30")
     page.wait_for_function(f"() => {STATE}.description.duration === 30 && {ANSWER}.thresholds")
     page.wait_for_function(f"() => {ANSWER}.toml.includes('duration = 30')")
     assert remark.is_visible()

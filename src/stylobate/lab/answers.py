@@ -118,7 +118,7 @@ class Kind(Answer):
     name: str = Field(description="name in words")
     about: str = Field(description="one-line description")
     parameters: list[Parameter]
-    ends: bool | None = Field(None, description="for motions: whether the motion ends, so that a run needs no duration")
+    moves: bool | None = Field(None, description="for motions: whether the base moves, so that a run needs no duration")
 
 
 class Preset(Answer):
@@ -134,6 +134,38 @@ class Preset(Answer):
     )
 
 
+class Choice(Answer):
+    """One of the choices of a lesson."""
+
+    text: str
+    change: dict[str, Any] = Field(description="parts of the description to replace")
+
+
+class LessonControl(Answer):
+    """The only control of a lesson: a number with a range, or some choices."""
+
+    number: str | None = Field(None, description="name of the number; null for choices")
+    first: float | None = Field(None, alias="from", description="lower end of the range")
+    last: float | None = Field(None, alias="to", description="upper end of the range")
+    options: list[Choice] | None = Field(None, description="choices instead of a number")
+
+
+class Lesson(Answer):
+    """A question about one case, with one control and an answer for each outcome."""
+
+    identity: str = Field(alias="id")
+    title: str
+    question: str
+    task: str = Field(description="what to do")
+    opens: bool = Field(False, alias="first", description="whether the page opens with it")
+    control: LessonControl
+    said: dict[str, str] = Field(
+        description="text for each outcome; {critical} stands for the critical frequency of the case"
+    )
+    description: dict[str, Any] = Field(description="body for /api/simulate")
+    view: dict[str, Any] = Field(description="view on the page, as for presets")
+
+
 class About(Answer):
     """Options of the laboratory."""
 
@@ -144,6 +176,7 @@ class About(Answer):
     motions: list[Kind] = Field(description="kinds of base motions")
     samples: list[str] = Field(description="names of the sample records")
     presets: list[Preset] = Field(description="example motions")
+    lessons: list[Lesson] = Field(description="the tour")
 
 
 class Peaks(Answer):

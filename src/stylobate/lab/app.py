@@ -16,6 +16,7 @@ from anyio import to_thread
 from starlette.applications import Starlette
 from starlette.exceptions import HTTPException
 from starlette.middleware import Middleware
+from starlette.middleware.gzip import GZipMiddleware
 from starlette.requests import Request
 from starlette.responses import JSONResponse, Response
 from starlette.routing import Mount, Route, Router
@@ -31,8 +32,20 @@ from stylobate.lab.messages import OUT_OF_MEMORY, Broken, Finished, Lost, Refuse
 from stylobate.lab.options import about
 from stylobate.lab.pages import page_routes
 from stylobate.lab.pool import BusyError, Pool
-from stylobate.lab.requests import JOBS, Description, Uploads, described, json_body, problems_of_numbers
+from stylobate.lab.requests import (
+    BRANCHES,
+    JOBS,
+    Description,
+    Uploads,
+    described,
+    json_body,
+    may_start_on_branch,
+    problems_of_numbers,
+)
 from stylobate.lab.runs import column_numbers, snippets
+
+_SMALL, _QUICKLY = 1024, 3
+"""Size from which an answer is compressed [bytes], and the level of the compression."""
 
 
 def create_app(
@@ -77,7 +90,10 @@ def create_app(
 
     return Starlette(
         routes=[*page_routes(), Mount("/", app=inner)],
-        middleware=[Middleware(Guard, hosts=hosts, token=token)],
+        middleware=[
+            Middleware(Guard, hosts=hosts, token=token),
+            Middleware(GZipMiddleware, minimum_size=_SMALL, compresslevel=_QUICKLY),
+        ],
         exception_handlers=dict.fromkeys(
             (RefusedError, StylobateError, MemoryError, HTTPException, Exception), _problems
         ),
@@ -199,9 +215,13 @@ class Api:
             raise RefusedError(422, [f"kind must be one of {', '.join(JOBS)}, got {kind!r}"])
         if not isinstance(values, dict):
             raise RefusedError(422, ["description is missing: the plain values of a description"])
+        start = body.get("start")
+        if start is not None and not (start in BRANCHES and may_start_on_branch(kind)):
+            raise RefusedError(422, [f"start must be one of {', '.join(BRANCHES)}, for a map (got {start!r})"])
         given = described(values, self.uploads, self.limits)
         await to_thread.run_sync(JOBS[kind].parse, given.values)
-        return _answer(answers.Begun(id=self.jobs.begin(kind, given.values)), 202)
+        asked = given.values if start is None else {**given.values, "start": start}
+        return _answer(answers.Begun(id=self.jobs.begin(kind, asked)), 202)
 
     @openapi.endpoint(
         "GET /api/jobs/{identity}", answers.Job, refusals=(*openapi.OF_ALL, 404, 422), parameters=(openapi.AFTER,)

@@ -12,9 +12,10 @@ import numpy.typing as npt
 import xarray as xr
 
 from stylobate import config
+from stylobate.base_motions import BASE_AT_REST, Harmonic
 from stylobate.config.simulation import Setup
 from stylobate.config.study import Study, declared_numbers, study_of
-from stylobate.engine.parameters import COLUMN_NAMES, present_value
+from stylobate.engine.parameters import COLUMN_NAMES, present_value, with_parameters
 from stylobate.errors import Outcome, ParameterError, UnsupportedError
 from stylobate.lab import answers
 from stylobate.lab.messages import Emit, Found, Progress
@@ -22,6 +23,7 @@ from stylobate.lab.options import CASE_NUMBERS
 from stylobate.models import Model
 from stylobate.parameter_quantities import attributes_of
 from stylobate.progress import Report
+from stylobate.studies.responses.response_curves import steady_start
 from stylobate.studies.sweeps import Executor, Sweep
 from stylobate.studies.sweeps.chunks import Arrays, Computed, Task
 from stylobate.studies.sweeps.executors import Work
@@ -40,6 +42,8 @@ def grid(function: Callable[..., xr.Dataset], values: Mapping[str, Any], emit: E
         If the description is invalid, or of a random sample.
     """
     study = study_of(function)
+    branch = values.get("start")
+    values = {name: value for name, value in values.items() if name != "start"}
     setup = config.study_config(function).parse(values).build()
     if "count" in setup.options:
         raise ParameterError(
@@ -61,10 +65,10 @@ def grid(function: Callable[..., xr.Dataset], values: Mapping[str, Any], emit: E
         emit(Progress(done, total))
 
     shape = tuple(len(along) for along in over.values())
-    of_case = bool(case_numbers(values, over))  # runs of one row
+    of_case = branch is not None or bool(case_numbers(values, over))  # runs of one row
     executor = Refining(show, threads=max(1, (os.cpu_count() or 2) // 2), shape=shape if of_case else None)
     if of_case:
-        found = case_grid(function, setup, values, executor=executor, progress=report)
+        found = case_grid(function, setup, values, branch=branch, executor=executor, progress=report)
     else:
         found = function(setup.model, setup.motion, **setup.options, executor=executor, progress=report)
     return _answered(found, study, shape)
@@ -197,10 +201,11 @@ def case_grid(
     setup: Setup,
     values: Mapping[str, Any],
     *,
+    branch: str | None = None,
     executor: Executor,
     progress: Report | None = None,
 ) -> xr.Dataset:
-    """Compute the grid of a study whose axes are numbers of the described case.
+    """Compute the grid of a study whose axes are numbers of the described case, or whose runs start on a branch.
 
     Each run has the column and motion of the case with the numbers of its cell.
 
@@ -208,6 +213,9 @@ def case_grid(
     ----------
     function, setup, values
         The study; model, motion and options of its runs; and the plain values that describe them.
+    branch
+        Branch of steady rolling on which each run starts, a little off it; it stands where its motion has none. None:
+        all start as the case does.
     executor, progress
         As in `run_sweep`. The runs form one row, with the second axis varying fastest.
 
@@ -224,12 +232,59 @@ def case_grid(
     study: Study = study_of(function)
     own = {"over", *declared_numbers(function)}
     options = {name: value for name, value in setup.options.items() if name not in own}
-    sweep = Sweep.points(_without_height(setup.model), setup.motion, at=_at(values, setup.options["over"]), **options)
+    at = _at(values, setup.options["over"])
+    if branch is not None:
+        at |= starts_on_branch(setup, values, branch)
+    sweep = Sweep.points(_without_height(setup.model), setup.motion, at=at, **options)
 
     def label(runs: xr.Dataset) -> xr.Dataset:
         return study.completed(runs, lambda: setup, setup.options)
 
     return labelled_sweep(sweep, label, executor=executor, progress=progress)
+
+
+OFF_BRANCH = 1e-3
+"""A start on a branch is off it by this fraction of the tilt, so that a run leaves a motion that is not stable."""
+
+
+def starts_on_branch(setup: Setup, values: Mapping[str, Any], branch: str) -> dict[str, Floats]:
+    """Return the start of each run on the branch of its own motion, a little off it; at rest where there is none.
+
+    Raises
+    ------
+    ParameterError, UnsupportedError
+        If the base motion is not horizontal and harmonic, or the model has no steady rolling in closed form.
+    """
+    if not isinstance(setup.motion, Harmonic):
+        raise ParameterError("motion.kind must be a horizontal harmonic motion for a start on a branch")
+    over = setup.options["over"]
+    cells = np.stack([axis.ravel() for axis in np.meshgrid(*over.values(), indexing="ij")], axis=1)
+    states = np.zeros((len(cells), 5))
+    for number, row in enumerate(cells.tolist()):
+        model, motion = _case_with(values, dict(zip(over, row, strict=True)))
+        try:
+            begun = steady_start(model, motion, branch=branch)
+        except ParameterError:
+            continue
+        tilt = np.multiply(begun["tilt"], 1.0 + OFF_BRANCH)
+        states[number] = (*tilt, *begun["tilt_rate"], begun.get("spin", 0.0))
+    found = dict(zip(("tilt_x", "tilt_y", "tilt_rate_x", "tilt_rate_y", "spin"), states.T, strict=True))
+    return found if setup.model.spin_state is not None else {name: found[name] for name in found if name != "spin"}
+
+
+def _case_with(values: Mapping[str, Any], numbers: Mapping[str, float]) -> tuple[Model, Harmonic]:
+    """Return model and motion of the case with other numbers of its description, or of its model."""
+    case, rest = {part: dict(values[part]) for part in ("column", "model", "motion") if part in values}, {}
+    for name, value in numbers.items():
+        part = next((part for part in ("motion", "model", "column") if name in case.get(part, {})), None)
+        if part is None:
+            rest[name] = value
+        else:
+            case[part][name] = value
+    built = config.SimulationConfig.parse({**case, "duration": 1.0}).build()
+    model, _ = with_parameters(built.model, BASE_AT_REST, **rest) if rest else (built.model, None)
+    assert isinstance(built.motion, Harmonic)
+    return model, built.motion
 
 
 def _without_height(model: Model) -> Model:

@@ -12,8 +12,8 @@ from typing import Any, TypeVar
 from pydantic import BaseModel
 
 from stylobate import config
-from stylobate.base_motions.declared import MOTIONS, composite_kinds, kinds_with_response, motion_quantities
-from stylobate.config.parts import is_to_end
+from stylobate.base_motions.declared import MOTIONS, kinds_with_response, motion_quantities
+from stylobate.config.parts import moves
 from stylobate.config.study import study_of
 from stylobate.errors import LARGEST, SMALLEST
 from stylobate.lab import answers
@@ -21,7 +21,7 @@ from stylobate.lab.answers import Schema, in_words
 from stylobate.lab.curves import StartConfig
 from stylobate.lab.limits import Limits
 from stylobate.lab.options import NUMBERS, presets
-from stylobate.lab.requests import GRIDS, JOBS, RecordRequest
+from stylobate.lab.requests import BRANCHES, GRIDS, JOBS, RecordRequest, may_start_on_branch
 from stylobate.models.declared import column_quantities, model_quantities
 from stylobate.quantities import Quantity
 from stylobate.results import OutcomeRules
@@ -199,7 +199,7 @@ _DECLARED: Mapping[str, Quantity] = {
 
 _TEXTS = {
     **{name: in_words(one.quantity) for name, one in run_numbers().items()},
-    "duration": "duration of a run [s]; optional under a record, a pulse or a sine sweep",
+    "duration": "duration of a run [s]; optional under a base motion that ends or has a period",
     "demands": "whether to compute contact demands",
     "angular_frequency_range": "lowest and highest angular frequency [rad/s]",
     "points": "number of frequencies of the curves",
@@ -209,7 +209,7 @@ _TEXTS = {
 _TAGS = ("shape", "kind", "method")
 """Keys that distinguish columns, models, motions and steps of processing."""
 
-_ENDING = (*(kind for kind in MOTIONS if is_to_end({"kind": kind})), *composite_kinds())
+_MOVING = tuple(kind for kind in MOTIONS if moves({"kind": kind}))
 
 
 def _requests(limits: Limits) -> dict[str, Schema]:
@@ -227,7 +227,15 @@ def _requests(limits: Limits) -> dict[str, Schema]:
         "properties": {**kept, "upload": digest},
     }
     names = {description: name for name, description in _REQUESTS.items()}
-    kinds = [_object({"kind": {"const": kind}, "description": _ref(names[one])}) for kind, one in JOBS.items()]
+    start = {"enum": [*BRANCHES, None], "description": "branch of steady rolling on which each run starts"}
+    kinds = [
+        _object(
+            {"kind": {"const": kind}, "description": _ref(names[one])}
+            | ({"start": start} if may_start_on_branch(kind) else {}),
+            needed=("kind", "description"),
+        )
+        for kind, one in JOBS.items()
+    ]
     job = {"description": "A job: its kind and description.", "oneOf": kinds}
     return {**{name: _finite(one) for name, one in found.items()}, "JobConfig": job}
 
@@ -258,11 +266,11 @@ def _whole(body: Schema, bounds: Mapping[str, Schema]) -> Schema:
         properties["motion"] = _only(properties["motion"], kinds_with_response())
     if "duration" not in body["required"]:
         return body
-    # A run requires a duration unless its motion, or a part of it, ends.
-    ending = {"type": "object", "properties": {"kind": {"enum": list(_ENDING)}}}
+    # A run requires a duration if the base does not move.
+    moving = {"type": "object", "properties": {"kind": {"enum": list(_MOVING)}}}
     lasting = [
         {"required": ["duration"], "properties": {"duration": {"type": "number"}}},
-        {"required": ["motion"], "properties": {"motion": ending}},
+        {"required": ["motion"], "properties": {"motion": moving}},
     ]
     return {**body, "required": [name for name in body["required"] if name != "duration"], "anyOf": lasting}
 

@@ -11,7 +11,7 @@ from pydantic_core import PydanticUndefined
 
 from stylobate.base_motions.declared import composite_kinds, motion_quantities
 from stylobate.config.description import Config
-from stylobate.config.parts import DESCRIBED_MODELS, ColumnConfig, MotionConfig, is_to_end
+from stylobate.config.parts import DESCRIBED_MODELS, ColumnConfig, MotionConfig, moves
 from stylobate.engine.parameters import COLUMN_NAMES, MOTION_NAMES
 from stylobate.lab import answers
 from stylobate.lab.limits import Limits
@@ -29,12 +29,13 @@ def about(limits: Limits) -> answers.About:
         shapes=[answers.Kind(**one) for one in _kinds(_members(ColumnConfig), "shape")],
         models=[answers.Kind(**one) for one in _kinds(DESCRIBED_MODELS, "kind")],
         motions=[
-            answers.Kind(**one, ends=is_to_end(one))
+            answers.Kind(**one, moves=moves(one))
             for one in motions
             if one["kind"] not in composite_kinds()  # available in files only
         ],
         samples=list(sample_names()),
         presets=presets(),
+        lessons=lessons(),
     )
 
 
@@ -100,10 +101,20 @@ VARIED = frozenset(
 )
 """The numbers of columns, models and base motions that a map can vary."""
 
-# Presets
+# Presets and lessons
 
 
 def presets() -> list[answers.Preset]:
-    """Return all presets, from `presets.toml` beside this file; the page opens with the first one."""
-    text = (files("stylobate.lab") / "presets.toml").read_text(encoding="utf-8")
-    return [answers.Preset(**{"view": {}, **one}) for one in tomllib.loads(text)["preset"]]
+    """Return all presets, from `presets.toml` beside this file."""
+    return [answers.Preset(**{"view": {}, **one}) for one in _listed("preset")]
+
+
+def lessons() -> list[answers.Lesson]:
+    """Return the lessons of the tour, from `lessons.toml` beside this file; the page opens with the one marked so."""
+    return [answers.Lesson(**{"view": {}, **one}) for one in _listed("lesson")]
+
+
+def _listed(name: str) -> list[dict[str, Any]]:
+    text = (files("stylobate.lab") / f"{name}s.toml").read_text(encoding="utf-8")
+    found: list[dict[str, Any]] = tomllib.loads(text)[name]
+    return found

@@ -232,6 +232,15 @@ JOBS: Mapping[str, type[Config]] = {
 }
 """The description of each kind of job; `stylobate.lab.answers.Job` has its kind and its result."""
 
+BRANCHES = ("upper", "lower")
+"""Branches of steady rolling on which the runs of a map can start, each on that of its own motion."""
+
+
+def may_start_on_branch(kind: str) -> bool:
+    """Return whether the runs of a kind of job can start on a branch: those whose initial conditions do not vary."""
+    return kind in GRIDS and not study_of(GRIDS[kind]).starts
+
+
 # Descriptions
 
 _DEEPEST = 24

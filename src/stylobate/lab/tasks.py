@@ -24,13 +24,17 @@ def run(given: Description, emit: Emit) -> bytes:
     del emit
     with remarks(given.values) as remarked:
         setup = config.SimulationConfig.parse(given.values).build()
-    samples = setup.options["samples"] or _enough(setup)
-    found = engine.simulate(setup.model, setup.motion, **{**setup.options, "samples": samples})
+    found = engine.simulate(setup.model, setup.motion, **{**setup.options, "samples": _enough(setup)})
     return answered_run(found, setup.model, given, remarked).as_json()
 
 
 def _enough(setup: Setup) -> int:
     """Return the number of samples for a smooth plot of a run; the page cannot show more."""
+    stated: int | None = setup.options["samples"]
+    if stated is not None:
+        return stated
+    if setup.options["duration"] is None:
+        return _MOST_SAMPLES
     frequency = max(setup.motion.highest_frequency, setup.model.column.frequency_scale)
     swings = setup.options["duration"] * frequency / (2.0 * math.pi)
     return int(min(max(_SAMPLES_PER_PERIOD * swings, _FEWEST_SAMPLES), _MOST_SAMPLES))

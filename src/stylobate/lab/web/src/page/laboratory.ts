@@ -1,7 +1,7 @@
 /** The page at work: what is asked of the server when the view changes, and where its answers go. */
 
 import type { Clock, Stage, Theme } from "../viewer/index";
-import type { About } from "./case/about";
+import type { About, Lesson } from "./case/about";
 import type { Run as Answer } from "./server/schema";
 import { Refused, Unreachable } from "./server/api";
 import type { ResponsePanel } from "./charts/response-panel";
@@ -11,7 +11,6 @@ import { Controls } from "./controls/controls";
 import type { Part } from "./case/description";
 import { written } from "./case/description";
 import { element } from "./frame/dom";
-import { angularFrequency } from "./case/frequency";
 import { Job, problemsIn } from "./server/job";
 import { Help } from "./frame/help";
 import { listenToKeys } from "./frame/keys";
@@ -33,7 +32,8 @@ import { startAlike, startOf } from "./case/starting";
 import type { Run, WantedRun } from "./server/run";
 import { run } from "./server/run";
 import { setUnitsOf } from "./frame/units";
-import { Address, firstView, inWords, viewOfLink, viewOfPreset } from "./view/link";
+import { LessonCard } from "./tour/lesson-card";
+import { Address, firstView, inWords, viewOfLesson, viewOfLink, viewOfPreset } from "./view/link";
 
 /** Before the first answer: the column of the equations. */
 const ANY_COLUMN: ColumnScales = { slenderness: 0.1, frequency_scale: 1 };
@@ -49,6 +49,8 @@ export class Laboratory {
   readonly #response: ResponseAsking;
   readonly #planes: PlanesAsking;
   readonly #tabs: Tabs<Tab>;
+  readonly #lesson: LessonCard;
+  readonly #host: HTMLElement;
   readonly #planesHost = element("div", { class: "planes" });
   readonly #runs: Latest<WantedRun, Run>;
   #scales = ANY_COLUMN;
@@ -70,6 +72,7 @@ export class Laboratory {
 
   constructor(about: About, host: HTMLElement, header: HTMLElement, theme: ThemeSwitch, connection: Connection) {
     this.#about = about;
+    this.#host = host;
     this.#connection = connection;
     const [view, problem] = viewOfLink(location.hash, about);
     this.#store = new Store(view);
@@ -86,16 +89,25 @@ export class Laboratory {
         const tab = TABS.find((one) => one === preset.view?.["tab"]) ?? this.view.tab;
         jumped({ ...viewOfPreset(preset), tab });
       },
+      lesson: (lesson) => this.#open(lesson),
+    });
+    this.#lesson = new LessonCard(about, {
+      changed: (description) => edited({ description }),
+      gone: (lesson) => this.#open(lesson),
+      closed: () => jumped({ lesson: null }),
     });
     this.#motion = new MotionView(theme.theme, {
       speed: (speed) => edited({ speed }),
       histories: (histories) => edited({ histories }),
       cancelled: () => this.#cancelRun(),
       again: () => this.#askAgain(),
-      lasting: (duration) => edited({ description: { ...this.view.description, duration } }),
+      follow: () => edited({ description: { ...this.view.description, duration: null } }),
     });
     this.#problems = new CaseProblems(box, this.#controls, this.#motion);
-    this.#response = new ResponseAsking(view, this.#scales, { edited, start, lost: () => this.#lose() });
+    this.#response = new ResponseAsking(view, this.#scales, {
+      ...{ edited, start, lost: () => this.#lose() },
+      critical: (frequency) => this.#lesson.setCritical(frequency),
+    });
     this.#planes = new PlanesAsking(about, view, this.#scales, { edited, jumped, start });
     this.#tabs = this.#newTabs();
     this.#runs = new Latest((wanted, signal) => run(wanted, signal), {
@@ -106,7 +118,13 @@ export class Laboratory {
     const menu = menuOf(this.#motion, () => ({ view: this.view, answer: this.#answer, shown: this.#shown }));
     header.append(menu.root, new Help().root, theme.root);
     this.#planesHost.append(this.#response.panel.root, this.#tabs.root);
-    host.replaceChildren(this.#motion.root, this.#controls.root, this.#motion.histories, this.#planesHost);
+    host.replaceChildren(
+      this.#lesson.root,
+      this.#motion.root,
+      this.#controls.root,
+      this.#motion.histories,
+      this.#planesHost,
+    );
     this.#store.onChange((now) => this.#show(now));
     window.addEventListener("popstate", () => this.#goTo(location.hash));
     listenToKeys(this.clock, () => this.#motion.toNextEvent());
@@ -171,6 +189,11 @@ export class Laboratory {
     this.#address.push(this.view);
   }
 
+  #open(lesson: Lesson): void {
+    this.#given = true;
+    this.#jump(viewOfLesson(lesson));
+  }
+
   /** Goes to where the address points: a link, or a step back. */
   #goTo(link: string): void {
     const [view, problem] = viewOfLink(link, this.#about);
@@ -184,7 +207,9 @@ export class Laboratory {
 
   #show(view: View): void {
     setUnitsOf(view.description.column["shape"]);
-    this.#controls.show(view.description, this.#scales, view.start);
+    this.#controls.show(view.description, this.#scales, view.start, view.lesson);
+    this.#lesson.show(view.lesson, view.description, this.#scales);
+    this.#host.classList.toggle("learning", view.lesson !== null);
     this.#tabs.show(view.tab);
     this.#planesHost.classList.toggle("mapped", isPlaneKind(view.tab));
     this.#motion.setHistories(view.histories);
@@ -233,7 +258,8 @@ export class Laboratory {
     this.#problems.clear();
     this.#rescale(answer.column);
     this.#motion.setStale(false);
-    this.#motion.show(answer, angularFrequency(this.view.description.motion));
+    this.#motion.show(answer, description);
+    this.#lesson.setOutcome(answer.outcome);
     this.#showSpeed(this.view);
     if (this.#fresh) this.#motion.begin();
     if (start !== null) this.#takeStart(found, start);
@@ -255,7 +281,7 @@ export class Laboratory {
     const before = this.#scales;
     this.#scales = found;
     if (found.slenderness === before.slenderness && found.frequency_scale === before.frequency_scale) return;
-    this.#controls.show(this.view.description, found, this.view.start);
+    this.#controls.show(this.view.description, found, this.view.start, this.view.lesson);
     this.#response.show(this.view, found, this.#fresh);
     this.#planes.show(this.view, found);
   }

@@ -52,6 +52,7 @@ export const ABOUT: About = {
   ],
   samples: ["el centro 1940"],
   presets: [],
+  lessons: [],
 };
 
 export const VIEW: View = viewOf({

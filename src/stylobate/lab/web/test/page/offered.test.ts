@@ -68,7 +68,7 @@ test("a record is set by numbers only: which one it is has controls of its own",
 });
 
 test("a kind is described in one sentence, its units beside its numbers", () => {
-  assert.equal(kind(offered(SERVED).shapes, "solid").about, "A solid cylinder.");
+  assert.equal(kind(offered(SERVED).shapes, "solid").about, "A solid cylinder. Give its density or its mass.");
 });
 
 test("another kind keeps the numbers that both have", () => {

@@ -1,7 +1,7 @@
 /** What the server offers: the kinds of columns, models and motions, with the ranges of their numbers. */
 
 import type * as schema from "../server/schema";
-import type { Description, PartName, Value } from "./description";
+import type { Description, Part, PartName, Value } from "./description";
 
 /** Numbers and words of which a control can do without. */
 export type Parameter = Partial<Omit<schema.Parameter, "name" | "default">> & {
@@ -21,12 +21,21 @@ export type Preset = Omit<schema.Preset, "description" | "view"> & {
   readonly view: Readonly<Record<string, Value>>;
 };
 
-export type About = Omit<schema.About, "limits" | "shapes" | "models" | "motions" | "presets"> & {
+export type Lesson = Omit<schema.Lesson, "description" | "view" | "control"> & {
+  readonly description: Description;
+  readonly view: Readonly<Record<string, Value>>;
+  readonly control: Omit<schema.LessonControl, "options"> & {
+    readonly options?: readonly { readonly text: string; readonly change: Part }[];
+  };
+};
+
+export type About = Omit<schema.About, "limits" | "shapes" | "models" | "motions" | "presets" | "lessons"> & {
   readonly limits: Partial<schema.About["limits"]>;
   readonly shapes: readonly Kind[];
   readonly models: readonly Kind[];
   readonly motions: readonly Kind[];
   readonly presets: readonly Preset[];
+  readonly lessons: readonly Lesson[];
 };
 
 const LISTS = { column: "shapes", model: "models", motion: "motions" } as const;

@@ -39,9 +39,57 @@ const UNITS: Readonly<Record<string, Readonly<Record<string, string>>>> = {
 
 /** What is said of a kind in other words than the server's. */
 const ABOUT: Readonly<Record<string, string>> = {
-  record: "A recorded earthquake.",
+  // Columns
+  solid: "A solid cylinder. Give its density or its mass.",
+  hollow: "A tube with a flat base. Give its density or its mass.",
+  frustum: "A column or vase that tapers or widens upwards. Give its density or its mass.",
   dimensionless:
     "Dimensionless: m = g = ω₀ = 1. Accelerations are a/g, frequencies Ω/ω₀ with ω₀ = √(m g h/J₀), times ω₀t.",
+  given: "Any round body, by its mass, the height of its centre of mass, and its moments of inertia.",
+  // Models
+  slender: "Small tilts, no slip, no spin about the axis: the equations of the paper. The fastest.",
+  slender_rolling: "Small tilts, no slip; the column may spin about its axis.",
+  wobbling: "Any tilt up to lying flat; rolls on its rim and cannot spin about its axis.",
+  rolling: "Any tilt; rolls without slip and may spin about its axis.",
+  sliding: "Any tilt; the column may also slide, lift off and land. Computed most slowly.",
+  planar_rocking: "Rocks in one vertical plane from edge to edge, as a block (Housner).",
+  // Motions
+  rest: "The base does not move.",
+  circular: "The base moves on a horizontal circle without turning; its acceleration has a constant size.",
+  straight: "The base moves to and fro along a horizontal line.",
+  elliptic: "The base moves on a horizontal ellipse: two straight motions at right angles, out of step by the phase.",
+  vertical: "The base moves up and down.",
+  harmonic: "Three motions of one frequency, along x, y and z, each with a phase of its own.",
+  oblique: "To and fro along a line that rises from the horizontal, as in a vibratory conveyor.",
+  displacement_amplitude: "Three motions of one frequency, set by how far the base moves.",
+  stroke: "To and fro, set by the stroke from end to end and the frequency.",
+  orbit: "The base moves on a circle, set by its diameter and the revolutions per minute.",
+  machine_run: "A vibratory machine: it runs up, works and runs down.",
+  half_sine: "One push: half a sine of acceleration. The base keeps its speed afterwards.",
+  half_cosine: "Half a cosine of acceleration: the base moves on and stops.",
+  one_sine: "One full sine of acceleration: the base stops at another place.",
+  one_cosine: "One full cosine of acceleration: forward and back.",
+  ricker: "A pulse with one main peak, and a lesser one of opposite sign on either side.",
+  antisymmetric_ricker: "A pulse with two main peaks of opposite sign.",
+  sinusoidal: "A few periods of a sinusoid.",
+  type_a: "A near-fault pulse that moves the base forward and leaves it there.",
+  type_b: "A near-fault pulse that moves the base forward and back.",
+  type_c: "A near-fault pulse with several swings to and fro.",
+  gabor: "A near-fault pulse: an oscillation under a bell-shaped envelope.",
+  mavroeidis_papageorgiou: "A near-fault pulse: an oscillation that grows and fades.",
+  linear_sweep:
+    "The frequency rises by the same number of hertz in each second. Set the acceleration or the displacement.",
+  logarithmic_sweep: "The frequency rises by the same factor in each second. Set the acceleration or the displacement.",
+  record: "A recorded earthquake.",
+};
+
+/** Labels of numbers whose names do not explain themselves. */
+export const LABELS: Readonly<Record<string, string>> = {
+  steady: "Time at full speed",
+  vertical: "Vertical part",
+  rpm: "Revolutions per minute",
+  patch: "Radius of the contact patch",
+  tail: "Time after the record",
 };
 
 const [SHAKING, SHAKERS, PULSES, NEAR_FAULT, SWEEPS, EARTHQUAKES] = [

@@ -3,13 +3,19 @@
 import type { Description, Part, Value } from "./description";
 import { isVector, kindOf, written } from "./description";
 import { isHorizontalHarmonic } from "./frequency";
-import { START, TURNING } from "../server/declared";
+import { OFF_BRANCH, START, TURNING } from "../server/declared";
 
 export const BRANCHES = ["upper", "lower"] as const;
 export type Branch = (typeof BRANCHES)[number];
 
 /** The kinds of start that a reader chooses from. */
 export type StartKind = Branch | "standing" | "set";
+
+/** Returns a start on a branch or an orbit, a little off it. */
+export function offBranch<Start extends { readonly tilt: readonly [number, number] }>(start: Start): Start {
+  const [x, y] = start.tilt;
+  return { ...start, tilt: [x * (1 + OFF_BRANCH), y * (1 + OFF_BRANCH)] };
+}
 
 /** Returns what the start on a branch depends on. */
 export function startedFrom({ column, model, motion }: Description): Part {

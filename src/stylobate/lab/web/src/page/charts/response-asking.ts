@@ -3,9 +3,9 @@
 import { type Part, isPart, without, written } from "../case/description";
 import { angularFrequency, withAngularFrequency } from "../case/frequency";
 import type { ColumnScales } from "../case/quantities";
-import { mayTurn } from "../case/starting";
+import { mayTurn, offBranch } from "../case/starting";
 import type { Described, Job as JobReport, ResponseCurves } from "../server/schema";
-import { Unreachable, describe, response } from "../server/api";
+import { type JobRequest, Unreachable, describe, response } from "../server/api";
 import type { Job } from "../server/job";
 import { Latest } from "../server/latest";
 import { exactRequest, isSlender, responseRequest, usualRange } from "../server/requests";
@@ -55,7 +55,7 @@ const SPINS = "These orbits spin about the axis at a rate that is unknown here. 
 
 export type JobStart = (
   kind: string,
-  body: Part,
+  request: JobRequest,
   report: (report: JobReport) => void,
   ended: (last: JobReport | null, problems: readonly string[]) => void,
 ) => Job;
@@ -64,20 +64,24 @@ export interface AskingHearing {
   readonly edited: (changes: Partial<View>) => void;
   readonly start: JobStart;
   readonly lost: () => void;
+  /** The critical frequency of the case is known [rad/s]; null: it has none. */
+  readonly critical: (frequency: number | null) => void;
 }
 
 export class ResponseAsking {
   readonly panel: ResponsePanel;
   readonly #lost: () => void;
+  readonly #critical: (frequency: number | null) => void;
   readonly #curves: Latest<Part, ScaledCurves>;
   #view: View;
   #scales: ColumnScales;
   #asked = { curves: "", exact: "" };
 
-  constructor(view: View, scales: ColumnScales, { edited, start, lost }: AskingHearing) {
+  constructor(view: View, scales: ColumnScales, { edited, start, lost, critical }: AskingHearing) {
     this.#view = view;
     this.#scales = scales;
     this.#lost = lost;
+    this.#critical = critical;
     this.panel = new ResponsePanel({
       frequency: (value) => edited({ description: this.#at(value) }),
       orbit: (orbit) => {
@@ -85,7 +89,8 @@ export class ResponseAsking {
         else edited({ description: this.#on(orbit), start: null });
       },
       range: (range) => edited({ range }),
-      exact: (report, ended) => start("exact", exactRequest(this.#view.description, this.#range) ?? {}, report, ended),
+      exact: (report, ended) =>
+        start("exact", { description: exactRequest(this.#view.description, this.#range) ?? {} }, report, ended),
     });
     const scaled = new ScaledResponse(response, describe);
     this.#curves = new Latest((body, signal) => scaled.ask(body, signal), {
@@ -126,7 +131,7 @@ export class ResponseAsking {
     const motion = without(description.motion, "start_phase", "ramp");
     // Rounding the frequency to what a field shows would leave the orbit; few motions hold it in other units.
     const exactly = "angular_frequency" in motion ? { ...motion, angular_frequency: frequency } : motion;
-    return { ...description, motion: exactly, tilt, tilt_rate };
+    return { ...description, motion: exactly, ...offBranch({ tilt, tilt_rate }) };
   }
 
   /** Exact orbits of another case are taken away. */
@@ -146,11 +151,13 @@ export class ResponseAsking {
     this.#asked.curves = wanted;
     if (body !== null) return this.#curves.want(body, { jump });
     this.#curves.cancel();
+    this.#critical(null);
     this.panel.clear("Response curves need a horizontal harmonic base motion.");
   }
 
   #take({ curves, slenderness }: ScaledCurves): void {
     this.panel.show(curves, slenderness, this.#range);
+    this.#critical(curves.critical[0]?.angular_frequency ?? null);
   }
 
   #fail(error: unknown): void {

@@ -20,7 +20,7 @@ function aboutCurves(curves: ResponseCurves, own: boolean): string {
     : `Steady rolling of a slender column that cannot spin, ${how}; exact orbits are those of this model.`;
 }
 
-/** Returns how many families of exact orbits there are, and where they bifurcate. */
+/** Returns how many families of exact orbits there are, and where they bifurcate, which a glossary explains. */
 function aboutExact(exact: ExactOrbits): string {
   const families = counted(exact.families.length, "family", "families");
   const kinds = [...new Set(exact.bifurcations.map((one) => one.kind))];
@@ -32,6 +32,11 @@ function aboutExact(exact: ExactOrbits): string {
       .join(", ")}`;
   });
   return `${families} of exact orbits; ${found.length > 0 ? joined(found.join("; "), "rad/s") : "no bifurcation in the range"}. Click a dot to start on that orbit.`;
+}
+
+/** Returns the frequencies that are written differently: both senses of rolling may have the same one. */
+function different(frequencies: readonly number[]): readonly number[] {
+  return [...new Map(frequencies.map((one) => [formatted(one, 4), one])).values()];
 }
 
 export interface ResponseHearing {
@@ -238,7 +243,8 @@ export class ResponsePanel {
       frequency: curves?.angular_frequency ?? [...this.#range],
       lines,
       backbone: curves?.backbone.map((value) => (value === null ? null : value / c)) ?? [null, null],
-      critical: (curves?.critical ?? []).flatMap((one) => one.angular_frequency ?? []),
+      critical: different((curves?.critical ?? []).flatMap((one) => one.angular_frequency ?? [])),
+      averaged: curves?.averaged === true && this.#exact !== null,
       exact: this.#exact,
       slenderness: c,
       range: this.#range,
@@ -260,10 +266,11 @@ export class ResponsePanel {
   }
 
   #nameLines(senses: ReadonlySet<string>, critical: boolean): void {
+    const how = this.#curves?.averaged === true ? "averaged, stable" : "stable";
     const items = [...senses].map((sense) => [
       "line",
       sense === "clockwise" ? "vermilion" : "blue",
-      `stable, ${sense}`,
+      `${how}, ${sense}`,
     ]);
     if (senses.size > 0) items.push(["thin", "muted", "unstable"], ["dotted", "muted", "backbone"]);
     if (critical) items.push(["upright", "muted", "critical frequency"]);

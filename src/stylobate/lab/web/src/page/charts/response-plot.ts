@@ -6,6 +6,7 @@ import type { ExactOrbits, OrbitFamily } from "../server/schema";
 import type { Numbers } from "./plot-looks";
 import { themeColour } from "../frame/dom";
 import { formatted } from "../frame/format";
+import { joined } from "../frame/units";
 import type { Label } from "./plot-looks";
 import { across, PLAIN, upright } from "./plot-looks";
 import type { ResponseLine } from "./response-lines";
@@ -18,6 +19,8 @@ export interface ResponsePicture {
   readonly lines: readonly ResponseLine[];
   readonly backbone: Numbers;
   readonly critical: readonly number[];
+  /** Whether the curves are approximate and exact orbits are shown: then these say what is stable. */
+  readonly averaged: boolean;
   readonly exact: ExactOrbits | null;
   readonly slenderness: number;
   readonly range: readonly [number, number];
@@ -79,8 +82,11 @@ export class ResponsePlot {
   /** The looks are asked for when drawing: which line stands at which place changes with the case. */
   #lineLooks(index: number): uPlot.Series {
     const stable = index % 2 === 0; // as `linesOf` has them
+    const colour = (): string =>
+      themeColour(this.#picture?.lines[index]?.sense === "clockwise" ? "vermilion" : "blue") +
+      (this.#picture?.averaged === true ? PALE : "");
     return {
-      stroke: () => themeColour(this.#picture?.lines[index]?.sense === "clockwise" ? "vermilion" : "blue"),
+      stroke: colour,
       width: stable ? 2.8 : 1,
       ...(stable ? {} : { dash: [5, 4] }),
       points: { show: false },
@@ -107,9 +113,10 @@ export class ResponsePlot {
 
   #drawCritical(plot: uPlot): void {
     const { ctx, bbox } = plot;
+    const ratio = uPlot.pxRatio;
     ctx.save();
-    ctx.strokeStyle = themeColour("muted");
-    ctx.setLineDash([2 * uPlot.pxRatio, 3 * uPlot.pxRatio]);
+    ctx.strokeStyle = ctx.fillStyle = themeColour("muted");
+    ctx.setLineDash([2 * ratio, 3 * ratio]);
     for (const frequency of this.#picture?.critical ?? []) {
       const x = plot.valToPos(frequency, "x", true);
       if (x < bbox.left || x > bbox.left + bbox.width) continue;
@@ -117,6 +124,7 @@ export class ResponsePlot {
       ctx.moveTo(x, bbox.top);
       ctx.lineTo(x, bbox.top + bbox.height);
       ctx.stroke();
+      if (this.#quantity === "amplitude") labelCritical(ctx, bbox, x, joined(formatted(frequency, 4), "rad/s"));
     }
     ctx.restore();
   }
@@ -175,6 +183,9 @@ export class ResponsePlot {
   }
 }
 
+/** The opacity, in hexadecimal digits, of curves that the exact orbits overrule. */
+const PALE = "60";
+
 /** The width of a digit on an axis [px], rounded up for broad letters. */
 const DIGIT = 8;
 
@@ -183,6 +194,17 @@ const REACH = 7;
 
 /** The least distance of two dots [px]. */
 const APART = 9;
+
+/** Writes what a line is beside its top: that of the critical frequency, unstable to the left and stable to the right. */
+function labelCritical(ctx: CanvasRenderingContext2D, bbox: uPlot.BBox, x: number, value: string): void {
+  const ratio = uPlot.pxRatio;
+  ctx.font = `${12 * ratio}px system-ui, sans-serif`;
+  ctx.textBaseline = "top";
+  const text = `critical ${value}`;
+  const room = bbox.left + bbox.width - x - 5 * ratio;
+  ctx.textAlign = ctx.measureText(text).width < room ? "left" : "right";
+  ctx.fillText(text, x + (ctx.textAlign === "left" ? 5 : -5) * ratio, bbox.top + 2 * ratio);
+}
 
 function drawDot(plot: uPlot, x: number, y: number, stable: boolean): void {
   const { ctx } = plot;

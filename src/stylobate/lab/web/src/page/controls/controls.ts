@@ -1,6 +1,6 @@
 /** The column of controls: preset, column, model, base motion, start and length. */
 
-import { type About, type Kind, type Parameter, type Preset, kindNamed, kindsOf } from "../case/about";
+import { type About, type Kind, type Lesson, type Parameter, type Preset, kindNamed, kindsOf } from "../case/about";
 import {
   type Description,
   type Part,
@@ -59,6 +59,7 @@ export interface ControlsHearing {
   /** Another case has been chosen. */
   readonly jumped: (description: Description) => void;
   readonly preset: (preset: Preset) => void;
+  readonly lesson: (lesson: Lesson) => void;
 }
 
 export class Controls {
@@ -83,6 +84,9 @@ export class Controls {
   /** What the model that rocks in one plane has changed of the case; null: nothing that could be changed back. */
   #turn: PlaneTurn | null = null;
   readonly #turned = element("p", { class: "hint", role: "status", hidden: true });
+  readonly #motionSection: HTMLDetailsElement;
+  /** Whether a lesson is open, which has the only control in view. */
+  #learning: boolean | null = null;
   readonly #toy = element("p", { class: "hint warning", hidden: true }, TOY);
 
   constructor(about: About, first: Description, problems: HTMLElement, hearing: ControlsHearing) {
@@ -90,8 +94,9 @@ export class Controls {
     this.#hearing = hearing;
     this.#description = first;
     const id = newId("preset");
-    const options = about.presets.map((preset) => [preset.id, preset.title] as const);
-    this.#presets = choice([["", "Your own case"], ...options], { id }, (value) => this.#choosePreset(value));
+    const lessons = about.lessons.map((one, i) => [`${LESSON}${one.id}`, `${i + 1} ${one.title}`, "Lessons"] as const);
+    const presets = about.presets.map((preset) => [preset.id, preset.title, "Cases"] as const);
+    this.#presets = choice([["", "Your own case"], ...lessons, ...presets], { id }, (value) => this.#choose(value));
     this.#forms = { column: this.#form("column"), model: this.#form("model"), motion: this.#form("motion") };
     const reset = button("Reset", { class: "small" }, () => this.#choosePreset(this.#from?.id ?? ""));
     this.#changed.append("changed ", reset);
@@ -101,10 +106,11 @@ export class Controls {
     this.#forms.model.root.append(this.#turned);
     this.#start = new StartForm((description, start) => hearing.started(description, start));
     this.#duration = new NumberField(
-      { name: "duration", label: "Duration", symbol: "t", unit: "s", range: null, top: 60, empty: "by motion" },
+      { name: "duration", label: "Duration", symbol: "t", unit: "s", range: null, top: 60, empty: "as needed" },
       (value) => hearing.edited({ ...this.#description, duration: value }),
     );
     const length = element("div", { class: "fields" }, this.#duration.root);
+    this.#motionSection = section("Base motion", this.#forms.motion.root);
     this.root = element(
       "aside",
       { class: "controls", "aria-label": "Case" },
@@ -116,9 +122,9 @@ export class Controls {
         this.#presetText,
       ),
       problems,
+      this.#motionSection,
       section("Column", this.#forms.column.root),
       section("Model", this.#forms.model.root),
-      section("Base motion", this.#forms.motion.root),
       section("Initial condition and duration", this.#start.root, length),
     );
   }
@@ -127,9 +133,10 @@ export class Controls {
     return this.#record;
   }
 
-  show(description: Description, scales: ColumnScales, start: Branch | null): void {
+  show(description: Description, scales: ColumnScales, start: Branch | null, lesson: string | null): void {
     this.#description = description;
-    this.#showPreset(description);
+    this.#fold(lesson !== null);
+    this.#showPreset(description, lesson);
     for (const part of ["column", "model", "motion"] as const)
       this.#forms[part].show(description[part], kindOf(description, part));
     this.#record.show(description.motion);
@@ -140,8 +147,21 @@ export class Controls {
     this.#duration.show(typeof duration === "number" ? duration : null);
   }
 
+  /** In a lesson only its own control is in view; afterwards the base motion is, where there is room. */
+  #fold(learning: boolean): void {
+    if (learning === this.#learning) return;
+    this.#learning = learning;
+    this.#motionSection.open = !learning && !matchMedia(NARROW).matches;
+  }
+
   /** Shows which preset the case is, or which one it was changed from: its text stays while its numbers move. */
-  #showPreset(description: Description): void {
+  #showPreset(description: Description, lesson: string | null): void {
+    if (lesson !== null) {
+      this.#presets.value = `${LESSON}${lesson}`;
+      this.#presetText.hidden = true;
+      this.#changed.classList.add("unseen");
+      return;
+    }
     const same = this.#about.presets.find((one) => written(one.description) === written(description));
     this.#from = same ?? this.#from;
     this.#presets.value = this.#from?.id ?? "";
@@ -203,11 +223,17 @@ export class Controls {
     return motion["kind"] === "record" && sample !== undefined ? { ...motion, sample } : motion;
   }
 
-  /** A run under a motion that ends lasts as long as that and a while longer; any other needs a length. */
+  /** A run lasts as its base motion, or until its outcome is decided; above a base at rest it needs a length. */
   #fitted(description: Description): Description {
-    const ends = kindNamed(this.#about, "motion", kindOf(description, "motion"))?.ends === true;
-    if (ends) return { ...description, duration: null };
-    return { ...description, duration: description["duration"] ?? USUAL_DURATION };
+    const moves = kindNamed(this.#about, "motion", kindOf(description, "motion"))?.moves === true;
+    return { ...description, duration: moves ? null : (description["duration"] ?? USUAL_DURATION) };
+  }
+
+  #choose(value: string): void {
+    const lesson = this.#about.lessons.find((one) => value === `${LESSON}${one.id}`);
+    if (lesson === undefined) return this.#choosePreset(value);
+    this.#from = null;
+    this.#hearing.lesson(lesson);
   }
 
   #choosePreset(id: string): void {
@@ -224,6 +250,9 @@ const LABELS: Readonly<Record<PartName, string>> = {
   model: "Model",
   motion: "Base motion",
 };
+
+/** Before the name of a lesson among the presets. */
+const LESSON = "lesson ";
 
 /** The model that rocks in one plane. */
 const PLANAR = "planar_rocking";
@@ -242,13 +271,10 @@ const TOY =
 
 const USUAL_DURATION = 60; // s
 
-/** Narrow windows have the sections closed: what is to be seen comes first. */
+/** Narrow windows have all sections closed: what is to be seen comes first. */
+const NARROW = "(max-width: 759px)";
+
 function section(title: string, ...content: readonly HTMLElement[]): HTMLDetailsElement {
-  const open = !matchMedia("(max-width: 759px)").matches;
-  return element(
-    "details",
-    { class: "panel section", open },
-    element("summary", {}, element("h2", {}, title)),
-    ...content,
-  );
+  const heading = element("summary", {}, element("h2", {}, title));
+  return element("details", { class: "panel section" }, heading, ...content);
 }

@@ -62,9 +62,14 @@ export class NumberField {
 
   /** Shows a value, unless it is being written. */
   show(value: number | null): void {
+    const moved = value !== this.#value;
     this.#value = value;
     this.#unit.textContent = unitWritten(this.#looks.unit);
-    if (document.activeElement !== this.#field) this.#write();
+    // What is being written stays, unless the number becomes another one than is written, as after a step back.
+    const written = readNumber(this.#field.value);
+    const other =
+      moved && this.#unread === "" && !(Number(plain(value ?? NaN, SHOWN)) === Number(plain(written, SHOWN)));
+    if (document.activeElement !== this.#field || other) this.#write();
     if (!this.#slider.matches(":active")) {
       this.#reachFor(value);
       this.#slider.value = String(value === null ? 0 : positionOf(value, this.#scale));

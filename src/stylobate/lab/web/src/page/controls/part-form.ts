@@ -5,6 +5,7 @@ import type { Part, Value } from "../case/description";
 import { isVector } from "../case/description";
 import { choice, element, newId } from "../frame/dom";
 import { capital, words } from "../frame/format";
+import { LABELS } from "../case/offered";
 import { firstTop } from "../case/quantities";
 import { niceAbove } from "../case/ranges";
 import type { Wrong } from "../frame/problems";
@@ -77,12 +78,12 @@ export class PartForm {
 
   #numberOf(parameter: Parameter, index: number | null): Control {
     const { name, symbol, unit, about } = parameter;
-    const axis = index === null ? "" : ` ${"xyz"[index] ?? index + 1}`;
+    const axis = index === null ? "" : ` ${(name === "frequencies" ? ENDS : AXES)[index] ?? index + 1}`;
     const optional = parameter.default === null;
     const field = new NumberField(
       {
         name,
-        label: capital(words(name)) + axis,
+        label: (LABELS[name] ?? capital(words(name))) + axis,
         symbol: symbol ?? "",
         unit: unit ?? "",
         range: rangeOf(parameter),
@@ -125,6 +126,12 @@ export class PartForm {
     };
   }
 }
+
+/** How the components of a number are told apart: those of a vector, and the ends of a sweep. */
+const [AXES, ENDS] = [
+  ["x", "y", "z"],
+  ["at the start", "at the end"],
+];
 
 /** What it means to leave a number out. */
 const EMPTY: Readonly<Record<string, string>> = {

@@ -12,8 +12,8 @@ import type { Wrong } from "../frame/problems";
 import { NumberField } from "./number-field";
 
 const KINDS: readonly (readonly [StartKind, string])[] = [
-  ["upper", "on the upper branch"],
-  ["lower", "on the lower branch"],
+  ["upper", "upper branch, 0.1 % off"],
+  ["lower", "lower branch, 0.1 % off"],
   ["standing", "standing"],
   ["set", "as set"],
 ];

@@ -173,15 +173,19 @@ export class ExportMenu {
     }
     this.#gif.textContent = "Cancel the animation";
     this.#report("Rendering the animation…");
-    this.#job = new Job("animation", this.#exported.description(), {
-      report: ({ done, total }) => {
-        if (total > 0) this.#report(`Animation: ${Math.round((100 * done) / total)} %`);
+    this.#job = new Job(
+      "animation",
+      { description: this.#exported.description() },
+      {
+        report: ({ done, total }) => {
+          if (total > 0) this.#report(`Animation: ${Math.round((100 * done) / total)} %`);
+        },
+        ended: (last, error) => {
+          if (last?.state === "done") void this.#save(last.id);
+          else this.#finished(problemsIn(last, error).join(" "));
+        },
       },
-      ended: (last, error) => {
-        if (last?.state === "done") void this.#save(last.id);
-        else this.#finished(problemsIn(last, error).join(" "));
-      },
-    });
+    );
   }
 
   async #save(id: string): Promise<void> {

@@ -38,9 +38,49 @@ const WORDS: readonly Entry[] = [
     "rolling at the mean rate of the base, while the tilt swings with a period of its own; it neither grows nor decays.",
   ],
   ["periodic", "the motion repeats after one to eight periods of the base, and is neither rolling nor rocking."],
-  ["aperiodic", "a lasting motion that does not repeat within eight periods of the base: chaotic, or of two periods at once."],
-  ["still moving", "a transient: the motion still changes. The reason states how long to simulate."],
-  ["branch", "one family of steady rolling over the frequency. The stable branch is bold; drag the marker along it."],
+  [
+    "aperiodic",
+    "a lasting motion that does not repeat within eight periods of the base: chaotic, or of two periods at once.",
+  ],
+  ["at rest", "the column stands on its base, and the rest of the base motion cannot lift it."],
+  ["survived", "it still rocks or rolls after the base motion, with too little energy to overturn."],
+  ["still moving", "undecided: the motion still changes at the end of the run."],
+  ["failed", "the run could not be computed to its end; the reason says why."],
+  [
+    "numerically uncertain",
+    "repeated with other tolerances, the run ends differently: rounding decides, so ask for a probability.",
+  ],
+  [
+    "critical frequency",
+    "below it, steady rolling is unstable: a small disturbance grows. The dotted line in the response, with its value.",
+  ],
+  [
+    "branch",
+    "one family of steady rolling over the frequency: the upper with the larger tilt, the lower with the smaller. Drag the marker along it.",
+  ],
+  ["stable, unstable", "after a small disturbance the motion returns (bold line) or leaves (thin, dashed line)."],
+  [
+    "0.1 % off",
+    "a run that starts on a branch begins with a tilt that is a thousandth larger, so that an unstable motion is left.",
+  ],
+  ["backbone", "steady rolling of the free column without damping: about it the response bends."],
+  ["ψ", "phase: by how much the lean of the column is ahead of the base acceleration."],
+  [
+    "averaged",
+    "straight or elliptic shaking is two circles, one with the rolling and one against it. Averaging keeps the first.",
+  ],
+  [
+    "exact orbit",
+    "a motion that repeats after each period, found by computation without averaging; dots, rings where unstable.",
+  ],
+  [
+    "bifurcation",
+    "a frequency at which the number or the stability of motions changes. Pitchfork: two motions without the symmetry of the first. Period doubling: it repeats after two periods only. Neimark-Sacker: a second, slow swing begins.",
+  ],
+  ["friction demand", "friction force over normal force. Above the friction coefficient a real contact would slip."],
+  ["pivoting demand", "moment about the vertical that the contact has to bear, over normal force and radius."],
+  ["restitution e", "the part of the angular velocity that is left after an impact on the base face."],
+  ["κ, i_a", "inertia ratio m h²/J₀ and axial ratio I_a/(m r²): how mass is spread along and about the axis."],
   ["basin", "basin of attraction: the set of initial conditions that lead to the same long-term motion."],
   [
     "overturned",
@@ -60,7 +100,7 @@ export class Help {
         "p",
         {},
         "A free-standing round column on a shaking base: does it stay, rock, roll or overturn? " +
-          "Set the case on the left, watch the motion, and read on the right which curves and maps explain it. " +
+          "Follow the lessons, or set a case of your own, watch the motion, and read which curves and maps explain it. " +
           "Everything is drawn to scale, without exaggeration.",
       ),
       element("h3", {}, "In the picture"),

@@ -1,6 +1,8 @@
 /** The motion in all its pictures, led by one clock: stage, histories, orbit, verdict. */
 
 import { Clock, Stage, type Theme, withFall } from "../../viewer/index";
+import type { Description } from "../case/description";
+import { angularFrequency } from "../case/frequency";
 import { Histories } from "../charts/histories";
 import type { HistoryPair } from "../charts/history-kinds";
 import { OrbitChart } from "../charts/orbit";
@@ -54,8 +56,8 @@ class NumbersTable {
 const FIRST = "computing… The first run of a model and long runs take time;";
 
 export interface MotionHearing {
-  /** The run is to be followed for so long [s]. */
-  readonly lasting: (duration: number) => void;
+  /** The run is to be followed until its outcome is decided. */
+  readonly follow: () => void;
   readonly speed: (speed: number) => void;
   readonly histories: (pair: HistoryPair) => void;
   /** The reader no longer wants the run that is computed. */
@@ -86,11 +88,11 @@ export class MotionView {
   /** Whether the clock ran at its last tick: at the end of a run it stops by itself. */
   #played = false;
 
-  constructor(theme: Theme, { speed, histories, cancelled, again, lasting }: MotionHearing) {
+  constructor(theme: Theme, { speed, histories, cancelled, again, follow }: MotionHearing) {
     this.#cancel = button("Cancel", { class: "cancel-run small", hidden: true }, cancelled);
     this.#host.append(this.#cancel);
     this.#old = new OldNote(again);
-    this.#verdict = new Verdict(lasting);
+    this.#verdict = new Verdict(follow);
     this.#transport = new Transport(this.clock, speed);
     this.#curves = new Histories({ seek: (time) => this.clock.seek(time), chosen: histories });
     this.histories = this.#curves.root;
@@ -102,17 +104,17 @@ export class MotionView {
     setInterval(() => this.#transport.describe(), 1000);
   }
 
-  /** Shows a run; `frequency` is that of its base motion [rad/s], where it has one. */
-  show(answer: Answer, frequency: number | null): void {
+  /** Shows a run of a case, whose base motion may have a frequency. */
+  show(answer: Answer, description: Description): void {
     this.#host.classList.remove("empty");
     this.#old.hide();
     const drawn = withFall(answer.drawn, answer.column.frequency_parameter);
     this.#computed = answer.drawn.time.at(-1) ?? 0;
     this.clock.setRange(0, drawn.time.at(-1) ?? 0);
     this.stage?.show(drawn, shownUnit("m"));
-    this.#curves.show(answer, frequency);
+    this.#curves.show(answer, angularFrequency(description.motion));
     this.orbit.show(answer.drawn);
-    this.#verdict.show(answer);
+    this.#verdict.show(answer, typeof description["duration"] === "number");
     this.numbers.show(answer);
     this.#transport.showEvents(answer.events);
     this.#follow();

@@ -10,16 +10,17 @@ const UNDECIDED: readonly string[] = ["STILL_MOVING", "LIMIT_REACHED", "FAILED"]
 export class Verdict {
   readonly root = element("div", { class: "verdict", "aria-live": "polite", "aria-atomic": "true" });
   readonly #badge = element("strong", { "aria-hidden": "true" });
-  readonly #lasting: (duration: number) => void;
+  readonly #follow: () => void;
   #answer: Answer | null = null;
   #announced = "";
 
-  /** `lasting` hears how long the reader wants the run to be [s]. */
-  constructor(lasting: (duration: number) => void) {
-    this.#lasting = lasting;
+  /** `follow` hears that the reader wants the run to last until its outcome is decided. */
+  constructor(follow: () => void) {
+    this.#follow = follow;
   }
 
-  show(answer: Answer): void {
+  /** Shows the outcome of a run, whose length may be `stated` or as long as it was needed. */
+  show(answer: Answer, stated: boolean): void {
     this.#answer = answer;
     this.setTime(0);
     const at = decisionOf(answer);
@@ -27,21 +28,23 @@ export class Verdict {
     if (text === this.#announced) return; // what has been read out once is not read out again
     this.#announced = text;
     const outcome = element("span", { class: "visually-hidden" }, `${capital(answer.label)}.`);
-    const reason = element("span", { class: "reason" }, `${sentence(answer.reason)}${at}`);
+    const [why, remedy] = reasonIn(answer.reason);
+    const reason = element("span", { class: "reason" }, `${sentence(why)}${at}`);
     const marks = answer.uncertain
-      ? [element("strong", { class: "badge unsure", title: "Rounding or the rest threshold could alter the outcome" }, "Numerically uncertain")]
+      ? [
+          element(
+            "strong",
+            { class: "badge unsure", title: "Rounding or the rest threshold could alter the outcome" },
+            "Numerically uncertain",
+          ),
+        ]
       : [];
-    const wanted = durationWanted(answer.reason);
-    const longer = wanted === null ? [] : [this.#followOn(wanted)];
+    const longer = stated && remedy ? [button("Simulate until decided", { class: "small" }, this.#follow)] : [];
     const warnings = answer.warnings.map((line) => element("p", { class: "warning" }, sentence(line)));
     this.root.replaceChildren(
       element("p", {}, outcome, this.#badge, ...marks, " ", reason, " ", ...longer),
       ...warnings,
     );
-  }
-
-  #followOn(duration: number): HTMLButtonElement {
-    return button(`Simulate to ${withUnit(duration, "s", 4)}`, { class: "small" }, () => this.#lasting(duration));
   }
 
   /** Shows the outcome as it is known at a time of the run: the badge is hidden from readers of the screen. */
@@ -54,10 +57,10 @@ export class Verdict {
   }
 }
 
-/** Returns the duration that a reason asks for [s], rounded up a little; null where it asks for none. */
-export function durationWanted(reason: string): number | null {
-  const found = /set duration to at least ([\d.]+) s/.exec(reason);
-  return found === null ? null : Number((Number(found[1]) * 1.005).toPrecision(4));
+/** Returns a reason without the duration that it asks for, and whether it asks for one. */
+export function reasonIn(reason: string): readonly [why: string, longer: boolean] {
+  const [why = "", remedy] = reason.split("; set duration to at least");
+  return [why, remedy !== undefined];
 }
 
 /** Returns what a badge says at a time: what is to come is not said as if it had been. */
@@ -71,7 +74,7 @@ const FUTURE: Readonly<Record<string, string>> = { OVERTURNED: "Will overturn", 
 
 /** Returns the verdict in plain text. */
 export function verdictOf(answer: Answer): string {
-  return `${capital(answer.label)}: ${answer.reason.replace(/[.]$/, "")}.${decisionOf(answer)}`;
+  return `${capital(answer.label)}: ${reasonIn(answer.reason)[0].replace(/[.]$/, "")}.${decisionOf(answer)}`;
 }
 
 function decisionOf({ outcome, decided_at: at }: Answer): string {

@@ -6,6 +6,7 @@ import { defaultAxis } from "./planes";
 import type { Quantity } from "../case/quantities";
 import type { Axis, Plane } from "../view/state";
 import type { Description } from "../case/description";
+import { BRANCHES, type Branch, hasBranch } from "../case/starting";
 import { AxisForm } from "./axis-form";
 
 export interface AxesHearing {
@@ -17,15 +18,20 @@ export interface AxesHearing {
 export class AxesForm {
   readonly root = element("details", { class: "axes" });
   readonly #hearing: AxesHearing;
+  readonly #starts: boolean;
   readonly #summary = element("summary", {});
   readonly #forms: { readonly x: AxisForm; readonly y: AxisForm };
   readonly #cells: HTMLSelectElement;
+  readonly #start: HTMLSelectElement;
+  readonly #startForm: HTMLElement;
   #plane: Plane | null = null;
   #description: Description | null = null;
   #quantities: readonly Quantity[] = [];
 
-  constructor(hearing: AxesHearing) {
+  /** `starts` says whether the initial conditions vary: then they are not those of a branch. */
+  constructor(starts: boolean, hearing: AxesHearing) {
     this.#hearing = hearing;
+    this.#starts = starts;
     const form = (place: "x" | "y"): AxisForm =>
       new AxisForm(place, { changed: (axis) => this.#changeAxis(place, axis), judged: hearing.judged });
     this.#forms = { x: form("x"), y: form("y") };
@@ -36,7 +42,10 @@ export class AxesForm {
       (value) => this.#changeSize(Number(value)),
     );
     const size = element("div", { class: "axis-form" }, element("label", { for: id }, "cells"), this.#cells);
-    this.root.append(this.#summary, this.#forms.x.root, this.#forms.y.root, size);
+    const startId = newId("cells-start");
+    this.#start = choice(STARTS, { id: startId }, (value) => this.#changeStart(value));
+    this.#startForm = element("div", { class: "axis-form" }, element("label", { for: startId }, "start"), this.#start);
+    this.root.append(this.#summary, this.#forms.x.root, this.#forms.y.root, size, this.#startForm);
   }
 
   /** Why an axis that is written is no range, a line for each. */
@@ -51,6 +60,8 @@ export class AxesForm {
     this.#forms.x.show(plane.x, quantities);
     this.#forms.y.show(plane.y, quantities);
     this.#offerSize(plane.x.number);
+    this.#start.value = plane.start ?? "";
+    this.#startForm.hidden = this.#starts || !hasBranch(description);
     const axis = ({ name, from, to }: Axis): string => `${words(name)} ${formatted(from)}…${formatted(to)}`;
     this.#summary.textContent = `${axis(plane.x)} × ${axis(plane.y)}`;
   }
@@ -67,7 +78,7 @@ export class AxesForm {
     const found = renamed ? defaultAxis(quantity, this.#description, axis.number) : axis;
     const other = place === "x" ? this.#plane.y : this.#plane.x;
     const swapped = other.name === found.name ? before : other; // both axes must differ
-    this.#hearing.axes(place === "x" ? { x: found, y: swapped } : { x: swapped, y: found });
+    this.#hearing.axes({ ...this.#plane, ...(place === "x" ? { x: found, y: swapped } : { x: swapped, y: found }) });
   }
 
   /** Shows how many cells there are; a link may ask for another number than those that are offered. */
@@ -81,9 +92,23 @@ export class AxesForm {
   #changeSize(number: number): void {
     if (this.#plane === null) return;
     const { x, y } = this.#plane;
-    this.#hearing.axes({ x: { ...x, number }, y: { ...y, number } });
+    this.#hearing.axes({ ...this.#plane, x: { ...x, number }, y: { ...y, number } });
+  }
+
+  #changeStart(value: string): void {
+    if (this.#plane === null) return;
+    const [start] = BRANCHES.filter((one) => one === value);
+    const { x, y } = this.#plane;
+    this.#hearing.axes(start === undefined ? { x, y } : { x, y, start });
   }
 }
+
+/** Where the runs start. */
+const STARTS: readonly (readonly [Branch | "", string])[] = [
+  ["", "all as the case"],
+  ["upper", "each on its upper branch"],
+  ["lower", "each on its lower branch"],
+];
 
 /** Odd: a cell lies in the middle of an axis, at the start of a column that stands. */
 const SIZES = [25, 33, 49, 65, 97, 129, 193] as const;

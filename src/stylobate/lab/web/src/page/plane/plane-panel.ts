@@ -4,6 +4,7 @@ import type { GridResult, Job as JobReport, PlaneAxis, PlaneBegun } from "../ser
 import { button, element } from "../frame/dom";
 import { capital, counted, formatted, withUnit, words } from "../frame/format";
 import { Elapsed } from "../frame/elapsed";
+import { GRIDS } from "../server/declared";
 import type { Job } from "../server/job";
 import type { Quantity } from "../case/quantities";
 import { type Axis, PLANES, type Plane, type PlaneKind } from "../view/state";
@@ -55,7 +56,7 @@ export class PlanePanel {
       (cell) => this.#point(cell),
       (cell) => this.#choose(cell),
     );
-    this.#axesForm = new AxesForm({ axes: hearing.axes, judged: () => this.#showProblems() });
+    this.#axesForm = new AxesForm(GRIDS[kind].starts, { axes: hearing.axes, judged: () => this.#showProblems() });
     this.#go = button("Compute", { class: "primary small" }, () => this.#pressed());
     const bar = element("div", { class: "plane-bar" }, this.#axesForm.root, this.#progress, this.#go);
     this.root = element(
@@ -80,7 +81,7 @@ export class PlanePanel {
   ): void {
     this.#plane = plane;
     this.#values = values;
-    this.#runs = lengthInWords(length);
+    this.#runs = lengthInWords(length) + (GRIDS[this.#kind].starts ? "" : startInWords(plane));
     this.#key = key;
     this.#axesForm.show(plane, quantities, description);
     if (this.#shownKey !== key) this.#stop(); // nobody sees the rest of an earlier case
@@ -88,7 +89,7 @@ export class PlanePanel {
     this.root.classList.toggle("stale", stale);
     if (this.#axes === null) this.#rest(plane, quantities);
     else this.#redraw();
-    if (stale) this.#readout.textContent = "This picture shows an earlier case. Compute it again.";
+    if (stale) this.#readout.textContent = STALE;
   }
 
   /** The job that fills the picture from now on. */
@@ -235,6 +236,10 @@ export class PlanePanel {
 
   #point(cell: Place | null): void {
     if (cell === null || this.#axes === null || this.#filled === null) return;
+    if (this.#shownKey !== this.#key) {
+      this.#readout.textContent = STALE; // its outcomes are not those of the case beside it
+      return;
+    }
     const { x, y } = this.#axes;
     const name = this.#classes.nameOf(this.#filled.at(...cell));
     const value = (axis: PlaneAxis, index: number): string =>
@@ -243,6 +248,7 @@ export class PlanePanel {
   }
 
   #choose([ix, iy]: Place): void {
+    if (this.#shownKey !== this.#key) this.#readout.textContent = STALE;
     if (this.#axes === null || this.#filled === null || this.#shownKey !== this.#key) return;
     const { x, y } = this.#axes;
     const [valueX, valueY] = [x.values[ix], y.values[iy]];
@@ -263,6 +269,12 @@ export class PlanePanel {
     this.#problem.textContent = lines.join(" ");
     this.#problem.hidden = lines.length === 0;
   }
+}
+
+const STALE = "This picture shows an earlier case. Compute it again.";
+
+function startInWords({ start }: Plane): string {
+  return start === undefined ? ", all from the start of the case" : `, each from the ${start} branch of its own motion`;
 }
 
 function lengthInWords({ periods, duration }: Part): string {

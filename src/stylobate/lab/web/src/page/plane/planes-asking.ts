@@ -3,11 +3,13 @@
 import type { About } from "../case/about";
 import type { Description } from "../case/description";
 import { belongs, defaultPlane, keyOf, quantitiesOf } from "./planes";
-import type { ColumnScales } from "../case/quantities";
+import type { ColumnScales, Quantity } from "../case/quantities";
 import { valueOf, withValue } from "../case/quantities";
 import { isSlender, planeRequest } from "../server/requests";
+import { GRIDS } from "../server/declared";
 import type { JobStart } from "../charts/response-asking";
 import { lengthOf, withLength } from "../case/run-length";
+import { hasBranch } from "../case/starting";
 import type { Plane, PlaneKind, View } from "../view/state";
 import { PLANE_KINDS, isPlaneKind, ofPlanes } from "../view/state";
 import { PlanePanel } from "./plane-panel";
@@ -61,7 +63,7 @@ export class PlanesAsking {
   open(kind: PlaneKind): void {
     const plane = this.#plane(kind);
     if (plane === null || this.#view[kind] !== null || !isSlender(this.#view.description)) return;
-    const few = { x: { ...plane.x, number: FEW }, y: { ...plane.y, number: FEW } };
+    const few = { ...plane, x: { ...plane.x, number: FEW }, y: { ...plane.y, number: FEW } };
     this.#hearing.edited({ [kind]: few, filled: true, tab: kind });
     this.#fill(kind);
   }
@@ -79,7 +81,10 @@ export class PlanesAsking {
         this.#fill(kind);
       },
       cancelled: () => edited({ filled: false }),
-      chosen: (x, y) => jumped({ description: this.#at(kind, x, y), [kind]: this.#plane(kind), start: null }),
+      chosen: (x, y) => {
+        const plane = this.#plane(kind);
+        jumped({ description: this.#at(kind, x, y), [kind]: plane, start: plane?.start ?? null });
+      },
     });
   }
 
@@ -97,7 +102,16 @@ export class PlanesAsking {
   #plane(kind: PlaneKind): Plane | null {
     const { description, [kind]: given } = this.#view;
     const quantities = quantitiesOf(kind, description, this.#about, this.#scales);
-    return given !== null && belongs(given, quantities) ? given : defaultPlane(kind, description, quantities);
+    const plane = given !== null && belongs(given, quantities) ? given : this.#usual(kind, quantities);
+    // Another motion may have no branch to start on.
+    return plane?.start === undefined || hasBranch(description) ? plane : { x: plane.x, y: plane.y };
+  }
+
+  /** Returns the plane that suits the case: with it, the runs of a map follow a branch, each that of its own motion. */
+  #usual(kind: PlaneKind, quantities: readonly Quantity[]): Plane | null {
+    const { description, start } = this.#view;
+    const plane = defaultPlane(kind, description, quantities);
+    return plane === null || start === null || GRIDS[kind].starts ? plane : { ...plane, start };
   }
 
   #fill(kind: PlaneKind): void {
@@ -107,6 +121,7 @@ export class PlanesAsking {
     if (this.#view[kind] === null) this.#hearing.edited({ [kind]: plane });
     const { description } = this.#view;
     const body = planeRequest(kind, description, plane, lengthOf(kind, description, plane, this.#scales));
-    this.panels[kind].follow((report, ended) => this.#hearing.start(kind, body, report, ended));
+    const request = { description: body, ...(plane.start === undefined ? {} : { start: plane.start }) };
+    this.panels[kind].follow((report, ended) => this.#hearing.start(kind, request, report, ended));
   }
 }

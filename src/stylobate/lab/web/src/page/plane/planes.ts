@@ -41,16 +41,18 @@ export function belongs(plane: Plane, quantities: readonly Quantity[]): boolean 
 export function keyOf(description: Description, plane: Plane, length: Part): string {
   const varied = [plane.x.name, plane.y.name];
   const starts = varied.some((name) => name.startsWith("tilt_"));
+  const own = (...names: readonly string[]): boolean =>
+    plane.start !== undefined || names.every((name) => varied.includes(name));
   const rest = {
     column: without(description.column, ...varied),
     model: without(description.model, ...varied),
     motion: without(description.motion, ...varied),
-    tilt: varied.includes("tilt_x") && varied.includes("tilt_y") ? null : (description["tilt"] ?? null),
-    tilt_rate:
-      varied.includes("tilt_rate_x") && varied.includes("tilt_rate_y") ? null : (description["tilt_rate"] ?? null),
-    spin: varied.includes("spin") ? null : (description["spin"] ?? null),
+    tilt: own("tilt_x", "tilt_y") ? null : (description["tilt"] ?? null),
+    tilt_rate: own("tilt_rate_x", "tilt_rate_y") ? null : (description["tilt_rate"] ?? null),
+    spin: own("spin") ? null : (description["spin"] ?? null),
     length: varied.includes("duration") ? null : length,
     starts,
+    start: plane.start ?? null,
     x: { ...plane.x },
     y: { ...plane.y },
   };

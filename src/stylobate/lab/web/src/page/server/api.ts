@@ -21,6 +21,11 @@ export class Unreachable extends Error {}
 
 export const about = (): Promise<About> => call<About>("GET", "/api/about");
 
+/** Asks whether the server answers, and nothing else. */
+export async function alive(): Promise<void> {
+  await asked("HEAD", "/index.html");
+}
+
 export const simulate = (description: Part, signal: AbortSignal): Promise<Answer> =>
   call<Answer>("POST", "/api/simulate", description, signal);
 
@@ -36,8 +41,14 @@ export const steadyStart = (body: Part, signal: AbortSignal): Promise<Start> =>
 export const sendRecord = (upload: Part): Promise<UploadedRecord> =>
   call<UploadedRecord>("POST", "/api/records", upload);
 
-export const startJob = (kind: string, description: Part): Promise<{ readonly id: string }> =>
-  call<{ readonly id: string }>("POST", "/api/jobs", { kind, description });
+/** What a job is asked for: a description, and the branch on which its runs start, if it is a map. */
+export interface JobRequest {
+  readonly description: Part;
+  readonly start?: string;
+}
+
+export const startJob = (kind: string, request: JobRequest): Promise<{ readonly id: string }> =>
+  call<{ readonly id: string }>("POST", "/api/jobs", { kind, ...request });
 
 export const jobReport = (id: string, after: number): Promise<JobReport> =>
   call<JobReport>("GET", `/api/jobs/${encodeURIComponent(id)}?after=${after}`);

@@ -1,6 +1,6 @@
 /** Whether the server answers: asked now and then, and every two seconds while it does not. */
 
-import { about, Unreachable } from "./api";
+import { alive, Unreachable } from "./api";
 import { element } from "../frame/dom";
 
 /** Between two questions [ms]: while it does not answer, and while all is well. */
@@ -33,7 +33,7 @@ export class Connection {
   async #watch(): Promise<void> {
     if (this.#lost || document.hidden) return;
     try {
-      await about();
+      await alive();
     } catch (error) {
       if (error instanceof Unreachable) this.lose();
     }
@@ -43,7 +43,7 @@ export class Connection {
     while (this.#lost) {
       await new Promise((resolve) => setTimeout(resolve, PAUSE));
       try {
-        await about();
+        await alive();
         this.#lost = false;
         this.root.hidden = true;
         this.#back();

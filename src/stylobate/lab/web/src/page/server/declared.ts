@@ -33,3 +33,6 @@ export const FREQUENCIES: Readonly<Record<string, readonly [name: string, unit: 
   orbit: ["rpm", "1/min"],
   harmonic: ["angular_frequency", "rad/s"],
 };
+
+/** A start on a branch is off it by this fraction of its tilt: a run leaves a motion that is not stable. */
+export const OFF_BRANCH = 0.001;

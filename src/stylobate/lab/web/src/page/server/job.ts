@@ -1,8 +1,7 @@
 /** Work that takes the server some time: started, asked after, and cancelled. */
 
 import type { Job as JobReport } from "./schema";
-import { cancelJob, jobReport, startJob } from "./api";
-import type { Part } from "../case/description";
+import { type JobRequest, cancelJob, jobReport, startJob } from "./api";
 
 /** Between two questions after a job [ms]: often enough to see a map fill in. */
 const PAUSE = 200;
@@ -19,9 +18,9 @@ export class Job {
   #wanted = true;
   readonly #hearing: JobHearing;
 
-  constructor(kind: string, description: Part, hearing: JobHearing) {
+  constructor(kind: string, request: JobRequest, hearing: JobHearing) {
     this.#hearing = hearing;
-    void this.#run(kind, description);
+    void this.#run(kind, request);
   }
 
   /** Stops the job and hears no more of it. */
@@ -31,9 +30,9 @@ export class Job {
     if (this.#id !== null) cancelJob(this.#id).catch(() => undefined); // nobody waits for the answer
   }
 
-  async #run(kind: string, description: Part): Promise<void> {
+  async #run(kind: string, request: JobRequest): Promise<void> {
     try {
-      const { id } = await startJob(kind, description);
+      const { id } = await startJob(kind, request);
       this.#id = id;
       if (!this.#wanted) {
         await cancelJob(id);

@@ -41,7 +41,7 @@ export function isSlender(description: Description): boolean {
   return (description.model["kind"] ?? "wobbling") === "slender";
 }
 
-/** Returns the request for a map or a basin with runs of this length. */
+/** Returns the description of a map or a basin with runs of this length. */
 export function planeRequest(kind: PlaneKind, description: Description, plane: Plane, length: Part): Part {
   const axes = { x: { ...plane.x }, y: { ...plane.y } };
   return sent({ ...description, ...length, [kind]: axes });

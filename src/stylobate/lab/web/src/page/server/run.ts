@@ -2,7 +2,7 @@
 
 import type { Description } from "../case/description";
 import type { Branch } from "../case/starting";
-import { startedFrom } from "../case/starting";
+import { offBranch, startedFrom } from "../case/starting";
 import type { Run as Answer } from "./schema";
 import { simulate, steadyStart } from "./api";
 import { sent } from "./requests";
@@ -31,7 +31,7 @@ export async function run(wanted: WantedRun, signal: AbortSignal): Promise<Run> 
 async function started({ description, start, remarks }: WantedRun, signal: AbortSignal): Promise<Omit<Run, "answer">> {
   if (start === null) return { description, remarks };
   const { warnings, ...from } = await steadyStart({ ...sent(startedFrom(description)), branch: start }, signal);
-  return { description: { ...description, ...from }, remarks: warnings };
+  return { description: { ...description, ...offBranch(from) }, remarks: warnings };
 }
 
 /** Returns the answer with remarks on its start before its own warnings. */

@@ -31,6 +31,8 @@ export type About = {
   readonly samples: readonly string[];
   /** example motions */
   readonly presets: readonly Preset[];
+  /** the tour */
+  readonly lessons: readonly Lesson[];
 };
 
 /** A new job. */
@@ -62,6 +64,13 @@ export type CellClass = {
   readonly low: number | null;
   /** upper end */
   readonly high: number | null;
+};
+
+/** One of the choices of a lesson. */
+export type Choice = {
+  readonly text: string;
+  /** parts of the description to replace */
+  readonly change: Readonly<Record<string, unknown>>;
 };
 
 /** The decisive numbers of the column. */
@@ -240,8 +249,38 @@ export type Kind = {
   /** one-line description */
   readonly about: string;
   readonly parameters: readonly Parameter[];
-  /** for motions: whether the motion ends, so that a run needs no duration */
-  readonly ends?: boolean;
+  /** for motions: whether the base moves, so that a run needs no duration */
+  readonly moves?: boolean;
+};
+
+/** A question about one case, with one control and an answer for each outcome. */
+export type Lesson = {
+  readonly id: string;
+  readonly title: string;
+  readonly question: string;
+  /** what to do */
+  readonly task: string;
+  /** whether the page opens with it */
+  readonly first?: boolean;
+  readonly control: LessonControl;
+  /** text for each outcome; {critical} stands for the critical frequency of the case */
+  readonly said: Readonly<Record<string, string>>;
+  /** body for /api/simulate */
+  readonly description: Readonly<Record<string, unknown>>;
+  /** view on the page, as for presets */
+  readonly view: Readonly<Record<string, unknown>>;
+};
+
+/** The only control of a lesson: a number with a range, or some choices. */
+export type LessonControl = {
+  /** name of the number; null for choices */
+  readonly number?: string;
+  /** lower end of the range */
+  readonly from?: number;
+  /** upper end of the range */
+  readonly to?: number;
+  /** choices instead of a number */
+  readonly options?: readonly Choice[];
 };
 
 /** Numbers of the run as a whole. Models may add further numbers. */

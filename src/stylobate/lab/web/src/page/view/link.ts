@@ -6,7 +6,7 @@
  * A part is its kind and its numbers; a vector in it is written `0.1/0.2`, what has parts of its own as JSON after `~`.
  */
 
-import { type About, type Preset, kindNamed } from "../case/about";
+import { type About, type Lesson, type Preset, kindNamed } from "../case/about";
 import {
   type Description,
   PARTS,
@@ -40,6 +40,7 @@ export function linkOf(view: View): string {
   if (view.tab !== "orbit") items.push(`tab=${view.tab}`);
   if (view.filled) items.push("filled=true");
   if (view.start !== null) items.push(`start=${view.start}`);
+  if (view.lesson !== null) items.push(`lesson=${view.lesson}`);
   if (view.time !== null) items.push(`time=${view.time}`);
   if (view.speed !== null) items.push(`speed=${view.speed}`);
   return items.join("&");
@@ -89,6 +90,7 @@ const LOOKS: Readonly<Record<string, (text: string) => Value>> = {
       throw new BrokenLink(`start must be one of ${BRANCHES.join(", ")}, got ${text}`);
     return text;
   },
+  lesson: (text) => text,
   time: (text) => {
     if (!(text !== "" && Number(text) >= 0)) throw new BrokenLink(`time must be zero or positive, got ${text}`);
     return Number(text);
@@ -190,11 +192,14 @@ function fromJson(text: string): Value {
 }
 
 function planeWritten(plane: Plane): string {
-  return [plane.x, plane.y].map((axis) => [axis.name, axis.from, axis.to, axis.number].join(":")).join();
+  const axes = [plane.x, plane.y].map((axis) => [axis.name, axis.from, axis.to, axis.number].join(":"));
+  return [...axes, ...(plane.start === undefined ? [] : [plane.start])].join();
 }
 
 function planeRead(what: string, text: string): Value {
-  const axes = text.split(",").map((part): Axis | null => {
+  const parts = text.split(",");
+  const start = BRANCHES.find((one) => one === parts[2]);
+  const axes = (start === undefined ? parts : parts.slice(0, 2)).map((part): Axis | null => {
     const [name = "", from, to, number, ...more] = part.split(":");
     const axis = { name, from: Number(from), to: Number(to), number: Number(number) };
     const whole = Number.isInteger(axis.number) && axis.number > 1;
@@ -204,27 +209,32 @@ function planeRead(what: string, text: string): Value {
   if (!x || !y || axes.length > 2 || x.name === y.name) {
     throw new BrokenLink(`${what} must be two axes, name:from:to:number, got ${text}`);
   }
-  return { x: { ...x }, y: { ...y } };
+  return { x: { ...x }, y: { ...y }, ...(start === undefined ? {} : { start }) };
 }
 
 /** Returns the line for a link that cannot be followed. */
 export function inWords(reason: string): string {
-  return `This link cannot be opened: ${reason.replace(/\.$/, "")}. The first preset is shown instead.`;
+  return `This link cannot be opened: ${reason.replace(/\.$/, "")}. The first lesson is shown instead.`;
 }
 
-// Views of presets and of links
+// Views of presets, lessons and links
 
 export function viewOfPreset(preset: Preset): View {
   return viewOf(preset.description, preset.view ?? {});
 }
 
-export function firstView(about: About): View {
-  const [first] = about.presets;
-  if (first === undefined) throw new Error("the server has no presets");
-  return viewOfPreset(first);
+export function viewOfLesson(lesson: Lesson): View {
+  return viewOf(lesson.description, { ...lesson.view, lesson: lesson.id });
 }
 
-/** Returns the view of a link, or that of the first preset with a line that says what is wrong with the link. */
+/** Returns the view with which the page opens: a question. */
+export function firstView(about: About): View {
+  const opening = about.lessons.find((one) => one.first === true) ?? about.lessons[0];
+  if (opening === undefined) throw new Error("the server has no lessons");
+  return viewOfLesson(opening);
+}
+
+/** Returns the view of a link, or that of the first lesson with a line that says what is wrong with the link. */
 export function viewOfLink(link: string, about: About): readonly [view: View, problem: string | null] {
   if (link === "" || link === "#") return [firstView(about), null];
   try {

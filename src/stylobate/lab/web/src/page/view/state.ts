@@ -19,6 +19,8 @@ export interface Axis {
 export interface Plane {
   readonly x: Axis;
   readonly y: Axis;
+  /** The branch on which each run starts, that of its own motion; without it all start as the case does. */
+  readonly start?: Branch;
 }
 
 /** The tabs with a plane of cells: a job of the server each. */
@@ -56,6 +58,8 @@ export interface View extends Readonly<Record<PlaneKind, Plane | null>> {
   readonly filled: boolean;
   /** The branch of steady rolling on which the run starts, whatever changes; null: the start is as it is set. */
   readonly start: Branch | null;
+  /** The lesson of the tour that is open; null: none. */
+  readonly lesson: string | null;
   /** Where the clock is stopped at first [s]; null: it runs. */
   readonly time: number | null;
   /** Speed of the clock, seconds of the motion in a second; null: chosen to suit the motion. */
@@ -80,6 +84,7 @@ export function viewOf(description: Description, looks: Readonly<Record<string, 
     tab,
     filled: looks["filled"] === true,
     start: BRANCHES.find((one) => one === looks["start"]) ?? null,
+    lesson: typeof looks["lesson"] === "string" ? looks["lesson"] : null,
     time: timeIn(looks["time"]),
     speed: typeof speed === "number" && speed > 0 ? speed : null,
   };
@@ -102,7 +107,9 @@ export function historiesFrom(value: Value | undefined): HistoryPair | null {
 export function planeFrom(value: Value | undefined): Plane | null {
   if (!isPart(value)) return null;
   const [x, y] = [axisFrom(value["x"]), axisFrom(value["y"])];
-  return x !== null && y !== null && x.name !== y.name ? { x, y } : null;
+  if (x === null || y === null || x.name === y.name) return null;
+  const start = BRANCHES.find((one) => one === value["start"]);
+  return start === undefined ? { x, y } : { x, y, start };
 }
 
 function axisFrom(value: Value | undefined): Axis | null {

@@ -1,0 +1,155 @@
+/** A lesson of the tour: a question, one control, and what the outcome means. */
+
+import type { About, Lesson } from "../case/about";
+import { type Description, isPart, written } from "../case/description";
+import { mapQuantities, valueOf, withValue, type ColumnScales, type Quantity } from "../case/quantities";
+import { NumberField } from "../controls/number-field";
+import { button, element, newId } from "../frame/dom";
+import { capital, withUnit, words } from "../frame/format";
+
+export interface LessonHearing {
+  readonly changed: (description: Description) => void;
+  readonly gone: (lesson: Lesson) => void;
+  readonly closed: () => void;
+}
+
+/** The control of a lesson: shows a case, and changes it. */
+interface Control {
+  readonly root: HTMLElement;
+  readonly show: (description: Description) => void;
+}
+
+export class LessonCard {
+  readonly root = element("section", { class: "panel lesson", "aria-label": "Lesson", hidden: true });
+  readonly #about: About;
+  readonly #hearing: LessonHearing;
+  readonly #steps: readonly HTMLButtonElement[];
+  readonly #question = element("h2", {});
+  readonly #task = element("p", { class: "task" });
+  readonly #control = element("div", { class: "lesson-control" });
+  readonly #said = element("p", { class: "said", "aria-live": "polite" });
+  readonly #next: HTMLButtonElement;
+  readonly #nextTitle = element("span", { class: "next-title" });
+  #lesson: Lesson | null = null;
+  #shown: Control | null = null;
+  #description: Description | null = null;
+  #outcome: string | null = null;
+  #critical: number | null = null;
+
+  constructor(about: About, hearing: LessonHearing) {
+    this.#about = about;
+    this.#hearing = hearing;
+    this.#steps = about.lessons.map((lesson, i) =>
+      button(String(i + 1), { class: "step", title: lesson.title, "aria-label": titleOf(lesson, i) }, () =>
+        hearing.gone(lesson),
+      ),
+    );
+    const list = element("ol", {}, ...this.#steps.map((one) => element("li", {}, one)));
+    this.#next = button("Next", { class: "small next" }, () => this.#goOn());
+    this.#next.append(this.#nextTitle);
+    const close = button(
+      "×",
+      { class: "icon", "aria-label": "Close the tour", title: "Close the tour" },
+      hearing.closed,
+    );
+    this.root.append(
+      element("nav", { "aria-label": "Tour" }, list, this.#next, close),
+      element("div", { class: "asked" }, this.#question, this.#task),
+      this.#control,
+      this.#said,
+    );
+  }
+
+  /** Shows the lesson of this name, or none; the ranges of its control follow from the column. */
+  show(name: string | null, description: Description, scales: ColumnScales): void {
+    const lesson = this.#about.lessons.find((one) => one.id === name) ?? null;
+    this.#description = description;
+    this.root.hidden = lesson === null;
+    if (lesson !== this.#lesson) this.#begin(lesson, scales);
+    this.#shown?.show(description);
+  }
+
+  /** Says what an outcome means; null: it is not known yet, and what was said is no longer sure. */
+  setOutcome(outcome: string | null): void {
+    this.#outcome = outcome;
+    this.#say();
+  }
+
+  /** Takes the critical frequency of the case [rad/s]; null where it has none. */
+  setCritical(frequency: number | null): void {
+    this.#critical = frequency;
+    this.#say();
+  }
+
+  #begin(lesson: Lesson | null, scales: ColumnScales): void {
+    this.#lesson = lesson;
+    this.#outcome = null;
+    this.#said.textContent = "";
+    if (lesson === null) return;
+    const { lessons } = this.#about;
+    const place = lessons.indexOf(lesson);
+    this.#steps.forEach((step, i) => {
+      if (i === place) step.setAttribute("aria-current", "step");
+      else step.removeAttribute("aria-current");
+    });
+    this.#question.textContent = lesson.question;
+    this.#task.textContent = lesson.task;
+    const next = lessons[(place + 1) % lessons.length];
+    this.#nextTitle.textContent = next === undefined ? "" : `: ${next.title}`;
+    this.#shown = this.#controlOf(lesson, scales);
+    this.#control.replaceChildren(...(this.#shown === null ? [] : [this.#shown.root]));
+  }
+
+  #goOn(): void {
+    const { lessons } = this.#about;
+    const next = lessons[(lessons.findIndex((one) => one === this.#lesson) + 1) % lessons.length];
+    if (next !== undefined) this.#hearing.gone(next);
+  }
+
+  #controlOf({ control, description }: Lesson, scales: ColumnScales): Control | null {
+    if (control.options) return this.#choices(control.options);
+    const quantity = mapQuantities(description, this.#about, scales).find((one) => one.name === control.number);
+    return quantity === undefined ? null : this.#number(quantity, control.from ?? 0, control.to ?? 1);
+  }
+
+  #number({ name, symbol, unit }: Quantity, from: number, to: number): Control {
+    const looks = { name, label: capital(words(name)), symbol, unit, range: [from, to] as const };
+    const field = new NumberField(looks, (value) => {
+      if (value !== null && this.#description !== null)
+        this.#hearing.changed(withValue(this.#description, name, value));
+    });
+    return { root: field.root, show: (description) => field.show(valueOf(description, name) ?? null) };
+  }
+
+  #choices(options: NonNullable<Lesson["control"]["options"]>): Control {
+    const name = newId("choice");
+    const made = options.map(({ text, change }) => {
+      const mark = element("input", { type: "radio", name });
+      mark.addEventListener("change", () => {
+        if (this.#description !== null) this.#hearing.changed({ ...this.#description, ...change } as Description);
+      });
+      return { mark, change, label: element("label", {}, mark, text) };
+    });
+    return {
+      root: element("div", { class: "choices", role: "radiogroup" }, ...made.map((one) => one.label)),
+      show: (description) => {
+        for (const { mark, change } of made)
+          mark.checked = Object.entries(change).every(
+            ([part, value]) => isPart(value as never) && written(value as never) === written(description[part] ?? null),
+          );
+      },
+    };
+  }
+
+  #say(): void {
+    const text = this.#outcome === null ? undefined : this.#lesson?.said[this.#outcome];
+    if (text === undefined) return;
+    const critical = this.#critical === null ? "" : ` ${withUnit(this.#critical, "rad/s", 4)}`;
+    const line = text.replaceAll(/ ?\{critical\}/g, critical);
+    if (line !== this.#said.textContent) this.#said.textContent = line;
+  }
+}
+
+function titleOf(lesson: Lesson, place: number): string {
+  return `Lesson ${place + 1}: ${lesson.title}`;
+}
