@@ -72,7 +72,7 @@ class Draws:
         return np.asarray(0.5 * lapse + (1.0 - lapse) * (weights @ self.fell))
 
     def effective(self, states: Floats) -> Floats:
-        """Return how many draws of equal weight would know each state's probabilities as well (Kish), shape (s,)."""
+        """Return the number of draws of equal weight that would know each state as well (Kish), shape (s,)."""
         return _effective(self.weights(states))
 
     def log_likelihood(self, states: Floats, overturned: Bools) -> Floats:
