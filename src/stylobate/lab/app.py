@@ -6,7 +6,7 @@ See docs/reference/http-api.md.
 import tempfile
 from collections.abc import AsyncIterator, Callable, Collection, Sequence
 from contextlib import AsyncExitStack, asynccontextmanager
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -174,9 +174,7 @@ class Api:
     @openapi.endpoint("POST /api/simulate", answers.Run, refusals=openapi.OF_RUNS, body="Simulation")
     async def simulate(self, request: Request) -> Response:
         """Compute one run."""
-        given = await self._described(request)
-        limited = replace(given, values={"max_steps": min(self.limits.usual_steps, self.limits.steps), **given.values})
-        return Response(await self._run("run", limited, request), media_type="application/json")
+        return Response(await self._run("run", await self._described(request), request), media_type="application/json")
 
     @openapi.endpoint("POST /api/response", answers.ResponseCurves, refusals=openapi.OF_BODIES, body="Response")
     async def response(self, request: Request) -> Response:

@@ -1,9 +1,11 @@
 """Background jobs: progress, events, cancellation, and removal of abandoned jobs."""
 
+import json
 import logging
 import secrets
 import time
 import traceback
+from collections import OrderedDict
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
@@ -17,6 +19,9 @@ from stylobate.lab.limits import Limits, RefusedError
 from stylobate.text import plural
 
 _log = logging.getLogger("stylobate.lab")
+
+_KEPT, _MOST_KEPT = ("exact",), 32
+"""Kinds of jobs that take long and have short results, which are kept for the same question, and how many are."""
 
 _OPEN: tuple[JobState, ...] = ("waiting", "running")
 
@@ -70,6 +75,7 @@ class Jobs:
     limits: Limits
     group: TaskGroup
     _known: dict[str, Work] = field(default_factory=dict)
+    _kept: "OrderedDict[str, Any]" = field(default_factory=OrderedDict)
 
     def __getitem__(self, identity: str) -> Work:
         if identity not in self._known:
@@ -89,7 +95,12 @@ class Jobs:
             raise RefusedError(429, [f"{waiting} jobs are already waiting. Cancel one, or try again when one is done."])
         job = Work(kind)
         self._known[job.identity] = job
-        self.group.start_soon(self._run, job, values)
+        asked = json.dumps([kind, values], sort_keys=True, default=repr)
+        if asked in self._kept:
+            self._kept.move_to_end(asked)
+            job.end(messages.Finished(self._kept[asked]))
+        else:
+            self.group.start_soon(self._run, job, values, asked)
         return job.identity
 
     def report(self, identity: str, after: int | None = None) -> Job:
@@ -131,13 +142,17 @@ class Jobs:
                     self.cancel(job.identity)
                     del self._known[job.identity]
 
-    async def _run(self, job: Work, values: Mapping[str, Any]) -> None:
+    async def _run(self, job: Work, values: Mapping[str, Any], asked: str) -> None:
         with job.scope:
             try:
                 answer = await self.processes.perform(job.kind, values, job.heard)
             except Exception:  # noqa: BLE001  a mistake in one job must not end the others
                 answer = messages.Broken(traceback.format_exc())
             job.end(answer)
+            if job.kind in _KEPT and job.state == "done":
+                self._kept[asked] = job.result
+                if len(self._kept) > _MOST_KEPT:
+                    self._kept.popitem(last=False)
 
 
 def broken(trace: str) -> str:

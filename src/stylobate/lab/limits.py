@@ -25,9 +25,6 @@ class Limits:
         Length of a run, and of the pauses before and after a record [s].
     steps
         Maximum number of integration steps of a run.
-    usual_steps
-        Maximum steps of a run without `max_steps`: a run that needs more ends as failed, with its motion so far, well
-        before `run_time`.
     points
         Frequencies of a response curve.
     cells
@@ -52,7 +49,6 @@ class Limits:
     uploads: int = 256 << 20
     duration: float = 3600.0
     steps: int = 200_000
-    usual_steps: int = 50_000
     points: int = 2000
     cells: int = 40_000
     run_time: float = 60.0

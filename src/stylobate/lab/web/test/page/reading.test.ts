@@ -2,7 +2,8 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { readNumber } from "../../src/page/frame/format";
 import { wrongIn } from "../../src/page/frame/problems";
-import { badgeAt, reasonIn } from "../../src/page/motion/verdict";
+import { inShownUnits, setUnitsOf } from "../../src/page/frame/units";
+import { badgeAt, reasonIn, warningIn } from "../../src/page/motion/verdict";
 import { nextEvent } from "../../src/page/motion/transport";
 import { shareOf } from "../../src/page/plane/classes";
 import { roomFor } from "../../src/page/plane/plane-canvas";
@@ -46,6 +47,28 @@ test("starts along x and y are drawn to one scale, and other axes fill their roo
   const wide = roomFor({ x: axis("tilt_x", "rad", 0.2), y: axis("tilt_y", "rad", 0.1) }, room);
   assert.ok(Math.abs(wide.width / wide.height - 2) < 1e-12);
   assert.deepEqual(roomFor({ x: axis("tilt_x", "rad", 0.1), y: axis("tilt_rate_x", "rad s-1", 0.1) }, room), room);
+});
+
+test("a warning names no settings that the page does not have", () => {
+  const line =
+    "the outcome depends on the settings of the integration: with rest_energy 1e-06 and rtol 1e-07 it is AT_REST";
+  assert.equal(
+    warningIn(line),
+    "computed with other tolerances it is at rest: rounding decides, so ask for a probability",
+  );
+  const failed = "the integration stopped: its step limit is reached, max_steps = 200000; raise max_steps";
+  assert.deepEqual(reasonIn(failed), ["the integration stopped: its step limit is reached", false]);
+  assert.equal(warningIn("it slips"), "it slips");
+});
+
+test("texts of a dimensionless column have its units", () => {
+  setUnitsOf("dimensionless");
+  assert.equal(
+    inShownUnits("above 0.1 m/s² and 1.8 rad/s from 28.6 s on, 1 kg"),
+    "above 0.1 g and 1.8 ω₀ from 28.6/ω₀ on, 1 kg",
+  );
+  setUnitsOf("solid");
+  assert.equal(inShownUnits("60 s"), "60 s");
 });
 
 test("a reason is shown without the duration that it asks for", () => {

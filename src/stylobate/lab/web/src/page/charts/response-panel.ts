@@ -133,7 +133,9 @@ export class ResponsePanel {
   setOwn(own: boolean): void {
     if (own === this.#own) return;
     this.#own = own;
-    if (this.#curves !== null) this.report(this.#about);
+    if (this.#curves === null) return;
+    this.report(this.#about);
+    this.#draw();
   }
 
   /** Takes the curves away and says why there are none. */
@@ -244,7 +246,7 @@ export class ResponsePanel {
       lines,
       backbone: curves?.backbone.map((value) => (value === null ? null : value / c)) ?? [null, null],
       critical: different((curves?.critical ?? []).flatMap((one) => one.angular_frequency ?? [])),
-      averaged: curves?.averaged === true && this.#exact !== null,
+      pale: !this.#own || (curves?.averaged === true && this.#exact !== null),
       exact: this.#exact,
       slenderness: c,
       range: this.#range,

@@ -19,8 +19,8 @@ export interface ResponsePicture {
   readonly lines: readonly ResponseLine[];
   readonly backbone: Numbers;
   readonly critical: readonly number[];
-  /** Whether the curves are approximate and exact orbits are shown: then these say what is stable. */
-  readonly averaged: boolean;
+  /** Whether the curves do not say what this column does: they are of another model, or exact orbits are shown. */
+  readonly pale: boolean;
   readonly exact: ExactOrbits | null;
   readonly slenderness: number;
   readonly range: readonly [number, number];
@@ -84,7 +84,7 @@ export class ResponsePlot {
     const stable = index % 2 === 0; // as `linesOf` has them
     const colour = (): string =>
       themeColour(this.#picture?.lines[index]?.sense === "clockwise" ? "vermilion" : "blue") +
-      (this.#picture?.averaged === true ? PALE : "");
+      (this.#picture?.pale === true ? PALE : "");
     return {
       stroke: colour,
       width: stable ? 2.8 : 1,
@@ -183,7 +183,7 @@ export class ResponsePlot {
   }
 }
 
-/** The opacity, in hexadecimal digits, of curves that the exact orbits overrule. */
+/** The opacity, in hexadecimal digits, of curves that do not count. */
 const PALE = "60";
 
 /** The width of a digit on an axis [px], rounded up for broad letters. */

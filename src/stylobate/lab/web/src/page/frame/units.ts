@@ -26,6 +26,14 @@ export function shownUnit(unit: string): string {
   return (dimensionless && OWN[unit]) || unit;
 }
 
+/** Returns a text of the server in which each number has its unit, with the units that are shown. */
+export function inShownUnits(text: string): string {
+  if (!dimensionless) return text;
+  return text.replaceAll(/([\d.e]+) (rad\/s|m\/s²|m\/s|Hz|m|s)(?![\w/²])/g, (_, number: string, unit: string) =>
+    joined(number, unit),
+  );
+}
+
 /** Returns a number that is written already with its unit: "60 s", or "60/ω₀". */
 export function joined(number: string, unit: string): string {
   const shown = shownUnit(unit);

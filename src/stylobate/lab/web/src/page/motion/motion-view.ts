@@ -9,7 +9,7 @@ import { OrbitChart } from "../charts/orbit";
 import { button, element } from "../frame/dom";
 import { Elapsed } from "../frame/elapsed";
 import { capital } from "../frame/format";
-import { shownUnit } from "../frame/units";
+import { inShownUnits, shownUnit } from "../frame/units";
 import type { Run as Answer } from "../server/schema";
 import { Transport } from "./transport";
 import { Verdict } from "./verdict";
@@ -46,7 +46,7 @@ class NumbersTable {
 
   show({ summary }: Answer): void {
     const rows = summary.map(([label, text]) =>
-      element("tr", {}, element("th", { scope: "row" }, capital(label)), element("td", {}, text)),
+      element("tr", {}, element("th", { scope: "row" }, capital(label)), element("td", {}, inShownUnits(text))),
     );
     this.root.replaceChildren(element("table", {}, element("tbody", {}, ...rows)));
   }

@@ -3,6 +3,7 @@
 import type { Run as Answer } from "../server/schema";
 import { button, element } from "../frame/dom";
 import { capital, sentence, withUnit } from "../frame/format";
+import { inShownUnits } from "../frame/units";
 
 /** Outcomes that state how far a run was followed, not the response of the column. */
 const UNDECIDED: readonly string[] = ["STILL_MOVING", "LIMIT_REACHED", "FAILED"];
@@ -40,7 +41,7 @@ export class Verdict {
         ]
       : [];
     const longer = stated && remedy ? [button("Simulate until decided", { class: "small" }, this.#follow)] : [];
-    const warnings = answer.warnings.map((line) => element("p", { class: "warning" }, sentence(line)));
+    const warnings = answer.warnings.map((line) => element("p", { class: "warning" }, sentence(warningIn(line))));
     this.root.replaceChildren(
       element("p", {}, outcome, this.#badge, ...marks, " ", reason, " ", ...longer),
       ...warnings,
@@ -60,7 +61,20 @@ export class Verdict {
 /** Returns a reason without the duration that it asks for, and whether it asks for one. */
 export function reasonIn(reason: string): readonly [why: string, longer: boolean] {
   const [why = "", remedy] = reason.split("; set duration to at least");
-  return [why, remedy !== undefined];
+  return [inShownUnits(withoutOptions(why)), remedy !== undefined];
+}
+
+/** The page has no settings of the integration: what a reason says of them is for programs. */
+function withoutOptions(line: string): string {
+  return line.replace(/, max_steps = .*$/, "");
+}
+
+/** Returns a warning without the settings of the integration, with units as they are shown. */
+export function warningIn(line: string): string {
+  const other = /^the outcome depends on the settings of the integration: .* it is ([A-Z_]+)$/.exec(line)?.[1];
+  if (other === undefined) return inShownUnits(line);
+  const words = other.toLowerCase().replaceAll("_", " ");
+  return `computed with other tolerances it is ${words}: rounding decides, so ask for a probability`;
 }
 
 /** Returns what a badge says at a time: what is to come is not said as if it had been. */

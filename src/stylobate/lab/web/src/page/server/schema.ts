@@ -11,7 +11,6 @@ export type About = {
     readonly uploads: number;
     readonly duration: number;
     readonly steps: number;
-    readonly usual_steps: number;
     readonly points: number;
     readonly cells: number;
     readonly run_time: number;
