@@ -103,3 +103,15 @@ def test_a_map_follows_the_branch_of_each_frequency_and_says_so(opened):
         nearest = min(cells, key=lambda cell: abs(cell[0] - 0.065))
         if frequency > 1.7:
             assert nearest[1] == 2, (frequency, nearest)
+
+
+def test_small_variations_of_an_earthquake_are_counted_and_drawn(opened):
+    opened.get_by_role("button", name=re.compile("An earthquake")).click()
+    field = opened.locator(".lesson input.number")
+    field.fill("1.0")
+    opened.wait_for_function(f"() => {OUTCOME} === 'OVERTURNED'")
+    opened.get_by_role("button", name="Vary it").click()
+    opened.get_by_text(re.compile(r"64 small variations, .*: Overturned 92 % \(83 to 97\), Survived 8 %")).wait_for()
+    field.fill("0.4")
+    opened.wait_for_function(f"() => {OUTCOME} === 'AT_REST'")
+    assert opened.locator(".shares").is_hidden()  # they were those of the run before

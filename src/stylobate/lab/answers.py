@@ -489,6 +489,24 @@ class GridResult(Answer):
     classes: list[CellClass]
 
 
+class Varied(Answer):
+    """A number that varies."""
+
+    name: str = Field(description="name as in the description; scale is the strength of the base motion")
+    deviation: float = Field(description="standard deviation of its logarithm")
+
+
+class Variations(Answer):
+    """Small variations of one case."""
+
+    varied: list[Varied]
+    runs: Count = Field(description="number of runs")
+    classes: list[CellClass] = Field(description="outcomes that occur, the most frequent first")
+    outcomes: list[OutcomeName] = Field(description="of each run")
+    times: Annotated[list[list[Number]], BeforeValidator(numbers)] = Field(description="of each run [s]")
+    tilts: Annotated[list[list[Number]], BeforeValidator(numbers)] = Field(description="of each run [rad]")
+
+
 class Begun(Answer):
     """A new job."""
 
@@ -514,7 +532,7 @@ class Job(Begun):
     )
 
 
-ANSWERS = (About, Document, UploadedRecord, Problems, Run, Described, ResponseCurves, Start, Begun, Job)
+ANSWERS = (About, Document, UploadedRecord, Problems, Run, Variations, Described, ResponseCurves, Start, Begun, Job)
 """The answers of endpoints."""
 
 

@@ -176,6 +176,12 @@ class Api:
         """Compute one run."""
         return Response(await self._run("run", await self._described(request), request), media_type="application/json")
 
+    @openapi.endpoint("POST /api/variations", answers.Variations, refusals=openapi.OF_RUNS, body="Simulation")
+    async def variations(self, request: Request) -> Response:
+        """Compute small variations of one run: how often they end in each way, and their tilts."""
+        given = await self._described(request)
+        return _answer(await self._run("variations", given.values, request))
+
     @openapi.endpoint("POST /api/response", answers.ResponseCurves, refusals=openapi.OF_BODIES, body="Response")
     async def response(self, request: Request) -> Response:
         """Compute amplitude and phase of steady rolling over frequency, from theory."""

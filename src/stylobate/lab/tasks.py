@@ -79,6 +79,7 @@ _TASKS = {
     "start": "curves:start",
     "exact": "curves:exact_curves",
     "animation": "tasks:animation",
+    "variations": "variations:variations",
 }
 """Module and function of each task besides grids, imported by the processes that need it."""
 

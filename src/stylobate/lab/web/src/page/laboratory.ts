@@ -2,8 +2,9 @@
 
 import type { Clock, Stage, Theme } from "../viewer/index";
 import type { About, Lesson } from "./case/about";
-import type { Run as Answer } from "./server/schema";
-import { Refused, Unreachable } from "./server/api";
+import type { Run as Answer, Variations } from "./server/schema";
+import { sent } from "./server/requests";
+import { Refused, Unreachable, variations } from "./server/api";
 import type { ResponsePanel } from "./charts/response-panel";
 import type { Connection } from "./server/connection";
 import { CaseProblems } from "./controls/case-problems";
@@ -53,6 +54,7 @@ export class Laboratory {
   readonly #host: HTMLElement;
   readonly #planesHost = element("div", { class: "planes" });
   readonly #runs: Latest<WantedRun, Run>;
+  readonly #varied: Latest<Part, Variations>;
   #scales = ANY_COLUMN;
   #answer: Answer | null = null;
   /** Of which case the answer is, and which was asked for last. */
@@ -102,6 +104,7 @@ export class Laboratory {
       cancelled: () => this.#cancelRun(),
       again: () => this.#askAgain(),
       follow: () => edited({ description: { ...this.view.description, duration: null } }),
+      vary: () => this.#vary(),
     });
     this.#problems = new CaseProblems(box, this.#controls, this.#motion);
     this.#response = new ResponseAsking(view, this.#scales, {
@@ -114,6 +117,10 @@ export class Laboratory {
       answered: (found, { start }) => this.#take(found, start),
       failed: (error) => this.#fail(error),
       busy: (busy) => this.#motion.setBusy(busy),
+    });
+    this.#varied = new Latest((description, signal) => variations(description, signal), {
+      answered: (found) => this.#motion.showVariations(found),
+      failed: (error) => this.#motion.showVariations(error instanceof Error ? error.message : String(error)),
     });
     const menu = menuOf(this.#motion, () => ({ view: this.view, answer: this.#answer, shown: this.#shown }));
     header.append(menu.root, new Help().root, theme.root);
@@ -252,6 +259,7 @@ export class Laboratory {
 
   #take(found: Run, start: Branch | null): void {
     const { answer, description } = found;
+    this.#varied.cancel(); // they were those of the run before
     this.#answer = answer;
     this.#shown = written(description);
     this.#moved = description.motion;
@@ -264,6 +272,12 @@ export class Laboratory {
     if (this.#fresh) this.#motion.begin();
     if (start !== null) this.#takeStart(found, start);
     this.#settle();
+  }
+
+  /** Asks for small variations of the run that is shown. */
+  #vary(): void {
+    this.#motion.showVariations("Computing 64 small variations…");
+    this.#varied.want(sent(this.view.description), { jump: true });
   }
 
   /** A start on a branch that was asked for, unless the case has changed since. */

@@ -1,6 +1,6 @@
 /** Two quantities of the run over time: tilt and demand on the contact, or what the reader chooses. */
 
-import type { Run as Answer } from "../server/schema";
+import type { Run as Answer, Variations } from "../server/schema";
 import { element } from "../frame/dom";
 import { axisLabel } from "../frame/format";
 import type { HistoryName, HistoryPair, RunShown } from "./history-kinds";
@@ -18,6 +18,7 @@ export class Histories {
   readonly #below: TimeChart;
   #run: RunShown | null = null;
   #wanted: HistoryPair | null = null;
+  #cloud: Variations | null = null;
 
   constructor({ seek, chosen }: HistoriesHearing) {
     this.#above = new TimeChart("Upper history", "", { seek, chosen: (name) => chosen(this.#with(name, 0)) });
@@ -41,6 +42,12 @@ export class Histories {
     this.#draw();
   }
 
+  /** Draws the tilts of small variations behind that of the run; null: none. */
+  showCloud(found: Variations | null): void {
+    this.#cloud = found;
+    this.#draw();
+  }
+
   setTime(time: number): void {
     this.#above.setTime(time);
     this.#below.setTime(time);
@@ -56,8 +63,9 @@ export class Histories {
     if (run === null) return;
     const { time } = run.answer.series;
     const [offered, [above, below]] = [offeredHistories(run), chosenHistories(run, this.#wanted)];
-    this.#above.show(time, historyOf(above, run), offered);
-    this.#below.show(time, historyOf(below, run), offered);
+    const cloud = this.#cloud && { ...this.#cloud, unit: run.answer.column.slenderness };
+    this.#above.show(time, historyOf(above, run), offered, above === "tilt" ? cloud : null);
+    this.#below.show(time, historyOf(below, run), offered, below === "tilt" ? cloud : null);
   }
 
   #with(name: HistoryName, place: 0 | 1): HistoryPair {

@@ -5,6 +5,7 @@ import { choice, element, onResize, themeColour } from "../frame/dom";
 import { formatted, withUnit } from "../frame/format";
 import type { History, HistoryName } from "./history-kinds";
 import { HISTORIES, isHistoryName } from "./history-kinds";
+import type { Variations } from "../server/schema";
 import type { Label } from "./plot-looks";
 import { across, PLAIN, upright } from "./plot-looks";
 
@@ -12,6 +13,12 @@ export interface TimeChartHearing {
   readonly seek: (time: number) => void;
   readonly chosen: (name: HistoryName) => void;
 }
+
+/** Tilts of many runs, in units of c, those that overturn in another colour. */
+export type Cloud = Pick<Variations, "times" | "tilts" | "outcomes"> & { readonly unit: number };
+
+/** Opacity of one line of a cloud. */
+const THIN = 0.25;
 
 /** Room above and below what is drawn, in parts of its height. */
 const ROOM = 0.06;
@@ -25,6 +32,7 @@ export class TimeChart {
   readonly #head = element("div", { class: "playhead" });
   readonly #plot: uPlot;
   #history: History | null = null;
+  #cloud: Cloud | null = null;
   #offered = "";
   #time = 0;
 
@@ -45,9 +53,10 @@ export class TimeChart {
     });
   }
 
-  /** Shows a history, one of those that are offered. */
-  show(time: readonly number[], history: History, offered: readonly HistoryName[]): void {
+  /** Shows a history, one of those that are offered, in front of a cloud of others. */
+  show(time: readonly number[], history: History, offered: readonly HistoryName[], cloud: Cloud | null): void {
     this.#history = history;
+    this.#cloud = cloud;
     this.#offer(offered);
     this.#kind.value = history.name;
     this.#note.textContent = history.note;
@@ -89,7 +98,11 @@ export class TimeChart {
           { stroke: () => themeColour(this.#history?.colour ?? "blue"), width: 1.5, points: { show: false } },
           { stroke: () => themeColour("vermilion"), width: 1.25, dash: [6, 4], points: { show: false } },
         ],
-        hooks: { setCursor: [(plot) => this.#read(plot)], draw: [(plot) => this.#nameLevel(plot)] },
+        hooks: {
+          setCursor: [(plot) => this.#read(plot)],
+          drawAxes: [(plot) => this.#drawCloud(plot)],
+          draw: [(plot) => this.#nameLevel(plot)],
+        },
       },
       [[], [], []],
       this.#host,
@@ -110,6 +123,29 @@ export class TimeChart {
     const time = idx === null || idx === undefined ? undefined : plot.data[0]?.[idx];
     const found = value !== undefined && time !== undefined;
     this.#note.textContent = found ? `${formatted(value)} at ${withUnit(time, "s", 4)}` : (this.#history?.note ?? "");
+  }
+
+  #drawCloud(plot: uPlot): void {
+    if (this.#cloud === null) return;
+    const { times, tilts, outcomes, unit } = this.#cloud;
+    const { ctx, bbox } = plot;
+    ctx.save();
+    ctx.beginPath();
+    ctx.rect(bbox.left, bbox.top, bbox.width, bbox.height);
+    ctx.clip();
+    ctx.globalAlpha = THIN;
+    ctx.lineWidth = uPlot.pxRatio;
+    tilts.forEach((tilt, i) => {
+      ctx.strokeStyle = themeColour(outcomes[i] === "OVERTURNED" ? "vermilion" : "blue");
+      ctx.beginPath();
+      tilt.forEach((value, k) => {
+        const time = times[i]?.[k];
+        if (value === null || time === null || time === undefined) return;
+        ctx.lineTo(plot.valToPos(time, "x", true), plot.valToPos(value / unit, "y", true));
+      });
+      ctx.stroke();
+    });
+    ctx.restore();
   }
 
   #nameLevel(plot: uPlot): void {

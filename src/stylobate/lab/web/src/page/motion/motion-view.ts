@@ -10,7 +10,8 @@ import { button, element } from "../frame/dom";
 import { Elapsed } from "../frame/elapsed";
 import { capital } from "../frame/format";
 import { inShownUnits, shownUnit } from "../frame/units";
-import type { Run as Answer } from "../server/schema";
+import type { Run as Answer, Variations } from "../server/schema";
+import { sharesOf } from "./shares";
 import { Transport } from "./transport";
 import { Verdict } from "./verdict";
 
@@ -58,6 +59,8 @@ const FIRST = "computing… The first run of a model and long runs take time;";
 export interface MotionHearing {
   /** The run is to be followed until its outcome is decided. */
   readonly follow: () => void;
+  /** Small variations of the run are wanted. */
+  readonly vary: () => void;
   readonly speed: (speed: number) => void;
   readonly histories: (pair: HistoryPair) => void;
   /** The reader no longer wants the run that is computed. */
@@ -88,11 +91,11 @@ export class MotionView {
   /** Whether the clock ran at its last tick: at the end of a run it stops by itself. */
   #played = false;
 
-  constructor(theme: Theme, { speed, histories, cancelled, again, follow }: MotionHearing) {
+  constructor(theme: Theme, { speed, histories, cancelled, again, follow, vary }: MotionHearing) {
     this.#cancel = button("Cancel", { class: "cancel-run small", hidden: true }, cancelled);
     this.#host.append(this.#cancel);
     this.#old = new OldNote(again);
-    this.#verdict = new Verdict(follow);
+    this.#verdict = new Verdict(follow, vary);
     this.#transport = new Transport(this.clock, speed);
     this.#curves = new Histories({ seek: (time) => this.clock.seek(time), chosen: histories });
     this.histories = this.#curves.root;
@@ -112,12 +115,20 @@ export class MotionView {
     this.#computed = answer.drawn.time.at(-1) ?? 0;
     this.clock.setRange(0, drawn.time.at(-1) ?? 0);
     this.stage?.show(drawn, shownUnit("m"));
+    this.showVariations(null);
     this.#curves.show(answer, angularFrequency(description.motion));
     this.orbit.show(answer.drawn);
     this.#verdict.show(answer, typeof description["duration"] === "number");
     this.numbers.show(answer);
     this.#transport.showEvents(answer.events);
     this.#follow();
+  }
+
+  /** Shows small variations of the run, a line about them, or nothing of them. */
+  showVariations(found: Variations | string | null): void {
+    const cloud = found === null || typeof found === "string" ? null : found;
+    this.#verdict.showShares(cloud === null ? (found as string | null) : sharesOf(cloud));
+    this.#curves.showCloud(cloud);
   }
 
   /** Whether the clock stands in a fall that was not computed. */

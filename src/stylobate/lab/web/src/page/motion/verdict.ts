@@ -12,12 +12,21 @@ export class Verdict {
   readonly root = element("div", { class: "verdict", "aria-live": "polite", "aria-atomic": "true" });
   readonly #badge = element("strong", { "aria-hidden": "true" });
   readonly #follow: () => void;
+  readonly #vary: HTMLButtonElement;
+  readonly #shares = element("p", { class: "shares", "aria-live": "polite", hidden: true });
   #answer: Answer | null = null;
   #announced = "";
 
-  /** `follow` hears that the reader wants the run to last until its outcome is decided. */
-  constructor(follow: () => void) {
+  /** `follow` hears that the run is to last until its outcome is decided, `vary` that small variations are wanted. */
+  constructor(follow: () => void, vary: () => void) {
     this.#follow = follow;
+    this.#vary = button("Vary it", { class: "small", title: "Repeat the run with 64 small variations" }, vary);
+  }
+
+  /** Shows how often small variations end in each way, or that they are being computed; null: nothing. */
+  showShares(line: string | null): void {
+    this.#shares.textContent = line ?? "";
+    this.#shares.hidden = line === null;
   }
 
   /** Shows the outcome of a run, whose length may be `stated` or as long as it was needed. */
@@ -43,7 +52,8 @@ export class Verdict {
     const longer = stated && remedy ? [button("Simulate until decided", { class: "small" }, this.#follow)] : [];
     const warnings = answer.warnings.map((line) => element("p", { class: "warning" }, sentence(warningIn(line))));
     this.root.replaceChildren(
-      element("p", {}, outcome, this.#badge, ...marks, " ", reason, " ", ...longer),
+      element("p", {}, outcome, this.#badge, ...marks, " ", reason, " ", ...longer, " ", this.#vary),
+      this.#shares,
       ...warnings,
     );
   }

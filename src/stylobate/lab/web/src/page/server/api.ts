@@ -2,7 +2,15 @@
 
 import type { About } from "../case/about";
 import type { Part, Value } from "../case/description";
-import type { Described, Job as JobReport, ResponseCurves, Run as Answer, Start, UploadedRecord } from "./schema";
+import type {
+  Described,
+  Job as JobReport,
+  ResponseCurves,
+  Run as Answer,
+  Start,
+  UploadedRecord,
+  Variations,
+} from "./schema";
 
 /** The server refused: a line for each thing that was wrong. */
 export class Refused extends Error {
@@ -28,6 +36,9 @@ export async function alive(): Promise<void> {
 
 export const simulate = (description: Part, signal: AbortSignal): Promise<Answer> =>
   call<Answer>("POST", "/api/simulate", description, signal);
+
+export const variations = (description: Part, signal: AbortSignal): Promise<Variations> =>
+  call<Variations>("POST", "/api/variations", description, signal);
 
 export const response = (description: Part, signal: AbortSignal): Promise<ResponseCurves> =>
   call<ResponseCurves>("POST", "/api/response", description, signal);

@@ -570,3 +570,26 @@ export type UploadedRecord = {
   /** possible mistakes in its files, one line each */
   readonly warnings: readonly string[];
 };
+
+/** Small variations of one case. */
+export type Variations = {
+  readonly varied: readonly Varied[];
+  /** number of runs */
+  readonly runs: number;
+  /** outcomes that occur, the most frequent first */
+  readonly classes: readonly CellClass[];
+  /** of each run */
+  readonly outcomes: readonly ("AT_REST" | "ROCKING" | "ROLLING" | "MODULATED" | "OVERTURNED" | "STILL_MOVING" | "LIMIT_REACHED" | "LIFTED_OFF" | "FAILED" | "SLID" | "SURVIVED" | "STOPPED" | "PERIODIC" | "APERIODIC")[];
+  /** of each run [s] */
+  readonly times: readonly (readonly (number | null)[])[];
+  /** of each run [rad] */
+  readonly tilts: readonly (readonly (number | null)[])[];
+};
+
+/** A number that varies. */
+export type Varied = {
+  /** name as in the description; scale is the strength of the base motion */
+  readonly name: string;
+  /** standard deviation of its logarithm */
+  readonly deviation: number;
+};

@@ -1,0 +1,93 @@
+"""Small variations of one case: how often it ends in each way, and its tilt over time."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from scipy.special import ndtri
+from scipy.stats import qmc
+
+from stylobate import config, engine
+from stylobate.config.simulation import Setup
+from stylobate.engine.ensemble import simulate_ensemble
+from stylobate.engine.parameters import present_value
+from stylobate.errors import Outcome, ParameterError, UnsupportedError
+from stylobate.lab import answers
+from stylobate.lab.messages import Emit
+from stylobate.run_arguments import Accuracy
+from stylobate.studies.proportions import wilson_interval
+
+SPREADS = {"slenderness": 0.01, "scale": 0.01, "damping": 0.1, "restitution": 0.02, "friction_coefficient": 0.1}
+"""Numbers that vary where the case has them: the standard deviations of their logarithms."""
+
+RUNS = 64
+_SAMPLES, _SEED = 160, 1
+_LONGER = 3.0
+"""Variations of a run that lasts until its outcome is decided may need longer than that run, by this factor."""
+
+
+def variations(values: Mapping[str, Any], emit: Emit) -> answers.Variations:
+    """Compute small variations of the case that `values` describe."""
+    del emit
+    setup = config.SimulationConfig.parse(values).build()
+    run = engine.simulate(setup.model, setup.motion, **{**setup.options, "samples": 2, "recheck": False})
+    numbers = {name: value for name, value in _numbers(setup).items() if value > 0.0}
+    shares = qmc.Sobol(len(numbers) + 1, rng=np.random.default_rng(_SEED)).random(RUNS)
+    normal = ndtri(shares)
+    varied = {
+        name: value * np.exp(SPREADS[name] * column)
+        for (name, value), column in zip(numbers.items(), normal[:, :-1].T, strict=True)
+    }
+    if "restitution" in varied:
+        varied["restitution"] = np.minimum(varied["restitution"], 1.0)
+    tilt = np.exp(SPREADS["slenderness"] * normal[:, -1:]) * np.asarray(setup.options["tilt"])
+    start = {name: setup.options[name] for name in ("tilt_rate", "spin") if setup.options.get(name) is not None}
+    accuracy = {name: setup.options[name] for name in Accuracy.__annotations__ if name in setup.options}
+    found = simulate_ensemble(
+        setup.model,
+        setup.motion,
+        **{**start, **accuracy},
+        tilt=tilt,
+        duration=(_LONGER if setup.options["duration"] is None else 1.0) * run.provenance["duration"],
+        parameters=varied,
+        samples=_SAMPLES,
+        progress=False,
+    )
+    return _answered(found, list(varied))
+
+
+def _numbers(setup: Setup) -> dict[str, float]:
+    """Return the numbers of the case that vary."""
+    found = {}
+    for name in SPREADS:
+        if name == "scale" and setup.motion.duration == 0.0:
+            continue
+        try:
+            found[name] = present_value(setup.model, setup.motion, name)
+        except (ParameterError, UnsupportedError):  # this case has no such number
+            continue
+    return found
+
+
+def _answered(found: Any, names: list[str]) -> answers.Variations:
+    outcome = found["outcome"].to_numpy()
+    codes, counts = np.unique(outcome, return_counts=True)
+    low, high = wilson_interval(counts, RUNS)
+    order = np.argsort(-counts)
+    return answers.Variations(
+        varied=[answers.Varied(name=name, deviation=SPREADS[name]) for name in names],
+        runs=RUNS,
+        classes=[
+            answers.CellClass(
+                code=int(codes[i]),
+                name=Outcome(int(codes[i])).label,
+                share=counts[i] / RUNS,
+                low=float(low[i]),
+                high=float(high[i]),
+            )
+            for i in order
+        ],
+        outcomes=[Outcome(int(one)).name for one in outcome],
+        times=found["sample_time"],
+        tilts=np.hypot(*np.moveaxis(found["sampled_tilt"].to_numpy(), -1, 0)),
+    )
