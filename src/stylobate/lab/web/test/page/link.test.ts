@@ -37,6 +37,21 @@ test("a link brings back the view it was made of", () => {
   assert.deepEqual(again(VIEW), VIEW);
 });
 
+test("a lesson alone is a link, and a map keeps the start of its runs", () => {
+  const lesson = { id: "l", title: "", question: "", task: "", control: {}, said: {}, view: { start: "upper" } };
+  const about = { ...ABOUT, lessons: [{ ...lesson, description: VIEW.description }] };
+  const opened = viewFrom("#lesson=l", about);
+  assert.deepEqual([opened.lesson, opened.start, opened.description], ["l", "upper", VIEW.description]);
+  assert.throws(() => viewFrom("#lesson=unknown", about), BrokenLink);
+  const axis = { from: 0.5, to: 6, number: 48 };
+  const map = {
+    x: { name: "angular_frequency", ...axis },
+    y: { name: "acceleration", ...axis },
+    start: "upper",
+  } as const;
+  assert.deepEqual(again({ ...VIEW, map }).map, map);
+});
+
 const MOTIONS: readonly Part[] = [
   { kind: "record", sample: "el centro 1940", scale: 1.5 },
   { kind: "record", upload: "1e5", scale: 1 },

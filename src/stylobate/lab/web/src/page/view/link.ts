@@ -58,6 +58,8 @@ export function viewFrom(link: string, about: About): View {
     else throw new BrokenLink(`${name} is not known`);
   }
   const { column, model, motion } = values;
+  const lesson = about.lessons.find((one) => one.id === looks["lesson"]);
+  if (lesson !== undefined && Object.keys(values).length === 0) return viewOfLesson(lesson);
   if (!isPart(column)) throw new BrokenLink("column is missing");
   const description: Description = {
     ...values,
