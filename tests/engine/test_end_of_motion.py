@@ -25,10 +25,14 @@ def test_without_a_duration_a_run_outlasts_a_motion_that_ends_by_twenty_time_sca
     ("motion", "what"),
     [
         (None, "a base at rest"),
-        (sb.Harmonic.circular(acceleration=1.0, angular_frequency=2.0), "a base motion that never ends"),
+        (
+            sb.Harmonic.circular(acceleration=1.0, angular_frequency=2.0)
+            + sb.Harmonic.straight(acceleration=0.1, angular_frequency=math.sqrt(2.0)),
+            "a base motion that never ends and has no period",
+        ),
     ],
 )
-def test_a_motion_that_does_not_end_wants_a_duration(motion, what):
+def test_a_motion_that_neither_ends_nor_repeats_wants_a_duration(motion, what):
     with pytest.raises(ParameterError, match=f"^duration must be given, in s, with {what}, such as duration=60.0"):
         sb.simulate(MODELS[0], motion)
 

@@ -1,7 +1,5 @@
 """Runs under a periodic motion without a duration: they go on until the outcome is decided."""
 
-import math
-
 import numpy as np
 import pytest
 
@@ -55,16 +53,3 @@ def test_a_tilt_limit_and_an_event_end_the_run_as_always():
     assert run.outcome is sb.Outcome.LIMIT_REACHED
     ended = sb.EventFunction("five", lambda time, _: time - 5.0, terminal=True)
     assert sb.simulate(MODEL, motion, **off_the_branch(motion), events=[ended]).outcome is sb.Outcome.STOPPED
-
-
-@pytest.mark.parametrize(
-    ("motion", "what"),
-    [
-        (None, "a base at rest"),
-        (circle(1.0) + sb.Harmonic.straight(acceleration=0.01, angular_frequency=math.sqrt(2.0)), "has no period"),
-    ],
-    ids=["rest", "no period"],
-)
-def test_other_motions_need_a_duration(motion, what):
-    with pytest.raises(sb.errors.ParameterError, match=f"duration must be given, in s, with .*{what}"):
-        sb.simulate(MODEL, motion, tilt=(0.02, 0.0))

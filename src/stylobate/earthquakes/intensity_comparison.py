@@ -197,4 +197,5 @@ def _fitted(u: Floats, hit: Bools, record: npt.NDArray[np.int_]) -> tuple[Floats
     groups = record.max() + 1
     score = np.array([np.bincount(record, row, minlength=groups) for row in design * (sign * ratio)])
     variance = groups / max(groups - 1, 1) * bread @ (score @ score.T) @ bread
-    return found.x[1:] / width[:, 0], np.sqrt(np.diag(variance))[1:] / width[:, 0], -float(found.fun)
+    errors = np.sqrt(np.maximum(np.diag(variance), 0.0))[1:]  # rounded below zero if the measures separate the runs
+    return found.x[1:] / width[:, 0], errors / width[:, 0], -float(found.fun)
