@@ -4,7 +4,7 @@ import { button, element, newId, onResize } from "../frame/dom";
 import { Elapsed } from "../frame/elapsed";
 import { enlarging } from "../frame/enlarging";
 import { axisLabel, capital, counted, formatted, plain, readNumber, unitWritten, words } from "../frame/format";
-import { joined } from "../frame/units";
+import { inShownUnits, joined } from "../frame/units";
 import type { ExactOrbits, Job as JobReport, ResponseCurves } from "../server/schema";
 import type { Job } from "../server/job";
 import { type Extent, FrequencyMarker } from "./frequency-marker";
@@ -215,7 +215,7 @@ export class ResponsePanel {
     this.#elapsed.begin("Computing exact orbits…");
     this.#job = this.#hearing.exact(
       ({ note }) => {
-        if (note) this.#elapsed.begin(`${capital(note)}…`);
+        if (note) this.#elapsed.begin(`${capital(inShownUnits(note))}…`);
       },
       (last, problems) => this.#found(last, problems),
     );

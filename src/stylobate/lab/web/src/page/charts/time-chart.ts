@@ -17,6 +17,9 @@ export interface TimeChartHearing {
 /** Tilts of many runs, in units of c, those that overturn in another colour. */
 export type Cloud = Pick<Variations, "times" | "tilts" | "outcomes"> & { readonly unit: number };
 
+/** Up to where the axis reaches for a cloud, in units of c. */
+const NO_HIGHER = 1.5;
+
 /** Opacity of one line of a cloud. */
 const THIN = 0.25;
 
@@ -110,10 +113,18 @@ export class TimeChart {
   }
 
   #limits(): [number, number] {
-    const [low, high] = this.#history?.limits ?? [0, 1];
+    const [low, own] = this.#history?.limits ?? [0, 1];
+    const high = Math.max(own, this.#cloudTop());
     if (!(high > low)) return [low, low + 1];
     const room = (high - low) * ROOM;
     return [low < 0 ? low - room : low, high + room];
+  }
+
+  /** Returns the largest tilt of the cloud, as far as columns come back from it. */
+  #cloudTop(): number {
+    if (this.#cloud === null) return 0;
+    const { tilts, unit } = this.#cloud;
+    return Math.min(Math.max(...tilts.flatMap((one) => one.map((value) => (value ?? 0) / unit))), NO_HIGHER);
   }
 
   /** Shows the value below the pointer. */

@@ -75,7 +75,7 @@ const WORDS: readonly Entry[] = [
   ],
   [
     "bifurcation",
-    "a frequency at which the number or the stability of motions changes. Pitchfork: two motions without the symmetry of the first. Period doubling: it repeats after two periods only. Neimark-Sacker: a second, slow swing begins.",
+    "a frequency at which the number or the stability of motions changes. Pitchfork: two motions without the symmetry of the first. Period doubling: it repeats after two periods only. Neimark-Sacker: a swing with another period begins.",
   ],
   ["friction demand", "friction force over normal force. Above the friction coefficient a real contact would slip."],
   ["pivoting demand", "moment about the vertical that the contact has to bear, over normal force and radius."],
