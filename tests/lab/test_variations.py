@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from stylobate.lab.options import lessons, presets
-from stylobate.lab.variations import RUNS, SPREADS, variations
+from stylobate.lab.variations import RUNS, variations
 
 CASES = {one.identity: one.description for one in (*presets(), *lessons())}
 
@@ -31,7 +31,8 @@ def test_a_steady_motion_stays_what_it_is():
 @pytest.mark.parametrize("name", [*CASES])
 def test_each_case_has_variations_and_their_tilts(name):
     found = varied(name)
-    assert {one.name for one in found.varied} <= set(SPREADS)
+    assert {"slenderness", "scale"} <= {one.name for one in found.varied}
+    assert all(0.0 < one.deviation < 0.15 for one in found.varied)
     assert len(found.tilts) == len(found.times) == len(found.outcomes) == found.runs == RUNS
     times, tilts = np.array(found.times, dtype=float), np.array(found.tilts, dtype=float)
     known = ~np.isnan(times)

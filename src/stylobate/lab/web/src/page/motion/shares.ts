@@ -7,7 +7,7 @@ import type { Variations } from "../server/schema";
 const NAMES: Readonly<Record<string, string>> = { scale: "shaking" };
 
 export function sharesOf({ varied, runs, classes }: Variations): string {
-  const of = varied.map(({ name, deviation }) => `${NAMES[name] ?? words(name)} ± ${formatted(100 * deviation)} %`);
+  const of = varied.map(({ name, deviation }) => `${NAMES[name] ?? words(name)} ± ${formatted(100 * deviation, 2)} %`);
   const shares = classes.map(({ name, share, low, high }) => {
     const between = low === null || high === null ? "" : ` (${percent(low)} to ${percent(high)})`;
     return `${capital(name)} ${percent(share ?? 0)} %${between}`;
