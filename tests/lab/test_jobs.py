@@ -4,6 +4,7 @@ import multiprocessing
 import time
 from concurrent.futures import ThreadPoolExecutor
 
+import anyio
 import httpx
 import numpy as np
 import pytest
@@ -12,6 +13,8 @@ from tests.lab.conftest import client_of, laboratory
 import stylobate as sb
 from stylobate.lab import Limits
 from stylobate.lab.grids import Refining
+from stylobate.lab.jobs import Jobs
+from stylobate.lab.messages import Finished
 
 CIRCLE = {
     "column": {"shape": "dimensionless", "slenderness": 0.1},
@@ -208,3 +211,24 @@ def test_runs_that_are_taken_back_one_after_the_other_keep_nobody_waiting():
             with pytest.raises(httpx.ReadTimeout):
                 client.post("/api/simulate", json=SLOW, timeout=0.5)
         assert client.post("/api/simulate", json={**CIRCLE, "duration": 1.0}).status_code == 200
+
+
+def test_exact_orbits_are_computed_once_for_the_same_question_and_maps_each_time():
+    asked = []
+
+    class Processes:
+        async def perform(self, kind, values, heard):
+            del heard
+            asked.append((kind, values["a"]))
+            return Finished(f"{kind} {values['a']}")
+
+    async def follow():
+        async with anyio.create_task_group() as group:
+            jobs = Jobs(Processes(), Limits(), group)
+            for kind, value in (("exact", 1), ("exact", 1), ("exact", 2), ("map", 1), ("map", 1)):
+                identity = jobs.begin(kind, {"a": value})
+                await anyio.wait_all_tasks_blocked()
+                assert jobs[identity].result == f"{kind} {value}"
+
+    anyio.run(follow)
+    assert asked == [("exact", 1), ("exact", 2), ("map", 1), ("map", 1)]
