@@ -1,10 +1,10 @@
-/** The page at work: what is asked of the server when the view changes, and where its answers go. */
+/** The page at work: what is asked when the view changes, and where the answers go. */
 
 import type { Clock, Stage, Theme } from "../viewer/index";
 import type { About, Lesson } from "./case/about";
 import type { Run as Answer, Variations } from "./server/schema";
 import { sent } from "./server/requests";
-import { Refused, Unreachable, variations } from "./server/api";
+import { Refused, type Source, Unreachable } from "./server/source";
 import type { ResponsePanel } from "./charts/response-panel";
 import type { Connection } from "./server/connection";
 import { CaseProblems } from "./controls/case-problems";
@@ -36,10 +36,12 @@ import { setUnitsOf } from "./frame/units";
 import { LessonCard } from "./tour/lesson-card";
 import { Address, firstView, inWords, viewOfLesson, viewOfLink, viewOfPreset } from "./view/link";
 
-/** Before the first answer: the column of the equations. */
-const ANY_COLUMN: ColumnScales = { slenderness: 0.1, frequency_scale: 1 };
+/** Before the first answer: the column of the equations, and its scales. */
+const ANY_COLUMN: Part = { shape: "dimensionless", slenderness: 0.1 };
+const ITS_SCALES: ColumnScales = { slenderness: 0.1, frequency_scale: 1 };
 
 export class Laboratory {
+  readonly #source: Source;
   readonly #about: About;
   readonly #store: Store;
   readonly #address = new Address();
@@ -55,7 +57,9 @@ export class Laboratory {
   readonly #planesHost = element("div", { class: "planes" });
   readonly #runs: Latest<WantedRun, Run>;
   readonly #varied: Latest<Part, Variations>;
-  #scales = ANY_COLUMN;
+  #scales = ITS_SCALES;
+  /** Which column has the scales. */
+  #scaled = written(ANY_COLUMN);
   #answer: Answer | null = null;
   /** Of which case the answer is, and which was asked for last. */
   #shown = "";
@@ -72,7 +76,15 @@ export class Laboratory {
   /** Whether the motion that is due is another case, to be seen from its beginning. */
   #fresh = true;
 
-  constructor(about: About, host: HTMLElement, header: HTMLElement, theme: ThemeSwitch, connection: Connection) {
+  constructor(
+    source: Source,
+    about: About,
+    host: HTMLElement,
+    header: HTMLElement,
+    theme: ThemeSwitch,
+    connection: Connection,
+  ) {
+    this.#source = source;
     this.#about = about;
     this.#host = host;
     this.#connection = connection;
@@ -92,6 +104,7 @@ export class Laboratory {
         jumped({ ...viewOfPreset(preset), tab });
       },
       lesson: (lesson) => this.#open(lesson),
+      sendRecord: source.sendRecord,
     });
     this.#lesson = new LessonCard(about, {
       changed: (description) => edited({ description }),
@@ -107,22 +120,22 @@ export class Laboratory {
       vary: () => this.#vary(),
     });
     this.#problems = new CaseProblems(box, this.#controls, this.#motion);
-    this.#response = new ResponseAsking(view, this.#scales, {
+    this.#response = new ResponseAsking(source, view, this.#scales, {
       ...{ edited, start, lost: () => this.#lose() },
       critical: (frequency) => this.#lesson.setCritical(frequency),
     });
     this.#planes = new PlanesAsking(about, view, this.#scales, { edited, jumped, start });
     this.#tabs = this.#newTabs();
-    this.#runs = new Latest((wanted, signal) => run(wanted, signal), {
+    this.#runs = new Latest((wanted, signal) => run(source, wanted, signal), {
       answered: (found, { start }) => this.#take(found, start),
       failed: (error) => this.#fail(error),
       busy: (busy) => this.#motion.setBusy(busy),
     });
-    this.#varied = new Latest((description, signal) => variations(description, signal), {
+    this.#varied = new Latest((description, signal) => source.variations(description, signal), {
       answered: (found) => this.#motion.showVariations(found),
       failed: (error) => this.#motion.showVariations(error instanceof Error ? error.message : String(error)),
     });
-    const menu = menuOf(this.#motion, () => ({ view: this.view, answer: this.#answer, shown: this.#shown }));
+    const menu = menuOf(source, this.#motion, () => ({ view: this.view, answer: this.#answer, shown: this.#shown }));
     header.append(menu.root, new Help().root, theme.root);
     this.#planesHost.append(this.#response.panel.root, this.#tabs.root);
     host.replaceChildren(
@@ -223,7 +236,8 @@ export class Laboratory {
     this.#showSpeed(view);
     const jump = this.#fresh;
     this.#ask(view);
-    this.#response.show(view, this.#scales, jump);
+    // The range of the response of another column is known with its run.
+    if (!jump || this.#scaled === written(view.description.column)) this.#response.show(view, this.#scales, jump);
     this.#planes.show(view, this.#scales);
     // Where the case is shown already, as after a step back to another tab, there is no answer to wait for.
     if (this.#shown === written(view.description)) this.#settle();
@@ -264,7 +278,7 @@ export class Laboratory {
     this.#shown = written(description);
     this.#moved = description.motion;
     this.#problems.clear();
-    this.#rescale(answer.column);
+    this.#rescale(answer.column, description.column);
     this.#motion.setStale(false);
     this.#motion.show(answer, description);
     this.#lesson.setOutcome(answer.outcome);
@@ -291,10 +305,10 @@ export class Laboratory {
   }
 
   /** What depends on the column's own tilt and frequency, once they are known. */
-  #rescale(found: ColumnScales): void {
-    const before = this.#scales;
+  #rescale(found: ColumnScales, column: Part): void {
+    if (this.#scaled === written(column)) return;
+    this.#scaled = written(column);
     this.#scales = found;
-    if (found.slenderness === before.slenderness && found.frequency_scale === before.frequency_scale) return;
     this.#controls.show(this.view.description, found, this.view.start, this.view.lesson);
     this.#response.show(this.view, found, this.#fresh);
     this.#planes.show(this.view, found);
@@ -314,13 +328,18 @@ export class Laboratory {
     const lines = error instanceof Refused ? error.problems : [String(error)];
     if (lines.some((line) => line.startsWith("motion.upload"))) void this.#restoreRecord();
     else if (this.#answer === null && !this.#problems.ofLink) this.#replaceLink(lines);
-    else this.#problems.show(lines, { earlier: this.#answer !== null });
+    else this.#stay(lines);
   }
 
   #cancelRun(): void {
     this.#runs.cancel();
-    const line = "The run was cancelled. Change the case or compute it again.";
-    this.#problems.show([line], { earlier: this.#answer !== null, again: true });
+    this.#stay(["The run was cancelled. Change the case or compute it again."], true);
+  }
+
+  /** Shows why there is no run of the case, and its response all the same. */
+  #stay(lines: readonly string[], again = false): void {
+    this.#problems.show(lines, { earlier: this.#answer !== null, again });
+    this.#response.show(this.view, this.#scales, this.#fresh);
   }
 
   /** Asks once more for a case whose run was cancelled. */
@@ -353,7 +372,7 @@ export class Laboratory {
   }
 
   #job(...[kind, body, report, ended]: Parameters<JobStart>): Job {
-    return new Job(kind, body, {
+    return new Job(this.#source, kind, body, {
       report,
       ended: (last, error) => {
         if (error instanceof Unreachable) this.#lose();

@@ -4,8 +4,9 @@ import "uplot/dist/uPlot.min.css";
 import "./styles.css";
 import type { Stage } from "../viewer/index";
 import type { About } from "./case/about";
-import { about } from "./server/api";
+import { sourceOf } from "./server/choice";
 import { Connection } from "./server/connection";
+import { type Source, Unreachable } from "./server/source";
 import { button, byId } from "./frame/dom";
 import { Laboratory } from "./laboratory";
 import { offered } from "./case/offered";
@@ -26,13 +27,21 @@ declare global {
 }
 
 async function begin(): Promise<void> {
+  const source = sourceOf(document);
   let laboratory: Laboratory | null = null;
   const theme = new ThemeSwitch((now) => laboratory?.setTheme(now));
-  const connection = new Connection(() => laboratory?.refresh());
+  const connection = new Connection(source, () => laboratory?.refresh());
   byId("banner", HTMLElement).replaceWith(connection.root);
-  const found = offered(await answered(connection));
+  const found = offered(await answered(source, connection));
   byId("version", HTMLElement).textContent = found.version;
-  laboratory = new Laboratory(found, byId("laboratory", HTMLElement), byId("tools", HTMLElement), theme, connection);
+  laboratory = new Laboratory(
+    source,
+    found,
+    byId("laboratory", HTMLElement),
+    byId("tools", HTMLElement),
+    theme,
+    connection,
+  );
   const shown = laboratory;
   const skip = button("Skip to the motion", { class: "skip" }, () => shown.stage?.canvas.focus());
   document.body.prepend(skip);
@@ -40,11 +49,12 @@ async function begin(): Promise<void> {
 }
 
 /** Asks what there is, until the server answers. */
-async function answered(connection: Connection): Promise<About> {
+async function answered(source: Source, connection: Connection): Promise<About> {
   for (;;) {
     try {
-      return await about();
-    } catch {
+      return await source.about();
+    } catch (error) {
+      if (!(error instanceof Unreachable)) throw error;
       connection.lose();
       await new Promise((resolve) => setTimeout(resolve, 1000));
     }

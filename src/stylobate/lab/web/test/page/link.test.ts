@@ -37,6 +37,14 @@ test("a link brings back the view it was made of", () => {
   assert.deepEqual(again(VIEW), VIEW);
 });
 
+test("a preset alone is a link", () => {
+  const preset = { id: "p", title: "", about: "", view: { start: "upper" }, description: VIEW.description };
+  const about = { ...ABOUT, presets: [preset] };
+  const opened = viewFrom("#case=p", about);
+  assert.deepEqual([opened.lesson, opened.start, opened.description], [null, "upper", VIEW.description]);
+  assert.throws(() => viewFrom("#case=unknown", about), BrokenLink);
+});
+
 test("a lesson alone is a link, and a map keeps the start of its runs", () => {
   const lesson = { id: "l", title: "", question: "", task: "", control: {}, said: {}, view: { start: "upper" } };
   const about = { ...ABOUT, lessons: [{ ...lesson, description: VIEW.description }] };

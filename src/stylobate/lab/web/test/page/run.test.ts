@@ -1,5 +1,6 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
+import { server } from "../../src/page/server/api";
 import { run } from "../../src/page/server/run";
 import { VIEW } from "./case";
 
@@ -21,7 +22,7 @@ const SIGNAL = new AbortController().signal;
 
 test("what is remarked on a start on a branch stands before the warnings of the run, and is not sent with it", async () => {
   const bodies = served();
-  const found = await run({ description: VIEW.description, start: "upper", remarks: [] }, SIGNAL);
+  const found = await run(server, { description: VIEW.description, start: "upper", remarks: [] }, SIGNAL);
   assert.deepEqual(found.answer.warnings, [REMARK, "another"]);
   assert.deepEqual(found.remarks, [REMARK]);
   const [body] = bodies as [Record<string, unknown>];
@@ -34,6 +35,6 @@ test("what is remarked on a start on a branch stands before the warnings of the 
 
 test("a start that is kept keeps its remarks", async () => {
   served();
-  const found = await run({ description: VIEW.description, start: null, remarks: [REMARK] }, SIGNAL);
+  const found = await run(server, { description: VIEW.description, start: null, remarks: [REMARK] }, SIGNAL);
   assert.deepEqual(found.answer.warnings, [REMARK, "another"]);
 });

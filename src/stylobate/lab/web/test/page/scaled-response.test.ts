@@ -19,7 +19,7 @@ function server() {
       column: { slenderness, frequency_scale: 1, frequency_parameter: 1 } as Described["column"],
     });
   };
-  return { asked, scaled: new ScaledResponse(() => Promise.resolve(CURVES), describe) };
+  return { asked, scaled: new ScaledResponse({ response: () => Promise.resolve(CURVES), describe }) };
 }
 
 const bodyOf = (slenderness: number, damping = 0): Part => ({

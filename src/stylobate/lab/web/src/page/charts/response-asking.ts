@@ -4,11 +4,11 @@ import { type Part, isPart, without, written } from "../case/description";
 import { angularFrequency, withAngularFrequency } from "../case/frequency";
 import type { ColumnScales } from "../case/quantities";
 import { mayTurn, offBranch } from "../case/starting";
-import type { Described, Job as JobReport, ResponseCurves } from "../server/schema";
-import { type JobRequest, Unreachable, describe, response } from "../server/api";
+import type { Job as JobReport, ResponseCurves } from "../server/schema";
 import type { Job } from "../server/job";
 import { Latest } from "../server/latest";
 import { exactRequest, isSlender, responseRequest, usualRange } from "../server/requests";
+import { type JobRequest, type Source, Unreachable } from "../server/source";
 import type { View } from "../view/state";
 import { ResponsePanel } from "./response-panel";
 import type { ExactOrbit } from "./response-plot";
@@ -19,22 +19,20 @@ export interface ScaledCurves {
   readonly slenderness: number;
 }
 
-type AskCurves = (body: Part, signal: AbortSignal) => Promise<ResponseCurves>;
-type AskDescribed = (description: Part) => Promise<Described>;
-
 export class ScaledResponse {
-  readonly #response: AskCurves;
-  readonly #describe: AskDescribed;
+  readonly #source: Pick<Source, "response" | "describe">;
   /** The column that was described last: most requests are of the same one. */
   #known = { column: "", slenderness: 0 };
 
-  constructor(response: AskCurves, describe: AskDescribed) {
-    this.#response = response;
-    this.#describe = describe;
+  constructor(source: Pick<Source, "response" | "describe">) {
+    this.#source = source;
   }
 
   async ask(body: Part, signal: AbortSignal): Promise<ScaledCurves> {
-    const [curves, slenderness] = await Promise.all([this.#response(body, signal), this.#slenderness(body["column"])]);
+    const [curves, slenderness] = await Promise.all([
+      this.#source.response(body, signal),
+      this.#slenderness(body["column"]),
+    ]);
     return { curves, slenderness };
   }
 
@@ -43,7 +41,7 @@ export class ScaledResponse {
     const column = isPart(given) ? given : {};
     const wanted = written(column);
     if (wanted === this.#known.column) return this.#known.slenderness;
-    const answer = await this.#describe({ column, duration: 1 });
+    const answer = await this.#source.describe({ column, duration: 1 });
     if (answer.column === undefined) throw new Error("the server did not describe the column");
     this.#known = { column: wanted, slenderness: answer.column.slenderness };
     return answer.column.slenderness;
@@ -77,7 +75,7 @@ export class ResponseAsking {
   #scales: ColumnScales;
   #asked = { curves: "", exact: "" };
 
-  constructor(view: View, scales: ColumnScales, { edited, start, lost, critical }: AskingHearing) {
+  constructor(source: Source, view: View, scales: ColumnScales, { edited, start, lost, critical }: AskingHearing) {
     this.#view = view;
     this.#scales = scales;
     this.#lost = lost;
@@ -92,7 +90,7 @@ export class ResponseAsking {
       exact: (report, ended) =>
         start("exact", { description: exactRequest(this.#view.description, this.#range) ?? {} }, report, ended),
     });
-    const scaled = new ScaledResponse(response, describe);
+    const scaled = new ScaledResponse(source);
     this.#curves = new Latest((body, signal) => scaled.ask(body, signal), {
       answered: (found) => this.#take(found),
       failed: (error) => this.#fail(error),

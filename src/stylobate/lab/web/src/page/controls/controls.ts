@@ -18,6 +18,7 @@ import { atScaleOf } from "../case/scaling";
 import type { Branch } from "../case/starting";
 import { button, choice, element, newId } from "../frame/dom";
 import type { Wrong } from "../frame/problems";
+import type { Source } from "../server/source";
 import { NumberField } from "./number-field";
 import { PartForm, partOfKind } from "./part-form";
 import { RecordForm } from "./record-form";
@@ -60,6 +61,7 @@ export interface ControlsHearing {
   readonly jumped: (description: Description) => void;
   readonly preset: (preset: Preset) => void;
   readonly lesson: (lesson: Lesson) => void;
+  readonly sendRecord: Source["sendRecord"];
 }
 
 export class Controls {
@@ -100,7 +102,9 @@ export class Controls {
     this.#forms = { column: this.#form("column"), model: this.#form("model"), motion: this.#form("motion") };
     const reset = button("Reset", { class: "small" }, () => this.#choosePreset(this.#from?.id ?? ""));
     this.#changed.append("changed ", reset);
-    this.#record = new RecordForm(about, (motion) => hearing.jumped({ ...this.#description, motion }));
+    this.#record = new RecordForm(about, hearing.sendRecord, (motion) =>
+      hearing.jumped({ ...this.#description, motion }),
+    );
     this.#forms.motion.root.insertBefore(this.#record.root, this.#forms.motion.root.lastElementChild);
     this.#forms.motion.root.append(this.#toy);
     this.#forms.model.root.append(this.#turned);

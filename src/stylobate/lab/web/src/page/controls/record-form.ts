@@ -2,7 +2,7 @@
 
 import type { About } from "../case/about";
 import type { UploadedRecord } from "../server/schema";
-import { Refused, sendRecord, Unreachable } from "../server/api";
+import { Refused, type Source, Unreachable } from "../server/source";
 import type { Part, Value } from "../case/description";
 import { button, choice, element, newId } from "../frame/dom";
 import { capital, sentence, formatted } from "../frame/format";
@@ -42,6 +42,7 @@ interface Kept {
 
 export class RecordForm {
   readonly root: HTMLElement;
+  readonly #sendRecord: Source["sendRecord"];
   readonly #changed: (motion: Part) => void;
   readonly #source: HTMLSelectElement;
   readonly #own: HTMLElement;
@@ -60,7 +61,8 @@ export class RecordForm {
   /** Whether files are to be chosen, while the motion is still that of a sample. */
   #choosing = false;
 
-  constructor(about: About, changed: (motion: Part) => void) {
+  constructor(about: About, sendRecord: Source["sendRecord"], changed: (motion: Part) => void) {
+    this.#sendRecord = sendRecord;
     this.#changed = changed;
     const [id, fileId] = [newId("record"), newId("files")];
     const samples = about.samples.map((name) => [name, capital(name)] as const);
@@ -99,7 +101,7 @@ export class RecordForm {
   async restore(upload: Value | undefined): Promise<boolean> {
     const kept = typeof upload === "string" ? this.#known.get(upload) : undefined;
     if (kept === undefined) return false;
-    return (await sendRecord(kept.body)).upload === upload;
+    return (await this.#sendRecord(kept.body)).upload === upload;
   }
 
   /** Asks for the files of an upload that neither the server nor this page has. */
@@ -136,7 +138,7 @@ export class RecordForm {
     try {
       const contents = await Promise.all(files.map(async (file) => ({ name: file.name, content: await base64(file) })));
       const body: Part = { files: contents, units: this.#units.value || null, step: stepIn(this.#step.value) };
-      const received = await sendRecord(body);
+      const received = await this.#sendRecord(body);
       this.#known.set(received.upload, { received, body });
       this.#report(null);
       this.#changed({ kind: "record", upload: received.upload, scale: this.#motion["scale"] ?? 1 });

@@ -3,8 +3,8 @@
 import type { Stage } from "../../viewer/index";
 import type { Part } from "../case/description";
 import type { Described } from "../server/schema";
-import { jobFile } from "../server/api";
 import { Job, problemsIn } from "../server/job";
+import type { Source } from "../server/source";
 import { button, download, element, themeColour } from "./dom";
 
 const LETTERS = 14; // px of a picture 800 px wide
@@ -97,6 +97,7 @@ class TextDialog {
 }
 
 export interface Exported {
+  readonly source: Source;
   /** The stage of which pictures are taken. */
   readonly stage: Stage | null;
   /** What they show, in lines that stand below them. */
@@ -173,7 +174,8 @@ export class ExportMenu {
     }
     this.#gif.textContent = "Cancel the animation";
     this.#report("Rendering the animation…");
-    this.#job = new Job(
+    const job = new Job(
+      this.#exported.source,
       "animation",
       { description: this.#exported.description() },
       {
@@ -181,16 +183,17 @@ export class ExportMenu {
           if (total > 0) this.#report(`Animation: ${Math.round((100 * done) / total)} %`);
         },
         ended: (last, error) => {
-          if (last?.state === "done") void this.#save(last.id);
+          if (last?.state === "done") void this.#save(job);
           else this.#finished(problemsIn(last, error).join(" "));
         },
       },
     );
+    this.#job = job;
   }
 
-  async #save(id: string): Promise<void> {
+  async #save(job: Job): Promise<void> {
     try {
-      download(await jobFile(id), "stylobate.gif");
+      download(await job.file(), "stylobate.gif");
       this.#finished("");
     } catch (error) {
       this.#finished(error instanceof Error ? error.message : String(error));
@@ -220,6 +223,6 @@ export class ExportMenu {
   }
 
   #link(): void {
-    this.#dialog.show("A link to this view; it works while the laboratory runs here", this.#exported.link(), null);
+    this.#dialog.show("A link to this view; it works where this page can be opened", this.#exported.link(), null);
   }
 }

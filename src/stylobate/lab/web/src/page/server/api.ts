@@ -1,74 +1,30 @@
-/** Questions to the server, and the two ways in which they fail. */
+/** The source that asks the server of this page. */
 
-import type { About } from "../case/about";
-import type { Part, Value } from "../case/description";
-import type {
-  Described,
-  Job as JobReport,
-  ResponseCurves,
-  Run as Answer,
-  Start,
-  UploadedRecord,
-  Variations,
-} from "./schema";
+import type { Value } from "../case/description";
+import { Refused, type Source, type Started, Unreachable } from "./source";
 
-/** The server refused: a line for each thing that was wrong. */
-export class Refused extends Error {
-  readonly problems: readonly string[];
-  readonly status: number;
+export const server: Source = {
+  about: () => call("GET", "/api/about"),
+  alive: async () => {
+    await asked("HEAD", "/index.html");
+  },
+  simulate: (description, signal) => call("POST", "/api/simulate", description, signal),
+  variations: (description, signal) => call("POST", "/api/variations", description, signal),
+  response: (description, signal) => call("POST", "/api/response", description, signal),
+  describe: (description) => call("POST", "/api/describe", description),
+  steadyStart: (body, signal) => call("POST", "/api/start", body, signal),
+  sendRecord: (upload) => call("POST", "/api/records", upload),
+  startJob: async (kind, request) =>
+    started((await call<{ readonly id: string }>("POST", "/api/jobs", { kind, ...request })).id),
+};
 
-  constructor(status: number, problems: readonly string[]) {
-    super(problems.join(" "));
-    this.status = status;
-    this.problems = problems;
-  }
-}
-
-/** No answer at all. */
-export class Unreachable extends Error {}
-
-export const about = (): Promise<About> => call<About>("GET", "/api/about");
-
-/** Asks whether the server answers, and nothing else. */
-export async function alive(): Promise<void> {
-  await asked("HEAD", "/index.html");
-}
-
-export const simulate = (description: Part, signal: AbortSignal): Promise<Answer> =>
-  call<Answer>("POST", "/api/simulate", description, signal);
-
-export const variations = (description: Part, signal: AbortSignal): Promise<Variations> =>
-  call<Variations>("POST", "/api/variations", description, signal);
-
-export const response = (description: Part, signal: AbortSignal): Promise<ResponseCurves> =>
-  call<ResponseCurves>("POST", "/api/response", description, signal);
-
-export const describe = (description: Part): Promise<Described> =>
-  call<Described>("POST", "/api/describe", description);
-
-export const steadyStart = (body: Part, signal: AbortSignal): Promise<Start> =>
-  call<Start>("POST", "/api/start", body, signal);
-
-export const sendRecord = (upload: Part): Promise<UploadedRecord> =>
-  call<UploadedRecord>("POST", "/api/records", upload);
-
-/** What a job is asked for: a description, and the branch on which its runs start, if it is a map. */
-export interface JobRequest {
-  readonly description: Part;
-  readonly start?: string;
-}
-
-export const startJob = (kind: string, request: JobRequest): Promise<{ readonly id: string }> =>
-  call<{ readonly id: string }>("POST", "/api/jobs", { kind, ...request });
-
-export const jobReport = (id: string, after: number): Promise<JobReport> =>
-  call<JobReport>("GET", `/api/jobs/${encodeURIComponent(id)}?after=${after}`);
-
-export const cancelJob = (id: string): Promise<unknown> =>
-  call<unknown>("DELETE", `/api/jobs/${encodeURIComponent(id)}`);
-
-export async function jobFile(id: string): Promise<Blob> {
-  return (await asked("GET", `/api/jobs/${encodeURIComponent(id)}/file`)).blob();
+function started(id: string): Started {
+  const path = `/api/jobs/${encodeURIComponent(id)}`;
+  return {
+    report: (after) => call("GET", `${path}?after=${after}`),
+    cancel: () => call("DELETE", path),
+    file: async () => (await asked("GET", `${path}/file`)).blob(),
+  };
 }
 
 async function call<Answer>(method: string, path: string, body?: Value, signal?: AbortSignal): Promise<Answer> {

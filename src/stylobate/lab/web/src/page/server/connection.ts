@@ -1,17 +1,19 @@
 /** Whether the server answers: asked now and then, and every two seconds while it does not. */
 
-import { alive, Unreachable } from "./api";
 import { element } from "../frame/dom";
+import { type Source, Unreachable } from "./source";
 
 /** Between two questions [ms]: while it does not answer, and while all is well. */
 const [PAUSE, WATCH] = [2000, 4000];
 
 export class Connection {
   readonly root = element("div", { class: "banner", role: "alert", hidden: true });
+  readonly #source: Source;
   readonly #back: () => void;
   #lost = false;
 
-  constructor(back: () => void) {
+  constructor(source: Source, back: () => void) {
+    this.#source = source;
     this.#back = back;
     this.root.append(
       "The server does not answer. Start it again with ",
@@ -33,7 +35,7 @@ export class Connection {
   async #watch(): Promise<void> {
     if (this.#lost || document.hidden) return;
     try {
-      await alive();
+      await this.#source.alive();
     } catch (error) {
       if (error instanceof Unreachable) this.lose();
     }
@@ -43,7 +45,7 @@ export class Connection {
     while (this.#lost) {
       await new Promise((resolve) => setTimeout(resolve, PAUSE));
       try {
-        await alive();
+        await this.#source.alive();
         this.#lost = false;
         this.root.hidden = true;
         this.#back();

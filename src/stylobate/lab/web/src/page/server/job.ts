@@ -1,7 +1,7 @@
-/** Work that takes the server some time: started, asked after, and cancelled. */
+/** Work that takes some time: started, asked after, and cancelled. */
 
 import type { Job as JobReport } from "./schema";
-import { type JobRequest, cancelJob, jobReport, startJob } from "./api";
+import type { JobRequest, Source, Started } from "./source";
 
 /** Between two questions after a job [ms]: often enough to see a map fill in. */
 const PAUSE = 200;
@@ -14,39 +14,42 @@ export interface JobHearing {
 }
 
 export class Job {
-  #id: string | null = null;
+  #started: Started | null = null;
   #wanted = true;
   readonly #hearing: JobHearing;
 
-  constructor(kind: string, request: JobRequest, hearing: JobHearing) {
+  constructor(source: Source, kind: string, request: JobRequest, hearing: JobHearing) {
     this.#hearing = hearing;
-    void this.#run(kind, request);
+    void this.#run(source, kind, request);
   }
 
   /** Stops the job and hears no more of it. */
   cancel(): void {
     if (!this.#wanted) return;
     this.#wanted = false;
-    if (this.#id !== null) cancelJob(this.#id).catch(() => undefined); // nobody waits for the answer
+    this.#started?.cancel().catch(() => undefined); // nobody waits for the answer
   }
 
-  async #run(kind: string, request: JobRequest): Promise<void> {
+  /** Returns the file that the job has made. */
+  async file(): Promise<Blob> {
+    if (this.#started === null) throw new Error("the job has not started");
+    return this.#started.file();
+  }
+
+  async #run(source: Source, kind: string, request: JobRequest): Promise<void> {
     try {
-      const { id } = await startJob(kind, request);
-      this.#id = id;
-      if (!this.#wanted) {
-        await cancelJob(id);
-        return;
-      }
-      await this.#follow(id);
+      const started = await source.startJob(kind, request);
+      this.#started = started;
+      if (this.#wanted) await this.#follow(started);
+      else await started.cancel();
     } catch (error) {
       if (this.#wanted) this.#end(null, error);
     }
   }
 
-  async #follow(id: string): Promise<void> {
+  async #follow(started: Started): Promise<void> {
     for (let after = 0; this.#wanted; ) {
-      const report = await jobReport(id, after);
+      const report = await started.report(after);
       if (!this.#wanted) return;
       after = report.next;
       this.#hearing.report(report);

@@ -4,8 +4,8 @@ import type { Description } from "../case/description";
 import type { Branch } from "../case/starting";
 import { offBranch, startedFrom } from "../case/starting";
 import type { Run as Answer } from "./schema";
-import { simulate, steadyStart } from "./api";
 import { sent } from "./requests";
+import type { Source } from "./source";
 
 export interface WantedRun {
   readonly description: Description;
@@ -22,15 +22,19 @@ export interface Run {
   readonly remarks: readonly string[];
 }
 
-export async function run(wanted: WantedRun, signal: AbortSignal): Promise<Run> {
-  const { description, remarks } = await started(wanted, signal);
-  const answer = await simulate(sent(description), signal);
+export async function run(source: Source, wanted: WantedRun, signal: AbortSignal): Promise<Run> {
+  const { description, remarks } = await started(source, wanted, signal);
+  const answer = await source.simulate(sent(description), signal);
   return { answer: remarkedOn(answer, remarks), description, remarks };
 }
 
-async function started({ description, start, remarks }: WantedRun, signal: AbortSignal): Promise<Omit<Run, "answer">> {
+async function started(
+  source: Source,
+  { description, start, remarks }: WantedRun,
+  signal: AbortSignal,
+): Promise<Omit<Run, "answer">> {
   if (start === null) return { description, remarks };
-  const { warnings, ...from } = await steadyStart({ ...sent(startedFrom(description)), branch: start }, signal);
+  const { warnings, ...from } = await source.steadyStart({ ...sent(startedFrom(description)), branch: start }, signal);
   return { description: { ...description, ...offBranch(from) }, remarks: warnings };
 }
 

@@ -4,6 +4,7 @@
  * `column=dimensionless,slenderness:0.1&motion=circular,acceleration:0.065,angular_frequency:1.8&tilt=0.02,0`
  *
  * A part is its kind and its numbers; a vector in it is written `0.1/0.2`, what has parts of its own as JSON after `~`.
+ * `lesson=critical` alone is a lesson, `case=temple` a preset.
  */
 
 import { type About, type Lesson, type Preset, kindNamed } from "../case/about";
@@ -60,6 +61,7 @@ export function viewFrom(link: string, about: About): View {
   const { column, model, motion } = values;
   const lesson = about.lessons.find((one) => one.id === looks["lesson"]);
   if (lesson !== undefined && Object.keys(values).length === 0) return viewOfLesson(lesson);
+  if (looks["case"] !== undefined) return viewOfCase(String(looks["case"]), about);
   if (!isPart(column)) throw new BrokenLink("column is missing");
   const description: Description = {
     ...values,
@@ -93,6 +95,7 @@ const LOOKS: Readonly<Record<string, (text: string) => Value>> = {
     return text;
   },
   lesson: (text) => text,
+  case: (text) => text,
   time: (text) => {
     if (!(text !== "" && Number(text) >= 0)) throw new BrokenLink(`time must be zero or positive, got ${text}`);
     return Number(text);
@@ -220,6 +223,12 @@ export function inWords(reason: string): string {
 }
 
 // Views of presets, lessons and links
+
+function viewOfCase(name: string, about: About): View {
+  const preset = about.presets.find((one) => one.id === name);
+  if (preset === undefined) throw new BrokenLink(`case ${name} is not known`);
+  return viewOfPreset(preset);
+}
 
 export function viewOfPreset(preset: Preset): View {
   return viewOf(preset.description, preset.view ?? {});

@@ -7,8 +7,8 @@ import { joined } from "../frame/units";
 import type { MotionView } from "../motion/motion-view";
 import { verdictOf } from "../motion/verdict";
 import type { Described, Run as Answer } from "../server/schema";
-import { describe } from "../server/api";
 import { sent } from "../server/requests";
+import type { Source } from "../server/source";
 import { linkOf } from "./link";
 import type { View } from "./state";
 
@@ -20,13 +20,14 @@ export interface Shown {
 }
 
 /** Returns the menu of a motion; `now` gives what is shown when something is taken. */
-export function menuOf(motion: MotionView, now: () => Shown): ExportMenu {
+export function menuOf(source: Source, motion: MotionView, now: () => Shown): ExportMenu {
   return new ExportMenu({
+    source,
     stage: motion.stage,
     caption: () => captionOf(motion, now()),
     description: () => sent(now().view.description),
-    described: () => describedIn(now()),
-    link: () => `${location.origin}${location.pathname}#${linkOf({ ...now().view, time: motion.stoppedAt })}`,
+    described: () => describedIn(source, now()),
+    link: () => `${location.href.replace(/#.*/, "")}#${linkOf({ ...now().view, time: motion.stoppedAt })}`,
   });
 }
 
@@ -38,6 +39,6 @@ function captionOf(motion: MotionView, { view, answer }: Shown): readonly string
 }
 
 /** Returns the case in the languages of the package, whether its run has been answered or not. */
-async function describedIn({ view: { description }, answer, shown }: Shown): Promise<Described> {
-  return answer !== null && shown === written(description) ? answer : describe(sent(description));
+async function describedIn(source: Source, { view: { description }, answer, shown }: Shown): Promise<Described> {
+  return answer !== null && shown === written(description) ? answer : source.describe(sent(description));
 }
