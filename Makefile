@@ -6,7 +6,7 @@ BIN    := $(VENV)/bin
 .DEFAULT_GOAL := help
 # Without files of bytecode, each process that a test starts compiles all modules again.
 unexport PYTHONDONTWRITEBYTECODE
-.PHONY: help demo lab page test test-all test-python test-lowest uv coverage mutants lint docs figures sheet bench validation clean
+.PHONY: help demo lab page static-lab test test-all test-python test-lowest uv coverage mutants lint docs figures sheet bench validation clean
 
 help:  ## list the targets
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## /\t/' | expand -t 14
@@ -45,6 +45,9 @@ page: $(PAGE)  ## the laboratory's page and the viewer of moving pictures, bundl
 
 lab: $(VENV)/.core $(PAGE)  ## the laboratory, in the browser
 	$(BIN)/stylobate lab
+
+static-lab: $(VENV)/.core $(PAGE)  ## the laboratory as files for any web server, and as one file, into static-lab/
+	$(BIN)/stylobate lab --static static-lab
 
 test: $(VENV)/.core $(VENV)/.test  ## the tests; those of the page need `make page` and chromium, else they are skipped
 	$(BIN)/python -m pytest -n auto
@@ -120,4 +123,4 @@ validation: $(VENV)/.core $(VENV)/.validation  ## comparisons with other people'
 	$(BIN)/python -m validation
 
 clean:  ## remove what the targets made
-	rm -rf $(VENV) .venv-* .mutants docs/_build docs/gallery docs/tutorials stylobate-paper
+	rm -rf $(VENV) .venv-* .mutants docs/_build docs/gallery docs/tutorials stylobate-paper static-lab

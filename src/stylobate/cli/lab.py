@@ -2,9 +2,11 @@
 
 import sys
 import webbrowser
+from pathlib import Path
 
 from stylobate.cli.command import command
 from stylobate.cli.options import Options
+from stylobate.cli.terminal import part_lines
 from stylobate.config.options import Option
 
 
@@ -18,6 +20,7 @@ from stylobate.config.options import Option
     ),
     Option("allow_host", "another name by which browsers connect; repeat it", list[str], metavar="NAME"),
     Option("no_browser", "print the address, open no browser", bool, default=False),
+    Option("static", "write the laboratory as files into this folder, start no server", Path, metavar="FOLDER"),
 )
 def lab(options: Options) -> None:
     """Open the laboratory in the browser.
@@ -25,10 +28,16 @@ def lab(options: Options) -> None:
     Set column and base motion there, and watch the column stand, rock, roll or overturn.
 
     The server accepts connections of this machine only, unless --host states another address, and loads nothing from
-    the network. Ctrl-C ends the command. Example:
+    the network. Ctrl-C ends the command. Examples:
 
     stylobate lab --port 9000 --no-browser
+
+    stylobate lab --static FOLDER writes a folder for any web server, and laboratory.html, a page in one file. They show
+    the presets and lessons with recorded answers.
     """
+    if options["static"] is not None:
+        _write_files(options["static"])
+        return
     from stylobate.lab.pages import NO_PAGE, page_is_built
     from stylobate.lab.serving import LOOPBACK, serve
 
@@ -45,3 +54,12 @@ def lab(options: Options) -> None:
             webbrowser.open(address)
 
     serve(host=host, port=options["port"], allowed_hosts=options["allow_host"] or (), started=started)
+
+
+def _write_files(folder: Path) -> None:
+    from stylobate.lab.static_site import SINGLE_FILE, write
+
+    sizes = write(folder, progress=part_lines())
+    print(f"{folder / 'index.html'}: for a web server, {sizes.folder / 1e6:.1f} MB in {sizes.files} files")
+    print(f"{folder / SINGLE_FILE}: in one file, {sizes.single / 1e6:.1f} MB")
+    print(f"loaded before the first motion, compressed: {sizes.first / 1e3:.0f} kB")

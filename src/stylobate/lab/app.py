@@ -21,7 +21,6 @@ from starlette.requests import Request
 from starlette.responses import JSONResponse, Response
 from starlette.routing import Mount, Route, Router
 
-from stylobate import config
 from stylobate.errors import ConfigError, StylobateError
 from stylobate.lab import answers, openapi
 from stylobate.lab.curves import response
@@ -42,7 +41,7 @@ from stylobate.lab.requests import (
     may_start_on_branch,
     problems_of_numbers,
 )
-from stylobate.lab.runs import column_numbers, snippets
+from stylobate.lab.runs import described_case
 
 _SMALL, _QUICKLY = 1024, 3
 """Size from which an answer is compressed [bytes], and the level of the compression."""
@@ -163,13 +162,7 @@ class Api:
     @openapi.endpoint("POST /api/describe", answers.Described, refusals=openapi.OF_BODIES, body="Simulation")
     async def describe(self, request: Request) -> Response:
         """Return the description as TOML and as Python, and the derived numbers of the column, without a run."""
-        given = await self._described(request)
-
-        def describe() -> answers.Described:
-            model = config.SimulationConfig.parse(given.values).build().model
-            return answers.Described(**snippets(given), column=column_numbers(model))
-
-        return _answer(await to_thread.run_sync(describe))
+        return _answer(await to_thread.run_sync(described_case, await self._described(request)))
 
     @openapi.endpoint("POST /api/simulate", answers.Run, refusals=openapi.OF_RUNS, body="Simulation")
     async def simulate(self, request: Request) -> Response:

@@ -12,7 +12,7 @@ from stylobate import config
 from stylobate.base_motions import Record
 from stylobate.config.snippets import as_python, as_toml
 from stylobate.errors import UnlikelyInputWarning
-from stylobate.lab.answers import OF_ANY_COLUMN, ColumnNumbers, Measures, Peaks, Run, RunEvent, Series
+from stylobate.lab.answers import OF_ANY_COLUMN, ColumnNumbers, Described, Measures, Peaks, Run, RunEvent, Series
 from stylobate.lab.requests import Description
 from stylobate.models import Model
 from stylobate.plots.animation.motion import drawn_motion
@@ -56,6 +56,12 @@ def snippets(given: Description) -> dict[str, str]:
         "toml": as_toml(given.shown),
         "python": as_python(config.SimulationConfig.parse(given.shown)),
     }
+
+
+def described_case(given: Description) -> Described:
+    """Describe a case without a run."""
+    model = config.SimulationConfig.parse(given.values).build().model
+    return Described(**snippets(given), column=column_numbers(model))
 
 
 def column_numbers(model: Model) -> ColumnNumbers:

@@ -10,14 +10,18 @@ const SIGNAL = new AbortController().signal;
 const CASE = { tilt: [0.02, 0], column: { shape: "dimensionless", slenderness: 0.1 } };
 const SAME = { column: { slenderness: 0.1, shape: "dimensionless" }, tilt: [0.02, 0.0] };
 const ORBITS = { families: [], bifurcations: [] };
-const JOB = { id: "", kind: "exact", state: "done", events: [], next: 0, problems: [], result: ORBITS };
 
-const FILES: Readonly<Record<string, unknown>> = { first: { outcome: "ROLLING" }, second: JOB };
+const FILES: Readonly<Record<string, unknown>> = {
+  first: { outcome: "ROLLING" },
+  second: ORBITS,
+  third: { problems: ["no orbit was found"] },
+};
 const CONTENTS: Contents = {
   about: { version: "1" } as About,
   answers: [
     { ask: "simulate", question: CASE, name: "first" },
     { ask: "exact", question: { description: CASE }, name: "second" },
+    { ask: "exact", question: { description: { ...CASE, spin: 1 } }, name: "third" },
   ],
 };
 const layer = recorded(CONTENTS, (name) => Promise.resolve(FILES[name]));
@@ -63,6 +67,11 @@ test("a refusal or a failure of a layer is the answer: no other layer is asked",
   const refusing: Layer = { simulate: () => Promise.reject(new Refused(422, ["damping must be positive"])) };
   const next: Layer = { simulate: () => assert.fail("asked") };
   await assert.rejects(layered([refusing, next]).simulate(CASE, SIGNAL), /damping must be positive/);
+});
+
+test("a refusal is recorded as one", async () => {
+  const asked = layered([layer]).startJob("exact", { description: { ...CASE, spin: 1 } });
+  await assert.rejects(asked, (error) => error instanceof Refused && error.problems[0] === "no orbit was found");
 });
 
 test("a recorded job has ended when it is asked after", async () => {

@@ -2,8 +2,8 @@
 
 import type { About } from "../case/about";
 import { type Value, written } from "../case/description";
-import type { Job } from "./schema";
-import { type Layer, NotMine, type Started } from "./source";
+import type { Job, Problems } from "./schema";
+import { type Layer, NotMine, Refused, type Started } from "./source";
 
 /** What the page holds: its options, and for each question where its answer is. */
 export interface Contents {
@@ -24,7 +24,9 @@ export function recorded({ about, answers }: Contents, read: Read): Layer {
   async function found<Answer>(ask: string, question: Value): Promise<Answer> {
     const name = names.get(keyOf(ask, question));
     if (name === undefined) throw new NotMine();
-    return (await read(name)) as Answer;
+    const answer = await read(name);
+    if (isRefusal(answer)) throw new Refused(422, answer.problems);
+    return answer as Answer;
   }
   return {
     about: () => Promise.resolve(about),
@@ -33,7 +35,7 @@ export function recorded({ about, answers }: Contents, read: Read): Layer {
     response: (description) => found("response", description),
     describe: (description) => found("describe", description),
     steadyStart: (body) => found("start", body),
-    startJob: async (kind, request) => done(await found<Job>(kind, { ...request })),
+    startJob: async (kind, request) => done(kind, await found<Job["result"]>(kind, { ...request })),
   };
 }
 
@@ -41,10 +43,19 @@ function keyOf(ask: string, question: Value): string {
   return `${ask} ${written(question)}`;
 }
 
+/** A question may have been refused when it was recorded. */
+function isRefusal(answer: unknown): answer is Problems {
+  return typeof answer === "object" && answer !== null && "problems" in answer;
+}
+
 /** Returns a job that had ended before it was asked for. */
-function done(job: Job): Started {
+function done(kind: string, result: Job["result"]): Started {
+  const report: Job = {
+    ...{ id: "", kind: kind as Job["kind"], state: "done", done: 0, total: 0, note: "" },
+    ...{ events: [], next: 0, problems: [], result },
+  };
   return {
-    report: () => Promise.resolve(job),
+    report: () => Promise.resolve(report),
     cancel: () => Promise.resolve(),
     file: () => Promise.reject(new NotMine("the job made no file")),
   };

@@ -1,4 +1,4 @@
-/** What the page asks, whoever answers: a server, or the files of a page that has none. */
+/** What the page asks: a server answers, or the files of a page that has none. */
 
 import type { About } from "../case/about";
 import type { Part } from "../case/description";

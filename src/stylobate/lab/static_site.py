@@ -1,0 +1,194 @@
+"""The laboratory as static files: a folder for any web server, and one file that a browser opens from disk.
+
+Both show the page with recorded answers and send no request to another machine.
+"""
+
+import base64
+import gzip
+import hashlib
+import json
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from stylobate.errors import FileError
+from stylobate.files import write_whole
+from stylobate.lab.guards import POLICY, written_policy
+from stylobate.lab.limits import Limits
+from stylobate.lab.options import about, lessons
+from stylobate.lab.pages import page_folder, page_is_built
+from stylobate.lab.recorded import AT_ONCE, EXACT, Question, answer_to, questions
+from stylobate.progress import Progress, in_parts, report_of, shows_progress
+
+SINGLE_FILE = "laboratory.html"
+"""Name of the page in one file."""
+
+_CONTENTS = "answers"
+"""Element of the page with the list of answers, beginning of the names of their elements, and their folder."""
+
+_SCRIPT, _STYLE, _HEAD = (
+    '<script type="module" src="main.js"></script>',
+    '<link rel="stylesheet" href="main.css" />',
+    '<meta charset="utf-8" />',
+)
+"""Lines of the page that its static forms replace or follow."""
+
+_FRAMES = "frame-ancestors"
+"""Part of the policy that browsers accept from servers only."""
+_WASM = "'wasm-unsafe-eval'"
+"""Permission to compile WebAssembly; scripts still come from the page alone."""
+
+
+@dataclass(frozen=True, slots=True)
+class Sizes:
+    """Sizes of what was written [bytes].
+
+    Attributes
+    ----------
+    files
+        Number of files in the folder, without the page in one file.
+    folder, single
+        Size of the folder without the page in one file, and of this page.
+    first
+        Size of what a browser loads for the first motion, compressed by gzip.
+    """
+
+    files: int
+    folder: int
+    single: int
+    first: int
+
+
+@shows_progress("recorded answers", in_parts)
+def write(folder: Path, *, exact: bool = True, progress: Progress = None) -> Sizes:
+    """Write the laboratory as static files.
+
+    Parameters
+    ----------
+    folder
+        Folder of the files; it is made if it does not exist. Its `index.html` works on any web server, at any address;
+        its `laboratory.html` is the same page in one file.
+    exact
+        Whether exact orbits are recorded, which takes minutes; without them the page refuses to show them.
+    progress
+        Called with the name of the present question, the number of answered questions and of all; False shows nothing.
+
+    Returns
+    -------
+    Sizes
+        The sizes of the files. The same version of the package writes the same files.
+
+    Raises
+    ------
+    FileError
+        If the page is not built, or a file cannot be written.
+    """
+    if not page_is_built():
+        raise FileError("the page of the laboratory is not built. Run make page, or install a wheel of stylobate.")
+    report = report_of(progress)
+    asked = [one for one in questions() if exact or one.ask != EXACT]
+    answers = {}
+    for done, one in enumerate(asked):
+        report(one.name, done, len(asked))
+        answers[one.name] = answer_to(one)
+    page, style, script = (_page_file(name) for name in ("index.html", "main.css", "main.js"))
+    contents = _contents(asked)
+    first = [name for name in (f"{ask}-{_opening()}" for ask in AT_ONCE) if name in answers]
+    files = {
+        "index.html": _for_server(page, contents, first).encode(),
+        "main.css": style.encode(),
+        "main.js": script.encode(),
+        **{f"{_CONTENTS}/{name}.json": answer for name, answer in answers.items()},
+    }
+    single = _single(page, style, script, contents, answers).encode()
+    (folder / _CONTENTS).mkdir(parents=True, exist_ok=True)
+    for name, content in {**files, SINGLE_FILE: single}.items():
+        write_whole(folder / name, content)
+    loaded = [*("index.html", "main.css", "main.js"), *(f"{_CONTENTS}/{name}.json" for name in first)]
+    return Sizes(
+        files=len(files),
+        folder=sum(map(len, files.values())),
+        single=len(single),
+        first=sum(len(_packed(files[name])) for name in loaded),
+    )
+
+
+def _page_file(name: str) -> str:
+    return (page_folder() / name).read_text(encoding="utf-8")
+
+
+def _opening() -> str:
+    """Return the identity of the lesson with which the page opens."""
+    return next(one.identity for one in lessons() if one.opens)
+
+
+def _contents(asked: Iterable[Question]) -> str:
+    """Return the element with the options of the page and the list of its answers."""
+    listed = [{"ask": one.ask, "question": one.values, "name": one.name} for one in asked]
+    text = json.dumps(
+        {"about": json.loads(about(Limits()).as_json()), "answers": listed}, ensure_ascii=False, separators=(",", ":")
+    )
+    return _data(_CONTENTS, "application/json", text.replace("<", r"\u003c"))
+
+
+def _data(identity: str, kind: str, text: str) -> str:
+    return f'<script id="{identity}" type="{kind}">{text}</script>'
+
+
+def _for_server(page: str, contents: str, first: Iterable[str]) -> str:
+    """Return the page that finds its script, its style and its answers beside it."""
+    policy = {**POLICY, "script-src": f"{POLICY['script-src']} {_WASM}"}
+    ahead = [f'<link rel="preload" as="fetch" crossorigin href="{_CONTENTS}/{name}.json" />' for name in first]
+    return _replaced(
+        page, {_HEAD: "\n    ".join([_HEAD, _policy(policy)]), _SCRIPT: "\n    ".join([_SCRIPT, *ahead, contents])}
+    )
+
+
+def _single(page: str, style: str, script: str, contents: str, answers: Mapping[str, bytes]) -> str:
+    """Return the page with its script, its style and its answers in it."""
+    # In a script only strings can have these words, where an escaped sign is the same.
+    script = script.replace("</script", r"\x3c/script").replace("<!--", r"\x3c!--")
+    policy = {
+        **POLICY,
+        "script-src": f"{_digest(script)} {_WASM}",
+        "style-src": _digest(style),
+        "img-src": "data: blob:",
+        "connect-src": "'none'",
+    }
+    packed = [
+        _data(f"{_CONTENTS}-{name}", "text/plain", base64.b64encode(_packed(answer)).decode())
+        for name, answer in answers.items()
+    ]
+    return _replaced(
+        page,
+        {
+            _HEAD: "\n    ".join([_HEAD, _policy(policy)]),
+            _STYLE: f"<style>{style}</style>",
+            _SCRIPT: f'<script type="module">{script}</script>',
+            "</body>": "\n".join([contents, *packed, "</body>"]),
+        },
+    )
+
+
+def _policy(policy: Mapping[str, str]) -> str:
+    allowed = {name: sources for name, sources in policy.items() if name != _FRAMES}
+    return f'<meta http-equiv="Content-Security-Policy" content="{written_policy(allowed)}" />'
+
+
+def _digest(text: str) -> str:
+    return f"'sha256-{base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()}'"
+
+
+def _packed(content: bytes) -> bytes:
+    return gzip.compress(content, 9, mtime=0)
+
+
+def _replaced(page: str, parts: Mapping[str, str]) -> str:
+    """Return the page with each of these texts, which it has once, replaced."""
+    pieces = [page]
+    for old, new in parts.items():
+        where = [number for number, piece in enumerate(pieces) if old in piece]
+        (number,) = where
+        before, after = pieces[number].split(old)
+        pieces[number : number + 1] = [before, new, after]
+    return "".join(pieces)
