@@ -99,7 +99,7 @@ COMPUTING = (
         "earthquakes.rocking_spectrum",
         "earthquakes.fragility_study.FragilityStudy.runs",
     ),
-    *("earthquakes.assess", "paper.check_paper", "lab.serving.serve"),
+    *("earthquakes.assess", "paper.check_paper", "lab.serving.serve", "lab.static_site.write"),
     *("cli.records.print_table", "records.response_spectra"),
 )
 

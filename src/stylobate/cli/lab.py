@@ -8,15 +8,19 @@ from stylobate.cli.command import command
 from stylobate.cli.options import Options
 from stylobate.cli.terminal import part_lines
 from stylobate.config.options import Option
+from stylobate.errors import ParameterError
+
+_OF_SERVER = {"port": 8642, "host": "127.0.0.1", "allow_host": None, "no_browser": False}
+"""Options of the server with their defaults."""
 
 
 @command(
-    Option("port", "port to listen on; 0 for any free port; 8642 by default", int, default=8642),
+    Option("port", "port to listen on; 0 for any free port; 8642 by default", int, default=_OF_SERVER["port"]),
     Option(
         "host",
         "address to listen on, 0.0.0.0 for all; by default only programs of this machine can connect",
         str,
-        default="127.0.0.1",
+        default=_OF_SERVER["host"],
     ),
     Option("allow_host", "another name by which browsers connect; repeat it", list[str], metavar="NAME"),
     Option("no_browser", "print the address, open no browser", bool, default=False),
@@ -36,7 +40,7 @@ def lab(options: Options) -> None:
     the presets and lessons with recorded answers.
     """
     if options["static"] is not None:
-        _write_files(options["static"])
+        _write_files(options)
         return
     from stylobate.lab.pages import NO_PAGE, page_is_built
     from stylobate.lab.serving import LOOPBACK, serve
@@ -56,9 +60,14 @@ def lab(options: Options) -> None:
     serve(host=host, port=options["port"], allowed_hosts=options["allow_host"] or (), started=started)
 
 
-def _write_files(folder: Path) -> None:
+def _write_files(options: Options) -> None:
     from stylobate.lab.static_site import SINGLE_FILE, write
 
+    for name, default in _OF_SERVER.items():
+        if options[name] not in (default, None, []):
+            flag = name.replace("_", "-")
+            raise ParameterError(f"--static starts no server, so --{flag} has no effect. Leave out --{flag}.")
+    folder = options["static"]
     sizes = write(folder, progress=part_lines())
     print(f"{folder / 'index.html'}: for a web server, {sizes.folder / 1e6:.1f} MB in {sizes.files} files")
     print(f"{folder / SINGLE_FILE}: in one file, {sizes.single / 1e6:.1f} MB")

@@ -27,9 +27,6 @@ from stylobate.lab.variations import variations
 AT_ONCE = ("start", "simulate", "describe", "response")
 """What the page asks when a case is opened; it asks the other questions at a click."""
 
-EXACT = "exact"
-"""The question that takes most of the time: exact orbits over the range of the response."""
-
 
 @dataclass(frozen=True, slots=True)
 class Question:
@@ -119,7 +116,7 @@ def _asked_of(case: Case) -> Iterator[Question]:
         slender = {"kind": "slender", "damping": values["model"].get("damping", 0)}
         yield asked("describe", {"column": values["column"], "duration": 1})
         yield asked("response", {**exact, "model": slender, "points": _POINTS})
-        yield asked(EXACT, {"description": exact})
+        yield asked("exact", {"description": exact})
 
 
 def _off_branch(begun: answers.Start) -> dict[str, Any]:
@@ -201,5 +198,5 @@ _ANSWERED: Mapping[str, Callable[[Mapping[str, Any]], bytes]] = {
     "describe": lambda values: described_case(_both(values)).as_json(),
     "response": lambda values: response(values).as_json(),
     "start": lambda values: start(values, _unheard).as_json(),
-    EXACT: lambda values: exact_curves(values["description"], _unheard).as_json(),
+    "exact": lambda values: exact_curves(values["description"], _unheard).as_json(),
 }

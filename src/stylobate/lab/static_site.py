@@ -17,7 +17,7 @@ from stylobate.lab.guards import POLICY, written_policy
 from stylobate.lab.limits import Limits
 from stylobate.lab.options import about, lessons
 from stylobate.lab.pages import page_folder, page_is_built
-from stylobate.lab.recorded import AT_ONCE, EXACT, Question, answer_to, questions
+from stylobate.lab.recorded import AT_ONCE, Question, answer_to, questions
 from stylobate.progress import Progress, in_parts, report_of, shows_progress
 
 SINGLE_FILE = "laboratory.html"
@@ -60,7 +60,7 @@ class Sizes:
 
 
 @shows_progress("recorded answers", in_parts)
-def write(folder: Path, *, exact: bool = True, progress: Progress = None) -> Sizes:
+def write(folder: Path, *, progress: Progress = None) -> Sizes:
     """Write the laboratory as static files.
 
     Parameters
@@ -68,8 +68,6 @@ def write(folder: Path, *, exact: bool = True, progress: Progress = None) -> Siz
     folder
         Folder of the files; it is made if it does not exist. Its `index.html` works on any web server, at any address;
         its `laboratory.html` is the same page in one file.
-    exact
-        Whether exact orbits are recorded, which takes minutes; without them the page refuses to show them.
     progress
         Called with the name of the present question, the number of answered questions and of all; False shows nothing.
 
@@ -85,8 +83,12 @@ def write(folder: Path, *, exact: bool = True, progress: Progress = None) -> Siz
     """
     if not page_is_built():
         raise FileError("the page of the laboratory is not built. Run make page, or install a wheel of stylobate.")
+    try:
+        (folder / _CONTENTS).mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise FileError(f"{folder}: cannot be made: {error.strerror or error}. Choose another folder.") from None
     report = report_of(progress)
-    asked = [one for one in questions() if exact or one.ask != EXACT]
+    asked = list(questions())
     answers = {}
     for done, one in enumerate(asked):
         report(one.name, done, len(asked))
@@ -101,7 +103,6 @@ def write(folder: Path, *, exact: bool = True, progress: Progress = None) -> Siz
         **{f"{_CONTENTS}/{name}.json": answer for name, answer in answers.items()},
     }
     single = _single(page, style, script, contents, answers).encode()
-    (folder / _CONTENTS).mkdir(parents=True, exist_ok=True)
     for name, content in {**files, SINGLE_FILE: single}.items():
         write_whole(folder / name, content)
     loaded = [*("index.html", "main.css", "main.js"), *(f"{_CONTENTS}/{name}.json" for name in first)]

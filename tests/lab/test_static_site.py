@@ -1,0 +1,287 @@
+"""The laboratory as static files: the page with recorded answers, from a web server and from one file."""
+
+import json
+import re
+import threading
+from functools import partial
+from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
+
+import pytest
+from tests.lab.browser import Watched, found_browser, moved, new_page, open_sections, shown
+from tests.lab.test_page_mistakes import EXACT
+
+from stylobate.errors import FileError
+from stylobate.lab import answers, recorded, static_site
+from stylobate.lab.options import lessons, presets
+
+LESSONS, PRESETS = lessons(), presets()
+OPENING = next(one for one in LESSONS if one.opens)
+OUTCOME = "window.stylobate.laboratory.answer.outcome"
+REFUSED = "This page has no answer for"
+FOLDER = "some/where"
+
+
+class Quiet(SimpleHTTPRequestHandler):
+    def log_message(self, *_):
+        pass
+
+
+def contents(page):
+    """Return the list of answers in a page."""
+    found = re.search('<script id="answers" type="application/json">(.*?)</script>', page)
+    return json.loads(found[1])
+
+
+@pytest.fixture(scope="module")
+def site(tmp_path_factory):
+    """Write the files, with exact orbits that are not computed."""
+    found_browser()
+    root = tmp_path_factory.mktemp("site")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setitem(recorded._ANSWERED, "exact", lambda _: json.dumps(EXACT).encode())
+        static_site.write(root / FOLDER, progress=False)
+    return root
+
+
+@pytest.fixture(scope="module")
+def served(site):
+    """Serve the files below a folder of a web server, and give the address."""
+    with ThreadingHTTPServer(("127.0.0.1", 0), partial(Quiet, directory=str(site))) as server:
+        thread = threading.Thread(target=server.serve_forever)
+        thread.start()
+        yield f"http://127.0.0.1:{server.server_port}/{FOLDER}/"
+        server.shutdown()
+        thread.join()
+
+
+@pytest.fixture(params=["folder", "one file"])
+def place(request, site):
+    """Give the address of the page: in a folder of a web server, and in one file on disk."""
+    if request.param == "folder":
+        return request.getfixturevalue("served")
+    return (site / FOLDER / static_site.SINGLE_FILE).as_uri()
+
+
+@pytest.fixture
+def opened(browser, place):
+    context = browser.new_context(viewport={"width": 1280, "height": 860})
+    found = Watched(new_page(context), place)
+    asked = []
+    found.page.on("request", lambda request: asked.append(request.url))
+    found.page.goto(place)
+    shown(found.page)
+    yield found
+    context.close()
+    assert found.foreign == []
+    assert found.said == []
+    if place.startswith("file:"):
+        assert {address.partition("#")[0] for address in asked} == {place}
+
+
+def refusals(page):
+    """Return the texts of the page that say that it has no answer."""
+    return page.evaluate(
+        "words => [...document.querySelectorAll('.problems, .note, .said, .old-note, .plane-panel .problem, .shares')]"
+        ".filter((one) => !one.hidden && one.textContent.includes(words)).map((one) => one.className)",
+        REFUSED,
+    )
+
+
+def test_it_opens_on_the_first_lesson_and_moves(opened):
+    page = opened.page
+    assert page.get_by_role("heading", name=OPENING.question).is_visible()
+    page.wait_for_function("() => window.stylobate.laboratory.clock.time > 0.5")
+    page.wait_for_function("() => document.querySelector('.said').textContent.includes('1.397')")
+    assert refusals(page) == []
+
+
+def test_every_preset_opens_with_its_outcome_its_curves_and_its_orbits(opened):
+    page = opened.page
+    for preset in PRESETS:
+        page.get_by_label("Preset").select_option(preset.identity)
+        page.wait_for_function(
+            f"() => window.stylobate.laboratory.answer.toml.includes('{preset.description['model']['kind']}')"
+        )
+        page.wait_for_function(f"() => {OUTCOME} === '{preset.outcome}'")
+        shown(page)
+        exact = page.get_by_role("button", name="Exact orbits")
+        if exact.is_visible() and exact.is_enabled():
+            page.wait_for_function("() => document.querySelector('.response .note').textContent.startsWith('Steady')")
+            exact.click()
+            page.locator(".response .note").get_by_text("1 family of exact orbits").wait_for()
+        page.get_by_role("button", name="Vary it").click()
+        page.locator(".shares").get_by_text("64 small variations").wait_for()
+        assert refusals(page) == [], preset.identity
+
+
+def test_every_lesson_and_preset_is_a_link_and_every_choice_has_an_answer(opened, place):
+    page = opened.page
+    for lesson in LESSONS:
+        page.goto(f"{place}#lesson={lesson.identity}")
+        page.get_by_role("heading", name=lesson.question).wait_for()
+        page.wait_for_function("() => document.querySelector('.said').textContent !== ''")
+        assert refusals(page) == []
+    for preset in PRESETS:
+        page.goto(f"{place}#case={preset.identity}")
+        page.wait_for_function(f"() => {OUTCOME} === '{preset.outcome}'")
+        assert refusals(page) == []
+    page.goto(f"{place}#lesson=spin")
+    page.get_by_label("may spin").check()
+    page.wait_for_function(f"() => {OUTCOME} === 'AT_REST'")
+    assert refusals(page) == []
+
+
+def test_a_number_without_an_answer_is_refused_in_one_line_and_the_page_goes_on(opened):
+    page = opened.page
+    page.locator(".lesson .slider").focus()
+    page.locator(".lesson .slider").press("ArrowLeft")
+    problems = page.locator(".problems")
+    problems.get_by_text(f"{REFUSED} these numbers. Install stylobate and run").wait_for()
+    assert problems.locator("p").count() == 1
+    assert page.locator(".banner").is_hidden()
+    page.get_by_role("button", name="Lesson 1").click()
+    page.get_by_text("It stands, however long you wait.").wait_for()
+    assert problems.is_hidden()
+    open_sections(page)
+    moved(page, "acceleration", 1.25)
+    problems.get_by_text(REFUSED).wait_for()
+    moved(page, "acceleration", 1.0)
+    page.wait_for_function("() => document.querySelector('.problems').hidden")
+    assert refusals(page) == []
+
+
+def test_maps_and_animations_are_refused_where_they_are_asked_for(opened):
+    page = opened.page
+    page.get_by_role("tab", name="Overturning map").click()
+    page.locator(".plane-panel.map .problem").get_by_text(f"{REFUSED} maps").wait_for()
+    page.get_by_text("Export").click()
+    page.get_by_role("button", name="Animation (GIF)").click()
+    page.locator(".export-note").get_by_text(f"{REFUSED} animations").wait_for()
+
+
+def test_a_link_to_an_unrecorded_case_shows_the_first_lesson_and_says_why(opened, place):
+    page = opened.page
+    page.goto("about:blank")
+    page.goto(f"{place}#column=dimensionless,slenderness:0.2&model=slender&motion=rest&duration=3")
+    shown(page)
+    page.locator(".problems").get_by_text(f"This link cannot be opened: {REFUSED} these numbers").wait_for()
+    assert page.get_by_role("heading", name=OPENING.question).is_visible()
+
+
+def test_program_and_link_of_a_case_are_shown(opened, place):
+    page = opened.page
+    dialog = page.locator(".export dialog")
+    for item, text in (("Python…", "import stylobate"), ("Link to this view…", f"{place}#column=")):
+        page.get_by_text("Export").click()
+        page.get_by_role("button", name=item).click()
+        dialog.get_by_text(text).wait_for()
+        dialog.get_by_role("button", name="Close").click()
+
+
+def test_a_missing_file_of_answers_is_reported(served, browser):
+    page = new_page(browser)
+    page.route(re.compile("simulate-temple"), lambda route: route.abort())
+    page.goto(served)
+    shown(page)
+    page.get_by_label("Preset").select_option("temple")
+    page.locator(".problems").get_by_text("simulate-temple.json of this page cannot be loaded").wait_for()
+    page.close()
+
+
+def test_the_policy_allows_nothing_but_the_page_itself(site):
+    for name, scripts in (("index.html", "'self' 'wasm-unsafe-eval'"), (static_site.SINGLE_FILE, "'sha256-")):
+        page = (site / FOLDER / name).read_text(encoding="utf-8")
+        policy = dict(
+            one.split(" ", 1) for one in re.search('Content-Security-Policy" content="(.*?)"', page)[1].split("; ")
+        )
+        assert policy["default-src"] == "'none'"
+        assert policy["script-src"].startswith(scripts)
+        assert policy["connect-src"] == ("'self'" if name == "index.html" else "'none'")
+        assert "unsafe-inline" not in str(policy)
+        assert "unsafe-eval" not in str(policy).replace("wasm-unsafe-eval", "")
+
+
+def test_the_answers_are_those_of_the_server(site, client):
+    listed = contents((site / FOLDER / "index.html").read_text(encoding="utf-8"))["answers"]
+    of_case = [one for one in listed if one["name"].endswith("-averaging")]
+    assert {one["ask"] for one in of_case} >= {"start", "simulate", "variations"}
+    for one in of_case:
+        if one["ask"] != "exact":
+            answer = json.loads((site / FOLDER / "answers" / f"{one['name']}.json").read_bytes())
+            assert client.post(f"/api/{one['ask']}", json=one["question"]).json() == answer
+
+
+# Without a browser
+
+
+def test_the_opening_lesson_is_recorded_first_and_all_presets_and_lessons_are():
+    cases = [one.identity for one in recorded.cases()]
+    assert cases[0] == OPENING.identity
+    assert {one.identity for one in (*PRESETS, *LESSONS)} <= set(cases)
+
+
+def test_a_new_preset_is_recorded(monkeypatch):
+    motion = {"kind": "circular", "acceleration": 0.05, "angular_frequency": 7.0}
+    description = {**PRESETS[0].description, "motion": motion}
+    new = PRESETS[0].model_copy(update={"identity": "new", "description": description})
+    monkeypatch.setattr(recorded, "presets", lambda: [*PRESETS, new])
+    found = {one.ask: one.values for one in recorded.questions() if one.name.endswith("-new")}
+    assert found["simulate"] == description
+    assert found["response"]["angular_frequency_range"] == [0.2, 10.0]  # wide enough for its frequency
+    assert set(found) == {"simulate", "variations", "response", "exact"}  # its column is known
+
+
+def test_a_refusal_is_recorded():
+    values = {**PRESETS[0].description, "model": {"kind": "slender", "damping": -1.0}}
+    answer = recorded.answer_to(recorded.Question("simulate", values, "refused"))
+    (problem,) = answers.Problems.model_validate_json(answer).problems
+    assert problem.startswith("model: damping must be zero or positive")
+
+
+@pytest.fixture
+def one_case(monkeypatch):
+    """Record one case only, and no exact orbits."""
+    first = next(recorded.cases())
+    monkeypatch.setattr(recorded, "cases", lambda: [first])
+    monkeypatch.setitem(recorded._ANSWERED, "exact", lambda _: b"{}")
+    monkeypatch.setattr(static_site, "_page_file", PAGE.__getitem__)
+    monkeypatch.setattr(static_site, "page_is_built", lambda: True)
+
+
+PAGE = {
+    "index.html": f"<head>{static_site._HEAD}{static_site._STYLE}{static_site._SCRIPT}</head><body>é</body>",
+    "main.css": "body { color: red }",
+    "main.js": 'const end = "</script><!-- ";',
+}
+
+
+@pytest.mark.usefixtures("one_case")
+def test_the_same_files_are_written_each_time(tmp_path):
+    written = []
+    for name in ("first", "second"):
+        sizes = static_site.write(tmp_path / name, progress=False)
+        files = {
+            path.relative_to(tmp_path / name).as_posix(): path.read_bytes()
+            for path in (tmp_path / name).rglob("*")
+            if path.is_file()
+        }
+        written.append(files)
+    assert written[0] == written[1]
+    single = written[0].pop(static_site.SINGLE_FILE)
+    assert (sizes.files, sizes.folder) == (len(written[0]), sum(map(len, written[0].values())))
+    assert sizes.single == len(single)
+    assert single.count(b"</script>") == 1 + len(contents(single.decode())["answers"]) + 1
+
+
+@pytest.mark.usefixtures("one_case")
+def test_a_folder_that_cannot_be_made_is_refused_before_anything_is_computed(tmp_path, monkeypatch):
+    monkeypatch.setattr(static_site, "answer_to", lambda _: pytest.fail("computed"))
+    (tmp_path / "file").touch()
+    with pytest.raises(FileError, match="cannot be made"):
+        static_site.write(tmp_path / "file", progress=False)
+
+
+def test_a_page_that_is_not_built_is_refused(tmp_path, monkeypatch):
+    monkeypatch.setattr(static_site, "page_is_built", lambda: False)
+    with pytest.raises(FileError, match="make page"):
+        static_site.write(tmp_path, progress=False)
