@@ -16,6 +16,7 @@ from stylobate.files import write_whole
 from stylobate.lab.guards import POLICY, written_policy
 from stylobate.lab.limits import Limits
 from stylobate.lab.options import about, lessons
+from stylobate.lab.packing import packed
 from stylobate.lab.pages import page_folder, page_is_built
 from stylobate.lab.recorded import AT_ONCE, Question, answer_to, questions
 from stylobate.progress import Progress, in_parts, report_of, shows_progress
@@ -92,7 +93,7 @@ def write(folder: Path, *, progress: Progress = None) -> Sizes:
     answers = {}
     for done, one in enumerate(asked):
         report(one.name, done, len(asked))
-        answers[one.name] = answer_to(one)
+        answers[one.name] = packed(answer_to(one))
     page, style, script = (_page_file(name) for name in ("index.html", "main.css", "main.js"))
     contents = _contents(asked)
     first = [name for name in (f"{ask}-{_opening()}" for ask in AT_ONCE) if name in answers]
@@ -110,7 +111,7 @@ def write(folder: Path, *, progress: Progress = None) -> Sizes:
         files=len(files),
         folder=sum(map(len, files.values())),
         single=len(single),
-        first=sum(len(_packed(files[name])) for name in loaded),
+        first=sum(len(_zipped(files[name])) for name in loaded),
     )
 
 
@@ -156,8 +157,8 @@ def _single(page: str, style: str, script: str, contents: str, answers: Mapping[
         "img-src": "data: blob:",
         "connect-src": "'none'",
     }
-    packed = [
-        _data(f"{_CONTENTS}-{name}", "text/plain", base64.b64encode(_packed(answer)).decode())
+    zipped = [
+        _data(f"{_CONTENTS}-{name}", "text/plain", base64.b64encode(_zipped(answer)).decode())
         for name, answer in answers.items()
     ]
     return _replaced(
@@ -166,7 +167,7 @@ def _single(page: str, style: str, script: str, contents: str, answers: Mapping[
             _HEAD: "\n    ".join([_HEAD, _policy(policy)]),
             _STYLE: f"<style>{style}</style>",
             _SCRIPT: f'<script type="module">{script}</script>',
-            "</body>": "\n".join([contents, *packed, "</body>"]),
+            "</body>": "\n".join([contents, *zipped, "</body>"]),
         },
     )
 
@@ -180,7 +181,7 @@ def _digest(text: str) -> str:
     return f"'sha256-{base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()}'"
 
 
-def _packed(content: bytes) -> bytes:
+def _zipped(content: bytes) -> bytes:
     return gzip.compress(content, 9, mtime=0)
 
 

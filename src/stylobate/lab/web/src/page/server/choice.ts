@@ -1,6 +1,7 @@
 /** Who answers this page: a page that was made to do without a server holds its answers, or says where they lie. */
 
 import { server } from "./api";
+import { unpacked } from "./packed";
 import { type Contents, type Read, recorded } from "./recorded";
 import { Refused, type Source, layered } from "./source";
 
@@ -14,9 +15,9 @@ export function sourceOf(page: Document): Source {
   if (contents === null) return server;
   const read: Read = (name) => {
     const own = page.getElementById(`${CONTENTS}-${name}`);
-    return own === null ? fetched(name) : unpacked(own.textContent);
+    return own === null ? fetched(name) : unzipped(own.textContent);
   };
-  return layered([recorded(JSON.parse(contents.textContent) as Contents, read)]);
+  return layered([recorded(JSON.parse(contents.textContent) as Contents, async (name) => unpacked(await read(name)))]);
 }
 
 async function fetched(name: string): Promise<unknown> {
@@ -29,8 +30,8 @@ async function fetched(name: string): Promise<unknown> {
   throw new Refused(404, [`The file ${FOLDER}/${name}.json of this page cannot be loaded. Check the connection.`]);
 }
 
-/** Returns JSON that was packed by gzip and written in base64. */
-async function unpacked(text: string): Promise<unknown> {
+/** Returns JSON that was compressed by gzip and written in base64. */
+async function unzipped(text: string): Promise<unknown> {
   const bytes = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
   const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"));
   return new Response(stream).json();
