@@ -7,6 +7,7 @@ and the quotient is the double next to the decimal number: `web/src/page/server/
 
 import json
 import zlib
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -15,8 +16,8 @@ import numpy.typing as npt
 _SHORTEST = 32
 """Length from which a list is packed."""
 _HIGHEST_ORDER, _MOST_DECIMALS = 3, 20
-_LARGEST = 2.0**49
-"""Whole numbers below it, and their differences of the highest order, are exact as doubles."""
+_LARGEST = 2.0**53
+"""Whole numbers below it are exact as doubles."""
 
 
 def packed(answer: bytes) -> bytes:
@@ -46,25 +47,24 @@ def _columns(rows: list[Any]) -> dict[str, Any] | None:
     if values.dtype.kind not in "if" or values.ndim > 2:  # noqa: PLR2004  rows and columns
         return None
     columns = [_column(one) for one in np.atleast_2d(values.T).astype(float)]
-    if any(one is None for one in columns):
-        return None
     return {"packed": columns, "rows": values.ndim == 2}  # noqa: PLR2004
 
 
-def _column(values: npt.NDArray[np.float64]) -> list[Any] | None:
-    """Return the shortest form of a column; None where the numbers have too many decimals."""
+def _column(values: npt.NDArray[np.float64]) -> list[Any]:
+    """Return the form of a column that compresses best."""
+    return min(_forms(values), key=lambda form: len(zlib.compress(_written(form).encode(), 1)))
+
+
+def _forms(values: npt.NDArray[np.float64]) -> Iterator[list[Any]]:
+    """Yield the numbers themselves, and the differences of whole numbers if the numbers have few decimals."""
+    yield [0, 0, values.tolist()]
     for decimals in range(_MOST_DECIMALS + 1):
         scale = 10.0**decimals
         whole = np.rint(values * scale)
-        if np.abs(whole).max() >= _LARGEST:
-            return None
         if np.array_equal(whole / scale, values):
             break
     else:
-        return None
-    orders = [whole.astype(np.int64)]
-    for _ in range(_HIGHEST_ORDER):
-        orders.append(np.diff(orders[-1], prepend=0))
-    written = [_written([decimals, order, column.tolist()]) for order, column in enumerate(orders)]
-    shortest: list[Any] = json.loads(min(written, key=lambda text: len(zlib.compress(text.encode(), 1))))
-    return shortest
+        return
+    for order in range(_HIGHEST_ORDER + 1):
+        if np.abs(whole).max() * 2.0**order < _LARGEST:
+            yield [decimals, order, np.diff(whole.astype(np.int64), order, prepend=[0] * order).tolist()]
