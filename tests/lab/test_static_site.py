@@ -33,14 +33,19 @@ def contents(page):
 
 
 @pytest.fixture(scope="module")
-def site(tmp_path_factory):
-    """Write the files, with exact orbits that are not computed."""
+def written(tmp_path_factory):
+    """Write the files, with exact orbits that are not computed; give the folder of the server and the sizes."""
     found_browser()
     root = tmp_path_factory.mktemp("site")
     with pytest.MonkeyPatch.context() as patch:
         patch.setitem(recorded._ANSWERED, "exact", lambda _: json.dumps(EXACT).encode())
-        static_site.write(root / FOLDER, progress=False)
-    return root
+        sizes = static_site.write(root / FOLDER, progress=False)
+    return root, sizes
+
+
+@pytest.fixture(scope="module")
+def site(written):
+    return written[0]
 
 
 @pytest.fixture(scope="module")
@@ -188,6 +193,14 @@ def test_a_missing_file_of_answers_is_reported(served, browser):
     page.close()
 
 
+def test_the_folder_opened_from_disk_names_the_file_to_open(site, browser):
+    page = new_page(browser)
+    page.goto((site / FOLDER / "index.html").as_uri())
+    page.get_by_role("link", name=static_site.SINGLE_FILE).click()
+    shown(page)
+    page.close()
+
+
 def test_the_policy_allows_nothing_but_the_page_itself(site):
     for name, scripts in (("index.html", "'self' 'wasm-unsafe-eval'"), (static_site.SINGLE_FILE, "'sha256-")):
         page = (site / FOLDER / name).read_text(encoding="utf-8")
@@ -212,6 +225,12 @@ def test_the_answers_are_those_of_the_server(served, site, browser, client):
     for part in ("outcome", "drawn", "series", "measures", "summary", "toml"):
         assert page.evaluate(f"() => window.stylobate.laboratory.answer.{part}") == answer[part]
     page.close()
+
+
+def test_what_is_loaded_before_the_first_motion_stays_small(written):
+    _, sizes = written
+    assert sizes.first < 400e3  # the page on the laboratory states its size
+    assert sizes.single < 6e6
 
 
 # Without a browser
@@ -252,7 +271,7 @@ def one_case(monkeypatch):
 
 
 PAGE = {
-    "index.html": f"<head>{static_site._HEAD}{static_site._STYLE}{static_site._SCRIPT}</head><body>é</body>",
+    "index.html": f"{static_site._HEAD}{static_site._STYLE}{static_site._SCRIPT}{static_site._WAITING}</body>",
     "main.css": "body { color: red }",
     "main.js": 'const end = "</script><!-- ";',
 }
@@ -260,7 +279,7 @@ PAGE = {
 
 @pytest.mark.usefixtures("one_case")
 def test_the_same_files_are_written_each_time(tmp_path):
-    written = []
+    found = []
     for name in ("first", "second"):
         sizes = static_site.write(tmp_path / name, progress=False)
         files = {
@@ -268,10 +287,11 @@ def test_the_same_files_are_written_each_time(tmp_path):
             for path in (tmp_path / name).rglob("*")
             if path.is_file()
         }
-        written.append(files)
-    assert written[0] == written[1]
-    single = written[0].pop(static_site.SINGLE_FILE)
-    assert (sizes.files, sizes.folder) == (len(written[0]), sum(map(len, written[0].values())))
+        found.append(files)
+    first, second = found
+    assert first == second
+    single = first.pop(static_site.SINGLE_FILE)
+    assert (sizes.files, sizes.folder) == (len(first), sum(map(len, first.values())))
     assert sizes.single == len(single)
     assert single.count(b"</script>") == 1 + len(contents(single.decode())["answers"]) + 1
 

@@ -34,6 +34,12 @@ _SCRIPT, _STYLE, _HEAD = (
 )
 """Lines of the page that its static forms replace or follow."""
 
+_WAITING = "The laboratory is being set up…"
+_FROM_DISK = (
+    f'{_WAITING} From disk, open <a href="{SINGLE_FILE}">{SINGLE_FILE}</a> instead: this page needs a web server.'
+)
+"""Browsers run no script of a folder on disk: then this text stays."""
+
 _FRAMES = "frame-ancestors"
 """Part of the policy that browsers accept from servers only."""
 _WASM = "'wasm-unsafe-eval'"
@@ -142,7 +148,12 @@ def _for_server(page: str, contents: str, first: Iterable[str]) -> str:
     policy = {**POLICY, "script-src": f"{POLICY['script-src']} {_WASM}"}
     ahead = [f'<link rel="preload" as="fetch" crossorigin href="{_CONTENTS}/{name}.json" />' for name in first]
     return _replaced(
-        page, {_HEAD: "\n    ".join([_HEAD, _policy(policy)]), _SCRIPT: "\n    ".join([_SCRIPT, *ahead, contents])}
+        page,
+        {
+            _HEAD: "\n    ".join([_HEAD, _policy(policy)]),
+            _SCRIPT: "\n    ".join([_SCRIPT, *ahead, contents]),
+            _WAITING: _FROM_DISK,
+        },
     )
 
 
