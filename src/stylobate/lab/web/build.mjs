@@ -33,6 +33,19 @@ async function licences(packages) {
   return packages.map((name, i) => `/*! ${name}\n${texts[i].trim().replaceAll("*/", "* /")}\n*/`).join("\n");
 }
 
+// The shaders of three for lights, shadows and reflections take a tenth of the page. No material of the viewer has them:
+// its own shaders light the scene. They are replaced by empty ones in three's sources, where each is a file.
+const UNUSED =
+  /[\\/]ShaderChunk[\\/](lights_|shadowmap|transmission|iridescence|clearcoat|bsdfs|cube_uv|envmap|roughness|metalness|bump|displacement|gradient)\w*\.glsl\.js$/;
+const unlit = {
+  name: "three without lights",
+  setup: (run) => {
+    const path = join(here, "node_modules", "three", "src", "Three.js");
+    run.onResolve({ filter: /^three$/ }, () => ({ path, sideEffects: false }));
+    run.onLoad({ filter: UNUSED }, () => ({ contents: 'export default "";' }));
+  },
+};
+
 const common = {
   absWorkingDir: here,
   bundle: true,
@@ -41,6 +54,7 @@ const common = {
   minify: !words.includes("--readable"),
   legalComments: "none",
   logLevel: "info",
+  plugins: [unlit],
 };
 
 async function viewerBundle() {
@@ -63,6 +77,7 @@ async function pageBundle() {
     sourcemap: words.includes("--readable") && "inline",
     banner: { js: stamp + (await licences(["three", "uplot"])) },
     plugins: [
+      ...common.plugins,
       {
         name: "index.html",
         setup: (run) => run.onEnd(() => copyFile(join(here, "index.html"), join(page, "index.html"))),
