@@ -256,7 +256,7 @@ def test_a_lack_of_memory_is_told(client, monkeypatch):
     def refuse(given):
         raise MemoryError
 
-    monkeypatch.setattr(app, "snippets", refuse)
+    monkeypatch.setattr(app, "described_case", refuse)
     answer = client.post("/api/describe", json={"column": {"slenderness": 0.1}, "duration": 5.0})
     assert answer.status_code == 422
     assert problems_of(answer) == ["out of memory: make the record, the duration or the grid smaller"]

@@ -183,6 +183,16 @@ def test_program_and_link_of_a_case_are_shown(opened, place):
         dialog.get_by_role("button", name="Close").click()
 
 
+def test_a_picture_is_saved_and_the_policy_lets_webassembly_be_compiled(opened):
+    page = opened.page
+    page.get_by_text("Export").click()
+    with page.expect_download() as saved:
+        page.get_by_role("button", name="Picture of the motion (PNG)").click()
+    assert saved.value.suggested_filename == "stylobate.png"
+    module = "new Uint8Array([0, 97, 115, 109, 1, 0, 0, 0])"
+    assert page.evaluate(f"async () => (await WebAssembly.compile({module})) instanceof WebAssembly.Module")
+
+
 def test_a_missing_file_of_answers_is_reported(served, browser):
     page = new_page(browser)
     page.route(re.compile("simulate-temple"), lambda route: route.abort())
