@@ -93,7 +93,6 @@ def questions() -> Iterator[Question]:
 
 
 def _asked_of(case: Case) -> Iterator[Question]:
-
     def asked(ask: str, values: Mapping[str, Any]) -> Question:
         return Question(ask, values, f"{ask}-{case.identity}")
 
@@ -140,11 +139,14 @@ def _responds(setup: Setup, motion: Mapping[str, Any]) -> bool:
     )
 
 
+_BEGINNING = ("start_phase", "ramp")
+"""How a harmonic motion begins, which its steady response does not depend on."""
+
+
 def _without_frequency(motion: Mapping[str, Any]) -> Mapping[str, Any]:
     if motion["kind"] not in kinds_by_acceleration():
         return motion
-    own = ("angular_frequency", "start_phase", "ramp")
-    return {name: value for name, value in motion.items() if name not in own}
+    return {name: value for name, value in motion.items() if name not in (*_BEGINNING, "angular_frequency")}
 
 
 def _usual_range(setup: Setup) -> list[float]:

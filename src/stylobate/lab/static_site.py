@@ -200,8 +200,7 @@ def _replaced(page: str, parts: Mapping[str, str]) -> str:
     """Return the page with each of these texts, which it has once, replaced."""
     pieces = [page]
     for old, new in parts.items():
-        where = [number for number, piece in enumerate(pieces) if old in piece]
-        (number,) = where
+        (number,) = (number for number, piece in enumerate(pieces) if old in piece)
         before, after = pieces[number].split(old)
         pieces[number : number + 1] = [before, new, after]
     return "".join(pieces)
