@@ -14,6 +14,7 @@ from stylobate.base_motions.declared import MOTIONS, kinds_by_acceleration, kind
 from stylobate.config.study import study_of
 from stylobate.lab.answers import schemas
 from stylobate.lab.grids import OFF_BRANCH
+from stylobate.lab.recorded import BEYOND, POINTS, RANGE
 from stylobate.lab.requests import GRIDS
 from stylobate.models.declared import MODELS
 from stylobate.quantities import parameters_of
@@ -23,6 +24,15 @@ FOLDER = Path(__file__).parents[1] / "src/stylobate/lab/web/src/page/server"
 _HEAD = "/** Types of the answers, written by tools/page_types.py from stylobate.lab.answers. Do not edit. */\n"
 _HEAD_OF_NAMES = "/** Names and kinds, written by tools/page_types.py from their declarations. Do not edit. */\n"
 _RATES = ("rad/s", "Hz", "1/min")
+_OF_RESPONSES = (
+    ("POINTS", "Points of a response curve, about one to a pixel.", POINTS),
+    (
+        "RANGE",
+        "Ends of the range of frequencies of a response curve, over the frequency scale of the column.",
+        f"{json.dumps(RANGE)} as const",
+    ),
+    ("BEYOND", "The range also includes the frequency of the case, and goes beyond it by this factor.", BEYOND),
+)
 
 
 def main() -> int:
@@ -67,6 +77,7 @@ def names() -> str:
     parts += [f"/** {about} */\nexport const FREQUENCIES: {kind} = {{\n{''.join(rates)}}};\n"]
     about = "A start on a branch is off it by this fraction of its tilt: a run leaves a motion that is not stable."
     parts += [f"/** {about} */\nexport const OFF_BRANCH = {OFF_BRANCH!r};\n"]
+    parts += [f"/** {about} */\nexport const {name} = {value};\n" for name, about, value in _OF_RESPONSES]
     return "\n".join([_HEAD_OF_NAMES, *parts])
 
 

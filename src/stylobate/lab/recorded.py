@@ -114,7 +114,7 @@ def _asked_of(case: Case) -> Iterator[Question]:
         }
         slender = {"kind": "slender", "damping": values["model"].get("damping", 0)}
         yield asked("describe", {"column": values["column"], "duration": 1})
-        yield asked("response", {**exact, "model": slender, "points": _POINTS})
+        yield asked("response", {**exact, "model": slender, "points": POINTS})
         yield asked("exact", {"description": exact})
 
 
@@ -126,10 +126,12 @@ def _off_branch(begun: answers.Start) -> dict[str, Any]:
 
 # What the page asks about the response
 
-_POINTS = 400
-_LOW, _HIGH = 0.2, 3.5
-"""Ends of the range of frequencies, over the frequency scale of the column; the range also includes the frequency."""
-_BEYOND = 1.2
+POINTS = 400
+"""Points of a response curve, about one to a pixel."""
+RANGE = (0.2, 3.5)
+"""Ends of the range of frequencies of a response curve, over the frequency scale of the column."""
+BEYOND = 1.2
+"""The range also includes the frequency of the case, and goes beyond it by this factor."""
 
 
 def _responds(setup: Setup, motion: Mapping[str, Any]) -> bool:
@@ -151,11 +153,11 @@ def _without_frequency(motion: Mapping[str, Any]) -> Mapping[str, Any]:
 
 def _usual_range(setup: Setup) -> list[float]:
     scale, frequency = setup.model.column.frequency_scale, setup.motion.highest_frequency
-    low, high = _nice_below(_LOW * scale), _nice_above(_HIGH * scale)
+    low, high = _nice_below(RANGE[0] * scale), _nice_above(RANGE[1] * scale)
     if frequency < low:
-        low = _nice_below(frequency / _BEYOND)
+        low = _nice_below(frequency / BEYOND)
     if frequency > high:
-        high = _nice_above(frequency * _BEYOND)
+        high = _nice_above(frequency * BEYOND)
     return [low, high]
 
 

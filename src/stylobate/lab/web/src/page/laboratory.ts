@@ -362,8 +362,7 @@ export class Laboratory {
     const restored = await this.#controls.record.restore(this.view.description.motion["upload"]).catch(() => false);
     if (restored) return this.refresh();
     this.#controls.record.askAgain();
-    const line = "The server does not have the record of this case. Choose its files again.";
-    this.#problems.show([line], { earlier: this.#answer !== null });
+    this.#stay(["The server does not have the record of this case. Choose its files again."]);
   }
 
   #lose(): void {

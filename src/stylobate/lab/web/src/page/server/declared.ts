@@ -36,3 +36,12 @@ export const FREQUENCIES: Readonly<Record<string, readonly [name: string, unit: 
 
 /** A start on a branch is off it by this fraction of its tilt: a run leaves a motion that is not stable. */
 export const OFF_BRANCH = 0.001;
+
+/** Points of a response curve, about one to a pixel. */
+export const POINTS = 400;
+
+/** Ends of the range of frequencies of a response curve, over the frequency scale of the column. */
+export const RANGE = [0.2, 3.5] as const;
+
+/** The range also includes the frequency of the case, and goes beyond it by this factor. */
+export const BEYOND = 1.2;

@@ -4,10 +4,8 @@ import type { Description, Part, Value } from "../case/description";
 import { isPart } from "../case/description";
 import { isHorizontalHarmonic, withoutFrequency } from "../case/frequency";
 import { niceAbove, niceBelow } from "../case/ranges";
+import { BEYOND, POINTS, RANGE } from "./declared";
 import type { Plane, PlaneKind } from "../view/state";
-
-/** Points of a response curve: about one to a pixel. */
-const POINTS = 400;
 
 /** Returns a description as it is sent: what need not be given and is not, is left out. */
 export function sent(description: Part): Part {
@@ -17,9 +15,12 @@ export function sent(description: Part): Part {
 
 /** Returns the range of frequencies that suits a column, and holds the frequency that is shown. */
 export function usualRange(scale: number, frequency: number | null): readonly [number, number] {
-  const [low, high] = [niceBelow(0.2 * scale), niceAbove(3.5 * scale)];
+  const [low, high] = [niceBelow(RANGE[0] * scale), niceAbove(RANGE[1] * scale)];
   if (frequency === null || !(frequency > 0)) return [low, high];
-  return [frequency < low ? niceBelow(frequency / 1.2) : low, frequency > high ? niceAbove(frequency * 1.2) : high];
+  return [
+    frequency < low ? niceBelow(frequency / BEYOND) : low,
+    frequency > high ? niceAbove(frequency * BEYOND) : high,
+  ];
 }
 
 /** Returns the request for exact orbits of the case, or null where it has no response. */
