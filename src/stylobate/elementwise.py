@@ -20,6 +20,7 @@ def _elementwise(function: Callable[..., float], count: int) -> Callable[..., fl
             return array  # type: ignore[no-any-return]  # the type of a property of one object
         return function(*numbers)
 
+    vars(of)["compiled"] = function  # for one number, in compiled code
     return of
 
 

@@ -19,6 +19,7 @@ import numpy as np
 import numpy.typing as npt
 
 from stylobate.cards import CardSection, Row, card
+from stylobate.compiler import marks
 from stylobate.errors import (
     LARGEST,
     MOST_NUMBERS,
@@ -504,7 +505,7 @@ def checked_arguments(make: Callable[_P, _T]) -> Callable[_P, _T]:
             object.__setattr__(made, "stated", Stated(make.__name__, stated))
         return made
 
-    return checking
+    return marks.stands_for(checking, make)
 
 
 def stating(**facts: bool) -> Callable[[Callable[_P, _T]], Callable[_P, _T]]:
@@ -542,6 +543,7 @@ def unchecked(value: _T, **numbers: Any) -> _T:
     return made
 
 
+@marks.advice
 def question_input(message: str) -> None:
     """Issue an UnlikelyInputWarning at the line outside of this package that states a number.
 

@@ -194,7 +194,7 @@ REFUSED = {
     steps: "a range whose step is not 1",
     with_a_block: "With is not compiled",
     of_unknown_length: "only a row of known length",
-    bits: r"BitAnd is not compiled; write it with \+, -, \*, /, //, % and \*\*$",
+    bits: "& and | join conditions; bits of whole numbers are not compiled$",
     shifted: r"LShift is not compiled; write it with \+",
     else_after_while: "else after a loop is not compiled; set a truth value",
     else_after_for: "else after a loop is not compiled; set a truth value",

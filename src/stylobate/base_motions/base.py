@@ -9,6 +9,7 @@ from typing import Annotated, Any, ClassVar
 import numpy as np
 import numpy.typing as npt
 
+from stylobate.compiler.marks import advice
 from stylobate.errors import ParameterError, as_numbers
 from stylobate.quantities import QUARTER_TURN, Declared, Quantity, question_input
 from stylobate.units import listed, meant
@@ -92,6 +93,7 @@ HighestFrequency = Annotated[
 ]
 
 
+@advice
 def question_path(name: str, length: float, share: float, angular_frequency: float) -> None:
     """Issue an UnlikelyInputWarning for a path of which no machine has the acceleration.
 

@@ -228,9 +228,26 @@ class Harmonic(BaseMotion):
         )
 
     @classmethod
-    def _along_path(cls, x: float, y: float, z: float, **rest: Any) -> Self:
-        square = rest["angular_frequency"] ** 2
-        return cls(amplitude=(-square * x, -square * y, -square * z), **rest)
+    def _along_path(
+        cls,
+        x: float,
+        y: float,
+        z: float,
+        *,
+        angular_frequency: float,
+        start_phase: float,
+        ramp: float,
+        phase: Sequence[float] = (0.0, 0.0, 0.0),
+    ) -> Self:
+        square = angular_frequency**2
+        a, b, c = phase
+        return cls(
+            amplitude=(-square * x, -square * y, -square * z),
+            phase=(a, b, c),
+            angular_frequency=angular_frequency,
+            start_phase=start_phase,
+            ramp=ramp,
+        )
 
     @classmethod
     @checked_arguments

@@ -44,6 +44,8 @@ _KNOWN: dict[type, Callable[[Any, Any], Any]] = {
     ast.Pow: operator.pow,
     ast.FloorDiv: operator.floordiv,
     ast.Mod: operator.mod,
+    ast.BitAnd: operator.and_,
+    ast.BitOr: operator.or_,
     ast.Lt: operator.lt,
     ast.LtE: operator.le,
     ast.Gt: operator.gt,
@@ -161,16 +163,20 @@ class Arithmetic:
 
     def binary(self, operation: ast.operator, a: Value, b: Value) -> Value:
         """Return the result of a binary operation."""
-        if type(operation) not in _BINARY:
+        if type(operation) not in (*_BINARY, ast.BitAnd, ast.BitOr):
             raise Refusal(f"{type(operation).__name__} is not compiled; write it with +, -, *, /, //, % and **")
         if isinstance(a, LaneIndex) or isinstance(b, LaneIndex):
             return _moved(operation, a, b)
         if isinstance(a, tuple) and isinstance(b, tuple) and isinstance(operation, ast.Add):
             return (*a, *b)
+        if isinstance(a, tuple) and isinstance(b, int) and isinstance(operation, ast.Mult):
+            return a * b
         if is_known_number(a) and is_known_number(b):
             return _quotient(a, b) if isinstance(operation, ast.Div) else _KNOWN[type(operation)](a, b)
         if isinstance(operation, ast.Pow):
             return self._power(a, b)
+        if isinstance(operation, ast.BitAnd | ast.BitOr):
+            return self._joined_conditions(operation, a, b)
         least = NumberKind.FLOAT if isinstance(operation, ast.Div) else NumberKind.INTEGER
         x, y = self.alike(a, b, kind=max(least, *map(self._kind, (a, b))))
         bounds = self._bounds(operation, x, y) if x.kind is NumberKind.INTEGER and self.checked else None
@@ -183,6 +189,12 @@ class Arithmetic:
         flags = self.flags if x.kind is NumberKind.FLOAT else ""
         text = self.text.value(f"{names[type(operation)]} {flags}{x.operand}, {y.text}")
         return Number(x.kind, text, x.lanes, bounds)
+
+    def _joined_conditions(self, operation: ast.operator, a: Value, b: Value) -> Value:
+        """Return `a & b` or `a | b` of conditions."""
+        if any(kind_of(one) is not NumberKind.BOOLEAN for one in (a, b)):
+            raise Refusal("& and | join conditions; bits of whole numbers are not compiled")
+        return self.both(a, b) if isinstance(operation, ast.BitAnd) else self.either(a, b)
 
     @staticmethod
     def _bounds(operation: ast.operator, x: Number, y: Number) -> Bounds:

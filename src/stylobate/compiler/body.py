@@ -1,7 +1,7 @@
 """Compilation of statements: names and assignments to them, and the body of one function."""
 
 import ast
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cache
 from typing import Any, Protocol
 
@@ -140,8 +140,10 @@ class Names(Expressions):
         match target:
             case ast.Name():
                 self.assign(target.id, value)
+            case ast.Starred():
+                self.assign_to(target.value, value)
             case ast.Tuple() | ast.List():
-                items = self.items(value)
+                items = _gathered(self.items(value), target.elts)
                 if len(items) != len(target.elts):
                     raise Refusal(f"{ast.unparse(target)} needs {len(target.elts)} values, not {len(items)}")
                 for part, item in zip(target.elts, items, strict=True):
@@ -169,6 +171,15 @@ class Names(Expressions):
         if len(indices) != len(owner.shape) or any(map(_is_slice, indices)):
             raise Refusal(f"{ast.unparse(target)} is not a single element of an array; write a loop")
         return memory.place(self.arithmetic, owner, indices)
+
+
+def _gathered(items: tuple[Value, ...], targets: Sequence[ast.expr]) -> tuple[Value, ...]:
+    """Return items with those of a starred target as one tuple."""
+    starred = [place for place, target in enumerate(targets) if isinstance(target, ast.Starred)]
+    if not starred or len(items) < len(targets) - 1:
+        return items
+    (first,), more = starred, len(items) - len(targets) + 1
+    return (*items[:first], tuple(items[first : first + more]), *items[first + more :])
 
 
 def _is_slice(index: Value) -> bool:
@@ -204,6 +215,7 @@ class Callees(Protocol):
 
     lanes: int
     reads: Reads
+    traps: bool
 
     def call(
         self, caller: "Body", function: Callable[..., Any], values: list[Value], keywords: Mapping[str, Value]
@@ -296,7 +308,14 @@ class Body(Names):
             case ast.Expr(value=ast.Constant()) | ast.Pass():
                 pass
             case ast.Expr():
-                self.value(node.value)
+                if not self._is_advice(node.value):
+                    self.value(node.value)
+            case ast.Raise() if self.callees.traps:
+                trap = self.arithmetic.module.declared("llvm.trap", "void", [])
+                self.text.line(f"call void {trap}()")
+                self.text.end("unreachable")
+            case ast.Assert() if self.callees.traps:
+                pass
             case ast.Assign():
                 value = self.value(node.value)
                 for target in node.targets:
@@ -323,6 +342,12 @@ class Body(Names):
                 self.text.jump(self._loops[-1][isinstance(node, ast.Break)])
             case _:
                 raise Refusal(f"{type(node).__name__} is not compiled; write it with loops, conditions and calls")
+
+    def _is_advice(self, node: ast.expr) -> bool:
+        """Return whether an expression calls a function that only speaks to the user."""
+        if not isinstance(node, ast.Call) or not isinstance(node.func, ast.Name):
+            return False
+        return node.func.id not in self._own and marks.is_advice(self.read(node.func.id))
 
     def _change(self, node: ast.AugAssign) -> None:
         if not isinstance(node.target, ast.Subscript):

@@ -1,17 +1,19 @@
 """Compilation of expressions: known values are evaluated, all others become instructions."""
 
 import ast
+import dataclasses
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import replace
 from enum import EnumType
 from functools import cache
+from types import MethodType
 from typing import Any
 
 import numpy as np
 
-from stylobate.compiler import marks, memory
+from stylobate.compiler import marks, memory, objects
 from stylobate.compiler.arithmetic import Arithmetic, truth_of_known
 from stylobate.compiler.reads import Reads, is_plain
 from stylobate.compiler.sources import Refusal
@@ -289,6 +291,8 @@ class Expressions(ABC):
 
     def _attribute(self, node: ast.Attribute) -> Value:
         owner = self.value(node.value)
+        if objects.is_object(owner):
+            return self._member(owner, node.attr)
         if isinstance(owner, Array) and node.attr == "shape":
             return owner.shape
         foreign = isinstance(owner, tuple) and node.attr not in getattr(owner, "_fields", ())
@@ -299,6 +303,13 @@ class Expressions(ABC):
             raise Refusal(f"a change of {ast.unparse(node)} would not be noticed; keep it in a variable of the module")
         self.reads.log(owner, "attribute", node.attr, value)
         return self._usable(value)
+
+    def _member(self, owner: Value, name: str) -> Value:
+        """Return a field, a property or a method of an object."""
+        if name in owner._fields:
+            return getattr(owner, name)
+        meaning, found = objects.member(owner, name)
+        return self.call(found, [owner], {}) if meaning == "property" else self._usable(found)
 
     def _items(self, nodes: list[ast.expr]) -> list[Value]:
         out: list[Value] = []
@@ -454,10 +465,18 @@ class Expressions(ABC):
         function = self.value(node.func)
         values = self._items(node.args)
         keywords = {keyword.arg or "": self.value(keyword.value) for keyword in node.keywords}
+        if isinstance(function, objects.Method | MethodType):
+            values = [function.owner if isinstance(function, objects.Method) else function.__self__, *values]
+            function = function.function if isinstance(function, objects.Method) else function.__func__
+        function = marks.compiled_for(function)
         if is_mathematics(function) and not keywords:
             return call(self.arithmetic, function, values)
         if _is_named_tuple(function):
             return function(*values, **keywords)
+        if objects.is_class(function):
+            return objects.made(function, values, keywords)
+        if function is dataclasses.replace and objects.is_object(values[0]):
+            return objects.changed(values[0], keywords)
         if function in _OF_ARRAYS and not keywords:
             if function is np.zeros and self.in_loop:
                 raise Refusal("an array made in each pass of a loop; make one before it")

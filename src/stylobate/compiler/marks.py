@@ -28,6 +28,29 @@ def fast(function: _F) -> _F:
     return function
 
 
+def stands_for(function: _F, compiled: Callable[..., Any]) -> _F:
+    """Let the compiler compile another function in place of `function`, such as one without checks."""
+    function.__dict__["compiled"] = compiled
+    return function
+
+
+def compiled_for(function: Any) -> Any:
+    """Return the function that the compiler compiles in place of this one, see `stands_for`."""
+    own = getattr(function, "__dict__", {})
+    return compiled_for(own["compiled"]) if "compiled" in own else function
+
+
+def advice(function: _F) -> _F:
+    """Mark a function that only speaks to the user, such as by a warning: compiled code leaves its calls out."""
+    function.__dict__["advice"] = True
+    return function
+
+
+def is_advice(function: object) -> bool:
+    """Return whether a function is marked as advice."""
+    return bool(getattr(function, "advice", False))
+
+
 def is_fast(function: Callable[..., Any]) -> bool:
     """Return whether a function is marked as fast."""
     return bool(getattr(function, "fast", False))

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from stylobate.compiler.arithmetic import Arithmetic
+from stylobate.compiler.objects import is_object
 from stylobate.compiler.sources import LanesRefusal, Refusal
 from stylobate.compiler.values import (
     ANY,
@@ -258,8 +259,13 @@ class WiderKindError(Exception):
 def can_be_stored(value: Value) -> bool:
     """Return whether a value consists of numbers and views, so that it can be chosen at run time."""
     if isinstance(value, tuple):
-        return all(map(can_be_stored, value))
+        return all(can_be_stored(part) or (is_object(value) and _is_fixed(part)) for part in value)
     return isinstance(value, Number | Array) or is_known_number(value)
+
+
+def _is_fixed(value: Value) -> bool:
+    """Return whether a value is none or a text: a part of an object that is the same on all paths."""
+    return value is None or isinstance(value, str)
 
 
 def has_array(value: Value) -> bool:
@@ -276,6 +282,8 @@ def slot_for(arithmetic: Arithmetic, value: Value, need: Need = Need()) -> Value
             sizes = tuple(numbers)
             axes = len(part.shape)
             return replace(part, pointer=arithmetic.text.allocated("ptr"), shape=sizes[:axes], strides=sizes[axes:])
+        if _is_fixed(part):
+            return part
         kind, bounds = max(kind_of(part), need.kind), None
         if arithmetic.checked and kind_of(part) < NumberKind.FLOAT:
             bounds = joined(bounds_of(part), *([] if need.bounds is None else [need.bounds]))
@@ -315,7 +323,7 @@ def store_slot(arithmetic: Arithmetic, slot: Value, value: Value) -> None:
                     store_slot(arithmetic, room, size)
                 elif room != size:
                     _refuse_other_structure()
-        case _:
+        case _ if not (_is_fixed(slot) and slot == value):
             _refuse_other_structure()
 
 

@@ -55,6 +55,8 @@ class Unit:
     trusted
         Whether whole numbers need no bounds in functions that do not belong to a model: those of the package take care
         of their indices themselves.
+    traps
+        Whether code may raise errors, which end the program: a page catches that, the process of Python would not.
     """
 
     def __init__(
@@ -65,9 +67,10 @@ class Unit:
         exact: bool = False,
         reads: Reads | None = None,
         trusted: bool = False,
+        traps: bool = False,
     ) -> None:
         self.module, self.reads = ModuleText(), Reads({}) if reads is None else reads
-        self.lanes, self.exact, self._trusted = lanes, exact, trusted
+        self.lanes, self.exact, self._trusted, self.traps = lanes, exact, trusted, traps
         self._fast = {plain_function(function) for function in fast}
         self._sources: dict[FunctionType, Source] = {}
         self._made: dict[tuple[Any, ...], _Made] = {}
@@ -279,7 +282,9 @@ def _called(arithmetic: Arithmetic, made: _Made, values: Sequence[Value]) -> Val
         return None
     places = iter(range(len(list(parts(made.result)))))
 
-    def taken(part: Number) -> Number:
+    def taken(part: Value) -> Value:
+        if not isinstance(part, Number):
+            return part
         place = next(places)
         if not room:
             return replace(part, text=text.value(f"extractvalue {kind} {result}, {place}"))
