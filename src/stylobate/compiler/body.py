@@ -5,6 +5,8 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cache
 from typing import Any, Protocol
 
+import numpy as np
+
 from stylobate.compiler import marks, memory
 from stylobate.compiler.arithmetic import Arithmetic
 from stylobate.compiler.expressions import Expressions
@@ -333,6 +335,10 @@ class Body(Names):
                 self._while(node)
             case ast.For(orelse=[]):
                 self._for(node)
+            case ast.With(items=[ast.withitem(ast.Call(func=ast.Attribute() as function), None)]) if (
+                self.value(function) is np.errstate
+            ):
+                self._block(node.body)
             case ast.While() | ast.For():
                 raise Refusal(
                     "else after a loop is not compiled; set a truth value before break and test it behind the loop"

@@ -79,8 +79,8 @@ def _name_of(function: Any) -> str | None:
     own = getattr(function, "__name__", "")
     if isinstance(function, np.ufunc):
         name = _NAMES_OF_NUMPY.get(own, own)
-        return name if name in _OF_LLVM or name in _OF_C_LIBRARY or name in ("square", "sign") else None
-    if function in (np.where, np.clip):
+        return name if name in _OF_LLVM or name in _OF_C_LIBRARY or name in _OWN_OF_NUMPY else None
+    if function in (np.where, np.clip, np.any, np.all):
         return str(own)
     if getattr(math, own, None) is function:
         return own if own in _OF_LLVM or own in _OF_C_LIBRARY or own in _OWN else None
@@ -174,10 +174,21 @@ def _sign(arithmetic: Arithmetic, value: Value) -> Value:
     return arithmetic.chosen(positive, 1.0, arithmetic.chosen(negative, -1.0, neither))
 
 
+def _not_nan(comparison: ast.cmpop) -> Callable[..., Value]:
+    """Return the function for the larger or smaller of two numbers, or the one that is not NaN."""
+
+    def found(arithmetic: Arithmetic, a: Value, b: Value) -> Value:
+        chosen = arithmetic.chosen(arithmetic.compared(comparison, b, a), b, a)
+        return arithmetic.chosen(_is_none(arithmetic, a), b, chosen)
+
+    return found
+
+
 def _clipped(arithmetic: Arithmetic, value: Value, low: Value, high: Value) -> Value:
     return arithmetic.called("llvm.minimum", arithmetic.called("llvm.maximum", value, low), high)
 
 
+_OWN_OF_NUMPY = ("square", "sign", "fmax", "fmin", "isnan", "isinf", "isfinite")
 _OF_PYTHON = (abs, min, max, sum, int, float, bool, len)
 _OWN: dict[str, Callable[..., Value]] = {
     "sum": _sum,
@@ -187,6 +198,10 @@ _OWN: dict[str, Callable[..., Value]] = {
     "sign": _sign,
     "clip": _clipped,
     "where": Arithmetic.chosen,
+    "any": Arithmetic.truth,
+    "all": Arithmetic.truth,
+    "fmax": _not_nan(ast.Gt()),
+    "fmin": _not_nan(ast.Lt()),
     "abs": _absolute,
     "min": _extreme(ast.Lt(), min),
     "max": _extreme(ast.Gt(), max),
@@ -340,6 +355,11 @@ class Expressions(ABC):
                 return self.arithmetic.negative(self.value(node.operand))
             case ast.Not():
                 return self.arithmetic.opposite(self.condition(node.operand))
+            case ast.Invert():
+                value = self.value(node.operand)
+                if kind_of(value) is not NumberKind.BOOLEAN:
+                    raise Refusal("~ is the opposite of a condition; bits of whole numbers are not compiled")
+                return self.arithmetic.opposite(value)
             case ast.UAdd():
                 return self.value(node.operand)
             case _:
@@ -473,6 +493,8 @@ class Expressions(ABC):
             return call(self.arithmetic, function, values)
         if _is_named_tuple(function):
             return function(*values, **keywords)
+        if function is np.asarray:
+            return self.arithmetic.number(values[0])
         if objects.is_class(function):
             return objects.made(function, values, keywords)
         if function is dataclasses.replace and objects.is_object(values[0]):

@@ -1,7 +1,7 @@
 """Base motion of a run in the units of the model: forcing, thresholds of rest, and checks."""
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
@@ -60,8 +60,6 @@ def common_line(*vectors: tuple[float, float]) -> tuple[float, float] | None:
     return ux, uy
 
 
-Bools = npt.NDArray[np.bool_]
-
 # The energy of steady rolling at frequency ν is 1.5 c²/ν²; rest begins below a hundredth of it at most.
 _REST_ENERGY, _REST_ENERGY_ROLLING = 1e-4, 0.015
 # If the base motion can uplift the column again, rest begins below a hundredth of the energy after uplift. The lower
@@ -78,11 +76,11 @@ def without_dust(tilt: Floats) -> Floats:
     return np.where(np.abs(tilt) < SMALLEST, 0.0, tilt)
 
 
-def is_rest(tilt: Floats, tilt_rate: Floats, slenderness: npt.ArrayLike, time_scale: npt.ArrayLike) -> Bools:
-    """Return whether these initial conditions, shape (..., 2) [rad] and [rad/s], are at rest up to rounding."""
-    size = np.hypot(tilt[..., 0], tilt[..., 1])
-    speed = np.hypot(tilt_rate[..., 0], tilt_rate[..., 1]) * time_scale
-    return np.asarray(np.maximum(size, speed) <= _ROUNDED_REST * np.asarray(slenderness, dtype=float))
+def is_rest(tilt: Sequence[Any], tilt_rate: Sequence[Any], slenderness: Any, time_scale: Any) -> Any:
+    """Return whether these initial conditions along x and y [rad], [rad/s] are at rest up to rounding."""
+    size = np.hypot(tilt[0], tilt[1])
+    speed = np.hypot(tilt_rate[0], tilt_rate[1]) * time_scale
+    return np.maximum(size, speed) <= _ROUNDED_REST * slenderness
 
 
 def least_rest_energy(motion: BaseMotion) -> float:
@@ -147,7 +145,7 @@ def uplift_energy(
     weight = 1.0 + np.asarray(minimum_vertical, dtype=float)
     with np.errstate(divide="ignore", invalid="ignore"):
         excess = np.asarray(largest) / (np.asarray(capacity) * weight) - 1.0
-        energy = 16.0 / 9.0 * excess**3 / np.square(frequency)
+        energy = 16.0 / 9.0 * (excess * excess * excess) / np.square(frequency)
     return np.where(weight <= 0.0, np.inf, np.where(excess > 0.0, energy, np.nan))
 
 

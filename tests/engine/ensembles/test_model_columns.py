@@ -37,11 +37,13 @@ def test_models_evaluated_at_once_have_the_bits_of_objects(kind: type, monkeypat
     rng = np.random.default_rng(0)
     values = draws(kind, 1)
     starts = rng.uniform(-0.05, 0.05, (COUNT, 2)), rng.uniform(-0.1, 0.1, (COUNT, 2)), rng.uniform(-1.0, 1.0, COUNT)
-    together = ModelColumns.of(kind(COLUMN), values, *starts)
+    together = ModelColumns.of(kind(COLUMN), values, COUNT)
+    states = together.starts(*starts)
     made = []
     monkeypatch.setattr(RunModels, "_together", lambda *_: made.append(1))
-    alone = ModelColumns.of(kind(COLUMN), values, *starts)
-    assert made
+    alone = ModelColumns.of(kind(COLUMN), values, COUNT)
+    assert np.array_equal(states, alone.starts(*starts))
+    assert made == [1, 1]
     for name in ModelColumns.__slots__[1:]:
         assert np.array_equal(getattr(together, name), getattr(alone, name)), name
 
@@ -49,9 +51,10 @@ def test_models_evaluated_at_once_have_the_bits_of_objects(kind: type, monkeypat
 @pytest.mark.parametrize("kind", MODELS.values(), ids=lambda kind: kind.__name__)
 def test_only_two_objects_are_made_for_many_models(kind: type, monkeypatch: pytest.MonkeyPatch) -> None:
     made: list[int] = []
-    objects = RunModels._objects
-    monkeypatch.setattr(RunModels, "_objects", lambda self, runs: made.append(len(runs)) or objects(self, runs))
-    ModelColumns.of(kind(COLUMN), draws(kind, 2), np.zeros((COUNT, 2)), np.zeros((COUNT, 2)), np.zeros(COUNT))
+    objects = RunModels._new_objects
+    monkeypatch.setattr(RunModels, "_new_objects", lambda self, runs: made.append(len(runs)) or objects(self, runs))
+    columns = ModelColumns.of(kind(COLUMN), draws(kind, 2), COUNT)
+    columns.starts(np.zeros((COUNT, 2)), np.zeros((COUNT, 2)), np.zeros(COUNT))
     assert made == [1, 1]
 
 
@@ -94,7 +97,7 @@ def test_an_unlikely_number_among_many_is_questioned() -> None:
     values = np.linspace(0.2, 0.4, 50)
     values[7] = 30.0
     with pytest.warns(UnlikelyInputWarning, match="radius: 30 m is unlikely"):
-        ModelColumns.of(sb.Slender(COLUMN), {"radius": values}, np.zeros((50, 2)), np.zeros((50, 2)), np.zeros(50))
+        ModelColumns.of(sb.Slender(COLUMN), {"radius": values}, 50)
 
 
 @dataclass(frozen=True, slots=True)
@@ -134,7 +137,7 @@ def test_a_model_that_does_not_compute_with_arrays_has_objects(kind: type) -> No
     damping = np.linspace(0.05, 0.2, 20)
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        found = ModelColumns.of(kind(COLUMN), {"damping": damping}, np.zeros((20, 2)), np.zeros((20, 2)), np.zeros(20))
+        found = ModelColumns.of(kind(COLUMN), {"damping": damping}, 20)
     assert np.array_equal(found.parameters[:, 1], np.minimum(damping, 0.1) if kind is Capped else damping)
 
 
@@ -142,4 +145,4 @@ def test_a_check_of_a_users_model_sees_each_run() -> None:
     damping = np.full(20, 0.1)
     damping[9] = 0.3
     with pytest.raises(ParameterError, match=r"damping: above 0\.2"):
-        ModelColumns.of(Refusing(COLUMN), {"damping": damping}, np.zeros((20, 2)), np.zeros((20, 2)), np.zeros(20))
+        ModelColumns.of(Refusing(COLUMN), {"damping": damping}, 20)

@@ -9,19 +9,23 @@ import numpy as np
 import numpy.typing as npt
 
 from stylobate.compiler.kept import runs_plain
+from stylobate.engine.ensembles.beginnings import (
+    beginning,
+    fill_looks,
+    fill_setup,
+    line_of_switching,
+    looks_needed,
+    number_of_looks,
+)
 from stylobate.engine.ensembles.model_columns import ModelColumns
 from stylobate.engine.ensembles.run_columns import MotionColumns, MotionPlan
 from stylobate.engine.ensembles.runs import EnsembleRuns
-from stylobate.engine.forcing import is_rest, rest_energy_for_good, usual_rest_energy
 from stylobate.engine.kernel.columns import (
-    EARLIER,
     EVENTS_AT,
-    LAGS,
     LOG,
     NOTE,
     ORBIT,
     PAIRS,
-    SLACK,
     STATE,
     Log,
     Orbit,
@@ -33,8 +37,7 @@ from stylobate.engine.kernel.expansion import series_integrals
 from stylobate.engine.kernel.kernels import kernel_of
 from stylobate.engine.kernel.shape import ANY_KIND, Shape
 from stylobate.engine.starts import cannot_depart, out_of_plane, refuse_spin
-from stylobate.engine.tolerances import ATOL_SHARE, FIRST_STEP_OFF, PARALLEL_ULP
-from stylobate.engine.verdict import FINER_PASSAGE, FINER_REST, other_tolerance, steady_periods
+from stylobate.engine.verdict import FINER_PASSAGE, FINER_REST, other_tolerance
 from stylobate.models import Model
 from stylobate.results import OutcomeRules
 from stylobate.results.known_orbits import OrbitsOfRuns
@@ -137,15 +140,15 @@ class Plan:
 class Batch:
     """Runs in the units of their models.
 
-    `planar` marks runs that begin with planar motion and, after the computation, runs that end with it. `traces` holds
-    the trace entries of a single run.
+    `planar` marks runs that begin with planar motion and, after the computation, runs that end with it. `first_tilt` is
+    the tilt at the start [rad]. `traces` holds the trace entries of a single run.
     """
 
     plan: Plan
     models: ModelColumns
     motions: MotionColumns
-    rest_energy: Floats
     planar: npt.NDArray[np.bool_]
+    first_tilt: Floats
     table: Floats
     orbits: OrbitsOfRuns | None = None
     traces: list[Floats] = field(default_factory=list)
@@ -159,26 +162,25 @@ class Batch:
         ParameterError
             If a value is out of range.
         """
-        models = ModelColumns.of(plan.model, runs.values, runs.tilt, runs.tilt_rate, runs.spin)
-        stands = is_rest(runs.tilt, runs.tilt_rate, models.slenderness, models.time_scale)
-        if np.any(runs.tilt[stands]) or np.any(runs.tilt_rate[stands]):
-            moving = np.where(stands, 0.0, 1.0)[:, np.newaxis]
-            runs = replace(runs, tilt=runs.tilt * moving, tilt_rate=runs.tilt_rate * moving)
-            models = ModelColumns.of(plan.model, runs.values, runs.tilt, runs.tilt_rate, runs.spin)
+        models = ModelColumns.of(plan.model, runs.values, len(runs))
         motions = MotionColumns.of(plan.motion, runs.values, models)
-        energy = plan.rest_share * _rest_energy(plan.options, models, motions)
-        shape = plan.layout
-        times = LookTimes.of(runs.duration / models.time_scale, motions.period, plan.rules)
-        table = _empty_table(plan, shape, len(runs), motions.breaks.shape[1], times.notes)
-        _fill_setup(table, plan, runs, models, motions, energy)
-        times.fill(table)
-        planar = _fill_starts(table, plan.model, runs, models, motions)
+        shape, end = plan.layout, runs.duration / models.time_scale
+        looks = number_of_looks(plan.rules) if np.any(looks_needed(end, motions.period, plan.rules)) else 0
+        table = _empty_table(plan, shape, len(runs), motions.breaks.shape[1], looks)
+        _fill_setup(table, plan, runs, models, motions)
+        fill_looks(table.T, end, motions.period, plan.rules)
+        planar, leans = _fill_starts(table, plan.model, runs, models, motions)
         if runs.orbits is not None:
             fill_orbits(table, shape.orbits_at, runs.orbits, motions.period, models.time_scale, plan.rules)
         table[:, shape.parameters_at : shape.motion_at] = models.parameters
         table[:, shape.motion_at : shape.breaks_at] = motions.columns
         table[:, shape.breaks_at : shape.breaks_at + motions.breaks.shape[1]] = motions.breaks
-        return cls(plan, models, motions, energy, planar, table, runs.orbits)
+        return cls(plan, models, motions, planar, leans, table, runs.orbits)
+
+    @property
+    def rest_energy(self) -> Floats:
+        """Energy below which each column comes to rest, see `Setup`."""
+        return self.table[:, Setup.REST_ENERGY]
 
     def log(self, column: Log) -> Floats:
         """Return a column of the log of all runs."""
@@ -272,34 +274,15 @@ class Batch:
         self.table[chosen] = part
 
 
-def _rest_energy(options: EnsembleOptions, models: ModelColumns, motions: MotionColumns) -> Floats:
-    if options["rest_energy"] is None:
-        energy = usual_rest_energy(
-            motions.mean_frequency,
-            motions.largest,
-            motions.minimum_vertical,
-            models.capacity,
-            least=motions.least_rest_energy,
-        )
-    else:
-        energy = np.full(len(models.capacity), options["rest_energy"])
-    return np.where(models.comes_to_rest, energy, 0.0)
-
-
-def _rest_energy_for_good(options: EnsembleOptions, models: ModelColumns, motions: MotionColumns) -> Floats:
-    usual = rest_energy_for_good(motions.mean_frequency)
-    energy = usual if options["rest_energy"] is None else options["rest_energy"]
-    return np.where(models.comes_to_rest, energy, 0.0)
-
-
 def _empty_table(plan: Plan, shape: Shape, count: int, breaks: int, looks: int) -> Floats:
     samples = plan.samples + plan.options["strobes"]
     notes, places = shape.breaks_at + breaks, plan.options["strobes"] if plan.model.switches else 0
-    number = samples + looks + places
+    number = samples + (looks + PAIRS if looks else 0) + places
     table = np.zeros((count, notes + NOTE * number + plan.traces * shape.trace_width))
     table[:, notes : notes + NOTE * samples] = np.nan
-    table[:, notes + NOTE * (samples + looks) : notes + NOTE * number] = np.nan
+    table[:, notes + NOTE * (number - places) : notes + NOTE * number] = np.nan
     table[:, Setup.NOTES] = number
+    table[:, Setup.LOOKS] = looks
     for column in (Log.FIRST_AZIMUTH, Log.LAST_AZIMUTH):
         table[:, LOG + column] = np.nan
     for column in (Log.MINIMUM_TILT, Log.CLOSEST_PASSAGE, Log.NORMAL):
@@ -307,94 +290,66 @@ def _empty_table(plan: Plan, shape: Shape, count: int, breaks: int, looks: int) 
     return table
 
 
-def _fill_setup(
-    table: Floats, plan: Plan, runs: EnsembleRuns, models: ModelColumns, motions: MotionColumns, energy: Floats
-) -> None:
-    options, traces = plan.options, plan.traces
-    atol = ATOL_SHARE * options["rtol"] * models.slenderness if options["atol"] is None else options["atol"]
-    with np.errstate(divide="ignore"):
-        # Half the shortest period, so that no step misses the forcing.
-        longest = math.pi / motions.frequency
-    columns = {
-        Setup.END: runs.duration / models.time_scale,
-        Setup.RTOL: options["rtol"],
-        Setup.ATOL: atol,
-        Setup.MOST_STEPS: options["max_steps"],
-        Setup.LONGEST_STEP: longest,
-        Setup.SLENDERNESS: models.slenderness,
-        Setup.CAPACITY: models.capacity,
-        Setup.REST_ENERGY: energy,
-        Setup.REST_ENERGY_FOR_GOOD: _rest_energy_for_good(options, models, motions),
-        Setup.LARGEST_HORIZONTAL: motions.largest,
-        Setup.MINIMUM_VERTICAL: motions.minimum_vertical,
-        Setup.MAXIMUM_VERTICAL: motions.maximum_vertical,
-        Setup.TIME_SCALE: models.time_scale,
-        Setup.PER_SECOND: 1.0 / models.time_scale,
-        Setup.FREQUENCY: motions.frequency,
-        Setup.PERIOD: motions.period,
-        Setup.STROBE: (-motions.phase - np.floor(-motions.phase)) * motions.period,
-        Setup.PERIODS: plan.rules.periods,
-        Setup.BREAKS: motions.breaks.shape[1],
-        Setup.SAMPLES: plan.samples,
-        Setup.STROBES: options["strobes"],
-        Setup.TRACES: traces,
-        Setup.PASSAGE_TILT: plan.passage_share * models.loss_tilt,
-        **dict(zip((Setup.SLOPE_X, Setup.SLOPE_Y, Setup.SLOPE_Z), models.slope.T, strict=True)),
-    }
-    numbers = {EVENTS_AT + column: values for column, values in event_numbers(options, models.time_scale).items()}
-    for column, values in (columns | numbers).items():
-        table[:, column] = values
+def _fill_setup(table: Floats, plan: Plan, runs: EnsembleRuns, models: ModelColumns, motions: MotionColumns) -> None:
+    options = plan.options
+    fill_setup(
+        table.T,
+        models.body,
+        motions.bounds,
+        runs.duration,
+        plan.rules,
+        rtol=options["rtol"],
+        atol=options["atol"],
+        rest_energy=options["rest_energy"],
+        max_steps=options["max_steps"],
+        rest_share=plan.rest_share,
+        passage_share=plan.passage_share,
+    )
+    table[:, Setup.BREAKS] = motions.breaks.shape[1]
+    table[:, Setup.SAMPLES] = plan.samples
+    table[:, Setup.STROBES] = options["strobes"]
+    table[:, Setup.TRACES] = plan.traces
+    for column, values in event_numbers(options, models.time_scale).items():
+        table[:, EVENTS_AT + column] = values
 
 
 def _fill_starts(
     table: Floats, model: Model, runs: EnsembleRuns, models: ModelColumns, motions: MotionColumns
-) -> npt.NDArray[np.bool_]:
-    """Set states and lines; return which runs begin with planar motion."""
-    states = models.states.copy()
-    rate = runs.tilt_rate * models.time_scale[:, np.newaxis]
-    stands = ~(_not_zero(runs.tilt) | _not_zero(rate))
-    base_line = common_lines(motions.directions)
-    line = common_lines(np.concatenate([runs.tilt[:, np.newaxis], rate[:, np.newaxis], motions.directions], axis=1))
-    in_a_plane = _not_zero(line)
-    planar = in_a_plane & (model.planar_rates is not None) & (runs.spin == 0.0)
-    still = stands & ~np.any(motions.directions, axis=(1, 2))
-    _check_starts(model, runs, stands, in_a_plane | still)
+) -> tuple[npt.NDArray[np.bool_], Floats]:
+    """Set states and lines; return which runs begin with planar motion, and the tilts at the start."""
+    directions = [(vector[:, 0], vector[:, 1]) for vector in motions.directions.transpose(1, 0, 2)]
+    begun = beginning(
+        (runs.tilt[:, 0], runs.tilt[:, 1]),
+        (runs.tilt_rate[:, 0], runs.tilt_rate[:, 1]),
+        runs.spin,
+        models.time_scale,
+        models.slenderness,
+        directions,
+        has_plane=model.planar_rates is not None,
+    )
+    _check_starts(model, runs, begun.stands, begun.in_a_plane)
+    line = begun.line
     if model.switches:
-        base_line = np.where(_keeps_to_plane(runs, models, line)[:, np.newaxis], line, 0.0)
-    table[:, [Setup.LINE_X, Setup.LINE_Y]] = np.where(planar[:, np.newaxis], line, base_line)
-    table[:, LOG + Log.STANDS] = stands
-    upright = ~_not_zero(runs.tilt) & ~stands & ~planar
-    if upright.any():
-        speed = np.hypot(*rate[upright].T)[:, np.newaxis]
-        off = FIRST_STEP_OFF * models.slenderness[upright, np.newaxis] * rate[upright] / speed
-        moved = replace(runs, tilt=runs.tilt.copy())
-        moved.tilt[upright] = off
-        columns = ModelColumns.of(model, runs.values, moved.tilt, runs.tilt_rate, runs.spin)
-        states[upright] = columns.states[upright]
+        given = [one.velocity[:2] for one in runs.turning or ()] or [(0.0, 0.0)] * len(runs)
+        slip_x, slip_y = np.array(given).T
+        line = line_of_switching(begun, directions, models.slope.T, (slip_x, slip_y), runs.spin)
+    table[:, Setup.LINE_X], table[:, Setup.LINE_Y] = line
+    table[:, LOG + Log.STANDS] = table[:, LOG + Log.REACHED_VERTICAL] = begun.stands
+    moves = ~begun.stands[:, np.newaxis]
+    states = models.starts(np.stack(begun.lean, axis=1), runs.tilt_rate * moves, runs.spin)
     if model.contact_kinds is not None:  # a standing column begins as sliding; the reset map decides its contact
-        states[stands, -1] = model.contact_kinds["SLIDING"]
+        states[begun.stands, -1] = model.contact_kinds["SLIDING"]
         turning = runs.turning or ()
         for changed, chosen in models.models.each() if turning else ():
             for k in np.arange(len(runs))[chosen]:
                 states[k] = turning[k].begun(changed, states[k])
     table[:, STATE : STATE + states.shape[1]] = states
+    planar = np.asarray(begun.planar)
     if planar.any():
-        table[planar, STATE] = np.sum(runs.tilt * line, axis=1)[planar]
-        table[planar, STATE + 1] = np.sum(rate * line, axis=1)[planar]
-    table[:, LOG + Log.REACHED_VERTICAL] = stands
-    return np.asarray(planar)
-
-
-def _keeps_to_plane(runs: EnsembleRuns, models: ModelColumns, line: Floats) -> npt.NDArray[np.bool_]:
-    """Return which runs without spin, on planes that slope along their `line`, also start to slip along it."""
-    slips = np.zeros((len(line), 2)) if runs.turning is None else np.array([one.velocity[:2] for one in runs.turning])
-    vectors = np.stack([line, models.slope[:, :2], slips], axis=1)
-    return np.asarray(_not_zero(line) & _not_zero(common_lines(vectors)) & (runs.spin == 0.0))
-
-
-def _not_zero(vectors: Floats) -> npt.NDArray[np.bool_]:
-    """Return which of the `vectors`, shape (n, 2), are not zero."""
-    return np.logical_or(vectors[:, 0], vectors[:, 1])
+        (x, y), (vx, vy), (ux, uy) = begun.tilt, begun.rate, begun.line
+        table[planar, STATE] = (x * ux + y * uy)[planar]
+        table[planar, STATE + 1] = (vx * ux + vy * uy)[planar]
+    return planar, np.hypot(*begun.lean)
 
 
 def _check_starts(
@@ -408,78 +363,6 @@ def _check_starts(
     if model.planar_only and aside.any():
         tilt, rate = runs.tilt[aside][0].tolist(), runs.tilt_rate[aside][0].tolist()
         raise out_of_plane(model, tilt, rate)
-
-
-def common_lines(vectors: Floats) -> Floats:
-    """Return for each run the unit vector that is parallel to all its `vectors`, shape (n, m, 2), to 8 ulp.
-
-    The result is (0, 0) if there is none or if all vectors are zero; zero vectors are parallel to any line.
-    """
-    count = vectors.shape[0]
-    if vectors.shape[1] == 0:
-        return np.zeros((count, 2))
-    lengths = np.hypot(vectors[..., 0], vectors[..., 1])
-    longest = np.argmax(lengths, axis=1)
-    length = lengths[np.arange(count), longest]
-    with np.errstate(invalid="ignore"):
-        line = vectors[np.arange(count), longest] / length[:, np.newaxis]
-    aside = np.abs(line[:, np.newaxis, 0] * vectors[..., 1] - line[:, np.newaxis, 1] * vectors[..., 0])
-    fits = np.all(aside <= PARALLEL_ULP * np.finfo(float).eps * lengths, axis=1) & (length > 0.0)
-    return np.where(fits[:, np.newaxis], line, 0.0)
-
-
-# Minimum mean number of periods from one pair to the next: pairs meet all phases of the base motion and do not overlap.
-_LEAST_SPACING = 1.5
-# Fraction of a run over which pairs are spread, and fraction between the two groups of looks. Periods too long for one
-# run are then resolved by a longer one.
-_PAIRED, _BETWEEN = 0.5, 0.25
-
-
-@dataclass(frozen=True, slots=True)
-class LookTimes:
-    """Times of the looks and pairs of each run.
-
-    Parameters
-    ----------
-    looks
-        Number of looks in a row, 0 if no run is long enough for an outcome by its last periods.
-    back, spacing
-        `LOOKED_BACK` and `PAIR_SPACING` of each run, see `Setup`.
-    """
-
-    looks: int
-    back: Floats
-    spacing: Floats
-
-    @classmethod
-    def of(cls, end: npt.ArrayLike, period: npt.ArrayLike, rules: OutcomeRules) -> "LookTimes":
-        """Return the times for runs of this duration; runs that are too short to need them have none."""
-        held = periods_of(end, period)
-        latest = rules.periods + LAGS
-        back = np.maximum(latest + 1.0, np.floor(_BETWEEN * held))
-        spacing = np.maximum((_PAIRED * held - 1.0) / (PAIRS - 1.0), _LEAST_SPACING)
-        looks = EARLIER + latest + 1 if np.any(held >= rules.periods + 1.0) else 0
-        steady = held >= steady_periods(rules)
-        back = np.where(steady & (held >= back + EARLIER - 1.0), back, 0.0)
-        return cls(looks, back, np.where(steady, spacing, 0.0))
-
-    @property
-    def notes(self) -> int:
-        """Number of looks and pairs in a row."""
-        return self.looks + PAIRS if self.looks else 0
-
-    def fill(self, table: Floats) -> None:
-        """Set the columns of the table."""
-        table[:, Setup.LOOKS] = self.looks
-        table[:, Setup.LOOKED_BACK] = self.back
-        table[:, Setup.PAIR_SPACING] = self.spacing
-
-
-def periods_of(end: npt.ArrayLike, period: npt.ArrayLike) -> Floats:
-    """Return the number of periods of the base motion in runs of this duration; 0 without a period."""
-    length = np.asarray(period, dtype=float)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        return np.where(length > 0.0, np.asarray(end) * (1.0 + SLACK) / length, 0.0)
 
 
 # Minimum number of periods in a window, over which the oscillations of complex multipliers average out.

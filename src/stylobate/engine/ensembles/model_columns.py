@@ -4,8 +4,8 @@ Models whose numbers differ from run to run are evaluated at once: their propert
 numbers. A run whose numbers are refused or questioned, and a user's model that computes otherwise, has its own object.
 """
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
 from functools import cache
 from typing import Any
 
@@ -14,6 +14,7 @@ import numpy.typing as npt
 
 from stylobate.column import Column
 from stylobate.engine.cost import LOG
+from stylobate.engine.ensembles.beginnings import Body
 from stylobate.engine.parameters import COLUMN_NAMES, changed_model, split
 from stylobate.models import Model
 from stylobate.models.model import owner_of
@@ -31,6 +32,8 @@ class RunModels:
     model: Model
     values: Mapping[str, Floats]
     count: int
+    _made: dict[object, Any] = field(default_factory=dict, repr=False, compare=False)
+    """Objects that were made, by their runs, and the model whose numbers are arrays."""
 
     def of(self, runs: npt.NDArray[np.intp]) -> "RunModels":
         """Return the models of these runs."""
@@ -49,6 +52,13 @@ class RunModels:
         return self._objects(np.arange(self.count))
 
     def _objects(self, runs: npt.NDArray[np.intp]) -> list[tuple[Model, Runs]]:
+        key = runs.tobytes()
+        if key not in self._made:
+            self._made[key] = self._new_objects(runs)
+        objects: list[tuple[Model, Runs]] = self._made[key]
+        return objects
+
+    def _new_objects(self, runs: npt.NDArray[np.intp]) -> list[tuple[Model, Runs]]:
         table = np.stack([values[runs] for values in self.values.values()], axis=1)
         kinds, which = np.unique(table, axis=0, return_inverse=True)
         order = np.argsort(which.ravel(), kind="stable")
@@ -94,8 +104,7 @@ class RunModels:
             return None
         try:
             with np.errstate(all="ignore"):
-                model = _of_arrays(self.model, self.values)
-                plain = _plain(model.column) & _plain(model)
+                model, plain = self._of_arrays()
                 found = numbers(model, slice(None))
         except Exception:  # noqa: BLE001  a user's property can raise anything for an array
             return None
@@ -106,6 +115,14 @@ class RunModels:
             if not all(np.array_equal(alone[name], one[run], equal_nan=True) for name, one in found.items()):
                 return None
         return found, np.flatnonzero(~np.broadcast_to(plain, self.count))
+
+    def _of_arrays(self) -> tuple[Model, npt.NDArray[np.bool_]]:
+        """Return the model whose numbers are arrays, and the runs whose numbers are accepted without a question."""
+        if "arrays" not in self._made:
+            model = _of_arrays(self.model, self.values)
+            self._made["arrays"] = model, _plain(model.column) & _plain(model)
+        model, plain = self._made["arrays"]
+        return model, plain
 
 
 # Runs from which on it pays to evaluate their models at once, and from which on it matters if they cannot be.
@@ -163,7 +180,7 @@ def _assembled(count: int, parts: list[tuple[Mapping[str, Arrays], Runs]]) -> di
 
 @dataclass(frozen=True, slots=True)
 class ModelColumns:
-    """Arrays over the runs of shape (n,), except `slope`, (n, 3), `states`, (n, number of states), and `parameters`.
+    """Arrays over the runs of shape (n,), except `slope`, (n, 3), and `parameters`.
 
     `length` is the height of the centre of mass [m].
     """
@@ -177,28 +194,21 @@ class ModelColumns:
     comes_to_rest: npt.NDArray[np.bool_]
     loss_tilt: Floats
     slope: Floats
-    states: Floats
     parameters: Floats
 
     @classmethod
-    def of(
-        cls, model: Model, values: Mapping[str, Floats], tilt: Floats, tilt_rate: Floats, spin: Floats
-    ) -> "ModelColumns":
-        """Return the columns for runs with these initial values, `tilt` and `tilt_rate` of shape (n, 2), and `values`.
+    def of(cls, model: Model, values: Mapping[str, Floats], count: int) -> "ModelColumns":
+        """Return the columns for `count` runs that change these `values`.
 
         Raises
         ------
         ParameterError
             If a value is out of range.
         """
-        models = RunModels(model, split(model, values)[0], len(tilt))
+        models = RunModels(model, split(model, values)[0], count)
 
         def numbers(changed: Model, runs: Runs) -> dict[str, Arrays]:
-            column, count = changed.column, len(spin[runs])
-            vectors = (*tilt[runs].T, *tilt_rate[runs].T)
-            states: list[Any] = [*changed.start((vectors[0], vectors[1]), (vectors[2], vectors[3]))]
-            if changed.spin_state is not None:
-                states[changed.spin_state] = spin[runs] * changed.time_scale
+            column = changed.column
             flat = {
                 "time_scale": changed.time_scale,
                 "gravity": column.gravity,
@@ -208,10 +218,37 @@ class ModelColumns:
                 "comes_to_rest": changed.comes_to_rest,
                 "loss_tilt": changed.loss_tilt,
             }
-            rows = {"slope": changed.slope, "states": states, "parameters": changed.parameters}
-            return {name: np.broadcast_to(one, count) for name, one in flat.items()} | {
-                name: np.stack([np.broadcast_to(one, count) for one in parts], axis=1, dtype=float)
-                for name, parts in rows.items()
+            rows = {"slope": changed.slope, "parameters": changed.parameters}
+            size = _size(count, runs)
+            return {name: np.broadcast_to(one, size) for name, one in flat.items()} | {
+                name: _rows(parts, size) for name, parts in rows.items()
             }
 
         return cls(models, **models.evaluate(numbers))
+
+    def starts(self, tilt: Floats, tilt_rate: Floats, spin: Floats) -> Floats:
+        """Return the states, shape (n, number of states), with these tilts and rates, of shape (n, 2), and spins."""
+
+        def numbers(changed: Model, runs: Runs) -> dict[str, Arrays]:
+            vectors = (*tilt[runs].T, *tilt_rate[runs].T)
+            states: list[Any] = [*changed.start((vectors[0], vectors[1]), (vectors[2], vectors[3]))]
+            if changed.spin_state is not None:
+                states[changed.spin_state] = spin[runs] * changed.time_scale
+            return {"states": _rows(states, len(spin[runs]))}
+
+        return self.models.evaluate(numbers)["states"]
+
+    @property
+    def body(self) -> Body:
+        """The numbers on which rest depends."""
+        return Body(
+            self.time_scale, self.slenderness, self.capacity, self.comes_to_rest, self.loss_tilt, [*self.slope.T]
+        )
+
+
+def _size(count: int, runs: Runs) -> int:
+    return len(range(count)[runs]) if isinstance(runs, slice) else len(runs)
+
+
+def _rows(parts: Sequence[Any], count: int) -> Floats:
+    return np.stack([np.broadcast_to(one, count) for one in parts], axis=1, dtype=float)

@@ -9,7 +9,8 @@ import numpy as np
 import numpy.typing as npt
 from numpy.lib.stride_tricks import sliding_window_view
 
-from stylobate.engine.ensembles.batch import Batch, OrbitReached, periods_of
+from stylobate.engine.ensembles.batch import Batch, OrbitReached
+from stylobate.engine.ensembles.beginnings import periods_of
 from stylobate.engine.ensembles.runs import CONTACT_KINDS, DEMANDS, TIMES_OF_CONTACTS, Arrays, empty
 from stylobate.engine.forcing import coarse
 from stylobate.engine.kernel.columns import EARLIER, LAGS, PAIRS, SLACK, STATE, Change, Log, Pair, Setup, pair_begins
@@ -58,7 +59,6 @@ def _all(batch: Batch) -> Arrays:
     overturned = outcome == Outcome.OVERTURNED
     passage = batch.log(Log.CLOSEST_PASSAGE)
     touched = batch.log(Log.REACHED_VERTICAL) > 0.0
-    start = np.hypot(*batch.plan.model.tilt_of(*batch.models.states.T, *batch.models.parameters.T)[:2])
     is_coarse = coarse(
         batch.rest_energy,
         batch.motions.mean_frequency,
@@ -82,7 +82,7 @@ def _all(batch: Batch) -> Arrays:
         "peak_tilt": batch.log(Log.PEAK_TILT),
         "time_of_peak_tilt": batch.log(Log.PEAK_AT) * scale,
         "minimum_tilt": np.where(
-            touched, 0.0, np.minimum.reduce([start, batch.log(Log.MINIMUM_TILT), np.hypot(*tilt.T)])
+            touched, 0.0, np.minimum.reduce([batch.first_tilt, batch.log(Log.MINIMUM_TILT), np.hypot(*tilt.T)])
         ),
         "turns": _turns(batch),
         "mean_tilt": late.mean_tilt,

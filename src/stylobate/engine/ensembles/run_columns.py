@@ -1,6 +1,5 @@
 """Columns of the table of a batch that describe the base motions of the runs."""
 
-import cmath
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -12,6 +11,7 @@ import numpy.typing as npt
 from stylobate.base_motions import BaseMotion, Harmonic
 from stylobate.base_motions.combined import Delayed, Rotated, Scaled, Sum, members_of
 from stylobate.base_motions.declared import is_pulse, numbers_of_motion, stated_numbers
+from stylobate.engine.ensembles.beginnings import Bounds
 from stylobate.engine.ensembles.model_columns import ModelColumns
 from stylobate.engine.ensembles.polynomials import PolynomialTable, one_after_another, tabulated, tabulated_alike
 from stylobate.engine.forcing import least_rest_energy
@@ -23,6 +23,9 @@ from stylobate.engine.verdict import remaining_acceleration
 Floats = npt.NDArray[np.float64]
 
 
+Complex = tuple[Any, Any]
+"""Real and imaginary part."""
+
 _COPIES = (Scaled, Rotated, Delayed)
 
 
@@ -30,32 +33,56 @@ _COPIES = (Scaled, Rotated, Delayed)
 class Term:
     """Acceleration Re(amplitude e^{i(ω(t − shift) + start_phase)}) after `onset`, with a rise over `ramp` from `shift`.
 
+    All numbers may be arrays over runs.
+
     Parameters
     ----------
     angular_frequency
         ω [rad/s].
     amplitude
-        Complex amplitudes along x, y, z [m/s²].
+        Real and imaginary parts of the complex amplitudes along x, y, z [m/s²].
     start_phase
         [rad].
     shift, onset, ramp
         [s].
     """
 
-    angular_frequency: float
-    amplitude: tuple[complex, complex, complex]
-    start_phase: float
-    shift: float
-    onset: float
-    ramp: float
+    angular_frequency: Any
+    amplitude: tuple[Complex, Complex, Complex]
+    start_phase: Any
+    shift: Any
+    onset: Any
+    ramp: Any
+
+    @property
+    def phase_at_start(self) -> Any:
+        """Phase at t = 0 [rad]."""
+        return self.start_phase - self.angular_frequency * self.shift
+
+    def wave(self, time_scale: Any, gravity: Any, *, windowed: bool) -> tuple[Any, ...]:
+        """Return the numbers of `Wave` in the units of the models; `windowed` adds its last ones."""
+        turns = (self.angular_frequency * time_scale / (2.0 * math.pi),)
+        for re, im in self.amplitude:
+            turns = (*turns, np.hypot(re, im) / gravity, _turns(np.arctan2(im, re) + self.phase_at_start))
+        if not windowed:
+            return turns
+        # The end of the rise is exactly the break at which the kernel begins the next leg.
+        ends = (self.shift + self.ramp) / time_scale
+        return *turns, self.onset / time_scale, self.shift / time_scale, ends
+
+    def azimuths(self) -> tuple[Any, Any]:
+        """Return the azimuths of the anticlockwise and clockwise components at t = 0 [rad]."""
+        phase = self.phase_at_start
+        cos, sin = np.cos(phase), np.sin(phase)
+        (x_re, x_im), (y_re, y_im), _ = (_turned(part, cos, sin) for part in self.amplitude)
+        forward = np.arctan2(x_im + y_re, x_re - y_im)
+        return forward, np.arctan2(y_re - x_im, x_re + y_im)
 
 
 def terms_of(motion: BaseMotion) -> tuple[Term, ...] | None:
     """Return the harmonic terms of `motion`, or None if it is not a sum of harmonic motions."""
     if type(motion) is Harmonic:
-        amplitudes = tuple(cmath.rect(a, phase) for a, phase in zip(motion.amplitude, motion.phase, strict=True))
-        x, y, z = amplitudes
-        return (Term(motion.angular_frequency, (x, y, z), motion.start_phase, 0.0, -math.inf, motion.ramp),)
+        return (term_of(motion),)
     if type(motion) is Sum:
         parts = [terms_of(part) for part in motion.motions]
         return None if None in parts else tuple(term for part in parts for term in part or ())
@@ -65,106 +92,90 @@ def terms_of(motion: BaseMotion) -> tuple[Term, ...] | None:
     return None if inner is None else tuple(_transformed(motion, term) for term in inner)
 
 
+def term_of(motion: Harmonic) -> Term:
+    """Return the term of a harmonic motion."""
+    (ax, ay, az), (fx, fy, fz) = motion.amplitude, motion.phase
+    amplitude = (
+        (ax * math.cos(fx), ax * math.sin(fx)),
+        (ay * math.cos(fy), ay * math.sin(fy)),
+        (az * math.cos(fz), az * math.sin(fz)),
+    )
+    return Term(motion.angular_frequency, amplitude, motion.start_phase, 0.0, -math.inf, motion.ramp)
+
+
 def _transformed(motion: Scaled | Rotated | Delayed, term: Term) -> Term:
     if isinstance(motion, Delayed):
         begins = motion.delay if motion.delay > 0.0 else -math.inf
         return replace(term, shift=term.shift + motion.delay, onset=max(begins, term.onset + motion.delay))
-    return replace(term, amplitude=motion.changed(*term.amplitude))
+    real, imaginary = (motion.changed(*parts) for parts in zip(*term.amplitude, strict=True))
+    x, y, z = zip(real, imaginary, strict=True)
+    return replace(term, amplitude=(x, y, z))
 
 
-@dataclass(frozen=True, slots=True)
-class Terms:
-    """Terms of the motions of n runs: arrays of shape (n, terms), amplitudes (n, terms, 3), in SI units."""
+def _of_runs(
+    terms: Sequence[tuple[Term, ...]],
+    which: npt.NDArray[np.intp],
+    values: Mapping[str, Floats],
+    base_acceleration: Floats,
+) -> tuple[Term, ...]:
+    """Return the terms of runs, whose numbers are arrays, with the parameters of `values` changed.
 
-    angular_frequency: Floats
-    amplitude: npt.NDArray[np.complex128]
-    start_phase: Floats
-    shift: Floats
-    onset: Floats
-    ramp: Floats
+    Parameters
+    ----------
+    terms
+        Terms of each of some motions, all of the same number.
+    which
+        Index of the motion of each run, shape (n,).
+    values
+        Parameters that change, each of shape (n,).
+    base_acceleration
+        Peak horizontal acceleration of each run before the change [m/s²].
+    """
+    factor = factors(values, base_acceleration)
+    return tuple(_changed(_together(same, which), values, factor) for same in zip(*terms, strict=True))
 
-    @classmethod
-    def of(
-        cls,
-        terms: Sequence[tuple[Term, ...]],
-        which: npt.NDArray[np.intp],
-        values: Mapping[str, Floats],
-        base_acceleration: Floats,
-    ) -> "Terms":
-        """Return the terms of each run, with the parameters of `values` changed.
 
-        Parameters
-        ----------
-        terms
-            Terms of each of some motions, all of the same number.
-        which
-            Index of the motion of each run, shape (n,).
-        values
-            Parameters that change, each of shape (n,).
-        base_acceleration
-            Peak horizontal acceleration of each run before the change [m/s²].
-        """
-        shape = (len(terms), len(terms[0]))
+def _together(terms: Sequence[Term], which: npt.NDArray[np.intp]) -> Term:
+    """Return one term, whose numbers are those of the motion of each run."""
+    amplitude = np.array([term.amplitude for term in terms], dtype=float)[which]
+    x, y, z = (tuple(part) for part in amplitude.transpose(1, 2, 0))
+    of_runs = {
+        name: np.array([getattr(term, name) for term in terms], dtype=float)[which]
+        for name in ("angular_frequency", "start_phase", "shift", "onset", "ramp")
+    }
+    return Term(amplitude=(x, y, z), **of_runs)
 
-        def of_runs(get: Callable[[Term], float]) -> Floats:
-            numbers = [get(term) for motion in terms for term in motion]
-            return np.array(numbers, dtype=float).reshape(shape)[which]
 
-        amplitudes = [term.amplitude for motion in terms for term in motion]
-        made = cls(
-            of_runs(lambda term: term.angular_frequency),
-            np.array(amplitudes, dtype=complex).reshape(*shape, 3)[which],
-            of_runs(lambda term: term.start_phase),
-            of_runs(lambda term: term.shift),
-            of_runs(lambda term: term.onset),
-            of_runs(lambda term: term.ramp),
+def _changed(term: Term, values: Mapping[str, Floats], factor: Floats | None) -> Term:
+    """Return a term with the parameters of `values`; amplitudes are multiplied by the `factor`."""
+    own = {name: values[name] for name in ("angular_frequency", "start_phase", "ramp") if name in values}
+    amplitude = term.amplitude
+    if factor is not None:
+        x, y, z = ((re * factor, im * factor) for re, im in amplitude)
+        amplitude = (x, y, z)
+    if "rotation" in values:
+        cos, sin = np.cos(values["rotation"]), np.sin(values["rotation"])
+        (x_re, x_im), (y_re, y_im), z = amplitude
+        amplitude = (
+            (cos * x_re - sin * y_re, cos * x_im - sin * y_im),
+            (sin * x_re + cos * y_re, sin * x_im + cos * y_im),
+            z,
         )
-        return made._with(values, base_acceleration)
+    shift, onset = term.shift, term.onset
+    if "delay" in values:
+        delay = values["delay"]
+        shift = shift + delay
+        onset = np.maximum(np.where(delay > 0.0, delay, -np.inf), onset + delay)
+    return replace(term, amplitude=amplitude, shift=shift, onset=onset, **own)
 
-    def _with(self, values: Mapping[str, Floats], base_acceleration: Floats) -> "Terms":
-        frequency, amplitude, start_phase = self.angular_frequency, self.amplitude, self.start_phase
-        shift, onset = self.shift, self.onset
-        if "angular_frequency" in values:
-            frequency = np.broadcast_to(values["angular_frequency"][:, np.newaxis], frequency.shape)
-        if "start_phase" in values:
-            start_phase = np.broadcast_to(values["start_phase"][:, np.newaxis], frequency.shape)
-        ramp = np.broadcast_to(values["ramp"][:, np.newaxis], frequency.shape) if "ramp" in values else self.ramp
-        factor = factors(values, base_acceleration)
-        if factor is not None:
-            amplitude = amplitude * factor[:, np.newaxis, np.newaxis]
-        if "rotation" in values:
-            cos, sin = (part(values["rotation"])[:, np.newaxis] for part in (np.cos, np.sin))
-            x, y, z = np.moveaxis(amplitude, -1, 0)
-            amplitude = np.stack([cos * x - sin * y, sin * x + cos * y, z], axis=-1)
-        if "delay" in values:
-            delay = values["delay"][:, np.newaxis]
-            shift = shift + delay
-            onset = np.maximum(np.where(delay > 0.0, delay, -np.inf), onset + delay)
-        return Terms(frequency, amplitude, start_phase, shift, onset, ramp)
 
-    @property
-    def phase_at_start(self) -> Floats:
-        """Phase of each term at t = 0 [rad], shape (n, terms)."""
-        return self.start_phase - self.angular_frequency * self.shift
-
-    def breaks(self) -> Floats:
-        """Return the increasing times of non-smooth acceleration [s], shape (n, breaks), padded with inf."""
-        ramped = np.where(self.ramp > 0.0, self.shift + self.ramp, np.inf)
-        times = np.concatenate([self.onset, ramped], axis=1)
-        times = np.sort(np.where(times > 0.0, times, np.inf), axis=1)
-        return times[:, np.any(np.isfinite(times), axis=0)]
-
-    def columns(self, time_scale: Floats, gravity: Floats, *, windowed: bool) -> Floats:
-        """Return the columns of a kernel, those of `Wave` for each term."""
-        scale = time_scale[:, np.newaxis]
-        phase = np.angle(self.amplitude) + self.phase_at_start[..., np.newaxis]
-        parts = [self.angular_frequency * scale / (2.0 * math.pi)]
-        for axis in range(3):
-            parts += [np.abs(self.amplitude[..., axis]) / gravity[:, np.newaxis], _turns(phase[..., axis])]
-        if windowed:
-            # The end of the rise is exactly the break at which the kernel begins the next leg.
-            parts += [self.onset / scale, self.shift / scale, (self.shift + self.ramp) / scale]
-        return np.stack(parts, axis=-1).reshape(len(scale), -1)
+def _breaks(terms: Sequence[Term]) -> Floats:
+    """Return the increasing times of non-smooth acceleration [s], shape (n, breaks), padded with inf."""
+    times = [term.onset for term in terms]
+    times += [np.where(term.ramp > 0.0, term.shift + term.ramp, np.inf) for term in terms]
+    every = np.stack(times, axis=1)
+    every = np.sort(np.where(every > 0.0, every, np.inf), axis=1)
+    return every[:, np.any(np.isfinite(every), axis=0)]
 
 
 def factors(values: Mapping[str, Floats], base_acceleration: Floats) -> Floats | None:
@@ -177,9 +188,15 @@ def factors(values: Mapping[str, Floats], base_acceleration: Floats) -> Floats |
     return factor
 
 
-def _turns(angle: Floats) -> Floats:
+def _turns(angle: Any) -> Any:
     turns = angle / (2.0 * math.pi)
     return turns - np.floor(turns + 0.5)
+
+
+def _turned(part: Complex, cos: Any, sin: Any) -> Complex:
+    """Return a complex number times cos + i sin."""
+    re, im = part
+    return re * cos - im * sin, re * sin + im * cos
 
 
 _NO_PIECES = np.zeros((1, 5))
@@ -250,7 +267,7 @@ class MotionPlan:
         if terms is not None:
             each_term = [term for one in terms for term in one]
             windowed = "delay" in values or any(term.ramp > 0.0 or term.onset > 0.0 for term in each_term)
-            vertical = any(term.amplitude[2] != 0.0 for term in each_term)
+            vertical = any(term.amplitude[2] != (0.0, 0.0) for term in each_term)
             return cls(motion, members, *varied, terms, None, nowhere, nowhere, windowed, vertical, base)
         least_delay = values["delay"].min(initial=0.0) if "delay" in values else 0.0
         end = float(duration.max(initial=1e-300)) - float(least_delay)
@@ -325,10 +342,11 @@ class MotionColumns:
         offset = np.stack([values.get(name, np.zeros(count)) for name in OFFSETS], axis=-1)
         pushed = np.hypot(*offset.T) / models.gravity
         if plan.terms is not None:
-            terms = Terms.of(plan.terms, which, values, plan.base_acceleration[which])
-            columns = terms.columns(models.time_scale, models.gravity, windowed=plan.windowed)
-            breaks = terms.breaks() if plan.windowed else np.empty((count, 0))
-            frequency, phase, forward, backward = _single_frequency(terms, plan.motion)
+            terms = _of_runs(plan.terms, which, values, plan.base_acceleration[which])
+            waves = (term.wave(models.time_scale, models.gravity, windowed=plan.windowed) for term in terms)
+            columns = np.array([np.broadcast_to(one, count) for wave in waves for one in wave]).reshape(-1, count).T
+            breaks = _breaks(terms) if plan.windowed else np.empty((count, 0))
+            frequency, phase, forward, backward = _single_frequency(terms, plan.motion, count)
             mean_frequency = frequency
         else:
             columns = _table_columns(plan, values, factor, rotation, offset, models)
@@ -359,6 +377,12 @@ class MotionColumns:
             backward=backward,
         )
 
+    @property
+    def bounds(self) -> Bounds:
+        """The numbers on which rest depends."""
+        own = (self.frequency, self.mean_frequency, self.least_rest_energy, self.period, self.phase)
+        return Bounds(*own, self.largest, self.minimum_vertical, self.maximum_vertical)
+
 
 def _combined(values: Sequence[Floats]) -> tuple[tuple[Floats, ...], npt.NDArray[np.intp]]:
     """Return the distinct values of each parameter in increasing order, and the combinations that occur."""
@@ -371,20 +395,16 @@ def _combination(levels: Sequence[Floats], places: Sequence[npt.NDArray[np.intp]
     return np.asarray(np.ravel_multi_index(tuple(places), tuple(map(len, levels))), dtype=np.intp)
 
 
-def _single_frequency(terms: Terms, motion: BaseMotion) -> tuple[Floats, Floats, Floats, Floats]:
+def _single_frequency(terms: Sequence[Term], motion: BaseMotion, count: int) -> tuple[Floats, ...]:
     """Return the highest frequency of each run, its phase at t = 0, and the azimuths of its circular components."""
-    count = len(terms.angular_frequency)
     nothing = np.full(count, np.nan)
-    if terms.angular_frequency.shape[1] == 0:
+    if not terms:
         return np.full(count, motion.highest_frequency), np.zeros(count), nothing, nothing
-    frequency = terms.angular_frequency.max(axis=1)
-    if terms.angular_frequency.shape[1] > 1:
-        return frequency, np.zeros(count), nothing, nothing
-    phase = terms.phase_at_start[:, 0]
-    x, y, _ = np.moveaxis(terms.amplitude[:, 0] * np.exp(1j * phase)[:, np.newaxis], -1, 0)
-    forward = np.angle(0.5 * (x + 1j * y))
-    backward = np.angle(0.5 * (x.conj() + 1j * y.conj()))
-    return frequency, phase / (2.0 * math.pi), forward, backward
+    if len(terms) > 1:
+        highest = np.max([np.broadcast_to(term.angular_frequency, count) for term in terms], axis=0)
+        return highest, np.zeros(count), nothing, nothing
+    (term,) = terms
+    return term.angular_frequency, term.phase_at_start / (2.0 * math.pi), *term.azimuths()
 
 
 def _directions(

@@ -363,7 +363,7 @@ def _harmonic_rows(motion: BaseMotion, period: float) -> list[tuple[float, Float
         multiple = term.angular_frequency * period / (2.0 * math.pi)
         if abs(multiple - round(multiple)) > _HARMONIC * max(multiple, 1.0):
             return None
-        turned = np.array(term.amplitude) * np.exp(1j * (term.start_phase - term.angular_frequency * term.shift))
+        turned = (np.array(term.amplitude) @ [1.0, 1j]) * np.exp(1j * term.phase_at_start)
         rows.append((float(round(multiple)), np.stack([turned.real, -turned.imag], axis=-1)))
     return rows
 
