@@ -35,6 +35,8 @@ from stylobate.quantities import Quantity, Stated, checked_arguments, stating
 _SERIES_RADIUS = 0.5
 _SERIES_TERMS = 18
 
+_ROUNDING = 8.0 * float(np.finfo(float).eps)
+
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class Harmonic(BaseMotion):
@@ -322,8 +324,10 @@ class Harmonic(BaseMotion):
     def peak_horizontal(self, since: float = 0.0) -> float:
         """Compute sup |a_h| = |p| + |q| [m/s²], where p and q are the circular components of the ellipse."""
         del since
-        p, q = self._circular_parts()
-        return abs(p) + abs(q)
+        (ax, ay, _), (fx, fy, _) = self.amplitude, self.phase
+        x, x_aside, y, y_aside = ax * math.cos(fx), ax * math.sin(fx), ay * math.cos(fy), ay * math.sin(fy)
+        p, q = math.hypot(x - y_aside, x_aside + y), math.hypot(x + y_aside, y - x_aside)
+        return 0.5 * p + 0.5 * q
 
     def vertical_range(self, since: float = 0.0) -> tuple[float, float]:
         """Return the minimum and maximum vertical acceleration [m/s²]."""
@@ -353,11 +357,6 @@ class Harmonic(BaseMotion):
     def breaks(self) -> tuple[float, ...]:
         """The end of the ramp [s]."""
         return (self.ramp,) if self.ramp > 0.0 else ()
-
-    def _circular_parts(self) -> tuple[complex, complex]:
-        (ax, ay, _), (fx, fy, _) = self.amplitude, self.phase
-        x, y = cmath.rect(ax, fx), cmath.rect(ay, fy)
-        return 0.5 * (x + 1j * y), 0.5 * (x.conjugate() + 1j * y.conjugate())
 
     def _ramped(self, t: npt.NDArray[np.float64], order: int, a: float, phase: float) -> npt.NDArray[np.float64]:
         # ½(1 − cos νt) cos(Ωt + φ) is a sum of three harmonics, each integrated back from the end of the ramp, where
@@ -397,7 +396,7 @@ def _integral_of_exp(z: npt.NDArray[np.complexfloating], times: int) -> npt.NDAr
 
 def _exact(ratio: float) -> float:
     """Return a sine or cosine, 0 if it differs from 0 only by rounding of the angle."""
-    return 0.0 if abs(ratio) < 8.0 * np.finfo(float).eps else ratio
+    return 0.0 if abs(ratio) < _ROUNDING else ratio
 
 
 def as_harmonic(motion: BaseMotion) -> Harmonic | None:

@@ -167,16 +167,12 @@ class Arithmetic:
             raise Refusal(f"{type(operation).__name__} is not compiled; write it with +, -, *, /, //, % and **")
         if isinstance(a, LaneIndex) or isinstance(b, LaneIndex):
             return _moved(operation, a, b)
-        if isinstance(a, tuple) and isinstance(b, tuple) and isinstance(operation, ast.Add):
-            return (*a, *b)
-        if isinstance(a, tuple) and isinstance(b, int) and isinstance(operation, ast.Mult):
-            return a * b
+        if isinstance(a, tuple) and isinstance(b, tuple | int) and isinstance(operation, ast.Add | ast.Mult):
+            return (*a, *b) if isinstance(b, tuple) else a * b
         if is_known_number(a) and is_known_number(b):
             return _quotient(a, b) if isinstance(operation, ast.Div) else _KNOWN[type(operation)](a, b)
-        if isinstance(operation, ast.Pow):
-            return self._power(a, b)
-        if isinstance(operation, ast.BitAnd | ast.BitOr):
-            return self._joined_conditions(operation, a, b)
+        if isinstance(operation, ast.Pow | ast.BitAnd | ast.BitOr):
+            return self._power(a, b) if isinstance(operation, ast.Pow) else self._joined_conditions(operation, a, b)
         least = NumberKind.FLOAT if isinstance(operation, ast.Div) else NumberKind.INTEGER
         x, y = self.alike(a, b, kind=max(least, *map(self._kind, (a, b))))
         bounds = self._bounds(operation, x, y) if x.kind is NumberKind.INTEGER and self.checked else None

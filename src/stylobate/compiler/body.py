@@ -312,6 +312,8 @@ class Body(Names):
             case ast.Expr():
                 if not self._is_advice(node.value):
                     self.value(node.value)
+            case ast.Delete(targets=targets) if all(isinstance(target, ast.Name) for target in targets):
+                pass
             case ast.Raise() if self.callees.traps:
                 trap = self.arithmetic.module.declared("llvm.trap", "void", [])
                 self.text.line(f"call void {trap}()")

@@ -491,14 +491,13 @@ class Expressions(ABC):
         function = marks.compiled_for(function)
         if is_mathematics(function) and not keywords:
             return call(self.arithmetic, function, values)
-        if _is_named_tuple(function):
-            return function(*values, **keywords)
+        make = _maker_of(function)
+        return self._of_python(function, values, keywords) if make is None else make(*values, **keywords)
+
+    def _of_python(self, function: Any, values: list[Value], keywords: dict[str, Value]) -> Value:
+        """Return the result of a function of arrays or of tuples, or of one that is written in Python."""
         if function is np.asarray:
             return self.arithmetic.number(values[0])
-        if objects.is_class(function):
-            return objects.made(function, values, keywords)
-        if function is dataclasses.replace and objects.is_object(values[0]):
-            return objects.changed(values[0], keywords)
         if function in _OF_ARRAYS and not keywords:
             if function is np.zeros and self.in_loop:
                 raise Refusal("an array made in each pass of a loop; make one before it")
@@ -508,6 +507,16 @@ class Expressions(ABC):
         if function in _OVER_TUPLES:
             return tuple(function(*map(self._tuple, values), **keywords))
         return self.call(function, values, keywords)
+
+
+def _maker_of(function: Any) -> Callable[..., Value] | None:
+    """Return the function that makes a named tuple or an object at compile time; None for other functions."""
+    if _is_named_tuple(function):
+        make: Callable[..., Value] = function
+        return make
+    if objects.is_class(function):
+        return lambda *values, **keywords: objects.made(function, values, keywords)
+    return objects.changed if function is dataclasses.replace else None
 
 
 def _is_named_tuple(function: Any) -> bool:

@@ -26,9 +26,9 @@ class Method:
 @cache
 def structure_of(kind: type) -> Any:
     """Return the named tuple of the fields of a dataclass; its attribute `object_of` is the class."""
-    made: Any = namedtuple(kind.__name__, [one.name for one in fields(kind)])  # noqa: PYI024  its fields are not known here
-    made.object_of = kind
-    return made
+    structure: Any = namedtuple(kind.__name__, [one.name for one in fields(kind)])  # type: ignore[misc]  # noqa: PYI024
+    structure.object_of = kind  # type: ignore[attr-defined]
+    return structure
 
 
 def is_object(value: object) -> bool:
@@ -60,13 +60,15 @@ def made(kind: type, values: Sequence[Any], keywords: Mapping[str, Any]) -> Any:
     return structure_of(kind)(**found)
 
 
-def changed(value: Any, numbers: Mapping[str, Any]) -> Any:
+def changed(value: Any, **numbers: Any) -> Any:
     """Return an object with other values of some fields, as `dataclasses.replace` does."""
+    if not is_object(value):
+        raise Refusal(f"replace needs an object, not {value!r}")
     return value._replace(**numbers)
 
 
 def member(owner: Any, name: str) -> tuple[str, Any]:
-    """Return what a name means in the class of an object, as "property", "method" or "value", and its function or value.
+    """Return what a name means in the class of an object: "property", "method" or "value", and the function or value.
 
     Raises
     ------

@@ -12,7 +12,8 @@ import numpy.typing as npt
 from stylobate.base_motions import BASE_AT_REST, BaseMotion
 from stylobate.engine.cost import EVERY, LOG, announce, expected_steps, report, step_limit, unseen
 from stylobate.engine.ensembles.batch import Batch, Plan
-from stylobate.engine.ensembles.results import Late, grounds_of, late_periods, results_of
+from stylobate.engine.ensembles.late import Late
+from stylobate.engine.ensembles.results import late_periods, results_of
 from stylobate.engine.ensembles.run_columns import MotionPlan
 from stylobate.engine.ensembles.runs import EnsembleRuns, one_run
 from stylobate.engine.forcing import check_motion, is_rest, without_dust
@@ -35,7 +36,6 @@ from stylobate.engine.verdict import (
     MANY_PASSAGES,
     MOST_PERIODS,
     UNSETTLED,
-    Ground,
     duration_needed,
     duration_of,
     reason_on,
@@ -106,7 +106,7 @@ def simulate(
     x, y = leaning.tolist()
     start_tilt = (x, y)
     start_rate = _pair("tilt_rate", run["tilt_rate"], "rad/s")
-    at_rest = bool(is_rest(np.array(start_tilt), np.array(start_rate), model.column.slenderness, model.time_scale))
+    at_rest = bool(is_rest(start_tilt, start_rate, model.column.slenderness, model.time_scale))
     turning = Turning.checked(model, run, standing=at_rest)
     friction_coefficient = arguments_of(SingleRun)["friction_coefficient"].checked(run["friction_coefficient"])
     refuse_friction(model, friction_coefficient)
@@ -318,7 +318,7 @@ class Followed:
     batch: Batch
     trajectory: Trajectory
     events: tuple[Event, ...]
-    late: Late
+    late: Floats
     last_guard: int
 
     @classmethod
@@ -349,7 +349,7 @@ class Followed:
         events = tuple(Event(name, time * scale) for name, time in named if name)
         changes = entries[entries[:, Trace.KIND] == TraceKind.CONTACT]
         last_guard = int(changes[-1, len(Trace)]) if len(changes) else -1
-        return cls(batch, trajectory, events, late_periods(batch), last_guard)
+        return cls(batch, trajectory, events, late_periods(batch)[0], last_guard)
 
     @property
     def status(self) -> RunStatus:
@@ -423,16 +423,14 @@ def _at_its_end(model: Model, motion: BaseMotion, followed: Followed, outcome: O
         return _standing(model, motion, followed)
     if outcome in (Outcome.STILL_MOVING, Outcome.SURVIVED) and math.isfinite(motion.duration):
         return survival(model, motion, followed.trajectory)[1]
-    ground = Ground(int(grounds_of(followed.batch, followed.late)[0]))
-    return reason_on(ground, followed.late.evidence, followed.batch.plan.rules, motion.period or 0.0)
+    return reason_on(followed.late, followed.batch.plan.rules, motion.period or 0.0)
 
 
 def _needed(motion: BaseMotion, followed: Followed) -> float:
     """Return the duration that suffices for an outcome of a run that moves at its end [s]; 0 without a period."""
     if motion.period is None or followed.status is not RunStatus.STOPPED:
         return 0.0
-    ground = Ground(int(grounds_of(followed.batch, followed.late)[0]))
-    return duration_needed(ground, followed.late.evidence, followed.batch.plan.rules, motion.period)
+    return duration_needed(followed.late, followed.batch.plan.rules, motion.period)
 
 
 def _failure(model: Model, followed: Followed) -> str:
@@ -475,21 +473,21 @@ def bounds_of(followed: Followed) -> tuple[float, float]:
 def late_measures(followed: Followed) -> dict[str, float]:
     """Return the measures of the last periods if these were completed."""
     late = followed.late
-    if np.isnan(late.span[0]):
+    span, turned = float(late[Late.SPAN]), float(late[Late.TURNED])
+    if math.isnan(span):
         return {}
     scale = followed.trajectory.model.time_scale
     measures = {
-        "mean_rolling_rate": 2.0 * math.pi * float(late.turned[0] / (late.span[0] * scale)),
-        "repetition": float(late.repetition[0]),
-        "repeats_after": float(late.repeats_after[0]),
-        "mean_tilt_late": float(late.mean_tilt[0]),
-        "minimum_tilt_late": float(late.minimum_tilt[0]),
+        "mean_rolling_rate": 2.0 * math.pi * turned / (span * scale),
+        "repetition": float(late[Late.RETURNS]),
+        "repeats_after": float(late[Late.REPEATS_AFTER]),
+        "mean_tilt_late": float(late[Late.MEAN_TILT]),
+        "minimum_tilt_late": float(late[Late.MINIMUM_TILT]),
         "peak_tilt_late": _peak_tilt(followed),
     }
-    if late.evidence is not None and late.evidence.held[0] >= steady_periods(followed.batch.plan.rules):
-        change, lag = late.evidence.change, late.evidence.lag
-        measures["modulation_change"] = abs(math.expm1(float(change.slope[0] * change.window[0])))
-        measures["rolling_rate_error"] = abs(float(lag.slope[0]))
+    if late[Late.HELD] >= steady_periods(followed.batch.plan.rules):
+        measures["modulation_change"] = abs(math.expm1(float(late[Late.CHANGE_SLOPE] * late[Late.CHANGE_WINDOW])))
+        measures["rolling_rate_error"] = abs(float(late[Late.LAG_SLOPE]))
     return measures
 
 
@@ -499,5 +497,5 @@ _SAMPLES = 64
 
 def _peak_tilt(followed: Followed) -> float:
     trajectory, periods = followed.trajectory, followed.batch.plan.rules.periods
-    tau = np.linspace(trajectory.end - float(followed.late.span[0]), trajectory.end, periods * _SAMPLES + 1)
+    tau = np.linspace(trajectory.end - float(followed.late[Late.SPAN]), trajectory.end, periods * _SAMPLES + 1)
     return float(np.hypot(*trajectory.model.tilt(trajectory.own_states(tau))).max())

@@ -22,12 +22,12 @@ from stylobate.results.run import EVENT_KINDS
 Floats = npt.NDArray[np.float64]
 
 # Nodes of Gauss's rule in each step, for the integration of passive states.
-_NODES = 0.5 + 0.5 * np.polynomial.legendre.leggauss(8)[0]
+NODES = 0.5 + 0.5 * np.polynomial.legendre.leggauss(8)[0]
 # Row k holds the antiderivative of the polynomial that is 1 at node k and 0 at the other nodes, by powers of u.
-_ANTIDERIVATIVES = np.array(
+ANTIDERIVATIVES = np.array(
     [
-        np.polynomial.Polynomial.fit(_NODES, row, len(_NODES) - 1, domain=(0.0, 1.0), window=(0.0, 1.0)).integ().coef
-        for row in np.eye(len(_NODES))
+        np.polynomial.Polynomial.fit(NODES, row, len(NODES) - 1, domain=(0.0, 1.0), window=(0.0, 1.0)).integ().coef
+        for row in np.eye(len(NODES))
     ]
 )
 
@@ -177,12 +177,12 @@ class Trajectory:
         """Passive states at the start of each stretch (c, n), and their increments by powers of the share (p, c, n)."""
         assert self.model.carried_rates is not None
         count, carried = len(self.stretches), len(self.carried)
-        terms = np.zeros((len(_NODES) + 1, carried, count))
+        terms = np.zeros((len(NODES) + 1, carried, count))
         steps = np.flatnonzero(self._kinds == TraceKind.STEP)
         if steps.size:
-            states = _polynomial(self._terms[:, :, steps, np.newaxis], _NODES)
-            rates = self._carried_rates(states.reshape(len(states), -1).T).reshape(steps.size, len(_NODES), carried)
-            terms[..., steps] = np.einsum("nkc,kp->pcn", rates, _ANTIDERIVATIVES)
+            states = _polynomial(self._terms[:, :, steps, np.newaxis], NODES)
+            rates = self._carried_rates(states.reshape(len(states), -1).T).reshape(steps.size, len(NODES), carried)
+            terms[..., steps] = np.einsum("nkc,kp->pcn", rates, ANTIDERIVATIVES)
         analytical = np.flatnonzero(self._kinds == TraceKind.ANALYTICAL_STEP)
         if analytical.size:
             terms[1][:, analytical] = self._carried_rates(self._terms[0][:, analytical].T).T

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 import stylobate as sb
-from stylobate.engine.ensembles.results import Units
 
 C, ETA = 0.1, 0.1
 MODEL = sb.Slender(sb.Column.dimensionless(C), damping=ETA)
@@ -196,13 +195,3 @@ def test_every_variable_has_a_name_and_units():
         "NOT_COMPUTED": -1,
         **{outcome.name: code for code, outcome in enumerate(sb.Outcome)},
     }
-
-
-def test_returns_are_the_largest_distances_from_the_looks_of_some_periods_before():
-    rng = np.random.default_rng(1)
-    looks, units = rng.normal(size=(4, 12, 3)), Units(rng.uniform(1.0, 2.0, 3), rng.uniform(1.0, 2.0, 3))
-    found = units.returns(looks, 4, 8)
-    for lag in range(1, 9):
-        x, y, vx, vy = looks[:, 8:] - looks[:, 8 - lag : 12 - lag]
-        apart = np.maximum(np.hypot(x, y) / units.tilt, np.hypot(vx, vy) / units.rate)
-        np.testing.assert_allclose(found[lag - 1], apart.max(axis=0), rtol=1e-14)

@@ -200,15 +200,9 @@ class Batch:
         return self._notes(kept, of_phase) if strobes else self._notes(0, kept)
 
     @property
-    def looks(self) -> Floats:
-        """Looks, shape (n, number, 5): tilt vector, its rate, azimuth; zero if missing."""
-        return self._notes(self.plan.samples + self.plan.options["strobes"], int(self.table[0, Setup.LOOKS]))
-
-    @property
-    def pairs(self) -> Floats:
-        """Pairs, shape (n, `PAIRS`, 5): see `Pair`; zero if missing."""
-        looks = int(self.table[0, Setup.LOOKS])
-        return self._notes(self.plan.samples + self.plan.options["strobes"] + looks, PAIRS)
+    def looks_at(self) -> int:
+        """Column of the first look; pairs follow the looks."""
+        return self._notes_at(self.plan.samples + self.plan.options["strobes"])
 
     @property
     def places(self) -> Floats:
@@ -217,8 +211,11 @@ class Batch:
         return self._notes(int(self.table[0, Setup.NOTES]) - strobes, strobes)[..., :3]
 
     def _notes(self, before: int, count: int) -> Floats:
-        first = self.plan.layout.breaks_at + self.motions.breaks.shape[1] + NOTE * before
+        first = self._notes_at(before)
         return self.table[:, first : first + NOTE * count].reshape(len(self.table), count, NOTE)
+
+    def _notes_at(self, before: int) -> int:
+        return self.plan.layout.breaks_at + int(self.motions.breaks.shape[1]) + NOTE * before
 
     def advance(self, halt: Halt, paused: Callable[[float, float], None] = _nothing) -> bool:
         """Compute the runs to their ends; return False if `halt[0]` was set before.
@@ -332,7 +329,7 @@ def _fill_starts(
     if model.switches:
         given = [one.velocity[:2] for one in runs.turning or ()] or [(0.0, 0.0)] * len(runs)
         slip_x, slip_y = np.array(given).T
-        line = line_of_switching(begun, directions, models.slope.T, (slip_x, slip_y), runs.spin)
+        line = line_of_switching(begun, directions, [*models.slope.T], (slip_x, slip_y), runs.spin)
     table[:, Setup.LINE_X], table[:, Setup.LINE_Y] = line
     table[:, LOG + Log.STANDS] = table[:, LOG + Log.REACHED_VERTICAL] = begun.stands
     moves = ~begun.stands[:, np.newaxis]

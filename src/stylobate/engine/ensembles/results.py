@@ -7,25 +7,21 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-from numpy.lib.stride_tricks import sliding_window_view
 
 from stylobate.engine.ensembles.batch import Batch, OrbitReached
-from stylobate.engine.ensembles.beginnings import periods_of
+from stylobate.engine.ensembles.late import LATE_COLUMNS, Ground, Late, late_program
 from stylobate.engine.ensembles.runs import CONTACT_KINDS, DEMANDS, TIMES_OF_CONTACTS, Arrays, empty
 from stylobate.engine.forcing import coarse
-from stylobate.engine.kernel.columns import EARLIER, LAGS, PAIRS, SLACK, STATE, Change, Log, Pair, Setup, pair_begins
+from stylobate.engine.kernel.columns import SLACK, STATE, Change, Log, Setup
 from stylobate.engine.kernel.driver.events import RunStatus
 from stylobate.engine.tolerances import CLOSE_PASSAGE
 from stylobate.engine.verdict import (
     FALLEN,
-    Evidence,
-    Ground,
     energy_over_balance,
-    grounds,
     has_ended,
     in_doubt,
+    numbers_of_rules,
     outcome_on,
-    steady_periods,
 )
 from stylobate.errors import Outcome
 from stylobate.models.contact import LEAST_FORCE
@@ -85,18 +81,18 @@ def _all(batch: Batch) -> Arrays:
             touched, 0.0, np.minimum.reduce([batch.first_tilt, batch.log(Log.MINIMUM_TILT), np.hypot(*tilt.T)])
         ),
         "turns": _turns(batch),
-        "mean_tilt": late.mean_tilt,
-        "phase": late.phase,
-        "mean_rolling_rate": 2.0 * math.pi * late.turned / (late.span * scale),
-        "repetition": late.repetition,
-        "repeats_after": late.repeats_after,
+        "mean_tilt": late[:, Late.MEAN_TILT],
+        "phase": _phase(batch, late),
+        "mean_rolling_rate": 2.0 * math.pi * late[:, Late.TURNED] / (late[:, Late.SPAN] * scale),
+        "repetition": late[:, Late.RETURNS],
+        "repeats_after": late[:, Late.REPEATS_AFTER].astype(np.int8),
         "uplifts": batch.log(Log.RELEASES),
         "steps": batch.log(Log.STEPS),
     }
     if batch.plan.options["demands"]:
         arrays |= _demands(batch)
     if batch.plan.model.switches:
-        arrays |= contact_arrays(batch, late.span)
+        arrays |= contact_arrays(batch, late[:, Late.SPAN])
     index = batch.plan.model.spin_state
     if index is not None:
         spin = np.where(batch.planar | (batch.log(Log.STANDS) > 0.0), 0.0, batch.table[:, STATE + index])
@@ -187,67 +183,25 @@ _OUTCOME_OF_STATUS = np.array([_OTHERS if one.outcome is None else one.outcome f
 _OUTCOME_OF_GROUND = np.array([outcome_on(kind) for kind in Ground], dtype=np.int8)
 
 
-@dataclass(frozen=True, slots=True)
-class Late:
-    """Measures of the last periods of each run; NaN if these were not completed.
-
-    `runs` are the indices of runs that completed them, and `evidence` is that of these runs.
-    """
-
-    span: Floats
-    turned: Floats
-    mean_tilt: Floats
-    phase: Floats
-    minimum_tilt: Floats
-    repetition: Floats
-    repeats_after: npt.NDArray[np.int8]
-    runs: npt.NDArray[np.intp]
-    evidence: Evidence | None
+def late_periods(batch: Batch) -> Floats:
+    """Return the measures of the last periods of each run: a row with the columns of `Late`."""
+    out = np.empty((len(batch.table), LATE_COLUMNS))
+    numbers, first = np.array(numbers_of_rules(batch.plan.rules), dtype=float), np.array([float(batch.looks_at)])
+    late_program()(batch.table, batch.planar.astype(float), numbers, first, out)
+    return out
 
 
-def late_periods(batch: Batch) -> Late:
-    """Return the measures of the last periods of each run."""
-    rules, period = batch.plan.rules, batch.motions.period
-    n, end = rules.periods, batch.table[:, Setup.END] * (1.0 + SLACK)
-    seen = (batch.log(Log.STATUS) == RunStatus.STOPPED) & (period > 0.0) & (end >= (n + 1) * period)
-
-    def known(values: Floats) -> Floats:
-        return np.where(seen, values, np.nan)
-
-    runs, span = np.flatnonzero(seen), known(n * period)
-    turned, repetition = known(np.zeros(len(seen))), known(np.zeros(len(seen)))
-    mean_tilt, minimum_tilt = known(batch.log(Log.MEAN_TILT)) / span, known(batch.log(Log.LATE_MINIMUM_TILT))
-    repeats_after, evidence = np.zeros(len(seen), dtype=np.int8), None
-    if runs.size:
-        azimuth = batch.looks[:, [EARLIER + LAGS, -1], -1]
-        turned = known(np.where(batch.planar, 0.0, azimuth[:, 1] - azimuth[:, 0]))
-        least = minimum_tilt / batch.models.slenderness
-        evidence = evidence_of(batch, runs, turned[runs], least[runs], mean_tilt[runs])
-        repetition[runs], repeats_after[runs] = evidence.returns[:, 0], evidence.repeats_after(rules)
-    return Late(
-        span=span,
-        turned=turned,
-        mean_tilt=mean_tilt,
-        phase=known(_phase(batch, turned)),
-        minimum_tilt=minimum_tilt,
-        repetition=repetition,
-        repeats_after=repeats_after,
-        runs=runs,
-        evidence=evidence,
-    )
-
-
-def _phase(batch: Batch, turned: Floats) -> Floats:
+def _phase(batch: Batch, late: Floats) -> Floats:
     """Return the phase of the tilt vector relative to the base acceleration, in the sense in which it turned."""
-    parts = {
-        name: batch.log(Log[f"{name}_COS"]) + 1j * batch.log(Log[f"{name}_SIN"]) for name in ("FORWARD", "BACKWARD")
-    }
-    phase = np.where(
-        turned >= 0.0,
-        np.angle(parts["FORWARD"]) - _reference(batch, batch.motions.forward),
-        _reference(batch, batch.motions.backward) - np.angle(parts["BACKWARD"]),
+    forward, backward = (
+        np.arctan2(batch.log(Log[f"{name}_SIN"]), batch.log(Log[f"{name}_COS"])) for name in ("FORWARD", "BACKWARD")
     )
-    return np.asarray(np.angle(np.exp(1j * phase)))
+    phase = np.where(
+        late[:, Late.TURNED] >= 0.0,
+        forward - _reference(batch, batch.motions.forward),
+        _reference(batch, batch.motions.backward) - backward,
+    )
+    return np.where(np.isnan(late[:, Late.SPAN]), np.nan, np.arctan2(np.sin(phase), np.cos(phase)))
 
 
 def _reference(batch: Batch, azimuth: Floats) -> Floats:
@@ -283,17 +237,9 @@ def _states(batch: Batch) -> Floats:
     return np.where(batch.planar, np.stack(lifted), states)
 
 
-def grounds_of(batch: Batch, late: Late) -> npt.NDArray[np.int8]:
-    """Return the `Ground` of the outcome of each run that moves at its end."""
-    ground = np.full(len(batch.table), Ground.SHORT, dtype=np.int8)
-    if late.evidence is not None:
-        ground[late.runs] = grounds(late.evidence, batch.plan.rules)
-    return np.where(batch.motions.period > 0.0, ground, Ground.NO_PERIOD).astype(np.int8)
-
-
-def outcomes(batch: Batch, late: Late) -> npt.NDArray[np.int8]:
+def outcomes(batch: Batch, late: Floats) -> npt.NDArray[np.int8]:
     """Return the codes of the outcomes."""
-    codes = _OUTCOME_OF_GROUND[grounds_of(batch, late)]
+    codes = _OUTCOME_OF_GROUND[late[:, Late.GROUND].astype(np.intp)]
     codes = np.where(_survive(batch, codes == Outcome.STILL_MOVING), Outcome.SURVIVED, codes)
     codes = np.where(batch.log(Log.STANDS) > 0.0, Outcome.AT_REST, codes)
     endings = _OUTCOME_OF_STATUS[batch.log(Log.STATUS).astype(np.intp)]
@@ -301,138 +247,7 @@ def outcomes(batch: Batch, late: Late) -> npt.NDArray[np.int8]:
     reached = batch.converged
     if reached is not None:
         codes[reached.runs] = np.where(reached.turns == 0.0, Outcome.ROCKING, Outcome.ROLLING)
-    return upright_outcomes(batch, late.span, codes) if batch.plan.model.switches else codes
-
-
-Integers = npt.NDArray[np.intp]
-
-# Pairs begin this many periods before the end, a linear function of their spacing, with the opposite sign.
-_AT_ZERO = -pair_begins(np.arange(PAIRS), 0.0)
-_PER_SPACING = pair_begins(np.arange(PAIRS), 1.0) + _AT_ZERO
-
-# Distances of states in units of the motion below this are rounding errors.
-_ROUNDING = 1e-12
-
-
-@dataclass(frozen=True, slots=True)
-class Units:
-    """Units of the tilts and rates of motions, shape (n,): their peaks at the looks, at least those of the mean tilt.
-
-    All looks may fall on passages through the vertical, or on turning points. The unit of what is always zero is
-    infinite.
-    """
-
-    tilt: Floats
-    rate: Floats
-
-    @classmethod
-    def of(cls, looks: Floats, mean_tilt: Floats, period: Floats) -> "Units":
-        """Return the units of runs with these looks."""
-        tilt, rate = _largest(looks)
-        turning = 2.0 * math.pi / period
-        tilt, rate = np.fmax(tilt, mean_tilt), np.fmax(rate, mean_tilt * turning)
-        return cls(np.where(tilt > 0.0, tilt, np.inf), np.where(rate > 0.0, rate, np.inf))
-
-    def of_some(self, chosen: Integers) -> "Units":
-        """Return the units of some of the runs."""
-        return Units(self.tilt[chosen], self.rate[chosen])
-
-    def distances(self, tilt_change: Floats, rate_change: Floats) -> Floats:
-        """Return the larger of two differences in their units, shape (…, n) as the differences."""
-        return np.maximum(tilt_change / self.tilt, rate_change / self.rate)
-
-    def returns(self, looks: Floats, last: int, lags: int) -> Floats:
-        """Return the maximum distance of the `last` looks from those earlier by 1, 2, … `lags`, shape (lags, n)."""
-        groups = np.moveaxis(sliding_window_view(looks, last, axis=1), -1, 1)
-        return self.distances(*_largest(groups[:, :, -1:] - groups[:, :, -2 : -2 - lags : -1]))
-
-
-def evidence_of(batch: Batch, runs: Integers, turned: Floats, minimum_tilt: Floats, mean_tilt: Floats) -> Evidence:
-    """Return the evidence of these `runs`, all of which have the looks of their last periods.
-
-    It is complete as far as the outcome depends on it: a run that repeats after one period has no trends, and a run
-    that nearly repeats, or has a trend, is not compared over several periods.
-
-    Parameters
-    ----------
-    batch, runs
-        The batch, and the indices of the runs.
-    turned, minimum_tilt, mean_tilt
-        Turns of the contact point, minimum tilt [units of c] and mean tilt of these runs in the last periods.
-    """
-    rules, period = batch.plan.rules, batch.motions.period[runs]
-    held = np.floor(periods_of(batch.table[runs, Setup.END], period))
-    evidence = Evidence.unknown(turned, minimum_tilt, held, batch.table[runs, Setup.LOOKED_BACK])
-    steady = held >= steady_periods(rules)
-    last = _looks_of(batch, runs, EARLIER + LAGS - 1)
-    units = Units.of(last[:, 1:], mean_tilt, period)
-    after_one = units.returns(last, rules.periods, 1)[0]
-    after_one[~np.any(last[:, 1:], axis=(0, 1))] = np.inf  # the motion between the looks is unknown
-    evidence.returns[:, 0] = after_one
-    moves = np.flatnonzero(steady & ~(after_one < rules.repeat_tolerance))
-    if moves.size:
-        _fill_change(evidence, batch, runs, moves, units)
-    settled = ~evidence.change.exceeds(math.log1p(rules.settled_tolerance), rules.sampling_errors)
-    open_runs = np.flatnonzero(settled & (after_one >= rules.modulation_floor))
-    looks = _looks_of(batch, runs[open_runs])
-    near = _near_repeats(looks, units.of_some(open_runs), rules.repeat_tolerance)
-    compared = steady[open_runs] | near
-    kept = open_runs[compared]
-    if kept.size:
-        _fill_returns(evidence, kept, looks[..., compared], units.of_some(kept), rules.periods)
-        _fill_lag(evidence, batch, runs, kept)
-    return evidence
-
-
-def _looks_of(batch: Batch, runs: Integers, first: int = 0) -> Floats:
-    """Return the looks of runs from the `first` one: tilt vectors and rates, shape (4, number, n)."""
-    return np.ascontiguousarray(batch.looks[runs, first:, :4].transpose(2, 1, 0))
-
-
-def _near_repeats(looks: Floats, units: Units, tolerance: float) -> npt.NDArray[np.bool_]:
-    """Return which runs are within the tolerance after several periods, by their last look alone."""
-    return np.asarray(np.any(units.returns(looks, 1, LAGS)[1:] < tolerance, axis=0))
-
-
-def _fill_returns(evidence: Evidence, kept: Integers, looks: Floats, units: Units, periods: int) -> None:
-    """Compare these runs over several periods, at their end and a quarter of the run before."""
-    few, lags = EARLIER - LAGS, np.arange(1, LAGS + 1)[:, np.newaxis]
-    held, back = evidence.held[kept], evidence.back[kept]
-    returns = np.where(held < periods + lags, np.nan, units.returns(looks, periods, LAGS))
-    evidence.returns[kept, 1:] = returns[1:].T
-    evidence.returns_latest[kept] = units.returns(looks, few, LAGS).T
-    before = units.returns(looks[:, :EARLIER], few, LAGS)
-    evidence.returns_before[kept] = np.where(back == 0.0, np.nan, before).T
-
-
-def _fill_change(evidence: Evidence, batch: Batch, runs: Integers, kept: Integers, units: Units) -> None:
-    """Set the trend of the distances of states one period apart."""
-    pairs, places, known = _pairs_of(batch, runs[kept], evidence.held[kept])
-    apart = units.of_some(kept).distances(pairs[..., Pair.TILT_CHANGE].T, pairs[..., Pair.RATE_CHANGE].T).T
-    evidence.change.fill(kept, np.log(np.maximum(apart, _ROUNDING)), places, known)
-
-
-def _fill_lag(evidence: Evidence, batch: Batch, runs: Integers, kept: Integers) -> None:
-    """Set the trend and the range of the azimuth relative to the forcing."""
-    pairs, places, known = _pairs_of(batch, runs[kept], evidence.held[kept])
-    lags = pairs[..., Pair.AZIMUTH] - np.sign(evidence.turned[kept])[:, np.newaxis] * places
-    evidence.lag.fill(kept, lags, places, known)
-    most, least = np.where(known, lags, -np.inf).max(axis=1), np.where(known, lags, np.inf).min(axis=1)
-    evidence.lag_range[kept] = most - least
-
-
-def _pairs_of(batch: Batch, runs: Integers, held: Floats) -> tuple[Floats, Floats, npt.NDArray[np.bool_]]:
-    """Return the pairs of runs, their places in periods before the end, negative, and which of them the run has."""
-    spacing = batch.table[runs, Setup.PAIR_SPACING]
-    places = _AT_ZERO - spacing[:, np.newaxis] * _PER_SPACING
-    return batch.pairs[runs], places, places >= -held[:, np.newaxis]
-
-
-def _largest(vectors: Floats) -> tuple[Floats, Floats]:
-    """Return the maximum lengths of tilts and of rates among vectors of shape (4, number, …, n), each (…, n)."""
-    squares = vectors * vectors
-    tilt, rate = squares[0] + squares[1], squares[2] + squares[3]
-    return np.sqrt(tilt.max(axis=0)), np.sqrt(rate.max(axis=0))
+    return upright_outcomes(batch, late[:, Late.SPAN], codes) if batch.plan.model.switches else codes
 
 
 @dataclass(frozen=True, slots=True)

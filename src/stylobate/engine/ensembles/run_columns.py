@@ -61,14 +61,14 @@ class Term:
 
     def wave(self, time_scale: Any, gravity: Any, *, windowed: bool) -> tuple[Any, ...]:
         """Return the numbers of `Wave` in the units of the models; `windowed` adds its last ones."""
-        turns = (self.angular_frequency * time_scale / (2.0 * math.pi),)
+        numbers: tuple[Any, ...] = (self.angular_frequency * time_scale / (2.0 * math.pi),)
         for re, im in self.amplitude:
-            turns = (*turns, np.hypot(re, im) / gravity, _turns(np.arctan2(im, re) + self.phase_at_start))
+            numbers = (*numbers, np.hypot(re, im) / gravity, _turns(np.arctan2(im, re) + self.phase_at_start))
         if not windowed:
-            return turns
+            return numbers
         # The end of the rise is exactly the break at which the kernel begins the next leg.
         ends = (self.shift + self.ramp) / time_scale
-        return *turns, self.onset / time_scale, self.shift / time_scale, ends
+        return *numbers, self.onset / time_scale, self.shift / time_scale, ends
 
     def azimuths(self) -> tuple[Any, Any]:
         """Return the azimuths of the anticlockwise and clockwise components at t = 0 [rad]."""
@@ -141,14 +141,15 @@ def _together(terms: Sequence[Term], which: npt.NDArray[np.intp]) -> Term:
     x, y, z = (tuple(part) for part in amplitude.transpose(1, 2, 0))
     of_runs = {
         name: np.array([getattr(term, name) for term in terms], dtype=float)[which]
-        for name in ("angular_frequency", "start_phase", "shift", "onset", "ramp")
+        for name in Term.__slots__
+        if name != "amplitude"
     }
     return Term(amplitude=(x, y, z), **of_runs)
 
 
 def _changed(term: Term, values: Mapping[str, Floats], factor: Floats | None) -> Term:
     """Return a term with the parameters of `values`; amplitudes are multiplied by the `factor`."""
-    own = {name: values[name] for name in ("angular_frequency", "start_phase", "ramp") if name in values}
+    own = {name: values[name] for name in Term.__slots__ if name in values}
     amplitude = term.amplitude
     if factor is not None:
         x, y, z = ((re * factor, im * factor) for re, im in amplitude)

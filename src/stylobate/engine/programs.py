@@ -1,0 +1,242 @@
+"""The programs by which a page computes runs without Python: modules of WebAssembly, and the layout of their numbers.
+
+A module holds the kernels of a class of models under one kind of base motion, and the functions of `alone` for it.
+"""
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import Any
+
+import numpy as np
+
+from stylobate.base_motions import BASE_AT_REST, BaseMotion
+from stylobate.base_motions.harmonic import Harmonic
+from stylobate.column import Column
+from stylobate.compiler import mathematics
+from stylobate.compiler.machine import WEB, Machine
+from stylobate.compiler.sources import written_module
+from stylobate.compiler.unit import ArrayArgument, Unit
+from stylobate.compiler.values import NumberKind
+from stylobate.compiler.web import module_of
+from stylobate.engine import alone
+from stylobate.engine.alone import Accuracy, Given, Layout, Sample, Verdict
+from stylobate.engine.cost import EVERY
+from stylobate.engine.ensembles.batch import Plan
+from stylobate.engine.ensembles.beginnings import number_of_looks
+from stylobate.engine.ensembles.late import LATE_COLUMNS, Late
+from stylobate.engine.ensembles.run_columns import MotionPlan
+from stylobate.engine.kernel.columns import NOTE, PAIRS, Log, Setup, Trace
+from stylobate.engine.kernel.kernels import kernel_of
+from stylobate.models import Model
+from stylobate.quantities import Parameter, parameters_of
+from stylobate.run_arguments import checked_options
+
+COLUMN = tuple(name for name in parameters_of(Column) if name != "height")
+"""Numbers of the column in those of a run; the numbers of model, motion, start and accuracy follow."""
+
+_MOTION = ("amplitude_x", "amplitude_y", "amplitude_z", "phase_x", "phase_y", "phase_z", "angular_frequency")
+HARMONIC = (*_MOTION, "start_phase")
+"""Numbers of a harmonic motion without a ramp."""
+
+
+class Shaking(StrEnum):
+    """Kinds of base motion with programs of their own."""
+
+    REST = "rest"
+    HORIZONTAL = "horizontal"
+    SPATIAL = "spatial"
+    """Harmonic, with a vertical component."""
+
+    @property
+    def example(self) -> BaseMotion:
+        """A motion of this kind."""
+        if self is Shaking.REST:
+            return BASE_AT_REST
+        return Harmonic(amplitude=(1.0, 1.0, float(self is Shaking.SPATIAL)), angular_frequency=1.0)
+
+
+@dataclass(frozen=True)
+class RunProgram:
+    """The program for runs of a class of models under a kind of base motion.
+
+    Parameters
+    ----------
+    kind
+        Class of models.
+    shaking
+        Kind of base motion.
+    """
+
+    kind: type[Model]
+    shaking: Shaking
+
+    @property
+    def model_numbers(self) -> Mapping[str, Parameter]:
+        """The declared numbers of the model, and its choices between words, by name."""
+        return {name: one for name, one in parameters_of(self.kind).items() if name != "column"}
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the numbers of a run, in their order: NaN for one that is None, and for words their index."""
+        motion = () if self.shaking is Shaking.REST else HARMONIC
+        return (*COLUMN, *self.model_numbers, *motion, *Given._fields, *Accuracy._fields)
+
+    @property
+    def plan(self) -> Plan:
+        """The plan of the runs, with a trace."""
+        make: Any = self.kind
+        model = make(_EXAMPLE)
+        motion = MotionPlan.of(self.shaking.example, {}, np.array([1.0]))
+        plan = Plan(model, motion, checked_options({"strobes": 0}))
+        return Plan(model, motion, plan.options, traces=EVERY + plan.layout.trace_room)
+
+    @property
+    def layout(self) -> Layout:
+        """Layout of the rows."""
+        shape, plan = self.plan.layout, self.plan
+        return Layout(shape.parameters_at, shape.motion_at, shape.breaks_at, plan.traces)
+
+    def described(self) -> dict[str, Any]:
+        """Return what a page must know of the program, for JSON."""
+        plan, shape = self.plan, self.plan.layout
+        kernel = kernel_of(self.kind, shape)
+        looks = number_of_looks(plan.rules)
+        return {
+            "names": self.names,
+            "choices": {name: one.choices for name, one in self.model_numbers.items() if one.choices},
+            "optional": [name for name, one in self.model_numbers.items() if one.optional],
+            "layout": self.layout._asdict(),
+            "trace_width": shape.trace_width,
+            "row": shape.breaks_at + NOTE * (looks + PAIRS) + plan.traces * shape.trace_width,
+            "buffer": kernel.buffer().size,
+            "planes": self.kind.planar_rates is not None,
+            "switches": bool(self.kind.guards),
+        }
+
+    def unit(self, machine: Machine) -> Unit:
+        """Return the compiled unit of the program."""
+        plan, unit = self.plan, None
+        for planar, name in ((False, "advance"), (True, "advance_in_plane")):
+            if planar and self.kind.planar_rates is None:
+                continue
+            compiled = kernel_of(self.kind, plan.shape(planar=planar)).compiled
+            if unit is None:
+                unit = Unit(lanes=machine.lanes, exact=True, trusted=True, traps=True)
+            unit.export(getattr(compiled.module, compiled.name), name, compiled.arguments)
+        assert unit is not None
+        module = written_module(f"{self.kind.__name__}_{self.shaking}", self.text, self._names_in_text)
+        row, numbers = ArrayArgument((None,)), ArrayArgument((len(self.names),))
+        entries = ArrayArgument((None, plan.layout.trace_width))
+        for name, arguments in {
+            "begin": (numbers, row),
+            "judge": (numbers, row, NumberKind.FLOAT, ArrayArgument((len(Verdict) + LATE_COLUMNS,))),
+            "to_plane": (numbers, row),
+            "sampled": (numbers, entries, row, ArrayArgument((None, len(Sample)))),
+        }.items():
+            unit.export(getattr(module, name), name, arguments)
+        return unit
+
+    def exports(self) -> list[str]:
+        """Return the names of the functions of the module."""
+        planes = ["advance_in_plane"] if self.kind.planar_rates is not None else []
+        return ["advance", *planes, "begin", "judge", "to_plane", "sampled"]
+
+    def module(self) -> bytes:
+        """Return the module of WebAssembly."""
+        return module_of(WEB.object_code(self.unit(WEB).module.text("nounwind")), self.exports())
+
+    @property
+    def text(self) -> str:
+        """Text of the functions with the numbers of a run in place of model and motion."""
+        return "\n".join(
+            [
+                *self._function("begin", "numbers, row", "begun(row, {model}, motion, given, accuracy, LAYOUT)"),
+                *self._function("judge", "numbers, row, planar, out", "judged(row, {model}, planar, LAYOUT, out)"),
+                *self._function("to_plane", "numbers, row", "turned(row, {model})"),
+                *self._function(
+                    "sampled",
+                    "numbers, entries, row, out",
+                    "sampling(entries, {model}, motion, row, given, out)",
+                ),
+                "def begun(row, model, motion, given, accuracy, layout):",
+                "    planar, looks = beginning(row, model, motion, given, accuracy, layout)",
+                "    return (1 if planar else 0) + (2 if looks else 0)",
+            ]
+        )
+
+    @property
+    def _names_in_text(self) -> dict[str, Any]:
+        return {
+            "Column": Column,
+            "Model": self.kind,
+            "Harmonic": Harmonic,
+            "Given": Given,
+            "Accuracy": Accuracy,
+            "LAYOUT": self.layout,
+            "beginning": alone.begin,
+            "judged": alone.judge,
+            "turned": alone.to_plane,
+            "sampling": alone.sampled,
+            "isnan": math.isnan,
+        }
+
+    def _function(self, name: str, arguments: str, call: str) -> Iterator[str]:
+        place = self.names.index
+        column = ", ".join(f"{one}=numbers[{place(one)}]" for one in COLUMN)
+        yield f"def {name}({arguments}):"
+        yield f"    column = Column({column})"
+        if self.shaking is Shaking.REST:
+            yield "    motion = None"
+        else:
+            at = place("amplitude_x")
+            amplitude, phase = (", ".join(f"numbers[{at + k}]" for k in part) for part in (range(3), range(3, 6)))
+            yield (
+                f"    motion = Harmonic(amplitude=({amplitude}), phase=({phase}), angular_frequency=numbers[{at + 6}], "
+                f"start_phase=numbers[{at + 7}], ramp=0.0)"
+            )
+        given, accuracy = place(Given._fields[0]), place(Accuracy._fields[0])
+        yield f"    given = Given(*numbers[{given}:{accuracy}])"
+        yield f"    accuracy = Accuracy(*numbers[{accuracy}:{accuracy + len(Accuracy._fields)}])"
+        yield from _branches(list(self.model_numbers.values()), place, "    ", call, ())
+
+    def __hash__(self) -> int:
+        return hash((self.kind, self.shaking))
+
+
+_EXAMPLE = Column.solid(radius=0.3, height=3.0, density=2500.0)
+
+
+def _branches(numbers: Sequence[Parameter], place: Any, indent: str, call: str, made: tuple[str, ...]) -> Iterator[str]:
+    """Yield the lines that make a model, one branch for each word and for each number that may be None."""
+    if not numbers:
+        model = f"Model(column, {', '.join(made)})"
+        yield f"{indent}return {call.format(model=model)}"
+        return
+    one, *rest = numbers
+    at = f"numbers[{place(one.name)}]"
+    if one.choices:
+        for index, word in enumerate(one.choices):
+            yield f"{indent}if {at} == {float(index)!r}:"
+            yield from _branches(rest, place, indent + "    ", call, (*made, f"{one.name}={word!r}"))
+        yield from _branches(rest, place, indent, call, (*made, f"{one.name}={one.choices[0]!r}"))
+    elif one.optional:
+        yield f"{indent}if isnan({at}):"
+        yield from _branches(rest, place, indent + "    ", call, (*made, f"{one.name}=None"))
+        yield from _branches(rest, place, indent, call, (*made, f"{one.name}={at}"))
+    else:
+        yield from _branches(rest, place, indent, call, (*made, f"{one.name}={at}"))
+
+
+def columns() -> dict[str, Any]:
+    """Return the columns of rows, traces, samples and verdicts by name, for JSON."""
+    groups: dict[str, Any] = {"setup": Setup, "log": Log, "trace": Trace, "sample": Sample, "verdict": Verdict}
+    return {name: {one.name.lower(): int(one) for one in group} for name, group in groups.items()} | {
+        "late": {one.name.lower(): len(Verdict) + int(one) for one in Late}
+    }
+
+
+def mathematics_module() -> bytes:
+    """Return the module of the mathematical functions that the programs import."""
+    return module_of(mathematics.object_code(WEB), list(mathematics.FUNCTIONS))
