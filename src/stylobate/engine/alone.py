@@ -1,4 +1,4 @@
-"""One run in the language of the compiler, from the numbers of its case to its outcome; pages compute it without Python.
+"""One run in the language of the compiler, from the numbers of its case to its outcome: a page computes it so.
 
 Kernels, beginnings and last periods are those of all runs; here they are called for one row. The base is at rest, or
 its motion is harmonic.

@@ -27,7 +27,8 @@ from stylobate.engine.ensembles.batch import Plan
 from stylobate.engine.ensembles.beginnings import number_of_looks
 from stylobate.engine.ensembles.late import LATE_COLUMNS, Late
 from stylobate.engine.ensembles.run_columns import MotionPlan
-from stylobate.engine.kernel.columns import NOTE, PAIRS, Log, Setup, Trace
+from stylobate.engine.kernel.columns import LOG, NOTE, PAIRS, STATE, Log, Setup, Trace
+from stylobate.engine.kernel.driver.events import RunStatus, TraceKind
 from stylobate.engine.kernel.kernels import kernel_of
 from stylobate.models import Model
 from stylobate.quantities import Parameter, parameters_of
@@ -229,11 +230,25 @@ def _branches(numbers: Sequence[Parameter], place: Any, indent: str, call: str, 
         yield from _branches(rest, place, indent, call, (*made, f"{one.name}={at}"))
 
 
-def columns() -> dict[str, Any]:
-    """Return the columns of rows, traces, samples and verdicts by name, for JSON."""
-    groups: dict[str, Any] = {"setup": Setup, "log": Log, "trace": Trace, "sample": Sample, "verdict": Verdict}
-    return {name: {one.name.lower(): int(one) for one in group} for name, group in groups.items()} | {
-        "late": {one.name.lower(): len(Verdict) + int(one) for one in Late}
+def described() -> dict[str, Any]:
+    """Return what a page must know of all programs, for JSON: columns and sizes of rows, and codes."""
+    verdict = {one.name.lower(): int(one) for one in Verdict}
+    late = {one.name.lower(): len(Verdict) + int(one) for one in Late}
+    return {
+        "columns": {
+            "setup": {one.name.lower(): int(one) for one in Setup},
+            "log": {one.name.lower(): LOG + int(one) for one in Log} | {"state": STATE},
+            "trace": {one.name.lower(): int(one) for one in Trace},
+            "sample": {one.name.lower(): int(one) for one in Sample},
+            "verdict": verdict | late,
+        },
+        "sizes": {"trace": len(Trace), "sample": len(Sample), "verdict": len(Verdict) + LATE_COLUMNS},
+        "codes": {
+            "to_plane": int(RunStatus.TO_PLANE),
+            "first_event": int(TraceKind.RELEASE),
+            "step": int(TraceKind.STEP),
+            "plane_step": int(TraceKind.PLANE_STEP),
+        },
     }
 
 

@@ -1,0 +1,233 @@
+/** A program of the package as WebAssembly: runs of one model under one kind of base motion. */
+
+/** What the package says of a program. */
+export interface Described {
+  /** Names of the numbers of a run, in their order. */
+  readonly names: readonly string[];
+  /** Words from which a number chooses, by its name; the number is the index of the word. */
+  readonly choices: Readonly<Record<string, readonly string[]>>;
+  readonly layout: {
+    readonly parameters_at: number;
+    readonly motion_at: number;
+    readonly notes_at: number;
+    readonly traces: number;
+  };
+  readonly trace_width: number;
+  /** Numbers in the row of a run, and in the buffer of a kernel. */
+  readonly row: number;
+  readonly buffer: number;
+  readonly planes: boolean;
+  readonly switches: boolean;
+}
+
+/** What the package says of all programs. */
+export interface Common {
+  /** Columns of rows, entries of traces, samples and verdicts by name. */
+  readonly columns: Readonly<
+    Record<"setup" | "log" | "trace" | "sample" | "verdict", Readonly<Record<string, number>>>
+  >;
+  /** Numbers in the head of an entry, in a sample, and in a verdict. */
+  readonly sizes: { readonly trace: number; readonly sample: number; readonly verdict: number };
+  readonly codes: {
+    /** Status of a run that goes on in a plane. */
+    readonly to_plane: number;
+    /** The first kind of trace entry that is an event. */
+    readonly first_event: number;
+    /** Kinds of the entries of motion. */
+    readonly step: number;
+    readonly plane_step: number;
+  };
+}
+
+export interface Finished {
+  /** Row of the run after its end, without its trace. */
+  readonly row: Float64Array;
+  /** Entries of the trace that are motion, and those that are events, one after the other. */
+  readonly stretches: Float64Array;
+  readonly events: Float64Array;
+  readonly planar: boolean;
+  /** Numbers of `verdict`. */
+  readonly verdict: Float64Array;
+}
+
+const PAGE = 1 << 16;
+/** Constant tables lie at the beginning of the memory, the stack between them and the arrays [bytes]. */
+const STACK = 1 << 18;
+const LINE = 64;
+const WIDTH = 8;
+
+type Places = Readonly<Record<"numbers" | "row" | "buffer" | "pieces" | "halt" | "verdict" | "free", number>>;
+type Function = (...values: (number | bigint)[]) => bigint;
+
+export class Program {
+  readonly described: Described;
+  readonly #common: Common;
+  readonly #functions: Readonly<Record<string, Function>>;
+  readonly #memory: WebAssembly.Memory;
+  /** Place of each array in the memory [bytes]. */
+  readonly #at: Places;
+
+  private constructor(
+    instance: WebAssembly.Instance,
+    memory: WebAssembly.Memory,
+    described: Described,
+    common: Common,
+  ) {
+    this.described = described;
+    this.#common = common;
+    this.#functions = instance.exports as Record<string, Function>;
+    this.#memory = memory;
+    const sizes = {
+      numbers: described.names.length,
+      row: described.row,
+      buffer: described.buffer,
+      pieces: LINE,
+      halt: 1,
+      verdict: common.sizes.verdict,
+    };
+    let place = STACK;
+    const at: Record<string, number> = {};
+    for (const [name, size] of Object.entries(sizes)) {
+      at[name] = place;
+      place += LINE * Math.ceil((WIDTH * size) / LINE);
+    }
+    this.#at = { ...at, free: place } as Places;
+    this.#room(place);
+  }
+
+  /** Makes a program of its compiled module; `mathematics` are the functions that it imports. */
+  static async of(
+    module: WebAssembly.Module,
+    mathematics: WebAssembly.Exports,
+    described: Described,
+    common: Common,
+  ): Promise<Program> {
+    const memory = new WebAssembly.Memory({ initial: 1 + STACK / PAGE });
+    const pointer = new WebAssembly.Global({ value: "i32", mutable: true }, STACK);
+    const env = { ...mathematics, __linear_memory: memory, __stack_pointer: pointer } as WebAssembly.ModuleImports;
+    return new Program(await WebAssembly.instantiate(module, { env }), memory, described, common);
+  }
+
+  /** Computes a run from its numbers to its end. */
+  run(numbers: Float64Array): Finished {
+    const { row: width, layout, trace_width: wide } = this.described;
+    const at = this.#at;
+    this.#array(at.numbers, numbers.length).set(numbers);
+    const flags = Number(this.#call("begin", at.numbers, at.row, BigInt(width)));
+    // The row of a run without looks has its trace where they would be.
+    const used = flags & 2 ? width : width - this.#looks();
+    let planar = (flags & 1) !== 0;
+    const entries: Float64Array[] = [];
+    const advance = (name: string): void => {
+      this.#array(at.buffer, this.described.buffer).fill(NaN);
+      for (let ended = false; !ended; ) {
+        ended = this.#call(name, at.row, 1n, BigInt(used), at.pieces, 1n, 5n, at.halt, at.buffer) !== 0n;
+        entries.push(this.#taken(used, layout.traces * wide, wide));
+      }
+    };
+    if (!planar) advance("advance");
+    if (this.#log("status") === this.#common.codes.to_plane) {
+      this.#call("to_plane", at.numbers, at.row, BigInt(used));
+      planar = true;
+    }
+    if (planar) advance("advance_in_plane");
+    this.#call("judge", at.numbers, at.row, BigInt(used), planar ? 1 : 0, at.verdict);
+    const [stretches, events] = this.#parted(joined(entries), wide);
+    return {
+      row: this.#array(at.row, used - layout.traces * wide).slice(),
+      stretches: stretches.length > 0 ? stretches : this.#stillness(planar),
+      events,
+      planar,
+      verdict: this.#array(at.verdict, this.#common.sizes.verdict).slice(),
+    };
+  }
+
+  /** Returns samples of the last run at equal steps: `many` rows with the columns `sample`. */
+  samples(stretches: Float64Array, many: number): Float64Array {
+    const { row: width, trace_width: wide } = this.described;
+    const at = this.#at;
+    const columns = this.#common.sizes.sample;
+    const out = at.free + LINE * Math.ceil((WIDTH * stretches.length) / LINE);
+    this.#room(out + WIDTH * columns * many);
+    this.#array(at.free, stretches.length).set(stretches);
+    const entries = BigInt(stretches.length / wide);
+    this.#call("sampled", at.numbers, at.free, entries, at.row, BigInt(width), out, BigInt(many));
+    return this.#array(out, columns * many).slice();
+  }
+
+  #looks(): number {
+    const { row, layout, trace_width: wide } = this.described;
+    return row - layout.notes_at - layout.traces * wide;
+  }
+
+  /** Takes the entries of the trace from the row, and clears it. */
+  #taken(used: number, size: number, wide: number): Float64Array {
+    const row = this.#array(this.#at.row, used);
+    const next = this.#column("log", "next_trace");
+    const trace = row.subarray(used - size);
+    const taken = trace.slice(0, (row[next] ?? 0) * wide);
+    trace.fill(0);
+    row[next] = 0;
+    return taken;
+  }
+
+  /** Returns the entries that are motion, and those that are events. */
+  #parted(entries: Float64Array, wide: number): readonly [Float64Array, Float64Array] {
+    const kind = this.#column("trace", "kind");
+    const parts: [number[], number[]] = [[], []];
+    for (let first = 0; first < entries.length; first += wide) {
+      const event = (entries[first + kind] ?? 0) >= this.#common.codes.first_event;
+      parts[event ? 1 : 0].push(...entries.subarray(first, first + wide));
+    }
+    return [Float64Array.from(parts[0]), Float64Array.from(parts[1])];
+  }
+
+  /** Returns the only entry of a run that ended at its start. */
+  #stillness(planar: boolean): Float64Array {
+    const entry = new Float64Array(this.described.trace_width);
+    const row = this.#array(this.#at.row, this.described.row);
+    const state = this.#column("log", "state");
+    entry[this.#column("trace", "kind")] = planar ? this.#common.codes.plane_step : this.#common.codes.step;
+    entry[this.#column("trace", "length")] = 1;
+    const first = this.#common.sizes.trace;
+    const states = (entry.length - first) / 8;
+    entry.set(row.subarray(state, state + states), first);
+    return entry;
+  }
+
+  #log(name: string): number {
+    return this.#array(this.#at.row, this.described.row)[this.#column("log", name)] ?? NaN;
+  }
+
+  #column(group: keyof Common["columns"], name: string): number {
+    const found = this.#common.columns[group][name];
+    if (found === undefined) throw new Error(`there is no column ${name} in ${group}`);
+    return found;
+  }
+
+  #call(name: string, ...values: (number | bigint)[]): bigint {
+    const found = this.#functions[name];
+    if (!found) throw new Error(`the program has no function ${name}`);
+    return found(...values);
+  }
+
+  #array(place: number, length: number): Float64Array {
+    return new Float64Array(this.#memory.buffer, place, length);
+  }
+
+  /** Makes the memory hold so many bytes. */
+  #room(bytes: number): void {
+    const missing = bytes - this.#memory.buffer.byteLength;
+    if (missing > 0) this.#memory.grow(Math.ceil(missing / PAGE));
+  }
+}
+
+function joined(parts: readonly Float64Array[]): Float64Array {
+  const whole = new Float64Array(parts.reduce((sum, part) => sum + part.length, 0));
+  let place = 0;
+  for (const part of parts) {
+    whole.set(part, place);
+    place += part.length;
+  }
+  return whole;
+}
