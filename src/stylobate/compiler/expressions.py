@@ -61,7 +61,8 @@ def call(arithmetic: Arithmetic, function: Callable[..., Any], values: list[Valu
     if function is len:
         return _length(values[0])
     if all(is_known_number(value) for value in values):
-        return function(*values)
+        known = function(*values)
+        return known.item() if isinstance(known, np.ndarray | np.generic) else known
     name = _name_of(function) or ""
     own = _OWN.get(name)
     if own is not None:

@@ -32,7 +32,7 @@ from stylobate.engine.kernel.columns import EVENTS_AT, LOG, PAIRS, STATE, TRACE_
 from stylobate.engine.kernel.driver.events import EventSetup, RunStatus, TraceKind
 from stylobate.engine.tolerances import CLOSE_PASSAGE, OVERTURNED_TILT
 from stylobate.engine.trajectory import ANTIDERIVATIVES, NODES
-from stylobate.engine.verdict import in_doubt, numbers_of_rules, outcome_on
+from stylobate.engine.verdict import duration_needed, in_doubt, numbers_of_rules, outcome_on
 from stylobate.errors import Outcome
 from stylobate.models.contact import per_normal_force
 from stylobate.results import OutcomeRules
@@ -215,6 +215,8 @@ class Verdict(FromZero):
     """Tilt vector at the end [rad] and its rate [rad/s]."""
     TURNS = auto()
     """Turns of the contact point round the rim."""
+    NEEDED = auto()
+    """Duration that suffices for an outcome of a run that moves at its end [s]; 0 if it is decided."""
 
 
 def judge(row: Row, model: Any, planar: Any, layout: Layout, out: Row) -> None:
@@ -257,6 +259,10 @@ def judge(row: Row, model: Any, planar: Any, layout: Layout, out: Row) -> None:
     out[Verdict.TILT_RATE_X], out[Verdict.TILT_RATE_Y] = lean[2] * per_second, lean[3] * per_second
     turns = row[LOG + Log.LAST_AZIMUTH] - row[LOG + Log.FIRST_AZIMUTH]
     out[Verdict.TURNS] = 0.0 if math.isnan(turns) else turns
+    goes_on = outcome == int(Outcome.STILL_MOVING) and status == int(RunStatus.STOPPED) and row[Setup.PERIOD] > 0.0
+    out[Verdict.NEEDED] = 0.0
+    if goes_on:
+        out[Verdict.NEEDED] = duration_needed(late, _RULES, row[Setup.PERIOD] * row[Setup.TIME_SCALE])
 
 
 def _end_lean(row: Row, model: Any, planar: Any) -> tuple[Any, Any, Any, Any]:

@@ -4,19 +4,22 @@ A module holds the kernels of a class of models under one kind of base motion, a
 """
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
+from functools import cached_property
+from itertools import chain, combinations
 from typing import Any
 
 import numpy as np
 
 from stylobate.base_motions import BASE_AT_REST, BaseMotion
+from stylobate.base_motions.declared import MOTIONS
 from stylobate.base_motions.harmonic import Harmonic
-from stylobate.column import Column
+from stylobate.column import SHAPES, Column
 from stylobate.compiler import mathematics
 from stylobate.compiler.machine import WEB, Machine
-from stylobate.compiler.sources import written_module
+from stylobate.compiler.sources import CompileError, written_module
 from stylobate.compiler.unit import ArrayArgument, Unit
 from stylobate.compiler.values import NumberKind
 from stylobate.compiler.web import module_of
@@ -218,16 +221,139 @@ def _branches(numbers: Sequence[Parameter], place: Any, indent: str, call: str, 
     one, *rest = numbers
     at = f"numbers[{place(one.name)}]"
     if one.choices:
-        for index, word in enumerate(one.choices):
+        for index, word in enumerate(one.choices[1:], start=1):
             yield f"{indent}if {at} == {float(index)!r}:"
             yield from _branches(rest, place, indent + "    ", call, (*made, f"{one.name}={word!r}"))
         yield from _branches(rest, place, indent, call, (*made, f"{one.name}={one.choices[0]!r}"))
-    elif one.optional:
+        return
+    if one.optional:
         yield f"{indent}if isnan({at}):"
         yield from _branches(rest, place, indent + "    ", call, (*made, f"{one.name}=None"))
-        yield from _branches(rest, place, indent, call, (*made, f"{one.name}={at}"))
-    else:
-        yield from _branches(rest, place, indent, call, (*made, f"{one.name}={at}"))
+    yield from _branches(rest, place, indent, call, (*made, f"{one.name}={at}"))
+
+
+@dataclass(frozen=True)
+class CaseProgram:
+    """The program for the numbers of columns and harmonic motions: their named constructors.
+
+    Parameters
+    ----------
+    derived
+        Names of the properties of a column that follow its own numbers in the result.
+    """
+
+    derived: tuple[str, ...]
+
+    @cached_property
+    def variants(self) -> Mapping[str, "Variant"]:
+        """The constructors, one function for each choice of their optional numbers, by name."""
+        columns = {f"column_{shape}": make for shape, make in SHAPES.items()}
+        harmonic = {f"motion_{kind}": MOTIONS[kind] for kind in MOTIONS if _makes_harmonic(MOTIONS[kind])}
+        found = {}
+        for name, make in (columns | harmonic).items():
+            results = (*COLUMN, *self.derived) if name in columns else _OF_HARMONIC
+            optional = [one.name for one in parameters_of(make).values() if one.optional]
+            for given in chain.from_iterable(combinations(optional, size) for size in range(len(optional) + 1)):
+                variant = Variant("_".join((name, *given)), name, make, given, results)
+                if variant.compiles():
+                    found[variant.name] = variant
+        return found
+
+    def described(self) -> list[dict[str, Any]]:
+        """Return the functions with their arguments in the order of their numbers, for JSON."""
+        return [one.described() for one in self.variants.values()]
+
+    def unit(self, machine: Machine) -> Unit:
+        """Return the compiled unit of the program."""
+        unit = Unit(lanes=machine.lanes, exact=True, trusted=True, traps=True)
+        for variant in self.variants.values():
+            variant.export(unit)
+        return unit
+
+    def module(self) -> bytes:
+        """Return the module of WebAssembly."""
+        return module_of(WEB.object_code(self.unit(WEB).module.text("nounwind")), list(self.variants))
+
+
+def _makes_harmonic(make: Callable[..., Any]) -> bool:
+    return make is Harmonic or getattr(make, "__self__", None) is Harmonic
+
+
+_OF_HARMONIC = (
+    *(f"amplitude[{k}]" for k in range(3)),
+    *(f"phase[{k}]" for k in range(3)),
+    "angular_frequency",
+    "start_phase",
+    "ramp",
+)
+"""What is known of a harmonic motion: the numbers `HARMONIC`, and its ramp."""
+
+
+@dataclass(frozen=True, slots=True)
+class Variant:
+    """A constructor with some of its optional numbers.
+
+    Parameters
+    ----------
+    name
+        Name of the function.
+    of
+        Name of the constructor.
+    make
+        The constructor.
+    given
+        Names of the optional numbers that are given; the others are None.
+    results
+        Properties of what it makes, as expressions.
+    """
+
+    name: str
+    of: str
+    make: Callable[..., Any]
+    given: tuple[str, ...]
+    results: tuple[str, ...]
+
+    @property
+    def arguments(self) -> list[Parameter]:
+        """The numbers of the function, in their order."""
+        return [one for one in parameters_of(self.make).values() if not one.optional or one.name in self.given]
+
+    def described(self) -> dict[str, Any]:
+        """Return what a page must know of the function, for JSON."""
+        arguments = [
+            {
+                "name": one.name,
+                "components": one.quantity.components,
+                "default": None if one.required or one.optional else one.default,
+            }
+            for one in self.arguments
+        ]
+        return {"name": self.name, "of": self.of, "given": self.given, "arguments": arguments}
+
+    def export(self, unit: Unit) -> None:
+        """Add the function to a unit."""
+        module = written_module(f"case_{self.name}", self._text, {"make": self.make})
+        count = sum(one.quantity.components for one in self.arguments)
+        rows = (ArrayArgument((count,)), ArrayArgument((len(self.results),)))
+        unit.export(getattr(module, self.name), self.name, rows)
+
+    def compiles(self) -> bool:
+        """Return whether the constructor accepts this choice of numbers, whatever their values."""
+        try:
+            self.export(Unit(lanes=0, exact=True, trusted=True, traps=True))
+        except CompileError:
+            return False
+        return True
+
+    @property
+    def _text(self) -> str:
+        keywords, place = [], 0
+        for one in self.arguments:
+            numbers = ", ".join(f"numbers[{place + k}]" for k in range(one.quantity.components))
+            place += one.quantity.components
+            keywords.append(f"{one.name}=({numbers})" if one.quantity.components > 1 else f"{one.name}={numbers}")
+        made = (f"    out[{k}] = made.{one}" for k, one in enumerate(self.results))
+        return "\n".join([f"def {self.name}(numbers, out):", f"    made = make({', '.join(keywords)})", *made])
 
 
 def described() -> dict[str, Any]:

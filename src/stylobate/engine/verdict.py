@@ -98,6 +98,7 @@ def energy_over_balance(model: Model, states: Floats, push: npt.ArrayLike = 0.0)
 
 # Minimum number of pairs for a trend and its error.
 _LEAST_PAIRS = 8
+_FOUR_DIGITS = 1000.0
 # Safety factor of the duration in which a transient decays.
 _MARGIN = 1.1
 
@@ -207,10 +208,12 @@ def _rounded_up(value: float) -> float:
     >>> _rounded_up(43.98229715), _rounded_up(0.0)
     (43.99, 0.0)
     """
-    if value == 0.0:
-        return 0.0
-    digits = 3 - math.floor(math.log10(value))
-    return math.ceil(value * 10.0**digits * (1.0 - SLACK)) / 10.0**digits
+    part, unit = 1.0, 1.0  # of the fourth digit: its reciprocal below 1, itself above
+    while 0.0 < value * part < _FOUR_DIGITS:
+        part = 10.0 * part
+    while value >= 10.0 * _FOUR_DIGITS * unit:
+        unit = 10.0 * unit
+    return math.ceil(value * part / unit * (1.0 - SLACK)) * unit / part
 
 
 FINER_REST = 0.01
