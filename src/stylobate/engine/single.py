@@ -35,7 +35,9 @@ from stylobate.engine.verdict import (
     FIRST_DIGIT,
     MANY_PASSAGES,
     MOST_PERIODS,
+    OPEN,
     UNSETTLED,
+    VERDICTS,
     duration_needed,
     duration_of,
     reason_on,
@@ -403,6 +405,25 @@ _RACING = (
 
 # Passages through the vertical closer than this take many steps [units of c].
 _RACES = 1e-3
+
+
+def reason_texts() -> dict[str, Any]:
+    """Return the reasons of outcomes as texts, with gaps for numbers, for a page that states them without Python."""
+    return {
+        "grounds": [reason for _, reason in VERDICTS.values()],
+        "statuses": [one.reason for one in RunStatus],
+        "final_events": [one.event for one in RunStatus],
+        "trace_events": [one.event for one in TraceKind],
+        "upright": {outcome.name: text for outcome, text in _UPRIGHT.items()},
+        "stands": [f"it stands, and the base motion to come {_STANDS[switches]}" for switches in (False, True)],
+        "stands_at_end": "it stands at the end of the run",
+        "unproved": _UNPROVED,
+        "stopped": "the integration stopped: ",
+        "step_limit": step_limit(0).replace(" 0", " {most}"),
+        "unseen": unseen(0).replace(" 0", " {most}"),
+        "racing": _RACING,
+        "still_moving": f"still moving; {OPEN}",
+    }
 
 
 def reason_of(model: Model, motion: BaseMotion, followed: Followed, outcome: Outcome) -> str:

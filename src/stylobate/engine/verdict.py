@@ -53,18 +53,18 @@ def survival(model: Model, motion: BaseMotion, trajectory: Trajectory) -> tuple[
     end = trajectory.end * model.time_scale
     if not has_ended(end, motion.duration):
         left = motion.duration - end
-        return Outcome.STILL_MOVING, f"still moving, {left:.4g} s before the base motion ends; {_OPEN}"
+        return Outcome.STILL_MOVING, f"still moving, {left:.4g} s before the base motion ends; {OPEN}"
     after = max(0.0, end - motion.duration)
     moving = f"still moving {after:.4g} s after the base motion ended" if motion.duration > 0.0 else "still moving"
     push = remaining_acceleration(motion) / model.column.gravity
     share = float(energy_over_balance(model, trajectory.own_states(np.array([trajectory.end])), push)[0])
     if share >= 1.0:
-        return Outcome.STILL_MOVING, f"{moving}; {_OPEN}"
+        return Outcome.STILL_MOVING, f"{moving}; {OPEN}"
     outcome = Outcome.SURVIVED if motion.duration > 0.0 else Outcome.STILL_MOVING
     return outcome, f"{moving}, but it cannot overturn any more: it has {100.0 * share:.2g} % of the energy required"
 
 
-_OPEN = "it may overturn later: simulate longer"
+OPEN = "it may overturn later: simulate longer"
 
 
 def has_ended(time: npt.ArrayLike, duration: npt.ArrayLike) -> npt.NDArray[np.bool_]:
@@ -104,7 +104,7 @@ _MARGIN = 1.1
 
 
 _LONGER = "set duration to at least {needed:.10g} s"
-_VERDICTS = {
+VERDICTS = {
     Ground.NO_PERIOD: (Outcome.STILL_MOVING, "it moved to the end of the run"),
     Ground.SHORT: (
         Outcome.STILL_MOVING,
@@ -142,7 +142,7 @@ _VERDICTS = {
 
 def outcome_on(ground: Ground) -> Outcome:
     """Return the outcome of a ground."""
-    return _VERDICTS[ground][0]
+    return VERDICTS[ground][0]
 
 
 def steady_periods(rules: OutcomeRules) -> int:
@@ -169,7 +169,7 @@ def reason_on(late: Floats, rules: OutcomeRules, period: float) -> str:
     """
     steady, short = steady_periods(rules), rules.periods + 1
     after = 0 if math.isnan(late[Late.SPAN]) else int(late[Late.REPEATS_AFTER] or late[Late.NEAREST])
-    return _VERDICTS[Ground(int(late[Late.GROUND]))][1].format(
+    return VERDICTS[Ground(int(late[Late.GROUND]))][1].format(
         n=rules.periods,
         short=short,
         steady=steady,

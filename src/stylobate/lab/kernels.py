@@ -1,0 +1,76 @@
+"""The kernels of the page as static files: programs of WebAssembly, and a description of them for the page."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from stylobate.engine import programs
+from stylobate.engine.kernel.columns import LAGS
+from stylobate.engine.programs import CaseProgram, RunProgram, Shaking
+from stylobate.engine.single import reason_texts
+from stylobate.engine.verdict import (
+    FALLEN,
+    FINER_PASSAGE,
+    FINER_REST,
+    MOST_PERIODS,
+    other_tolerance,
+    steady_periods,
+)
+from stylobate.errors import Outcome
+from stylobate.lab.answers import OF_ANY_COLUMN
+from stylobate.lab.limits import Limits
+from stylobate.models import Model
+from stylobate.models.declared import MODELS
+from stylobate.results import OutcomeRules
+from stylobate.run_arguments import SingleRun, arguments_of
+
+CASE = CaseProgram(tuple(OF_ANY_COLUMN))
+
+
+def run_programs() -> dict[str, RunProgram]:
+    """Return the programs for runs, by name; a model that can slip is left out."""
+    kinds = {kind: MODELS[kind] for kind in MODELS if not MODELS[kind].guards}
+    return {f"{kind}_{shaking}": RunProgram(model, shaking) for kind, model in kinds.items() for shaking in Shaking}
+
+
+def described() -> dict[str, Any]:
+    """Return what the page must know to ask the programs and to read what they return, for JSON."""
+    rules = OutcomeRules()
+    return {
+        "common": programs.described(),
+        "case": CASE.described(),
+        "derived": [*programs.COLUMN, *CASE.derived],
+        "programs": {name: _of_program(program) for name, program in run_programs().items()},
+        "outcomes": [{"name": one.name, "label": one.label} for one in Outcome],
+        "fallen": [int(one) for one in FALLEN],
+        "texts": reason_texts(),
+        "rules": {"n": rules.periods, "short": rules.periods + 1, "steady": steady_periods(rules), "most": LAGS},
+        "most_periods": MOST_PERIODS,
+        "most_steps": Limits().steps,
+        "rtol": arguments_of(SingleRun)["rtol"].default,
+        "finer": {
+            "rest_share": FINER_REST,
+            "passage_share": FINER_PASSAGE,
+            "rtol": other_tolerance(arguments_of(SingleRun)["rtol"].default),
+        },
+    }
+
+
+def _of_program(program: RunProgram) -> dict[str, Any]:
+    kind: type[Model] = program.kind
+    return {
+        **program.described(),
+        "numbers": [
+            {"name": one.name, "default": one.default, "choices": one.choices} for one in program.model_numbers.values()
+        ],
+        "proves": kind.no_return_tilt is not None,
+        "carries": bool(kind.carried_names),
+        "spins": kind.spin_state is not None,
+        "loses": kind.impact_map is not None,
+        "contact": kind.contact is not None,
+    }
+
+
+def modules() -> Mapping[str, bytes]:
+    """Return the modules of WebAssembly by name."""
+    runs = {name: program.module() for name, program in run_programs().items()}
+    return {"mathematics": programs.mathematics_module(), "case": CASE.module(), **runs}
