@@ -5,7 +5,7 @@ A module holds the kernels of a class of models under one kind of base motion, a
 
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import StrEnum
 from functools import cached_property
 from itertools import chain, combinations
@@ -240,9 +240,12 @@ class CaseProgram:
     ----------
     derived
         Names of the properties of a column that follow its own numbers in the result.
+    functions
+        Further functions of an array of numbers and one of results, by name, with the lengths of both.
     """
 
     derived: tuple[str, ...]
+    functions: Mapping[str, tuple[Callable[..., Any], int, int]] = field(default_factory=dict)
 
     @cached_property
     def variants(self) -> Mapping[str, "Variant"]:
@@ -268,11 +271,13 @@ class CaseProgram:
         unit = Unit(lanes=machine.lanes, exact=True, trusted=True, traps=True)
         for variant in self.variants.values():
             variant.export(unit)
+        for name, (function, *lengths) in self.functions.items():
+            unit.export(function, name, [ArrayArgument((length,)) for length in lengths])
         return unit
 
     def module(self) -> bytes:
         """Return the module of WebAssembly."""
-        return module_of(WEB.object_code(self.unit(WEB).module.text("nounwind")), list(self.variants))
+        return module_of(WEB.object_code(self.unit(WEB).module.text("nounwind")), [*self.variants, *self.functions])
 
 
 def _makes_harmonic(make: Callable[..., Any]) -> bool:
@@ -370,6 +375,7 @@ def described() -> dict[str, Any]:
         },
         "sizes": {"trace": len(Trace), "sample": len(Sample), "verdict": len(Verdict) + LATE_COLUMNS},
         "codes": {
+            **{one.name.lower(): int(one) for one in (RunStatus.RESTED, RunStatus.STEP_LIMIT, RunStatus.UNSEEN)},
             "to_plane": int(RunStatus.TO_PLANE),
             "first_event": int(TraceKind.RELEASE),
             "step": int(TraceKind.STEP),

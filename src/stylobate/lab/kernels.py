@@ -3,7 +3,11 @@
 from collections.abc import Mapping
 from typing import Any
 
+import numpy as np
+
+from stylobate.base_motions import Harmonic
 from stylobate.engine import programs
+from stylobate.engine.ensembles.run_columns import term_of
 from stylobate.engine.kernel.columns import LAGS
 from stylobate.engine.programs import CaseProgram, RunProgram, Shaking
 from stylobate.engine.single import reason_texts
@@ -18,12 +22,41 @@ from stylobate.engine.verdict import (
 from stylobate.errors import Outcome
 from stylobate.lab.answers import OF_ANY_COLUMN
 from stylobate.lab.limits import Limits
-from stylobate.models import Model
 from stylobate.models.declared import MODELS
 from stylobate.results import OutcomeRules
 from stylobate.run_arguments import SingleRun, arguments_of
+from stylobate.theory.rolling import rolling_point
 
-CASE = CaseProgram(tuple(OF_ANY_COLUMN))
+
+def slender_start(numbers: Any, out: Any) -> None:
+    """Set tilt vector [rad] and rate [rad/s] of steady rolling of a slender column, as `studies.steady_start` does.
+
+    Parameters
+    ----------
+    numbers
+        Slenderness, damping, gravity [m/s²], unit of time [s], 1 for the upper branch or 0; then the numbers of the
+        harmonic motion.
+    out
+        Tilt vector, its rate, and the smaller of the circular components of the motion over the larger.
+    """
+    c, eta, gravity, scale, upper = numbers[0], numbers[1], numbers[2], numbers[3], numbers[4]
+    ax, ay, _, px, py, _, frequency, phase = numbers[5:13]
+    motion = Harmonic(amplitude=(ax, ay, 0.0), phase=(px, py, 0.0), angular_frequency=frequency, start_phase=phase)
+    term = term_of(motion)
+    (x_re, x_im), (y_re, y_im), _ = term.amplitude
+    forward, backward = 0.5 * np.hypot(x_re - y_im, x_im + y_re), 0.5 * np.hypot(x_re + y_im, y_re - x_im)
+    ahead, behind = term.azimuths()
+    sense = 1.0 if forward >= backward else -1.0
+    nu, drive = frequency * scale, max(forward, backward) / gravity
+    ratio, psi = rolling_point(nu, drive / c, eta, upper=upper > 0.0)
+    azimuth, tilt = sense * psi + (ahead if forward >= backward else behind), c * ratio
+    across = sense * nu * tilt / scale
+    out[0], out[1] = tilt * np.cos(azimuth), tilt * np.sin(azimuth)
+    out[2], out[3] = -across * np.sin(azimuth), across * np.cos(azimuth)
+    out[4] = min(forward, backward) / max(forward, backward)
+
+
+CASE = CaseProgram(tuple(OF_ANY_COLUMN), {"slender_start": (slender_start, 13, 5)})
 
 
 def run_programs() -> dict[str, RunProgram]:
@@ -56,7 +89,7 @@ def described() -> dict[str, Any]:
 
 
 def _of_program(program: RunProgram) -> dict[str, Any]:
-    kind: type[Model] = program.kind
+    kind = program.kind
     return {
         **program.described(),
         "numbers": [

@@ -28,6 +28,7 @@ frequencies below the band without rolling and stable at all frequencies above i
 """
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -142,15 +143,15 @@ def steady_rolling(nu: Real, a0: Real, *, c: Real, eta: Real) -> SteadyRolling:
     )
     k, drag = 1.0 + nu**2, eta * nu
     upper, lower, root = rolling_amplitudes(k, drag, a)
-    d = k**2 + drag**2
+    ahead, behind = _pushes(k, drag, root)
     return SteadyRolling(
-        upper=_branch(nu, c, eta, upper, root, (k * root - drag**2) / d),
-        lower=_branch(nu, c, eta, lower, -root, -(k * root + drag**2) / d),
+        upper=_branch(nu, c, eta, upper, root, ahead),
+        lower=_branch(nu, c, eta, lower, -root, behind),
         azimuth_offset=np.zeros_like(a),
     )
 
 
-def rolling_amplitudes(k: FloatArray, drag: FloatArray, a: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+def rolling_amplitudes(k: Any, drag: Any, a: Any) -> tuple[Any, Any, Any]:
     """Return the roots θ of (kθ − 1)² + (drag θ)² = a², upper and lower, and √(a²D − drag²) with D = k² + drag².
 
     Roots that are not positive are NaN. All values are in units of c.
@@ -162,6 +163,24 @@ def rolling_amplitudes(k: FloatArray, drag: FloatArray, a: FloatArray) -> tuple[
     upper = (k + root) / d  # (8)
     lower = (1.0 - a) * (1.0 + a) / (d * upper)
     return upper, np.where(lower > 0.0, lower, np.nan), root
+
+
+def _pushes(k: Any, drag: Any, root: Any) -> tuple[Any, Any]:
+    """Return a0 cos ψ of the upper and the lower branch, in units of c."""
+    d = k**2 + drag**2
+    return (k * root - drag**2) / d, -(k * root + drag**2) / d
+
+
+def rolling_point(nu: Any, a: Any, eta: Any, *, upper: Any) -> tuple[Any, Any]:
+    """Return θ/c and ψ of the upper or lower branch of (8), for a = a0/c; NaN without it.
+
+    It is in the language of the compiler too.
+    """
+    k, drag = 1.0 + nu**2, eta * nu
+    high, low, root = rolling_amplitudes(k, drag, a)
+    ahead, behind = _pushes(k, drag, root)
+    ratio, push = np.where(upper, high, low), np.where(upper, ahead, behind)
+    return ratio, np.arctan2(eta * nu * ratio, push)
 
 
 def _branch(

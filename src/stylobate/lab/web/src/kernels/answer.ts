@@ -1,0 +1,396 @@
+/** The answer to a question for one run, computed in the page. */
+
+import type { Part } from "../page/case/description";
+import type { DrawnMotion, Run, RunEvent, Series } from "../page/server/schema";
+import { type Case, caseOf, numberOf } from "./case";
+import { filled, general } from "./general";
+import type { Kernels, Numbers } from "./kernels";
+import type { Finished, Program } from "./program";
+
+/** Samples per period of the base, per unit of time of the column, and their least and largest number. */
+const [PER_PERIOD, PER_UNIT, FEWEST, MOST] = [48, 24, 1001, 5001];
+/** Instants of a drawn motion at most. */
+const DRAWN = 2000;
+
+/** A run that has been computed, with what is read from it. */
+interface Computed {
+  readonly kernels: Kernels;
+  readonly asked: Case;
+  readonly program: Program;
+  readonly finished: Finished;
+  readonly numbers: Float64Array;
+}
+
+export async function simulated(kernels: Kernels, description: Part): Promise<Run> {
+  const asked = await caseOf(kernels, description);
+  const program = await kernels.program(asked.program);
+  const computed = decided(kernels, asked, program, description);
+  return answered(computed, description);
+}
+
+/** Runs a case for its duration, or else until its outcome is decided. */
+function decided(kernels: Kernels, asked: Case, program: Program, description: Part): Computed {
+  const { rules, most_periods } = kernels.described;
+  const given = description["duration"];
+  const length = asked.period ?? 0;
+  let duration = numberOf(given, rules.steady * length, "duration");
+  let found = computed(kernels, asked, program, duration);
+  while ((given === undefined || given === null) && length > 0) {
+    const needed = Math.min(verdict(found, "needed"), most_periods * length);
+    if (!(duration < needed)) break;
+    const longer = computed(kernels, asked, program, needed);
+    if (outcomeOf(longer).name === "FAILED") break;
+    [found, duration] = [longer, needed];
+  }
+  return found;
+}
+
+function computed(kernels: Kernels, asked: Case, program: Program, duration: number, finer = false): Computed {
+  const { rtol, most_steps, finer: shares } = kernels.described;
+  const accuracy = finer
+    ? { rtol: shares.rtol, max_steps: most_steps, rest_share: shares.rest_share, passage_share: shares.passage_share }
+    : { rtol, max_steps: most_steps, rest_share: 1, passage_share: 1 };
+  const values: Numbers = { ...asked.numbers, duration, ...accuracy };
+  const numbers = Float64Array.from(program.described.names, (name) => values[name] ?? NaN);
+  return { kernels, asked, program, finished: program.run(numbers), numbers };
+}
+
+function answered(found: Computed, description: Part): Run {
+  const { kernels, asked, program, finished } = found;
+  const { column } = asked;
+  const scale = log(found, "time_scale", "setup");
+  const outcome = outcomeOf(found);
+  const events = eventsOf(found, scale);
+  const [changes, doubts] = repeated(found);
+  const reason = reasonOf(found);
+  const peak = log(found, "peak_tilt");
+  const measures = measuresOf(found, scale, events);
+  // the samples of the drawn motion are the last to be taken, while the run is still in the memory
+  const many = sampleCount(found, scale);
+  const samples = new Samples(kernels, program.samples(finished.stretches, many));
+  const drawn = many <= DRAWN ? samples : new Samples(kernels, program.samples(finished.stretches, DRAWN));
+  const decidedAt = log(found, "decided") * scale;
+  return {
+    toml: "",
+    python: "",
+    column: {
+      ...column,
+      uplift_acceleration: (column["slenderness"] ?? NaN) * (column["gravity"] ?? NaN),
+    } as Run["column"],
+    outcome: outcome.name as Run["outcome"],
+    label: outcome.label as Run["label"],
+    reason,
+    decided_at: decidedAt,
+    uncertain: verdict(found, "uncertain") > 0 || changes,
+    planar: log(found, "three_dimensional") === 0,
+    warnings: doubts,
+    events,
+    measures,
+    summary: summaryOf(column, measures, events, peak),
+    thresholds: {},
+    drawn: drawnOf(found, drawn, description, {
+      outcome: outcome.name as Run["outcome"],
+      decided_at: decidedAt,
+      title: `${outcome.label}: ${reason.split(";")[0]}`,
+    }),
+    series: seriesOf(found, samples, scale),
+  };
+}
+
+function outcomeOf(found: Computed): { readonly name: string; readonly label: string } {
+  return found.kernels.described.outcomes[verdict(found, "outcome")] ?? { name: "FAILED", label: "failed" };
+}
+
+function verdict(found: Computed, name: string): number {
+  const column = found.kernels.described.common.columns.verdict[name];
+  return column === undefined ? NaN : (found.finished.verdict[column] ?? NaN);
+}
+
+function log(found: Computed, name: string, group: "log" | "setup" = "log"): number {
+  const column = found.kernels.described.common.columns[group][name];
+  return column === undefined ? NaN : (found.finished.row[column] ?? NaN);
+}
+
+/** Returns whether a run in doubt falls or not with finer thresholds, and a line about it. */
+function repeated(found: Computed): readonly [boolean, readonly string[]] {
+  const { kernels, asked, program, finished } = found;
+  if (!(verdict(found, "in_doubt") > 0)) return [false, []];
+  const duration = found.numbers[program.described.names.indexOf("duration")] ?? NaN;
+  const again = computed(kernels, asked, program, duration, true);
+  const energy = log(again, "rest_energy", "setup");
+  program.run(found.numbers); // the samples are taken from the memory of the program
+  const { fallen, finer } = kernels.described;
+  const [before, after] = [verdict(found, "outcome"), verdict(again, "outcome")];
+  if (outcomeOf(again).name === "FAILED" || fallen.includes(before) === fallen.includes(after)) return [false, []];
+  const passage = again.finished.row[kernels.described.common.columns.setup["passage_tilt"] ?? 0] ?? 0;
+  const given = passage > 0 && !finished.planar ? `passage_tilt ${general(passage, 2)}, ` : "";
+  const settings = `with ${given}rest_energy ${general(energy, 2)} and rtol ${general(finer.rtol, 2)}`;
+  const line = `the outcome depends on the settings of the integration: ${settings} it is ${outcomeOf(again).name}`;
+  return [true, [line]];
+}
+
+// Reasons
+
+function reasonOf(found: Computed): string {
+  const { texts, outcomes, rules, programs, most_steps } = found.kernels.described;
+  const status = log(found, "status");
+  const outcome = outcomes[verdict(found, "outcome")]?.name ?? "";
+  const own = texts.statuses[status] ?? "";
+  const described = programs[found.asked.program];
+  if (outcome === "FAILED") {
+    const limits: Readonly<Record<string, string>> = { "": filled(texts.step_limit, { most: most_steps }) };
+    return `${texts.stopped}${own === "" ? (limits[""] ?? "") : own}`;
+  }
+  const weight = 1 + log(found, "minimum_vertical", "setup");
+  if (outcome === "OVERTURNED" && (!described?.proves || weight <= 0)) return texts.unproved;
+  const rested = outcomes.findIndex((one) => one.name === "AT_REST");
+  if (verdict(found, "outcome") === rested) {
+    if (log(found, "time") * (1 + 1e-12) < log(found, "end", "setup")) return texts.stands[0];
+    const releases = log(found, "releases");
+    const times = releases === 1 ? "1 time" : `${releases} times`;
+    return `${texts.stands_at_end}${releases > 0 ? `, uplifted ${times} before` : ""}`;
+  }
+  if (own !== "") return own;
+  if (found.asked.period === null) return texts.still_moving;
+  const after = verdict(found, "repeats_after") || verdict(found, "nearest");
+  return filled(texts.grounds[verdict(found, "ground")] ?? "", {
+    ...rules,
+    after: after === 1 ? "each period" : `${after} periods`,
+    needed: verdict(found, "needed"),
+  });
+}
+
+function eventsOf(found: Computed, scale: number): readonly RunEvent[] {
+  const { texts, common } = found.kernels.described;
+  const wide = found.program.described.trace_width;
+  const [kind = 0, start = 1] = [common.columns.trace["kind"], common.columns.trace["start"]];
+  const events: RunEvent[] = [];
+  for (let first = 0; first < found.finished.events.length; first += wide) {
+    const name = texts.trace_events[found.finished.events[first + kind] ?? -1] ?? "";
+    if (name !== "") events.push({ kind: name, time: (found.finished.events[first + start] ?? NaN) * scale });
+  }
+  const last = texts.final_events[log(found, "status")] ?? "";
+  if (last !== "") events.push({ kind: last, time: log(found, "time") * scale });
+  return events;
+}
+
+// Measures
+
+function measuresOf(found: Computed, scale: number, events: readonly RunEvent[]): Run["measures"] {
+  const slenderness = found.asked.column["slenderness"] ?? NaN;
+  const peak = log(found, "peak_tilt");
+  const [x, y] = [verdict(found, "tilt_x"), verdict(found, "tilt_y")];
+  const first = Math.hypot(found.asked.numbers["tilt_x"] ?? 0, found.asked.numbers["tilt_y"] ?? 0);
+  const least = Math.min(first, log(found, "minimum_tilt"), Math.hypot(x, y));
+  const known: Record<string, number | null> = {
+    peak_tilt: peak,
+    peak_tilt_over_c: peak / slenderness,
+    time_of_peak_tilt: log(found, "peak_at") * scale,
+    minimum_tilt: log(found, "reached_vertical") > 0 ? 0 : least,
+    least_passage: finite(log(found, "closest_passage")),
+    turns: verdict(found, "turns"),
+    steps: log(found, "steps"),
+    impacts: events.filter((event) => event.kind === "impact").length,
+  };
+  const span = verdict(found, "span");
+  if (!Number.isNaN(span)) {
+    known["mean_rolling_rate"] = (2 * Math.PI * verdict(found, "turned")) / (span * scale);
+    known["repetition"] = finite(verdict(found, "returns"));
+    known["repeats_after"] = verdict(found, "repeats_after");
+    known["mean_tilt_late"] = verdict(found, "mean_tilt");
+    known["minimum_tilt_late"] = verdict(found, "minimum_tilt");
+  }
+  return known as unknown as Run["measures"];
+}
+
+function finite(value: number): number | null {
+  return Number.isFinite(value) ? value : null;
+}
+
+/** Number of listed events at most. */
+const LISTED = 4;
+
+function summaryOf(
+  column: Numbers,
+  measures: Run["measures"],
+  events: readonly RunEvent[],
+  peak: number,
+): [string, string][] {
+  const of = (name: string): number => column[name] ?? NaN;
+  const scale = `ω0 = ${general(of("frequency_scale"), 5)} rad/s`;
+  const least = of("slenderness") * of("gravity");
+  const rows: [string, string][] = [
+    ["column", `c = ${general(of("slenderness"), 5)}, ${scale}, mass ${general(of("mass"), 6)} kg`],
+    ["uplifts above", `${general(least, 5)} m/s² of horizontal acceleration`],
+    ["peak tilt", `${general(peak, 6)} rad, ${general(measures.peak_tilt_over_c ?? NaN, 4)} c`],
+  ];
+  if (peak > 0) {
+    rows.push(["reached at", `${(measures.time_of_peak_tilt ?? NaN).toFixed(4)} s`]);
+    rows.push(["turns of the contact point", (measures.turns ?? NaN).toFixed(3)]);
+  }
+  const rate = (measures as Readonly<Record<string, number | null | undefined>>)["mean_rolling_rate"];
+  if (typeof rate === "number") rows.push(["mean rolling rate", `${general(rate, 6)} rad/s`]);
+  const listed = events.slice(0, LISTED).map((event) => `${event.kind} at ${event.time.toFixed(4)} s`);
+  if (events.length > LISTED) listed.push(`and ${events.length - LISTED} more`);
+  rows.push(["events", listed.join(", ") || "none"], ["steps", String(measures.steps)]);
+  return rows;
+}
+
+// Samples
+
+/** Samples of a run, read by the names of their columns. */
+class Samples {
+  readonly length: number;
+  readonly #numbers: Float64Array;
+  readonly #columns: Numbers;
+  readonly #wide: number;
+
+  constructor(kernels: Kernels, numbers: Float64Array) {
+    this.#columns = kernels.described.common.columns.sample;
+    this.#wide = kernels.described.common.sizes.sample;
+    this.#numbers = numbers;
+    this.length = numbers.length / this.#wide;
+  }
+
+  at(k: number, name: string): number {
+    return this.#numbers[k * this.#wide + (this.#columns[name] ?? NaN)] ?? NaN;
+  }
+
+  each<Value>(read: (k: number) => Value): Value[] {
+    return Array.from({ length: this.length }, (_, k) => read(k));
+  }
+
+  column(name: string): number[] {
+    return this.each((k) => this.at(k, name));
+  }
+
+  known(name: string): (number | null)[] {
+    return this.each((k) => finite(this.at(k, name)));
+  }
+
+  pairs(name: string): [number, number][] {
+    return this.each((k) => [this.at(k, `${name}_x`), this.at(k, `${name}_y`)]);
+  }
+
+  triples(name: string): [number, number, number][] {
+    return this.each((k) => [this.at(k, `${name}_x`), this.at(k, `${name}_y`), this.at(k, `${name}_z`)]);
+  }
+}
+
+function sampleCount(found: Computed, scale: number): number {
+  const end = log(found, "time");
+  const periods = found.asked.period === null ? 0 : (end * scale) / found.asked.period;
+  return Math.min(Math.max(Math.ceil(PER_PERIOD * periods + PER_UNIT * end) + 1, FEWEST), MOST);
+}
+
+function seriesOf(found: Computed, samples: Samples, scale: number): Series {
+  const described = found.kernels.described.programs[found.asked.program];
+  const tilts = samples.pairs("tilt");
+  const rates = samples.pairs("tilt_rate");
+  const size = tilts.map(([x, y]) => Math.hypot(x, y));
+  const rolling = tilts.map(([x, y], k) => {
+    const [vx, vy] = rates[k] ?? [NaN, NaN];
+    return finite((x * vy - y * vx) / ((size[k] ?? NaN) * (size[k] ?? NaN)));
+  });
+  void scale;
+  return {
+    time: samples.column("time"),
+    base_acceleration: samples.triples("acceleration"),
+    amplitude: size,
+    azimuth: samples.known("azimuth"),
+    rolling_rate: rolling,
+    ...(described?.spins ? { spin: samples.known("spin") } : {}),
+    ...(described?.contact
+      ? {
+          friction_demand: samples.known("friction"),
+          pivoting_demand: samples.known("pivoting"),
+          normal_force: samples.known("normal"),
+        }
+      : {}),
+    ...(described?.carries ? { displacement: displaced(samples.pairs("footprint")) } : {}),
+  };
+}
+
+function displaced(places: readonly (readonly [number, number])[]): [number, number][] {
+  const [x, y] = places[0] ?? [0, 0];
+  return places.map(([a, b]) => [a - x, b - y]);
+}
+
+// The motion to draw
+
+function drawnOf(
+  found: Computed,
+  samples: Samples,
+  description: Part,
+  said: Pick<DrawnMotion, "outcome" | "decided_at" | "title">,
+): DrawnMotion {
+  const { column } = found.asked;
+  const radius = column["radius"] ?? NaN;
+  const massHeight = column["mass_height"] ?? NaN;
+  const body = description["column"] as Part;
+  const described = found.kernels.described.programs[found.asked.program];
+  const tilt = samples.pairs("tilt");
+  const footprint = samples.pairs("footprint");
+  const twist = samples.column("twist");
+  const directions = leaned(tilt);
+  return {
+    column: {
+      radius,
+      top_radius: numberOf(body["top_radius"], radius, "top_radius"),
+      height: numberOf(body["height"], 2 * massHeight, "height"),
+      mass_height: massHeight,
+      slenderness: column["slenderness"] ?? NaN,
+    },
+    plane: { incline: 0, incline_direction: 0 },
+    time: samples.column("time"),
+    tilt,
+    tilt_rate: samples.pairs("tilt_rate"),
+    twist,
+    spin: described?.spins ? samples.column("spin") : null,
+    footprint,
+    contact_point: footprint.map(([x, y], k) => {
+      const [ux, uy] = directions[k] ?? [1, 0];
+      return [x + radius * ux, y + radius * uy];
+    }),
+    resting: tilt.map(([x, y], k) => (samples.at(k, "resting") > 0 || (x === 0 && y === 0) ? 1 : 0)),
+    clearance: null,
+    base: samples.triples("base"),
+    rotation: tilt.map((lean, k) => turned(lean, twist[k] ?? 0)),
+    centre: tilt.map((lean, k) => centreOf(lean, footprint[k] ?? [0, 0], radius)),
+    friction_demand: described?.contact ? samples.known("friction") : null,
+    friction_coefficient: null,
+    ...said,
+  };
+}
+
+/** Returns unit vectors along the tilt; without tilt, that of the nearest instant before, or else after. */
+function leaned(tilt: readonly (readonly [number, number])[]): [number, number][] {
+  const first = tilt.find(([x, y]) => x !== 0 || y !== 0) ?? [1, 0];
+  let last: [number, number] = [first[0] / Math.hypot(...first), first[1] / Math.hypot(...first)];
+  return tilt.map(([x, y]) => {
+    const size = Math.hypot(x, y);
+    if (size > 0) last = [x / size, y / size];
+    return last;
+  });
+}
+
+/** Returns the rotation Rz(β) Ry(θ) Rz(χ − β) of a leaning column as a unit quaternion w, x, y, z. */
+function turned([x, y]: readonly [number, number], twist: number): [number, number, number, number] {
+  const angle = Math.hypot(x, y);
+  const share = angle > 0 ? Math.sin(angle / 2) / angle : 0.5;
+  const [sine, cosine] = [Math.sin(twist / 2), Math.cos(twist / 2)];
+  const half = Math.cos(angle / 2);
+  return [half * cosine, share * (x * sine - y * cosine), share * (x * cosine + y * sine), half * sine];
+}
+
+/** Returns the centre of the bottom circle of a column that stands on its rim, or upright. */
+function centreOf(
+  [x, y]: readonly [number, number],
+  footprint: readonly [number, number],
+  radius: number,
+): [number, number, number] {
+  const angle = Math.hypot(x, y);
+  const [ux, uy] = angle > 0 ? [x / angle, y / angle] : [1, 0];
+  const along = radius * (1 - Math.cos(angle));
+  return [footprint[0] + along * ux, footprint[1] + along * uy, radius * Math.sin(angle)];
+}

@@ -1,0 +1,149 @@
+/** The programs of a page: loaded when a case first needs them. */
+
+import type { Part, Value } from "../page/case/description";
+import { Unknown, numberOf, refuseOthers } from "./case";
+import { type Common, type Described as OfProgram, Program } from "./program";
+
+export type Numbers = Readonly<Record<string, number>>;
+
+/** A function of the program of cases: a constructor with some of its optional numbers. */
+interface Variant {
+  readonly name: string;
+  readonly of: string;
+  readonly given: readonly string[];
+  readonly arguments: readonly { readonly name: string; readonly components: number; readonly default: Value }[];
+}
+
+interface Texts {
+  readonly grounds: readonly string[];
+  readonly statuses: readonly string[];
+  readonly final_events: readonly string[];
+  readonly trace_events: readonly string[];
+  readonly upright: Readonly<Record<string, string>>;
+  readonly stands: readonly [string, string];
+  readonly stands_at_end: string;
+  readonly unproved: string;
+  readonly stopped: string;
+  readonly step_limit: string;
+  readonly unseen: string;
+  readonly racing: string;
+  readonly still_moving: string;
+}
+
+interface DescribedProgram extends OfProgram {
+  readonly numbers: readonly { readonly name: string; readonly default: Value; readonly choices: readonly string[] }[];
+  /** Whether the model proves from which tilt a column cannot come back. */
+  readonly proves: boolean;
+  readonly carries: boolean;
+  readonly spins: boolean;
+  readonly loses: boolean;
+  readonly contact: boolean;
+}
+
+/** What the package says of its programs. */
+export interface Described {
+  readonly common: Common;
+  readonly case: readonly Variant[];
+  /** Names of what the program of cases knows of a column. */
+  readonly derived: readonly string[];
+  readonly programs: Readonly<Record<string, DescribedProgram>>;
+  readonly outcomes: readonly { readonly name: string; readonly label: string }[];
+  readonly fallen: readonly number[];
+  readonly texts: Texts;
+  readonly rules: { readonly n: number; readonly short: number; readonly steady: number; readonly most: number };
+  readonly most_periods: number;
+  readonly most_steps: number;
+  readonly rtol: number;
+  readonly finer: { readonly rest_share: number; readonly passage_share: number; readonly rtol: number };
+}
+
+/** Returns the bytes of a module by its name. */
+export type Load = (name: string) => Promise<BufferSource>;
+
+const PAGE = 1 << 16;
+const OF_A_MOTION = 9;
+
+export class Kernels {
+  readonly described: Described;
+  readonly #load: Load;
+  readonly #programs = new Map<string, Promise<Program>>();
+  #mathematics: Promise<WebAssembly.Exports> | null = null;
+  #case: Promise<WebAssembly.Instance> | null = null;
+  readonly #memory = new WebAssembly.Memory({ initial: 2 });
+
+  constructor(described: Described, load: Load) {
+    this.described = described;
+    this.#load = load;
+  }
+
+  /** Returns the program of this name. */
+  program(name: string): Promise<Program> {
+    let found = this.#programs.get(name);
+    if (!found) {
+      found = this.#made(name);
+      this.#programs.set(name, found);
+    }
+    return found;
+  }
+
+  /** Returns the numbers of a described column or motion, by name. */
+  async made(group: "column" | "motion", given: Part, choosing: "shape" | "kind"): Promise<Numbers> {
+    const of = `${group}_${String(given[choosing])}`;
+    const numbers = Object.keys(given).filter((name) => given[name] !== null && given[name] !== undefined);
+    const variants = this.described.case.filter((one) => one.of === of);
+    const variant = variants.find((one) => one.given.every((name) => numbers.includes(name)) && fits(one, numbers));
+    if (!variant) throw new Unknown(`${of} is not computed here`);
+    refuseOthers(given, [choosing, ...variant.arguments.map((one) => one.name)]);
+    const values = variant.arguments.flatMap(({ name, components, default: usual }) => {
+      const value = given[name] ?? usual;
+      if (components === 1) return [numberOf(value, NaN, name)];
+      if (!Array.isArray(value) || value.length !== components) throw new Unknown(`${name} is not a vector here`);
+      return (value as readonly Value[]).map((one) => numberOf(one, NaN, name));
+    });
+    const instance = await this.#ofCase();
+    const at = PAGE; // behind the constant tables and the stack
+    const names =
+      group === "column" ? this.described.derived : Array.from({ length: OF_A_MOTION }, (_, k) => String(k));
+    const out = at + 8 * Math.max(values.length, 1);
+    new Float64Array(this.#memory.buffer, at, values.length).set(values);
+    const call = instance.exports[variant.name] as (numbers: number, out: number) => bigint;
+    call(at, out);
+    const found = new Float64Array(this.#memory.buffer, out, names.length);
+    return Object.fromEntries(names.map((name, k) => [name, found[k] ?? NaN]));
+  }
+
+  async #made(name: string): Promise<Program> {
+    const described = this.described.programs[name];
+    if (!described) throw new Unknown(`there is no program ${name}`);
+    const module = await WebAssembly.compile(await this.#load(name));
+    return Program.of(module, await this.#ofMathematics(), described, this.described.common);
+  }
+
+  #ofMathematics(): Promise<WebAssembly.Exports> {
+    const env = imported(new WebAssembly.Memory({ initial: 2 }));
+    this.#mathematics ??= this.#load("mathematics")
+      .then((bytes) => WebAssembly.instantiate(bytes, { env }))
+      .then((found) => found.instance.exports);
+    return this.#mathematics;
+  }
+
+  #ofCase(): Promise<WebAssembly.Instance> {
+    this.#case ??= Promise.all([this.#load("case"), this.#ofMathematics()])
+      .then(([bytes, mathematics]) =>
+        WebAssembly.instantiate(bytes, { env: { ...mathematics, ...imported(this.#memory) } }),
+      )
+      .then((found) => found.instance);
+    return this.#case;
+  }
+}
+
+/** Returns whether a variant takes exactly the optional numbers that are given, of those that its constructor has. */
+function fits(variant: Variant, numbers: readonly string[]): boolean {
+  const own = variant.arguments.map((one) => one.name);
+  return numbers.every((name) => own.includes(name) || name === "shape" || name === "kind");
+}
+
+function imported(memory: WebAssembly.Memory): WebAssembly.ModuleImports {
+  const pointer = new WebAssembly.Global({ value: "i32", mutable: true }, PAGE);
+  return { __linear_memory: memory, __stack_pointer: pointer };
+}
