@@ -74,6 +74,11 @@ def cos(x: float) -> float:
     return _wave(x, 1.0)
 
 
+def tan(x: float) -> float:
+    """Return tan x."""
+    return sin(x) / cos(x)
+
+
 def _wave(x: float, quarters: float) -> float:
     """Return the sine of x and so many quarter turns."""
     turns, high, low = _reduced(x)
@@ -256,6 +261,7 @@ def power(x: float, y: float) -> float:
 FUNCTIONS: dict[str, tuple[Callable[..., float], int]] = {
     "sin": (sin, 1),
     "cos": (cos, 1),
+    "tan": (tan, 1),
     "atan": (atan, 1),
     "atan2": (atan2, 2),
     "hypot": (hypot, 2),

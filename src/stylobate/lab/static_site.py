@@ -13,6 +13,7 @@ from pathlib import Path
 
 from stylobate.errors import FileError
 from stylobate.files import write_whole
+from stylobate.lab import kernels
 from stylobate.lab.guards import POLICY, written_policy
 from stylobate.lab.limits import Limits
 from stylobate.lab.options import about, lessons
@@ -26,6 +27,9 @@ SINGLE_FILE = "laboratory.html"
 
 _CONTENTS = "answers"
 """Element of the page with the list of answers, beginning of the names of their elements, and their folder."""
+
+_PROGRAMS = "programs"
+"""Folder of the programs, and beginning of the names of their elements."""
 
 _SCRIPT, _STYLE, _HEAD = (
     '<script type="module" src="main.js"></script>',
@@ -91,7 +95,8 @@ def write(folder: Path, *, progress: Progress = None) -> Sizes:
     if not page_is_built():
         raise FileError("the page of the laboratory is not built. Run make page, or install a wheel of stylobate.")
     try:
-        (folder / _CONTENTS).mkdir(parents=True, exist_ok=True)
+        for part in (_CONTENTS, _PROGRAMS):
+            (folder / part).mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise FileError(f"{folder}: cannot be made: {error.strerror or error}. Choose another folder.") from None
     report = report_of(progress)
@@ -100,6 +105,7 @@ def write(folder: Path, *, progress: Progress = None) -> Sizes:
     for done, one in enumerate(asked):
         report(one.name, done, len(asked))
         answers[one.name] = packed(answer_to(one))
+    programs = kernels.modules()
     page, style, script = (_page_file(name) for name in ("index.html", "main.css", "main.js"))
     contents = _contents(asked)
     first = [name for name in (f"{ask}-{_opening()}" for ask in AT_ONCE) if name in answers]
@@ -108,8 +114,9 @@ def write(folder: Path, *, progress: Progress = None) -> Sizes:
         "main.css": style.encode(),
         "main.js": script.encode(),
         **{f"{_CONTENTS}/{name}.json": answer for name, answer in answers.items()},
+        **{f"{_PROGRAMS}/{name}.wasm": module for name, module in programs.items()},
     }
-    single = _single(page, style, script, contents, answers).encode()
+    single = _single(page, style, script, contents, answers, programs).encode()
     for name, content in {**files, SINGLE_FILE: single}.items():
         write_whole(folder / name, content)
     loaded = [*("index.html", "main.css", "main.js"), *(f"{_CONTENTS}/{name}.json" for name in first)]
@@ -134,7 +141,9 @@ def _contents(asked: Iterable[Question]) -> str:
     """Return the element with the options of the page and the list of its answers."""
     listed = [{"ask": one.ask, "question": one.values, "name": one.name} for one in asked]
     text = json.dumps(
-        {"about": json.loads(about(Limits()).as_json()), "answers": listed}, ensure_ascii=False, separators=(",", ":")
+        {"about": json.loads(about(Limits()).as_json()), "answers": listed, "kernels": kernels.described()},
+        ensure_ascii=False,
+        separators=(",", ":"),
     )
     return _data(_CONTENTS, "application/json", text.replace("<", r"\u003c"))
 
@@ -157,8 +166,10 @@ def _for_server(page: str, contents: str, first: Iterable[str]) -> str:
     )
 
 
-def _single(page: str, style: str, script: str, contents: str, answers: Mapping[str, bytes]) -> str:
-    """Return the page with its script, its style and its answers in it."""
+def _single(
+    page: str, style: str, script: str, contents: str, answers: Mapping[str, bytes], programs: Mapping[str, bytes]
+) -> str:
+    """Return the page with its script, its style, its answers and its programs in it."""
     # In a script only strings can have these words, where an escaped sign is the same.
     script = script.replace("</script", r"\x3c/script").replace("<!--", r"\x3c!--")
     policy = {
@@ -169,8 +180,9 @@ def _single(page: str, style: str, script: str, contents: str, answers: Mapping[
         "connect-src": "'none'",
     }
     zipped = [
-        _data(f"{_CONTENTS}-{name}", "text/plain", base64.b64encode(_zipped(answer)).decode())
-        for name, answer in answers.items()
+        _data(f"{folder}-{name}", "text/plain", base64.b64encode(_zipped(content)).decode())
+        for folder, contained in ((_CONTENTS, answers), (_PROGRAMS, programs))
+        for name, content in contained.items()
     ]
     return _replaced(
         page,

@@ -5,6 +5,7 @@ import type { DrawnMotion, Run, RunEvent, Series } from "../page/server/schema";
 import { type Case, caseOf, numberOf } from "./case";
 import { filled, general } from "./general";
 import type { Kernels, Numbers } from "./kernels";
+import { asPython, asToml } from "./snippets";
 import type { Finished, Program } from "./program";
 
 /** Samples per period of the base, per unit of time of the column, and their least and largest number. */
@@ -71,12 +72,9 @@ function answered(found: Computed, description: Part): Run {
   const drawn = many <= DRAWN ? samples : new Samples(kernels, program.samples(finished.stretches, DRAWN));
   const decidedAt = log(found, "decided") * scale;
   return {
-    toml: "",
-    python: "",
-    column: {
-      ...column,
-      uplift_acceleration: (column["slenderness"] ?? NaN) * (column["gravity"] ?? NaN),
-    } as Run["column"],
+    toml: asToml(description),
+    python: asPython(description),
+    column: columnNumbers(column),
     outcome: outcome.name as Run["outcome"],
     label: outcome.label as Run["label"],
     reason,
@@ -93,8 +91,13 @@ function answered(found: Computed, description: Part): Run {
       decided_at: decidedAt,
       title: `${outcome.label}: ${reason.split(";")[0]}`,
     }),
-    series: seriesOf(found, samples, scale),
+    series: seriesOf(found, samples),
   };
+}
+
+export function columnNumbers(column: Numbers): Run["column"] {
+  const uplift = (column["slenderness"] ?? NaN) * (column["gravity"] ?? NaN);
+  return { ...column, uplift_acceleration: uplift } as Run["column"];
 }
 
 function outcomeOf(found: Computed): { readonly name: string; readonly label: string } {
@@ -132,20 +135,20 @@ function repeated(found: Computed): readonly [boolean, readonly string[]] {
 // Reasons
 
 function reasonOf(found: Computed): string {
-  const { texts, outcomes, rules, programs, most_steps } = found.kernels.described;
+  const { texts, outcomes, rules, programs, most_steps, common } = found.kernels.described;
+  const { codes } = common;
   const status = log(found, "status");
   const outcome = outcomes[verdict(found, "outcome")]?.name ?? "";
   const own = texts.statuses[status] ?? "";
   const described = programs[found.asked.program];
   if (outcome === "FAILED") {
-    const limits: Readonly<Record<string, string>> = { "": filled(texts.step_limit, { most: most_steps }) };
-    return `${texts.stopped}${own === "" ? (limits[""] ?? "") : own}`;
+    const limit = status === codes.unseen ? texts.unseen : texts.step_limit;
+    return texts.stopped + (own === "" ? filled(limit, { most: most_steps }) : own);
   }
   const weight = 1 + log(found, "minimum_vertical", "setup");
   if (outcome === "OVERTURNED" && (!described?.proves || weight <= 0)) return texts.unproved;
-  const rested = outcomes.findIndex((one) => one.name === "AT_REST");
-  if (verdict(found, "outcome") === rested) {
-    if (log(found, "time") * (1 + 1e-12) < log(found, "end", "setup")) return texts.stands[0];
+  if (outcome === "AT_REST") {
+    if (status === codes.rested) return texts.stands[0];
     const releases = log(found, "releases");
     const times = releases === 1 ? "1 time" : `${releases} times`;
     return `${texts.stands_at_end}${releases > 0 ? `, uplifted ${times} before` : ""}`;
@@ -283,7 +286,7 @@ function sampleCount(found: Computed, scale: number): number {
   return Math.min(Math.max(Math.ceil(PER_PERIOD * periods + PER_UNIT * end) + 1, FEWEST), MOST);
 }
 
-function seriesOf(found: Computed, samples: Samples, scale: number): Series {
+function seriesOf(found: Computed, samples: Samples): Series {
   const described = found.kernels.described.programs[found.asked.program];
   const tilts = samples.pairs("tilt");
   const rates = samples.pairs("tilt_rate");
@@ -292,7 +295,6 @@ function seriesOf(found: Computed, samples: Samples, scale: number): Series {
     const [vx, vy] = rates[k] ?? [NaN, NaN];
     return finite((x * vy - y * vx) / ((size[k] ?? NaN) * (size[k] ?? NaN)));
   });
-  void scale;
   return {
     time: samples.column("time"),
     base_acceleration: samples.triples("acceleration"),

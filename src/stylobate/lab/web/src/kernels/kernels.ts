@@ -62,6 +62,8 @@ export type Load = (name: string) => Promise<BufferSource>;
 
 const PAGE = 1 << 16;
 const OF_A_MOTION = 9;
+/** Results of a function at most. */
+const MOST_RESULTS = 64;
 
 export class Kernels {
   readonly described: Described;
@@ -100,16 +102,21 @@ export class Kernels {
       if (!Array.isArray(value) || value.length !== components) throw new Unknown(`${name} is not a vector here`);
       return (value as readonly Value[]).map((one) => numberOf(one, NaN, name));
     });
-    const instance = await this.#ofCase();
-    const at = PAGE; // behind the constant tables and the stack
+    const found = await this.called(variant.name, values);
     const names =
       group === "column" ? this.described.derived : Array.from({ length: OF_A_MOTION }, (_, k) => String(k));
-    const out = at + 8 * Math.max(values.length, 1);
-    new Float64Array(this.#memory.buffer, at, values.length).set(values);
-    const call = instance.exports[variant.name] as (numbers: number, out: number) => bigint;
-    call(at, out);
-    const found = new Float64Array(this.#memory.buffer, out, names.length);
     return Object.fromEntries(names.map((name, k) => [name, found[k] ?? NaN]));
+  }
+
+  /** Returns the results of a function of the program of cases. */
+  async called(name: string, values: readonly (number | undefined)[]): Promise<readonly number[]> {
+    const instance = await this.#ofCase();
+    const at = PAGE; // behind the constant tables and the stack
+    const out = at + 8 * Math.max(values.length, 1);
+    new Float64Array(this.#memory.buffer, at, values.length).set(values.map((value) => value ?? NaN));
+    const call = instance.exports[name] as (numbers: number, out: number) => bigint;
+    call(at, out);
+    return Array.from(new Float64Array(this.#memory.buffer, out, MOST_RESULTS));
   }
 
   async #made(name: string): Promise<Program> {

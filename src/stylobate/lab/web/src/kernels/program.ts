@@ -29,6 +29,10 @@ export interface Common {
   /** Numbers in the head of an entry, in a sample, and in a verdict. */
   readonly sizes: { readonly trace: number; readonly sample: number; readonly verdict: number };
   readonly codes: {
+    /** Status of a run whose column rests for good, of one at its step limit, and of one that stood for too long. */
+    readonly rested: number;
+    readonly step_limit: number;
+    readonly unseen: number;
     /** Status of a run that goes on in a plane. */
     readonly to_plane: number;
     /** The first kind of trace entry that is an event. */

@@ -1,5 +1,7 @@
 /** Who answers this page: a page that was made to do without a server holds its answers, or says where they lie. */
 
+import { Kernels, type Load } from "../../kernels/kernels";
+import { computing } from "../../kernels/layer";
 import { server } from "./api";
 import { unpacked } from "./packed";
 import { type Contents, type Read, recorded } from "./recorded";
@@ -9,6 +11,8 @@ import { Refused, type Source, layered } from "./source";
 const CONTENTS = "answers";
 /** The folder of the answers, beside the page. */
 const FOLDER = "answers";
+/** The folder of the programs, and the beginning of the names of their elements. */
+const PROGRAMS = "programs";
 
 export function sourceOf(page: Document): Source {
   const contents = page.getElementById(CONTENTS);
@@ -17,7 +21,21 @@ export function sourceOf(page: Document): Source {
     const own = page.getElementById(`${CONTENTS}-${name}`);
     return own === null ? fetched(name) : unzipped(own.textContent);
   };
-  return layered([recorded(JSON.parse(contents.textContent) as Contents, async (name) => unpacked(await read(name)))]);
+  const found = JSON.parse(contents.textContent) as Contents & { readonly kernels?: Kernels["described"] };
+  const layers = [recorded(found, async (name) => unpacked(await read(name)))];
+  if (found.kernels) layers.push(computing(new Kernels(found.kernels, loadOf(page))));
+  return layered(layers);
+}
+
+/** Returns how the programs of the page are loaded. */
+function loadOf(page: Document): Load {
+  return async (name) => {
+    const own = page.getElementById(`${PROGRAMS}-${name}`);
+    if (own !== null) return new Response(decompressed(own.textContent)).arrayBuffer();
+    const found = await fetch(`${PROGRAMS}/${name}.wasm`, { credentials: "same-origin" }).catch(() => null);
+    if (found?.ok) return found.arrayBuffer();
+    throw new Refused(404, [`The file ${PROGRAMS}/${name}.wasm of this page cannot be loaded. Check the connection.`]);
+  };
 }
 
 async function fetched(name: string): Promise<unknown> {
@@ -32,7 +50,10 @@ async function fetched(name: string): Promise<unknown> {
 
 /** Returns JSON that was compressed by gzip and written in base64. */
 async function unzipped(text: string): Promise<unknown> {
+  return new Response(decompressed(text)).json();
+}
+
+function decompressed(text: string): ReadableStream {
   const bytes = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
-  const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"));
-  return new Response(stream).json();
+  return new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"));
 }
