@@ -49,16 +49,14 @@ class Shaking(StrEnum):
     """Kinds of base motion with programs of their own."""
 
     REST = "rest"
-    HORIZONTAL = "horizontal"
-    SPATIAL = "spatial"
-    """Harmonic, with a vertical component."""
+    HARMONIC = "harmonic"
 
     @property
     def example(self) -> BaseMotion:
         """A motion of this kind."""
         if self is Shaking.REST:
             return BASE_AT_REST
-        return Harmonic(amplitude=(1.0, 1.0, float(self is Shaking.SPATIAL)), angular_frequency=1.0)
+        return Harmonic(amplitude=(1.0, 1.0, 1.0), angular_frequency=1.0)
 
 
 @dataclass(frozen=True)

@@ -59,10 +59,37 @@ def slender_start(numbers: Any, out: Any) -> None:
 CASE = CaseProgram(tuple(OF_ANY_COLUMN), {"slender_start": (slender_start, 13, 5)})
 
 
+ALWAYS = ("mathematics", "case")
+"""Modules that each run needs, besides its own."""
+
+
 def run_programs() -> dict[str, RunProgram]:
     """Return the programs for runs, by name; a model that can slip is left out."""
-    kinds = {kind: MODELS[kind] for kind in MODELS if not MODELS[kind].guards}
-    return {f"{kind}_{shaking}": RunProgram(model, shaking) for kind, model in kinds.items() for shaking in Shaking}
+    models: dict[str, Any] = {kind: MODELS[kind] for kind in MODELS}
+    return {
+        f"{kind}_{shaking}": RunProgram(model, shaking)
+        for kind, model in models.items()
+        for shaking in Shaking
+        if not model.guards
+    }
+
+
+def program_of(values: Mapping[str, Any]) -> str | None:
+    """Return the name of the program by which the page computes the run that these plain values describe, if any.
+
+    The page decides it in `web/src/kernels/case.ts`.
+    """
+    model, motion = values["model"], values.get("motion", {"kind": "rest"})
+    if any(isinstance(value, str) for name, value in model.items() if name != "kind") or motion.get("ramp"):
+        return None
+    if motion["kind"] == "rest":
+        shaking = Shaking.REST
+    elif f"motion_{motion['kind']}" in {variant.of for variant in CASE.variants.values()}:
+        shaking = Shaking.HARMONIC
+    else:
+        return None
+    name = f"{model['kind']}_{shaking}"
+    return name if name in run_programs() else None
 
 
 def described() -> dict[str, Any]:
@@ -106,4 +133,4 @@ def _of_program(program: RunProgram) -> dict[str, Any]:
 def modules() -> Mapping[str, bytes]:
     """Return the modules of WebAssembly by name."""
     runs = {name: program.module() for name, program in run_programs().items()}
-    return {"mathematics": programs.mathematics_module(), "case": CASE.module(), **runs}
+    return dict(zip(ALWAYS, (programs.mathematics_module(), CASE.module()), strict=True)) | runs

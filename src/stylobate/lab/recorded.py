@@ -17,14 +17,14 @@ from stylobate.errors import StylobateError
 from stylobate.lab import answers
 from stylobate.lab.curves import exact_curves, response, start
 from stylobate.lab.grids import OFF_BRANCH
+from stylobate.lab.kernels import program_of
 from stylobate.lab.messages import Message
 from stylobate.lab.options import lessons, presets
 from stylobate.lab.requests import Description
-from stylobate.lab.runs import described_case
 from stylobate.lab.tasks import run
 from stylobate.lab.variations import variations
 
-AT_ONCE = ("start", "simulate", "describe", "response")
+AT_ONCE = ("start", "simulate", "response")
 """What the page asks when a case is opened; it asks the other questions at a click."""
 
 
@@ -102,7 +102,8 @@ def _asked_of(case: Case) -> Iterator[Question]:
         from_branch = {**parts, "branch": case.branch}
         yield asked("start", from_branch)
         values |= _off_branch(start(from_branch, _unheard))
-    yield asked("simulate", values)
+    if program_of(values) is None:  # else the page computes it
+        yield asked("simulate", values)
     yield asked("variations", values)
     setup = config.SimulationConfig.parse(values).build()
     if _responds(setup, values["motion"]):
@@ -113,7 +114,6 @@ def _asked_of(case: Case) -> Iterator[Question]:
             "angular_frequency_range": _usual_range(setup),
         }
         slender = {"kind": "slender", "damping": values["model"].get("damping", 0)}
-        yield asked("describe", {"column": values["column"], "duration": 1})
         yield asked("response", {**exact, "model": slender, "points": POINTS})
         yield asked("exact", {"description": exact})
 
@@ -199,7 +199,6 @@ def _both(values: Mapping[str, Any]) -> Description:
 _ANSWERED: Mapping[str, Callable[[Mapping[str, Any]], bytes]] = {
     "simulate": lambda values: run(_both(values), _unheard),
     "variations": lambda values: variations(values, _unheard).as_json(),
-    "describe": lambda values: described_case(_both(values)).as_json(),
     "response": lambda values: response(values).as_json(),
     "start": lambda values: start(values, _unheard).as_json(),
     "exact": lambda values: exact_curves(values["description"], _unheard).as_json(),

@@ -108,18 +108,21 @@ def write(folder: Path, *, progress: Progress = None) -> Sizes:
     programs = kernels.modules()
     page, style, script = (_page_file(name) for name in ("index.html", "main.css", "main.js"))
     contents = _contents(asked)
-    first = [name for name in (f"{ask}-{_opening()}" for ask in AT_ONCE) if name in answers]
+    opening = next(one for one in lessons() if one.opens)
+    first = [f"{_CONTENTS}/{ask}-{opening.identity}.json" for ask in AT_ONCE]
+    first += [f"{_PROGRAMS}/{name}.wasm" for name in (*kernels.ALWAYS, kernels.program_of(opening.description))]
     files = {
-        "index.html": _for_server(page, contents, first).encode(),
         "main.css": style.encode(),
         "main.js": script.encode(),
         **{f"{_CONTENTS}/{name}.json": answer for name, answer in answers.items()},
         **{f"{_PROGRAMS}/{name}.wasm": module for name, module in programs.items()},
     }
+    first = [name for name in first if name in files]
+    files["index.html"] = _for_server(page, contents, first).encode()
     single = _single(page, style, script, contents, answers, programs).encode()
     for name, content in {**files, SINGLE_FILE: single}.items():
         write_whole(folder / name, content)
-    loaded = [*("index.html", "main.css", "main.js"), *(f"{_CONTENTS}/{name}.json" for name in first)]
+    loaded = ["index.html", "main.css", "main.js", *first]
     return Sizes(
         files=len(files),
         folder=sum(map(len, files.values())),
@@ -130,11 +133,6 @@ def write(folder: Path, *, progress: Progress = None) -> Sizes:
 
 def _page_file(name: str) -> str:
     return (page_folder() / name).read_text(encoding="utf-8")
-
-
-def _opening() -> str:
-    """Return the identity of the lesson with which the page opens."""
-    return next(one.identity for one in lessons() if one.opens)
 
 
 def _contents(asked: Iterable[Question]) -> str:
@@ -155,7 +153,7 @@ def _data(identity: str, kind: str, text: str) -> str:
 def _for_server(page: str, contents: str, first: Iterable[str]) -> str:
     """Return the page that finds its script, its style and its answers beside it."""
     policy = {**POLICY, "script-src": f"{POLICY['script-src']} {_WASM}"}
-    ahead = [f'<link rel="preload" as="fetch" crossorigin href="{_CONTENTS}/{name}.json" />' for name in first]
+    ahead = [f'<link rel="preload" as="fetch" crossorigin href="{name}" />' for name in first]
     return _replaced(
         page,
         {

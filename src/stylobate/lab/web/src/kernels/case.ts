@@ -30,8 +30,7 @@ export async function caseOf(kernels: Kernels, given: Part): Promise<Case> {
   const rests = motion["kind"] === "rest";
   const moves = rests ? {} : await harmonic(kernels, motion);
   const kind = String(part(given, "model")["kind"] ?? "wobbling");
-  const shaking = rests ? "rest" : moves["amplitude_z"] === 0 ? "horizontal" : "spatial";
-  const program = `${kind}_${shaking}`;
+  const program = `${kind}_${rests ? "rest" : "harmonic"}`;
   const described = kernels.described.programs[program];
   if (!described) throw new Unknown(`the model ${kind} is not computed here`);
   const model: Record<string, number> = {};

@@ -39,7 +39,8 @@ async function described(kernels: Kernels, description: Part): Promise<Described
 async function steadyStart(kernels: Kernels, body: Part): Promise<Start> {
   const { branch = "upper", ...given } = body;
   const { column, numbers, program } = await caseOf(kernels, given);
-  if (program !== "slender_horizontal") throw new Unknown("only slender columns start on a branch here");
+  if (program !== "slender_harmonic" || numbers["amplitude_z"] !== 0)
+    throw new Unknown("only slender columns start on a branch here");
   const scale = 1 / (column["frequency_scale"] ?? NaN);
   const [x, y, vx, vy, off] = await kernels.called("slender_start", [
     ...[column["slenderness"], numbers["damping"], column["gravity"], scale, branch === "upper" ? 1 : 0],
