@@ -163,7 +163,7 @@ class Column(Declared):
             raise ParameterError(f"density or mass: a solid column needs one of them (got {got}). State one.")
         if density is None:
             assert mass is not None
-            density = mass / (math.pi * radius**2 * height)
+            density = mass / (math.pi * (radius * radius) * height)
             if not _LIGHTEST <= density <= _DENSEST:
                 question_input(
                     f"mass: {mass:.6g} kg is unlikely, with a density of {density:.4g} kg/m³. "
@@ -190,12 +190,12 @@ class Column(Declared):
         if inner_radius >= radius:
             raise ParameterError(f"inner_radius must be below radius = {radius!r} m, got {inner_radius!r} m")
         mass = density * math.pi * (radius - inner_radius) * (radius + inner_radius) * height
-        squares = radius**2 + inner_radius**2
+        squares = radius * radius + inner_radius * inner_radius
         return cls(
             radius=radius,
             mass_height=height / 2.0,
             mass=mass,
-            transverse_inertia=mass * (3.0 * squares + height**2) / 12.0,
+            transverse_inertia=mass * (3.0 * squares + height * height) / 12.0,
             axial_inertia=mass * squares / 2.0,
             height=height,
             gravity=gravity,
@@ -218,17 +218,18 @@ class Column(Declared):
         area = (a * a + a * b + b * b) / 3.0
         first = (a * a + 2.0 * a * b + 3.0 * b * b) / 12.0
         second = (a * a + 3.0 * a * b + 6.0 * b * b) / 30.0
-        fourth = (a**4 + a**3 * b + a * a * b * b + a * b**3 + b**4) / 5.0
+        aa, ab, bb = a * a, a * b, b * b
+        fourth = (aa * aa + aa * ab + aa * bb + ab * bb + bb * bb) / 5.0
         line_density = density * math.pi * height
         mass = line_density * area
         mass_height = height * first / area
         axial = line_density * fourth / 2.0
-        about_base = axial / 2.0 + line_density * height**2 * second
+        about_base = axial / 2.0 + line_density * (height * height) * second
         return cls(
             radius=a,
             mass_height=mass_height,
             mass=mass,
-            transverse_inertia=about_base - mass * mass_height**2,
+            transverse_inertia=about_base - mass * (mass_height * mass_height),
             axial_inertia=axial,
             height=height,
             gravity=gravity,
@@ -280,7 +281,7 @@ class Column(Declared):
             mass_height=ratio,
             mass=1.0,
             transverse_inertia=ratio * (1.0 - ratio),
-            axial_inertia=axial_ratio * radius**2,
+            axial_inertia=axial_ratio * (radius * radius),
             gravity=1.0,
         )
 

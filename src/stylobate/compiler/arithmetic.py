@@ -307,6 +307,10 @@ class Arithmetic:
                 raise Refusal("a choice between two tuples of different length or class; use tuples of one structure")
             made = [self.chosen(condition, *pair) for pair in zip(a, b, strict=True)]
             return type(a)(*made) if hasattr(a, "_fields") else tuple(made)
+        if a is None or isinstance(a, str):
+            if a != b:
+                raise Refusal(f"a choice between {a!r} and {b!r} at run time; use numbers")
+            return a
         x, y = self.alike(a, b)
         bounds = None
         if x.kind is NumberKind.INTEGER and self.checked:
