@@ -22,6 +22,7 @@ from stylobate.engine.verdict import (
 from stylobate.errors import Outcome
 from stylobate.lab.answers import OF_ANY_COLUMN
 from stylobate.lab.limits import Limits
+from stylobate.lab.tasks import SAMPLES
 from stylobate.models.declared import MODELS
 from stylobate.results import OutcomeRules
 from stylobate.run_arguments import SingleRun, arguments_of
@@ -106,6 +107,7 @@ def described() -> dict[str, Any]:
         "rules": {"n": rules.periods, "short": rules.periods + 1, "steady": steady_periods(rules), "most": LAGS},
         "most_periods": MOST_PERIODS,
         "most_steps": Limits().steps,
+        "samples": SAMPLES._asdict(),
         "rtol": arguments_of(SingleRun)["rtol"].default,
         "finer": {
             "rest_share": FINER_REST,

@@ -4,7 +4,7 @@ import math
 from collections.abc import Callable, Mapping
 from functools import partial
 from importlib import import_module
-from typing import Any
+from typing import Any, NamedTuple
 
 from stylobate import config, engine
 from stylobate.config.simulation import Setup
@@ -16,7 +16,16 @@ _USUAL_LENGTH = 12.0
 """Usual duration of an animation [s]; longer if the base oscillates too fast to be visible."""
 _PICTURES_PER_SECOND, _PICTURES_PER_PERIOD, _MOST_PICTURES = 25.0, 12.0, 1400
 
-_SAMPLES_PER_PERIOD, _FEWEST_SAMPLES, _MOST_SAMPLES = 48, 601, 2000
+
+class SampleNumbers(NamedTuple):
+    """Numbers of samples of a run: in each period of the base motion, at least, and at most."""
+
+    per_period: int
+    fewest: int
+    most: int
+
+
+SAMPLES = SampleNumbers(48, 601, 2000)
 
 
 def run(given: Description, emit: Emit) -> bytes:
@@ -34,10 +43,10 @@ def _enough(setup: Setup) -> int:
     if stated is not None:
         return stated
     if setup.options["duration"] is None:
-        return _MOST_SAMPLES
+        return SAMPLES.most
     frequency = max(setup.motion.highest_frequency, setup.model.column.frequency_scale)
     swings = setup.options["duration"] * frequency / (2.0 * math.pi)
-    return int(min(max(_SAMPLES_PER_PERIOD * swings, _FEWEST_SAMPLES), _MOST_SAMPLES))
+    return int(min(max(SAMPLES.per_period * swings, SAMPLES.fewest), SAMPLES.most))
 
 
 def record(values: Mapping[str, Any], emit: Emit) -> dict[str, Any]:

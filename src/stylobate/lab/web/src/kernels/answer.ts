@@ -8,11 +8,6 @@ import type { Kernels, Numbers } from "./kernels";
 import { asPython, asToml } from "./snippets";
 import type { Finished, Program } from "./program";
 
-/** Samples per period of the base, per unit of time of the column, and their least and largest number. */
-const [PER_PERIOD, PER_UNIT, FEWEST, MOST] = [48, 24, 1001, 5001];
-/** Instants of a drawn motion at most. */
-const DRAWN = 2000;
-
 /** A run that has been computed, with what is read from it. */
 interface Computed {
   readonly kernels: Kernels;
@@ -66,10 +61,7 @@ function answered(found: Computed, description: Part): Run {
   const reason = reasonOf(found);
   const peak = log(found, "peak_tilt");
   const measures = measuresOf(found, scale, events);
-  // the samples of the drawn motion are the last to be taken, while the run is still in the memory
-  const many = sampleCount(found, scale);
-  const samples = new Samples(kernels, program.samples(finished.stretches, many));
-  const drawn = many <= DRAWN ? samples : new Samples(kernels, program.samples(finished.stretches, DRAWN));
+  const samples = new Samples(kernels, program.samples(finished.stretches, sampleCount(found, description)));
   const decidedAt = log(found, "decided") * scale;
   return {
     toml: asToml(description),
@@ -86,7 +78,7 @@ function answered(found: Computed, description: Part): Run {
     measures,
     summary: summaryOf(column, measures, events, peak),
     thresholds: {},
-    drawn: drawnOf(found, drawn, description, {
+    drawn: drawnOf(found, samples, description, {
       outcome: outcome.name as Run["outcome"],
       decided_at: decidedAt,
       title: `${outcome.label}: ${reason.split(";")[0]}`,
@@ -280,10 +272,15 @@ class Samples {
   }
 }
 
-function sampleCount(found: Computed, scale: number): number {
-  const end = log(found, "time");
-  const periods = found.asked.period === null ? 0 : (end * scale) / found.asked.period;
-  return Math.min(Math.max(Math.ceil(PER_PERIOD * periods + PER_UNIT * end) + 1, FEWEST), MOST);
+/** Returns the number of samples for a smooth plot of a run; the page cannot show more. */
+function sampleCount(found: Computed, description: Part): number {
+  const { per_period, fewest, most } = found.kernels.described.samples;
+  const duration = description["duration"];
+  if (typeof duration !== "number") return most;
+  const moves = found.asked.period === null ? 0 : (2 * Math.PI) / found.asked.period;
+  const frequency = Math.max(moves, found.asked.column["frequency_scale"] ?? NaN);
+  const wanted = (per_period * duration * frequency) / (2 * Math.PI);
+  return Math.trunc(Math.min(Math.max(wanted, fewest), most));
 }
 
 function seriesOf(found: Computed, samples: Samples): Series {

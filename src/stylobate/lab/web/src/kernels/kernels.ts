@@ -53,6 +53,8 @@ export interface Described {
   readonly rules: { readonly n: number; readonly short: number; readonly steady: number; readonly most: number };
   readonly most_periods: number;
   readonly most_steps: number;
+  /** Numbers of samples of a run. */
+  readonly samples: { readonly per_period: number; readonly fewest: number; readonly most: number };
   readonly rtol: number;
   readonly finer: { readonly rest_share: number; readonly passage_share: number; readonly rtol: number };
 }
