@@ -11,8 +11,10 @@ The accepted language
 * Numbers: floats, whole numbers of 64 bits, truth values; arithmetic, comparisons, `and`, `or`, `not`, conditional
   expressions; functions of `math`, the same of NumPy, and abs, min, max, sum, int, float, bool, len.
 * Tuples and NamedTuples: creation, unpacking, unrolling by `for`, `zip` and `enumerate`, selection by an index; a
-  generator over a tuple, or over a known range, is a tuple.
+  generator over a tuple, or over a known range, is a tuple. A starred target takes what is left.
 * Arrays of floats: elements, slices and rows as views, copies of whole rows, `np.zeros` of a small known shape.
+* Objects of dataclasses: creation, fields, properties, methods, class methods, `dataclasses.replace` (`objects`). Their
+  `__post_init__` is not called, and of `checked_arguments` only the function itself is compiled.
 * `if`, `while`, `for` over `range` and over tuples, `break`, `continue`, `return`; assignments, also to several names.
   A name must be assigned on every path to its use.
 * Calls of functions written in Python: functions of modules, static methods of classes, closures and lambdas; default
@@ -37,5 +39,6 @@ Results equal those of Python to the bit, with these differences:
   nearest whole number of 64 bits in functions of the package; of NaN they give 0. In a loop over lanes the last three
   keep their result as a float in functions of the package.
 * Small whole powers are products; other powers and the functions of NumPy are those of the C library.
+* `np.errstate` has no effect, and calls of functions marked as `advice` are left out.
 * Functions marked `fast` may fuse products with sums and divide by reciprocals.
 """

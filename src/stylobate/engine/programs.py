@@ -101,7 +101,7 @@ class RunProgram:
         return Layout(shape.parameters_at, shape.motion_at, shape.breaks_at, plan.traces)
 
     def described(self) -> dict[str, Any]:
-        """Return what a page must know of the program, for JSON."""
+        """Return the names, the layout and the sizes that a page needs for the program, for JSON."""
         plan, shape = self.plan, self.plan.layout
         kernel = kernel_of(self.kind, shape)
         looks = number_of_looks(plan.rules)
@@ -322,7 +322,7 @@ class Variant:
         return [one for one in parameters_of(self.make).values() if not one.optional or one.name in self.given]
 
     def described(self) -> dict[str, Any]:
-        """Return what a page must know of the function, for JSON."""
+        """Return the arguments of the function, for JSON."""
         arguments = [
             {
                 "name": one.name,
@@ -360,7 +360,7 @@ class Variant:
 
 
 def described() -> dict[str, Any]:
-    """Return what a page must know of all programs, for JSON: columns and sizes of rows, and codes."""
+    """Return the columns and sizes of rows, and the codes, of all programs, for JSON."""
     verdict = {one.name.lower(): int(one) for one in Verdict}
     late = {one.name.lower(): len(Verdict) + int(one) for one in Late}
     return {

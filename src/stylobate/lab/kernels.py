@@ -94,7 +94,7 @@ def program_of(values: Mapping[str, Any]) -> str | None:
 
 
 def described() -> dict[str, Any]:
-    """Return what the page must know to ask the programs and to read what they return, for JSON."""
+    """Return the description by which the page asks the programs and reads their results, for JSON."""
     rules = OutcomeRules()
     return {
         "common": programs.described(),

@@ -82,7 +82,7 @@ def beginning(
     *,
     has_plane: bool,
 ) -> Beginning:
-    """Return how runs begin with this tilt [rad], tilt rate [rad/s] and spin.
+    """Return the beginning of runs with this tilt [rad], tilt rate [rad/s] and spin.
 
     Parameters
     ----------
