@@ -2,7 +2,7 @@
 
 In compiled code an object is a named tuple of its fields, so that it is passed, returned and chosen like any tuple. Its
 properties and methods are those of its class, compiled with the object as first argument. `__post_init__` is not
-called: whoever makes an object of numbers that are not known has checked them.
+called: the numbers of an object have been checked before.
 """
 
 import inspect
@@ -68,7 +68,7 @@ def changed(value: Any, **numbers: Any) -> Any:
 
 
 def member(owner: Any, name: str) -> tuple[str, Any]:
-    """Return what a name means in the class of an object: "property", "method" or "value", and the function or value.
+    """Return the meaning of a name in the class of an object: "property", "method" or "value", and the function or value.
 
     Raises
     ------
