@@ -171,6 +171,8 @@ def test_numbers_without_an_answer_are_refused_in_one_line_and_the_page_goes_on(
     moved(page, "acceleration", 1.25)
     page.wait_for_function("() => window.stylobate.laboratory.answer.toml.includes('acceleration = 1.25')")
     assert problems.is_hidden()
+    page.wait_for_function(f"() => !document.querySelector('.response .note').textContent.includes('{REFUSED}')")
+    assert refusals(page) == []
 
 
 def test_maps_and_animations_are_refused_where_they_are_asked_for(opened):
@@ -285,6 +287,42 @@ def test_computed_answers_are_those_of_the_server(lesson, served, browser, clien
     assert {label: text for label, text in shown_here["summary"] if label in ("column", "uplifts above", "events")} == {
         label: rows[label] for label in ("column", "uplifts above", "events")
     }
+
+
+def test_computed_curves_and_starts_are_those_of_the_server(served, browser, client):
+    page = new_page(browser)
+    page.goto(served)
+    shown(page)
+    parts = {
+        "column": {"shape": "dimensionless", "slenderness": 0.12},
+        "model": {"kind": "slender", "damping": 0.07},
+        "motion": {"kind": "elliptic", "amplitude": [0.08, 0.05], "phase": 0.7},
+    }
+    asked = {**parts, "angular_frequency_range": [0.2, 5.0], "points": 60}
+    moving = {**parts, "motion": {**parts["motion"], "angular_frequency": 2.5}, "branch": "lower"}
+    signal = "new AbortController().signal"
+    ask = "window.stylobate.source"
+    found = page.evaluate(f"(asked) => {ask}.response(asked, {signal})", asked)
+    known = client.post("/api/response", json=asked).json()
+    for name in ("angular_frequency", "backbone"):
+        np.testing.assert_allclose(found[name], known[name], rtol=1e-8)  # the server rounds to nine digits
+    assert found["averaged"] == known["averaged"]
+    for ours, theirs in zip(found["branches"], known["branches"], strict=True):
+        assert [ours[name] for name in ("sense", "branch", "stable")] == [
+            theirs[name] for name in ("sense", "branch", "stable")
+        ]
+        for name in ("amplitude", "phase"):
+            numbers = [np.array(one[name], dtype=float) for one in (ours, theirs)]
+            np.testing.assert_allclose(*numbers, rtol=1e-8, atol=1e-12)
+    for ours, theirs in zip(found["critical"], known["critical"], strict=True):
+        assert ours["sense"] == theirs["sense"]
+        assert ours["angular_frequency"] == pytest.approx(theirs["angular_frequency"], rel=1e-8)
+    start = page.evaluate(f"(asked) => {ask}.steadyStart(asked, {signal})", moving)
+    answer = client.post("/api/start", json=moving).json()
+    for name in ("tilt", "tilt_rate"):
+        assert start[name] == pytest.approx(answer[name], rel=1e-8)
+    assert bool(start["warnings"]) == bool(answer["warnings"])
+    page.close()
 
 
 def test_what_is_loaded_before_the_first_motion_stays_small(written):

@@ -68,7 +68,7 @@ def changed(value: Any, **numbers: Any) -> Any:
 
 
 def member(owner: Any, name: str) -> tuple[str, Any]:
-    """Return the meaning of a name in the class of an object: "property", "method" or "value", and the function or value.
+    """Return the meaning of a name in the class of an object: "property", "method" or "value", with function or value.
 
     Raises
     ------

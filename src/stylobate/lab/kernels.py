@@ -1,6 +1,7 @@
 """The kernels of the page as static files: programs of WebAssembly, and a description of them for the page."""
 
 from collections.abc import Mapping
+from enum import auto
 from typing import Any
 
 import numpy as np
@@ -8,6 +9,7 @@ import numpy as np
 from stylobate.base_motions import Harmonic
 from stylobate.engine import programs
 from stylobate.engine.ensembles.run_columns import term_of
+from stylobate.engine.kernel.bound import FromZero
 from stylobate.engine.kernel.columns import LAGS
 from stylobate.engine.programs import CaseProgram, RunProgram, Shaking
 from stylobate.engine.single import reason_texts
@@ -26,7 +28,7 @@ from stylobate.lab.tasks import SAMPLES
 from stylobate.models.declared import MODELS
 from stylobate.results import OutcomeRules
 from stylobate.run_arguments import SingleRun, arguments_of
-from stylobate.theory.rolling import rolling_point
+from stylobate.theory.rolling import critical_of, rolling_point
 
 
 def slender_start(numbers: Any, out: Any) -> None:
@@ -49,7 +51,7 @@ def slender_start(numbers: Any, out: Any) -> None:
     ahead, behind = term.azimuths()
     sense = 1.0 if forward >= backward else -1.0
     nu, drive = frequency * scale, max(forward, backward) / gravity
-    ratio, psi = rolling_point(nu, drive / c, eta, upper=upper > 0.0)
+    ratio, psi, _ = rolling_point(nu, drive / c, eta, upper=upper > 0.0)
     azimuth, tilt = sense * psi + (ahead if forward >= backward else behind), c * ratio
     across = sense * nu * tilt / scale
     out[0], out[1] = tilt * np.cos(azimuth), tilt * np.sin(azimuth)
@@ -57,7 +59,48 @@ def slender_start(numbers: Any, out: Any) -> None:
     out[4] = min(forward, backward) / max(forward, backward)
 
 
-CASE = CaseProgram(tuple(OF_ANY_COLUMN), {"slender_start": (slender_start, 13, 5)})
+class CurvePoint(FromZero):
+    """Results of `slender_curves` for one sense of rolling: those of the upper branch, then those of the lower one."""
+
+    SIZE = auto()
+    """Circular component of the motion [m/s²]."""
+    CRITICAL = auto()
+    """Critical frequency over ω0; NaN if there is none."""
+    UPPER_TILT = auto()
+    UPPER_PHASE = auto()
+    UPPER_STABLE = auto()
+    LOWER_TILT = auto()
+    LOWER_PHASE = auto()
+    LOWER_STABLE = auto()
+
+
+def slender_curves(numbers: Any, out: Any) -> None:
+    """Set the response of a slender column at one frequency, as `studies.response_curves` computes it.
+
+    Parameters
+    ----------
+    numbers
+        Slenderness, damping, gravity [m/s²], frequency over ω0, amplitudes and phases of the motion along x and y.
+    out
+        The backbone [rad], and the columns of `CurvePoint` for anticlockwise and clockwise rolling.
+    """
+    c, eta, gravity, nu, ax, ay, px, py = numbers
+    apart = py - px
+    x, y_re, y_im = ax, ay * np.cos(apart), ay * np.sin(apart)
+    out[0] = c / (1.0 + nu * nu)  # (5)
+    for place, sense in ((1, 1.0), (1 + len(CurvePoint), -1.0)):
+        size = 0.5 * np.hypot(x - sense * y_im, y_re)
+        ratio = size / gravity / c
+        out[place + CurvePoint.SIZE], out[place + CurvePoint.CRITICAL] = size, critical_of(ratio, eta)
+        for at, upper in ((CurvePoint.UPPER_TILT, True), (CurvePoint.LOWER_TILT, False)):
+            tilt, phase, stable = rolling_point(nu, ratio, eta, upper=upper)
+            out[place + at], out[place + at + 1], out[place + at + 2] = c * tilt, phase, stable
+
+
+CASE = CaseProgram(
+    tuple(OF_ANY_COLUMN),
+    {"slender_start": (slender_start, 13, 5), "slender_curves": (slender_curves, 8, 1 + 2 * len(CurvePoint))},
+)
 
 
 ALWAYS = ("mathematics", "case")
@@ -99,6 +142,7 @@ def described() -> dict[str, Any]:
     return {
         "common": programs.described(),
         "case": CASE.described(),
+        "curve": {one.name.lower(): int(one) for one in CurvePoint},
         "derived": [*programs.COLUMN, *CASE.derived],
         "programs": {name: _of_program(program) for name, program in run_programs().items()},
         "outcomes": [{"name": one.name, "label": one.label} for one in Outcome],

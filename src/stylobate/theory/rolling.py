@@ -171,8 +171,8 @@ def _pushes(k: Any, drag: Any, root: Any) -> tuple[Any, Any]:
     return (k * root - drag**2) / d, -(k * root + drag**2) / d
 
 
-def rolling_point(nu: Any, a: Any, eta: Any, *, upper: Any) -> tuple[Any, Any]:
-    """Return θ/c and ψ of the upper or lower branch of (8), for a = a0/c; NaN without it.
+def rolling_point(nu: Any, a: Any, eta: Any, *, upper: Any) -> tuple[Any, Any, Any]:
+    """Return θ/c, ψ and stability of the upper or lower branch of (8), for a = a0/c; NaN without it.
 
     It is in the language of the compiler too.
     """
@@ -180,7 +180,15 @@ def rolling_point(nu: Any, a: Any, eta: Any, *, upper: Any) -> tuple[Any, Any]:
     high, low, root = rolling_amplitudes(k, drag, a)
     ahead, behind = _pushes(k, drag, root)
     ratio, push = np.where(upper, high, low), np.where(upper, ahead, behind)
-    return ratio, np.arctan2(eta * nu * ratio, push)
+    stable, _, _ = _stability(nu, eta, ratio, np.where(upper, root, -root))
+    return ratio, np.arctan2(eta * nu * ratio, push), stable
+
+
+def _stability(nu: Any, eta: Any, ratio: Any, root: Any) -> tuple[Any, Any, Any]:
+    """Return whether rolling with θ = c · ratio is stable, and q and p0, see the module's notes."""
+    x = 1.0 / ratio
+    q, p0 = 2.0 * nu**2 - 2.0 + x, x * root
+    return (q > 0.0) & (p0 > 0.0) & (x > _critical_ratio(nu, eta)), q, p0  # Routh–Hurwitz
 
 
 def _branch(
@@ -188,19 +196,17 @@ def _branch(
 ) -> RollingBranch:
     """Describe the branch θ = c · ratio, where a0 cos ψ = c · push and p0 = root/ratio."""
     exists = np.isfinite(ratio)
-    x = 1.0 / ratio
-    q = 2.0 * nu**2 - 2.0 + x
-    p0 = x * root
+    stable, q, p0 = _stability(nu, eta, ratio, root)
     return RollingBranch(
         amplitude=c * ratio,
         phase=np.arctan2(eta * nu * ratio, push),
         exists=exists,
-        stable=(q > 0.0) & (p0 > 0.0) & (x > _critical_ratio(nu, eta)),  # Routh–Hurwitz
+        stable=stable,
         eigenvalues=_eigenvalues(eta.astype(np.complex128), q.astype(np.complex128), p0.astype(np.complex128)),
     )
 
 
-def _critical_ratio(nu: FloatArray, eta: FloatArray) -> FloatArray:
+def _critical_ratio(nu: Any, eta: Any) -> Any:
     """Return ξ* = c/θ above which the Hopf condition of stability holds, the positive root of ξ² + 2wξ − 4w."""
     return 4.0 / (1.0 + np.sqrt(1.0 + 4.0 / (4.0 * nu**2 + eta**2)))
 
@@ -378,7 +384,11 @@ def critical_frequency(a0: Real, *, c: Real, eta: Real) -> Values:
     >>> print(critical_frequency([0.001, 0.02, 0.065], c=0.1, eta=0.1).round(10))
     [       nan 0.98130802 1.39710759]
     """
-    ratio, eta = np.broadcast_arrays(not_negative("a0", a0) / positive("c", c), not_negative("eta", eta))
+    return critical_of(*np.broadcast_arrays(not_negative("a0", a0) / positive("c", c), not_negative("eta", eta)))
+
+
+def critical_of(ratio: Any, eta: Any) -> Any:
+    """Return ν* for a = a0/c, the `ratio`, see `critical_frequency`; in the language of the compiler too."""
     low, high = _least_frequency(eta), np.sqrt(1.0 + 2.0 * ratio)  # ξ* < 2 bounds ν*
     exists = ratio >= _amplitude_ratio(low, eta)
     for _ in range(_BISECTIONS):
@@ -463,13 +473,13 @@ def undamped_critical_frequency(a0: Real, *, c: Real) -> Values:
     return (1.0 + root) / np.sqrt(below_two * (3.0 + root))
 
 
-def _least_frequency(eta: FloatArray) -> FloatArray:
+def _least_frequency(eta: Any) -> Any:
     """Return ν at which the critical curve begins, from 3ν⁴ + (2 + η²)ν² = 1."""
     half = 2.0 + eta**2
     return np.sqrt(2.0 / (half + np.sqrt(half**2 + 12.0)))
 
 
-def _amplitude_ratio(nu: FloatArray, eta: FloatArray) -> FloatArray:
+def _amplitude_ratio(nu: Any, eta: Any) -> Any:
     """Return a0*/c."""
     x = _critical_ratio(nu, eta)
     return np.hypot(1.0 + nu**2 - x, eta * nu) / x

@@ -44,6 +44,8 @@ interface DescribedProgram extends OfProgram {
 export interface Described {
   readonly common: Common;
   readonly case: readonly Variant[];
+  /** Columns of the response curves for one sense of rolling. */
+  readonly curve: Numbers;
   /** Names of what the program of cases knows of a column. */
   readonly derived: readonly string[];
   readonly programs: Readonly<Record<string, DescribedProgram>>;

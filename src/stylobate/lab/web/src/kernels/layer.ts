@@ -1,10 +1,10 @@
 /** The answers that the page computes itself, as one of its sources. */
 
 import type { Part } from "../page/case/description";
-import type { Described, Start } from "../page/server/schema";
+import type { Described, ResponseCurves, Start } from "../page/server/schema";
 import { type Layer, NotMine } from "../page/server/source";
 import { columnNumbers, simulated } from "./answer";
-import { Unknown, caseOf } from "./case";
+import { Unknown, caseOf, numberOf, refuseOthers } from "./case";
 import type { Kernels } from "./kernels";
 import { asPython, asToml } from "./snippets";
 
@@ -13,11 +13,15 @@ const NO_CIRCLE = 1e-12;
 const AVERAGED = "start: averaged branch, approximate; exact orbits of these numbers are not computed here";
 const NONE = "motion has no steady rolling on this branch at this frequency";
 
+const SENSES = ["anticlockwise", "clockwise"] as const;
+const BRANCHES = ["upper", "lower"] as const;
+
 export function computing(kernels: Kernels): Layer {
   return {
     simulate: (description) => mine(() => simulated(kernels, description)),
     describe: (description) => mine(() => described(kernels, description)),
     steadyStart: (body) => mine(() => steadyStart(kernels, body)),
+    response: (description) => mine(() => response(kernels, description)),
   };
 }
 
@@ -55,4 +59,58 @@ async function steadyStart(kernels: Kernels, body: Part): Promise<Start> {
     spin: 0,
     warnings: (off ?? 0) > NO_CIRCLE ? [AVERAGED] : [],
   };
+}
+
+/** Returns the response of the slender model, which has a closed form. */
+async function response(kernels: Kernels, given: Part): Promise<ResponseCurves> {
+  const { angular_frequency_range: range, points, ...rest } = given;
+  const model = rest["model"] as Part;
+  refuseOthers(model, ["kind", "damping"]);
+  if (model["kind"] !== "slender") throw new Unknown("only slender columns have curves here");
+  const stated = rest["motion"] as Part;
+  const ofKind = kernels.described.case.find((one) => one.of === `motion_${String(stated["kind"])}`);
+  const free = ofKind?.arguments.some((one) => one.name === "angular_frequency");
+  const motion = free ? { ...stated, angular_frequency: 1 } : stated; // the curves have frequencies of their own
+  const { column, numbers } = await caseOf(kernels, { ...rest, motion });
+  if (numbers["amplitude_z"] !== 0) throw new Unknown("a vertical motion has no curves");
+  const [low, high] = range as readonly [number, number];
+  const many = numberOf(points, 2, "points");
+  const frequency = Array.from({ length: many }, (_, k) => low + (k * (high - low)) / (many - 1));
+  const scale = column["frequency_scale"] ?? NaN;
+  const { slenderness, gravity } = column;
+  const { amplitude_x, amplitude_y, phase_x, phase_y, damping } = numbers;
+  const rows: (readonly number[])[] = [];
+  for (const one of frequency) {
+    const shaken = [amplitude_x, amplitude_y, phase_x, phase_y];
+    rows.push(await kernels.called("slender_curves", [slenderness, damping, gravity, one / scale, ...shaken]));
+  }
+  const { curve } = kernels.described;
+  const wide = Object.keys(curve).length;
+  const at = (row: readonly number[] | undefined, sense: number, name: string): number =>
+    row?.[1 + sense * wide + (curve[name] ?? NaN)] ?? NaN;
+  const sizes = SENSES.map((_, sense) => at(rows[0], sense, "size"));
+  const present = SENSES.filter((_, sense) => (sizes[sense] ?? 0) > NO_CIRCLE * Math.max(...sizes));
+  const columnOf = (sense: (typeof SENSES)[number], name: string): (number | null)[] =>
+    rows.map((row) => finite(at(row, SENSES.indexOf(sense), name)));
+  return {
+    angular_frequency: frequency,
+    branches: present.flatMap((sense) =>
+      BRANCHES.map((branch) => ({
+        ...{ sense, branch },
+        amplitude: columnOf(sense, `${branch}_tilt`),
+        phase: columnOf(sense, `${branch}_phase`),
+        stable: columnOf(sense, `${branch}_stable`).map((value) => value === 1),
+      })),
+    ),
+    backbone: rows.map((row) => row[0] ?? null),
+    critical: present.map((sense) => {
+      const value = finite(at(rows[0], SENSES.indexOf(sense), "critical"));
+      return { sense, angular_frequency: value === null ? null : scale * value };
+    }),
+    averaged: present.length > 1,
+  };
+}
+
+function finite(value: number): number | null {
+  return Number.isFinite(value) ? value : null;
 }

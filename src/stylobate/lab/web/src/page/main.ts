@@ -17,6 +17,7 @@ import { ThemeSwitch } from "./frame/theme";
 export interface Handle {
   readonly stage: Stage | null;
   readonly laboratory: Laboratory;
+  readonly source: Source;
   readonly state: () => View;
 }
 
@@ -45,7 +46,7 @@ async function begin(): Promise<void> {
   const shown = laboratory;
   const skip = button("Skip to the motion", { class: "skip" }, () => shown.stage?.canvas.focus());
   document.body.prepend(skip);
-  window.stylobate = { stage: shown.stage, laboratory: shown, state: () => shown.view };
+  window.stylobate = { stage: shown.stage, laboratory: shown, source, state: () => shown.view };
 }
 
 /** Asks what there is, until the server answers. */
