@@ -40,8 +40,12 @@ from stylobate.run_arguments import checked_options
 COLUMN = tuple(name for name in parameters_of(Column) if name != "height")
 """Numbers of the column in those of a run; the numbers of model, motion, start and accuracy follow."""
 
-_MOTION = ("amplitude_x", "amplitude_y", "amplitude_z", "phase_x", "phase_y", "phase_z", "angular_frequency")
-HARMONIC = (*_MOTION, "start_phase")
+HARMONIC = tuple(
+    f"{name}_{axis}" if one.quantity.components > 1 else name
+    for name, one in parameters_of(Harmonic).items()
+    for axis in "xyz"[: one.quantity.components]
+    if name != "ramp"
+)
 """Numbers of a harmonic motion without a ramp."""
 
 
@@ -282,12 +286,10 @@ def _makes_harmonic(make: Callable[..., Any]) -> bool:
     return make is Harmonic or getattr(make, "__self__", None) is Harmonic
 
 
-_OF_HARMONIC = (
-    *(f"amplitude[{k}]" for k in range(3)),
-    *(f"phase[{k}]" for k in range(3)),
-    "angular_frequency",
-    "start_phase",
-    "ramp",
+_OF_HARMONIC = tuple(
+    f"{name}[{k}]" if one.quantity.components > 1 else name
+    for name, one in parameters_of(Harmonic).items()
+    for k in range(one.quantity.components)
 )
 """What is known of a harmonic motion: the numbers `HARMONIC`, and its ramp."""
 
@@ -371,6 +373,7 @@ def described() -> dict[str, Any]:
             "sample": {one.name.lower(): int(one) for one in Sample},
             "verdict": verdict | late,
         },
+        "given": [name for name in Given._fields if name != "duration"],
         "sizes": {"trace": len(Trace), "sample": len(Sample), "verdict": len(Verdict) + LATE_COLUMNS},
         "codes": {
             **{one.name.lower(): int(one) for one in (RunStatus.RESTED, RunStatus.STEP_LIMIT, RunStatus.UNSEEN)},

@@ -1,7 +1,8 @@
 /** A described case as the numbers of a program. */
 
 import type { Part, Value } from "../page/case/description";
-import { isPart } from "../page/case/description";
+import { PARTS, isPart, isVector } from "../page/case/description";
+import { START } from "../page/server/declared";
 import type { Kernels, Numbers } from "./kernels";
 
 /** The case has something that no program knows. */
@@ -19,7 +20,7 @@ export interface Case {
 }
 
 /** What a description of a run may have besides its case. */
-const OF_A_RUN = new Set(["column", "model", "motion", "tilt", "tilt_rate", "spin", "twist", "position", "duration"]);
+const OF_A_RUN = new Set<string>([...PARTS, ...START, "duration"]);
 
 export async function caseOf(kernels: Kernels, given: Part): Promise<Case> {
   for (const [name, value] of Object.entries(given)) {
@@ -43,7 +44,7 @@ export async function caseOf(kernels: Kernels, given: Part): Promise<Case> {
   return {
     program,
     column,
-    numbers: { ...column, ...model, ...moves, ...start(given) },
+    numbers: { ...column, ...model, ...moves, ...start(kernels, given) },
     period: frequency === undefined ? null : (2 * Math.PI) / frequency,
   };
 }
@@ -59,14 +60,15 @@ function named(name: string, values: readonly (number | undefined)[]): Numbers {
   return Object.fromEntries(values.map((value, axis) => [`${name}_${"xyz"[axis]}`, value ?? NaN]));
 }
 
-function start(given: Part): Numbers {
-  const vectors = { tilt: 2, tilt_rate: 2, position: 2, velocity: 3 };
+/** Returns the initial conditions: those that are given, and 0 for the others. */
+function start(kernels: Kernels, given: Part): Numbers {
   const found: Record<string, number> = {};
-  for (const [name, length] of Object.entries(vectors)) {
-    const values = Array.isArray(given[name]) ? (given[name] as readonly Value[]) : [];
-    for (let axis = 0; axis < length; axis += 1) found[`${name}_${"xyz"[axis]}`] = numberOf(values[axis], 0, name);
+  for (const name of kernels.described.common.given) found[name] = 0;
+  for (const name of START) {
+    const value = given[name];
+    if (!isVector(value)) found[name] = numberOf(value, 0, name);
+    else value.forEach((one, axis) => (found[`${name}_${"xyz"[axis]}`] = numberOf(one, 0, name)));
   }
-  for (const name of ["spin", "twist", "clearance"]) found[name] = numberOf(given[name], 0, name);
   return found;
 }
 

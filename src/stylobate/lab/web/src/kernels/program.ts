@@ -26,6 +26,8 @@ export interface Common {
   readonly columns: Readonly<
     Record<"setup" | "log" | "trace" | "sample" | "verdict", Readonly<Record<string, number>>>
   >;
+  /** Names of the initial conditions of a run. */
+  readonly given: readonly string[];
   /** Numbers in the head of an entry, in a sample, and in a verdict. */
   readonly sizes: { readonly trace: number; readonly sample: number; readonly verdict: number };
   readonly codes: {
