@@ -67,6 +67,7 @@ def case(kind, rng, program):
         "duration": duration,
         "rtol": 1e-8,
         "max_steps": 2e5,
+        "traces": program.plan.traces,
         "rest_share": 1.0,
         "passage_share": 1.0,
     }

@@ -10,6 +10,7 @@ from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
 import numpy as np
 import pytest
 from tests.lab.browser import Watched, found_browser, moved, new_page, open_sections, shown
+from tests.lab.test_jobs import followed
 from tests.lab.test_page_mistakes import EXACT
 
 from stylobate.errors import FileError
@@ -175,13 +176,23 @@ def test_numbers_without_an_answer_are_refused_in_one_line_and_the_page_goes_on(
     assert refusals(page) == []
 
 
-def test_maps_and_animations_are_refused_where_they_are_asked_for(opened):
+def test_basins_and_animations_are_refused_where_they_are_asked_for(opened):
     page = opened.page
-    page.get_by_role("tab", name="Overturning map").click()
-    page.locator(".plane-panel.map .problem").get_by_text(f"{REFUSED} maps").wait_for()
+    page.get_by_role("tab", name="Basin").click()
+    page.locator(".plane-panel.basin").get_by_role("button", name="Compute").click()
+    page.locator(".plane-panel.basin .problem").get_by_text(f"{REFUSED} basins").wait_for()
     page.get_by_text("Export").click()
     page.get_by_role("button", name="Animation (GIF)").click()
     page.locator(".export-note").get_by_text(f"{REFUSED} animations").wait_for()
+
+
+def test_the_map_is_computed_and_a_click_shows_its_run(opened):
+    page = opened.page
+    page.get_by_role("tab", name="Overturning map").click()
+    panel = page.locator(".plane-panel.map")
+    panel.get_by_text("625 runs of").wait_for()
+    assert panel.get_by_text("rolling").first.is_visible()
+    assert refusals(page) == []
 
 
 def test_a_link_to_an_unrecorded_case_shows_the_first_lesson_and_says_why(opened, place):
@@ -323,6 +334,50 @@ def test_computed_curves_and_starts_are_those_of_the_server(served, browser, cli
         assert start[name] == pytest.approx(answer[name], rel=1e-8)
     assert bool(start["warnings"]) == bool(answer["warnings"])
     page.close()
+
+
+MAP = {
+    "column": {"shape": "dimensionless", "slenderness": 0.1},
+    "model": {"kind": "slender", "damping": 0.1},
+    "motion": {"kind": "circular", "acceleration": 0.065, "angular_frequency": 1.8},
+    "tilt": [0.03, 0.01],
+    "periods": 40,
+    "map": {
+        "x": {"name": "angular_frequency", "from": 0.6, "to": 3.4, "number": 9},
+        "y": {"name": "acceleration", "from": 0.02, "to": 0.18, "number": 8},
+    },
+}
+
+
+@pytest.mark.parametrize("start", [None, "upper"])
+def test_computed_maps_are_those_of_the_server(start, served, browser, client):
+    page = new_page(browser)
+    page.goto(served)
+    shown(page)
+    asked = {"description": MAP, **({} if start is None else {"start": start})}
+    found = page.evaluate(
+        """async (asked) => {
+            const job = await window.stylobate.source.startJob("map", asked);
+            for (;;) {
+                const report = await job.report(0);
+                if (report.state !== "running") return report;
+                await new Promise((resolve) => setTimeout(resolve, 20));
+            }
+        }""",
+        asked,
+    )
+    page.close()
+    known = followed(client, client.post("/api/jobs", json={"kind": "map", **asked}).json()["id"])
+    assert found["result"]["codes"] == known["result"]["codes"]
+    (ours, _), (theirs, _) = (one["events"][:2] for one in (found, known))
+    assert ours["names"] == theirs["names"]
+    for axis in "xy":
+        values = [one["axes"][axis].pop("values") for one in (ours, theirs)]
+        assert values[0] == pytest.approx(values[1])
+        assert ours["axes"][axis] == theirs["axes"][axis]
+    shares = [{one["name"]: one["share"] for one in job["result"]["classes"] if one["share"]} for job in (found, known)]
+    assert shares[0] == pytest.approx(shares[1])
+    assert (found["done"], found["total"]) == (72, 72)
 
 
 def test_what_is_loaded_before_the_first_motion_stays_small(written):

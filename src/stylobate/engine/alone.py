@@ -64,21 +64,21 @@ _NUMBERS_OF_RULES = numbers_of_rules(_RULES)
 
 
 class Accuracy(NamedTuple):
-    """Relative tolerance and step limit of a run, and the factors of its thresholds, see `Plan`."""
+    """Relative tolerance, step limit and trace entries of a run, and the factors of its thresholds, see `Plan`."""
 
     rtol: Any
     max_steps: Any
+    traces: Any
     rest_share: Any
     passage_share: Any
 
 
 class Layout(NamedTuple):
-    """Columns of a row that depend on the model, and number of trace entries; see `Shape`."""
+    """Columns of a row that depend on the model; see `Shape`."""
 
     parameters_at: int
     motion_at: int
     notes_at: int
-    traces: int
 
 
 def begin(
@@ -120,7 +120,7 @@ def begin(
     row[Setup.LOOKS] = number_of_looks(_RULES) if looks else 0
     row[Setup.NOTES] = number_of_looks(_RULES) + PAIRS if looks else 0
     fill_looks(row, end, bounds.period, _RULES)
-    row[Setup.TRACES] = layout.traces
+    row[Setup.TRACES] = accuracy.traces
     row[EVENTS_AT + EventSetup.TILT_LIMIT] = math.inf
     row[EVENTS_AT + EventSetup.OVERTURNED_TILT] = OVERTURNED_TILT
     parameters = model.parameters

@@ -101,8 +101,8 @@ class RunProgram:
     @property
     def layout(self) -> Layout:
         """Layout of the rows."""
-        shape, plan = self.plan.layout, self.plan
-        return Layout(shape.parameters_at, shape.motion_at, shape.breaks_at, plan.traces)
+        shape = self.plan.layout
+        return Layout(shape.parameters_at, shape.motion_at, shape.breaks_at)
 
     def described(self) -> dict[str, Any]:
         """Return the names, the layout and the sizes that a page needs for the program, for JSON."""
@@ -114,6 +114,7 @@ class RunProgram:
             "choices": {name: one.choices for name, one in self.model_numbers.items() if one.choices},
             "optional": [name for name, one in self.model_numbers.items() if one.optional],
             "layout": self.layout._asdict(),
+            "traces": plan.traces,
             "trace_width": shape.trace_width,
             "row": shape.breaks_at + NOTE * (looks + PAIRS) + plan.traces * shape.trace_width,
             "buffer": kernel.buffer().size,

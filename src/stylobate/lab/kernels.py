@@ -26,6 +26,7 @@ from stylobate.lab.answers import OF_ANY_COLUMN
 from stylobate.lab.limits import Limits
 from stylobate.lab.tasks import SAMPLES
 from stylobate.models.declared import MODELS
+from stylobate.parameter_quantities import attributes_of, known_names
 from stylobate.results import OutcomeRules
 from stylobate.run_arguments import SingleRun, arguments_of
 from stylobate.theory.rolling import critical_of, rolling_point
@@ -145,6 +146,7 @@ def described() -> dict[str, Any]:
         "curve": {one.name.lower(): int(one) for one in CurvePoint},
         "derived": [*programs.COLUMN, *CASE.derived],
         "programs": {name: _of_program(program) for name, program in run_programs().items()},
+        "axes": {name: attributes_of(name) for name in sorted(known_names()) if "." not in name},
         "outcomes": [{"name": one.name, "label": one.label} for one in Outcome],
         "fallen": [int(one) for one in FALLEN],
         "texts": reason_texts(),

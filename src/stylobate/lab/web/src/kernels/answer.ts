@@ -43,12 +43,15 @@ function decided(kernels: Kernels, asked: Case, program: Program, description: P
 
 function computed(kernels: Kernels, asked: Case, program: Program, duration: number, finer = false): Computed {
   const { rtol, most_steps, finer: shares } = kernels.described;
-  const accuracy = finer
-    ? { rtol: shares.rtol, max_steps: most_steps, rest_share: shares.rest_share, passage_share: shares.passage_share }
-    : { rtol, max_steps: most_steps, rest_share: 1, passage_share: 1 };
-  const values: Numbers = { ...asked.numbers, duration, ...accuracy };
-  const numbers = Float64Array.from(program.described.names, (name) => values[name] ?? NaN);
+  const { traces } = program.described;
+  const accuracy = finer ? shares : { rtol, rest_share: 1, passage_share: 1 };
+  const numbers = numbersOf(program, { ...asked.numbers, duration, ...accuracy, max_steps: most_steps, traces });
   return { kernels, asked, program, finished: program.run(numbers), numbers };
+}
+
+/** Returns the numbers of a run in the order of its program. */
+export function numbersOf(program: Program, values: Numbers): Float64Array {
+  return Float64Array.from(program.described.names, (name) => values[name] ?? NaN);
 }
 
 function answered(found: Computed, description: Part): Run {

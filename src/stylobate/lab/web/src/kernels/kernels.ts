@@ -49,6 +49,8 @@ export interface Described {
   /** Names of what the program of cases knows of a column. */
   readonly derived: readonly string[];
   readonly programs: Readonly<Record<string, DescribedProgram>>;
+  /** Meanings and units of the numbers that can be axes of a map. */
+  readonly axes: Readonly<Record<string, { readonly long_name: string; readonly units: string }>>;
   readonly outcomes: readonly { readonly name: string; readonly label: string }[];
   readonly fallen: readonly number[];
   readonly texts: Texts;

@@ -1,11 +1,13 @@
 /** The answers that the page computes itself, as one of its sources. */
 
-import type { Part } from "../page/case/description";
+import { type Part, without } from "../page/case/description";
+import { offBranch } from "../page/case/starting";
 import type { Described, ResponseCurves, Start } from "../page/server/schema";
 import { type Layer, NotMine } from "../page/server/source";
 import { columnNumbers, simulated } from "./answer";
 import { Unknown, caseOf, numberOf, refuseOthers } from "./case";
 import type { Kernels } from "./kernels";
+import { startMap } from "./plane";
 import { asPython, asToml } from "./snippets";
 
 /** What is smaller over what is larger, of the circles of a motion that is a circle. */
@@ -22,6 +24,11 @@ export function computing(kernels: Kernels): Layer {
     describe: (description) => mine(() => described(kernels, description)),
     steadyStart: (body) => mine(() => steadyStart(kernels, body)),
     response: (description) => mine(() => response(kernels, description)),
+    startJob: (kind, request) =>
+      mine(() => {
+        if (kind !== "map") throw new Unknown(`${kind} is not computed here`);
+        return startMap(kernels, request, (description, branch) => onBranch(kernels, description, branch));
+      }),
   };
 }
 
@@ -41,6 +48,13 @@ async function described(kernels: Kernels, description: Part): Promise<Described
 }
 
 async function steadyStart(kernels: Kernels, body: Part): Promise<Start> {
+  const found = await branchOf(kernels, body);
+  if (found === null) throw new Unknown(NONE);
+  return found;
+}
+
+/** Returns the start of steady rolling; null where there is none. */
+async function branchOf(kernels: Kernels, body: Part): Promise<Start | null> {
   const { branch = "upper", ...given } = body;
   const { column, numbers, program } = await caseOf(kernels, given);
   if (program !== "slender_harmonic" || numbers["amplitude_z"] !== 0)
@@ -52,13 +66,21 @@ async function steadyStart(kernels: Kernels, body: Part): Promise<Start> {
     ...["x", "y", "z"].map((axis) => numbers[`phase_${axis}`]),
     ...[numbers["angular_frequency"], numbers["start_phase"]],
   ]);
-  if (!Number.isFinite(x)) throw new Unknown(NONE);
+  if (!Number.isFinite(x)) return null;
   return {
     tilt: [x ?? NaN, y ?? NaN],
     tilt_rate: [vx ?? NaN, vy ?? NaN],
     spin: 0,
     warnings: (off ?? 0) > NO_CIRCLE ? [AVERAGED] : [],
   };
+}
+
+/** Returns a description that starts a little off a branch, or null where its motion has none. */
+async function onBranch(kernels: Kernels, description: Part, branch: string): Promise<Part | null> {
+  const found = await branchOf(kernels, { ...without(description, "tilt", "tilt_rate", "spin", "duration"), branch });
+  if (found === null) return null;
+  const { warnings, ...start } = found;
+  return { ...description, ...offBranch(start) };
 }
 
 /** Returns the response of the slender model, which has a closed form. */

@@ -10,8 +10,9 @@ export interface Described {
     readonly parameters_at: number;
     readonly motion_at: number;
     readonly notes_at: number;
-    readonly traces: number;
   };
+  /** Entries of a trace for which the row of a single run has room. */
+  readonly traces: number;
   readonly trace_width: number;
   /** Numbers in the row of a run, and in the buffer of a kernel. */
   readonly row: number;
@@ -116,7 +117,7 @@ export class Program {
 
   /** Computes a run from its numbers to its end. */
   run(numbers: Float64Array): Finished {
-    const { row: width, layout, trace_width: wide } = this.described;
+    const { row: width, traces, trace_width: wide } = this.described;
     const at = this.#at;
     this.#array(at.numbers, numbers.length).set(numbers);
     const flags = Number(this.#call("begin", at.numbers, at.row, BigInt(width)));
@@ -128,7 +129,7 @@ export class Program {
       this.#array(at.buffer, this.described.buffer).fill(NaN);
       for (let ended = false; !ended; ) {
         ended = this.#call(name, at.row, 1n, BigInt(used), at.pieces, 1n, 5n, at.halt, at.buffer) !== 0n;
-        entries.push(this.#taken(used, layout.traces * wide, wide));
+        entries.push(this.#taken(used, traces * wide, wide));
       }
     };
     if (!planar) advance("advance");
@@ -140,12 +141,68 @@ export class Program {
     this.#call("judge", at.numbers, at.row, BigInt(used), planar ? 1 : 0, at.verdict);
     const [stretches, events] = this.#parted(joined(entries), wide);
     return {
-      row: this.#array(at.row, used - layout.traces * wide).slice(),
+      row: this.#array(at.row, used - traces * wide).slice(),
       stretches: stretches.length > 0 ? stretches : this.#stillness(planar),
       events,
       planar,
       verdict: this.#array(at.verdict, this.#common.sizes.verdict).slice(),
     };
+  }
+
+  /** Computes many runs together, without traces; returns the numbers of `verdict` of each. */
+  batch(runs: readonly Float64Array[]): Float64Array[] {
+    const { row, traces, trace_width: wide } = this.described;
+    const at = this.#at;
+    const width = row - traces * wide;
+    const tables = [at.free, at.free + LINE * Math.ceil((WIDTH * width * runs.length) / LINE)] as const;
+    this.#room(tables[1] + WIDTH * width * runs.length);
+    // first the runs in space, then those in a plane, each in its own table
+    const members: [number[], number[]] = [[], []];
+    const place = (table: 0 | 1, index: number): number => tables[table] + WIDTH * width * index;
+    runs.forEach((numbers, k) => {
+      this.#array(at.numbers, numbers.length).set(numbers);
+      const flags = Number(this.#call("begin", at.numbers, at.row, BigInt(width)));
+      const table = flags & 1 ? 1 : 0;
+      this.#array(place(table, members[table].length), width).set(this.#array(at.row, width));
+      members[table].push(k);
+    });
+    const advance = (name: string, table: 0 | 1): void => {
+      if (members[table].length === 0) return;
+      this.#array(at.buffer, this.described.buffer).fill(NaN);
+      this.#call(
+        name,
+        tables[table],
+        BigInt(members[table].length),
+        BigInt(width),
+        at.pieces,
+        1n,
+        5n,
+        at.halt,
+        at.buffer,
+      );
+    };
+    advance("advance", 0);
+    const status = this.#column("log", "status");
+    const left: number[] = [];
+    members[0].forEach((k, index) => {
+      if (this.#array(place(0, index), width)[status] !== this.#common.codes.to_plane) return;
+      this.#array(at.numbers, runs[k]?.length ?? 0).set(runs[k] ?? []);
+      this.#call("to_plane", at.numbers, place(0, index), BigInt(width));
+      this.#array(place(1, members[1].length), width).set(this.#array(place(0, index), width));
+      members[1].push(k);
+      left.push(k);
+    });
+    advance("advance_in_plane", 1);
+    const verdicts: Float64Array[] = [];
+    for (const table of [0, 1] as const) {
+      members[table].forEach((k, index) => {
+        if (table === 0 && left.includes(k)) return;
+        this.#array(at.numbers, runs[k]?.length ?? 0).set(runs[k] ?? []);
+        this.#call("judge", at.numbers, place(table, index), BigInt(width), table, at.verdict);
+        verdicts[k] = this.#array(at.verdict, this.#common.sizes.verdict).slice();
+      });
+    }
+    return verdicts;
   }
 
   /** Returns samples of the last run at equal steps: `many` rows with the columns `sample`. */
@@ -162,8 +219,8 @@ export class Program {
   }
 
   #looks(): number {
-    const { row, layout, trace_width: wide } = this.described;
-    return row - layout.notes_at - layout.traces * wide;
+    const { row, layout, traces, trace_width: wide } = this.described;
+    return row - layout.notes_at - traces * wide;
   }
 
   /** Takes the entries of the trace from the row, and clears it. */
