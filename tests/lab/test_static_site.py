@@ -41,7 +41,10 @@ def written(tmp_path_factory):
     found_browser()
     root = tmp_path_factory.mktemp("site")
     programs = kernels.run_programs()
-    needed = {kernels.program_of(case.values) for case in recorded.cases()} | {"slender_rest"}
+    needed = {kernels.program_of(case.values) for case in recorded.cases()} | {
+        "slender_rest",
+        "planar_rocking_harmonic",
+    }
     with pytest.MonkeyPatch.context() as patch:
         patch.setitem(recorded._ANSWERED, "exact", lambda _: json.dumps(EXACT).encode())
         patch.setattr(kernels, "run_programs", lambda: {name: programs[name] for name in programs if name in needed})
@@ -334,6 +337,40 @@ def test_computed_curves_and_starts_are_those_of_the_server(served, browser, cli
         assert start[name] == pytest.approx(answer[name], rel=1e-8)
     assert bool(start["warnings"]) == bool(answer["warnings"])
     page.close()
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"model": {"kind": "slender", "damping": -1.0}}, "damping must be zero or positive, got -1"),
+        (
+            {"column": {"shape": "solid", "radius": 0.0, "height": 2.0, "density": 2500.0}},
+            "radius must be positive, got 0",
+        ),
+        (
+            {"column": {"shape": "hollow", "radius": 0.3, "inner_radius": 0.4, "height": 2.0, "density": 2e3}},
+            "contradict",
+        ),
+        ({"column": {"shape": "frustum", "radius": 0.3, "height": 2.0, "density": 2500.0}}, "top_radius is missing"),
+        ({"tilt": [2.0, 0.0]}, "tilt must be below π/2"),
+        ({"spin": 1.0}, "spin must be left out"),
+        ({"model": {"kind": "planar_rocking"}}, "in one vertical plane"),
+        ({"motion": {"kind": "orbit", "diameter": 0.1, "rpm": 60.0, "sense": 3}}, "sense must be 1 or -1, got 3"),
+    ],
+)
+def test_impossible_numbers_are_refused_before_they_are_computed(change, words, served, browser):
+    page = new_page(browser)
+    page.goto(served)
+    shown(page)
+    case = {**{name: MAP[name] for name in ("column", "model", "motion", "tilt")}, "duration": 5.0, **change}
+    problems = page.evaluate(
+        "(asked) => window.stylobate.source.simulate(asked, new AbortController().signal)"
+        ".then(() => [], (error) => error.problems)",
+        case,
+    )
+    page.close()
+    assert len(problems) == 1
+    assert words in problems[0]
 
 
 MAP = {

@@ -264,7 +264,7 @@ def can_be_stored(value: Value) -> bool:
 
 
 def _is_fixed(value: Value) -> bool:
-    """Return whether a value is none or a text: a part of an object that is the same on all paths."""
+    """Return whether a value is None or a text: a part of an object that is the same on all paths."""
     return value is None or isinstance(value, str)
 
 

@@ -295,6 +295,14 @@ _OF_HARMONIC = tuple(
 """What is known of a harmonic motion: the numbers `HARMONIC`, and its ramp."""
 
 
+def declared(one: Parameter) -> dict[str, Any]:
+    """Return the declaration of a number, for JSON: a page refuses other values in the words of Python."""
+    quantity = one.quantity
+    bounds = {name: getattr(quantity, name) for name in ("ge", "gt", "le", "lt")}
+    words = {"unit": quantity.unit, "demand": quantity.demand}
+    return {"name": one.name, "components": quantity.components, "choices": one.choices, **bounds, **words}
+
+
 @dataclass(frozen=True, slots=True)
 class Variant:
     """A constructor with some of its optional numbers.
@@ -327,11 +335,7 @@ class Variant:
     def described(self) -> dict[str, Any]:
         """Return the arguments of the function, for JSON."""
         arguments = [
-            {
-                "name": one.name,
-                "components": one.quantity.components,
-                "default": None if one.required or one.optional else one.default,
-            }
+            {**declared(one), "default": None if one.required or one.optional else one.default}
             for one in self.arguments
         ]
         return {"name": self.name, "of": self.of, "given": self.given, "arguments": arguments}

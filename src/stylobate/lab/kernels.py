@@ -99,7 +99,7 @@ def slender_curves(numbers: Any, out: Any) -> None:
 
 
 CASE = CaseProgram(
-    tuple(OF_ANY_COLUMN),
+    (*OF_ANY_COLUMN, "consistent"),
     {"slender_start": (slender_start, 13, 5), "slender_curves": (slender_curves, 8, 1 + 2 * len(CurvePoint))},
 )
 
@@ -167,9 +167,8 @@ def _of_program(program: RunProgram) -> dict[str, Any]:
     kind = program.kind
     return {
         **program.described(),
-        "numbers": [
-            {"name": one.name, "default": one.default, "choices": one.choices} for one in program.model_numbers.values()
-        ],
+        "numbers": [{**programs.declared(one), "default": one.default} for one in program.model_numbers.values()],
+        "planar_only": kind.planar_only,
         "proves": kind.no_return_tilt is not None,
         "carries": bool(kind.carried_names),
         "spins": kind.spin_state is not None,

@@ -91,8 +91,9 @@ function answered(found: Computed, description: Part): Run {
 }
 
 export function columnNumbers(column: Numbers): Run["column"] {
+  const { consistent, ...numbers } = column;
   const uplift = (column["slenderness"] ?? NaN) * (column["gravity"] ?? NaN);
-  return { ...column, uplift_acceleration: uplift } as Run["column"];
+  return { ...numbers, uplift_acceleration: uplift } as unknown as Run["column"];
 }
 
 function outcomeOf(found: Computed): { readonly name: string; readonly label: string } {

@@ -3,7 +3,8 @@
 import type { Part, Value } from "../page/case/description";
 import { PARTS, isPart, isVector } from "../page/case/description";
 import { START } from "../page/server/declared";
-import type { Kernels, Numbers } from "./kernels";
+import { Refused } from "../page/server/source";
+import type { Declared, Kernels, Numbers } from "./kernels";
 
 /** The case has something that no program knows. */
 export class Unknown extends Error {}
@@ -35,16 +36,20 @@ export async function caseOf(kernels: Kernels, given: Part): Promise<Case> {
   const described = kernels.described.programs[program];
   if (!described) throw new Unknown(`the model ${kind} is not computed here`);
   const model: Record<string, number> = {};
-  for (const { name, default: usual, choices } of described.numbers) {
+  for (const one of described.numbers) {
+    const { name, default: usual, choices } = one;
     const value = part(given, "model")[name] ?? usual;
-    model[name] = choices.length > 0 ? Math.max(0, choices.indexOf(String(value))) : numberOf(value, NaN, name);
+    if (choices.length > 0) model[name] = Math.max(0, choices.indexOf(String(value)));
+    else model[name] = value === null ? NaN : checked(numberOf(value, NaN, name), one);
   }
   refuseOthers(part(given, "model"), ["kind", ...Object.keys(model)]);
   const frequency = moves["angular_frequency"];
+  const numbers = { ...column, ...model, ...moves, ...start(kernels, given) };
+  checkStart(described, numbers);
   return {
     program,
     column,
-    numbers: { ...column, ...model, ...moves, ...start(kernels, given) },
+    numbers,
     period: frequency === undefined ? null : (2 * Math.PI) / frequency,
   };
 }
@@ -70,6 +75,50 @@ function start(kernels: Kernels, given: Part): Numbers {
     else value.forEach((one, axis) => (found[`${name}_${"xyz"[axis]}`] = numberOf(one, 0, name)));
   }
   return found;
+}
+
+/** Returns a number, or refuses one that its declaration does not allow. */
+export function checked(value: number, one: Declared): number {
+  const { ge, gt, le, lt, choices } = one;
+  const high = (le === null || value <= le) && (lt === null || value < lt);
+  const low = (ge === null || value >= ge) && (gt === null || value > gt);
+  const chosen = choices.length === 0 || choices.includes(value);
+  if (low && high && chosen && Number.isFinite(value)) return value;
+  if (Number.isNaN(value)) throw new Refused(422, [`${one.name} is missing`]);
+  const demand = chosen ? one.demand : `be ${choices.join(" or ")}`;
+  throw new Refused(422, [`${one.name} must ${demand}, got ${value} ${one.unit}`.trimEnd()]);
+}
+
+/** Refuses initial conditions that the model does not support. */
+function checkStart(described: Kernels["described"]["programs"][string], numbers: Numbers): void {
+  const of = (name: string): number => numbers[name] ?? 0;
+  const tilt = Math.hypot(of("tilt_x"), of("tilt_y"));
+  if (!(tilt < Math.PI / 2)) throw new Refused(422, [`tilt must be below π/2 in length, got ${tilt} rad`]);
+  if (of("spin") !== 0 && !described?.spins) {
+    throw new Refused(422, [`spin must be left out: the column of this model cannot turn, got ${of("spin")} rad/s`]);
+  }
+  if (described?.planar_only && !inOnePlane(of)) {
+    throw new Refused(422, ["tilt, tilt_rate and motion must lie in one vertical plane for this model"]);
+  }
+}
+
+const PARALLEL = 1e-12;
+
+function inOnePlane(of: (name: string) => number): boolean {
+  const moved = (part: (angle: number) => number): [number, number] => [
+    of("amplitude_x") * part(of("phase_x")),
+    of("amplitude_y") * part(of("phase_y")),
+  ];
+  const vectors: [number, number][] = [
+    [of("tilt_x"), of("tilt_y")],
+    [of("tilt_rate_x"), of("tilt_rate_y")],
+    moved(Math.cos),
+    moved(Math.sin),
+  ];
+  const sizes = vectors.map(([x, y]) => Math.hypot(x, y));
+  const [ux, uy] = vectors[sizes.indexOf(Math.max(...sizes))] ?? [0, 0];
+  const longest = Math.hypot(ux, uy);
+  return vectors.every(([x, y]) => Math.abs(ux * y - uy * x) <= PARALLEL * longest * longest);
 }
 
 export function numberOf(value: Value | undefined, usual: number, name: string): number {

@@ -1,7 +1,8 @@
 /** The programs of a page: loaded when a case first needs them. */
 
 import type { Part, Value } from "../page/case/description";
-import { Unknown, numberOf, refuseOthers } from "./case";
+import { Refused } from "../page/server/source";
+import { Unknown, checked, numberOf, refuseOthers } from "./case";
 import { type Common, type Described as OfProgram, Program } from "./program";
 
 export type Numbers = Readonly<Record<string, number>>;
@@ -11,7 +12,22 @@ interface Variant {
   readonly name: string;
   readonly of: string;
   readonly given: readonly string[];
-  readonly arguments: readonly { readonly name: string; readonly components: number; readonly default: Value }[];
+  readonly arguments: readonly Declared[];
+}
+
+/** The declaration of a number. */
+export interface Declared {
+  readonly name: string;
+  readonly components: number;
+  readonly default: Value;
+  readonly choices: readonly Value[];
+  readonly ge: number | null;
+  readonly gt: number | null;
+  readonly le: number | null;
+  readonly lt: number | null;
+  readonly unit: string;
+  /** The range in words, behind “must”. */
+  readonly demand: string;
 }
 
 interface Texts {
@@ -31,7 +47,8 @@ interface Texts {
 }
 
 interface DescribedProgram extends OfProgram {
-  readonly numbers: readonly { readonly name: string; readonly default: Value; readonly choices: readonly string[] }[];
+  readonly numbers: readonly Declared[];
+  readonly planar_only: boolean;
   /** Whether the model proves from which tilt a column cannot come back. */
   readonly proves: boolean;
   readonly carries: boolean;
@@ -68,6 +85,7 @@ export type Load = (name: string) => Promise<BufferSource>;
 
 const PAGE = 1 << 16;
 const OF_A_MOTION = 9;
+const CONTRADICTION = "these numbers contradict each other: no body or motion has all of them";
 /** Results of a function at most. */
 const MOST_RESULTS = 64;
 
@@ -102,16 +120,19 @@ export class Kernels {
     const variant = variants.find((one) => one.given.every((name) => numbers.includes(name)) && fits(one, numbers));
     if (!variant) throw new Unknown(`${of} is not computed here`);
     refuseOthers(given, [choosing, ...variant.arguments.map((one) => one.name)]);
-    const values = variant.arguments.flatMap(({ name, components, default: usual }) => {
+    const values = variant.arguments.flatMap((one) => {
+      const { name, components, default: usual } = one;
       const value = given[name] ?? usual;
-      if (components === 1) return [numberOf(value, NaN, name)];
+      if (components === 1) return [checked(numberOf(value, NaN, name), one)];
       if (!Array.isArray(value) || value.length !== components) throw new Unknown(`${name} is not a vector here`);
-      return (value as readonly Value[]).map((one) => numberOf(one, NaN, name));
+      return (value as readonly Value[]).map((part) => checked(numberOf(part, NaN, name), one));
     });
     const found = await this.called(variant.name, values);
     const names =
       group === "column" ? this.described.derived : Array.from({ length: OF_A_MOTION }, (_, k) => String(k));
-    return Object.fromEntries(names.map((name, k) => [name, found[k] ?? NaN]));
+    const made: Numbers = Object.fromEntries(names.map((name, k) => [name, found[k] ?? NaN]));
+    if (made["consistent"] === 0) throw new Refused(422, [CONTRADICTION]);
+    return made;
   }
 
   /** Returns the results of a function of the program of cases. */
@@ -121,7 +142,12 @@ export class Kernels {
     const out = at + 8 * Math.max(values.length, 1);
     new Float64Array(this.#memory.buffer, at, values.length).set(values.map((value) => value ?? NaN));
     const call = instance.exports[name] as (numbers: number, out: number) => bigint;
-    call(at, out);
+    try {
+      call(at, out);
+    } catch (error) {
+      if (error instanceof WebAssembly.RuntimeError) throw new Refused(422, [CONTRADICTION]); // its check failed
+      throw error;
+    }
     return Array.from(new Float64Array(this.#memory.buffer, out, MOST_RESULTS));
   }
 
