@@ -18,6 +18,7 @@ CASES = {
     "tan": ANGLES,
     "atan": WIDE,
     "exp": RNG.uniform(-700, 700, 5000),
+    "expm1": np.concatenate([RNG.uniform(-50, 50, 4000), WIDE[np.abs(WIDE) < 700.0]]),
     "log": np.abs(WIDE),
     "asinh": np.concatenate([WIDE, RNG.uniform(-1, 1, 2000)]),
 }
@@ -40,7 +41,7 @@ def test_functions_of_one_number_are_within_two_units_in_the_last_place(name):
     assert units_apart([own(x) for x in CASES[name].tolist()], known.astype(float)).max() <= 2.0
 
 
-@pytest.mark.parametrize("name", ["sin", "cos", "tan", "atan", "exp", "log", "asinh"])
+@pytest.mark.parametrize("name", ["sin", "cos", "tan", "atan", "exp", "expm1", "log", "asinh"])
 def test_zeros_infinities_and_nan_are_those_of_c(name):
     own, _ = mathematics.FUNCTIONS[name]
     values = np.array([x for x in SPECIAL if name not in ("sin", "cos", "tan") or abs(x) < 2.0])

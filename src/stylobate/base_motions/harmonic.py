@@ -359,6 +359,9 @@ class Harmonic(BaseMotion):
         return (self.ramp,) if self.ramp > 0.0 else ()
 
     def _ramped(self, t: npt.NDArray[np.float64], order: int, a: float, phase: float) -> npt.NDArray[np.float64]:
+        if order == ACCELERATION:
+            full = a * np.cos(self.angular_frequency * t + self.start_phase + phase)
+            return np.asarray(0.5 * (1.0 - np.cos(math.pi * t / self.ramp)) * full)
         # ½(1 − cos νt) cos(Ωt + φ) is a sum of three harmonics, each integrated back from the end of the ramp, where
         # the steady motion begins.
         end, s = self.ramp, np.minimum(t, self.ramp) - self.ramp
@@ -372,8 +375,6 @@ class Harmonic(BaseMotion):
                 * a
                 * np.real(cmath.exp(1j * (angle + shift)) * _integral_of_exp(1j * w * s, ACCELERATION - order))
             )
-        if order == ACCELERATION:
-            return total
         frequency = self.angular_frequency
         velocity = a * math.sin(angle) / frequency
         if order == VELOCITY:

@@ -4,11 +4,10 @@ import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 import numpy.typing as npt
-from numpy.polynomial import HermiteE
 
 from stylobate.base_motions.base import (
     ACCELERATION,
@@ -274,12 +273,20 @@ class _BellDerivative(Waveform):
     @property
     def _height(self) -> float:
         """Peak of the derivative of the Gaussian that gives the acceleration."""
-        return float(np.abs(self._bell(np.array(self.turns), ACCELERATION)).max())
+        return float(max(abs(self._bell(x, ACCELERATION)) for x in self.turns))
 
-    def _bell(self, x: Floats, order: int) -> Floats:
+    def _bell(self, x: Any, order: int) -> Any:
         # −dⁿ/dxⁿ exp(−x²/2) = −(−1)ⁿ Heₙ(x) exp(−x²/2)
         n = self.degree - (ACCELERATION - order)
-        return np.asarray(-((-1.0) ** n) * HermiteE.basis(n)(x) * np.exp(-0.5 * x**2))
+        return -((-1.0) ** n) * _hermite(n, x) * np.exp(-0.5 * x**2)
+
+
+def _hermite(n: int, x: Any) -> Any:
+    """Evaluate the probabilists' Hermite polynomial Heₙ(x) by its recurrence."""
+    before, value = 0.0 * x, 1.0 + 0.0 * x
+    for k in range(n):
+        before, value = value, x * value - k * before
+    return value
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -417,11 +424,12 @@ class Gabor(Waveform):
 
     def _velocity(self, time: Floats, times: int) -> Floats:
         """Differentiate the untruncated velocity `times` times."""
-        u = time / self.deviation - CUT
-        z = u - 1j * self.oscillations
-        # d/du exp(−z²/2) = −z exp(−z²/2), and exp(−u²/2 + iγu) is that up to a constant.
-        factor = (np.ones_like(z), -z, z**2 - 1.0)[times]
-        values = np.real(factor * np.exp(-0.5 * u**2 + 1j * (self.oscillations * u + self.phase)))
+        u, gamma = time / self.deviation - CUT, self.oscillations
+        # d/du exp(−z²/2) = −z exp(−z²/2) with z = u − iγ, and exp(−u²/2 + iγu) is that up to a constant: factors 1, −z
+        # and z² − 1, here their real and imaginary parts.
+        real, imaginary = ((1.0, 0.0), (-u, gamma), (u**2 - gamma**2 - 1.0, -2.0 * gamma * u))[times]
+        angle = gamma * u + self.phase
+        values = np.exp(-0.5 * u**2) * (real * np.cos(angle) - imaginary * np.sin(angle))
         return np.asarray(self.velocity / self.deviation**times * values)
 
 
@@ -499,7 +507,7 @@ class MavroeidisPapageorgiou(Waveform):
     def _differentiated(self, time: Floats, times: int) -> Floats:
         """Differentiate the velocity `times` times; −1 integrates."""
         since_middle = time - 0.5 * self.duration
-        total = np.zeros_like(since_middle)
+        total = 0.0 * since_middle
         for amplitude, rate in self._harmonics():
             total = total + amplitude * rate**times * np.cos(rate * since_middle + self.phase + 0.5 * math.pi * times)
         return total

@@ -2,7 +2,8 @@
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any, ClassVar, Self
 
 import numpy as np
@@ -89,13 +90,11 @@ class Pulse(BaseMotion):
     direction: Direction = 0.0
     start: Start = 0.0
     vertical: VerticalRatio = 0.0
-    _turning_points: tuple[tuple[float, float], ...] = field(init=False, repr=False, compare=False)
 
     def validate(self) -> None:
-        """Raise ParameterError unless `waveform` is a Waveform; find its turning points."""
+        """Raise ParameterError unless `waveform` is a Waveform."""
         if not isinstance(self.waveform, Waveform):
             raise ParameterError(f"waveform must be a Waveform such as Ricker(...), got {self.waveform!r}")
-        object.__setattr__(self, "_turning_points", self.waveform.turning_points())
 
     def derivative(self, time: npt.ArrayLike, order: int) -> Components:
         """Return the displacement (`order` 0), velocity (1) or acceleration (2) along x, y and z."""
@@ -145,7 +144,7 @@ class Pulse(BaseMotion):
         length = self.waveform.duration
         begun = min(max(since - self.start, 0.0), length)
         ends = self.waveform.derivative(np.array([begun, length]), ACCELERATION).tolist()
-        values = (*ends, *(value for time, value in self._turning_points if time >= begun))
+        values = (*ends, *(value for time, value in _turning_points(self.waveform) if time >= begun))
         margin = self.waveform.margin
         return min(0.0, min(values) - margin), max(0.0, max(values) + margin)
 
@@ -393,3 +392,8 @@ class Pulse(BaseMotion):
             velocity=velocity, frequency=frequency, phase=phase, oscillations=oscillations
         )
         return cls(waveform=waveform, direction=direction, start=start, vertical=vertical)
+
+
+@lru_cache(maxsize=64)
+def _turning_points(waveform: Waveform) -> tuple[tuple[float, float], ...]:
+    return waveform.turning_points()

@@ -135,10 +135,9 @@ class SineSweep(BaseMotion):
         vertical: VerticalRatio = 0.0,
     ) -> Self:
         """Create a linear sweep (constant hertz per second) by `acceleration` [m/s²] or `displacement` [m]."""
-        amplitude, quantity = _given_amplitude(acceleration, displacement)
         return cls(
-            amplitude=amplitude,
-            quantity=quantity,
+            amplitude=_given(acceleration, displacement),
+            quantity=SweepQuantity.ACCELERATION if displacement is None else SweepQuantity.DISPLACEMENT,
             law=SweepLaw.LINEAR,
             frequencies=frequencies,
             length=length,
@@ -163,10 +162,9 @@ class SineSweep(BaseMotion):
         vertical: VerticalRatio = 0.0,
     ) -> Self:
         """Create a logarithmic sweep (constant octaves per second) by `acceleration` [m/s²] or `displacement` [m]."""
-        amplitude, quantity = _given_amplitude(acceleration, displacement)
         return cls(
-            amplitude=amplitude,
-            quantity=quantity,
+            amplitude=_given(acceleration, displacement),
+            quantity=SweepQuantity.ACCELERATION if displacement is None else SweepQuantity.DISPLACEMENT,
             law=SweepLaw.LOGARITHMIC,
             frequencies=frequencies,
             length=length,
@@ -247,12 +245,18 @@ class SineSweep(BaseMotion):
             return np.asarray(-a * (rate**2 * np.cos(phase) + change * np.sin(phase)))
         if order == ACCELERATION:
             return self._acceleration(since)
-        first, cycles = 2.0 * math.pi * self.frequencies[0], max(self.frequencies) * self.length
-        velocity = a / first * math.sin(self.start_phase)
+        cycles = max(self.frequencies) * self.length
+        velocity, displacement = self.course_at_start()
         if order == VELOCITY:
             return velocity + integral(self._acceleration, since, self.length, cycles)
-        displacement = -a / first**2 * math.cos(self.start_phase)
         return displacement + velocity * since + double_integral(self._acceleration, since, self.length, cycles)
+
+    def course_at_start(self) -> tuple[float, float]:
+        """Return velocity [m/s] and displacement [m] along the line at the start of the sweep."""
+        a, rate, phase = self.amplitude, 2.0 * math.pi * self.frequencies[0], self.start_phase
+        if self.quantity is SweepQuantity.DISPLACEMENT:
+            return -a * rate * math.sin(phase), a * math.cos(phase)
+        return a / rate * math.sin(phase), -a / rate**2 * math.cos(phase)
 
     def _acceleration(self, since: Floats) -> Floats:
         return np.asarray(self.amplitude * np.cos(self._rates(since)[0]))
@@ -265,7 +269,7 @@ class SineSweep(BaseMotion):
             return (
                 self.start_phase + since * (first + 0.5 * slope * since),
                 first + slope * since,
-                np.full_like(since, slope),
+                slope + 0.0 * since,
             )
         growth = math.log(last / first) / self.length
         turned = first * since if growth == 0.0 else first * np.expm1(growth * since) / growth
@@ -273,11 +277,12 @@ class SineSweep(BaseMotion):
         return self.start_phase + turned, rate, growth * rate
 
 
-def _given_amplitude(acceleration: float | None, displacement: float | None) -> tuple[float, SweepQuantity]:
+def _given(acceleration: float | None, displacement: float | None) -> float:
+    """Return the one that is given, or raise ParameterError."""
     if acceleration is not None and displacement is None:
-        return acceleration, SweepQuantity.ACCELERATION
+        return acceleration
     if displacement is not None and acceleration is None:
-        return displacement, SweepQuantity.DISPLACEMENT
+        return displacement
     raise ParameterError(
         f"acceleration or displacement must be given, one of them, got {acceleration!r} and {displacement!r}"
     )

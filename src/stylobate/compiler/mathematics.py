@@ -20,6 +20,8 @@ from stylobate.compiler.values import NumberKind
 _QUARTER_1, _QUARTER_2, _QUARTER_3 = 1.5707963267341256, 6.077100506303966e-11, 2.0222662487959506e-21
 _LN2_1, _LN2_2 = 0.6931471803691238, 1.9082149292705877e-10
 _LARGEST_EXPONENT, _LEAST_EXPONENT = 709.782712893384, -745.1332191019412
+_FAR = 40.0
+"""Beyond this argument 1 is a rounding error of eˣ, or eˣ of 1."""
 # atan(k/8) and what its float leaves, for k from 0 to 8.
 _ARC = (
     *(0.0, 0.12435499454676144, 0.24497866312686414, 0.35877067027057225, 0.4636476090008061),
@@ -161,11 +163,28 @@ def exp(x: float) -> float:
         return 0.0
     if x != x:  # noqa: PLR0124  NaN
         return x
+    powers, part = _exponential_parts(x)
+    return _scaled(1.0 + part, powers)
+
+
+def expm1(x: float) -> float:
+    """Return eˣ − 1."""
+    if x == 0.0:
+        return x
+    if not abs(x) < _FAR:
+        return exp(x) - 1.0
+    powers, part = _exponential_parts(x)
+    factor = _scaled(1.0, powers)
+    return factor * part + (factor - 1.0)
+
+
+def _exponential_parts(x: float) -> tuple[float, float]:
+    """Return n and p with eˣ = 2ⁿ(1 + p) and |p| below 1/2."""
     powers = float(np.rint(1.4426950408889634 * x))
     high, low = x - powers * _LN2_1, powers * _LN2_2
     r = high - low
     rest = (high - r) - low
-    return _scaled(1.0 + (r + (r * r * _series(_EXPONENTIAL, r) + rest)), powers)
+    return powers, r + (r * r * _series(_EXPONENTIAL, r) + rest)
 
 
 def _scaled(value: float, powers: float) -> float:
@@ -266,6 +285,7 @@ FUNCTIONS: dict[str, tuple[Callable[..., float], int]] = {
     "atan2": (atan2, 2),
     "hypot": (hypot, 2),
     "exp": (exp, 1),
+    "expm1": (expm1, 1),
     "log": (log, 1),
     "asinh": (asinh, 1),
     "pow": (power, 2),

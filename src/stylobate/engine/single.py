@@ -31,11 +31,15 @@ from stylobate.engine.starts import (
 from stylobate.engine.tolerances import CLOSE_PASSAGE, OVERTURNED_TILT
 from stylobate.engine.trajectory import EventFunction, Trajectory, checked_events, own_events
 from stylobate.engine.verdict import (
+    AFTER_END,
+    BEFORE_END,
     FALLEN,
     FIRST_DIGIT,
     MANY_PASSAGES,
     MOST_PERIODS,
+    MOVING,
     OPEN,
+    SAFE,
     UNSETTLED,
     VERDICTS,
     duration_needed,
@@ -394,7 +398,7 @@ _UPRIGHT = {
 _UNPROVED = "its tilt reached π/2, which counts as overturned"
 
 
-_RELEASED = "it may still be uplifted: follow it longer"
+_STOPS = ", {left:.4g} s before the base motion stops; it may still be uplifted: follow it longer"
 
 
 _RACING = (
@@ -422,7 +426,12 @@ def reason_texts() -> dict[str, Any]:
         "step_limit": step_limit(0).replace(" 0", " {most}"),
         "unseen": unseen(0).replace(" 0", " {most}"),
         "racing": _RACING,
-        "still_moving": f"still moving; {OPEN}",
+        "moving": MOVING,
+        "open": OPEN,
+        "before_end": BEFORE_END,
+        "after_end": AFTER_END,
+        "safe": SAFE,
+        "standing_before_end": _STOPS,
     }
 
 
@@ -475,7 +484,7 @@ def _standing(model: Model, motion: BaseMotion, followed: Followed) -> str:
     before = f", uplifted {plural(releases, 'time')} before" if releases else ""
     left = motion.duration - followed.trajectory.end * model.time_scale
     to_come = math.isfinite(left) and left > 0.0
-    stops = f", {left:.4g} s before the base motion stops; {_RELEASED}" if to_come else ""
+    stops = _STOPS.format(left=left) if to_come else ""
     return f"it stands at the end of the run{before}{stops}"
 
 

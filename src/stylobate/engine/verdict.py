@@ -52,19 +52,23 @@ def survival(model: Model, motion: BaseMotion, trajectory: Trajectory) -> tuple[
     """
     end = trajectory.end * model.time_scale
     if not has_ended(end, motion.duration):
-        left = motion.duration - end
-        return Outcome.STILL_MOVING, f"still moving, {left:.4g} s before the base motion ends; {OPEN}"
+        return Outcome.STILL_MOVING, BEFORE_END.format(left=motion.duration - end)
     after = max(0.0, end - motion.duration)
-    moving = f"still moving {after:.4g} s after the base motion ended" if motion.duration > 0.0 else "still moving"
+    moving = AFTER_END.format(after=after) if motion.duration > 0.0 else MOVING
     push = remaining_acceleration(motion) / model.column.gravity
     share = float(energy_over_balance(model, trajectory.own_states(np.array([trajectory.end])), push)[0])
     if share >= 1.0:
-        return Outcome.STILL_MOVING, f"{moving}; {OPEN}"
+        return Outcome.STILL_MOVING, moving + OPEN
     outcome = Outcome.SURVIVED if motion.duration > 0.0 else Outcome.STILL_MOVING
-    return outcome, f"{moving}, but it cannot overturn any more: it has {100.0 * share:.2g} % of the energy required"
+    return outcome, moving + SAFE.format(share=100.0 * share)
 
 
-OPEN = "it may overturn later: simulate longer"
+MOVING = "still moving"
+OPEN = "; it may overturn later: simulate longer"
+BEFORE_END = f"{MOVING}, {{left:.4g}} s before the base motion ends{OPEN}"
+AFTER_END = f"{MOVING} {{after:.4g}} s after the base motion ended"
+SAFE = ", but it cannot overturn any more: it has {share:.2g} % of the energy required"
+"""Reasons of a column that moves at the end of a run, with gaps for numbers."""
 
 
 def has_ended(time: npt.ArrayLike, duration: npt.ArrayLike) -> npt.NDArray[np.bool_]:

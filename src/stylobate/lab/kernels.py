@@ -1,4 +1,4 @@
-"""The kernels of the page as static files: programs of WebAssembly, and a description of them for the page."""
+"""The kernels of the page as static files: programs of WebAssembly, records, and a description of them for the page."""
 
 from collections.abc import Mapping
 from enum import auto
@@ -6,13 +6,14 @@ from typing import Any
 
 import numpy as np
 
-from stylobate.base_motions import Harmonic
-from stylobate.engine import programs
+from stylobate.base_motions import Harmonic, Record
+from stylobate.config.description import WANTED
 from stylobate.engine.ensembles.run_columns import term_of
 from stylobate.engine.kernel.bound import FromZero
 from stylobate.engine.kernel.columns import LAGS
-from stylobate.engine.programs import CaseProgram, RunProgram, Shaking
 from stylobate.engine.single import reason_texts
+from stylobate.engine.standalone import programs
+from stylobate.engine.standalone.programs import CaseProgram, RunProgram, Shaking, TableProgram
 from stylobate.engine.verdict import (
     FALLEN,
     FINER_PASSAGE,
@@ -27,8 +28,9 @@ from stylobate.lab.limits import Limits
 from stylobate.lab.tasks import SAMPLES
 from stylobate.models.declared import MODELS
 from stylobate.parameter_quantities import attributes_of, known_names
+from stylobate.records.joining import sample_names, sample_record
 from stylobate.results import OutcomeRules
-from stylobate.run_arguments import SingleRun, arguments_of
+from stylobate.run_arguments import FREE_TAIL, SingleRun, arguments_of
 from stylobate.theory.rolling import critical_of, rolling_point
 
 
@@ -104,8 +106,18 @@ CASE = CaseProgram(
 )
 
 
+TABLES = TableProgram()
+
 ALWAYS = ("mathematics", "case")
 """Modules that each run needs, besides its own."""
+
+OF_TABLES = "tables"
+"""Module that each run under a tabulated base motion needs."""
+
+
+def records() -> Mapping[str, Record]:
+    """Return the records of the package, by the names of the files with their samples."""
+    return {f"record-{number}.f64": sample_record(name) for number, name in enumerate(sample_names())}
 
 
 def run_programs() -> dict[str, RunProgram]:
@@ -125,16 +137,34 @@ def program_of(values: Mapping[str, Any]) -> str | None:
     The page decides it in `web/src/kernels/case.ts`.
     """
     model, motion = values["model"], values.get("motion", {"kind": "rest"})
-    if any(isinstance(value, str) for name, value in model.items() if name != "kind") or motion.get("ramp"):
+    if any(isinstance(value, str) for name, value in model.items() if name != "kind"):
         return None
-    if motion["kind"] == "rest":
-        shaking = Shaking.REST
-    elif f"motion_{motion['kind']}" in {variant.of for variant in CASE.variants.values()}:
-        shaking = Shaking.HARMONIC
-    else:
-        return None
+    shaking = _shaking_of(motion)
     name = f"{model['kind']}_{shaking}"
     return name if name in run_programs() else None
+
+
+def _shaking_of(motion: Mapping[str, Any]) -> Shaking | None:
+    of = f"motion_{motion['kind']}"
+    if motion["kind"] == "rest":
+        return Shaking.REST
+    if motion["kind"] == "record":
+        return Shaking.LINEAR
+    if of in {variant.of for variant in CASE.variants.values()} and not motion.get("ramp"):
+        return Shaking.HARMONIC
+    return Shaking.SMOOTH if of in {variant.of for variant in TABLES.variants.values()} else None
+
+
+def files_of(values: Mapping[str, Any]) -> tuple[str, ...]:
+    """Return the names of the files that the page loads for the run that these plain values describe."""
+    program = program_of(values)
+    if program is None:
+        return ()
+    motion = values.get("motion", {"kind": "rest"})
+    own = (OF_TABLES,) if _shaking_of(motion) in (Shaking.LINEAR, Shaking.SMOOTH) else ()
+    samples = dict(zip(sample_names(), records(), strict=True)).get(motion.get("sample"))
+    modules = (f"{name}.wasm" for name in (*ALWAYS, program, *own))
+    return (*modules, *([] if samples is None else [samples]))
 
 
 def described() -> dict[str, Any]:
@@ -143,14 +173,20 @@ def described() -> dict[str, Any]:
     return {
         "common": programs.described(),
         "case": CASE.described(),
+        "tables": TABLES.described(),
+        "records": [
+            {"sample": sample, "name": name, "step": record.step}
+            for sample, (name, record) in zip(sample_names(), records().items(), strict=True)
+        ],
         "curve": {one.name.lower(): int(one) for one in CurvePoint},
         "derived": [*programs.COLUMN, *CASE.derived],
         "programs": {name: _of_program(program) for name, program in run_programs().items()},
         "axes": {name: attributes_of(name) for name in sorted(known_names()) if "." not in name},
         "outcomes": [{"name": one.name, "label": one.label} for one in Outcome],
         "fallen": [int(one) for one in FALLEN],
-        "texts": reason_texts(),
+        "texts": {**reason_texts(), "no_duration": f"duration is missing{WANTED['duration']}"},
         "rules": {"n": rules.periods, "short": rules.periods + 1, "steady": steady_periods(rules), "most": LAGS},
+        "free_tail": FREE_TAIL,
         "most_periods": MOST_PERIODS,
         "most_steps": Limits().steps,
         "samples": SAMPLES._asdict(),
@@ -177,7 +213,10 @@ def _of_program(program: RunProgram) -> dict[str, Any]:
     }
 
 
-def modules() -> Mapping[str, bytes]:
-    """Return the modules of WebAssembly by name."""
+def files() -> Mapping[str, bytes]:
+    """Return the modules of WebAssembly, and the samples of the records, by the names of their files."""
     runs = {name: program.module() for name, program in run_programs().items()}
-    return dict(zip(ALWAYS, (programs.mathematics_module(), CASE.module()), strict=True)) | runs
+    always = dict(zip(ALWAYS, (programs.mathematics_module(), CASE.module()), strict=True))
+    modules = {**always, OF_TABLES: TABLES.module(), **runs}
+    samples = {name: record.samples.astype("<f8").tobytes() for name, record in records().items()}
+    return {f"{name}.wasm": module for name, module in modules.items()} | samples

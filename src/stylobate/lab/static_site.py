@@ -29,7 +29,7 @@ _CONTENTS = "answers"
 """Element of the page with the list of answers, beginning of the names of their elements, and their folder."""
 
 _PROGRAMS = "programs"
-"""Folder of the programs, and beginning of the names of their elements."""
+"""Folder of the programs and records, and beginning of the names of their elements."""
 
 _SCRIPT, _STYLE, _HEAD = (
     '<script type="module" src="main.js"></script>',
@@ -105,17 +105,17 @@ def write(folder: Path, *, progress: Progress = None) -> Sizes:
     for done, one in enumerate(asked):
         report(one.name, done, len(asked))
         answers[one.name] = packed(answer_to(one))
-    programs = kernels.modules()
+    programs = kernels.files()
     page, style, script = (_page_file(name) for name in ("index.html", "main.css", "main.js"))
     contents = _contents(asked)
     opening = next(one for one in lessons() if one.opens)
     first = [f"{_CONTENTS}/{ask}-{opening.identity}.json" for ask in AT_ONCE]
-    first += [f"{_PROGRAMS}/{name}.wasm" for name in (*kernels.ALWAYS, kernels.program_of(opening.description))]
+    first += [f"{_PROGRAMS}/{name}" for name in kernels.files_of(opening.description)]
     files = {
         "main.css": style.encode(),
         "main.js": script.encode(),
         **{f"{_CONTENTS}/{name}.json": answer for name, answer in answers.items()},
-        **{f"{_PROGRAMS}/{name}.wasm": module for name, module in programs.items()},
+        **{f"{_PROGRAMS}/{name}": content for name, content in programs.items()},
     }
     first = [name for name in first if name in files]
     files["index.html"] = _for_server(page, contents, first).encode()

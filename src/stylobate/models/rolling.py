@@ -293,7 +293,7 @@ class Rolling(SpinningModel, FiniteTiltModel):
         tilt = np.hypot(x, y)
         with np.errstate(invalid="ignore", divide="ignore"):
             w2 = np.where(tilt > 0.0, (x * vx + y * vy) / tilt, np.hypot(vx, vy))
-            w1 = np.where(tilt > 0.0, -np.sinc(tilt / np.pi) * (x * vy - y * vx) / tilt, 0.0)
+            w1 = np.where(tilt > 0.0, -np.sin(tilt) * (x * vy - y * vx) / tilt**2, 0.0)
         kinetic = (1.0 + kappa * c * c) * w2**2 + kappa * (c * w3 + w1) ** 2 + (1.0 - kappa) * w1**2
         kinetic += kappa * column.axial_ratio * c * c * w3**2
         energy: Floats = 0.5 * kinetic + finite_tilt.potential(tilt, c)

@@ -18,12 +18,25 @@ Floats = npt.NDArray[np.float64]
 DEGREE = 15
 # Pieces are at most half the shortest period long. They are halved until the error is below this fraction of the peak
 # acceleration; the second number is the maximum number of halvings.
-_ACCURACY, _HALVINGS = 1e-11, 12
+ACCURACY, HALVINGS = 1e-11, 12
 _MOST_PIECES = 2_000_000
 # A piece is continued by the next one if the jump of the acceleration is below this fraction of its maximum.
-_NO_JUMP = 1e-10
+NO_JUMP = 1e-10
 # Relative distance in time from a break at which the acceleration is evaluated.
-_ASIDE = 4.0 * float(np.finfo(float).eps)
+ASIDE = 4.0 * float(np.finfo(float).eps)
+# The Chebyshev points of one kind determine a polynomial on −1 … 1, the points of the other kind test it.
+_POINTS = np.cos(math.pi * np.arange(2 * (DEGREE + 1) + 1) / (2 * (DEGREE + 1)))[::-1].copy()
+NODE_POINTS, TEST_POINTS = _POINTS[1::2].copy(), _POINTS[::2].copy()
+SERIES_OF_VALUES = (
+    np.append(1.0, np.full(DEGREE, 2.0))[:, np.newaxis]
+    / (DEGREE + 1)
+    * chebyshev.chebvander(NODE_POINTS, DEGREE).T.copy()
+)
+TESTS_OF_SERIES = chebyshev.chebvander(TEST_POINTS, DEGREE)
+POWERS_OF_SERIES = np.stack(
+    [np.pad(chebyshev.cheb2poly(one), (0, DEGREE + 1))[: DEGREE + 1] for one in np.eye(DEGREE + 1)], axis=1
+)
+"""Chebyshev series from values at the nodes, its values at the test points, and its coefficients of powers."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,7 +52,7 @@ class PolynomialTable:
         powers = coefficients.shape[-1]
         starts, ends = coefficients @ (-1.0) ** np.arange(powers), coefficients.sum(axis=-1)
         jumps = np.abs(starts[1:] - ends[:-1]).max(axis=-1, initial=0.0)
-        continued = np.append(jumps <= _NO_JUMP * np.abs(coefficients).max(initial=0.0), 0.0)
+        continued = np.append(jumps <= NO_JUMP * np.abs(coefficients).max(initial=0.0), 0.0)
         per_half = 2.0 / np.diff(spans)
         rows = np.column_stack([spans, bounds, continued, per_half, coefficients.reshape(len(spans), -1)])
         return cls(rows, powers - 1)
@@ -86,7 +99,7 @@ def tabulated(motion: BaseMotion, end: float) -> PolynomialTable:
     for low, high in zip(edges, [*edges[1:], math.inf], strict=True):
         cuts = np.minimum(_cuts(low, high, longest, end), after)  # no piece crosses a break
         for a, b in zip(cuts[:-1].tolist(), cuts[1:].tolist(), strict=True):
-            pieces += _fitted(motion, a, b, size, _HALVINGS)
+            pieces += _fitted(motion, a, b, size, HALVINGS)
     starts, ends, coefficients = zip(*pieces, strict=True)
     bounds = np.array([(motion.peak_horizontal(time), *motion.vertical_range(time)) for time in starts])
     return PolynomialTable.of(np.column_stack([starts, ends]), bounds, np.stack(coefficients))
@@ -120,22 +133,14 @@ def _cuts(low: float, high: float, longest: float, end: float) -> Floats:
 def _fitted(
     motion: BaseMotion, start: float, end: float, size: float, halvings: int
 ) -> list[tuple[float, float, Floats]]:
-    # The Chebyshev points of one kind determine the polynomial, the points of the other kind test it.
-    count = DEGREE + 1
-    points = np.cos(math.pi * np.arange(2 * count + 1) / (2 * count))[::-1]
     middle, half = 0.5 * (start + end), 0.5 * (end - start)
-    inside = np.clip(middle + half * points, start * (1.0 + _ASIDE), end * (1.0 - _ASIDE))
+    inside = np.clip(middle + half * _POINTS, start * (1.0 + ASIDE), end * (1.0 - ASIDE))
     values = np.stack(motion.derivative(inside, ACCELERATION))
-    nodes, tests = slice(1, None, 2), slice(0, None, 2)
-    series = chebyshev.chebfit(points[nodes], values[:, nodes].T, DEGREE)
-    error = np.abs(chebyshev.chebval(points[tests], series) - values[:, tests]).max()
-    if error <= _ACCURACY * size or size == 0.0:
-        series[np.abs(series) < 0.01 * _ACCURACY * size] = 0.0
-        coefficients = np.zeros((3, count))
-        for axis in range(3):
-            powers = chebyshev.cheb2poly(series[:, axis])
-            coefficients[axis, : powers.size] = powers
-        return [(start, end, coefficients)]
+    series = SERIES_OF_VALUES @ values[:, 1::2].T
+    error = np.abs(TESTS_OF_SERIES @ series - values[:, ::2].T).max()
+    if error <= ACCURACY * size or size == 0.0:
+        series[np.abs(series) < 0.01 * ACCURACY * size] = 0.0
+        return [(start, end, (POWERS_OF_SERIES @ series).T)]
     if halvings == 0:
         raise UnsupportedError(
             f"motion must be smooth between its breaks, but is not near t = {middle!r} s; list the time in breaks"
@@ -148,7 +153,7 @@ def _fitted(
 # piece; it is no worse than the error of a fit.
 _FIT_ERROR = 1e-10
 _BEYOND = 1.0 + 1e-9
-_TEST_POINTS = np.array([-0.5, 0.0, 0.5])
+_QUARTERS = np.array([-0.5, 0.0, 0.5])
 
 
 def tabulated_alike(motions: Sequence[BaseMotion], end: float) -> list[PolynomialTable]:
@@ -192,8 +197,8 @@ def _stretched(table: PolynomialTable, of: BaseMotion, motion: BaseMotion, end: 
 def _fits(table: PolynomialTable, motion: BaseMotion, size: float) -> bool:
     starts, ends = table.rows[:, Piece.START], table.rows[:, Piece.END]
     middle, half = 0.5 * (starts + ends), 0.5 * (ends - starts)
-    times = middle[:, np.newaxis] + half[:, np.newaxis] * _TEST_POINTS
-    powers = _TEST_POINTS ** np.arange(table.degree + 1)[:, np.newaxis]
+    times = middle[:, np.newaxis] + half[:, np.newaxis] * _QUARTERS
+    powers = _QUARTERS ** np.arange(table.degree + 1)[:, np.newaxis]
     tabulated_values = table.coefficients @ powers  # piece, axis, time
     wanted = np.stack(motion.derivative(times.ravel(), ACCELERATION)).reshape(3, *times.shape).transpose(1, 0, 2)
     return bool(np.abs(tabulated_values - wanted).max() <= _FIT_ERROR * size)

@@ -4,9 +4,13 @@ import type { Part } from "../page/case/description";
 import type { DrawnMotion, Run, RunEvent, Series } from "../page/server/schema";
 import { type Case, caseOf, numberOf } from "./case";
 import { filled, general } from "./general";
+import { Refused } from "../page/server/source";
 import type { Kernels, Numbers } from "./kernels";
 import { asPython, asToml } from "./snippets";
 import type { Finished, Program } from "./program";
+
+/** A base motion has ended if less than this fraction of it is left. */
+const NO_TIME = 1e-12;
 
 /** A run that has been computed, with what is read from it. */
 interface Computed {
@@ -15,6 +19,8 @@ interface Computed {
   readonly program: Program;
   readonly finished: Finished;
   readonly numbers: Float64Array;
+  /** Polynomials of its base motion. */
+  readonly pieces: Float64Array | undefined;
 }
 
 export async function simulated(kernels: Kernels, description: Part): Promise<Run> {
@@ -26,13 +32,13 @@ export async function simulated(kernels: Kernels, description: Part): Promise<Ru
 
 /** Runs a case for its duration, or else until its outcome is decided. */
 function decided(kernels: Kernels, asked: Case, program: Program, description: Part): Computed {
-  const { rules, most_periods } = kernels.described;
+  const { most_periods } = kernels.described;
   const given = description["duration"];
-  const length = asked.period ?? 0;
-  let duration = numberOf(given, rules.steady * length, "duration");
+  const periodic = asked.shaking.lasts === Infinity ? (asked.shaking.period ?? 0) : 0;
+  let duration = numberOf(given, usualDuration(kernels, asked), "duration");
   let found = computed(kernels, asked, program, duration);
-  while ((given === undefined || given === null) && length > 0) {
-    const needed = Math.min(verdict(found, "needed"), most_periods * length);
+  while ((given === undefined || given === null) && periodic > 0) {
+    const needed = Math.min(verdict(found, "needed"), most_periods * periodic);
     if (!(duration < needed)) break;
     const longer = computed(kernels, asked, program, needed);
     if (outcomeOf(longer).name === "FAILED") break;
@@ -41,12 +47,23 @@ function decided(kernels: Kernels, asked: Case, program: Program, description: P
   return found;
 }
 
+/** Returns the first duration of a run that states none: NaN without a usual one. */
+function usualDuration(kernels: Kernels, { shaking, column }: Case): number {
+  const { rules, free_tail } = kernels.described;
+  if (shaking.lasts === Infinity) return rules.steady * (shaking.period ?? NaN);
+  return shaking.lasts > 0 ? shaking.lasts + free_tail / (column["frequency_parameter"] ?? NaN) : NaN;
+}
+
 function computed(kernels: Kernels, asked: Case, program: Program, duration: number, finer = false): Computed {
   const { rtol, most_steps, finer: shares } = kernels.described;
+  if (Number.isNaN(duration)) throw new Refused(422, [kernels.described.texts.no_duration]);
   const { traces } = program.described;
   const accuracy = finer ? shares : { rtol, rest_share: 1, passage_share: 1 };
-  const numbers = numbersOf(program, { ...asked.numbers, duration, ...accuracy, max_steps: most_steps, traces });
-  return { kernels, asked, program, finished: program.run(numbers), numbers };
+  const table = asked.shaking.table?.(duration);
+  const own = { ...asked.numbers, ...table?.numbers };
+  const numbers = numbersOf(program, { ...own, duration, ...accuracy, max_steps: most_steps, traces });
+  const pieces = table?.pieces;
+  return { kernels, asked, program, finished: program.run(numbers, pieces), numbers, pieces };
 }
 
 /** Returns the numbers of a run in the order of its program. */
@@ -117,7 +134,7 @@ function repeated(found: Computed): readonly [boolean, readonly string[]] {
   const duration = found.numbers[program.described.names.indexOf("duration")] ?? NaN;
   const again = computed(kernels, asked, program, duration, true);
   const energy = log(again, "rest_energy", "setup");
-  program.run(found.numbers); // the samples are taken from the memory of the program
+  program.run(found.numbers, found.pieces); // the samples are taken from the memory of the program
   const { fallen, finer } = kernels.described;
   const [before, after] = [verdict(found, "outcome"), verdict(again, "outcome")];
   if (outcomeOf(again).name === "FAILED" || fallen.includes(before) === fallen.includes(after)) return [false, []];
@@ -147,16 +164,28 @@ function reasonOf(found: Computed): string {
     if (status === codes.rested) return texts.stands[0];
     const releases = log(found, "releases");
     const times = releases === 1 ? "1 time" : `${releases} times`;
-    return `${texts.stands_at_end}${releases > 0 ? `, uplifted ${times} before` : ""}`;
+    const left = verdict(found, "base_left");
+    const stops = left > 0 && left < Infinity ? filled(texts.standing_before_end, { left }) : "";
+    return `${texts.stands_at_end}${releases > 0 ? `, uplifted ${times} before` : ""}${stops}`;
   }
   if (own !== "") return own;
-  if (found.asked.period === null) return texts.still_moving;
+  if (found.asked.shaking.lasts < Infinity) return survivalOf(found);
   const after = verdict(found, "repeats_after") || verdict(found, "nearest");
   return filled(texts.grounds[verdict(found, "ground")] ?? "", {
     ...rules,
     after: after === 1 ? "each period" : `${after} periods`,
     needed: verdict(found, "needed"),
   });
+}
+
+/** Returns the reason of a column that moves at the end of a run, after its base motion or without any. */
+function survivalOf(found: Computed): string {
+  const { texts } = found.kernels.described;
+  const [left, share] = [verdict(found, "base_left"), verdict(found, "energy_share")];
+  const lasts = found.asked.shaking.lasts;
+  if (left > NO_TIME * lasts) return filled(texts.before_end, { left });
+  const moving = lasts > 0 ? filled(texts.after_end, { after: Math.max(0, -left) }) : texts.moving;
+  return moving + (share < 1 ? filled(texts.safe, { share: 100 * share }) : texts.open);
 }
 
 function eventsOf(found: Computed, scale: number): readonly RunEvent[] {
@@ -279,10 +308,11 @@ class Samples {
 /** Returns the number of samples for a smooth plot of a run; the page cannot show more. */
 function sampleCount(found: Computed, description: Part): number {
   const { per_period, fewest, most } = found.kernels.described.samples;
-  const duration = description["duration"];
+  const ends = found.asked.shaking.lasts < Infinity;
+  const own = found.numbers[found.program.described.names.indexOf("duration")];
+  const duration = ends ? own : description["duration"];
   if (typeof duration !== "number") return most;
-  const moves = found.asked.period === null ? 0 : (2 * Math.PI) / found.asked.period;
-  const frequency = Math.max(moves, found.asked.column["frequency_scale"] ?? NaN);
+  const frequency = Math.max(found.asked.shaking.frequency, found.asked.column["frequency_scale"] ?? NaN);
   const wanted = (per_period * duration * frequency) / (2 * Math.PI);
   return Math.trunc(Math.min(Math.max(wanted, fewest), most));
 }

@@ -5,6 +5,7 @@ import { PARTS, isPart, isVector } from "../page/case/description";
 import { START } from "../page/server/declared";
 import { Refused } from "../page/server/source";
 import type { Declared, Kernels, Numbers } from "./kernels";
+import { type Shaking, type Vector, shakingOf } from "./shaking";
 
 /** The case has something that no program knows. */
 export class Unknown extends Error {}
@@ -14,10 +15,9 @@ export interface Case {
   readonly program: string;
   /** The numbers of the column and its derived ones, by name. */
   readonly column: Readonly<Record<string, number>>;
-  /** The numbers of a run, by name. */
+  /** The numbers of a run, by name; those of a tabulated base motion are in its table. */
   readonly numbers: Readonly<Record<string, number>>;
-  /** Period of the base motion [s]; null if it rests. */
-  readonly period: number | null;
+  readonly shaking: Shaking;
 }
 
 /** What a description of a run may have besides its case. */
@@ -29,10 +29,9 @@ export async function caseOf(kernels: Kernels, given: Part): Promise<Case> {
   }
   const column = await kernels.made("column", part(given, "column"), "shape");
   const motion = given["motion"] === undefined ? { kind: "rest" } : part(given, "motion");
-  const rests = motion["kind"] === "rest";
-  const moves = rests ? {} : await harmonic(kernels, motion);
+  const shaking = await shakingOf(kernels, motion);
   const kind = String(part(given, "model")["kind"] ?? "wobbling");
-  const program = `${kind}_${rests ? "rest" : "harmonic"}`;
+  const program = `${kind}_${shaking.kind}`;
   const described = kernels.described.programs[program];
   if (!described) throw new Unknown(`the model ${kind} is not computed here`);
   const model: Record<string, number> = {};
@@ -43,26 +42,9 @@ export async function caseOf(kernels: Kernels, given: Part): Promise<Case> {
     else model[name] = value === null ? NaN : checked(numberOf(value, NaN, name), one);
   }
   refuseOthers(part(given, "model"), ["kind", ...Object.keys(model)]);
-  const frequency = moves["angular_frequency"];
-  const numbers = { ...column, ...model, ...moves, ...start(kernels, given) };
-  checkStart(described, numbers);
-  return {
-    program,
-    column,
-    numbers,
-    period: frequency === undefined ? null : (2 * Math.PI) / frequency,
-  };
-}
-
-async function harmonic(kernels: Kernels, motion: Part): Promise<Numbers> {
-  const [ax, ay, az, px, py, pz, frequency, phase, ramp] = Object.values(await kernels.made("motion", motion, "kind"));
-  if (ramp !== 0) throw new Unknown("a ramp is not computed here");
-  const [amplitude, phases] = [named("amplitude", [ax, ay, az]), named("phase", [px, py, pz])];
-  return { ...amplitude, ...phases, angular_frequency: frequency ?? NaN, start_phase: phase ?? NaN };
-}
-
-function named(name: string, values: readonly (number | undefined)[]): Numbers {
-  return Object.fromEntries(values.map((value, axis) => [`${name}_${"xyz"[axis]}`, value ?? NaN]));
+  const numbers = { ...column, ...model, ...shaking.numbers, ...start(kernels, given) };
+  checkStart(described, numbers, shaking);
+  return { program, column, numbers, shaking };
 }
 
 /** Returns the initial conditions: those that are given, and 0 for the others. */
@@ -90,31 +72,22 @@ export function checked(value: number, one: Declared): number {
 }
 
 /** Refuses initial conditions that the model does not support. */
-function checkStart(described: Kernels["described"]["programs"][string], numbers: Numbers): void {
+function checkStart(described: Kernels["described"]["programs"][string], numbers: Numbers, shaking: Shaking): void {
   const of = (name: string): number => numbers[name] ?? 0;
   const tilt = Math.hypot(of("tilt_x"), of("tilt_y"));
   if (!(tilt < Math.PI / 2)) throw new Refused(422, [`tilt must be below π/2 in length, got ${tilt} rad`]);
   if (of("spin") !== 0 && !described?.spins) {
     throw new Refused(422, [`spin must be left out: the column of this model cannot turn, got ${of("spin")} rad/s`]);
   }
-  if (described?.planar_only && !inOnePlane(of)) {
+  if (described?.planar_only && !inOnePlane(of, shaking.vectors())) {
     throw new Refused(422, ["tilt, tilt_rate and motion must lie in one vertical plane for this model"]);
   }
 }
 
 const PARALLEL = 1e-12;
 
-function inOnePlane(of: (name: string) => number): boolean {
-  const moved = (part: (angle: number) => number): [number, number] => [
-    of("amplitude_x") * part(of("phase_x")),
-    of("amplitude_y") * part(of("phase_y")),
-  ];
-  const vectors: [number, number][] = [
-    [of("tilt_x"), of("tilt_y")],
-    [of("tilt_rate_x"), of("tilt_rate_y")],
-    moved(Math.cos),
-    moved(Math.sin),
-  ];
+function inOnePlane(of: (name: string) => number, shaking: readonly Vector[]): boolean {
+  const vectors: readonly Vector[] = [[of("tilt_x"), of("tilt_y")], [of("tilt_rate_x"), of("tilt_rate_y")], ...shaking];
   const sizes = vectors.map(([x, y]) => Math.hypot(x, y));
   const [ux, uy] = vectors[sizes.indexOf(Math.max(...sizes))] ?? [0, 0];
   const longest = Math.hypot(ux, uy);

@@ -3,7 +3,9 @@
 import type { Part, Value } from "../page/case/description";
 import { Refused } from "../page/server/source";
 import { Unknown, checked, numberOf, refuseOthers } from "./case";
+import { OwnRecords } from "./own-records";
 import { type Common, type Described as OfProgram, Program } from "./program";
+import { STACK, type Samples, Tables } from "./tables";
 
 export type Numbers = Readonly<Record<string, number>>;
 
@@ -43,7 +45,13 @@ interface Texts {
   readonly step_limit: string;
   readonly unseen: string;
   readonly racing: string;
-  readonly still_moving: string;
+  readonly before_end: string;
+  readonly standing_before_end: string;
+  readonly after_end: string;
+  readonly moving: string;
+  readonly open: string;
+  readonly safe: string;
+  readonly no_duration: string;
 }
 
 interface DescribedProgram extends OfProgram {
@@ -61,6 +69,16 @@ interface DescribedProgram extends OfProgram {
 export interface Described {
   readonly common: Common;
   readonly case: readonly Variant[];
+  /** Constructors of base motions that can be tabulated. */
+  readonly tables: {
+    readonly variants: readonly Variant[];
+    /** Names of the numbers of a table. */
+    readonly numbers: readonly string[];
+    /** Numbers in a polynomial, by kind of shaking. */
+    readonly pieces: Numbers;
+  };
+  /** The records of the package, and the step between their samples [s]. */
+  readonly records: readonly { readonly sample: string; readonly name: string; readonly step: number }[];
   /** Columns of the response curves for one sense of rolling. */
   readonly curve: Numbers;
   /** Names of what the program of cases knows of a column. */
@@ -72,6 +90,8 @@ export interface Described {
   readonly fallen: readonly number[];
   readonly texts: Texts;
   readonly rules: { readonly n: number; readonly short: number; readonly steady: number; readonly most: number };
+  /** Length of the free vibration after a base motion that ends, over 1/p. */
+  readonly free_tail: number;
   readonly most_periods: number;
   readonly most_steps: number;
   /** Numbers of samples of a run. */
@@ -80,8 +100,8 @@ export interface Described {
   readonly finer: { readonly rest_share: number; readonly passage_share: number; readonly rtol: number };
 }
 
-/** Returns the bytes of a module by its name. */
-export type Load = (name: string) => Promise<BufferSource>;
+/** Returns the bytes of a module, or of the samples of a record, by the name of its file. */
+export type Load = (name: string) => Promise<ArrayBuffer>;
 
 const PAGE = 1 << 16;
 const OF_A_MOTION = 9;
@@ -91,10 +111,14 @@ const MOST_RESULTS = 64;
 
 export class Kernels {
   readonly described: Described;
+  /** Records that the user has read into the page. */
+  readonly own = new OwnRecords();
   readonly #load: Load;
   readonly #programs = new Map<string, Promise<Program>>();
   #mathematics: Promise<WebAssembly.Exports> | null = null;
   #case: Promise<WebAssembly.Instance> | null = null;
+  #tables: Promise<Tables> | null = null;
+  readonly #samples = new Map<string, Promise<Float64Array>>();
   readonly #memory = new WebAssembly.Memory({ initial: 2 });
 
   constructor(described: Described, load: Load) {
@@ -114,9 +138,24 @@ export class Kernels {
 
   /** Returns the numbers of a described column or motion, by name. */
   async made(group: "column" | "motion", given: Part, choosing: "shape" | "kind"): Promise<Numbers> {
-    const of = `${group}_${String(given[choosing])}`;
+    const [name, values] = this.arguments(this.described.case, `${group}_${String(given[choosing])}`, given, choosing);
+    const found = await this.called(name, values);
+    const names =
+      group === "column" ? this.described.derived : Array.from({ length: OF_A_MOTION }, (_, k) => String(k));
+    const made: Numbers = Object.fromEntries(names.map((one, k) => [one, found[k] ?? NaN]));
+    if (made["consistent"] === 0) throw new Refused(422, [CONTRADICTION]);
+    return made;
+  }
+
+  /** Returns the name of the function for a constructor with the numbers that are given, and its arguments. */
+  arguments(
+    known: readonly Variant[],
+    of: string,
+    given: Part,
+    choosing: "shape" | "kind",
+  ): readonly [name: string, values: readonly number[]] {
     const numbers = Object.keys(given).filter((name) => given[name] !== null && given[name] !== undefined);
-    const variants = this.described.case.filter((one) => one.of === of);
+    const variants = known.filter((one) => one.of === of);
     const variant = variants.find((one) => one.given.every((name) => numbers.includes(name)) && fits(one, numbers));
     if (!variant) throw new Unknown(`${of} is not computed here`);
     refuseOthers(given, [choosing, ...variant.arguments.map((one) => one.name)]);
@@ -127,12 +166,22 @@ export class Kernels {
       if (!Array.isArray(value) || value.length !== components) throw new Unknown(`${name} is not a vector here`);
       return (value as readonly Value[]).map((part) => checked(numberOf(part, NaN, name), one));
     });
-    const found = await this.called(variant.name, values);
-    const names =
-      group === "column" ? this.described.derived : Array.from({ length: OF_A_MOTION }, (_, k) => String(k));
-    const made: Numbers = Object.fromEntries(names.map((name, k) => [name, found[k] ?? NaN]));
-    if (made["consistent"] === 0) throw new Refused(422, [CONTRADICTION]);
-    return made;
+    return [variant.name, values];
+  }
+
+  /** Returns the program for the tables of base motions. */
+  tables(): Promise<Tables> {
+    this.#tables ??= this.#ofTables();
+    return this.#tables;
+  }
+
+  /** Returns the samples of a record of the package. */
+  async sample(name: string): Promise<Samples> {
+    const listed = this.described.records.find((one) => one.sample === name);
+    if (!listed) throw new Unknown(`the record ${name} is not here`);
+    const found = this.#samples.get(name) ?? this.#load(listed.name).then((bytes) => new Float64Array(bytes));
+    this.#samples.set(name, found);
+    return { values: await found, step: listed.step };
   }
 
   /** Returns the results of a function of the program of cases. */
@@ -154,20 +203,27 @@ export class Kernels {
   async #made(name: string): Promise<Program> {
     const described = this.described.programs[name];
     if (!described) throw new Unknown(`there is no program ${name}`);
-    const module = await WebAssembly.compile(await this.#load(name));
+    const module = await WebAssembly.compile(await this.#load(`${name}.wasm`));
     return Program.of(module, await this.#ofMathematics(), described, this.described.common);
+  }
+
+  async #ofTables(): Promise<Tables> {
+    const memory = new WebAssembly.Memory({ initial: (2 * STACK) / PAGE });
+    const env = { ...(await this.#ofMathematics()), ...imported(memory, STACK) };
+    const { instance } = await WebAssembly.instantiate(await this.#load("tables.wasm"), { env });
+    return new Tables(instance.exports, memory, this.described.tables.numbers);
   }
 
   #ofMathematics(): Promise<WebAssembly.Exports> {
     const env = imported(new WebAssembly.Memory({ initial: 2 }));
-    this.#mathematics ??= this.#load("mathematics")
+    this.#mathematics ??= this.#load("mathematics.wasm")
       .then((bytes) => WebAssembly.instantiate(bytes, { env }))
       .then((found) => found.instance.exports);
     return this.#mathematics;
   }
 
   #ofCase(): Promise<WebAssembly.Instance> {
-    this.#case ??= Promise.all([this.#load("case"), this.#ofMathematics()])
+    this.#case ??= Promise.all([this.#load("case.wasm"), this.#ofMathematics()])
       .then(([bytes, mathematics]) =>
         WebAssembly.instantiate(bytes, { env: { ...mathematics, ...imported(this.#memory) } }),
       )
@@ -182,7 +238,7 @@ function fits(variant: Variant, numbers: readonly string[]): boolean {
   return numbers.every((name) => own.includes(name) || name === "shape" || name === "kind");
 }
 
-function imported(memory: WebAssembly.Memory): WebAssembly.ModuleImports {
-  const pointer = new WebAssembly.Global({ value: "i32", mutable: true }, PAGE);
+function imported(memory: WebAssembly.Memory, stack = PAGE): WebAssembly.ModuleImports {
+  const pointer = new WebAssembly.Global({ value: "i32", mutable: true }, stack);
   return { __linear_memory: memory, __stack_pointer: pointer };
 }

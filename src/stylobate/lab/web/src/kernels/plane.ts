@@ -54,7 +54,7 @@ async function cellAt(
   const { periods, ...given } = changed;
   const begun = start === undefined ? given : await onBranch(given, start);
   const asked = await caseOf(kernels, begun ?? standing(given as Description)); // where there is no branch
-  const duration = typeof periods === "number" ? periods * (asked.period ?? NaN) : changed["duration"];
+  const duration = typeof periods === "number" ? periods * (asked.shaking.period ?? NaN) : changed["duration"];
   if (typeof duration !== "number" || !(duration > 0)) throw new Unknown("the runs have no length");
   return { asked, duration };
 }

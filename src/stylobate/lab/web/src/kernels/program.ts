@@ -19,6 +19,8 @@ export interface Described {
   readonly buffer: number;
   readonly planes: boolean;
   readonly switches: boolean;
+  /** Numbers in a polynomial of a tabulated base motion; 0 for the others. */
+  readonly piece: number;
 }
 
 /** What the package says of all programs. */
@@ -66,6 +68,11 @@ const WIDTH = 8;
 type Places = Readonly<Record<"numbers" | "row" | "buffer" | "pieces" | "halt" | "verdict" | "free", number>>;
 type Function = (...values: (number | bigint)[]) => bigint;
 
+/** No polynomials. */
+const NONE = new Float64Array(0);
+/** Columns of the array of polynomials that kernels without any expect. */
+const COLUMNS_OF_NONE = 5;
+
 export class Program {
   readonly described: Described;
   readonly #common: Common;
@@ -73,6 +80,8 @@ export class Program {
   readonly #memory: WebAssembly.Memory;
   /** Place of each array in the memory [bytes]. */
   readonly #at: Places;
+  /** The polynomials of the base motion: place [bytes] and number; and the first free byte behind them. */
+  #held: { readonly place: number; readonly rows: number; readonly free: number };
 
   private constructor(
     instance: WebAssembly.Instance,
@@ -99,6 +108,7 @@ export class Program {
       place += LINE * Math.ceil((WIDTH * size) / LINE);
     }
     this.#at = { ...at, free: place } as Places;
+    this.#held = { place: this.#at.pieces, rows: 1, free: place };
     this.#room(place);
   }
 
@@ -115,12 +125,13 @@ export class Program {
     return new Program(await WebAssembly.instantiate(module, { env }), memory, described, common);
   }
 
-  /** Computes a run from its numbers to its end. */
-  run(numbers: Float64Array): Finished {
+  /** Computes a run from its numbers, and the polynomials of its base motion, to its end. */
+  run(numbers: Float64Array, pieces: Float64Array = NONE): Finished {
     const { row: width, traces, trace_width: wide } = this.described;
     const at = this.#at;
+    this.#hold(pieces);
     this.#array(at.numbers, numbers.length).set(numbers);
-    const flags = Number(this.#call("begin", at.numbers, at.row, BigInt(width)));
+    const flags = Number(this.#of("begin", at.row, BigInt(width)));
     // The row of a run without looks has its trace where they would be.
     const used = flags & 2 ? width : width - this.#looks();
     let planar = (flags & 1) !== 0;
@@ -128,17 +139,17 @@ export class Program {
     const advance = (name: string): void => {
       this.#array(at.buffer, this.described.buffer).fill(NaN);
       for (let ended = false; !ended; ) {
-        ended = this.#call(name, at.row, 1n, BigInt(used), at.pieces, 1n, 5n, at.halt, at.buffer) !== 0n;
+        ended = this.#advance(name, at.row, 1, used);
         entries.push(this.#taken(used, traces * wide, wide));
       }
     };
     if (!planar) advance("advance");
     if (this.#log("status") === this.#common.codes.to_plane) {
-      this.#call("to_plane", at.numbers, at.row, BigInt(used));
+      this.#of("to_plane", at.row, BigInt(used));
       planar = true;
     }
     if (planar) advance("advance_in_plane");
-    this.#call("judge", at.numbers, at.row, BigInt(used), planar ? 1 : 0, at.verdict);
+    this.#of("judge", at.row, BigInt(used), planar ? 1 : 0, at.verdict);
     const [stretches, events] = this.#parted(joined(entries), wide);
     return {
       row: this.#array(at.row, used - traces * wide).slice(),
@@ -149,19 +160,24 @@ export class Program {
     };
   }
 
-  /** Computes many runs together, without traces; returns the numbers of `verdict` of each. */
-  batch(runs: readonly Float64Array[]): Float64Array[] {
+  /**
+   * Computes many runs together, without traces; returns the numbers of `verdict` of each.
+   *
+   * `pieces` are the polynomials of all their base motions, one after the other.
+   */
+  batch(runs: readonly Float64Array[], pieces: Float64Array = NONE): Float64Array[] {
     const { row, traces, trace_width: wide } = this.described;
     const at = this.#at;
     const width = row - traces * wide;
-    const tables = [at.free, at.free + LINE * Math.ceil((WIDTH * width * runs.length) / LINE)] as const;
+    const { free } = this.#hold(pieces);
+    const tables = [free, free + LINE * Math.ceil((WIDTH * width * runs.length) / LINE)] as const;
     this.#room(tables[1] + WIDTH * width * runs.length);
     // first the runs in space, then those in a plane, each in its own table
     const members: [number[], number[]] = [[], []];
     const place = (table: 0 | 1, index: number): number => tables[table] + WIDTH * width * index;
     runs.forEach((numbers, k) => {
       this.#array(at.numbers, numbers.length).set(numbers);
-      const flags = Number(this.#call("begin", at.numbers, at.row, BigInt(width)));
+      const flags = Number(this.#of("begin", at.row, BigInt(width)));
       const table = flags & 1 ? 1 : 0;
       this.#array(place(table, members[table].length), width).set(this.#array(at.row, width));
       members[table].push(k);
@@ -169,17 +185,7 @@ export class Program {
     const advance = (name: string, table: 0 | 1): void => {
       if (members[table].length === 0) return;
       this.#array(at.buffer, this.described.buffer).fill(NaN);
-      this.#call(
-        name,
-        tables[table],
-        BigInt(members[table].length),
-        BigInt(width),
-        at.pieces,
-        1n,
-        5n,
-        at.halt,
-        at.buffer,
-      );
+      this.#advance(name, tables[table], members[table].length, width);
     };
     advance("advance", 0);
     const status = this.#column("log", "status");
@@ -187,7 +193,7 @@ export class Program {
     members[0].forEach((k, index) => {
       if (this.#array(place(0, index), width)[status] !== this.#common.codes.to_plane) return;
       this.#array(at.numbers, runs[k]?.length ?? 0).set(runs[k] ?? []);
-      this.#call("to_plane", at.numbers, place(0, index), BigInt(width));
+      this.#of("to_plane", place(0, index), BigInt(width));
       this.#array(place(1, members[1].length), width).set(this.#array(place(0, index), width));
       members[1].push(k);
       left.push(k);
@@ -198,7 +204,7 @@ export class Program {
       members[table].forEach((k, index) => {
         if (table === 0 && left.includes(k)) return;
         this.#array(at.numbers, runs[k]?.length ?? 0).set(runs[k] ?? []);
-        this.#call("judge", at.numbers, place(table, index), BigInt(width), table, at.verdict);
+        this.#of("judge", place(table, index), BigInt(width), table, at.verdict);
         verdicts[k] = this.#array(at.verdict, this.#common.sizes.verdict).slice();
       });
     }
@@ -210,11 +216,12 @@ export class Program {
     const { row: width, trace_width: wide } = this.described;
     const at = this.#at;
     const columns = this.#common.sizes.sample;
-    const out = at.free + LINE * Math.ceil((WIDTH * stretches.length) / LINE);
+    const { free } = this.#held;
+    const out = free + LINE * Math.ceil((WIDTH * stretches.length) / LINE);
     this.#room(out + WIDTH * columns * many);
-    this.#array(at.free, stretches.length).set(stretches);
+    this.#array(free, stretches.length).set(stretches);
     const entries = BigInt(stretches.length / wide);
-    this.#call("sampled", at.numbers, at.free, entries, at.row, BigInt(width), out, BigInt(many));
+    this.#of("sampled", free, entries, at.row, BigInt(width), out, BigInt(many));
     return this.#array(out, columns * many).slice();
   }
 
@@ -266,6 +273,31 @@ export class Program {
     const found = this.#common.columns[group][name];
     if (found === undefined) throw new Error(`there is no column ${name} in ${group}`);
     return found;
+  }
+
+  /** Puts the polynomials of base motions into the memory. */
+  #hold(pieces: Float64Array): { readonly free: number } {
+    const { piece } = this.described;
+    if (piece === 0) return this.#held;
+    const [place, size] = [this.#at.free, LINE * Math.ceil((WIDTH * pieces.length) / LINE)];
+    this.#held = { place, rows: pieces.length / piece, free: place + size };
+    this.#room(this.#held.free);
+    this.#array(place, pieces.length).set(pieces);
+    return this.#held;
+  }
+
+  /** Calls a function with the numbers of the run and its polynomials. */
+  #of(name: string, ...values: (number | bigint)[]): bigint {
+    return this.#call(name, this.#at.numbers, this.#held.place, BigInt(this.#held.rows), ...values);
+  }
+
+  /** Computes runs with their rows of this width; returns whether all have ended. */
+  #advance(name: string, table: number, runs: number, width: number): boolean {
+    const { place, rows } = this.#held;
+    const columns = BigInt(this.described.piece || COLUMNS_OF_NONE);
+    const { halt, buffer } = this.#at;
+    const sizes = [BigInt(runs), BigInt(width)] as const;
+    return this.#call(name, table, ...sizes, place, BigInt(rows), columns, halt, buffer) !== 0n;
   }
 
   #call(name: string, ...values: (number | bigint)[]): bigint {

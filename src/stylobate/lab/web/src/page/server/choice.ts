@@ -11,7 +11,7 @@ import { Refused, type Source, layered } from "./source";
 const CONTENTS = "answers";
 /** The folder of the answers, beside the page. */
 const FOLDER = "answers";
-/** The folder of the programs, and the beginning of the names of their elements. */
+/** The folder of the programs and records, and the beginning of the names of their elements. */
 const PROGRAMS = "programs";
 
 export function sourceOf(page: Document): Source {
@@ -27,14 +27,14 @@ export function sourceOf(page: Document): Source {
   return layered(layers);
 }
 
-/** Returns how the programs of the page are loaded. */
+/** Returns how the programs and records of the page are loaded. */
 function loadOf(page: Document): Load {
   return async (name) => {
     const own = page.getElementById(`${PROGRAMS}-${name}`);
     if (own !== null) return new Response(decompressed(own.textContent)).arrayBuffer();
-    const found = await fetch(`${PROGRAMS}/${name}.wasm`, { credentials: "same-origin" }).catch(() => null);
+    const found = await fetch(`${PROGRAMS}/${name}`, { credentials: "same-origin" }).catch(() => null);
     if (found?.ok) return found.arrayBuffer();
-    throw new Refused(404, [`The file ${PROGRAMS}/${name}.wasm of this page cannot be loaded. Check the connection.`]);
+    throw new Refused(404, [`The file ${PROGRAMS}/${name} of this page cannot be loaded. Check the connection.`]);
   };
 }
 

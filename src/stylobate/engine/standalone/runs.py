@@ -1,7 +1,6 @@
 """One run in the language of the compiler, from the numbers of its case to its outcome: a page computes it so.
 
-Kernels, beginnings and last periods are those of all runs; here they are called for one row. The base is at rest, or
-its motion is harmonic.
+Kernels, beginnings and last periods are those of all runs; here they are called for one row.
 """
 
 import math
@@ -11,12 +10,9 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from stylobate.base_motions import BASE_AT_REST
-from stylobate.base_motions.base import ACCELERATION, DISPLACEMENT
-from stylobate.base_motions.harmonic import Harmonic
 from stylobate.engine.ensembles.beginnings import (
     Body,
-    Bounds,
+    Vector,
     beginning,
     fill_looks,
     fill_setup,
@@ -25,11 +21,11 @@ from stylobate.engine.ensembles.beginnings import (
     number_of_looks,
 )
 from stylobate.engine.ensembles.late import Ground, Late, late_of_row
-from stylobate.engine.ensembles.run_columns import term_of
-from stylobate.engine.forcing import coarse, least_rest_energy
+from stylobate.engine.forcing import coarse
 from stylobate.engine.kernel.bound import FromZero
-from stylobate.engine.kernel.columns import EVENTS_AT, LOG, PAIRS, STATE, TRACE_TERMS, Log, Setup, Trace
+from stylobate.engine.kernel.columns import EVENTS_AT, LOG, PAIRS, SLACK, STATE, TRACE_TERMS, Log, Setup, Trace
 from stylobate.engine.kernel.driver.events import EventSetup, RunStatus, TraceKind
+from stylobate.engine.standalone.bases import COURSE, AtRest, Polynomials, Waves
 from stylobate.engine.tolerances import CLOSE_PASSAGE, OVERTURNED_TILT
 from stylobate.engine.trajectory import ANTIDERIVATIVES, NODES
 from stylobate.engine.verdict import duration_needed, in_doubt, numbers_of_rules, outcome_on
@@ -38,6 +34,8 @@ from stylobate.models.contact import per_normal_force
 from stylobate.results import OutcomeRules
 
 Row = npt.NDArray[np.float64]
+
+Base = AtRest | Waves | Polynomials
 
 
 class Given(NamedTuple):
@@ -59,7 +57,6 @@ class Given(NamedTuple):
 
 
 _RULES = OutcomeRules()
-_LEAST_AT_REST = least_rest_energy(BASE_AT_REST)
 _NUMBERS_OF_RULES = numbers_of_rules(_RULES)
 
 
@@ -81,25 +78,23 @@ class Layout(NamedTuple):
     notes_at: int
 
 
-def begin(
-    row: Row, model: Any, motion: Harmonic | None, given: Given, accuracy: Accuracy, layout: Layout
-) -> tuple[Any, Any]:
+def begin(row: Row, model: Any, base: Base, given: Given, accuracy: Accuracy, layout: Layout) -> tuple[Any, Any]:
     """Fill the row of a run; return whether its motion is planar, and whether the row has looks and pairs.
 
     Parameters
     ----------
     row
         Row with room for the looks, the pairs and the trace.
-    model, motion
-        Model and base motion; None for a base at rest.
+    model, base
+        Model and base motion.
     given, accuracy
         Start and duration, and tolerances.
     layout
         Layout of the row.
     """
-    scale = model.time_scale
+    scale, gravity = model.time_scale, model.column.gravity
     clear(row)
-    bounds = _bounds(motion, scale, model.column.gravity)
+    bounds = base.bounds(scale, gravity)
     slenderness = model.column.slenderness
     body = Body(scale, slenderness, model.rest_capacity, model.comes_to_rest, model.loss_tilt, model.slope)
     fill_setup(
@@ -126,11 +121,8 @@ def begin(
     parameters = model.parameters
     for k in range(len(parameters)):
         row[layout.parameters_at + k] = parameters[k]
-    if motion is not None:
-        wave = term_of(motion).wave(scale, model.column.gravity, windowed=False)
-        for k in range(len(wave)):
-            row[layout.motion_at + k] = wave[k]
-    return _set_start(row, model, motion, given), looks
+    base.fill(row, layout.motion_at, scale, gravity)
+    return _set_start(row, model, base.directions(), given), looks
 
 
 def clear(row: Row) -> None:
@@ -141,29 +133,8 @@ def clear(row: Row) -> None:
     row[LOG + Log.MINIMUM_TILT] = row[LOG + Log.CLOSEST_PASSAGE] = row[LOG + Log.NORMAL] = math.inf
 
 
-def _bounds(motion: Harmonic | None, scale: Any, gravity: Any) -> Bounds:
-    if motion is None:
-        return Bounds(0.0, 0.0, _LEAST_AT_REST, 0.0, 0.0, 0.0, 0.0, 0.0)
-    per_gravity = 1.0 / gravity
-    low, high = motion.vertical_range(0.0)
-    frequency, phase = motion.angular_frequency * scale, motion.start_phase / (2.0 * math.pi)
-    largest = abs(per_gravity) * motion.peak_horizontal(0.0)
-    period = motion.period / scale
-    return Bounds(
-        frequency,
-        frequency,
-        least_rest_energy(motion),
-        period,
-        phase,
-        largest,
-        per_gravity * low,
-        per_gravity * high,
-    )
-
-
-def _set_start(row: Row, model: Any, motion: Harmonic | None, given: Given) -> Any:
+def _set_start(row: Row, model: Any, directions: tuple[Vector, ...], given: Given) -> Any:
     """Set state and line of a run; return whether its motion is planar."""
-    directions: tuple[tuple[Any, Any], ...] = () if motion is None else motion.directions()
     scale, slenderness = model.time_scale, model.column.slenderness
     begun = beginning(
         (given.tilt_x, given.tilt_y),
@@ -217,9 +188,13 @@ class Verdict(FromZero):
     """Turns of the contact point round the rim."""
     NEEDED = auto()
     """Duration that suffices for an outcome of a run that moves at its end [s]; 0 if it is decided."""
+    BASE_LEFT = auto()
+    """Time from the end of the run to that of the base motion [s]; negative after it."""
+    ENERGY_SHARE = auto()
+    """Energy at the end over that required to overturn, see `energy_over_balance`."""
 
 
-def judge(row: Row, model: Any, planar: Any, layout: Layout, out: Row) -> None:
+def judge(row: Row, model: Any, base: Base, planar: Any, layout: Layout, out: Row) -> None:
     """Set the numbers of `Verdict` and of `Late` of a run that has ended; `planar` is 1 if it ended in a plane."""
     late = out[len(Verdict) :]
     late_of_row(row, planar, _NUMBERS_OF_RULES, layout.notes_at, late)
@@ -230,6 +205,11 @@ def judge(row: Row, model: Any, planar: Any, layout: Layout, out: Row) -> None:
     ended = _OUTCOME_OF_STATUS[status]
     if ended != _OTHERS:
         outcome = ended
+    end, share = row[LOG + Log.TIME] * row[Setup.TIME_SCALE], _energy_share(row, model, planar)
+    out[Verdict.BASE_LEFT], out[Verdict.ENERGY_SHARE] = base.duration - end, share
+    moves = row[LOG + Log.STANDS] == 0.0 and status == int(RunStatus.STOPPED)
+    if moves and base.duration > 0.0 and end * (1.0 + SLACK) >= base.duration and share < 1.0:
+        outcome = int(Outcome.SURVIVED)
     out[Verdict.OUTCOME] = outcome
     fell = outcome in (int(Outcome.OVERTURNED), int(Outcome.LIMIT_REACHED))
     failed = outcome == int(Outcome.FAILED)
@@ -263,6 +243,20 @@ def judge(row: Row, model: Any, planar: Any, layout: Layout, out: Row) -> None:
     out[Verdict.NEEDED] = 0.0
     if goes_on:
         out[Verdict.NEEDED] = duration_needed(late, _RULES, row[Setup.PERIOD] * row[Setup.TIME_SCALE])
+
+
+def _energy_share(row: Row, model: Any, planar: Any) -> Any:
+    """Return the energy at the end of a run over that required to overturn; see `energy_over_balance`."""
+    balance = model.balance
+    if balance is None:
+        return math.inf
+    states = tuple(row[STATE + k] for k in range(len(model.state_names)))
+    if model.from_plane is not None and planar > 0.0:
+        line = (row[Setup.LINE_X], row[Setup.LINE_Y])
+        states = _as_floats(model.from_plane(states[0], states[1], *line, *model.parameters))
+    x, y, _, _ = model.tilt_of(*states, *model.parameters)
+    share = model.energy(states) / balance.energy if balance.energy > 0.0 else math.inf
+    return share if np.hypot(x, y) < balance.tilt else math.inf
 
 
 def _end_lean(row: Row, model: Any, planar: Any) -> tuple[Any, Any, Any, Any]:
@@ -318,15 +312,15 @@ class Sample(FromZero):
     """Friction force over the normal force, and moment about the vertical over normal force and radius."""
 
 
-def sampled(entries: Row, model: Any, motion: Harmonic | None, row: Row, given: Given, out: Row) -> None:
+def sampled(entries: Row, model: Any, base: Base, row: Row, given: Given, out: Row) -> None:
     """Set the samples of a run at equal steps from its start to its end.
 
     Parameters
     ----------
     entries
         Entries of its trace that are not events, shape (n, columns).
-    model, motion
-        Model and base motion; None for a base at rest.
+    model, base
+        Model and base motion.
     row, given
         Row of the run after its end, and its start.
     out
@@ -334,7 +328,8 @@ def sampled(entries: Row, model: Any, motion: Harmonic | None, row: Row, given: 
     """
     scale, end = model.time_scale, row[LOG + Log.TIME]
     step = end * scale / (len(out) - 1)
-    carried, here = np.zeros(3), np.zeros(3)
+    carried, here, course = np.zeros(3), np.zeros(3), np.zeros(COURSE)
+    base.begin(course)
     carried[0], carried[1], carried[2] = given.twist, given.position_x, given.position_y
     at = 0
     for k in range(len(out)):
@@ -347,7 +342,8 @@ def sampled(entries: Row, model: Any, motion: Harmonic | None, row: Row, given: 
         for j in range(3):
             here[j] = carried[j]
         _carry(entries[at], model, tau - entries[at, Trace.START], here)
-        _set_sample(entries[at], model, motion, row, time, tau, here, out[k])
+        base.set_sample(time, course, out[k, Sample.BASE_X :], out[k, Sample.ACCELERATION_X :])
+        _set_sample(entries[at], model, row, time, tau, here, out[k])
 
 
 def _carry(entry: Row, model: Any, elapsed: Any, carried: Row) -> None:
@@ -388,9 +384,8 @@ def _polynomial(entry: Row, state: int, states: int, share: Any) -> Any:
     return entry[first] + change
 
 
-def _set_sample(
-    entry: Row, model: Any, motion: Harmonic | None, row: Row, time: Any, tau: Any, carried: Row, out: Row
-) -> None:
+def _set_sample(entry: Row, model: Any, row: Row, time: Any, tau: Any, carried: Row, out: Row) -> None:
+    """Set the numbers of a sample besides those of the base."""
     share = (tau - entry[Trace.START]) / entry[Trace.LENGTH]
     kind, scale, gravity = entry[Trace.KIND], model.time_scale, model.column.gravity
     states = _states(entry, model, share)
@@ -407,7 +402,6 @@ def _set_sample(
     out[Sample.AZIMUTH] = _azimuth(entry, x, y)
     out[Sample.SPIN] = math.nan if model.spin_state is None else states[model.spin_state or 0] / scale
     out[Sample.TWIST], out[Sample.FOOTPRINT_X], out[Sample.FOOTPRINT_Y] = carried[0], carried[1], carried[2]
-    _set_base(motion, time, out)
     ax, ay, az = (out[Sample.ACCELERATION_X + k] / gravity for k in range(3))
     normal, friction, moment = math.nan, math.nan, math.nan
     if model.contact is not None and model.guards is None:
@@ -434,13 +428,3 @@ def _azimuth(entry: Row, x: Any, y: Any) -> Any:
     middle = 0.5 * (entry[Trace.AZIMUTH] + entry[Trace.END_AZIMUTH])
     turns = 0.0 if entry[Trace.KIND] == TraceKind.PLANE_STEP else np.rint(middle - here)
     return 2.0 * math.pi * (here + turns)
-
-
-def _set_base(motion: Harmonic | None, time: Any, out: Row) -> None:
-    """Set displacement and acceleration of the base."""
-    place: Any = (0.0, 0.0, 0.0)
-    acceleration: Any = (0.0, 0.0, 0.0)
-    if motion is not None:
-        place, acceleration = motion.derivative(time, DISPLACEMENT), motion.derivative(time, ACCELERATION)
-    for k in range(3):
-        out[Sample.BASE_X + k], out[Sample.ACCELERATION_X + k] = place[k], acceleration[k]

@@ -1,6 +1,6 @@
 """The programs by which a page computes runs without Python: modules of WebAssembly, and the layout of their numbers.
 
-A module holds the kernels of a class of models under one kind of base motion, and the functions of `alone` for it.
+A module holds the kernels of a class of models under one kind of base motion, and the functions of `runs` for it.
 """
 
 import math
@@ -16,6 +16,9 @@ import numpy as np
 from stylobate.base_motions import BASE_AT_REST, BaseMotion
 from stylobate.base_motions.declared import MOTIONS
 from stylobate.base_motions.harmonic import Harmonic
+from stylobate.base_motions.pulses import Pulse
+from stylobate.base_motions.record import Record
+from stylobate.base_motions.sweeps import SineSweep
 from stylobate.column import SHAPES, Column
 from stylobate.compiler import mathematics
 from stylobate.compiler.machine import WEB, Machine
@@ -23,16 +26,25 @@ from stylobate.compiler.sources import CompileError, written_module
 from stylobate.compiler.unit import ArrayArgument, Unit
 from stylobate.compiler.values import NumberKind
 from stylobate.compiler.web import module_of
-from stylobate.engine import alone
-from stylobate.engine.alone import Accuracy, Given, Layout, Sample, Verdict
 from stylobate.engine.cost import EVERY
 from stylobate.engine.ensembles.batch import Plan
 from stylobate.engine.ensembles.beginnings import number_of_looks
 from stylobate.engine.ensembles.late import LATE_COLUMNS, Late
+from stylobate.engine.ensembles.polynomials import DEGREE
 from stylobate.engine.ensembles.run_columns import MotionPlan
-from stylobate.engine.kernel.columns import LOG, NOTE, PAIRS, STATE, Log, Setup, Trace
+from stylobate.engine.kernel.columns import LOG, NOTE, PAIRS, STATE, Log, Piece, Setup, Trace
 from stylobate.engine.kernel.driver.events import RunStatus, TraceKind
 from stylobate.engine.kernel.kernels import kernel_of
+from stylobate.engine.standalone import runs
+from stylobate.engine.standalone.bases import AXES, AtRest, Polynomials, Table, Waves
+from stylobate.engine.standalone.runs import Accuracy, Given, Layout, Sample, Verdict
+from stylobate.engine.standalone.tables import (
+    record_table,
+    smooth_table,
+    steady_of_pulse,
+    steady_of_sweep,
+    steady_of_wave,
+)
 from stylobate.models import Model
 from stylobate.quantities import Parameter, parameters_of
 from stylobate.run_arguments import checked_options
@@ -54,13 +66,32 @@ class Shaking(StrEnum):
 
     REST = "rest"
     HARMONIC = "harmonic"
+    LINEAR = "linear"
+    """Tabulated, with an acceleration that is linear between breaks: a record."""
+    SMOOTH = "smooth"
+    """Tabulated by polynomials of a higher degree: a pulse."""
 
     @property
     def example(self) -> BaseMotion:
         """A motion of this kind."""
         if self is Shaking.REST:
             return BASE_AT_REST
-        return Harmonic(amplitude=(1.0, 1.0, 1.0), angular_frequency=1.0)
+        if self is Shaking.HARMONIC:
+            return Harmonic(amplitude=(1.0, 1.0, 1.0), angular_frequency=1.0)
+        if self is Shaking.LINEAR:
+            return Record(samples=np.ones((2, AXES)), step=1.0)
+        return Pulse.one_sine(acceleration=1.0, angular_frequency=1.0, vertical=1.0)
+
+    @property
+    def numbers(self) -> tuple[str, ...]:
+        """Names of the numbers of a motion of this kind."""
+        return {Shaking.REST: (), Shaking.HARMONIC: HARMONIC}.get(self, Table._fields)
+
+    @property
+    def piece(self) -> int:
+        """Numbers in the row of a polynomial; 0 for motions without a table."""
+        degree = {Shaking.LINEAR: 1, Shaking.SMOOTH: DEGREE}.get(self)
+        return 0 if degree is None else len(Piece) + AXES * (degree + 1)
 
 
 @dataclass(frozen=True)
@@ -86,8 +117,7 @@ class RunProgram:
     @property
     def names(self) -> tuple[str, ...]:
         """Names of the numbers of a run, in their order: NaN for one that is None, and for words their index."""
-        motion = () if self.shaking is Shaking.REST else HARMONIC
-        return (*COLUMN, *self.model_numbers, *motion, *Given._fields, *Accuracy._fields)
+        return (*COLUMN, *self.model_numbers, *self.shaking.numbers, *Given._fields, *Accuracy._fields)
 
     @property
     def plan(self) -> Plan:
@@ -118,6 +148,7 @@ class RunProgram:
             "trace_width": shape.trace_width,
             "row": shape.breaks_at + NOTE * (looks + PAIRS) + plan.traces * shape.trace_width,
             "buffer": kernel.buffer().size,
+            "piece": self.shaking.piece,
             "planes": self.kind.planar_rates is not None,
             "switches": bool(self.kind.guards),
         }
@@ -135,14 +166,15 @@ class RunProgram:
         assert unit is not None
         module = written_module(f"{self.kind.__name__}_{self.shaking}", self.text, self._names_in_text)
         row, numbers = ArrayArgument((None,)), ArrayArgument((len(self.names),))
+        pieces = ArrayArgument((None, max(self.shaking.piece, 1)))
         entries = ArrayArgument((None, plan.layout.trace_width))
         for name, arguments in {
-            "begin": (numbers, row),
-            "judge": (numbers, row, NumberKind.FLOAT, ArrayArgument((len(Verdict) + LATE_COLUMNS,))),
-            "to_plane": (numbers, row),
-            "sampled": (numbers, entries, row, ArrayArgument((None, len(Sample)))),
+            "begin": (row,),
+            "judge": (row, NumberKind.FLOAT, ArrayArgument((len(Verdict) + LATE_COLUMNS,))),
+            "to_plane": (row,),
+            "sampled": (entries, row, ArrayArgument((None, len(Sample)))),
         }.items():
-            unit.export(getattr(module, name), name, arguments)
+            unit.export(getattr(module, name), name, (numbers, pieces, *arguments))
         return unit
 
     def exports(self) -> list[str]:
@@ -159,16 +191,12 @@ class RunProgram:
         """Text of the functions with the numbers of a run in place of model and motion."""
         return "\n".join(
             [
-                *self._function("begin", "numbers, row", "begun(row, {model}, motion, given, accuracy, LAYOUT)"),
-                *self._function("judge", "numbers, row, planar, out", "judged(row, {model}, planar, LAYOUT, out)"),
-                *self._function("to_plane", "numbers, row", "turned(row, {model})"),
-                *self._function(
-                    "sampled",
-                    "numbers, entries, row, out",
-                    "sampling(entries, {model}, motion, row, given, out)",
-                ),
-                "def begun(row, model, motion, given, accuracy, layout):",
-                "    planar, looks = beginning(row, model, motion, given, accuracy, layout)",
+                *self._function("begin", "row", "begun(row, {model}, base, given, accuracy, LAYOUT)"),
+                *self._function("judge", "row, planar, out", "judged(row, {model}, base, planar, LAYOUT, out)"),
+                *self._function("to_plane", "row", "turned(row, {model})"),
+                *self._function("sampled", "entries, row, out", "sampling(entries, {model}, base, row, given, out)"),
+                "def begun(row, model, base, given, accuracy, layout):",
+                "    planar, looks = beginning(row, model, base, given, accuracy, layout)",
                 "    return (1 if planar else 0) + (2 if looks else 0)",
             ]
         )
@@ -182,31 +210,42 @@ class RunProgram:
             "Given": Given,
             "Accuracy": Accuracy,
             "LAYOUT": self.layout,
-            "beginning": alone.begin,
-            "judged": alone.judge,
-            "turned": alone.to_plane,
-            "sampling": alone.sampled,
+            "AtRest": AtRest,
+            "Waves": Waves,
+            "Polynomials": Polynomials,
+            "Table": Table,
+            "beginning": runs.begin,
+            "judged": runs.judge,
+            "turned": runs.to_plane,
+            "sampling": runs.sampled,
             "isnan": math.isnan,
         }
 
     def _function(self, name: str, arguments: str, call: str) -> Iterator[str]:
         place = self.names.index
         column = ", ".join(f"{one}=numbers[{place(one)}]" for one in COLUMN)
-        yield f"def {name}({arguments}):"
+        yield f"def {name}(numbers, pieces, {arguments}):"
         yield f"    column = Column({column})"
-        if self.shaking is Shaking.REST:
-            yield "    motion = None"
-        else:
-            at = place("amplitude_x")
-            amplitude, phase = (", ".join(f"numbers[{at + k}]" for k in part) for part in (range(3), range(3, 6)))
-            yield (
-                f"    motion = Harmonic(amplitude=({amplitude}), phase=({phase}), angular_frequency=numbers[{at + 6}], "
-                f"start_phase=numbers[{at + 7}], ramp=0.0)"
-            )
+        yield f"    base = {self._base}"
         given, accuracy = place(Given._fields[0]), place(Accuracy._fields[0])
         yield f"    given = Given(*numbers[{given}:{accuracy}])"
         yield f"    accuracy = Accuracy(*numbers[{accuracy}:{accuracy + len(Accuracy._fields)}])"
         yield from _branches(list(self.model_numbers.values()), place, "    ", call, ())
+
+    @property
+    def _base(self) -> str:
+        """Expression of the base motion."""
+        if self.shaking is Shaking.REST:
+            return "AtRest()"
+        numbers = [f"numbers[{self.names.index(name)}]" for name in self.shaking.numbers]
+        if self.shaking is not Shaking.HARMONIC:
+            return f"Polynomials(Table({', '.join(numbers)}), pieces)"
+        amplitude, phase = (", ".join(numbers[part : part + AXES]) for part in (0, AXES))
+        frequency, start_phase = numbers[2 * AXES :]
+        return (
+            f"Waves(Harmonic(amplitude=({amplitude}), phase=({phase}), angular_frequency={frequency}, "
+            f"start_phase={start_phase}, ramp=0.0))"
+        )
 
     def __hash__(self) -> int:
         return hash((self.kind, self.shaking))
@@ -255,15 +294,7 @@ class CaseProgram:
         """The constructors, one function for each choice of their optional numbers, by name."""
         columns = {f"column_{shape}": make for shape, make in SHAPES.items()}
         harmonic = {f"motion_{kind}": MOTIONS[kind] for kind in MOTIONS if _makes_harmonic(MOTIONS[kind])}
-        found = {}
-        for name, make in (columns | harmonic).items():
-            results = (*COLUMN, *self.derived) if name in columns else _OF_HARMONIC
-            optional = [one.name for one in parameters_of(make).values() if one.optional]
-            for given in chain.from_iterable(combinations(optional, size) for size in range(len(optional) + 1)):
-                variant = Variant("_".join((name, *given)), name, make, given, results)
-                if variant.compiles():
-                    found[variant.name] = variant
-        return found
+        return _variants(columns | harmonic, lambda name: (*COLUMN, *self.derived) if name in columns else _OF_HARMONIC)
 
     def described(self) -> list[dict[str, Any]]:
         """Return the functions with their arguments in the order of their numbers, for JSON."""
@@ -283,8 +314,74 @@ class CaseProgram:
         return module_of(WEB.object_code(self.unit(WEB).module.text("nounwind")), [*self.variants, *self.functions])
 
 
+@dataclass(frozen=True)
+class TableProgram:
+    """The program for the tables of base motions: of records, and of the named constructors that compile."""
+
+    @cached_property
+    def variants(self) -> Mapping[str, "Variant"]:
+        """The constructors, one function for each choice of their optional numbers, by name."""
+        return _variants({f"motion_{kind}": make for kind, make in MOTIONS.items()}, lambda _: None)
+
+    def described(self) -> dict[str, Any]:
+        """Return the functions with their arguments in the order of their numbers, and sizes, for JSON.
+
+        Those for harmonic motions are left out: they are named as those of `CaseProgram`, and have the same arguments.
+        """
+        variants = [one.described() for one in self.variants.values() if not _makes_harmonic(one.make)]
+        return {"variants": variants, "numbers": Table._fields, "pieces": {one.value: one.piece for one in Shaking}}
+
+    def unit(self, machine: Machine) -> Unit:
+        """Return the compiled unit of the program."""
+        unit = Unit(lanes=machine.lanes, exact=True, trusted=True, traps=True)
+        for variant in self.variants.values():
+            variant.export(unit)
+        step, scale, rotation = (NumberKind.FLOAT,) * 3
+        arrays = (ArrayArgument((None, AXES)), step, scale, rotation, _ROWS[Shaking.LINEAR], _OF_TABLE)
+        unit.export(record_table, RECORD, arrays)
+        return unit
+
+    def module(self) -> bytes:
+        """Return the module of WebAssembly."""
+        return module_of(WEB.object_code(self.unit(WEB).module.text("nounwind")), [*self.variants, RECORD])
+
+
+RECORD = "record"
+"""Name of the function for records."""
+
+_OF_TABLE = ArrayArgument((len(Table._fields),))
+_ROWS = {one: ArrayArgument((None, one.piece)) for one in (Shaking.LINEAR, Shaking.SMOOTH)}
+
+
+def _variants(
+    makes: Mapping[str, Callable[..., Any]], results: Callable[[str], tuple[str, ...] | None]
+) -> dict[str, "Variant"]:
+    """Return the constructors that compile, one function for each choice of their optional numbers."""
+    found = {}
+    for name, make in makes.items():
+        optional = [one.name for one in parameters_of(make).values() if one.optional]
+        for given in chain.from_iterable(combinations(optional, size) for size in range(len(optional) + 1)):
+            variant = Variant("_".join((name, *given)), name, make, given, results(name))
+            if variant.compiles():
+                found[variant.name] = variant
+    return found
+
+
+def _stands_for(make: Callable[..., Any]) -> Any:
+    """Return the class of what a constructor makes."""
+    return getattr(make, "__self__", make)
+
+
+_TABLES: Mapping[Any, tuple[str, Callable[..., Any]]] = {
+    Harmonic: ("(made.ramp,)", steady_of_wave),
+    SineSweep: ("(made.start, made.duration)", steady_of_sweep),
+    Pulse: ("(made.start, made.duration)", steady_of_pulse),
+}
+"""Breaks of the motions of a class, and the function that returns where their bases are."""
+
+
 def _makes_harmonic(make: Callable[..., Any]) -> bool:
-    return make is Harmonic or getattr(make, "__self__", None) is Harmonic
+    return _stands_for(make) is Harmonic
 
 
 _OF_HARMONIC = tuple(
@@ -318,14 +415,14 @@ class Variant:
     given
         Names of the optional numbers that are given; the others are None.
     results
-        Properties of what it makes, as expressions.
+        Properties of what it makes, as expressions; None for the table of a base motion.
     """
 
     name: str
     of: str
     make: Callable[..., Any]
     given: tuple[str, ...]
-    results: tuple[str, ...]
+    results: tuple[str, ...] | None
 
     @property
     def arguments(self) -> list[Parameter]:
@@ -343,9 +440,12 @@ class Variant:
     def export(self, unit: Unit) -> None:
         """Add the function to a unit."""
         module = written_module(f"case_{self.name}", self._text, {"make": self.make})
-        count = sum(one.quantity.components for one in self.arguments)
-        rows = (ArrayArgument((count,)), ArrayArgument((len(self.results),)))
-        unit.export(getattr(module, self.name), self.name, rows)
+        numbers = ArrayArgument((sum(one.quantity.components for one in self.arguments),))
+        arguments: tuple[Any, ...] = (numbers, ArrayArgument((len(self.results or ()),)))
+        if self.results is None:
+            vars(module).update({"table": smooth_table, "steady": self._of_table[1]})
+            arguments = (numbers, NumberKind.FLOAT, _ROWS[Shaking.SMOOTH], _OF_TABLE)
+        unit.export(getattr(module, self.name), self.name, arguments)
 
     def compiles(self) -> bool:
         """Return whether the constructor accepts this choice of numbers, whatever their values."""
@@ -356,14 +456,23 @@ class Variant:
         return True
 
     @property
+    def _of_table(self) -> tuple[str, Callable[..., Any]]:
+        return _TABLES.get(_stands_for(self.make), _TABLES[Pulse])
+
+    @property
     def _text(self) -> str:
         keywords, place = [], 0
         for one in self.arguments:
             numbers = ", ".join(f"numbers[{place + k}]" for k in range(one.quantity.components))
             place += one.quantity.components
             keywords.append(f"{one.name}=({numbers})" if one.quantity.components > 1 else f"{one.name}={numbers}")
-        made = (f"    out[{k}] = made.{one}" for k, one in enumerate(self.results))
-        return "\n".join([f"def {self.name}(numbers, out):", f"    made = make({', '.join(keywords)})", *made])
+        made = f"    made = make({', '.join(keywords)})"
+        if self.results is None:
+            breaks, _ = self._of_table
+            table = f"    return table(made, {breaks}, steady(made), end, rows, out)"
+            return "\n".join([f"def {self.name}(numbers, end, rows, out):", made, table])
+        results = (f"    out[{k}] = made.{one}" for k, one in enumerate(self.results))
+        return "\n".join([f"def {self.name}(numbers, out):", made, *results])
 
 
 def described() -> dict[str, Any]:

@@ -10,8 +10,8 @@ import pytest
 
 import stylobate as sb
 from stylobate.column import SHAPES
-from stylobate.engine import programs
-from stylobate.engine.programs import CaseProgram, RunProgram, Shaking
+from stylobate.engine.standalone import programs
+from stylobate.engine.standalone.programs import CaseProgram, RunProgram, Shaking
 from stylobate.models.declared import MODELS
 from stylobate.quantities import parameters_of
 

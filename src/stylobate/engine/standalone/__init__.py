@@ -1,0 +1,1 @@
+"""Single runs in the language of the compiler, which compute in a page without Python."""
