@@ -1,5 +1,6 @@
 """The laboratory as static files: the page with recorded answers, from a web server and from one file."""
 
+import base64
 import json
 import re
 import threading
@@ -13,9 +14,11 @@ from tests.lab.browser import Watched, found_browser, moved, new_page, open_sect
 from tests.lab.test_jobs import followed
 from tests.lab.test_page_mistakes import EXACT
 
+import stylobate as sb
 from stylobate.errors import FileError
 from stylobate.lab import answers, kernels, recorded, static_site
 from stylobate.lab.options import lessons, presets
+from stylobate.records.reading import write_at2
 
 LESSONS, PRESETS = lessons(), presets()
 OPENING = next(one for one in LESSONS if one.opens)
@@ -43,6 +46,7 @@ def written(tmp_path_factory):
     programs = kernels.run_programs()
     needed = {kernels.program_of(case.values) for case in recorded.cases()} | {
         "slender_rest",
+        "slender_smooth",
         "planar_rocking_harmonic",
     }
     with pytest.MonkeyPatch.context() as patch:
@@ -158,17 +162,17 @@ def test_the_page_computes_the_runs_of_other_numbers(opened):
     assert page.evaluate("window.stylobate.laboratory.answer.drawn.time.length") > 100
 
 
-def test_numbers_without_an_answer_are_refused_in_one_line_and_the_page_goes_on(opened):
+def test_numbers_without_an_answer_are_refused_in_one_line_and_the_page_goes_on(opened, place):
     page = opened.page
-    page.get_by_role("button", name="Lesson 2").click()
-    page.wait_for_function("() => window.stylobate.laboratory.answer.toml.includes('one_sine')")
-    page.locator(".lesson .slider").focus()
-    page.locator(".lesson .slider").press("ArrowLeft")
+    page.get_by_label("Preset").select_option("conveyor")
+    page.wait_for_function("() => window.stylobate.laboratory.answer.toml.includes('oblique')")
+    open_sections(page)
+    moved(page, "angle", 0.4)
     problems = page.locator(".problems")
     problems.get_by_text(f"{REFUSED} these numbers. Install stylobate and run").wait_for()
     assert problems.locator("p").count() == 1
     assert page.locator(".banner").is_hidden()
-    page.get_by_role("button", name="Lesson 1").click()
+    page.goto(f"{place}#lesson=stands")
     page.get_by_text("It stands, however long you wait.").wait_for()
     assert problems.is_hidden()
     open_sections(page)
@@ -229,11 +233,11 @@ def test_a_picture_is_saved_and_the_policy_lets_webassembly_be_compiled(opened):
 
 def test_a_missing_file_of_answers_is_reported(served, browser):
     page = new_page(browser)
-    page.route(re.compile("simulate-temple"), lambda route: route.abort())
+    page.route(re.compile("simulate-conveyor"), lambda route: route.abort())
     page.goto(served)
     shown(page)
-    page.get_by_label("Preset").select_option("temple")
-    page.locator(".problems").get_by_text("simulate-temple.json of this page cannot be loaded").wait_for()
+    page.get_by_label("Preset").select_option("conveyor")
+    page.locator(".problems").get_by_text("simulate-conveyor.json of this page cannot be loaded").wait_for()
     page.close()
 
 
@@ -260,10 +264,10 @@ def test_the_policy_allows_nothing_but_the_page_itself(site):
 
 def test_the_answers_are_those_of_the_server(served, site, browser, client):
     page = new_page(browser)
-    page.goto(f"{served}#lesson=earthquake")
+    page.goto(f"{served}#case=conveyor")
     shown(page)
     listed = contents((site / FOLDER / "index.html").read_text(encoding="utf-8"))["answers"]
-    asked = {one["ask"]: one["question"] for one in listed if one["name"].endswith("-earthquake")}
+    asked = {one["ask"]: one["question"] for one in listed if one["name"].endswith("-conveyor")}
     assert set(asked) == {"simulate", "variations"}
     answer = client.post("/api/simulate", json=asked["simulate"]).json()
     for part in ("outcome", "drawn", "series", "measures", "summary", "toml"):
@@ -301,6 +305,89 @@ def test_computed_answers_are_those_of_the_server(lesson, served, browser, clien
     assert {label: text for label, text in shown_here["summary"] if label in ("column", "uplifts above", "events")} == {
         label: rows[label] for label in ("column", "uplifts above", "events")
     }
+
+
+BLOCK = {"shape": "solid", "radius": 0.3, "height": 3.0, "density": 2500.0}
+EL_CENTRO = {"kind": "record", "sample": "el centro 1940"}
+SHAKEN = {
+    "a record that is survived": {"motion": {**EL_CENTRO, "scale": 0.7}},
+    "a record that overturns": {"motion": {**EL_CENTRO, "scale": 2.0}},
+    "a rotated record with a tail": {"motion": {**EL_CENTRO, "rotation": 0.7, "tail": 3.0}},
+    "a part of a record": {"motion": {**EL_CENTRO, "scale": 1.1}, "duration": 7.0},
+    "a pulse in a plane": {
+        "motion": {"kind": "one_sine", "acceleration": 3.0, "angular_frequency": 6.0},
+        "model": {"kind": "planar_rocking"},
+    },
+    "a pulse with a vertical part": {
+        "motion": {"kind": "ricker", "acceleration": 3.0, "angular_frequency": 6.0, "vertical": 0.3, "direction": 0.4},
+        "model": {"kind": "rolling", "damping": 0.02},
+    },
+    "a wavelet": {"motion": {"kind": "gabor", "velocity": 0.5, "frequency": 1.0, "oscillations": 3.0}},
+    "a sweep": {"motion": {"kind": "linear_sweep", "acceleration": 1.2, "frequencies": [0.5, 3.0], "length": 10.0}},
+    "a ramp": {
+        "motion": {"kind": "circular", "acceleration": 0.8, "angular_frequency": 6.0, "ramp": 3.0},
+        "tilt": [0.02, 0.0],
+    },
+    "no motion, with little energy": {"motion": {"kind": "rest"}, "tilt": [0.05, 0.02], "duration": 5.0},
+}
+
+
+@pytest.mark.parametrize("name", SHAKEN)
+def test_computed_runs_under_any_motion_are_those_of_the_server(name, served, page_of_sources, client):
+    kind = "wobbling" if "record" in name else "slender"
+    asked = {"column": BLOCK, "model": {"kind": kind, "damping": 0.02}, **SHAKEN[name]}
+    found = page_of_sources.evaluate("(asked) => window.stylobate.source.simulate(asked)", asked)
+    known = client.post("/api/simulate", json=asked).json()
+    for part in ("outcome", "reason", "uncertain", "planar"):
+        assert found[part] == known[part]
+    assert [one["kind"] for one in found["events"]] == [one["kind"] for one in known["events"]]
+    assert found["measures"]["peak_tilt"] == pytest.approx(known["measures"]["peak_tilt"], rel=1e-6)
+    for part in ("time", "tilt", "base"):
+        np.testing.assert_allclose(found["drawn"][part], known["drawn"][part], rtol=1e-6, atol=2e-6, err_msg=part)
+
+
+def test_own_files_are_read_in_the_page_and_shake_the_column(opened, tmp_path, client):
+    quake = sb.sample_record().trimmed(end=20.0)
+    files = [write_at2(quake, tmp_path / name, axis=axis) for name, axis in (("Q000.AT2", "x"), ("Q270.AT2", "y"))]
+    page = opened.page
+    page.get_by_label("Preset").select_option("temple")
+    page.wait_for_function("() => window.stylobate.laboratory.answer.toml.includes('el centro')")
+    open_sections(page)
+    page.locator("input[type=file]").set_input_files(files)
+    page.wait_for_function("() => window.stylobate.laboratory.answer.toml.includes('Q000.AT2')")
+    found = page.evaluate("() => window.stylobate.laboratory.answer")
+    values = tomllib.loads(found["toml"])
+    assert values["motion"] == {"kind": "record", "path": ["Q000.AT2", "Q270.AT2"], "one_component": True, "scale": 1}
+    contents = [{"name": path.name, "content": base64.b64encode(path.read_bytes()).decode()} for path in files]
+    upload = client.post("/api/records", json={"files": contents, "units": None, "step": None}).json()
+    assert page.locator(".record .hint").inner_text().startswith(f"{upload['name']}: {upload['samples']} samples")
+    asked = {**values, "motion": {"kind": "record", "upload": upload["upload"], "scale": 1}}
+    known = client.post("/api/simulate", json=asked).json()
+    assert (found["outcome"], found["reason"]) == (known["outcome"], known["reason"])
+    np.testing.assert_allclose(found["drawn"]["tilt"], known["drawn"]["tilt"], rtol=1e-6, atol=2e-6)
+    assert refusals(page) == []
+
+
+def test_motions_that_never_end_need_a_duration_and_impossible_ones_are_refused(page_of_sources):
+    asked = {"column": BLOCK, "model": {"kind": "slender"}, "motion": {"kind": "rest"}, "tilt": [0.02, 0.0]}
+    say = "(asked) => window.stylobate.source.simulate(asked).catch((error) => error.message)"
+    assert page_of_sources.evaluate(say, asked).startswith("duration is missing: length of a run [s]")
+    both = {"kind": "linear_sweep", "acceleration": 1.0, "displacement": 0.1, "frequencies": [1.0, 2.0], "length": 3.0}
+    assert page_of_sources.evaluate(say, {**asked, "motion": both}).startswith("these numbers contradict each other")
+    lost = {"kind": "record", "upload": "abc"}
+    wanted = "motion.upload: record 'abc' is not stored (any more). Upload its files again."
+    known = page_of_sources.evaluate(say, {**asked, "model": {"kind": "wobbling"}, "motion": lost})
+    assert known == wanted
+
+
+@pytest.fixture(scope="module")
+def page_of_sources(served, browser):
+    """Open a page whose source is asked."""
+    page = new_page(browser)
+    page.goto(served)
+    page.wait_for_function("() => window.stylobate?.source")
+    yield page
+    page.close()
 
 
 def test_computed_curves_and_starts_are_those_of_the_server(served, browser, client):
@@ -456,7 +543,7 @@ def one_case(monkeypatch):
     first = next(recorded.cases())
     monkeypatch.setattr(recorded, "cases", lambda: [first])
     monkeypatch.setitem(recorded._ANSWERED, "exact", lambda _: b"{}")
-    monkeypatch.setattr(kernels, "modules", lambda: dict.fromkeys(kernels.ALWAYS, b"module"))
+    monkeypatch.setattr(kernels, "files", lambda: dict.fromkeys(kernels.ALWAYS, b"module"))
     monkeypatch.setattr(static_site, "_page_file", PAGE.__getitem__)
     monkeypatch.setattr(static_site, "page_is_built", lambda: True)
 

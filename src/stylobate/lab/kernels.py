@@ -30,6 +30,7 @@ from stylobate.models.declared import MODELS
 from stylobate.parameter_quantities import attributes_of, known_names
 from stylobate.records.joining import sample_names, sample_record
 from stylobate.results import OutcomeRules
+from stylobate.results.run import REPEATING
 from stylobate.run_arguments import FREE_TAIL, SingleRun, arguments_of
 from stylobate.theory.rolling import critical_of, rolling_point
 
@@ -184,6 +185,7 @@ def described() -> dict[str, Any]:
         "axes": {name: attributes_of(name) for name in sorted(known_names()) if "." not in name},
         "outcomes": [{"name": one.name, "label": one.label} for one in Outcome],
         "fallen": [int(one) for one in FALLEN],
+        "repeating": REPEATING,
         "texts": {**reason_texts(), "no_duration": f"duration is missing{WANTED['duration']}"},
         "rules": {"n": rules.periods, "short": rules.periods + 1, "steady": steady_periods(rules), "most": LAGS},
         "free_tail": FREE_TAIL,

@@ -29,6 +29,10 @@ EVENT_KINDS = (
 """Kinds of events that runs detect by default."""
 
 
+REPEATING = ("impact", "passage")
+"""Kinds of events that occur in every swing."""
+
+
 @dataclass(frozen=True, slots=True)
 class Event:
     """An event of a run: its `kind` and `time` [s].
@@ -48,7 +52,7 @@ class Event:
     @property
     def repeats(self) -> bool:
         """Whether the event occurs in every swing (impact or passage); figures and summaries leave it out."""
-        return self.kind in ("impact", "passage")
+        return self.kind in REPEATING
 
 
 class _Data:

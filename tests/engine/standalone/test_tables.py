@@ -27,9 +27,7 @@ def wave(motion):
 
 
 SMOOTH = {
-    "one_sine": pulse(
-        Pulse.one_sine(acceleration=2.0, angular_frequency=5.0, direction=0.3, start=0.2, vertical=0.4)
-    ),
+    "one_sine": pulse(Pulse.one_sine(acceleration=2.0, angular_frequency=5.0, direction=0.3, start=0.2, vertical=0.4)),
     "ricker": pulse(Pulse.ricker(acceleration=2.0, angular_frequency=5.0, direction=1.0)),
     "antisymmetric_ricker": pulse(Pulse.antisymmetric_ricker(acceleration=2.0, angular_frequency=9.0)),
     "gabor": pulse(Pulse.gabor(velocity=0.4, frequency=2.0, oscillations=3.0, phase=0.3)),

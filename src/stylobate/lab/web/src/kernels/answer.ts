@@ -84,8 +84,8 @@ function answered(found: Computed, description: Part): Run {
   const samples = new Samples(kernels, program.samples(finished.stretches, sampleCount(found, description)));
   const decidedAt = log(found, "decided") * scale;
   return {
-    toml: asToml(description),
-    python: asPython(description),
+    toml: asToml(kernels.own.shown(description)),
+    python: asPython(kernels.own.shown(description)),
     column: columnNumbers(column),
     outcome: outcome.name as Run["outcome"],
     label: outcome.label as Run["label"],
@@ -96,7 +96,12 @@ function answered(found: Computed, description: Part): Run {
     warnings: doubts,
     events,
     measures,
-    summary: summaryOf(column, measures, events, peak),
+    summary: summaryOf(
+      column,
+      measures,
+      events.filter(({ kind }) => !kernels.described.repeating.includes(kind)),
+      peak,
+    ),
     thresholds: {},
     drawn: drawnOf(found, samples, description, {
       outcome: outcome.name as Run["outcome"],

@@ -3,9 +3,10 @@
 import type { Part, Value } from "../page/case/description";
 import { Refused } from "../page/server/source";
 import { Unknown, checked, numberOf, refuseOthers } from "./case";
-import { OwnRecords } from "./own-records";
+import { CONTRADICTION } from "./contradiction";
+import { OwnRecords, type Samples } from "./own-records";
 import { type Common, type Described as OfProgram, Program } from "./program";
-import { STACK, type Samples, Tables } from "./tables";
+import { STACK, Tables } from "./tables";
 
 export type Numbers = Readonly<Record<string, number>>;
 
@@ -88,6 +89,8 @@ export interface Described {
   readonly axes: Readonly<Record<string, { readonly long_name: string; readonly units: string }>>;
   readonly outcomes: readonly { readonly name: string; readonly label: string }[];
   readonly fallen: readonly number[];
+  /** Kinds of events that occur in every swing, and are not listed. */
+  readonly repeating: readonly string[];
   readonly texts: Texts;
   readonly rules: { readonly n: number; readonly short: number; readonly steady: number; readonly most: number };
   /** Length of the free vibration after a base motion that ends, over 1/p. */
@@ -105,7 +108,6 @@ export type Load = (name: string) => Promise<ArrayBuffer>;
 
 const PAGE = 1 << 16;
 const OF_A_MOTION = 9;
-const CONTRADICTION = "these numbers contradict each other: no body or motion has all of them";
 /** Results of a function at most. */
 const MOST_RESULTS = 64;
 
@@ -157,6 +159,9 @@ export class Kernels {
     const numbers = Object.keys(given).filter((name) => given[name] !== null && given[name] !== undefined);
     const variants = known.filter((one) => one.of === of);
     const variant = variants.find((one) => one.given.every((name) => numbers.includes(name)) && fits(one, numbers));
+    const names = variants.flatMap((one) => one.arguments.map(({ name }) => name));
+    const listed = variants.length > 0 && numbers.every((name) => name === choosing || names.includes(name));
+    if (!variant && listed) throw new Refused(422, [CONTRADICTION]);
     if (!variant) throw new Unknown(`${of} is not computed here`);
     refuseOthers(given, [choosing, ...variant.arguments.map((one) => one.name)]);
     const values = variant.arguments.flatMap((one) => {

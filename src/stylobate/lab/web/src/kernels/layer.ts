@@ -24,6 +24,7 @@ export function computing(kernels: Kernels): Layer {
     describe: (description) => mine(() => described(kernels, description)),
     steadyStart: (body) => mine(() => steadyStart(kernels, body)),
     response: (description) => mine(() => response(kernels, description)),
+    sendRecord: (upload) => kernels.own.add(upload),
     startJob: (kind, request) =>
       mine(() => {
         if (kind !== "map") throw new Unknown(`${kind} is not computed here`);
@@ -44,7 +45,8 @@ async function mine<Answer>(ask: () => Promise<Answer>): Promise<Answer> {
 
 async function described(kernels: Kernels, description: Part): Promise<Described> {
   const column = await kernels.made("column", description["column"] as Part, "shape");
-  return { toml: asToml(description), python: asPython(description), column: columnNumbers(column) };
+  const shown = kernels.own.shown(description);
+  return { toml: asToml(shown), python: asPython(shown), column: columnNumbers(column) };
 }
 
 async function steadyStart(kernels: Kernels, body: Part): Promise<Start> {

@@ -4,7 +4,8 @@ import type { Part } from "../page/case/description";
 import { Refused } from "../page/server/source";
 import { numberOf, refuseOthers } from "./case";
 import type { Kernels, Numbers } from "./kernels";
-import type { Samples, Tabulated } from "./tables";
+import type { Samples } from "./own-records";
+import type { Tabulated } from "./tables";
 
 export type Vector = readonly [x: number, y: number];
 

@@ -1,18 +1,13 @@
 /** Tables of base motions: the polynomials of records, pulses and sweeps, computed by a program of the package. */
 
 import { Refused } from "../page/server/source";
+import { CONTRADICTION } from "./contradiction";
+import type { Samples } from "./own-records";
 
 /** A tabulated base motion: its polynomials, and the numbers of `Table` by name. */
 export interface Tabulated {
   readonly pieces: Float64Array;
   readonly numbers: Readonly<Record<string, number>>;
-}
-
-/** Accelerations at equal steps [m/s²], [s]. */
-export interface Samples {
-  /** Along x, y and z, one instant after the other. */
-  readonly values: Float64Array;
-  readonly step: number;
 }
 
 const PAGE = 1 << 16;
@@ -73,7 +68,12 @@ export class Tables {
   }
 
   #call(name: string, ...values: (number | bigint)[]): bigint {
-    return (this.#functions[name] as (...values: (number | bigint)[]) => bigint)(...values);
+    try {
+      return (this.#functions[name] as (...values: (number | bigint)[]) => bigint)(...values);
+    } catch (error) {
+      if (error instanceof WebAssembly.RuntimeError) throw new Refused(422, [CONTRADICTION]); // its check failed
+      throw error;
+    }
   }
 
   #array(place: number, length: number): Float64Array {

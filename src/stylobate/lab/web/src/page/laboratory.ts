@@ -9,6 +9,7 @@ import type { ResponsePanel } from "./charts/response-panel";
 import type { Connection } from "./server/connection";
 import { CaseProblems } from "./controls/case-problems";
 import { Controls } from "./controls/controls";
+import { NOT_HERE } from "./controls/record-form";
 import type { Part } from "./case/description";
 import { written } from "./case/description";
 import { element } from "./frame/dom";
@@ -362,7 +363,7 @@ export class Laboratory {
     const restored = await this.#controls.record.restore(this.view.description.motion["upload"]).catch(() => false);
     if (restored) return this.refresh();
     this.#controls.record.askAgain();
-    this.#stay(["The server does not have the record of this case. Choose its files again."]);
+    this.#stay([NOT_HERE]);
   }
 
   #lose(): void {

@@ -16,6 +16,8 @@ const UNITS = [
 ] as const;
 
 const MOST_FILES = 3;
+/** Neither the page nor its server has the files of an upload. */
+export const NOT_HERE = "The record of this case is not here any more. Choose its files again.";
 const OWN = "\u0000own"; // no sample has this name
 
 /** What the server asks for in its own words, and in those of this form. */
@@ -108,7 +110,7 @@ export class RecordForm {
   askAgain(): void {
     const section = this.root.closest("details");
     if (section !== null) section.open = true;
-    this.#report("The server does not have the record of this case. Choose its files again.");
+    this.#report(NOT_HERE);
   }
 
   #choose(value: string): void {

@@ -1,0 +1,87 @@
+/** The content of a file as text: base64, gzip, and encodings; archives and documents are refused. */
+
+import { Refused } from "../../page/server/source";
+import { RecordText, notReadHere } from "./text";
+
+/** Size of an unpacked file [bytes] that a record may have at most. */
+const MOST = 32 << 20;
+/** First signs of archives and documents that may hold records, but not as text. */
+const PACKED: readonly (readonly [begin: string, what: string])[] = [
+  ["PK\x03\x04", "a zip archive. Unpack it and read the files in it"],
+  ["Rar!", "a rar archive. Unpack it and read the files in it"],
+  ["7z\xbc\xaf", "a 7z archive. Unpack it and read the files in it"],
+  ["\xd0\xcf\x11\xe0", "an Excel workbook. Save its sheet as CSV and read that"],
+  ["%PDF", "a PDF document. Save its numbers as text and read that"],
+];
+const WORKBOOK = "an Excel workbook. Save its sheet as CSV and read that";
+
+/** Returns the text of a file that is given in base64. */
+export async function textOf(name: string, content: string): Promise<RecordText> {
+  const sent = atob(content);
+  const unzipped = sent.startsWith("\x1f\x8b") ? await unpacked(name, bytesOf(sent)) : null;
+  const latin = unzipped === null ? sent : inLatin(unzipped);
+  if (!/[^ \t\n\r\v\f]/.test(latin)) {
+    throw new Refused(422, [`${name}: the file is empty. Download or export it again`]);
+  }
+  const packed = PACKED.find(([begin]) => latin.startsWith(begin))?.[1];
+  if (packed !== undefined) throw new Refused(422, [`${name}: ${latin.includes("xl/workbook") ? WORKBOOK : packed}`]);
+  const text = decoded(latin, unzipped ?? bytesOf(sent));
+  if (/[\x00-\x08\x0b\x0e-\x19\x1b-\x1f]/.test(text.slice(0, 4096))) throw binary(name);
+  return new RecordText(name, text);
+}
+
+export function isCalledAt2(name: string): boolean {
+  return /\.at2(\.gz)?$/i.test(name);
+}
+
+function binary(name: string): Refused {
+  if (!isCalledAt2(name)) return notReadHere(name, "binary files such as miniSEED");
+  const problem = "no AT2 file: it is no text, and has no header with NPTS and DT";
+  return new Refused(422, [`${name}: ${problem}. Download it again`]);
+}
+
+/** Unpacks a gzip file, to the maximum size. */
+async function unpacked(name: string, bytes: Uint8Array<ArrayBuffer>): Promise<Uint8Array> {
+  const pieces: Uint8Array[] = [];
+  let size = 0;
+  const reader = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip")).getReader();
+  for (;;) {
+    const { done, value } = await reader.read().catch(() => {
+      throw new Refused(422, [`${name}: cannot be read: damaged gzip file. Download the file again`]);
+    });
+    if (done) break;
+    pieces.push(value);
+    size += value.length;
+    if (size <= MOST) continue;
+    void reader.cancel();
+    const remedy = "Cut the record, or read it in Python.";
+    throw new Refused(422, [`${name}: more than ${MOST} bytes when unpacked. ${remedy}`]);
+  }
+  return new Uint8Array(await new Blob(pieces as BlobPart[]).arrayBuffer());
+}
+
+/** Decodes UTF-16 with its mark or UTF-8, otherwise Latin-1. */
+function decoded(latin: string, bytes: Uint8Array): string {
+  if (latin.startsWith("\xff\xfe")) return new TextDecoder("utf-16le").decode(bytes);
+  if (latin.startsWith("\xfe\xff")) return new TextDecoder("utf-16be").decode(bytes);
+  try {
+    return new TextDecoder("utf-8", { fatal: true }).decode(bytes);
+  } catch {
+    return latin; // TextDecoder reads Windows-1252 in place of Latin-1
+  }
+}
+
+function bytesOf(latin: string): Uint8Array<ArrayBuffer> {
+  const bytes = new Uint8Array(latin.length);
+  for (let at = 0; at < latin.length; at += 1) bytes[at] = latin.charCodeAt(at);
+  return bytes;
+}
+
+function inLatin(bytes: Uint8Array): string {
+  const pieces: string[] = [];
+  // In pieces: a call takes only so many arguments.
+  for (let at = 0; at < bytes.length; at += 0x8000) {
+    pieces.push(String.fromCharCode(...bytes.subarray(at, at + 0x8000)));
+  }
+  return pieces.join("");
+}
