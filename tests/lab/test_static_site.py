@@ -328,6 +328,10 @@ SHAKEN = {
         "motion": {"kind": "circular", "acceleration": 0.8, "angular_frequency": 6.0, "ramp": 3.0},
         "tilt": [0.02, 0.0],
     },
+    "a pulse that would lift the column off": {
+        "motion": {"kind": "half_sine", "acceleration": 7.0, "angular_frequency": 6.0, "direction": 0.4},
+        "model": {"kind": "rolling", "damping": 0.02},
+    },
     "no motion, with little energy": {"motion": {"kind": "rest"}, "tilt": [0.05, 0.02], "duration": 5.0},
 }
 
@@ -342,8 +346,21 @@ def test_computed_runs_under_any_motion_are_those_of_the_server(name, served, pa
         assert found[part] == known[part]
     assert [one["kind"] for one in found["events"]] == [one["kind"] for one in known["events"]]
     assert found["measures"]["peak_tilt"] == pytest.approx(known["measures"]["peak_tilt"], rel=1e-6)
+    for load in ("peak_friction_demand", "minimum_normal_force"):  # just before impacts the page sees more
+        assert found["measures"][load] == pytest.approx(known["measures"][load], rel=5e-3), load
     for part in ("time", "tilt", "base"):
         np.testing.assert_allclose(found["drawn"][part], known["drawn"][part], rtol=1e-6, atol=2e-6, err_msg=part)
+
+
+@pytest.mark.parametrize("limit", [0.05, 0.15, 2.0])
+def test_warnings_about_the_contact_are_those_of_the_server(limit, page_of_sources, client):
+    lifting = SHAKEN["a pulse that would lift the column off"]
+    asked = {"column": BLOCK, **lifting, "friction_coefficient": limit}
+    found = page_of_sources.evaluate("(asked) => window.stylobate.source.simulate(asked)", asked)
+    known = client.post("/api/simulate", json=asked).json()
+    assert found["warnings"] == known["warnings"]
+    assert any(line.startswith("it would lift off from") for line in found["warnings"])
+    assert found["drawn"]["friction_coefficient"] == known["drawn"]["friction_coefficient"] == limit
 
 
 def test_own_files_are_read_in_the_page_and_shake_the_column(opened, tmp_path, client):

@@ -174,36 +174,57 @@ class Demands:
         warnings = []
         if pull >= 0.0:
             when = _from(loads.first_beyond(Load.PULL, 0.0))
-            warnings.append(f"it would lift off{when}: the contact would have to pull, which this model allows")
+            warnings.append(LIFTS_OFF.format(when=when))
         if friction_coefficient is not None and friction > friction_coefficient:
             when = _from(loads.first_beyond(Load.FRICTION, friction_coefficient))
+            before = _before_rocking(model, friction_coefficient)
             warnings.append(
-                f"it would slip{when}: more friction is needed than friction_coefficient {friction_coefficient:.4g} "
-                f"provides, {_in_words(friction)}; this model never slips{_before_rocking(model, friction_coefficient)}"
+                SLIPS.format(when=when, limit=friction_coefficient, needed=_in_words(friction), before=before)
             )
         return cls(measures, tuple(warnings))
 
 
 def _in_words(demand: float) -> str:
-    return (
-        f"at most {demand:.4g} times the normal force during the run"
-        if np.isfinite(demand)
-        else "without bound where nothing presses on the base"
-    )
+    return AT_MOST.format(demand=demand) if np.isfinite(demand) else WITHOUT_BOUND
 
 
 def _before_rocking(model: Model, friction_coefficient: float) -> str:
     capacity = model.rest_capacity
     if friction_coefficient >= capacity:
         return ""
-    return (
-        f", but with less friction than {capacity:.4g}, at which rocking begins, the column slides before it rocks: "
-        "this run does not describe it; use model sliding"
-    )
+    return BEFORE_ROCKING.format(capacity=capacity)
 
 
 def _from(time: float | None) -> str:
-    return " for a moment" if time is None else f" from {time:.5g} s on"
+    return FOR_A_MOMENT if time is None else FROM.format(time=time)
+
+
+LIFTS_OFF = "it would lift off{when}: the contact would have to pull, which this model allows"
+SLIPS = (
+    "it would slip{when}: more friction is needed than friction_coefficient {limit:.4g} provides, {needed}; this model "
+    "never slips{before}"
+)
+AT_MOST = "at most {demand:.4g} times the normal force during the run"
+WITHOUT_BOUND = "without bound where nothing presses on the base"
+BEFORE_ROCKING = (
+    ", but with less friction than {capacity:.4g}, at which rocking begins, the column slides before it rocks: "
+    "this run does not describe it; use model sliding"
+)
+FROM, FOR_A_MOMENT = " from {time:.5g} s on", " for a moment"
+"""Warnings about the contact and their parts, with gaps."""
+
+
+def demand_texts() -> dict[str, str]:
+    """Return the warnings about the contact with gaps for numbers, for a page that states them without Python."""
+    return {
+        "lifts_off": LIFTS_OFF,
+        "slips": SLIPS,
+        "at_most": AT_MOST,
+        "without_bound": WITHOUT_BOUND,
+        "before_rocking": BEFORE_ROCKING,
+        "from_time": FROM,
+        "for_a_moment": FOR_A_MOMENT,
+    }
 
 
 @dataclass(frozen=True, slots=True)

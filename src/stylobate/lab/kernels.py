@@ -9,6 +9,7 @@ import numpy as np
 from stylobate.base_motions import Harmonic, Record
 from stylobate.config.description import WANTED
 from stylobate.engine.ensembles.run_columns import term_of
+from stylobate.engine.history import demand_texts
 from stylobate.engine.kernel.bound import FromZero
 from stylobate.engine.kernel.columns import LAGS
 from stylobate.engine.single import reason_texts
@@ -31,6 +32,7 @@ from stylobate.parameter_quantities import attributes_of, known_names
 from stylobate.records.joining import sample_names, sample_record
 from stylobate.results import OutcomeRules
 from stylobate.results.run import REPEATING
+from stylobate.results.run_rows import DEMAND_ROWS, NO_BOUND
 from stylobate.run_arguments import FREE_TAIL, SingleRun, arguments_of
 from stylobate.theory.rolling import critical_of, rolling_point
 
@@ -186,7 +188,9 @@ def described() -> dict[str, Any]:
         "outcomes": [{"name": one.name, "label": one.label} for one in Outcome],
         "fallen": [int(one) for one in FALLEN],
         "repeating": REPEATING,
-        "texts": {**reason_texts(), "no_duration": f"duration is missing{WANTED['duration']}"},
+        "demand_rows": [list(row) for row in DEMAND_ROWS],
+        "no_bound": NO_BOUND,
+        "texts": {**reason_texts(), **demand_texts(), "no_duration": f"duration is missing{WANTED['duration']}"},
         "rules": {"n": rules.periods, "short": rules.periods + 1, "steady": steady_periods(rules), "most": LAGS},
         "free_tail": FREE_TAIL,
         "most_periods": MOST_PERIODS,

@@ -97,16 +97,20 @@ def _contact_rows(run: Any) -> Rows:
 
 def _demand_rows(run: Any) -> Rows:
     measures = run.measures
-    rows = [
-        ("required friction coefficient", "peak_friction_demand", ""),
-        ("required pivoting moment", "peak_pivoting_demand", " of normal force times radius"),
-        ("minimum normal force", "minimum_normal_force", " of the weight"),
-    ]
-    return [(label, _bounded(measures[name], unit)) for label, name, unit in rows if name in measures]
+    return [(label, _bounded(measures[name], unit)) for label, name, unit in DEMAND_ROWS if name in measures]
+
+
+DEMAND_ROWS = (
+    ("required friction coefficient", "peak_friction_demand", ""),
+    ("required pivoting moment", "peak_pivoting_demand", " of normal force times radius"),
+    ("minimum normal force", "minimum_normal_force", " of the weight"),
+)
+"""Label, measure and unit of each row of the contact demand."""
+NO_BOUND = "no bound: nothing presses on the base"
 
 
 def _bounded(value: float, unit: str) -> str:
-    return f"{value:.4g}{unit}" if math.isfinite(value) else "no bound: nothing presses on the base"
+    return f"{value:.4g}{unit}" if math.isfinite(value) else NO_BOUND
 
 
 _UNITS = {

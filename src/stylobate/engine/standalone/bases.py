@@ -1,6 +1,7 @@
 """Base motions of a single run in the language of the compiler: at rest, harmonic, or tabulated by polynomials.
 
-They have the same members: `duration`, `bounds`, `directions`, `fill`, `begin` and `set_sample`.
+They have the same members: `duration`, `bounds`, `directions`, `fill`, `begin`, `set_sample` and
+`acceleration`.
 """
 
 import math
@@ -53,6 +54,10 @@ class AtRest:
         for k in range(AXES):
             place[k], acceleration[k] = 0.0, 0.0
 
+    def acceleration(self, _time: Any) -> tuple[Any, Any, Any]:
+        """Return 0."""
+        return 0.0, 0.0, 0.0
+
 
 @dataclass(frozen=True, slots=True)
 class Waves:
@@ -93,6 +98,11 @@ class Waves:
         there, pushed = self.motion.derivative(time, DISPLACEMENT), self.motion.derivative(time, ACCELERATION)
         for k in range(AXES):
             place[k], acceleration[k] = there[k], pushed[k]
+
+    def acceleration(self, time: Any) -> tuple[Any, Any, Any]:
+        """Return the acceleration at a time [m/s²]."""
+        x, y, z = self.motion.derivative(time, ACCELERATION)
+        return x, y, z
 
 
 class Table(NamedTuple):
@@ -191,6 +201,29 @@ class Polynomials:
             course[0] += 1.0
             at = at + 1
         integrate(rows[at], time, course, place, acceleration, None)
+
+    def acceleration(self, time: Any) -> tuple[Any, Any, Any]:
+        """Return the acceleration at a time [m/s²]."""
+        first, rows = int(self.numbers.first), self.rows
+        low, high = first, first + int(self.numbers.pieces) - 1
+        while low < high:
+            middle = (low + high + 1) // 2
+            if rows[middle, Piece.START] <= time:
+                low = middle
+            else:
+                high = middle - 1
+        piece = rows[low]
+        u, degree = (time - piece[Piece.START]) * piece[Piece.PER_HALF] - 1.0, (len(piece) - len(Piece)) // AXES - 1
+        x, y, z = (value_of(piece, len(Piece) + axis * (degree + 1), degree, u) for axis in range(AXES))
+        return x, y, z
+
+
+def value_of(piece: Row, first: int, degree: int, u: Any) -> Any:
+    """Return the value of a polynomial whose coefficients begin at a column, lowest power first."""
+    total: Any = 0.0
+    for k in range(degree + 1):
+        total = total * u + piece[first + degree - k]
+    return total
 
 
 def integrate(piece: Row, time: Any, course: Row, place: Row, acceleration: Row, carried: Row | None) -> None:

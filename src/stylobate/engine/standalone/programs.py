@@ -35,8 +35,9 @@ from stylobate.engine.ensembles.run_columns import MotionPlan
 from stylobate.engine.kernel.columns import LOG, NOTE, PAIRS, STATE, Log, Piece, Setup, Trace
 from stylobate.engine.kernel.driver.events import RunStatus, TraceKind
 from stylobate.engine.kernel.kernels import kernel_of
-from stylobate.engine.standalone import runs
+from stylobate.engine.standalone import demands, runs
 from stylobate.engine.standalone.bases import AXES, AtRest, Polynomials, Table, Waves
+from stylobate.engine.standalone.demands import Demand
 from stylobate.engine.standalone.runs import Accuracy, Given, Layout, Sample, Verdict
 from stylobate.engine.standalone.tables import (
     record_table,
@@ -173,6 +174,7 @@ class RunProgram:
             "judge": (row, NumberKind.FLOAT, ArrayArgument((len(Verdict) + LATE_COLUMNS,))),
             "to_plane": (row,),
             "sampled": (entries, row, ArrayArgument((None, len(Sample)))),
+            "demands": (entries, row, NumberKind.FLOAT, ArrayArgument((len(Demand),))),
         }.items():
             unit.export(getattr(module, name), name, (numbers, pieces, *arguments))
         return unit
@@ -180,7 +182,7 @@ class RunProgram:
     def exports(self) -> list[str]:
         """Return the names of the functions of the module."""
         planes = ["advance_in_plane"] if self.kind.planar_rates is not None else []
-        return ["advance", *planes, "begin", "judge", "to_plane", "sampled"]
+        return ["advance", *planes, "begin", "judge", "to_plane", "sampled", "demands"]
 
     def module(self) -> bytes:
         """Return the module of WebAssembly."""
@@ -195,6 +197,9 @@ class RunProgram:
                 *self._function("judge", "row, planar, out", "judged(row, {model}, base, planar, LAYOUT, out)"),
                 *self._function("to_plane", "row", "turned(row, {model})"),
                 *self._function("sampled", "entries, row, out", "sampling(entries, {model}, base, row, given, out)"),
+                *self._function(
+                    "demands", "entries, row, friction, out", "demanded(entries, {model}, base, row, friction, out)"
+                ),
                 "def begun(row, model, base, given, accuracy, layout):",
                 "    planar, looks = beginning(row, model, base, given, accuracy, layout)",
                 "    return (1 if planar else 0) + (2 if looks else 0)",
@@ -218,6 +223,7 @@ class RunProgram:
             "judged": runs.judge,
             "turned": runs.to_plane,
             "sampling": runs.sampled,
+            "demanded": demands.demands,
             "isnan": math.isnan,
         }
 
@@ -486,6 +492,7 @@ def described() -> dict[str, Any]:
             "trace": {one.name.lower(): int(one) for one in Trace},
             "sample": {one.name.lower(): int(one) for one in Sample},
             "verdict": verdict | late,
+            "demand": {one.name.lower(): int(one) for one in Demand},
         },
         "given": [name for name in Given._fields if name != "duration"],
         "sizes": {"trace": len(Trace), "sample": len(Sample), "verdict": len(Verdict) + LATE_COLUMNS},

@@ -386,30 +386,54 @@ def _polynomial(entry: Row, state: int, states: int, share: Any) -> Any:
 
 def _set_sample(entry: Row, model: Any, row: Row, time: Any, tau: Any, carried: Row, out: Row) -> None:
     """Set the numbers of a sample besides those of the base."""
-    share = (tau - entry[Trace.START]) / entry[Trace.LENGTH]
-    kind, scale, gravity = entry[Trace.KIND], model.time_scale, model.column.gravity
-    states = _states(entry, model, share)
-    if model.from_plane is not None and kind == TraceKind.PLANE_STEP:
-        line = (row[Setup.LINE_X], row[Setup.LINE_Y])
-        states = _as_floats(model.from_plane(states[0], states[1], *line, *model.parameters))
+    scale = model.time_scale
+    states = states_at(entry, model, row, tau)
     x, y, vx, vy = model.tilt_of(*states, *model.parameters)
-    stands = kind == TraceKind.STAND
-    if model.guards is not None:
-        stands = stands or states[len(states) - 1] <= 1.0
     out[Sample.TIME], out[Sample.TILT_X], out[Sample.TILT_Y] = time, x, y
     out[Sample.TILT_RATE_X], out[Sample.TILT_RATE_Y] = vx / scale, vy / scale
-    out[Sample.RESTING] = stands
+    out[Sample.RESTING] = _rests(entry, model, states)
     out[Sample.AZIMUTH] = _azimuth(entry, x, y)
     out[Sample.SPIN] = math.nan if model.spin_state is None else states[model.spin_state or 0] / scale
     out[Sample.TWIST], out[Sample.FOOTPRINT_X], out[Sample.FOOTPRINT_Y] = carried[0], carried[1], carried[2]
-    ax, ay, az = (out[Sample.ACCELERATION_X + k] / gravity for k in range(3))
     normal, friction, moment = math.nan, math.nan, math.nan
     if model.contact is not None and model.guards is None:
-        normal, friction, moment = model.contact(*states, ax, ay, az, *model.parameters)
-        if stands:
-            normal, friction, moment = 1.0 + az, np.hypot(ax, ay), 0.0
-        friction, moment = _over(friction, normal), _over(moment, normal)
+        acceleration = (out[Sample.ACCELERATION_X], out[Sample.ACCELERATION_Y], out[Sample.ACCELERATION_Z])
+        normal, friction, moment = loads(entry, model, states, acceleration)
     out[Sample.NORMAL], out[Sample.FRICTION], out[Sample.PIVOTING] = normal, friction, moment
+
+
+def states_at(entry: Row, model: Any, row: Row, tau: Any) -> tuple[Any, ...]:
+    """Return the three-dimensional states at a time within an entry of the trace."""
+    states = _states(entry, model, (tau - entry[Trace.START]) / entry[Trace.LENGTH])
+    if model.from_plane is not None and entry[Trace.KIND] == TraceKind.PLANE_STEP:
+        line = (row[Setup.LINE_X], row[Setup.LINE_Y])
+        states = _as_floats(model.from_plane(states[0], states[1], *line, *model.parameters))
+    return states
+
+
+def _rests(entry: Row, model: Any, states: tuple[Any, ...]) -> Any:
+    """Return whether the column stands on its base."""
+    stands = entry[Trace.KIND] == TraceKind.STAND
+    return stands if model.guards is None else stands or states[len(states) - 1] <= 1.0
+
+
+def loads(entry: Row, model: Any, states: tuple[Any, ...], acceleration: tuple[Any, Any, Any]) -> tuple[Any, Any, Any]:
+    """Return normal force over the weight, friction over it, and moment over it and the radius; see `contact_loads`.
+
+    Parameters
+    ----------
+    entry
+        Entry of the trace.
+    model, states
+        Model with `contact`, and its states.
+    acceleration
+        Of the base [m/s²].
+    """
+    ax, ay, az = (one / model.column.gravity for one in acceleration)
+    normal, friction, moment = model.contact(*states, ax, ay, az, *model.parameters)
+    if entry[Trace.KIND] == TraceKind.STAND:
+        normal, friction, moment = 1.0 + az, np.hypot(ax, ay), 0.0
+    return normal, _over(friction, normal), _over(moment, normal)
 
 
 def _over(force: Any, normal: Any) -> Any:

@@ -25,7 +25,7 @@ from stylobate.engine.ensembles.polynomials import (
 )
 from stylobate.engine.forcing import least_rest_energy
 from stylobate.engine.kernel.columns import Piece
-from stylobate.engine.standalone.bases import AXES, COURSE, integrate
+from stylobate.engine.standalone.bases import AXES, COURSE, integrate, value_of
 
 Rows = npt.NDArray[np.float64]
 
@@ -145,15 +145,10 @@ def _set_continued(rows: Rows, count: Any) -> None:
             jump: Any = 0.0
             for axis in range(AXES):
                 first = len(Piece) + axis * (degree + 1)
-                jump = max(jump, abs(_value(rows[k + 1], first, degree, -1.0) - _value(rows[k], first, degree, 1.0)))
+                jump = max(
+                    jump, abs(value_of(rows[k + 1], first, degree, -1.0) - value_of(rows[k], first, degree, 1.0))
+                )
             rows[k, Piece.CONTINUED] = 1.0 if jump <= NO_JUMP * largest else 0.0
-
-
-def _value(row: Rows, first: int, degree: int, u: Any) -> Any:
-    total: Any = 0.0
-    for k in range(degree + 1):
-        total = total * u + row[first + degree - k]
-    return total
 
 
 def _slope(row: Rows, first: int, degree: int, u: Any) -> Any:
@@ -389,16 +384,16 @@ def _largest_horizontal(row: Rows) -> Any:
     largest: Any = -1.0
     u: Any = 0.0
     for k in range(len(TEST_POINTS)):
-        x, y = _value(row, first, degree, TEST_POINTS[k]), _value(row, second, degree, TEST_POINTS[k])
+        x, y = value_of(row, first, degree, TEST_POINTS[k]), value_of(row, second, degree, TEST_POINTS[k])
         if x * x + y * y > largest:
             largest, u = x * x + y * y, TEST_POINTS[k]
     for _ in range(_REFINEMENTS):
-        x, y = _value(row, first, degree, u), _value(row, second, degree, u)
+        x, y = value_of(row, first, degree, u), value_of(row, second, degree, u)
         vx, vy = _slope(row, first, degree, u), _slope(row, second, degree, u)
         bend = vx * vx + vy * vy + x * _bend(row, first, degree, u) + y * _bend(row, second, degree, u)
         if bend < 0.0:
             u = min(max(u - (x * vx + y * vy) / bend, -1.0), 1.0)
-        x, y = _value(row, first, degree, u), _value(row, second, degree, u)
+        x, y = value_of(row, first, degree, u), value_of(row, second, degree, u)
         largest = max(largest, x * x + y * y)
     return math.sqrt(largest)
 
@@ -415,12 +410,12 @@ def _largest_along(row: Rows, sign: Any) -> Any:
     largest: Any = -math.inf
     u: Any = 0.0
     for k in range(len(TEST_POINTS)):
-        value = sign * _value(row, first, degree, TEST_POINTS[k])
+        value = sign * value_of(row, first, degree, TEST_POINTS[k])
         if value > largest:
             largest, u = value, TEST_POINTS[k]
     for _ in range(_REFINEMENTS):
         bend = sign * _bend(row, first, degree, u)
         if bend < 0.0:
             u = min(max(u - sign * _slope(row, first, degree, u) / bend, -1.0), 1.0)
-        largest = max(largest, sign * _value(row, first, degree, u))
+        largest = max(largest, sign * value_of(row, first, degree, u))
     return largest

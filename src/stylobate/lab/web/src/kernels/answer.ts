@@ -3,6 +3,7 @@
 import type { Part } from "../page/case/description";
 import type { DrawnMotion, Run, RunEvent, Series } from "../page/server/schema";
 import { type Case, caseOf, numberOf } from "./case";
+import { demandsOf } from "./demands";
 import { filled, general } from "./general";
 import { Refused } from "../page/server/source";
 import type { Kernels, Numbers } from "./kernels";
@@ -80,7 +81,10 @@ function answered(found: Computed, description: Part): Run {
   const [changes, doubts] = repeated(found);
   const reason = reasonOf(found);
   const peak = log(found, "peak_tilt");
-  const measures = measuresOf(found, scale, events);
+  const limit = numberOf(description["friction_coefficient"], Infinity, "friction_coefficient");
+  const loads = program.demands(finished.stretches, limit);
+  const demands = demandsOf(kernels, loads, limit, log(found, "capacity", "setup"));
+  const measures = { ...measuresOf(found, scale, events), ...demands.measures };
   const samples = new Samples(kernels, program.samples(finished.stretches, sampleCount(found, description)));
   const decidedAt = log(found, "decided") * scale;
   return {
@@ -93,15 +97,18 @@ function answered(found: Computed, description: Part): Run {
     decided_at: decidedAt,
     uncertain: verdict(found, "uncertain") > 0 || changes,
     planar: log(found, "three_dimensional") === 0,
-    warnings: doubts,
+    warnings: [...demands.warnings, ...doubts],
     events,
     measures,
-    summary: summaryOf(
-      column,
-      measures,
-      events.filter(({ kind }) => !kernels.described.repeating.includes(kind)),
-      peak,
-    ),
+    summary: [
+      ...summaryOf(
+        column,
+        measures,
+        events.filter(({ kind }) => !kernels.described.repeating.includes(kind)),
+        peak,
+      ),
+      ...demands.rows,
+    ],
     thresholds: {},
     drawn: drawnOf(found, samples, description, {
       outcome: outcome.name as Run["outcome"],
@@ -367,6 +374,7 @@ function drawnOf(
   const massHeight = column["mass_height"] ?? NaN;
   const body = description["column"] as Part;
   const described = found.kernels.described.programs[found.asked.program];
+  const friction = description["friction_coefficient"];
   const tilt = samples.pairs("tilt");
   const footprint = samples.pairs("footprint");
   const twist = samples.column("twist");
@@ -396,7 +404,7 @@ function drawnOf(
     rotation: tilt.map((lean, k) => turned(lean, twist[k] ?? 0)),
     centre: tilt.map((lean, k) => centreOf(lean, footprint[k] ?? [0, 0], radius)),
     friction_demand: described?.contact ? samples.known("friction") : null,
-    friction_coefficient: null,
+    friction_coefficient: typeof friction === "number" ? friction : null,
     ...said,
   };
 }

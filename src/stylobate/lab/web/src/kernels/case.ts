@@ -21,7 +21,7 @@ export interface Case {
 }
 
 /** What a description of a run may have besides its case. */
-const OF_A_RUN = new Set<string>([...PARTS, ...START, "duration"]);
+const OF_A_RUN = new Set<string>([...PARTS, ...START, "duration", "friction_coefficient"]);
 
 export async function caseOf(kernels: Kernels, given: Part): Promise<Case> {
   for (const [name, value] of Object.entries(given)) {

@@ -53,6 +53,13 @@ interface Texts {
   readonly open: string;
   readonly safe: string;
   readonly no_duration: string;
+  readonly lifts_off: string;
+  readonly slips: string;
+  readonly at_most: string;
+  readonly without_bound: string;
+  readonly before_rocking: string;
+  readonly from_time: string;
+  readonly for_a_moment: string;
 }
 
 interface DescribedProgram extends OfProgram {
@@ -91,6 +98,9 @@ export interface Described {
   readonly fallen: readonly number[];
   /** Kinds of events that occur in every swing, and are not listed. */
   readonly repeating: readonly string[];
+  /** Rows of the contact demand: label, measure and unit. */
+  readonly demand_rows: readonly (readonly [label: string, measure: string, unit: string])[];
+  readonly no_bound: string;
   readonly texts: Texts;
   readonly rules: { readonly n: number; readonly short: number; readonly steady: number; readonly most: number };
   /** Length of the free vibration after a base motion that ends, over 1/p. */

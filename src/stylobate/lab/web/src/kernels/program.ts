@@ -27,7 +27,7 @@ export interface Described {
 export interface Common {
   /** Columns of rows, entries of traces, samples and verdicts by name. */
   readonly columns: Readonly<
-    Record<"setup" | "log" | "trace" | "sample" | "verdict", Readonly<Record<string, number>>>
+    Record<"setup" | "log" | "trace" | "sample" | "verdict" | "demand", Readonly<Record<string, number>>>
   >;
   /** Names of the initial conditions of a run. */
   readonly given: readonly string[];
@@ -223,6 +223,19 @@ export class Program {
     const entries = BigInt(stretches.length / wide);
     this.#of("sampled", free, entries, at.row, BigInt(width), out, BigInt(many));
     return this.#array(out, columns * many).slice();
+  }
+
+  /** Returns the numbers of `demand` of the last run; `friction` is the friction coefficient of the base. */
+  demands(stretches: Float64Array, friction: number): Float64Array {
+    const { row: width, trace_width: wide } = this.described;
+    const { free } = this.#held;
+    const many = Object.keys(this.#common.columns.demand).length;
+    const out = free + LINE * Math.ceil((WIDTH * stretches.length) / LINE);
+    this.#room(out + WIDTH * many);
+    this.#array(free, stretches.length).set(stretches);
+    const entries = BigInt(stretches.length / wide);
+    this.#of("demands", free, entries, this.#at.row, BigInt(width), friction, out);
+    return this.#array(out, many).slice();
   }
 
   #looks(): number {
