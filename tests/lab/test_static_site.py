@@ -17,6 +17,7 @@ from tests.lab.test_page_mistakes import EXACT
 import stylobate as sb
 from stylobate.errors import FileError
 from stylobate.lab import answers, kernels, recorded, static_site
+from stylobate.lab.links import link_to
 from stylobate.lab.options import lessons, presets
 from stylobate.records.reading import write_at2
 
@@ -209,6 +210,19 @@ def test_a_link_to_an_unrecorded_case_shows_the_first_lesson_and_says_why(opened
     shown(page)
     page.locator(".problems").get_by_text(f"This link cannot be opened: {REFUSED} these numbers").wait_for()
     assert page.get_by_role("heading", name=OPENING.question).is_visible()
+
+
+LINKED = [one for one in PRESETS if one.identity in ("line-strong", "shaker", "temple")]
+
+
+@pytest.mark.parametrize("preset", LINKED, ids=lambda one: one.identity)
+def test_a_link_that_python_writes_opens_the_described_case(preset, served, browser):
+    page = new_page(browser)
+    page.goto(f"{served}#{link_to(preset.description)}")
+    shown(page)
+    assert page.evaluate("() => window.stylobate.state().description") == preset.description
+    assert page.evaluate("() => window.stylobate.state().lesson") is None
+    page.close()
 
 
 def test_program_and_link_of_a_case_are_shown(opened, place):
