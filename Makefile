@@ -49,6 +49,9 @@ lab: $(VENV)/.core $(PAGE)  ## the laboratory, in the browser
 static-lab: $(VENV)/.core $(PAGE)  ## the laboratory as files for any web server, and as one file, into static-lab/
 	$(BIN)/stylobate lab --static static-lab
 
+static-lab/index.html: $(PAGE) | $(VENV)/.core
+	$(BIN)/stylobate lab --static static-lab
+
 test: $(VENV)/.core $(VENV)/.test  ## the tests; those of the page need `make page` and chromium, else they are skipped
 	$(BIN)/python -m pytest -n auto
 
@@ -92,7 +95,10 @@ lint: $(VENV)/.core $(VENV)/.test $(VENV)/.lint  ## style, types, import contrac
 	$(BIN)/lint-imports
 	$(BIN)/python tools/wording.py
 
-docs: $(VENV)/.core $(VENV)/.docs  ## the documentation into docs/_build/html
+# Without Node, or as make docs LAB=, the documentation has no laboratory, and no links to it.
+LAB := $(if $(shell command -v npm 2>/dev/null),static-lab/index.html)
+
+docs: $(VENV)/.core $(VENV)/.docs $(LAB)  ## the documentation into docs/_build/html, with the laboratory
 	$(BIN)/sphinx-build --fail-on-warning --keep-going docs docs/_build/html
 
 FIGURES := $(filter-out %/saving.py %/choose_a_model.py,$(wildcard docs/figures/*.py))

@@ -33,6 +33,7 @@ extensions = [
     "sphinx_gallery.gen_gallery",
     "sphinxcontrib.bibtex",
     "citations",  # docs/extensions: BibTeX from CITATION.cff
+    "laboratory_links",  # docs/extensions: links that open a case in the laboratory
     "source_links",  # docs/extensions: links from source code back to the reference
     "stylobate_reference",  # docs/extensions: summaries, options of commands and fields of files from declarations
 ]
@@ -98,7 +99,11 @@ sphinx_gallery_conf = {
             "plots_and_animations",
         )
     ],
-    "image_scrapers": ("figure_scraper.new_figures", "matplotlib"),
+    "image_scrapers": (
+        "figure_scraper.new_figures",
+        "matplotlib",
+        "figure_scraper.links_of_runs",
+    ),
     "capture_repr": (),  # text is what an example prints; figures are shown as images
     "image_srcset": ["2x"],
     "thumbnail_size": (480, 320),
@@ -146,6 +151,12 @@ html_favicon = "_static/favicon.svg"
 html_static_path = ["_static"]
 html_css_files = ["page.css"]
 html_copy_source = False
+
+# The laboratory as static files becomes part of the site if it has been written (make static-lab). Without it,
+# or with -D static_laboratory= on the command line, the pages have no links to it.
+static_laboratory = (
+    "../static-lab" if (_HERE / "../static-lab/index.html").is_file() else ""
+)
 html_show_sphinx = False
 
 # Text between backticks stays as it is; elsewhere |α| is an amount and no substitution of reStructuredText.

@@ -1,6 +1,7 @@
-"""Puts animations, and figures drawn without pyplot such as those of `sb.plot`, into tutorials and gallery."""
+"""Puts animations, figures drawn without pyplot, and links of runs to the laboratory into tutorials and gallery."""
 
 import logging
+import textwrap
 from pathlib import PurePosixPath
 from typing import Any
 
@@ -8,6 +9,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from sphinx_gallery.scrapers import figure_rst
 
+from stylobate import Run
+from stylobate.config.snippets import as_toml
+from stylobate.errors import UnsupportedError
+from stylobate.lab.links import case_of_provenance, is_answered_in_the_page
 from stylobate.plots import Animation
 
 _DPI = 100
@@ -38,6 +43,44 @@ def new_figures(
         path = PurePosixPath(next(block_vars["image_path_iterator"]))
         images.append(_saved(value, path, gallery_conf))
     return "\n".join(images)
+
+
+def links_of_runs(
+    block: Any, block_vars: dict[str, Any], gallery_conf: dict[str, Any], **options: Any
+) -> str:
+    """Return the RST of a link to the laboratory for each new run that a variable of the example holds.
+
+    A case that the example repeats has one link. Runs that the laboratory of the site does not open have none.
+    """
+    del block, gallery_conf, options
+    variables = block_vars["example_globals"]
+    seen = variables.setdefault("__runs__", [])
+    linked = variables.setdefault("__cases__", [])
+    runs = {
+        name: value
+        for name, value in variables.items()
+        if isinstance(value, Run) and not any(value is one for one in seen)
+    }
+    seen += runs.values()
+    links = []
+    for name, run in runs.items():
+        case = _case(run)
+        if case is not None and case not in linked:
+            linked.append(case)
+            label = f"Open “{name}” in the laboratory" if len(runs) > 1 else ""
+            links.append(
+                f"\n.. laboratory:: {label}\n\n{textwrap.indent(as_toml(case), '   ')}\n"
+            )
+    return "".join(links)
+
+
+def _case(run: Run) -> dict[str, Any] | None:
+    """Return the case of a run, or None if the laboratory of the site does not open it."""
+    try:
+        case = case_of_provenance(run.provenance)
+    except UnsupportedError:
+        return None
+    return case if is_answered_in_the_page(case) else None
 
 
 def _saved(

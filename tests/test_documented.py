@@ -4,6 +4,7 @@ import doctest
 import importlib
 import re
 import sys
+from importlib.util import find_spec
 from pathlib import Path
 from types import ModuleType
 from typing import get_type_hints
@@ -28,7 +29,8 @@ if not PAGES:
 def extensions():
     """The modules that make the tables of the reference."""
     sys.path.insert(0, str(DOCS / "extensions"))
-    yield {name: importlib.import_module(name) for name in ("declared_fields", "declared_options")}
+    names = ["declared_fields", "declared_options", *(["laboratory_links"] if find_spec("sphinx") else [])]
+    yield {name: importlib.import_module(name) for name in names}
     sys.path.remove(str(DOCS / "extensions"))
 
 
