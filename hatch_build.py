@@ -10,8 +10,9 @@ from typing import Any
 from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 
 _WEB = "src/stylobate/lab/web"
-_BUNDLES = ("src/stylobate/lab/page/main.js", "src/stylobate/plots/animation/viewer.js")
-_PACKED = ["src/stylobate/lab/page/*", "src/stylobate/plots/animation/viewer.js"]
+_PAGE = "src/stylobate/lab/page"
+_BUNDLES = (f"{_PAGE}/main.js", f"{_PAGE}/worker.js", "src/stylobate/plots/animation/viewer.js")
+_PACKED = [f"{_PAGE}/*", "src/stylobate/plots/animation/viewer.js"]
 _WITHOUT = "STYLOBATE_WITHOUT_PAGE"
 
 

@@ -18,7 +18,7 @@ from markdown_it import MarkdownIt
 
 ROOT = Path(__file__).parents[1]
 WEB = "src/stylobate/lab/web"
-BUNDLES = ("stylobate/lab/page/main.js", "stylobate/plots/animation/viewer.js")
+BUNDLES = ("stylobate/lab/page/main.js", "stylobate/lab/page/worker.js", "stylobate/plots/animation/viewer.js")
 
 
 def inline_tokens(text):
@@ -104,7 +104,7 @@ def remove_the_page(tree):
 
 
 def remove_the_viewer(tree):
-    (tree / "src" / BUNDLES[1]).unlink()
+    (tree / "src" / BUNDLES[-1]).unlink()
 
 
 changed = pytest.mark.parametrize(

@@ -94,7 +94,8 @@ def opened(browser, place):
     assert found.foreign == []
     assert found.said == []
     if place.startswith("file:"):
-        assert {address.partition("#")[0] for address in asked} == {place}
+        # a worker's script is read from the page itself
+        assert {address.partition("#")[0] for address in asked if not address.startswith("blob:null/")} == {place}
 
 
 def refusals(page):
@@ -264,13 +265,18 @@ def test_the_folder_opened_from_disk_names_the_file_to_open(site, browser):
 
 
 def test_the_policy_allows_nothing_but_the_page_itself(site):
-    for name, scripts in (("index.html", "'self' 'wasm-unsafe-eval'"), (static_site.SINGLE_FILE, "'sha256-")):
+    for name, scripts, workers in (
+        ("index.html", "'self' 'wasm-unsafe-eval'", "'self'"),
+        (static_site.SINGLE_FILE, "'sha256-", "blob:"),
+    ):
         page = (site / FOLDER / name).read_text(encoding="utf-8")
         policy = dict(
             one.split(" ", 1) for one in re.search('Content-Security-Policy" content="(.*?)"', page)[1].split("; ")
         )
         assert policy["default-src"] == "'none'"
         assert policy["script-src"].startswith(scripts)
+        assert "blob:" not in policy["script-src"]
+        assert policy["worker-src"] == workers
         assert policy["connect-src"] == ("'self'" if name == "index.html" else "'none'")
         assert "unsafe-inline" not in str(policy)
         assert "unsafe-eval" not in str(policy).replace("wasm-unsafe-eval", "")
@@ -504,23 +510,35 @@ MAP = {
 }
 
 
+MAPPED = """async (asked) => {
+    const job = await window.stylobate.source.startJob("map", asked);
+    for (;;) {
+        const report = await job.report(0);
+        if (report.state !== "running") return report;
+        await new Promise((resolve) => setTimeout(resolve, 20));
+    }
+}"""
+
+
+def without_workers(page):
+    """Wait until a page has no worker; return whether it has none."""
+    for _ in range(100):
+        if not page.workers:
+            return True
+        page.wait_for_timeout(50)
+    return False
+
+
 @pytest.mark.parametrize("start", [None, "upper"])
-def test_computed_maps_are_those_of_the_server(start, served, browser, client):
+def test_computed_maps_are_those_of_the_server(start, place, browser, client):
     page = new_page(browser)
-    page.goto(served)
+    page.goto(place)
     shown(page)
     asked = {"description": MAP, **({} if start is None else {"start": start})}
-    found = page.evaluate(
-        """async (asked) => {
-            const job = await window.stylobate.source.startJob("map", asked);
-            for (;;) {
-                const report = await job.report(0);
-                if (report.state !== "running") return report;
-                await new Promise((resolve) => setTimeout(resolve, 20));
-            }
-        }""",
-        asked,
-    )
+    with page.expect_worker() as worker:
+        found = page.evaluate(MAPPED, asked)
+    assert worker.value.url.startswith("blob:" if place.startswith("file:") else place)
+    assert without_workers(page)  # they end with the map
     page.close()
     known = followed(client, client.post("/api/jobs", json={"kind": "map", **asked}).json()["id"])
     assert found["result"]["codes"] == known["result"]["codes"]
@@ -533,6 +551,49 @@ def test_computed_maps_are_those_of_the_server(start, served, browser, client):
     shares = [{one["name"]: one["share"] for one in job["result"]["classes"] if one["share"]} for job in (found, known)]
     assert shares[0] == pytest.approx(shares[1])
     assert (found["done"], found["total"]) == (72, 72)
+
+
+def test_a_cancelled_map_stops_at_once(place, browser):
+    page = new_page(browser)
+    page.goto(place)
+    shown(page)
+    axes = {axis: {**one, "number": 40} for axis, one in MAP["map"].items()}
+    stopped, later = page.evaluate(
+        """async (asked) => {
+            const job = await window.stylobate.source.startJob("map", asked);
+            while ((await job.report(0)).done === 0) await new Promise((resolve) => setTimeout(resolve, 5));
+            await job.cancel();
+            const stopped = await job.report(0);
+            await new Promise((resolve) => setTimeout(resolve, 300));
+            return [stopped, await job.report(0)];
+        }""",
+        {"description": {**MAP, "periods": 400, "map": axes}},
+    )
+    assert stopped["state"] == later["state"] == "cancelled"
+    assert stopped["done"] == later["done"] < 40 * 40
+    assert without_workers(page)
+    page.close()
+
+
+NO_WORKERS = {
+    "forbidden": "window.Worker = class { constructor() { throw new Error('forbidden'); } };",
+    "not loaded": "window.Worker = class extends window.Worker { constructor() { super('missing.js'); } };",
+    "without modules": "Worker.prototype.postMessage = ((post) => function (data) {"
+    " post.call(this, 'runs' in data ? data : {}); })(Worker.prototype.postMessage);",
+}
+
+
+@pytest.mark.parametrize("script", NO_WORKERS.values(), ids=NO_WORKERS)
+def test_a_page_whose_workers_cannot_start_computes_maps_itself(script, served, browser):
+    maps = []
+    for one in ("", script):
+        page = new_page(browser)
+        page.add_init_script(one)
+        page.goto(served)
+        shown(page)
+        maps.append(page.evaluate(MAPPED, {"description": MAP})["result"])
+        page.close()
+    assert maps[0] == maps[1]
 
 
 def test_what_is_loaded_before_the_first_motion_stays_small(written):
@@ -583,6 +644,7 @@ PAGE = {
     "index.html": f"{static_site._HEAD}{static_site._STYLE}{static_site._SCRIPT}{static_site._WAITING}</body>",
     "main.css": "body { color: red }",
     "main.js": 'const end = "</script><!-- ";',
+    "worker.js": 'const end = "</script>";',
 }
 
 
@@ -603,7 +665,7 @@ def test_the_same_files_are_written_each_time(tmp_path):
     assert (sizes.files, sizes.folder) == (len(first), sum(map(len, first.values())))
     assert sizes.single == len(single)
     held = len(contents(single.decode())["answers"]) + len(kernels.ALWAYS)
-    assert single.count(b"</script>") == 1 + held + 1
+    assert single.count(b"</script>") == 1 + held + 2
 
 
 @pytest.mark.usefixtures("one_case")

@@ -31,6 +31,9 @@ _CONTENTS = "answers"
 _PROGRAMS = "programs"
 """Folder of the programs and records, and beginning of the names of their elements."""
 
+_WORKER = "worker"
+"""Name of the script of the workers that compute maps, and of its element."""
+
 _SCRIPT, _STYLE, _HEAD = (
     '<script type="module" src="main.js"></script>',
     '<link rel="stylesheet" href="main.css" />',
@@ -106,7 +109,7 @@ def write(folder: Path, *, progress: Progress = None) -> Sizes:
         report(one.name, done, len(asked))
         answers[one.name] = packed(answer_to(one))
     programs = kernels.files()
-    page, style, script = (_page_file(name) for name in ("index.html", "main.css", "main.js"))
+    page, style, script, worker = map(_page_file, ("index.html", "main.css", "main.js", f"{_WORKER}.js"))
     contents = _contents(asked)
     opening = next(one for one in lessons() if one.opens)
     first = [f"{_CONTENTS}/{ask}-{opening.identity}.json" for ask in AT_ONCE]
@@ -114,12 +117,13 @@ def write(folder: Path, *, progress: Progress = None) -> Sizes:
     files = {
         "main.css": style.encode(),
         "main.js": script.encode(),
+        f"{_WORKER}.js": worker.encode(),
         **{f"{_CONTENTS}/{name}.json": answer for name, answer in answers.items()},
         **{f"{_PROGRAMS}/{name}": content for name, content in programs.items()},
     }
     first = [name for name in first if name in files]
     files["index.html"] = _for_server(page, contents, first).encode()
-    single = _single(page, style, script, contents, answers, programs).encode()
+    single = _single(page, style, (script, worker), contents, answers, programs).encode()
     for name, content in {**files, SINGLE_FILE: single}.items():
         write_whole(folder / name, content)
     loaded = ["index.html", "main.css", "main.js", *first]
@@ -152,7 +156,7 @@ def _data(identity: str, kind: str, text: str) -> str:
 
 def _for_server(page: str, contents: str, first: Iterable[str]) -> str:
     """Return the page that finds its script, its style and its answers beside it."""
-    policy = {**POLICY, "script-src": f"{POLICY['script-src']} {_WASM}"}
+    policy = {**POLICY, "script-src": f"{POLICY['script-src']} {_WASM}", "worker-src": "'self'"}
     ahead = [f'<link rel="preload" as="fetch" crossorigin href="{name}" />' for name in first]
     return _replaced(
         page,
@@ -165,17 +169,23 @@ def _for_server(page: str, contents: str, first: Iterable[str]) -> str:
 
 
 def _single(
-    page: str, style: str, script: str, contents: str, answers: Mapping[str, bytes], programs: Mapping[str, bytes]
+    page: str,
+    style: str,
+    scripts: tuple[str, str],
+    contents: str,
+    answers: Mapping[str, bytes],
+    programs: Mapping[str, bytes],
 ) -> str:
-    """Return the page with its script, its style, its answers and its programs in it."""
+    """Return the page with its scripts, its style, its answers and its programs in it."""
     # In a script only strings can have these words, where an escaped sign is the same.
-    script = script.replace("</script", r"\x3c/script").replace("<!--", r"\x3c!--")
+    script, worker = (one.replace("</script", r"\x3c/script").replace("<!--", r"\x3c!--") for one in scripts)
     policy = {
         **POLICY,
         "script-src": f"{_digest(script)} {_WASM}",
         "style-src": _digest(style),
         "img-src": "data: blob:",
         "connect-src": "'none'",
+        "worker-src": "blob:",  # made of the script of the workers, an element of the page
     }
     zipped = [
         _data(f"{folder}-{name}", "text/plain", base64.b64encode(_zipped(content)).decode())
@@ -188,7 +198,7 @@ def _single(
             _HEAD: "\n    ".join([_HEAD, _policy(policy)]),
             _STYLE: f"<style>{style}</style>",
             _SCRIPT: f'<script type="module">{script}</script>',
-            "</body>": "\n".join([contents, *zipped, "</body>"]),
+            "</body>": "\n".join([contents, *zipped, _data(_WORKER, "text/plain", worker), "</body>"]),
         },
     )
 

@@ -86,11 +86,22 @@ async function pageBundle() {
   };
 }
 
+// What computes maps beside the page: loaded when the first map is computed.
+async function workerBundle() {
+  return {
+    ...common,
+    entryPoints: { worker: "src/kernels/worker.ts" },
+    outdir: page,
+    format: "iife",
+    banner: { js: stamp },
+  };
+}
+
 const bundles = [];
 if (wanted("viewer")) bundles.push(await viewerBundle());
 if (wanted("page")) {
   await mkdir(page, { recursive: true });
-  bundles.push(await pageBundle());
+  bundles.push(await pageBundle(), await workerBundle());
 }
 for (const bundle of bundles) {
   if (watch) await (await context(bundle)).watch();

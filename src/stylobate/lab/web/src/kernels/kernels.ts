@@ -4,9 +4,11 @@ import type { Part, Value } from "../page/case/description";
 import { Refused } from "../page/server/source";
 import { Unknown, checked, numberOf, refuseOthers } from "./case";
 import { CONTRADICTION } from "./contradiction";
+import { imported } from "./instances";
 import { OwnRecords, type Samples } from "./own-records";
 import { type Common, type Described as OfProgram, Program } from "./program";
 import { STACK, Tables } from "./tables";
+import type { Setup } from "./worker-pool";
 
 export type Numbers = Readonly<Record<string, number>>;
 
@@ -127,6 +129,7 @@ export class Kernels {
   readonly own = new OwnRecords();
   readonly #load: Load;
   readonly #programs = new Map<string, Promise<Program>>();
+  readonly #modules = new Map<string, Promise<WebAssembly.Module>>();
   #mathematics: Promise<WebAssembly.Exports> | null = null;
   #case: Promise<WebAssembly.Instance> | null = null;
   #tables: Promise<Tables> | null = null;
@@ -218,22 +221,38 @@ export class Kernels {
   async #made(name: string): Promise<Program> {
     const described = this.described.programs[name];
     if (!described) throw new Unknown(`there is no program ${name}`);
-    const module = await WebAssembly.compile(await this.#load(`${name}.wasm`));
+    const module = await this.#module(name);
     return Program.of(module, await this.#ofMathematics(), described, this.described.common);
+  }
+
+  /** Returns what a worker needs to make the program of this name. */
+  async setup(name: string): Promise<Setup> {
+    const { described } = await this.program(name);
+    const [mathematics, program] = await Promise.all([this.#module("mathematics"), this.#module(name)]);
+    return { mathematics, program, described, common: this.described.common };
+  }
+
+  #module(name: string): Promise<WebAssembly.Module> {
+    let found = this.#modules.get(name);
+    if (!found) {
+      found = this.#load(`${name}.wasm`).then((bytes) => WebAssembly.compile(bytes));
+      this.#modules.set(name, found);
+    }
+    return found;
   }
 
   async #ofTables(): Promise<Tables> {
     const memory = new WebAssembly.Memory({ initial: (2 * STACK) / PAGE });
     const env = { ...(await this.#ofMathematics()), ...imported(memory, STACK) };
-    const { instance } = await WebAssembly.instantiate(await this.#load("tables.wasm"), { env });
-    return new Tables(instance.exports, memory, this.described.tables.numbers);
+    const { exports } = await WebAssembly.instantiate(await this.#module("tables"), { env });
+    return new Tables(exports, memory, this.described.tables.numbers);
   }
 
   #ofMathematics(): Promise<WebAssembly.Exports> {
     const env = imported(new WebAssembly.Memory({ initial: 2 }));
-    this.#mathematics ??= this.#load("mathematics.wasm")
-      .then((bytes) => WebAssembly.instantiate(bytes, { env }))
-      .then((found) => found.instance.exports);
+    this.#mathematics ??= this.#module("mathematics")
+      .then((module) => WebAssembly.instantiate(module, { env }))
+      .then((instance) => instance.exports);
     return this.#mathematics;
   }
 
@@ -251,9 +270,4 @@ export class Kernels {
 function fits(variant: Variant, numbers: readonly string[]): boolean {
   const own = variant.arguments.map((one) => one.name);
   return numbers.every((name) => own.includes(name) || name === "shape" || name === "kind");
-}
-
-function imported(memory: WebAssembly.Memory, stack = PAGE): WebAssembly.ModuleImports {
-  const pointer = new WebAssembly.Global({ value: "i32", mutable: true }, stack);
-  return { __linear_memory: memory, __stack_pointer: pointer };
 }

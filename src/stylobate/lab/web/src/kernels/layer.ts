@@ -7,8 +7,9 @@ import { type Layer, NotMine } from "../page/server/source";
 import { columnNumbers, simulated } from "./answer";
 import { Unknown, caseOf, numberOf, refuseOthers } from "./case";
 import type { Kernels } from "./kernels";
-import { startMap } from "./plane";
+import { type OnBranch, startMap } from "./plane";
 import { asPython, asToml } from "./snippets";
+import type { StartWorker } from "./worker-pool";
 
 /** What is smaller over what is larger, of the circles of a motion that is a circle. */
 const NO_CIRCLE = 1e-12;
@@ -18,7 +19,8 @@ const NONE = "motion has no steady rolling on this branch at this frequency";
 const SENSES = ["anticlockwise", "clockwise"] as const;
 const BRANCHES = ["upper", "lower"] as const;
 
-export function computing(kernels: Kernels): Layer {
+/** Returns the layer; `startWorker` starts the workers that compute maps. */
+export function computing(kernels: Kernels, startWorker: StartWorker): Layer {
   return {
     simulate: (description) => mine(() => simulated(kernels, description)),
     describe: (description) => mine(() => described(kernels, description)),
@@ -28,7 +30,8 @@ export function computing(kernels: Kernels): Layer {
     startJob: (kind, request) =>
       mine(() => {
         if (kind !== "map") throw new Unknown(`${kind} is not computed here`);
-        return startMap(kernels, request, (description, branch) => onBranch(kernels, description, branch));
+        const from: OnBranch = (description, branch) => onBranch(kernels, description, branch);
+        return startMap(kernels, request, from, startWorker);
       }),
   };
 }

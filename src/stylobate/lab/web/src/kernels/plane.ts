@@ -1,4 +1,4 @@
-/** Maps that the page computes: the outcome of each cell, from coarse to fine, in short pieces. */
+/** Maps that the page computes: the outcome of each cell, from coarse to fine, in pieces that workers compute. */
 
 import { type Description, type Part, type Value, isPart } from "../page/case/description";
 import { standing } from "../page/case/starting";
@@ -8,11 +8,13 @@ import { type JobRequest, NotMine, type Started } from "../page/server/source";
 import { numbersOf } from "./answer";
 import { type Case, Unknown, caseOf } from "./case";
 import type { Kernels } from "./kernels";
+import type { Program } from "./program";
+import { type Compute, type Member, type StartWorker, WorkerPool, workersFor } from "./worker-pool";
 
 /** Steps between the cells that are computed. */
 const STRIDES = [8, 4, 2, 1];
-/** Cells in a piece, at least and at most; pieces grow until one takes so long [ms] that the picture would falter. */
-const [LEAST, MOST, LONG] = [24, 384, 40];
+/** Cells in a piece, at least and at most: a program takes less time for each of many; pieces grow while they are quick. */
+const [LEAST, MOST] = [24, 384];
 
 interface Axis {
   readonly name: string;
@@ -23,13 +25,29 @@ interface Axis {
 export type OnBranch = (description: Part, branch: string) => Promise<Part | null>;
 
 /** Starts a map; `onBranch` returns where the runs start that follow a branch. */
-export async function startMap(kernels: Kernels, request: JobRequest, onBranch: OnBranch): Promise<Started> {
+export async function startMap(
+  kernels: Kernels,
+  request: JobRequest,
+  onBranch: OnBranch,
+  startWorker: StartWorker,
+): Promise<Started> {
   const { map, ...description } = request.description;
   if (!isPart(map)) throw new NotMine("not a map");
   const axes = [axisOf(map["x"]), axisOf(map["y"])] as const;
   const cell = (i: number, j: number): Promise<Cell> => cellAt(kernels, description, axes, [i, j], request, onBranch);
-  await cell(0, 0); // what no program knows is refused before the job begins
-  return new Mapping(kernels, axes, cell).started();
+  const { asked } = await cell(0, 0); // what no program knows is refused before the job begins
+  const program = await kernels.program(asked.program);
+  const many = workersFor(axes[0].values.length * axes[1].values.length, LEAST);
+  const pool = new WorkerPool(many, startWorker, await kernels.setup(asked.program), here(program));
+  return new Mapping(kernels, axes, cell, program, pool).started();
+}
+
+/** Returns how the page itself computes runs. */
+function here(program: Program): Compute {
+  return async (runs) => {
+    await new Promise((resolve) => setTimeout(resolve)); // the page goes on meanwhile
+    return program.batch(runs);
+  };
 }
 
 interface Cell {
@@ -73,6 +91,8 @@ class Mapping {
   readonly #kernels: Kernels;
   readonly #axes: readonly [Axis, Axis];
   readonly #cell: (i: number, j: number) => Promise<Cell>;
+  readonly #program: Program;
+  readonly #pool: WorkerPool;
   readonly #codes: number[][];
   readonly #events: (PlaneBegun | PlaneCells)[] = [];
   #uncertain = 0;
@@ -80,8 +100,16 @@ class Mapping {
   #state: Job["state"] = "running";
   #problems: readonly string[] = [];
 
-  constructor(kernels: Kernels, axes: readonly [Axis, Axis], cell: (i: number, j: number) => Promise<Cell>) {
+  constructor(
+    kernels: Kernels,
+    axes: readonly [Axis, Axis],
+    cell: (i: number, j: number) => Promise<Cell>,
+    program: Program,
+    pool: WorkerPool,
+  ) {
     this.#kernels = kernels;
+    this.#program = program;
+    this.#pool = pool;
     this.#axes = axes;
     this.#cell = cell;
     this.#codes = axes[0].values.map(() => axes[1].values.map(() => -1));
@@ -91,17 +119,20 @@ class Mapping {
   }
 
   started(): Started {
-    void this.#run().then(
-      () => (this.#state = this.#state === "running" ? "done" : this.#state),
-      (error: unknown) => {
-        this.#state = "failed";
-        this.#problems = [error instanceof Error ? error.message : String(error)];
-      },
-    );
+    void this.#run()
+      .then(
+        () => (this.#state = this.#state === "running" ? "done" : this.#state),
+        (error: unknown) => {
+          this.#state = "failed";
+          this.#problems = [error instanceof Error ? error.message : String(error)];
+        },
+      )
+      .finally(() => this.#pool.end());
     return {
       report: (after) => Promise.resolve(this.#report(after)),
       cancel: () => {
         this.#state = "cancelled";
+        this.#pool.end();
         return Promise.resolve();
       },
       file: () => Promise.reject(new NotMine("a map is no file")),
@@ -113,25 +144,32 @@ class Mapping {
   }
 
   async #run(): Promise<void> {
+    const members = this.#pool.members;
     const pace = { size: LEAST };
-    for (const [stride, places] of pieces(this.#axes[0].values.length, this.#axes[1].values.length, pace)) {
-      if (this.#state !== "running") return;
-      const begun = performance.now();
-      await this.#compute(stride, places);
-      if (performance.now() - begun < LONG) pace.size = Math.min(2 * pace.size, MOST);
-      await new Promise((resolve) => setTimeout(resolve)); // the page goes on meanwhile
+    for (const [stride, places] of strides(this.#axes[0].values.length, this.#axes[1].values.length)) {
+      let next = 0;
+      const work = async (member: Member): Promise<void> => {
+        while (this.#state === "running" && next < places.length) {
+          const share = Math.ceil((places.length - next) / members.length);
+          const piece = places.slice(next, (next += Math.min(pace.size, Math.max(share, LEAST))));
+          const begun = performance.now();
+          await this.#compute(stride, piece, member.compute);
+          if (performance.now() - begun < member.long) pace.size = Math.min(2 * pace.size, MOST);
+        }
+      };
+      await Promise.all(members.map(work)); // what is coarse must not be drawn over what is fine
     }
   }
 
-  async #compute(stride: number, places: readonly (readonly [number, number])[]): Promise<void> {
+  async #compute(stride: number, places: readonly Place[], compute: Compute): Promise<void> {
     const { rtol, most_steps, common } = this.#kernels.described;
     const cells = await Promise.all(places.map(([i, j]) => this.#cell(i, j)));
-    const name = cells[0]?.asked.program ?? "";
-    const program = await this.#kernels.program(name);
     const accuracy = { rtol, max_steps: most_steps, traces: 0, rest_share: 1, passage_share: 1 };
-    const runs = cells.map(({ asked, duration }) => numbersOf(program, { ...asked.numbers, duration, ...accuracy }));
+    const runs = cells.map(({ asked, duration }) =>
+      numbersOf(this.#program, { ...asked.numbers, duration, ...accuracy }),
+    );
     const found: [number, number, number][] = [];
-    program.batch(runs).forEach((verdict, k) => {
+    (await compute(runs)).forEach((verdict, k) => {
       const [i, j] = places[k] ?? [0, 0];
       const code = verdict[common.columns.verdict["outcome"] ?? 0] ?? -1;
       this.#uncertain += verdict[common.columns.verdict["uncertain"] ?? 1] ?? 0;
@@ -166,25 +204,20 @@ class Mapping {
   }
 }
 
-/** Yields each stride with some of the cells that it adds, as many as the pace says. */
-function* pieces(
-  width: number,
-  height: number,
-  pace: { readonly size: number },
-): Generator<readonly [number, readonly (readonly [number, number])[]]> {
+type Place = readonly [number, number];
+
+/** Yields each stride with the cells that it adds. */
+function* strides(width: number, height: number): Generator<readonly [number, readonly Place[]]> {
   const seen = new Set<number>();
   for (const stride of STRIDES) {
-    let piece: [number, number][] = [];
+    const places: Place[] = [];
     for (let i = 0; i < width; i += stride) {
       for (let j = 0; j < height; j += stride) {
         if (seen.has(i * height + j)) continue;
         seen.add(i * height + j);
-        piece.push([i, j]);
-        if (piece.length < pace.size) continue;
-        yield [stride, piece];
-        piece = [];
+        places.push([i, j]);
       }
     }
-    if (piece.length > 0) yield [stride, piece];
+    yield [stride, places];
   }
 }

@@ -2,6 +2,7 @@
 
 import { Kernels, type Load } from "../../kernels/kernels";
 import { computing } from "../../kernels/layer";
+import type { StartWorker } from "../../kernels/worker-pool";
 import { server } from "./api";
 import { unpacked } from "./packed";
 import { type Contents, type Read, recorded } from "./recorded";
@@ -13,6 +14,8 @@ const CONTENTS = "answers";
 const FOLDER = "answers";
 /** The folder of the programs and records, and the beginning of the names of their elements. */
 const PROGRAMS = "programs";
+/** The name of the script of the workers, and its element. */
+const WORKER = "worker";
 
 export function sourceOf(page: Document): Source {
   const contents = page.getElementById(CONTENTS);
@@ -23,7 +26,7 @@ export function sourceOf(page: Document): Source {
   };
   const found = JSON.parse(contents.textContent) as Contents & { readonly kernels?: Kernels["described"] };
   const layers = [recorded(found, async (name) => unpacked(await read(name)))];
-  if (found.kernels) layers.push(computing(new Kernels(found.kernels, loadOf(page))));
+  if (found.kernels) layers.push(computing(new Kernels(found.kernels, loadOf(page)), workersOf(page)));
   return layered(layers);
 }
 
@@ -35,6 +38,16 @@ function loadOf(page: Document): Load {
     const found = await fetch(`${PROGRAMS}/${name}`, { credentials: "same-origin" }).catch(() => null);
     if (found?.ok) return found.arrayBuffer();
     throw new Refused(404, [`The file ${PROGRAMS}/${name} of this page cannot be loaded. Check the connection.`]);
+  };
+}
+
+/** Returns how the page starts a worker: its script is a file beside the page, or an element in it. */
+function workersOf(page: Document): StartWorker {
+  const own = page.getElementById(WORKER);
+  let address = own === null ? `${WORKER}.js` : null;
+  return () => {
+    address ??= URL.createObjectURL(new Blob([own?.textContent ?? ""], { type: "text/javascript" }));
+    return new Worker(address);
   };
 }
 
