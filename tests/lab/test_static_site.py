@@ -583,6 +583,21 @@ NO_WORKERS = {
 }
 
 
+def test_several_workers_share_a_map(served, browser):
+    maps = []
+    for cores in (2, 4):
+        page = new_page(browser)
+        page.add_init_script(f"Object.defineProperty(navigator, 'hardwareConcurrency', {{ value: {cores} }});")
+        workers = []
+        page.on("worker", lambda worker, workers=workers: workers.append(worker.url))
+        page.goto(served)
+        shown(page)
+        maps.append(page.evaluate(MAPPED, {"description": MAP})["result"])
+        assert len(workers) == cores - 1
+        page.close()
+    assert maps[0] == maps[1]
+
+
 @pytest.mark.parametrize("script", NO_WORKERS.values(), ids=NO_WORKERS)
 def test_a_page_whose_workers_cannot_start_computes_maps_itself(script, served, browser):
     maps = []
