@@ -12,7 +12,11 @@ from sphinx_gallery.scrapers import figure_rst
 from stylobate import Run
 from stylobate.config.snippets import as_toml
 from stylobate.errors import UnsupportedError
-from stylobate.lab.links import case_of_provenance, is_answered_in_the_page
+from stylobate.lab.links import (
+    case_of_objects,
+    case_of_provenance,
+    is_answered_in_the_page,
+)
 from stylobate.plots import Animation
 
 _DPI = 100
@@ -50,7 +54,8 @@ def links_of_runs(
 ) -> str:
     """Return the RST of a link to the laboratory for each new run that a variable of the example holds.
 
-    A case that the example repeats has one link. Runs that the laboratory of the site does not open have none.
+    A case that the example repeats has one link. Runs that the laboratory of the site does not open have none. An
+    example without runs has a link to the case of its only model and base motion.
     """
     del block, gallery_conf, options
     variables = block_vars["example_globals"]
@@ -62,10 +67,12 @@ def links_of_runs(
         if isinstance(value, Run) and not any(value is one for one in seen)
     }
     seen += runs.values()
+    cases = {name: _case(run) for name, run in runs.items()}
+    if not seen and not linked:
+        cases = {"": case_of_objects(variables.values())}
     links = []
-    for name, run in runs.items():
-        case = _case(run)
-        if case is not None and case not in linked:
+    for name, case in cases.items():
+        if case and is_answered_in_the_page(case) and case not in linked:
             linked.append(case)
             label = f"Open “{name}” in the laboratory" if len(runs) > 1 else ""
             links.append(
@@ -75,12 +82,11 @@ def links_of_runs(
 
 
 def _case(run: Run) -> dict[str, Any] | None:
-    """Return the case of a run, or None if the laboratory of the site does not open it."""
+    """Return the case of a run, or None if descriptions do not support it."""
     try:
-        case = case_of_provenance(run.provenance)
+        return case_of_provenance(run.provenance)
     except UnsupportedError:
         return None
-    return case if is_answered_in_the_page(case) else None
 
 
 def _saved(

@@ -1,7 +1,8 @@
 """Links that open the case of a page in the laboratory, which is part of the site as static files.
 
 `laboratory` takes the case from what is on the page: from the Python block before it, up to the first call of
-`simulate`; from TOML in the directive; or from the options `case` or `lesson`, a preset or a lesson of the page.
+`simulate` or with its only model and base motion; from TOML in the directive, in which `start` can be a branch of
+steady rolling; or from the options `case` or `lesson`, a preset or a lesson of the page.
 A site without the static laboratory has no such links.
 """
 
@@ -23,6 +24,7 @@ import stylobate as sb
 from stylobate.base_motions import BASE_AT_REST
 from stylobate.config.simulation import SimulationConfig
 from stylobate.lab.links import (
+    case_of_objects,
     case_of_provenance,
     is_answered_in_the_page,
     link_to,
@@ -56,7 +58,7 @@ class _Simulated(Exception):  # noqa: N818  ends a program at its first run
 
 
 def case_of_code(code: str) -> dict[str, Any]:
-    """Return the case of the first run of a program, which ends there.
+    """Return the case of the first run of a program, which ends there, or else of its only model and base motion.
 
     >>> case_of_code('''
     ... import stylobate as sb
@@ -72,12 +74,16 @@ def case_of_code(code: str) -> dict[str, Any]:
         moved = BASE_AT_REST if motion is None else motion
         raise _Simulated(provenance_of_run(model, moved, **options))
 
+    variables: dict[str, Any] = {}
     with patch.object(sb, "simulate", simulate):
         try:
-            exec(code, {})  # noqa: S102  the code of our own page
+            exec(code, variables)  # noqa: S102  the code of our own page
         except _Simulated as run:
             return case_of_provenance(run.values)
-    raise ValueError("the Python block before has no call of sb.simulate")
+    case = case_of_objects(variables.values())
+    if case is None:
+        raise ValueError("the Python block before has no run, and no single case")
+    return case
 
 
 def case_of_toml(text: str) -> dict[str, Any]:
@@ -91,9 +97,11 @@ def case_of_toml(text: str) -> dict[str, Any]:
     >>> case_of_toml(case)["column"]
     {'shape': 'dimensionless', 'slenderness': 0.1}
     """
-    described = SimulationConfig.parse(tomllib.loads(text))
+    values = tomllib.loads(text)
+    start = {"start": values.pop("start")} if "start" in values else {}
+    described = SimulationConfig.parse(values)
     described.build()  # reports numbers that no case can have
-    return shortest(described)
+    return {**shortest(described), **start}
 
 
 class Laboratory(SphinxDirective):

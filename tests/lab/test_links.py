@@ -5,7 +5,14 @@ import pytest
 import stylobate as sb
 from stylobate.config import SimulationConfig
 from stylobate.errors import ParameterError
-from stylobate.lab.links import case_of_provenance, is_answered_in_the_page, link_to, link_to_listed, shortest
+from stylobate.lab.links import (
+    case_of_objects,
+    case_of_provenance,
+    is_answered_in_the_page,
+    link_to,
+    link_to_listed,
+    shortest,
+)
 from stylobate.lab.options import lessons, presets
 from stylobate.provenance import provenance_of_run
 
@@ -64,6 +71,18 @@ def test_a_column_of_another_shape_is_described_by_mass_and_inertia():
     found = case_of_provenance(provenance_of_run(sb.Slender(column), CIRCLE, duration=1.0))["column"]
     assert found["shape"] == "given"
     assert SimulationConfig.parse({"column": found, "duration": 1.0}).column.build() == column
+
+
+def test_the_only_model_and_motion_are_a_case_that_starts_on_the_branch_of_its_rolling():
+    slender = sb.Slender(sb.Column.dimensionless(slenderness=0.1), damping=0.1)
+    case = case_of_objects([1.0, slender, "text", CIRCLE])
+    assert case is not None
+    assert is_answered_in_the_page(case)
+    assert link_to(case).endswith("&motion=circular,acceleration:0.065,angular_frequency:1.8&start=upper")
+    other = case_of_objects([sb.Wobbling(slender.column), CIRCLE])
+    assert other is not None
+    assert "start" not in other  # the page starts only the slender model on a branch
+    assert case_of_objects([slender]) is case_of_objects([slender, CIRCLE, CIRCLE.scaled(2.0)]) is None
 
 
 @pytest.mark.parametrize(

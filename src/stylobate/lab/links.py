@@ -6,17 +6,22 @@ Such a text stands after the # of the address. The page reads and writes it in `
 import json
 import math
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 from urllib.parse import quote
 
+from stylobate.base_motions import BaseMotion, Harmonic
 from stylobate.column import SHAPES, Column
+from stylobate.config.parts import STEADY_MODEL
 from stylobate.config.simulation import SimulationConfig, config_of
-from stylobate.errors import ParameterError
+from stylobate.errors import ConfigError, ParameterError, StylobateError, UnsupportedError
 from stylobate.lab.kernels import CASE, program_of
 from stylobate.lab.options import lessons, presets
+from stylobate.models import Model
+from stylobate.provenance import provenance_of_run
 from stylobate.quantities import parameters_of
 from stylobate.run_arguments import Accuracy, InitialConditions, arguments_of, numbers_of
+from stylobate.studies import steady_start
 from stylobate.text import did_you_mean
 
 _PARTS = {"column": "shape", "model": "kind", "motion": "kind"}
@@ -97,6 +102,41 @@ def case_of_provenance(provenance: Mapping[str, Any]) -> dict[str, Any]:
     return shortest(config_of(provenance))
 
 
+def case_of_objects(objects: Iterable[object]) -> dict[str, Any] | None:
+    """Return the case of the only model and the only base motion among these `objects`, without initial condition.
+
+    Returns
+    -------
+    dict or None
+        None if there are no such objects, or several. If the model is the slender one and rolls steadily under the
+        motion, `start` is the branch of steady rolling on which the page starts the run.
+    """
+    found = list(objects)
+    models = [one for one in found if isinstance(one, Model)]
+    motions = [one for one in found if isinstance(one, BaseMotion)]
+    if not (len(models) == len(motions) == 1):
+        return None
+    (model,), (motion,) = models, motions
+    try:
+        case = case_of_provenance(provenance_of_run(model, motion))
+    except (ConfigError, UnsupportedError):
+        return None
+    return {**case, "start": UPPER} if case["model"]["kind"] == STEADY_MODEL and _rolls(model, motion) else case
+
+
+UPPER = "upper"
+
+
+def _rolls(model: Model, motion: BaseMotion) -> bool:
+    if not isinstance(motion, Harmonic):
+        return False
+    try:
+        steady_start(model, motion, branch=UPPER)
+    except StylobateError:
+        return False
+    return True
+
+
 def shortest(described: SimulationConfig) -> dict[str, Any]:
     """Return plain values of a described run without defaults and without its accuracy.
 
@@ -150,5 +190,5 @@ def _has(described: Mapping[str, Any], column: Column) -> bool:
 def is_answered_in_the_page(values: Mapping[str, Any]) -> bool:
     """Return whether the page computes the run that these plain values describe, without a server."""
     shapes = {variant.of for variant in CASE.variants.values()}
-    known = {*_PARTS, *numbers_of(InitialConditions), "duration"}
+    known = {*_PARTS, *numbers_of(InitialConditions), "duration", "start"}
     return set(values) <= known and f"column_{values['column']['shape']}" in shapes and program_of(values) is not None
