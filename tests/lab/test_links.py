@@ -66,6 +66,16 @@ def test_a_column_keeps_the_numbers_of_its_shape(column, case):
     assert {name: value for name, value in found.items() if name != "shape"} == case
 
 
+def test_a_scaled_record_has_its_scale():
+    model = sb.Slender(sb.Column.solid(radius=0.3, height=3.0, density=2700.0))
+    quake = sb.sample_record("el centro 1940")
+    motion = case_of_provenance(provenance_of_run(model, quake.scaled(0.9)))["motion"]
+    assert motion == {"kind": "record", "sample": "el centro 1940", "scale": 0.9}
+    assert is_answered_in_the_page(case_of_provenance(provenance_of_run(model, quake)))
+    turned = case_of_provenance(provenance_of_run(model, quake.scaled(0.9).rotated(0.5)))
+    assert not is_answered_in_the_page(turned)
+
+
 def test_a_column_of_another_shape_is_described_by_mass_and_inertia():
     column = sb.Column.hollow(radius=0.3, inner_radius=0.2, height=2.0, density=2e3)
     found = case_of_provenance(provenance_of_run(sb.Slender(column), CIRCLE, duration=1.0))["column"]
@@ -93,6 +103,8 @@ def test_the_only_model_and_motion_are_a_case_that_starts_on_the_branch_of_its_r
         ({"model": {"kind": "sliding", "friction_coefficient": 0.3}}, False),
         ({"model": {"kind": "slender", "damping": "housner"}}, False),
         ({"friction_coefficient": 0.2}, False),
+        ({"motion": {"kind": "record", "sample": "el centro 1940", "scale": 2.0}}, True),
+        ({"motion": {"kind": "record", "sample": "el centro 1940", "directions": ["x"]}}, False),
     ],
 )
 def test_a_case_that_the_page_cannot_compute_is_known(change, answered):

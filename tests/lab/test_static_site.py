@@ -650,7 +650,7 @@ def one_case(monkeypatch):
     first = next(recorded.cases())
     monkeypatch.setattr(recorded, "cases", lambda: [first])
     monkeypatch.setitem(recorded._ANSWERED, "exact", lambda _: b"{}")
-    monkeypatch.setattr(kernels, "files", lambda: dict.fromkeys(kernels.ALWAYS, b"module"))
+    monkeypatch.setattr(kernels, "files", lambda: {f"{name}.wasm": b"module" for name in kernels.ALWAYS})
     monkeypatch.setattr(static_site, "_page_file", PAGE.__getitem__)
     monkeypatch.setattr(static_site, "page_is_built", lambda: True)
 

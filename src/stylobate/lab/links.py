@@ -20,6 +20,7 @@ from stylobate.lab.options import lessons, presets
 from stylobate.models import Model
 from stylobate.provenance import provenance_of_run
 from stylobate.quantities import parameters_of
+from stylobate.records.joining import sample_names
 from stylobate.run_arguments import Accuracy, InitialConditions, arguments_of, numbers_of
 from stylobate.studies import steady_start
 from stylobate.text import did_you_mean
@@ -29,6 +30,10 @@ _PARTS = {"column": "shape", "model": "kind", "motion": "kind"}
 
 _ACCURACY = {*arguments_of(Accuracy), "recheck", "samples"} - {"tilt_limit"}
 """Arguments of a run that are no part of its case: the page has its own values."""
+
+
+_OF_A_RECORD = {"kind", "sample", "scale", "rotation", "tail"}
+"""Keys of the records that the page computes: those of the package, without further processing."""
 
 
 def link_to(values: Mapping[str, Any]) -> str:
@@ -149,8 +154,18 @@ def shortest(described: SimulationConfig) -> dict[str, Any]:
     if parts["column"]["shape"] == "given":
         given = described.column.build()
         parts["column"] = next((one for one in _with_fewer_numbers(given) if _has(one, given)), parts["column"])
+    parts["motion"] = _scaled(parts["motion"], described.motion)
     others = {name: value for name, value in values.items() if name not in (*_PARTS, *_ACCURACY)}
     return {**parts, **others}
+
+
+def _scaled(motion: Mapping[str, Any], described: Any) -> dict[str, Any]:
+    """Return a motion in plain values; a record that is only scaled has `scale` in place of its processing."""
+    steps = [step.model_dump(exclude_none=True) for step in getattr(described, "processing", ())]
+    match steps:
+        case [{"method": "scaled", "factor": factor, **rest}] if not rest and "scale" not in motion:
+            return {**{name: value for name, value in motion.items() if name != "processing"}, "scale": factor}
+    return dict(motion)
 
 
 _DIGITS = 12
@@ -191,4 +206,9 @@ def is_answered_in_the_page(values: Mapping[str, Any]) -> bool:
     """Return whether the page computes the run that these plain values describe, without a server."""
     shapes = {variant.of for variant in CASE.variants.values()}
     known = {*_PARTS, *numbers_of(InitialConditions), "duration", "start"}
-    return set(values) <= known and f"column_{values['column']['shape']}" in shapes and program_of(values) is not None
+    if not set(values) <= known or f"column_{values['column']['shape']}" not in shapes:
+        return False
+    motion = values["motion"]
+    if motion["kind"] == "record" and not (motion.keys() <= _OF_A_RECORD and motion.get("sample") in sample_names()):
+        return False
+    return program_of(values) is not None
