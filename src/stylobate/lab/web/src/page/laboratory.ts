@@ -10,6 +10,7 @@ import type { Connection } from "./server/connection";
 import { CaseProblems } from "./controls/case-problems";
 import { Controls } from "./controls/controls";
 import { NOT_HERE } from "./controls/record-form";
+import type { Comparison } from "./case/comparison";
 import type { Part } from "./case/description";
 import { written } from "./case/description";
 import { element } from "./frame/dom";
@@ -18,6 +19,7 @@ import { Help } from "./frame/help";
 import { listenToKeys } from "./frame/keys";
 import { Latest } from "./server/latest";
 import { menuOf } from "./view/menu";
+import { Comparing } from "./motion/comparing";
 import { MotionView } from "./motion/motion-view";
 import { paceOf } from "./motion/pace";
 import type { PlanePanel } from "./plane/plane-panel";
@@ -50,6 +52,7 @@ export class Laboratory {
   readonly #problems: CaseProblems;
   readonly #controls: Controls;
   readonly #motion: MotionView;
+  readonly #comparing: Comparing;
   readonly #response: ResponseAsking;
   readonly #planes: PlanesAsking;
   readonly #tabs: Tabs<Tab>;
@@ -120,6 +123,13 @@ export class Laboratory {
       follow: () => edited({ description: { ...this.view.description, duration: null } }),
       vary: () => this.#vary(),
     });
+    this.#comparing = new Comparing(source, about, {
+      changed: (compared) => this.#compare(compared),
+      shown: (second) => this.#motion.showSecond(second),
+      lost: () => this.#lose(),
+    });
+    this.#motion.root.append(this.#comparing.form.root);
+    this.clock.onTick((time) => this.#comparing.form.setTime(time));
     this.#problems = new CaseProblems(box, this.#controls, this.#motion);
     this.#response = new ResponseAsking(source, view, this.#scales, {
       ...{ edited, start, lost: () => this.#lose() },
@@ -169,6 +179,11 @@ export class Laboratory {
     return this.#answer;
   }
 
+  /** The answer about the column beside the first. */
+  get secondAnswer(): Answer | null {
+    return this.#motion.second?.answer ?? null;
+  }
+
   get response(): ResponsePanel {
     return this.#response.panel;
   }
@@ -181,6 +196,7 @@ export class Laboratory {
   refresh(): void {
     this.#asked = "";
     this.#response.forget();
+    this.#comparing.forget();
     this.#show(this.view);
     this.#planes.refill();
   }
@@ -210,6 +226,15 @@ export class Laboratory {
     this.#address.push(this.view);
   }
 
+  /** Sets another column beside the first; the way back leads to the one before, or to none. */
+  #compare(compared: Comparison | null): void {
+    const moved = compared?.differs === this.view.compared?.differs;
+    this.#address.flush();
+    this.#store.change({ time: null, compared });
+    if (moved) this.#address.replace(this.view);
+    else this.#address.push(this.view);
+  }
+
   #open(lesson: Lesson): void {
     this.#given = true;
     this.#jump(viewOfLesson(lesson));
@@ -237,6 +262,7 @@ export class Laboratory {
     this.#showSpeed(view);
     const jump = this.#fresh;
     this.#ask(view);
+    this.#comparing.show(view, jump);
     // The range of the response of another column is known with its run.
     if (!jump || this.#scaled === written(view.description.column)) this.#response.show(view, this.#scales, jump);
     this.#planes.show(view, this.#scales);

@@ -46,6 +46,12 @@ export interface DrawnMotion {
   readonly title: string;
 }
 
+/** A second column on the same base, and what is written below both. */
+export interface Beside {
+  readonly motion: DrawnMotion;
+  readonly labels: readonly [string, string];
+}
+
 const SAMPLED = [
   "tilt",
   "tilt_rate",

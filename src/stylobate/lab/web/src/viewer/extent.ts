@@ -65,6 +65,32 @@ export function extentOf(motion: DrawnMotion): Extent {
   };
 }
 
+const APART = 0.3; // sizes between the rooms of two columns
+
+/** Return the room of two columns side by side, and the place of the second on the base along x [m]. */
+export function extentBeside(first: Extent, second: Extent): { readonly extent: Extent; readonly place: number } {
+  const size = Math.max(first.size, second.size);
+  const spacing = Math.max(first.spacing, second.spacing);
+  const place = Math.ceil((first.room.high[0] - second.room.low[0] + APART * size) / spacing) * spacing;
+  const moved = ([x, y, z]: Triple): Triple => [x + place, y, z];
+  const [a, b] = [first.slab, second.slab];
+  // The slabs reach as far as the columns may fall: whichever edge is farther out counts.
+  const slab = [
+    Math.min(a[0], b[0] + place),
+    Math.min(a[1], b[1]),
+    Math.max(a[2], b[2] + place),
+    Math.max(a[3], b[3]),
+  ] as const;
+  const extent = {
+    ...{ size, spacing, slab, thickness: 0.07 * size },
+    room: spread([first.room.low, first.room.high, moved(second.room.low), moved(second.room.high)]),
+    shake: first.shake.map((one, k) => Math.max(one, second.shake[k]!)) as unknown as Triple,
+    followsColumn: first.followsColumn || second.followsColumn,
+    followsBase: first.followsBase || second.followsBase,
+  };
+  return { extent, place };
+}
+
 /** Return where the top of a column that falls comes to lie on the base. */
 function fallenTop(motion: DrawnMotion): readonly Triple[] {
   if (!isFalling(motion)) return [];

@@ -6,6 +6,7 @@
  */
 
 import type { DrawnMotion, Pair, Rotation, Triple } from "./drawn-motion";
+import { leaningPose } from "./moment";
 
 /** A motion with its fall: what is drawn from `computed_until` on was not computed. */
 export interface FallingMotion extends DrawnMotion {
@@ -17,6 +18,11 @@ const LONGEST = 20; // of a fall, in 1/p
 
 export function isFalling(motion: DrawnMotion): motion is FallingMotion {
   return "computed_until" in motion;
+}
+
+/** Return up to where a motion was computed; what is drawn later is its fall, or the end of its run [s]. */
+export function computedUntil(motion: DrawnMotion): number {
+  return isFalling(motion) ? motion.computed_until : motion.time.at(-1)!;
 }
 
 /** Return the azimuth in which the column leans at the end of its motion [rad]. */
@@ -97,21 +103,8 @@ function poseOf(
   tilt: number,
   after: number,
 ): Pose {
-  const [x, y] = footprint.at(-1)!;
-  const across = column.radius * (1 - Math.cos(tilt));
   const height = (clearance?.at(-1) ?? 0) * Math.max(1 - after, 0);
-  const [half, turn] = [tilt / 2, twist.at(-1)! / 2];
-  // Rz(β) Ry(θ) Rz(χ − β), real part first.
-  const rotation: Rotation = [
-    Math.cos(half) * Math.cos(turn),
-    -Math.sin(half) * Math.sin(azimuth - turn),
-    Math.sin(half) * Math.cos(azimuth - turn),
-    Math.cos(half) * Math.sin(turn),
-  ];
-  return {
-    tilt: [tilt * Math.cos(azimuth), tilt * Math.sin(azimuth)],
-    rotation,
-    centre: [x + across * Math.cos(azimuth), y + across * Math.sin(azimuth), height + column.radius * Math.sin(tilt)],
-    clearance: height,
-  };
+  const lean = { azimuth, tilt, twist: twist.at(-1)! };
+  const { rotation, centre } = leaningPose(column.radius, footprint.at(-1)!, lean, height);
+  return { tilt: [tilt * Math.cos(azimuth), tilt * Math.sin(azimuth)], rotation, centre, clearance: height };
 }

@@ -60,6 +60,45 @@ export function momentAt(motion: DrawnMotion, time: number): Moment {
   };
 }
 
+/** Return a motion at an instant, but with another tilt, about the rim of the circle on which the column stands then. */
+export function leaningMoment(motion: DrawnMotion, time: number, [x, y]: Pair): Moment {
+  const moment = momentAt(motion, time);
+  const { radius } = motion.column;
+  const [azimuth, tilt] = [Math.atan2(y, x), Math.hypot(x, y)];
+  const [fx, fy] = moment.footprint;
+  return {
+    ...moment,
+    ...leaningPose(radius, moment.footprint, { azimuth, tilt, twist: moment.twist }, 0),
+    contact: [fx + radius * Math.cos(azimuth), fy + radius * Math.sin(azimuth)],
+    clearance: 0,
+    resting: tilt === 0,
+  };
+}
+
+/** Return rotation and centre of the bottom of a column that leans on its rim, `height` above the base. */
+export function leaningPose(
+  radius: number,
+  [x, y]: Pair,
+  { azimuth, tilt, twist }: { readonly azimuth: number; readonly tilt: number; readonly twist: number },
+  height: number,
+): { readonly rotation: Rotation; readonly centre: Triple } {
+  const across = radius * (1 - Math.cos(tilt));
+  const [half, turn] = [tilt / 2, twist / 2];
+  // Rz(β) Ry(θ) Rz(χ − β), real part first.
+  const rotation: Rotation = [
+    Math.cos(half) * Math.cos(turn),
+    -Math.sin(half) * Math.sin(azimuth - turn),
+    Math.sin(half) * Math.cos(azimuth - turn),
+    Math.cos(half) * Math.sin(turn),
+  ];
+  const centre: Triple = [
+    x + across * Math.cos(azimuth),
+    y + across * Math.sin(azimuth),
+    height + radius * Math.sin(tilt),
+  ];
+  return { rotation, centre };
+}
+
 function mix(a: number, b: number, part: number): number {
   return part === 0 ? a : a + (b - a) * part;
 }

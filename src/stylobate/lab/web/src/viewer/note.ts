@@ -9,7 +9,7 @@ export function noteOn({ plane }: DrawnMotion, spacing: number, unit = "m"): str
   return plane.incline > 0 ? `${grid}, inclined ${Number(((plane.incline * 180) / Math.PI).toPrecision(3))}°` : grid;
 }
 
-const FONT = "12px system-ui, sans-serif";
+export const FONT = "12px system-ui, sans-serif";
 const INSET = 10; // px from the corner
 
 export function noteElement(): HTMLElement {

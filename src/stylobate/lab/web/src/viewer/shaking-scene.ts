@@ -5,35 +5,21 @@
  */
 
 import { type BufferGeometry, Color, Group, type Material, type Mesh, Scene, Vector3 } from "three";
-import { axisOf } from "./attitude";
-import { ContactMark } from "./contact-mark";
-import type { DrawnMotion, Triple } from "./drawn-motion";
-import { type Extent, extentOf } from "./extent";
-import { isFalling } from "./fall";
+import { ColumnFigure } from "./column-figure";
+import type { DrawnMotion, Pair, Triple } from "./drawn-motion";
+import { type Extent, extentBeside, extentOf } from "./extent";
+import { computedUntil } from "./fall";
 import { fadingGrid, gridOn } from "./grid";
 import { TO_LIGHT } from "./lit-material";
-import { momentAt, type Moment } from "./moment";
+import { leaningMoment, momentAt, type Moment } from "./moment";
 import type { Palette } from "./palette";
-import { Rim } from "./rim";
-import { RimVisits } from "./rim-visits";
 import { Shadow } from "./shadow";
-import { shaftMesh } from "./shaft";
-import { ON_GROUND, ON_SLAB, slabMeshes, slabOutline, wall, wallMesh } from "./slab";
-import { onRim } from "./touching";
-import { floorPath, spacePath } from "./trail";
-
-const SECTORS = 144; // of the rim
-const CAST = 48; // points of a circle that cast a shadow
-const JUMP = 0.8; // radii that the contact point goes at most between samples where it rolls
-const FADED = 0.55; // of a column in a fall that was not computed
-const MEMORY = 0.08; // of the duration, in which a path pales
-
-type Path = ReturnType<typeof floorPath> | ReturnType<typeof spacePath>;
+import { ON_GROUND, slabMeshes, slabOutline, wall, wallMesh } from "./slab";
 
 export class ShakingScene {
   readonly scene = new Scene();
-  readonly column = new Group();
-  readonly contact: ContactMark;
+  /** The column, and a second one beside it. */
+  readonly figures: readonly ColumnFigure[];
   readonly extent: Extent;
   /** Points that a camera must show. */
   readonly room: readonly Vector3[];
@@ -43,10 +29,7 @@ export class ShakingScene {
   readonly #plane = new Group();
   readonly #base = new Group();
   readonly #ground = new Group();
-  readonly #shaft: ReturnType<typeof shaftMesh>;
-  readonly #rim: Rim;
-  readonly #paths: readonly Path[];
-  readonly #shadows: { readonly slab: Shadow; readonly ground: Shadow; readonly slabOnGround: Shadow };
+  readonly #slabShadow: Shadow;
   readonly #outline: readonly (readonly [number, number])[];
   readonly #lightOnPlane: Vector3;
   readonly #level: number;
@@ -54,8 +37,11 @@ export class ShakingScene {
   constructor(
     readonly motion: DrawnMotion,
     palette: Palette,
+    beside: DrawnMotion | null = null,
   ) {
-    this.extent = extentOf(motion);
+    const { extent, place } =
+      beside === null ? { extent: extentOf(motion), place: 0 } : extentBeside(extentOf(motion), extentOf(beside));
+    this.extent = extent;
     const { size, slab, spacing, thickness } = this.extent;
     const { incline, incline_direction } = motion.plane;
     // About the level line of the plane: the way down goes down.
@@ -71,14 +57,9 @@ export class ShakingScene {
     grid.renderOrder = 1;
     this.#base.add(...slabMeshes(this.#outline, thickness, palette), grid);
 
-    const memory = Math.max(MEMORY * (motion.time.at(-1)! - motion.time[0]!), 1e-9);
-    this.#rim = new Rim(motion.column, palette, new RimVisits(motion, SECTORS), memory);
-    this.#shaft = shaftMesh(motion.column, palette);
-    this.column.add(this.#shaft, this.#rim.mesh);
-    this.contact = new ContactMark(motion.column, this.extent, palette);
-    const paths = pathsOf(motion, size, memory, palette);
-    this.#paths = paths;
-    this.#base.add(...paths, this.contact.group, this.column);
+    const motions = beside === null ? [motion] : [motion, beside];
+    this.figures = motions.map((one, i) => new ColumnFigure(one, extentOf(one), i * place, palette));
+    for (const { group, shadows } of this.figures) this.#base.add(group, shadows.slab.mesh);
 
     this.#level = this.#groundLevel();
     const reach = 2.2 * Math.hypot(slab[2] - slab[0], slab[3] - slab[1]);
@@ -92,37 +73,54 @@ export class ShakingScene {
     lines.renderOrder = 1; // over the shadows, which know the bare ground only
     this.#ground.add(lines);
 
-    const [sharp, soft] = [0.004 * size, 0.4 * Math.min(motion.column.radius, motion.column.top_radius)];
+    const sharp = 0.016 * size;
     const ground = { stencil: ON_GROUND, bare: palette.background };
-    this.#shadows = {
-      slab: new Shadow(2 * CAST, { stencil: ON_SLAB }, sharp, soft, palette),
-      ground: new Shadow(2 * CAST, ground, sharp, soft, palette),
-      slabOnGround: new Shadow(2 * this.#outline.length, ground, 4 * sharp, 8 * sharp, palette),
-    };
-    this.#base.add(this.#shadows.slab.mesh);
-    this.#shadows.slab.mesh.renderOrder = 4;
+    this.#slabShadow = new Shadow(2 * this.#outline.length, ground, sharp, 2 * sharp, palette);
     this.#plane.add(this.#base);
     if (incline > 0) this.#addPedestal(palette);
-    this.scene.add(this.#plane, this.#ground, this.#shadows.ground.mesh, this.#shadows.slabOnGround.mesh);
+    this.scene.add(
+      this.#plane,
+      this.#ground,
+      this.#slabShadow.mesh,
+      ...this.figures.map((one) => one.shadows.ground.mesh),
+    );
     this.room = this.#roomToShow();
   }
 
   /** Put everything where it is at `time`. */
-  setTime(time: number): Moment {
-    const moment = momentAt(this.motion, time);
-    const [w, x, y, z] = moment.rotation;
-    this.column.quaternion.set(x, y, z, w);
-    this.column.position.set(...moment.centre);
-    this.#base.position.set(...moment.base);
-    this.contact.show(moment);
-    this.#rim.setTime(time);
-    this.#shaft.material.uniforms.faded!.value =
-      isFalling(this.motion) && time > this.motion.computed_until ? FADED : 0;
-    for (const path of this.#paths) path.material.uniforms.now!.value = time;
-    this.#follow(moment);
+  setTime(time: number): void {
+    const [moment] = this.figures.map((one) => one.setTime(time));
+    const base = this.#baseAt(time);
+    this.#base.position.set(...base);
+    this.#follow(moment!, base);
+    this.#settle();
+  }
+
+  /** Lean all columns by this tilt, on the rim of the circles on which they stand at `time`. */
+  lean(time: number, tilt: Pair): void {
+    for (const one of this.figures) one.show(leaningMoment(one.motion, time, tilt));
+    this.#settle();
+  }
+
+  /** Return where the base is: as long as a run lasts that computed it. */
+  #baseAt(time: number): Triple {
+    const motions = this.figures.map((one) => one.motion);
+    const longest = motions.reduce((a, b) => (computedUntil(b) > computedUntil(a) ? b : a));
+    return momentAt(motions.find((one) => time <= computedUntil(one)) ?? longest, time).base;
+  }
+
+  #settle(): void {
     this.scene.updateMatrixWorld();
     this.#castShadows();
-    return moment;
+  }
+
+  /** Return the points of the ground's frame below which words about the columns stand, at the front edge of the base. */
+  labelPlaces(): Vector3[] {
+    const { slab, thickness, followsColumn, size } = this.extent;
+    const front = followsColumn ? -size : slab[1];
+    return this.figures.map(({ group }) =>
+      new Vector3(group.position.x, front, -thickness).applyQuaternion(this.#plane.quaternion),
+    );
   }
 
   dispose(): void {
@@ -166,7 +164,7 @@ export class ShakingScene {
     this.scene.add(wallMesh(block, palette));
   }
 
-  #follow({ base, footprint }: Moment): void {
+  #follow({ footprint }: Moment, base: Triple): void {
     this.followed.set(0, 0, 0);
     if (this.extent.followsColumn) this.followed.add(new Vector3(footprint[0], footprint[1], 0));
     if (this.extent.followsBase) this.followed.add(new Vector3(...base));
@@ -178,30 +176,12 @@ export class ShakingScene {
   }
 
   #castShadows(): void {
-    const circles = [
-      ...this.#circle(this.motion.column.radius, 0),
-      ...this.#circle(this.motion.column.top_radius, this.motion.column.height),
-    ];
-    this.#shadows.slab.cast(
-      circles.map(({ x, y, z }): Triple => [x, y, z]),
-      this.#lightOnPlane,
-      0,
-    );
-    const inWorld = circles.map((point) => point.applyMatrix4(this.#base.matrixWorld).toArray());
-    this.#shadows.ground.cast(inWorld, TO_LIGHT, this.#level);
+    for (const one of this.figures) one.castShadows(this.#base, this.#lightOnPlane, this.#level);
     const { thickness } = this.extent;
     const corners = this.#outline.flatMap(([x, y]) =>
       [0, -thickness].map((z) => new Vector3(x, y, z).applyMatrix4(this.#base.matrixWorld).toArray()),
     );
-    this.#shadows.slabOnGround.cast(corners, TO_LIGHT, this.#level);
-  }
-
-  /** Return points of a circle of the column, in the frame of the base. */
-  #circle(radius: number, z: number): Vector3[] {
-    return Array.from({ length: CAST }, (_, i) => {
-      const angle = (2 * Math.PI * i) / CAST;
-      return new Vector3(radius * Math.cos(angle), radius * Math.sin(angle), z).applyMatrix4(this.column.matrix);
-    });
+    this.#slabShadow.cast(corners, TO_LIGHT, this.#level);
   }
 
   #roomToShow(): Vector3[] {
@@ -218,35 +198,4 @@ export class ShakingScene {
       : this.#outline.flatMap(([x, y]) => shaken(x, y, -thickness));
     return [...corners, ...floor].map((point) => point.applyQuaternion(this.#plane.quaternion));
   }
-}
-
-/** Return the paths of the contact point on the floor and of the tip of the axis. */
-function pathsOf(motion: DrawnMotion, size: number, memory: number, palette: Palette): Path[] {
-  const rolls = (i: number): boolean =>
-    onRim(motion, i) && onRim(motion, i + 1) && gap(motion, i) < JUMP * motion.column.radius;
-  const floor = floorPath(motion.time, motion.contact_point, rolls, {
-    width: 0.014 * size,
-    recent: palette.contact,
-    past: palette.contactOld,
-    memory,
-  });
-  floor.renderOrder = 5;
-  const tip = spacePath(
-    motion.time,
-    motion.time.map((_, i) => tipAt(motion, i)),
-    { recent: palette.tip, past: palette.tipOld, memory },
-  );
-  tip.renderOrder = 6;
-  return [floor, tip];
-}
-
-function gap({ contact_point }: DrawnMotion, i: number): number {
-  const [a, b] = [contact_point[i]!, contact_point[i + 1]!];
-  return Math.hypot(b[0] - a[0], b[1] - a[1]);
-}
-
-function tipAt({ rotation, centre, column }: DrawnMotion, i: number): Triple {
-  const [x, y, z] = centre[i]!;
-  const [ax, ay, az] = axisOf(rotation[i]!);
-  return [x + column.height * ax, y + column.height * ay, z + column.height * az];
 }

@@ -2,8 +2,9 @@
 
 import { type Quaternion, Vector3 } from "three";
 import { spinBetween, tiltOf, twistOf } from "./attitude";
-import { drawable, type DrawnMotion, type Pair, type Rotation, type Triple } from "./drawn-motion";
+import { type Beside, drawable, type DrawnMotion, type Pair, type Rotation, type Triple } from "./drawn-motion";
 import { azimuthAtEnd, isFalling } from "./fall";
+import { FigureLabels } from "./figure-labels";
 import { FrameTimes } from "./frame-times";
 import { Look } from "./look";
 import { momentAt, placeOf } from "./moment";
@@ -32,12 +33,14 @@ const SLIM = 2; // height over width from which one looks from lower down
 export class Stage {
   readonly #frame = document.createElement("div");
   readonly #note = noteElement();
+  readonly #labels = new FigureLabels(this.#frame);
   readonly #drawing = newDrawing();
   readonly #look: Look;
   readonly #frames = new FrameTimes();
   readonly #watch: ResizeObserver;
   #theme: Theme;
   #drawn: ShakingScene | null = null;
+  #beside: Beside | null = null;
   readonly #past: ShakingScene[] = [];
   #time = 0;
   #unit = "m";
@@ -76,15 +79,17 @@ export class Stage {
     return this.#time;
   }
 
-  /** Draw another motion, its lengths in this unit; the view stays if the column does. */
-  show(motion: DrawnMotion, unit = "m"): void {
+  /** Draw another motion, its lengths in this unit, alone or beside another; the view stays if the columns do. */
+  show(motion: DrawnMotion, unit = "m", beside: Beside | null = null): void {
     this.#unit = unit;
-    const before = this.#drawn?.motion;
+    const [before, besideBefore] = [this.#drawn?.motion, this.#beside];
+    this.#beside = beside;
     this.#build(drawable(motion));
-    if (before === undefined || !sameBody(before, motion)) this.resetCamera();
-    else if (viewOn(before) !== viewOn(motion)) this.#lookAt(this.#drawn!);
+    if (before === undefined || bodies(before, besideBefore) !== bodies(motion, beside)) this.resetCamera();
+    else if (viewOn(before, besideBefore) !== viewOn(motion, beside)) this.#lookAt(this.#drawn!);
+    const both = beside === null ? "" : `Two columns side by side: ${beside.labels.join("; ")}. `;
     this.#name(
-      `${motion.title.replace(/([^.!?])$/, "$1.")} Arrow keys turn the view, plus and minus zoom, Home resets the view.`,
+      `${both}${motion.title.replace(/([^.!?])$/, "$1.")} Arrow keys turn the view, plus and minus zoom, Home resets the view.`,
     );
   }
 
@@ -96,17 +101,18 @@ export class Stage {
     this.#request();
   }
 
-  /** Read the pose back from what is drawn. */
-  pose(): Pose {
-    const drawn = this.#showing();
-    const rotation = rotationOf(drawn.column.quaternion);
-    const { contact, motion } = drawn;
+  /** Read the pose back from what is drawn: of the column, or with 1 of that beside it. */
+  pose(which = 0): Pose {
+    const figure = this.#showing().figures[which];
+    if (figure === undefined) throw new Error(`there is no column number ${which}: draw one beside the first`);
+    const rotation = rotationOf(figure.column.quaternion);
+    const { contact, motion } = figure;
     return {
       tilt: tiltOf(rotation),
       contact: [contact.point.position.x, contact.point.position.y],
       twist: twistOf(rotation, momentAt(motion, this.#time).twist),
       spin: motion.spin === null ? null : spinAt(motion, this.#time),
-      centre: drawn.column.position.toArray(),
+      centre: figure.column.position.toArray(),
     };
   }
 
@@ -126,7 +132,7 @@ export class Stage {
   #lookAt({ motion, room }: ShakingScene): void {
     const { column } = motion;
     const slim = column.height > SLIM * 2 * Math.max(column.radius, column.top_radius);
-    const [x, y] = directionOf(viewOn(motion));
+    const [x, y] = directionOf(viewOn(motion, this.#beside));
     this.#look.show(room, new Vector3(x, y, slim ? 0.36 : 0.52));
     this.#request();
   }
@@ -157,6 +163,7 @@ export class Stage {
       paletteOf(this.#theme).ink,
       this.#drawing.still,
     );
+    this.#labels.paint(context);
     return new Promise((done, failed) => {
       copy.toBlob(
         (blob) => (blob === null ? failed(new Error("The browser could not write the picture as PNG")) : done(blob)),
@@ -186,10 +193,13 @@ export class Stage {
   #build(motion: DrawnMotion): void {
     if (this.#drawn !== null) this.#past.push(this.#drawn);
     const palette = paletteOf(this.#theme);
-    this.#drawn = new ShakingScene(motion, palette);
+    const beside = this.#beside;
+    this.#drawn = new ShakingScene(motion, palette, beside && drawable(beside.motion));
+    this.#labels.show(beside?.labels ?? [], this.#drawn.labelPlaces(), palette);
     this.#note.textContent = noteOn(motion, this.#drawn.extent.spacing, this.#unit);
     this.#note.style.color = palette.ink;
-    this.#time = Math.min(motion.time.at(-1)!, Math.max(motion.time[0]!, this.#time));
+    const end = Math.max(motion.time.at(-1)!, beside?.motion.time.at(-1) ?? 0);
+    this.#time = Math.min(end, Math.max(motion.time[0]!, this.#time));
     this.setTime(this.#time);
   }
 
@@ -224,6 +234,10 @@ export class Stage {
     if (renderer.getPixelRatio() !== fineness) renderer.setPixelRatio(fineness);
     if (this.#drawn !== null) {
       renderer.render(this.#drawn.scene, this.#look.camera);
+      this.#labels.follow(this.#look.camera, this.#drawn.followed, {
+        width: this.#frame.clientWidth,
+        height: this.#frame.clientHeight,
+      });
       // Only now: until the new scene is drawn the old one keeps the compiled shaders they share.
       for (const scene of this.#past.splice(0)) scene.dispose();
     } else {
@@ -237,8 +251,8 @@ const FRONT = -1; // the view from the front
 const VIEWS = 8; // round the column, from which a fall is seen
 
 /** Return the view that a motion is seen from: across its fall, on the viewer's side, or from the front. */
-function viewOn(motion: DrawnMotion): number {
-  if (!isFalling(motion)) return FRONT;
+function viewOn(motion: DrawnMotion, beside: Beside | null): number {
+  if (beside !== null || !isFalling(motion)) return FRONT;
   const across = azimuthAtEnd(motion) + Math.PI / 2;
   const view = Math.round((across * VIEWS) / (2 * Math.PI));
   const behind = Math.sin((2 * Math.PI * view) / VIEWS) > 1e-9;
@@ -265,8 +279,9 @@ function spinAt(motion: DrawnMotion, time: number): number {
   return spinBetween(momentAt(motion, from).rotation, momentAt(motion, to).rotation, to - from);
 }
 
-function sameBody(a: DrawnMotion, b: DrawnMotion): boolean {
-  const shape = ({ column, plane }: DrawnMotion): string =>
-    JSON.stringify([column.radius, column.top_radius, column.height, plane.incline, plane.incline_direction]);
-  return shape(a) === shape(b);
+/** Return the bodies that are drawn, and the plane they stand on, as they are written. */
+function bodies({ column, plane }: DrawnMotion, beside: Beside | null): string {
+  const drawn = beside === null ? [column] : [column, beside.motion.column];
+  const sizes = drawn.map(({ radius, top_radius, height }) => [radius, top_radius, height]);
+  return JSON.stringify([sizes, plane.incline, plane.incline_direction]);
 }

@@ -2,7 +2,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import type { Kind, Parameter } from "../../src/page/case/about";
 import { KeptNumbers } from "../../src/page/controls/controls";
-import { partOfKind } from "../../src/page/controls/part-form";
+import { partOfKind } from "../../src/page/case/about";
 
 const of = (kind: string, ...parameters: readonly Parameter[]): Kind => ({ kind, name: kind, parameters });
 const ACCELERATION = { name: "acceleration", unit: "m/s²", default: 1.5 };

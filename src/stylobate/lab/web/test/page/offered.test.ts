@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import type { About, Kind, Parameter } from "../../src/page/case/about";
-import { partOfKind } from "../../src/page/controls/part-form";
+import { partOfKind } from "../../src/page/case/about";
 import { offered } from "../../src/page/case/offered";
 import { ABOUT } from "./case";
 

@@ -2,6 +2,7 @@
 
 import type * as schema from "../server/schema";
 import type { Description, Part, PartName, Value } from "./description";
+import { isVector } from "./description";
 
 /** Numbers and words of which a control can do without. */
 export type Parameter = Partial<Omit<schema.Parameter, "name" | "default">> & {
@@ -46,4 +47,15 @@ export function kindsOf(about: About, part: PartName): readonly Kind[] {
 
 export function kindNamed(about: About, part: PartName, kind: string): Kind | undefined {
   return kindsOf(about, part).find((one) => one.kind === kind);
+}
+
+/** Returns a part of this kind: what it has in common with the part before is kept, the rest is as usual. */
+export function partOfKind(kind: Kind, tag: "kind" | "shape", before: Part): Part {
+  const numbers = kind.parameters.map(({ name, default: usual }): [string, Value] => {
+    const kept = before[name];
+    const alike = kept !== undefined && typeof kept === typeof usual && isVector(kept) === isVector(usual);
+    const sameLength = !isVector(kept) || (isVector(usual) && kept.length === usual.length);
+    return [name, alike && sameLength ? kept : usual];
+  });
+  return { [tag]: kind.kind, ...Object.fromEntries(numbers.filter(([, value]) => value !== null)) };
 }

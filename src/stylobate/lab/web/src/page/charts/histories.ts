@@ -1,10 +1,10 @@
 /** Two quantities of the run over time: tilt and demand on the contact, or what the reader chooses. */
 
-import type { Run as Answer, Variations } from "../server/schema";
+import type { Variations } from "../server/schema";
 import { element } from "../frame/dom";
 import { axisLabel } from "../frame/format";
-import type { HistoryName, HistoryPair, RunShown } from "./history-kinds";
-import { chosenHistories, historyOf, offeredHistories } from "./history-kinds";
+import type { HistoryName, HistoryPair, RunShown, SecondRun } from "./history-kinds";
+import { chosenHistories, historyOf, offeredHistories, secondHistory } from "./history-kinds";
 import { TimeChart } from "./time-chart";
 
 export interface HistoriesHearing {
@@ -19,6 +19,7 @@ export class Histories {
   #run: RunShown | null = null;
   #wanted: HistoryPair | null = null;
   #cloud: Variations | null = null;
+  #second: SecondRun | null = null;
 
   constructor({ seek, chosen }: HistoriesHearing) {
     this.#above = new TimeChart("Upper history", "", { seek, chosen: (name) => chosen(this.#with(name, 0)) });
@@ -29,9 +30,10 @@ export class Histories {
     this.root = element("div", { class: "times" }, this.#above.root, this.#below.root);
   }
 
-  /** Shows the histories of a run; `frequency` is that of its base motion [rad/s], where it has one. */
-  show(answer: Answer, frequency: number | null): void {
-    this.#run = { answer, frequency };
+  /** Shows the histories of a run, alone or with those of a second run. */
+  show(run: RunShown, second: SecondRun | null): void {
+    this.#run = run;
+    this.#second = second;
     this.#draw();
   }
 
@@ -64,8 +66,16 @@ export class Histories {
     const { time } = run.answer.series;
     const [offered, [above, below]] = [offeredHistories(run), chosenHistories(run, this.#wanted)];
     const cloud = this.#cloud && { ...this.#cloud, unit: run.answer.column.slenderness };
-    this.#above.show(time, historyOf(above, run), offered, above === "tilt" ? cloud : null);
-    this.#below.show(time, historyOf(below, run), offered, below === "tilt" ? cloud : null);
+    for (const [chart, name] of [
+      [this.#above, above],
+      [this.#below, below],
+    ] as const) {
+      const history = historyOf(name, run);
+      chart.show(time, history, offered, {
+        cloud: name === "tilt" ? cloud : null,
+        second: secondHistory(history, this.#second),
+      });
+    }
   }
 
   #with(name: HistoryName, place: 0 | 1): HistoryPair {

@@ -63,6 +63,26 @@ export interface RunShown {
   readonly frequency: number | null;
 }
 
+/** A second run beside the first, and what tells the two columns apart in words. */
+export interface SecondRun {
+  readonly run: RunShown;
+  readonly labels: readonly [string, string];
+}
+
+/** The same quantity of a second run, over its own time. */
+export interface SecondHistory {
+  readonly time: readonly number[];
+  readonly history: History;
+  readonly labels: readonly [string, string];
+}
+
+/** Returns a quantity of a second run for the plot of the first; null where it has none in the same unit. */
+export function secondHistory(first: History, second: SecondRun | null): SecondHistory | null {
+  if (second === null || !offeredHistories(second.run).includes(first.name)) return null;
+  const history = historyOf(first.name, second.run);
+  return history.label === first.label ? { time: second.run.answer.series.time, history, labels: second.labels } : null;
+}
+
 /** Returns the quantities of a run; of the base, the directions in which it moves. */
 export function offeredHistories({ answer: { series } }: RunShown): readonly HistoryName[] {
   return NAMES.filter((name) => {
@@ -148,7 +168,7 @@ function tilt(values: Numbers): History {
   return {
     ...{ name: "tilt", label: "|θ|/c", colour: "blue", values },
     note: `largest ${formatted(largest)} c${largest > FARTHEST ? OFF : ""}`,
-    level: largest > 0.7 ? { value: 1, label: "c" } : null,
+    level: largest > 0.7 ? { value: 1, label: "|θ| = c" } : null,
     limits: [0, Math.min(largest, FARTHEST)],
   };
 }

@@ -3,7 +3,7 @@
 import uPlot from "uplot";
 import { choice, element, onResize, themeColour } from "../frame/dom";
 import { formatted, withUnit } from "../frame/format";
-import type { History, HistoryName } from "./history-kinds";
+import type { History, HistoryName, SecondHistory } from "./history-kinds";
 import { HISTORIES, isHistoryName } from "./history-kinds";
 import type { Variations } from "../server/schema";
 import type { Label } from "./plot-looks";
@@ -16,6 +16,15 @@ export interface TimeChartHearing {
 
 /** Tilts of many runs, in units of c, those that overturn in another colour. */
 export type Cloud = Pick<Variations, "times" | "tilts" | "outcomes"> & { readonly unit: number };
+
+/** What is drawn with a history: small variations of its run, and the same quantity of a second run. */
+export interface Company {
+  readonly cloud: Cloud | null;
+  readonly second: SecondHistory | null;
+}
+
+/** Widths of a line alone, and of the first of two [px]. */
+const [ALONE, FIRST] = [1.5, 2.25];
 
 /** Up to where the axis reaches for a cloud, in units of c. */
 const NO_HIGHER = 1.5;
@@ -32,10 +41,13 @@ export class TimeChart {
   readonly #kind: HTMLSelectElement;
   readonly #host = element("div", { class: "plot", role: "img" });
   readonly #note = element("span", { class: "note" });
+  /** Which of two lines is which. */
+  readonly #legend = element("ul", { class: "legend" });
   readonly #head = element("div", { class: "playhead" });
   readonly #plot: uPlot;
   #history: History | null = null;
   #cloud: Cloud | null = null;
+  #second: SecondHistory | null = null;
   #offered = "";
   #time = 0;
 
@@ -45,7 +57,7 @@ export class TimeChart {
     this.#kind = choice([], { class: "title", "aria-label": name }, (value) => {
       if (isHistoryName(value)) hearing.chosen(value);
     });
-    const heading = element("header", {}, this.#kind, this.#note);
+    const heading = element("header", {}, this.#kind, this.#legend, this.#note);
     this.root = element("section", { class: "panel chart time-chart", "aria-label": name }, heading, this.#host);
     this.#plot = this.#made(timeLabel);
     this.#plot.over.append(this.#head);
@@ -56,18 +68,33 @@ export class TimeChart {
     });
   }
 
-  /** Shows a history, one of those that are offered, in front of a cloud of others. */
-  show(time: readonly number[], history: History, offered: readonly HistoryName[], cloud: Cloud | null): void {
+  /** Shows a history, one of those that are offered, in its company. */
+  show(time: readonly number[], history: History, offered: readonly HistoryName[], { cloud, second }: Company): void {
     this.#history = history;
     this.#cloud = cloud;
+    this.#second = second;
+    this.#plot.series[1]!.width = second === null ? ALONE : FIRST;
+    this.#showLegend();
     this.#offer(offered);
     this.#kind.value = history.name;
-    this.#note.textContent = history.note;
-    this.#host.setAttribute("aria-label", `${HISTORIES[history.name]}: ${history.note}`);
-    const { level, values } = history;
-    const levels = level === null ? [] : time.map(() => level.value);
-    this.#plot.setData([time as number[], values as number[], levels]);
+    this.#note.textContent = this.#largest;
+    this.#host.setAttribute("aria-label", `${HISTORIES[history.name]}: ${this.#largest}`);
+    this.#plot.setData([time as number[], history.values as number[]]);
     this.setTime(this.#time);
+  }
+
+  /** What stands beside the quantity: how large it gets, of both runs. */
+  get #largest(): string {
+    const second = this.#second === null ? "" : `; dashed: ${this.#second.history.note}`;
+    return `${this.#history?.note ?? ""}${second}`;
+  }
+
+  #showLegend(): void {
+    const [first = "", other = ""] = this.#second?.labels ?? [];
+    const key = (look: string, text: string): HTMLElement =>
+      element("li", {}, element("span", { class: `key ${look}`, "aria-hidden": "true" }), text);
+    const entries = this.#second === null ? [] : [key(this.#history?.colour ?? "blue", first), key("dashed", other)];
+    this.#legend.replaceChildren(...entries);
   }
 
   setTime(time: number): void {
@@ -94,27 +121,36 @@ export class TimeChart {
         ...PLAIN,
         width: 400,
         height: 120,
-        scales: { x: { time: false }, y: { range: () => this.#limits() } },
+        scales: {
+          x: { time: false, range: (_, from, to) => this.#span(from, to) },
+          y: { range: () => this.#limits() },
+        },
         axes: [across(timeLabel), { ...upright(" "), label: () => this.#history?.label ?? "" }],
         series: [
           {},
-          { stroke: () => themeColour(this.#history?.colour ?? "blue"), width: 1.5, points: { show: false } },
-          { stroke: () => themeColour("vermilion"), width: 1.25, dash: [6, 4], points: { show: false } },
+          { stroke: () => themeColour(this.#history?.colour ?? "blue"), width: ALONE, points: { show: false } },
         ],
         hooks: {
           setCursor: [(plot) => this.#read(plot)],
           drawAxes: [(plot) => this.#drawCloud(plot)],
-          draw: [(plot) => this.#nameLevel(plot)],
+          draw: [(plot) => this.#drawSecond(plot), (plot) => this.#drawLevel(plot)],
         },
       },
-      [[], [], []],
+      [[], []],
       this.#host,
     );
   }
 
+  /** Returns from when to when the plot reaches: as long as the longer run. */
+  #span(from: number | null, to: number | null): [number, number] {
+    const [start, end] = [from ?? 0, Math.max(to ?? 0, this.#second?.time.at(-1) ?? 0)];
+    return [start, end > start ? end : start + 1];
+  }
+
   #limits(): [number, number] {
-    const [low, own] = this.#history?.limits ?? [0, 1];
-    const high = Math.max(own, this.#cloudTop());
+    const [own, other] = [this.#history?.limits ?? [0, 1], this.#second?.history.limits ?? []];
+    const low = Math.min(own[0], other[0] ?? own[0]);
+    const high = Math.max(own[1], other[1] ?? own[1], this.#cloudTop());
     if (!(high > low)) return [low, low + 1];
     const room = (high - low) * ROOM;
     return [low < 0 ? low - room : low, high + room];
@@ -133,7 +169,7 @@ export class TimeChart {
     const value = idx === null || idx === undefined ? undefined : plot.data[1]?.[idx];
     const time = idx === null || idx === undefined ? undefined : plot.data[0]?.[idx];
     const found = value !== undefined && time !== undefined;
-    this.#note.textContent = found ? `${formatted(value)} at ${withUnit(time, "s", 4)}` : (this.#history?.note ?? "");
+    this.#note.textContent = found ? `${formatted(value)} at ${withUnit(time, "s", 4)}` : this.#largest;
   }
 
   #drawCloud(plot: uPlot): void {
@@ -159,7 +195,35 @@ export class TimeChart {
     ctx.restore();
   }
 
-  #nameLevel(plot: uPlot): void {
+  /** Draws the second run dashed, over the bold line of the first. */
+  #drawSecond(plot: uPlot): void {
+    if (this.#second === null) return;
+    const { time, history } = this.#second;
+    const { ctx, bbox } = plot;
+    ctx.save();
+    ctx.beginPath();
+    ctx.rect(bbox.left, bbox.top, bbox.width, bbox.height);
+    ctx.clip();
+    ctx.lineWidth = 1.25 * uPlot.pxRatio;
+    ctx.setLineDash([5 * uPlot.pxRatio, 3 * uPlot.pxRatio]);
+    ctx.strokeStyle = themeColour("ink");
+    ctx.beginPath();
+    let pen = false; // down
+    history.values.forEach((value, i) => {
+      if (value === null) {
+        pen = false;
+        return;
+      }
+      const [x, y] = [plot.valToPos(time[i]!, "x", true), plot.valToPos(value, "y", true)];
+      if (pen) ctx.lineTo(x, y);
+      else ctx.moveTo(x, y);
+      pen = true;
+    });
+    ctx.stroke();
+    ctx.restore();
+  }
+
+  #drawLevel(plot: uPlot): void {
     const level = this.#history?.level ?? null;
     const [low, high] = this.#limits();
     if (level === null || level.value > high || level.value < low) return;
@@ -168,6 +232,13 @@ export class TimeChart {
     ctx.font = `${11 * uPlot.pxRatio}px system-ui, sans-serif`;
     ctx.textAlign = "right";
     const place = plot.valToPos(level.value, "y", true);
+    ctx.lineWidth = 1.25 * uPlot.pxRatio;
+    ctx.setLineDash([6 * uPlot.pxRatio, 4 * uPlot.pxRatio]);
+    ctx.strokeStyle = themeColour("vermilion");
+    ctx.beginPath();
+    ctx.moveTo(bbox.left, place);
+    ctx.lineTo(bbox.left + bbox.width, place);
+    ctx.stroke();
     const room = place - bbox.top > 14 * uPlot.pxRatio;
     ctx.textBaseline = room ? "bottom" : "top";
     const [right, line] = [bbox.left + bbox.width - 3, place + (room ? -2 : 3)];

@@ -1,6 +1,15 @@
 /** The column of controls: preset, column, model, base motion, start and length. */
 
-import { type About, type Kind, type Lesson, type Parameter, type Preset, kindNamed, kindsOf } from "../case/about";
+import {
+  type About,
+  type Kind,
+  type Lesson,
+  type Parameter,
+  type Preset,
+  kindNamed,
+  kindsOf,
+  partOfKind,
+} from "../case/about";
 import {
   type Description,
   type Part,
@@ -20,7 +29,7 @@ import { button, choice, element, newId } from "../frame/dom";
 import type { Wrong } from "../frame/problems";
 import type { Source } from "../server/source";
 import { NumberField } from "./number-field";
-import { PartForm, partOfKind } from "./part-form";
+import { PartForm } from "./part-form";
 import { RecordForm } from "./record-form";
 import { StartForm } from "./start-form";
 

@@ -156,14 +156,3 @@ function componentOf(value: Value, index: number | null): number | null {
   const found = index !== null && isVector(value) ? value[index] : value;
   return typeof found === "number" ? found : null;
 }
-
-/** Returns a part of this kind: what it has in common with the part before is kept, the rest is as usual. */
-export function partOfKind(kind: Kind, tag: "kind" | "shape", before: Part): Part {
-  const numbers = kind.parameters.map(({ name, default: usual }): [string, Value] => {
-    const kept = before[name];
-    const alike = kept !== undefined && typeof kept === typeof usual && isVector(kept) === isVector(usual);
-    const sameLength = !isVector(kept) || (isVector(usual) && kept.length === usual.length);
-    return [name, alike && sameLength ? kept : usual];
-  });
-  return { [tag]: kind.kind, ...Object.fromEntries(numbers.filter(([, value]) => value !== null)) };
-}

@@ -1,16 +1,17 @@
 /** The motion in all its pictures, led by one clock: stage, histories, orbit, verdict. */
 
-import { Clock, Stage, type Theme, withFall } from "../../viewer/index";
+import { Clock, computedUntil, type DrawnMotion, isFalling, Stage, type Theme, withFall } from "../../viewer/index";
 import type { Description } from "../case/description";
 import { angularFrequency } from "../case/frequency";
 import { Histories } from "../charts/histories";
-import type { HistoryPair } from "../charts/history-kinds";
+import type { HistoryPair, RunShown } from "../charts/history-kinds";
 import { OrbitChart } from "../charts/orbit";
 import { button, element } from "../frame/dom";
 import { Elapsed } from "../frame/elapsed";
 import { capital } from "../frame/format";
 import { inShownUnits, shownUnit } from "../frame/units";
 import type { Run as Answer, Variations } from "../server/schema";
+import type { Second } from "./comparing";
 import { sharesOf } from "./shares";
 import { Transport } from "./transport";
 import { Verdict } from "./verdict";
@@ -85,9 +86,11 @@ export class MotionView {
   readonly #old: OldNote;
   readonly #waiting = element("p", { class: "waiting-note", hidden: true });
   readonly #elapsed = new Elapsed((message) => (this.#waiting.textContent = message));
-  readonly #fall = element("p", { class: "fall-note", hidden: true }, "from here on: not computed");
-  /** Where the run ended; what is drawn later is its fall [s]. */
-  #computed = 0;
+  readonly #fall = element("p", { class: "fall-note", hidden: true });
+  #run: RunShown | null = null;
+  /** What is drawn of the run and of that of a second column, with their falls. */
+  #drawn: readonly DrawnMotion[] = [];
+  #second: Second | null = null;
   /** Whether the clock ran at its last tick: at the end of a run it stops by itself. */
   #played = false;
 
@@ -111,16 +114,39 @@ export class MotionView {
   show(answer: Answer, description: Description): void {
     this.#host.classList.remove("empty");
     this.#old.hide();
-    const drawn = withFall(answer.drawn, answer.column.frequency_parameter);
-    this.#computed = answer.drawn.time.at(-1) ?? 0;
-    this.clock.setRange(0, drawn.time.at(-1) ?? 0);
-    this.stage?.show(drawn, shownUnit("m"));
+    this.#run = { answer, frequency: angularFrequency(description.motion) };
     this.showVariations(null);
-    this.#curves.show(answer, angularFrequency(description.motion));
+    this.#draw();
     this.orbit.show(answer.drawn);
     this.#verdict.show(answer, typeof description["duration"] === "number");
     this.numbers.show(answer);
     this.#transport.showEvents(answer.events);
+  }
+
+  /** Shows the run of a second column beside the first; null: the first alone. */
+  showSecond(second: Second | null): void {
+    if (second === null && this.#second === null) return;
+    this.#second = second;
+    this.#verdict.setWhich(second?.labels[0] ?? null);
+    this.#draw();
+  }
+
+  /** The run of the second column that is shown beside the first. */
+  get second(): Second | null {
+    return this.#second;
+  }
+
+  #draw(): void {
+    if (this.#run === null) return;
+    const [first, second] = [this.#run, this.#second];
+    this.#drawn = [first.answer, ...(second === null ? [] : [second.answer])].map(({ drawn, column }) =>
+      withFall(drawn, column.frequency_parameter),
+    );
+    const [drawn, other] = this.#drawn;
+    this.clock.setRange(0, Math.max(...this.#drawn.map(({ time }) => time.at(-1) ?? 0)));
+    this.stage?.show(drawn!, shownUnit("m"), second && { motion: other!, labels: second.labels });
+    this.#curves.show(first, second && { run: { ...first, answer: second.answer }, labels: second.labels });
+    this.#fall.textContent = second === null ? "from here on: not computed" : "pale: after the end of its run";
     this.#follow();
   }
 
@@ -133,7 +159,7 @@ export class MotionView {
 
   /** Whether the clock stands in a fall that was not computed. */
   get falling(): boolean {
-    return this.clock.time > this.#computed;
+    return this.#drawn.some((one) => isFalling(one) && this.clock.time > computedUntil(one));
   }
 
   /** The time at which the clock is stopped [s]; null while it runs. */
@@ -215,11 +241,11 @@ export class MotionView {
 
   #follow(): void {
     const { time } = this.clock;
-    const computed = Math.min(time, this.#computed);
+    const ends = this.#drawn.map(computedUntil);
     this.stage?.setTime(time);
-    this.#fall.hidden = !this.falling;
-    this.#curves.setTime(computed);
-    this.orbit.setTime(computed);
+    this.#fall.hidden = !ends.some((end) => time > end);
+    this.#curves.setTime(Math.min(time, Math.max(...ends)));
+    this.orbit.setTime(Math.min(time, ends[0] ?? 0));
     this.#verdict.setTime(time);
     this.#transport.show();
   }

@@ -13,6 +13,8 @@ export class Verdict {
   readonly #badge = element("strong", { "aria-hidden": "true" });
   readonly #follow: () => void;
   readonly #vary: HTMLButtonElement;
+  /** Which of two columns it is about; empty where one stands alone. */
+  readonly #which = element("span", { class: "which" });
   readonly #shares = element("p", { class: "shares", "aria-live": "polite", hidden: true });
   #answer: Answer | null = null;
   #announced = "";
@@ -21,6 +23,11 @@ export class Verdict {
   constructor(follow: () => void, vary: () => void) {
     this.#follow = follow;
     this.#vary = button("Vary it", { class: "small", title: "Repeat the run with 64 small variations" }, vary);
+  }
+
+  /** Says which of two columns the outcome is of; null: there is one. */
+  setWhich(label: string | null): void {
+    this.#which.textContent = label === null ? "" : `${capital(label)}: `;
   }
 
   /** Shows how often small variations end in each way, or that they are being computed; null: nothing. */
@@ -33,13 +40,12 @@ export class Verdict {
   show(answer: Answer, stated: boolean): void {
     this.#answer = answer;
     this.setTime(0);
-    const at = decisionOf(answer);
-    const text = [answer.outcome, answer.reason, at, answer.uncertain, ...answer.warnings].join("\n");
+    const text = [answer.outcome, answer.reason, decisionOf(answer), answer.uncertain, ...answer.warnings].join("\n");
     if (text === this.#announced) return; // what has been read out once is not read out again
     this.#announced = text;
     const outcome = element("span", { class: "visually-hidden" }, `${capital(answer.label)}.`);
-    const [why, remedy] = reasonIn(answer.reason);
-    const reason = element("span", { class: "reason" }, `${sentence(why)}${at}`);
+    const [, remedy] = reasonIn(answer.reason);
+    const reason = element("span", { class: "reason" }, reasonLine(answer));
     const marks = answer.uncertain
       ? [
           element(
@@ -52,7 +58,7 @@ export class Verdict {
     const longer = stated && remedy ? [button("Simulate until decided", { class: "small" }, this.#follow)] : [];
     const warnings = answer.warnings.map((line) => element("p", { class: "warning" }, sentence(warningIn(line))));
     this.root.replaceChildren(
-      element("p", {}, outcome, this.#badge, ...marks, " ", reason, " ", ...longer, " ", this.#vary),
+      element("p", {}, this.#which, outcome, this.#badge, ...marks, " ", reason, " ", ...longer, " ", this.#vary),
       this.#shares,
       ...warnings,
     );
@@ -95,6 +101,11 @@ export function badgeAt({ outcome, label: name, decided_at: at }: Answer, time: 
 
 /** Of outcomes that a column comes to at an instant: how they are announced. */
 const FUTURE: Readonly<Record<string, string>> = { OVERTURNED: "Will overturn", LIFTED_OFF: "Will lift off" };
+
+/** Returns why a run ends as it does and when that was decided, as a sentence. */
+export function reasonLine(answer: Answer): string {
+  return `${sentence(reasonIn(answer.reason)[0])}${decisionOf(answer)}`;
+}
 
 /** Returns the verdict in plain text. */
 export function verdictOf(answer: Answer): string {

@@ -18,6 +18,7 @@ import {
   isVector,
   tagOf,
 } from "../case/description";
+import { comparisonRead, comparisonWritten, DIFFERENCES } from "../case/comparison";
 import { BRANCHES } from "../case/starting";
 import { RUN } from "../server/declared";
 import { type Axis, PLANE_KINDS, type Plane, TABS, type View, historiesFrom, isRange, ofPlanes, viewOf } from "./state";
@@ -41,6 +42,7 @@ export function linkOf(view: View): string {
   if (view.tab !== "orbit") items.push(`tab=${view.tab}`);
   if (view.filled) items.push("filled=true");
   if (view.start !== null) items.push(`start=${view.start}`);
+  if (view.compared !== null) items.push(`beside=${comparisonWritten(view.compared)}`);
   if (view.lesson !== null) items.push(`lesson=${view.lesson}`);
   if (view.time !== null) items.push(`time=${view.time}`);
   if (view.speed !== null) items.push(`speed=${view.speed}`);
@@ -92,6 +94,11 @@ const LOOKS: Readonly<Record<string, (text: string) => Value>> = {
   start: (text) => {
     if (!(BRANCHES as readonly string[]).includes(text))
       throw new BrokenLink(`start must be one of ${BRANCHES.join(", ")}, got ${text}`);
+    return text;
+  },
+  beside: (text) => {
+    if (comparisonRead(text) === null)
+      throw new BrokenLink(`beside must be one of ${DIFFERENCES.join(", ")} with its value, got ${text}`);
     return text;
   },
   lesson: (text) => text,

@@ -35,7 +35,9 @@ function captionOf(motion: MotionView, { view, answer }: Shown): readonly string
   const { time, to } = motion.clock;
   const fall = motion.falling ? " The fall is drawn, not computed." : "";
   const at = `At ${joined(clockTime(time, to), "s")} of ${joined(clockTime(to, to), "s")}.${fall}`;
-  return answer === null ? [] : [`${verdictOf(answer)} ${at}`, caseInWords(view.description)];
+  const { second } = motion;
+  const beside = second === null ? [] : [`Beside it, ${second.labels[1]}: ${verdictOf(second.answer)}`];
+  return answer === null ? [] : [`${verdictOf(answer)} ${at}`, ...beside, caseInWords(view.description)];
 }
 
 /** Returns the case in the languages of the package, whether its run has been answered or not. */

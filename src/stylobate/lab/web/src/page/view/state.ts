@@ -4,6 +4,7 @@ import type { Description, Value } from "../case/description";
 import type { HistoryPair } from "../charts/history-kinds";
 import { isHistoryName } from "../charts/history-kinds";
 import { isPart, isVector } from "../case/description";
+import { type Comparison, comparisonRead } from "../case/comparison";
 import type { Branch } from "../case/starting";
 import { BRANCHES } from "../case/starting";
 import type { GRIDS } from "../server/declared";
@@ -58,6 +59,8 @@ export interface View extends Readonly<Record<PlaneKind, Plane | null>> {
   readonly filled: boolean;
   /** The branch of steady rolling on which the run starts, whatever changes; null: the start is as it is set. */
   readonly start: Branch | null;
+  /** What differs of a second column beside the first; null: there is none. */
+  readonly compared: Comparison | null;
   /** The lesson of the tour that is open; null: none. */
   readonly lesson: string | null;
   /** Where the clock is stopped at first [s]; null: it runs. */
@@ -84,6 +87,7 @@ export function viewOf(description: Description, looks: Readonly<Record<string, 
     tab,
     filled: looks["filled"] === true,
     start: BRANCHES.find((one) => one === looks["start"]) ?? null,
+    compared: comparisonRead(looks["beside"]),
     lesson: typeof looks["lesson"] === "string" ? looks["lesson"] : null,
     time: timeIn(looks["time"]),
     speed: typeof speed === "number" && speed > 0 ? speed : null,
