@@ -1,12 +1,13 @@
 /** The page at work: what is asked when the view changes, and where the answers go. */
 
-import type { Clock, Stage, Theme } from "../viewer/index";
+import type { Clock, Pair, Stage, Theme } from "../viewer/index";
 import type { About, Lesson } from "./case/about";
 import type { Run as Answer, Variations } from "./server/schema";
 import { sent } from "./server/requests";
 import { Refused, type Source, Unreachable } from "./server/source";
 import type { ResponsePanel } from "./charts/response-panel";
 import type { Connection } from "./server/connection";
+import { isPlanar } from "./case/in-one-plane";
 import { CaseProblems } from "./controls/case-problems";
 import { Controls } from "./controls/controls";
 import { NOT_HERE } from "./controls/record-form";
@@ -32,7 +33,7 @@ import { isPlaneKind, PLANE_KINDS, PLANES, Store, TABS } from "./view/state";
 import { Tabs } from "./frame/tabs";
 import type { ThemeSwitch } from "./frame/theme";
 import type { Branch } from "./case/starting";
-import { startAlike, startOf } from "./case/starting";
+import { standing, startAlike, startOf } from "./case/starting";
 import type { Run, WantedRun } from "./server/run";
 import { run } from "./server/run";
 import { setUnitsOf } from "./frame/units";
@@ -77,6 +78,8 @@ export class Laboratory {
   #given = true;
   /** Whether the case has been changed by hand since it was gone to. */
   #edited = false;
+  /** Whether the motion that is due is to be seen from its beginning, although the case is the same. */
+  #released = false;
   /** Whether the motion that is due is another case, to be seen from its beginning. */
   #fresh = true;
 
@@ -122,6 +125,8 @@ export class Laboratory {
       again: () => this.#askAgain(),
       follow: () => edited({ description: { ...this.view.description, duration: null } }),
       vary: () => this.#vary(),
+      pulled: (tilt) => this.#release(tilt),
+      alongX: () => isPlanar(this.view.description),
     });
     this.#comparing = new Comparing(source, about, {
       changed: (compared) => this.#compare(compared),
@@ -310,9 +315,22 @@ export class Laboratory {
     this.#motion.show(answer, description);
     this.#lesson.setOutcome(answer.outcome);
     this.#showSpeed(this.view);
-    if (this.#fresh) this.#motion.begin();
+    if (this.#fresh || (this.#released && this.#shown === written(this.view.description))) this.#begin();
     if (start !== null) this.#takeStart(found, start);
     this.#settle();
+  }
+
+  #begin(): void {
+    this.#released = false;
+    this.#motion.begin();
+  }
+
+  /** The column was pulled by hand: it starts at this tilt, from rest. */
+  #release(tilt: Pair): void {
+    this.#released = true;
+    this.#asked = ""; // also where it was let go at the tilt at which it started before
+    const start = tilt.map((one) => Number(one.toPrecision(4)));
+    this.#edit({ description: { ...standing(this.view.description), tilt: start }, start: null });
   }
 
   /** Asks for small variations of the run that is shown. */

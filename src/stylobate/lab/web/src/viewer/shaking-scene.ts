@@ -5,6 +5,7 @@
  */
 
 import { type BufferGeometry, Color, Group, type Material, type Mesh, Scene, Vector3 } from "three";
+import { tiltOf } from "./attitude";
 import { ColumnFigure } from "./column-figure";
 import type { DrawnMotion, Pair, Triple } from "./drawn-motion";
 import { type Extent, extentBeside, extentOf } from "./extent";
@@ -13,8 +14,11 @@ import { fadingGrid, gridOn } from "./grid";
 import { TO_LIGHT } from "./lit-material";
 import { leaningMoment, momentAt, type Moment } from "./moment";
 import type { Palette } from "./palette";
+import type { Grip } from "./pull";
 import { Shadow } from "./shadow";
 import { ON_GROUND, slabMeshes, slabOutline, wall, wallMesh } from "./slab";
+
+const PULLED = 0.95; // of the tilt of no return, to which a hand leans a column at most
 
 export class ShakingScene {
   readonly scene = new Scene();
@@ -112,6 +116,28 @@ export class ShakingScene {
   #settle(): void {
     this.scene.updateMatrixWorld();
     this.#castShadows();
+  }
+
+  /** Return the columns as a hand takes them. */
+  grips(): readonly Grip[] {
+    return this.figures.map((one) => {
+      const { radius, top_radius, height } = one.motion.column;
+      const inWorld = (point: Vector3): Vector3 => point.applyMatrix4(this.#base.matrixWorld);
+      const { w, x, y, z } = one.column.quaternion;
+      return {
+        outline: [...one.circle(radius, 0), ...one.circle(top_radius, height)].map(inWorld),
+        foot: new Vector3().setFromMatrixPosition(one.column.matrixWorld),
+        top: new Vector3(0, 0, height).applyMatrix4(one.column.matrixWorld),
+        tilt: tiltOf([w, x, y, z]),
+      };
+    });
+  }
+
+  /** Return the largest tilt to which a hand leans the columns: short of that at which one would fall [rad]. */
+  get pullLimit(): number {
+    const { incline } = this.motion.plane;
+    const least = Math.min(...this.figures.map(({ motion }) => Math.atan(motion.column.slenderness)));
+    return PULLED * Math.max(least - incline, 0);
   }
 
   /** Return the points of the ground's frame below which words about the columns stand, at the front edge of the base. */

@@ -10,6 +10,7 @@ import { Look } from "./look";
 import { momentAt, placeOf } from "./moment";
 import { noteElement, noteOn, paintNote } from "./note";
 import { paletteOf, preferredTheme, type Theme } from "./palette";
+import { Pull, type PullHearing } from "./pull";
 import { newDrawing } from "./renderer";
 import { ShakingScene } from "./shaking-scene";
 
@@ -44,6 +45,7 @@ export class Stage {
   readonly #past: ShakingScene[] = [];
   #time = 0;
   #unit = "m";
+  #pull: Pull | null = null;
   #waiting: number | null = null;
   #settling: number | null = null;
 
@@ -99,6 +101,23 @@ export class Stage {
     this.#drawn.setTime(time);
     this.#look.follow(this.#drawn.followed);
     this.#request();
+  }
+
+  /** Let the columns be pulled by hand; a pull lasts in the picture until the time is set. */
+  allowPull(hearing: PullHearing): void {
+    this.#pull = new Pull(
+      {
+        canvas: this.canvas,
+        camera: this.#look.camera,
+        grips: () => this.#drawn?.grips() ?? [],
+        limit: () => this.#showing().pullLimit,
+        lean: (tilt) => {
+          this.#showing().lean(this.#time, tilt);
+          this.#request();
+        },
+      },
+      hearing,
+    );
   }
 
   /** Read the pose back from what is drawn: of the column, or with 1 of that beside it. */
@@ -181,6 +200,7 @@ export class Stage {
     if (this.#waiting !== null) cancelAnimationFrame(this.#waiting);
     if (this.#settling !== null) clearTimeout(this.#settling);
     this.#watch.disconnect();
+    this.#pull?.dispose();
     this.#look.dispose();
     for (const scene of this.#past.splice(0)) scene.dispose();
     this.#drawn?.dispose();

@@ -1,8 +1,15 @@
 /** A case turned into one vertical plane, for a model that rocks in one. */
 
 import type { Description, Part, Value } from "./description";
-import { isVector, written } from "./description";
+import { isVector, kindOf, written } from "./description";
 import { angularFrequency } from "./frequency";
+
+/** The model that rocks in one plane. */
+export const PLANAR = "planar_rocking";
+
+export function isPlanar(description: Description): boolean {
+  return kindOf(description, "model") === PLANAR;
+}
 
 /** Returns the case with its start along x and, where the base goes round, a base that goes to and fro along x. */
 export function inOnePlane(description: Description): Description {

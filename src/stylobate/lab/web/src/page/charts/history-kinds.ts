@@ -76,9 +76,10 @@ export interface SecondHistory {
   readonly labels: readonly [string, string];
 }
 
-/** Returns a quantity of a second run for the plot of the first; null where it has none in the same unit. */
+/** Returns a quantity of a second run for the plot of the first; null where it has none, or both have the same. */
 export function secondHistory(first: History, second: SecondRun | null): SecondHistory | null {
-  if (second === null || !offeredHistories(second.run).includes(first.name)) return null;
+  if (second === null || first.name.startsWith("base_") || !offeredHistories(second.run).includes(first.name))
+    return null;
   const history = historyOf(first.name, second.run);
   return history.label === first.label ? { time: second.run.answer.series.time, history, labels: second.labels } : null;
 }

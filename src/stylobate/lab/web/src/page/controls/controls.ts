@@ -21,7 +21,7 @@ import {
   written,
 } from "../case/description";
 import { angularFrequency, withAngularFrequency } from "../case/frequency";
-import { PlaneTurn, inOnePlane } from "../case/in-one-plane";
+import { PLANAR, PlaneTurn, inOnePlane, isPlanar } from "../case/in-one-plane";
 import type { ColumnScales } from "../case/quantities";
 import { atScaleOf } from "../case/scaling";
 import type { Branch } from "../case/starting";
@@ -266,13 +266,6 @@ const LABELS: Readonly<Record<PartName, string>> = {
 
 /** Before the name of a lesson among the presets. */
 const LESSON = "lesson ";
-
-/** The model that rocks in one plane. */
-const PLANAR = "planar_rocking";
-
-function isPlanar(description: Description): boolean {
-  return kindOf(description, "model") === PLANAR;
-}
 
 /** The column of the equations has its own unit of acceleration, and records have m/s². */
 function isToy({ column, motion }: Description): boolean {

@@ -88,6 +88,10 @@ const WORDS: readonly Entry[] = [
   ],
 ];
 
+const PULL =
+  "Drag the column to pull it, by mouse or finger. When you let go, the run starts from rest at that tilt. " +
+  "The tilt fields under “Initial condition” do the same. Drag beside the column to turn the view.";
+
 export class Help {
   readonly root: HTMLElement;
   readonly #dialog = element("dialog", { class: "text-dialog help" });
@@ -105,6 +109,7 @@ export class Help {
       ),
       element("h3", {}, "In the picture"),
       list(SEEN, true),
+      element("p", {}, PULL),
       element("h3", {}, "Ticks above the time"),
       list(TICKS, true),
       element("h3", {}, "Symbols and terms"),

@@ -1,6 +1,15 @@
 /** The motion in all its pictures, led by one clock: stage, histories, orbit, verdict. */
 
-import { Clock, computedUntil, type DrawnMotion, isFalling, Stage, type Theme, withFall } from "../../viewer/index";
+import {
+  Clock,
+  computedUntil,
+  type DrawnMotion,
+  isFalling,
+  type Pair,
+  Stage,
+  type Theme,
+  withFall,
+} from "../../viewer/index";
 import type { Description } from "../case/description";
 import { angularFrequency } from "../case/frequency";
 import { Histories } from "../charts/histories";
@@ -64,6 +73,10 @@ export interface MotionHearing {
   readonly vary: () => void;
   readonly speed: (speed: number) => void;
   readonly histories: (pair: HistoryPair) => void;
+  /** The column was pulled by hand and let go from rest at this tilt [rad]. */
+  readonly pulled: (tilt: Pair) => void;
+  /** Whether the column rocks along x only. */
+  readonly alongX: () => boolean;
   /** The reader no longer wants the run that is computed. */
   readonly cancelled: () => void;
   /** The run that was cancelled is wanted after all. */
@@ -94,7 +107,8 @@ export class MotionView {
   /** Whether the clock ran at its last tick: at the end of a run it stops by itself. */
   #played = false;
 
-  constructor(theme: Theme, { speed, histories, cancelled, again, follow, vary }: MotionHearing) {
+  constructor(theme: Theme, hearing: MotionHearing) {
+    const { speed, histories, cancelled, again, follow, vary } = hearing;
     this.#cancel = button("Cancel", { class: "cancel-run small", hidden: true }, cancelled);
     this.#host.append(this.#cancel);
     this.#old = new OldNote(again);
@@ -105,6 +119,7 @@ export class MotionView {
     this.root = element("section", { class: "show panel", "aria-label": "Motion" });
     this.root.append(this.#host, this.#old.root, this.#transport.root, this.#verdict.root);
     this.stage = this.#newStage(theme);
+    this.#allowPull(hearing);
     this.#host.append(this.#waiting, this.#fall);
     this.clock.onTick(() => this.#tick());
     setInterval(() => this.#transport.describe(), 1000);
@@ -209,6 +224,7 @@ export class MotionView {
   setStale(stale: boolean): void {
     this.root.classList.toggle("stale", stale);
     this.histories.classList.toggle("stale", stale);
+    if (!stale) this.#follow(); // a column that was pulled is back in its motion
   }
 
   setTheme(theme: Theme): void {
@@ -216,6 +232,23 @@ export class MotionView {
     this.#curves.redraw();
     this.orbit.redraw();
     this.#transport.redraw();
+  }
+
+  /** While the column is pulled the clock stands; it runs on if the column is not let go at another tilt. */
+  #allowPull({ pulled, alongX }: MotionHearing): void {
+    let played = false;
+    this.stage?.allowPull({
+      alongX,
+      begun: () => {
+        played = this.clock.playing;
+        this.clock.pause();
+      },
+      dropped: () => {
+        this.#follow();
+        if (played) this.clock.play();
+      },
+      released: pulled,
+    });
   }
 
   #newStage(theme: Theme): Stage | null {
@@ -244,7 +277,7 @@ export class MotionView {
     const ends = this.#drawn.map(computedUntil);
     this.stage?.setTime(time);
     this.#fall.hidden = !ends.some((end) => time > end);
-    this.#curves.setTime(Math.min(time, Math.max(...ends)));
+    this.#curves.setTime(Math.min(time, Math.max(0, ...ends)));
     this.orbit.setTime(Math.min(time, ends[0] ?? 0));
     this.#verdict.setTime(time);
     this.#transport.show();
