@@ -23,6 +23,7 @@ import { menuOf } from "./view/menu";
 import { Comparing } from "./motion/comparing";
 import { MotionView } from "./motion/motion-view";
 import { paceOf } from "./motion/pace";
+import { edgeOf } from "./motion/shares";
 import type { PlanePanel } from "./plane/plane-panel";
 import { PlanesAsking } from "./plane/planes-asking";
 import { Problems } from "./frame/problems";
@@ -148,7 +149,10 @@ export class Laboratory {
       busy: (busy) => this.#motion.setBusy(busy),
     });
     this.#varied = new Latest((description, signal) => source.variations(description, signal), {
-      answered: (found) => this.#motion.showVariations(found),
+      answered: (found) => {
+        this.#motion.showVariations(found);
+        this.#lesson.setVaried(edgeOf(found));
+      },
       failed: (error) => this.#motion.showVariations(error instanceof Error ? error.message : String(error)),
     });
     const menu = menuOf(source, this.#motion, () => ({ view: this.view, answer: this.#answer, shown: this.#shown }));

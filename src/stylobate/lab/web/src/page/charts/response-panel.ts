@@ -157,6 +157,7 @@ export class ResponsePanel {
   showFrequency(frequency: number | null): void {
     this.#frequency = frequency;
     this.#marker.show(frequency);
+    this.#amplitude.showMarker(frequency);
   }
 
   report(text: string): void {
@@ -169,6 +170,7 @@ export class ResponsePanel {
     this.#job = null;
     this.#elapsed.end();
     this.#ask.textContent = "Exact orbits";
+    this.root.classList.remove("exact");
     if (this.#exact === null) return;
     this.#exact = null;
     this.report(this.#about);
@@ -212,6 +214,7 @@ export class ResponsePanel {
       return;
     }
     this.#ask.textContent = "Cancel";
+    this.root.classList.add("exact");
     this.#elapsed.begin("Computing exact orbits…");
     this.#job = this.#hearing.exact(
       ({ note }) => {
@@ -226,6 +229,7 @@ export class ResponsePanel {
     this.#elapsed.end();
     this.#ask.textContent = "Exact orbits";
     if (last?.state !== "done") {
+      this.root.classList.remove("exact");
       this.report(problems.join(" "));
       return;
     }

@@ -41,6 +41,10 @@ export class ResponsePlot {
   readonly plot: uPlot;
   readonly #quantity: Quantity;
   #picture: ResponsePicture | null = null;
+  /** The frequency at which the marker stands; labels make way for it. */
+  #marked: number | null = null;
+  /** Where the labels were written. */
+  #places = "";
 
   /** `drawn` hears of each new drawing: the room that is left for the curves depends on the lettering of the axes. */
   constructor(
@@ -77,6 +81,31 @@ export class ResponsePlot {
     const lines = Array.from({ length: MOST_LINES }, (_, i) => picture.lines[i]?.[this.#quantity] ?? empty);
     const backbone = this.#quantity === "amplitude" ? picture.backbone : empty;
     this.plot.setData([picture.frequency as number[], ...([...lines, backbone] as (number | null)[][])]);
+  }
+
+  /** Takes the frequency at which the marker stands, and writes labels that it would cross on their other side. */
+  showMarker(frequency: number | null): void {
+    this.#marked = frequency;
+    if (this.#quantity === "amplitude" && this.#places !== this.#placesOf(this.#critical())) this.plot.redraw(false);
+  }
+
+  #placesOf(lines: readonly { readonly place: LabelPlace }[]): string {
+    return lines.map(({ place }) => `${place.align} ${place.at}`).join();
+  }
+
+  /** Returns the lines of the critical frequencies in the plot, with their labels. */
+  #critical(): readonly { readonly x: number; readonly text: string; readonly place: LabelPlace }[] {
+    const { ctx, bbox } = this.plot;
+    ctx.font = CRITICAL_FONT();
+    const [from, to] = [bbox.left, bbox.left + bbox.width];
+    const marked = this.#marked === null ? null : this.plot.valToPos(this.#marked, "x", true);
+    return (this.#picture?.critical ?? []).flatMap((frequency) => {
+      const x = this.plot.valToPos(frequency, "x", true);
+      if (!(x >= from && x <= to)) return [];
+      const text = `critical ${joined(formatted(frequency, 4), "rad/s")}`;
+      const { width } = ctx.measureText(text);
+      return [{ x, text, place: labelPlace(x, width, [from, to], marked, LABEL_GAP * uPlot.pxRatio) }];
+    });
   }
 
   /** The looks are asked for when drawing: which line stands at which place changes with the case. */
@@ -117,14 +146,18 @@ export class ResponsePlot {
     ctx.save();
     ctx.strokeStyle = ctx.fillStyle = themeColour("muted");
     ctx.setLineDash([2 * ratio, 3 * ratio]);
-    for (const frequency of this.#picture?.critical ?? []) {
-      const x = plot.valToPos(frequency, "x", true);
-      if (x < bbox.left || x > bbox.left + bbox.width) continue;
+    const lines = this.#critical();
+    this.#places = this.#placesOf(lines);
+    for (const { x, text, place } of lines) {
       ctx.beginPath();
       ctx.moveTo(x, bbox.top);
       ctx.lineTo(x, bbox.top + bbox.height);
       ctx.stroke();
-      if (this.#quantity === "amplitude") labelCritical(ctx, bbox, x, joined(formatted(frequency, 4), "rad/s"));
+      if (this.#quantity === "phase") continue;
+      // Beside the top of its line: unstable to the left and stable to the right.
+      ctx.textBaseline = "top";
+      ctx.textAlign = place.align;
+      ctx.fillText(text, place.at, bbox.top + 2 * ratio);
     }
     ctx.restore();
   }
@@ -195,15 +228,33 @@ const REACH = 7;
 /** The least distance of two dots [px]. */
 const APART = 9;
 
-/** Writes what a line is beside its top: that of the critical frequency, unstable to the left and stable to the right. */
-function labelCritical(ctx: CanvasRenderingContext2D, bbox: uPlot.BBox, x: number, value: string): void {
-  const ratio = uPlot.pxRatio;
-  ctx.font = `${12 * ratio}px system-ui, sans-serif`;
-  ctx.textBaseline = "top";
-  const text = `critical ${value}`;
-  const room = bbox.left + bbox.width - x - 5 * ratio;
-  ctx.textAlign = ctx.measureText(text).width < room ? "left" : "right";
-  ctx.fillText(text, x + (ctx.textAlign === "left" ? 5 : -5) * ratio, bbox.top + 2 * ratio);
+const CRITICAL_FONT = (): string => `${12 * uPlot.pxRatio}px system-ui, sans-serif`;
+
+/** Between a line and its label, and between a label and the marker [px]. */
+const LABEL_GAP = 5;
+
+/** Where a label begins or ends, and which of the two. */
+export interface LabelPlace {
+  readonly at: number;
+  readonly align: "left" | "right";
+}
+
+/** Returns where the label of the line at `x` has room: to the right, or where the marker does not cross it. */
+export function labelPlace(
+  x: number,
+  width: number,
+  [from, to]: readonly [number, number],
+  marked: number | null,
+  gap: number,
+): LabelPlace {
+  const right: LabelPlace = { at: x + gap, align: "left" };
+  const left: LabelPlace = { at: x - gap, align: "right" };
+  const beyond: LabelPlace = { at: (marked ?? x) + 2 * gap, align: "left" };
+  const crossed = (low: number, high: number): boolean => marked !== null && marked > low - gap && marked < high + gap;
+  const fits = ({ at, align }: LabelPlace): boolean => (align === "left" ? at + width <= to : at - width >= from);
+  const clear = ({ at, align }: LabelPlace): boolean =>
+    align === "left" ? !crossed(at, at + width) : !crossed(at - width, at);
+  return [right, left, beyond].find((one) => fits(one) && clear(one)) ?? (fits(right) ? right : left);
 }
 
 function drawDot(plot: uPlot, x: number, y: number, stable: boolean): void {

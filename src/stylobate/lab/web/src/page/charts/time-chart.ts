@@ -3,10 +3,11 @@
 import uPlot from "uplot";
 import { choice, element, onResize, themeColour } from "../frame/dom";
 import { formatted, withUnit } from "../frame/format";
+import { type Envelope, envelopeOf } from "./envelope";
 import type { History, HistoryName, SecondHistory } from "./history-kinds";
 import { HISTORIES, isHistoryName } from "./history-kinds";
 import type { Variations } from "../server/schema";
-import type { Label } from "./plot-looks";
+import type { Label, Numbers } from "./plot-looks";
 import { across, PLAIN, upright } from "./plot-looks";
 
 export interface TimeChartHearing {
@@ -25,6 +26,11 @@ export interface Company {
 
 /** Widths of a line alone, and of the first of two [px]. */
 const [ALONE, FIRST] = [1.5, 2.25];
+
+/** Opacity of a band. */
+const BAND = 0.3;
+
+const LINEAR = uPlot.paths.linear!();
 
 /** Up to where the axis reaches for a cloud, in units of c. */
 const NO_HIGHER = 1.5;
@@ -48,6 +54,8 @@ export class TimeChart {
   #history: History | null = null;
   #cloud: Cloud | null = null;
   #second: SecondHistory | null = null;
+  /** The bands of runs whose swings lie too close together to be drawn one by one. */
+  #bands: { readonly first: Envelope | null; readonly second: Envelope | null } = { first: null, second: null };
   #offered = "";
   #time = 0;
 
@@ -64,6 +72,7 @@ export class TimeChart {
     this.#plot.over.addEventListener("click", (event) => this.#clicked(event));
     onResize(this.#host, (width, height) => {
       this.#plot.setSize({ width, height });
+      if (this.#history !== null) this.#draw(Array.from(this.#plot.data[0]), this.#history);
       this.setTime(this.#time);
     });
   }
@@ -77,16 +86,33 @@ export class TimeChart {
     this.#showLegend();
     this.#offer(offered);
     this.#kind.value = history.name;
-    this.#note.textContent = this.#largest;
-    this.#host.setAttribute("aria-label", `${HISTORIES[history.name]}: ${this.#largest}`);
-    this.#plot.setData([time as number[], history.values as number[]]);
+    this.#draw(time, history);
     this.setTime(this.#time);
   }
 
   /** What stands beside the quantity: how large it gets, of both runs. */
   get #largest(): string {
-    const second = this.#second === null ? "" : `; dashed: ${this.#second.history.note}`;
-    return `${this.#history?.note ?? ""}${second}`;
+    const note = this.#history?.note ?? "";
+    const { first, second } = this.#bands;
+    if (this.#second === null) return first === null ? note : `${note}; band: range of the swings`;
+    return first === null && second === null
+      ? `${note}; dashed: ${this.#second.history.note}`
+      : "bands: range of the swings";
+  }
+
+  /** Draws the run, as a band where its swings lie too close together at the width of the plot. */
+  #draw(time: readonly number[], history: History): void {
+    const width = this.#plot.over.clientWidth;
+    const end = this.#span(null, time.at(-1) ?? 0)[1];
+    const bandOf = (times: readonly number[], values: Numbers): Envelope | null =>
+      envelopeOf(times, values, (width * ((times.at(-1) ?? 0) - (times[0] ?? 0))) / end);
+    this.#bands = {
+      first: bandOf(time, history.values),
+      second: this.#second && bandOf(this.#second.time, this.#second.history.values),
+    };
+    this.#note.textContent = this.#largest;
+    this.#host.setAttribute("aria-label", `${HISTORIES[history.name]}: ${this.#largest}`);
+    this.#plot.setData([time as number[], history.values as number[]]);
   }
 
   #showLegend(): void {
@@ -115,6 +141,10 @@ export class TimeChart {
     this.#kind.replaceChildren(...offered.map((name) => element("option", { value: name }, HISTORIES[name])));
   }
 
+  /** A run that is drawn as a band has no line. */
+  readonly #paths: uPlot.Series.PathBuilder = (plot, ...which) =>
+    this.#bands.first === null ? LINEAR(plot, ...which) : null;
+
   #made(timeLabel: Label): uPlot {
     return new uPlot(
       {
@@ -128,12 +158,17 @@ export class TimeChart {
         axes: [across(timeLabel), { ...upright(" "), label: () => this.#history?.label ?? "" }],
         series: [
           {},
-          { stroke: () => themeColour(this.#history?.colour ?? "blue"), width: ALONE, points: { show: false } },
+          {
+            stroke: () => themeColour(this.#history?.colour ?? "blue"),
+            width: ALONE,
+            points: { show: false },
+            paths: this.#paths,
+          },
         ],
         hooks: {
           setCursor: [(plot) => this.#read(plot)],
           drawAxes: [(plot) => this.#drawCloud(plot)],
-          draw: [(plot) => this.#drawSecond(plot), (plot) => this.#drawLevel(plot)],
+          draw: [(plot) => this.#drawBand(plot), (plot) => this.#drawSecond(plot), (plot) => this.#drawLevel(plot)],
         },
       },
       [[], []],
@@ -195,6 +230,28 @@ export class TimeChart {
     ctx.restore();
   }
 
+  #drawBand(plot: uPlot): void {
+    const band = this.#bands.first;
+    if (band === null) return;
+    const { ctx, bbox } = plot;
+    const colour = themeColour(this.#history?.colour ?? "blue");
+    ctx.save();
+    ctx.beginPath();
+    ctx.rect(bbox.left, bbox.top, bbox.width, bbox.height);
+    ctx.clip();
+    ctx.fillStyle = ctx.strokeStyle = colour;
+    ctx.globalAlpha = BAND;
+    trace(plot, [...band.time, ...band.time.toReversed()], [...band.high, ...band.low.toReversed()]);
+    ctx.fill();
+    ctx.globalAlpha = 1;
+    ctx.lineWidth = (this.#second === null ? ALONE : FIRST) * uPlot.pxRatio;
+    for (const edge of [band.low, band.high]) {
+      trace(plot, band.time, edge);
+      ctx.stroke();
+    }
+    ctx.restore();
+  }
+
   /** Draws the second run dashed, over the bold line of the first. */
   #drawSecond(plot: uPlot): void {
     if (this.#second === null) return;
@@ -207,19 +264,15 @@ export class TimeChart {
     ctx.lineWidth = 1.25 * uPlot.pxRatio;
     ctx.setLineDash([5 * uPlot.pxRatio, 3 * uPlot.pxRatio]);
     ctx.strokeStyle = themeColour("ink");
-    ctx.beginPath();
-    let pen = false; // down
-    history.values.forEach((value, i) => {
-      if (value === null) {
-        pen = false;
-        return;
-      }
-      const [x, y] = [plot.valToPos(time[i]!, "x", true), plot.valToPos(value, "y", true)];
-      if (pen) ctx.lineTo(x, y);
-      else ctx.moveTo(x, y);
-      pen = true;
-    });
-    ctx.stroke();
+    const band = this.#bands.second;
+    const lines =
+      band === null
+        ? [[time, history.values] as const]
+        : [[band.time, band.low] as const, [band.time, band.high] as const];
+    for (const [times, values] of lines) {
+      trace(plot, times, values);
+      ctx.stroke();
+    }
     ctx.restore();
   }
 
@@ -256,4 +309,20 @@ export class TimeChart {
     const place = event.clientX - this.#plot.over.getBoundingClientRect().left;
     this.#hearing.seek(this.#plot.posToVal(place, "x"));
   }
+}
+
+/** Makes a line through values over time the path of the pen, broken where there are none. */
+function trace(plot: uPlot, time: readonly number[], values: Numbers): void {
+  plot.ctx.beginPath();
+  let down = false;
+  values.forEach((value, i) => {
+    if (value === null) {
+      down = false;
+      return;
+    }
+    const [x, y] = [plot.valToPos(time[i]!, "x", true), plot.valToPos(value, "y", true)];
+    if (down) plot.ctx.lineTo(x, y);
+    else plot.ctx.moveTo(x, y);
+    down = true;
+  });
 }

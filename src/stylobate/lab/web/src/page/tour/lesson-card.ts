@@ -35,6 +35,8 @@ export class LessonCard {
   #description: Description | null = null;
   #outcome: string | null = null;
   #critical: number | null = null;
+  /** What small variations of the run add; empty where there are none. */
+  #varied = "";
 
   constructor(about: About, hearing: LessonHearing) {
     this.#about = about;
@@ -72,6 +74,13 @@ export class LessonCard {
   /** Says what an outcome means; null: it is not known yet, and what was said is no longer sure. */
   setOutcome(outcome: string | null): void {
     this.#outcome = outcome;
+    this.#varied = "";
+    this.#say();
+  }
+
+  /** Adds what small variations of the run say about its outcome. */
+  setVaried(line: string): void {
+    this.#varied = line;
     this.#say();
   }
 
@@ -145,7 +154,9 @@ export class LessonCard {
     const text = this.#outcome === null ? undefined : this.#lesson?.said[this.#outcome];
     if (text === undefined) return;
     const critical = this.#critical === null ? "" : ` ${withUnit(this.#critical, "rad/s", 4)}`;
-    const line = text.replaceAll(/ ?\{critical\}/g, critical);
+    // What “Vary it” was asked for is answered: the question gives way to the answer.
+    const said = this.#varied === "" ? text : `${text.replace(/ ?Vary it: [^?]*\?/, "")} ${this.#varied}`;
+    const line = said.replaceAll(/ ?\{critical\}/g, critical);
     if (line !== this.#said.textContent) this.#said.textContent = line;
   }
 }
