@@ -319,7 +319,8 @@ def test_computed_answers_are_those_of_the_server(lesson, served, browser, clien
         np.testing.assert_allclose(np.array(shown_here["series"][name], dtype=float), known, rtol=1e-5, atol=2e-6)
     for name in set(shown_here["measures"]) - {"steps"}:
         known = answer["measures"][name]
-        known = known if known is None else pytest.approx(known, rel=1e-4, abs=1e-6)
+        loads = name in ("peak_friction_demand", "peak_pivoting_demand", "minimum_normal_force")
+        known = known if known is None else pytest.approx(known, rel=5e-3 if loads else 1e-4, abs=1e-6)
         assert shown_here["measures"][name] == known, name
     rows = dict(answer["summary"])
     assert {label: text for label, text in shown_here["summary"] if label in ("column", "uplifts above", "events")} == {
@@ -367,7 +368,8 @@ def test_computed_runs_under_any_motion_are_those_of_the_server(name, served, pa
     assert [one["kind"] for one in found["events"]] == [one["kind"] for one in known["events"]]
     assert found["measures"]["peak_tilt"] == pytest.approx(known["measures"]["peak_tilt"], rel=1e-6)
     for load in ("peak_friction_demand", "minimum_normal_force"):  # just before impacts the page sees more
-        assert found["measures"][load] == pytest.approx(known["measures"][load], rel=5e-3), load
+        value = known["measures"][load]
+        assert found["measures"][load] == (None if value is None else pytest.approx(value, rel=5e-3, abs=5e-4)), load
     for part in ("time", "tilt", "base"):
         np.testing.assert_allclose(found["drawn"][part], known["drawn"][part], rtol=1e-6, atol=2e-6, err_msg=part)
 
@@ -551,6 +553,36 @@ def test_computed_maps_are_those_of_the_server(start, place, browser, client):
     shares = [{one["name"]: one["share"] for one in job["result"]["classes"] if one["share"]} for job in (found, known)]
     assert shares[0] == pytest.approx(shares[1])
     assert (found["done"], found["total"]) == (72, 72)
+
+
+@pytest.mark.parametrize(
+    ("kind", "motion", "axes"),
+    [
+        ("slender", {"kind": "one_sine", "angular_frequency": 6.0}, {"acceleration": (2.0, 9.0), "height": (1.5, 4.0)}),
+        ("wobbling", EL_CENTRO, {"scale": (0.4, 2.4), "damping": (0.005, 0.05)}),
+    ],
+)
+def test_computed_maps_under_pulses_and_records_are_those_of_the_server(kind, motion, axes, page_of_sources, client):
+    (x, across), (y, up) = axes.items()
+    plan = {
+        "x": {"name": x, "from": across[0], "to": across[1], "number": 6},
+        "y": {"name": y, "from": up[0], "to": up[1], "number": 5},
+    }
+    start = {"acceleration": 2.0} if kind == "slender" else {"scale": 1.0}
+    asked = {
+        "description": {
+            "column": BLOCK,
+            "model": {"kind": kind, "damping": 0.02},
+            "motion": {**motion, **start},
+            "map": plan,
+        }
+    }
+    found = page_of_sources.evaluate(MAPPED, asked)
+    known = followed(client, client.post("/api/jobs", json={"kind": "map", **asked}).json()["id"])
+    assert (found["state"], found["problems"]) == ("done", [])
+    codes, theirs = (np.array(one["result"]["codes"]) for one in (found, known))
+    assert len(set(theirs.ravel().tolist())) > 1
+    np.testing.assert_array_equal(codes, theirs)
 
 
 def test_a_cancelled_map_stops_at_once(place, browser):

@@ -49,7 +49,7 @@ function decided(kernels: Kernels, asked: Case, program: Program, description: P
 }
 
 /** Returns the first duration of a run that states none: NaN without a usual one. */
-function usualDuration(kernels: Kernels, { shaking, column }: Case): number {
+export function usualDuration(kernels: Kernels, { shaking, column }: Case): number {
   const { rules, free_tail } = kernels.described;
   if (shaking.lasts === Infinity) return rules.steady * (shaking.period ?? NaN);
   return shaking.lasts > 0 ? shaking.lasts + free_tail / (column["frequency_parameter"] ?? NaN) : NaN;

@@ -8,7 +8,7 @@ import { imported } from "./instances";
 import { OwnRecords, type Samples } from "./own-records";
 import { type Common, type Described as OfProgram, Program } from "./program";
 import { STACK, Tables } from "./tables";
-import type { Setup } from "./worker-pool";
+import type { Setup, StartWorker } from "./worker-pool";
 
 export type Numbers = Readonly<Record<string, number>>;
 
@@ -126,7 +126,7 @@ const MOST_RESULTS = 64;
 export class Kernels {
   readonly described: Described;
   /** Records that the user has read into the page. */
-  readonly own = new OwnRecords();
+  readonly own: OwnRecords;
   readonly #load: Load;
   readonly #programs = new Map<string, Promise<Program>>();
   readonly #modules = new Map<string, Promise<WebAssembly.Module>>();
@@ -136,8 +136,10 @@ export class Kernels {
   readonly #samples = new Map<string, Promise<Float64Array>>();
   readonly #memory = new WebAssembly.Memory({ initial: 2 });
 
-  constructor(described: Described, load: Load) {
+  /** Takes how programs and records are loaded, and how workers are started. */
+  constructor(described: Described, load: Load, startWorker: StartWorker) {
     this.described = described;
+    this.own = new OwnRecords(startWorker);
     this.#load = load;
   }
 

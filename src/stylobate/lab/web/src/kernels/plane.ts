@@ -5,10 +5,11 @@ import { standing } from "../page/case/starting";
 import { withValue } from "../page/case/quantities";
 import type { GridResult, Job, PlaneBegun, PlaneCells } from "../page/server/schema";
 import { type JobRequest, NotMine, type Started } from "../page/server/source";
-import { numbersOf } from "./answer";
-import { type Case, Unknown, caseOf } from "./case";
+import { numbersOf, usualDuration } from "./answer";
+import { type Case, Unknown, caseOf, numberOf } from "./case";
 import type { Kernels } from "./kernels";
-import type { Program } from "./program";
+import { type Program, joined } from "./program";
+import type { Tabulated } from "./tables";
 import { type Compute, type Member, type StartWorker, WorkerPool, workersFor } from "./worker-pool";
 
 /** Steps between the cells that are computed. */
@@ -44,9 +45,9 @@ export async function startMap(
 
 /** Returns how the page itself computes runs. */
 function here(program: Program): Compute {
-  return async (runs) => {
+  return async (runs, pieces) => {
     await new Promise((resolve) => setTimeout(resolve)); // the page goes on meanwhile
-    return program.batch(runs);
+    return program.batch(runs, pieces);
   };
 }
 
@@ -72,8 +73,11 @@ async function cellAt(
   const { periods, ...given } = changed;
   const begun = start === undefined ? given : await onBranch(given, start);
   const asked = await caseOf(kernels, begun ?? standing(given as Description)); // where there is no branch
-  const duration = typeof periods === "number" ? periods * (asked.shaking.period ?? NaN) : changed["duration"];
-  if (typeof duration !== "number" || !(duration > 0)) throw new Unknown("the runs have no length");
+  const { period, lasts } = asked.shaking;
+  const usual = lasts < Infinity ? usualDuration(kernels, asked) : NaN;
+  const stated = numberOf(changed["duration"], usual, "duration");
+  const duration = typeof periods === "number" ? periods * (period ?? NaN) : stated;
+  if (!(duration > 0)) throw new Unknown("the runs have no length");
   return { asked, duration };
 }
 
@@ -165,17 +169,25 @@ class Mapping {
     const { rtol, most_steps, common } = this.#kernels.described;
     const cells = await Promise.all(places.map(([i, j]) => this.#cell(i, j)));
     const accuracy = { rtol, max_steps: most_steps, traces: 0, rest_share: 1, passage_share: 1 };
-    const runs = cells.map(({ asked, duration }) =>
-      numbersOf(this.#program, { ...asked.numbers, duration, ...accuracy }),
-    );
     const found: [number, number, number][] = [];
-    (await compute(runs)).forEach((verdict, k) => {
-      const [i, j] = places[k] ?? [0, 0];
-      const code = verdict[common.columns.verdict["outcome"] ?? 0] ?? -1;
-      this.#uncertain += verdict[common.columns.verdict["uncertain"] ?? 1] ?? 0;
-      (this.#codes[i] ?? [])[j] = code;
-      found.push([i, j, code]);
-    });
+    for (const [first, tables] of batches(cells)) {
+      const width = this.#program.described.piece;
+      let rows = 0;
+      const runs = tables.map((table, k) => {
+        const { asked, duration } = cells[first + k] ?? {};
+        const own = table ? { ...table.numbers, first: rows } : {};
+        rows += table ? table.pieces.length / width : 0;
+        return numbersOf(this.#program, { ...asked?.numbers, ...own, duration: duration ?? NaN, ...accuracy });
+      });
+      const pieces = joined(tables.flatMap((table) => (table ? [table.pieces] : [])));
+      (await compute(runs, pieces)).forEach((verdict, k) => {
+        const [i, j] = places[first + k] ?? [0, 0];
+        const code = verdict[common.columns.verdict["outcome"] ?? 0] ?? -1;
+        this.#uncertain += verdict[common.columns.verdict["uncertain"] ?? 1] ?? 0;
+        (this.#codes[i] ?? [])[j] = code;
+        found.push([i, j, code]);
+      });
+    }
     this.#done += places.length;
     this.#events.push({ stride, cells: found });
   }
@@ -205,6 +217,26 @@ class Mapping {
 }
 
 type Place = readonly [number, number];
+
+/** Numbers in the polynomials of the base motions that are computed together, at most. */
+const MOST_NUMBERS = 4_000_000;
+
+/** Returns the tables of the base motions of cells, in parts that fit in memory, each with its first cell. */
+function batches(cells: readonly Cell[]): (readonly [number, (Tabulated | undefined)[]])[] {
+  const found: [number, (Tabulated | undefined)[]][] = [];
+  let numbers = Infinity;
+  cells.forEach(({ asked, duration }, k) => {
+    const table = asked.shaking.table?.(duration);
+    const more = table?.pieces.length ?? 0;
+    if (numbers + more > MOST_NUMBERS) {
+      found.push([k, []]);
+      numbers = 0;
+    }
+    found.at(-1)?.[1].push(table);
+    numbers += more;
+  });
+  return found;
+}
 
 /** Yields each stride with the cells that it adds. */
 function* strides(width: number, height: number): Generator<readonly [number, readonly Place[]]> {

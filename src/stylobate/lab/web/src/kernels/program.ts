@@ -330,7 +330,8 @@ export class Program {
   }
 }
 
-function joined(parts: readonly Float64Array[]): Float64Array {
+/** Returns arrays one after the other. */
+export function joined(parts: readonly Float64Array[]): Float64Array {
   const whole = new Float64Array(parts.reduce((sum, part) => sum + part.length, 0));
   let place = 0;
   for (const part of parts) {

@@ -12,6 +12,8 @@ export interface Setup {
 
 export interface Asked {
   readonly runs: readonly Float64Array[];
+  /** Polynomials of their base motions. */
+  readonly pieces: Float64Array;
 }
 
 export type Found = { readonly verdicts: readonly Float64Array[] } | { readonly problem: string };
@@ -19,8 +21,8 @@ export type Found = { readonly verdicts: readonly Float64Array[] } | { readonly 
 /** Starts a worker, or throws where the page may not. */
 export type StartWorker = () => Worker;
 
-/** Computes runs; returns the numbers of `verdict` of each. */
-export type Compute = (runs: readonly Float64Array[]) => Promise<readonly Float64Array[]>;
+/** Computes runs, with the polynomials of their base motions; returns the numbers of `verdict` of each. */
+export type Compute = (runs: readonly Float64Array[], pieces: Float64Array) => Promise<readonly Float64Array[]>;
 
 /** Returns how many workers compute `cells`: one for each core but that of the page, each with some cells. */
 export function workersFor(cells: number, least: number): number {
@@ -55,13 +57,13 @@ export class WorkerPool {
     const worker = this.#started(start, setup);
     if (worker === null) return { compute: here, long: WITHIN };
     const failed = new Promise<null>((resolve) => (worker.onerror = worker.onmessageerror = () => resolve(null)));
-    const compute: Compute = async (runs) => {
+    const compute: Compute = async (runs, pieces) => {
       const answer = new Promise<Found>((resolve) => (worker.onmessage = ({ data }) => resolve(data as Found)));
-      worker.postMessage({ runs } satisfies Asked);
+      worker.postMessage({ runs, pieces } satisfies Asked);
       const found = await Promise.race([failed, answer]);
       if (found === null) {
         member.long = WITHIN;
-        return here(runs);
+        return here(runs, pieces);
       }
       if ("problem" in found) throw new Error(found.problem);
       return found.verdicts;

@@ -2,18 +2,17 @@
 
 import { readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
-import { OwnRecords } from "../../src/kernels/own-records";
+import { readUpload } from "../../src/kernels/records/upload";
 import type { Part } from "../../src/page/case/description";
 import { Refused } from "../../src/page/server/source";
 
 const folder = process.argv[2] ?? ".";
 const sent = JSON.parse(readFileSync(join(folder, "sent.json"), "utf8")) as readonly Part[];
-const records = new OwnRecords();
 const answers: unknown[] = [];
 for (const body of sent) {
   try {
-    const received = await records.add(body);
-    const { values, step } = records.samples(received.upload);
+    const { received, samples } = await readUpload(body);
+    const { values, step } = samples;
     answers.push({ received, values: [...values], step });
   } catch (error) {
     if (!(error instanceof Refused)) throw error;

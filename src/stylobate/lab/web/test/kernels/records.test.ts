@@ -1,6 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { OwnRecords } from "../../src/kernels/own-records";
+import { readUpload } from "../../src/kernels/records/upload";
 import { isAt2, readAt2 } from "../../src/kernels/records/at2";
 import { alongAxes, inWords, isOneSet, parsedDirection, splitName, stemOf } from "../../src/kernels/records/directions";
 import { floatOf, repr } from "../../src/kernels/records/python";
@@ -150,31 +151,33 @@ test("files that only the package reads are refused in one line", () => {
 
 const sent = (name: string, text: string) => ({ files: [{ name, content: btoa(text) }], units: "g", step: null });
 
-test("samples of a record are held under an identity of contents and options", async () => {
-  const records = new OwnRecords();
+const identityOf = async (body: ReturnType<typeof sent>): Promise<string> => (await readUpload(body)).received.upload;
+
+test("the identity of an upload depends on contents and options", async () => {
   const body = sent("q.txt", "0.0 0.1\n0.5 0.2\n");
-  const { upload, ...received } = await records.add(body);
-  assert.deepEqual([...records.samples(upload).values], [0.1 * 9.80665, 0, 0, 0.2 * 9.80665, 0, 0]);
-  assert.deepEqual([records.samples(upload).step, received.step, received.name], [0.5, 0.5, "q"]);
-  assert.equal((await new OwnRecords().add(body)).upload, upload);
+  const { received, samples } = await readUpload(body);
+  assert.deepEqual([...samples.values], [0.1 * 9.80665, 0, 0, 0.2 * 9.80665, 0, 0]);
+  assert.deepEqual([samples.step, received.step, received.name], [0.5, 0.5, "q"]);
+  const { upload } = received;
+  assert.equal(await identityOf(body), upload);
   for (const other of [
     { ...body, units: "m/s2" },
     sent("r.txt", "0.0 0.1\n0.5 0.2\n"),
     sent("q.txt", "0 0.1\n0.5 0.2\n"),
   ]) {
-    assert.notEqual((await records.add(other)).upload, upload);
+    assert.notEqual(await identityOf(other), upload);
   }
 });
 
 test("uploads that are not held and times that begin later are refused", async () => {
-  const records = new OwnRecords();
+  const records = new OwnRecords(() => assert.fail("no worker is needed"));
   const missing = "motion.upload: record '0123456789ab' is not stored (any more). Upload its files again.";
   assert.throws(
     () => records.samples("0123456789abcdef"),
     (error: Refused) => error.status === 422 && error.problems[0] === missing,
   );
   await assert.rejects(
-    records.add(sent("q.txt", "0.5 0.1\n1.0 0.2\n")),
+    readUpload(sent("q.txt", "0.5 0.1\n1.0 0.2\n")),
     /does not read times that begin at 0.5 s and not at 0 s/,
   );
 });

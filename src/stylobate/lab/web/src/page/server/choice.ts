@@ -26,7 +26,10 @@ export function sourceOf(page: Document): Source {
   };
   const found = JSON.parse(contents.textContent) as Contents & { readonly kernels?: Kernels["described"] };
   const layers = [recorded(found, async (name) => unpacked(await read(name)))];
-  if (found.kernels) layers.push(computing(new Kernels(found.kernels, loadOf(page)), workersOf(page)));
+  if (found.kernels) {
+    const startWorker = workersOf(page);
+    layers.push(computing(new Kernels(found.kernels, loadOf(page), startWorker), startWorker));
+  }
   return layered(layers);
 }
 
