@@ -10,7 +10,7 @@ import type { Asked, Found, Setup } from "./worker-pool";
 // What prevents the start is an error of the worker, at which the page computes by itself.
 const ready = new Promise<Program>((resolve) => {
   self.addEventListener("message", ({ data }: MessageEvent<Setup | Asked | Read>) => {
-    if ("program" in data) made(data).then(resolve, self.reportError);
+    if (!("runs" in data || "read" in data)) made(data).then(resolve, self.reportError);
   });
   self.addEventListener("messageerror", () => self.reportError(new Error("the modules cannot be sent to a worker")));
 });
