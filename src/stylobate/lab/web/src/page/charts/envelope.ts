@@ -9,7 +9,7 @@ export interface Envelope {
 }
 
 /** A swing that is narrower cannot be seen [px]. */
-const NARROWEST = 5;
+const NARROWEST = 2.5;
 
 /** Swings, at least, of which the band has the lowest and the highest value at one place. */
 const SWINGS = 1.5;
