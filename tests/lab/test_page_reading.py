@@ -4,7 +4,7 @@ import math
 import re
 
 import pytest
-from tests.lab.browser import shown
+from tests.lab.browser import new_page, open_sections, shown
 
 from stylobate.lab.options import presets
 
@@ -112,3 +112,40 @@ def test_a_record_of_two_stations_or_of_one_component_is_remarked_on(page):
     chosen.set_input_files(files=files[:1])
     beside.filter(has_text="one horizontal component (a_000.AT2)").wait_for()
     page.wait_for_function(f"() => {ANSWER}.warnings.every((line) => !line.includes('stations'))")
+
+
+MOVED = """() => {
+    const acceleration = (time) => ({ x: 3 * Math.sin(6 * time), y: 0.5, z: 9.8 });
+    const begun = performance.now();
+    window.moving = setInterval(() => {
+        const accelerationIncludingGravity = acceleration((performance.now() - begun) / 1000);
+        window.dispatchEvent(new DeviceMotionEvent("devicemotion", { accelerationIncludingGravity }));
+    }, 20);
+}"""
+
+
+def test_a_phone_that_is_moved_gives_a_record_and_one_without_a_sensor_says_so(browser, address):
+    context = browser.new_context(viewport={"width": 390, "height": 840}, has_touch=True)
+    page = new_page(context)
+    page.goto(f"{address}/#case=temple")
+    shown(page)
+    open_sections(page)
+    move = page.get_by_role("button", name="Move this phone…")
+    move.click()
+    page.locator(".record .problem").get_by_text("This device does not report its motion.").wait_for()
+    page.evaluate(MOVED)
+    move.click()
+    page.get_by_role("button", name="Tilt and shake it").wait_for()
+    page.locator(".record .hint").get_by_text("phone: ").wait_for()
+    page.wait_for_function(f"() => {ANSWER}.toml.includes('phone.csv')")
+    assert page.locator(".record .problem").is_hidden()
+    shaken = page.evaluate(f"() => {ANSWER}.series.base_acceleration")
+    along = [x for x, _, _ in shaken]
+    assert 4.0 < max(along) - min(along) < 6.1  # of 3 m/s² to both sides, as often as a busy machine reports it
+    assert max(abs(y) for _, y, _ in shaken) < 0.01  # what it feels from the beginning on counts as level
+    context.close()
+
+
+def test_a_machine_without_a_touch_screen_offers_no_phone(page):
+    page.get_by_label("Base motion", exact=True).select_option("record")
+    assert page.get_by_role("button", name="Move this phone…").is_hidden()

@@ -120,11 +120,9 @@ def refuse_spin(model: Model, spin: float, *, standing: bool) -> None:
     if spin == 0.0:
         return
     if model.spin_state is None:
-        raise ParameterError(f"spin must be left out: the column of model {model.name} cannot turn, got {spin!r} rad/s")
+        raise ParameterError(NO_SPIN.format(model=model.name, spin=spin))
     if standing and not model.switches:
-        raise ParameterError(
-            f"spin must be 0 for a column that stands flat on its base, got {spin!r} rad/s; give it a tilt"
-        )
+        raise ParameterError(SPIN_UPRIGHT.format(spin=spin))
 
 
 def require_plane(model: Model, motion: BaseMotion, tilt: tuple[float, float], tilt_rate: tuple[float, float]) -> None:
@@ -139,11 +137,16 @@ def require_plane(model: Model, motion: BaseMotion, tilt: tuple[float, float], t
 def out_of_plane(model: Model, tilt: Sequence[float], tilt_rate: Sequence[float]) -> ParameterError:
     """Return the error of a start and a base motion that are not in one vertical plane."""
     given = ", ".join(f"{name} ({x:.5g}, {y:.5g})" for name, (x, y) in (("tilt", tilt), ("tilt_rate", tilt_rate)))
-    message = (
-        f"tilt, tilt_rate and motion must lie in one vertical plane for model {model.name}; with {given} they do not: "
-        "give all of them the same direction"
-    )
-    return ParameterError(message)
+    return ParameterError(OUT_OF_PLANE.format(model=model.name, given=given))
+
+
+NO_SPIN = "spin must be left out: the column of model {model} cannot turn, got {spin} rad/s"
+SPIN_UPRIGHT = "spin must be 0 for a column that stands flat on its base, got {spin} rad/s; give it a tilt"
+OUT_OF_PLANE = (
+    "tilt, tilt_rate and motion must lie in one vertical plane for model {model}; with {given} they do not: "
+    "give all of them the same direction"
+)
+"""Refusals of initial conditions, with gaps."""
 
 
 def require_nouns(model: Model, motion: BaseMotion | None) -> None:

@@ -15,6 +15,7 @@ from stylobate.engine.kernel.columns import LAGS
 from stylobate.engine.single import reason_texts
 from stylobate.engine.standalone import programs
 from stylobate.engine.standalone.programs import CaseProgram, RunProgram, Shaking, TableProgram
+from stylobate.engine.starts import NO_SPIN, OUT_OF_PLANE, SPIN_UPRIGHT
 from stylobate.engine.verdict import (
     FALLEN,
     FINER_PASSAGE,
@@ -190,6 +191,7 @@ def described() -> dict[str, Any]:
         "repeating": REPEATING,
         "demand_rows": [list(row) for row in DEMAND_ROWS],
         "no_bound": NO_BOUND,
+        "refusals": {"no_spin": NO_SPIN, "spin_upright": SPIN_UPRIGHT, "out_of_plane": OUT_OF_PLANE},
         "texts": {**reason_texts(), **demand_texts(), "no_duration": f"duration is missing{WANTED['duration']}"},
         "rules": {"n": rules.periods, "short": rules.periods + 1, "steady": steady_periods(rules), "most": LAGS},
         "free_tail": FREE_TAIL,

@@ -4,6 +4,7 @@ import type { Part, Value } from "../page/case/description";
 import { PARTS, isPart, isVector } from "../page/case/description";
 import { START } from "../page/server/declared";
 import { Refused } from "../page/server/source";
+import { filled, general } from "./general";
 import type { Declared, Kernels, Numbers } from "./kernels";
 import { type Shaking, type Vector, shakingOf } from "./shaking";
 
@@ -43,7 +44,7 @@ export async function caseOf(kernels: Kernels, given: Part): Promise<Case> {
   }
   refuseOthers(part(given, "model"), ["kind", ...Object.keys(model)]);
   const numbers = { ...column, ...model, ...shaking.numbers, ...start(kernels, given) };
-  checkStart(described, numbers, shaking);
+  checkStart(kernels, kind, program, numbers, shaking);
   return { program, column, numbers, shaking };
 }
 
@@ -72,15 +73,20 @@ export function checked(value: number, one: Declared): number {
 }
 
 /** Refuses initial conditions that the model does not support. */
-function checkStart(described: Kernels["described"]["programs"][string], numbers: Numbers, shaking: Shaking): void {
+function checkStart(kernels: Kernels, kind: string, program: string, numbers: Numbers, shaking: Shaking): void {
+  const { refusals, programs } = kernels.described;
+  const [described, model] = [programs[program], kind.replaceAll("_", " ")];
   const of = (name: string): number => numbers[name] ?? 0;
   const tilt = Math.hypot(of("tilt_x"), of("tilt_y"));
   if (!(tilt < Math.PI / 2)) throw new Refused(422, [`tilt must be below π/2 in length, got ${tilt} rad`]);
-  if (of("spin") !== 0 && !described?.spins) {
-    throw new Refused(422, [`spin must be left out: the column of this model cannot turn, got ${of("spin")} rad/s`]);
-  }
+  const spin = of("spin");
+  if (spin !== 0 && !described?.spins) throw new Refused(422, [filled(refusals.no_spin, { model, spin })]);
+  const stands = tilt === 0 && of("tilt_rate_x") === 0 && of("tilt_rate_y") === 0;
+  if (spin !== 0 && stands) throw new Refused(422, [filled(refusals.spin_upright, { spin })]);
   if (described?.planar_only && !inOnePlane(of, shaking.vectors())) {
-    throw new Refused(422, ["tilt, tilt_rate and motion must lie in one vertical plane for this model"]);
+    const vector = (name: string): string => `${name} (${general(of(`${name}_x`), 5)}, ${general(of(`${name}_y`), 5)})`;
+    const given = `${vector("tilt")}, ${vector("tilt_rate")}`;
+    throw new Refused(422, [filled(refusals.out_of_plane, { model, given })]);
   }
 }
 

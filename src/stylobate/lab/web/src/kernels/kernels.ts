@@ -103,6 +103,8 @@ export interface Described {
   /** Rows of the contact demand: label, measure and unit. */
   readonly demand_rows: readonly (readonly [label: string, measure: string, unit: string])[];
   readonly no_bound: string;
+  /** Refusals of initial conditions, with gaps. */
+  readonly refusals: Readonly<Record<"no_spin" | "spin_upright" | "out_of_plane", string>>;
   readonly texts: Texts;
   readonly rules: { readonly n: number; readonly short: number; readonly steady: number; readonly most: number };
   /** Length of the free vibration after a base motion that ends, over 1/p. */

@@ -4,6 +4,7 @@ import type { About } from "../case/about";
 import type { UploadedRecord } from "../server/schema";
 import { Refused, type Source, Unreachable } from "../server/source";
 import type { Part, Value } from "../case/description";
+import { LENGTH, canFeel, feel, tableOf } from "./phone";
 import { button, choice, element, newId } from "../frame/dom";
 import { capital, sentence, formatted } from "../frame/format";
 
@@ -16,6 +17,7 @@ const UNITS = [
 ] as const;
 
 const MOST_FILES = 3;
+const MOVE = "Move this phone…";
 /** Neither the page nor its server has the files of an upload. */
 export const NOT_HERE = "The record of this case is not here any more. Choose its files again.";
 const OWN = "\u0000own"; // no sample has this name
@@ -59,6 +61,7 @@ export class RecordForm {
   readonly #warnings = element("div", { class: "warnings", "aria-live": "polite" });
   readonly #problem = element("p", { class: "problem", role: "alert", hidden: true });
   readonly #known = new Map<string, Kept>();
+  readonly #phone = button(MOVE, { class: "wide", hidden: !canFeel() }, () => void this.#feel());
   #motion: Part = {};
   /** Whether files are to be chosen, while the motion is still that of a sample. */
   #choosing = false;
@@ -78,7 +81,8 @@ export class RecordForm {
     this.#files.tabIndex = -1; // the button beside it is the one to reach
     this.#own = element("div", { class: "own-record" }, label, this.#files, again, this.#units, this.#step);
     const source = element("div", { class: "field choice" }, element("label", { for: id }, "Record"), this.#source);
-    this.root = element("div", { class: "record" }, source, this.#own, this.#summary, this.#warnings, this.#problem);
+    const said = [this.#summary, this.#warnings, this.#problem];
+    this.root = element("div", { class: "record" }, source, this.#own, this.#phone, ...said);
   }
 
   show(motion: Part): void {
@@ -137,9 +141,28 @@ export class RecordForm {
       this.#report(`A record has at most ${MOST_FILES} files, one for each direction; ${files.length} were chosen.`);
       return;
     }
+    const contents = await Promise.all(files.map(async (file) => ({ name: file.name, content: await base64(file) })));
+    await this.#take({ files: contents, units: this.#units.value || null, step: stepIn(this.#step.value) });
+  }
+
+  /** Takes what a phone feels while it is tilted and shaken as a record. */
+  async #feel(): Promise<void> {
+    this.#phone.disabled = true;
+    this.#report(null);
     try {
-      const contents = await Promise.all(files.map(async (file) => ({ name: file.name, content: await base64(file) })));
-      const body: Part = { files: contents, units: this.#units.value || null, step: stepIn(this.#step.value) };
+      const felt = await feel(LENGTH, (left) => (this.#phone.textContent = `Tilt and shake it: ${left} s`));
+      const content = btoa(tableOf(felt));
+      await this.#take({ files: [{ name: "phone.csv", content }], units: null, step: null });
+    } catch (error) {
+      this.#report(error instanceof Error ? error.message : String(error));
+    } finally {
+      this.#phone.disabled = false;
+      this.#phone.textContent = MOVE;
+    }
+  }
+
+  async #take(body: Part): Promise<void> {
+    try {
       const received = await this.#sendRecord(body);
       this.#known.set(received.upload, { received, body });
       this.#report(null);
