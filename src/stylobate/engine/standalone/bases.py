@@ -204,18 +204,24 @@ class Polynomials:
 
     def acceleration(self, time: Any) -> tuple[Any, Any, Any]:
         """Return the acceleration at a time [m/s²]."""
-        first, rows = int(self.numbers.first), self.rows
-        low, high = first, first + int(self.numbers.pieces) - 1
-        while low < high:
-            middle = (low + high + 1) // 2
-            if rows[middle, Piece.START] <= time:
-                low = middle
-            else:
-                high = middle - 1
-        piece = rows[low]
+        first = int(self.numbers.first)
+        piece = self.rows[last_begun(self.rows, Piece.START, first, first + int(self.numbers.pieces) - 1, time)]
         u, degree = (time - piece[Piece.START]) * piece[Piece.PER_HALF] - 1.0, (len(piece) - len(Piece)) // AXES - 1
         x, y, z = (value_of(piece, len(Piece) + axis * (degree + 1), degree, u) for axis in range(AXES))
         return x, y, z
+
+
+def last_begun(rows: Row, column: int, first: Any, last: Any, time: Any) -> Any:
+    """Return the last of some rows whose start, in a column, is not after a time; the first if all are."""
+    low: Any = first
+    high: Any = last
+    while low < high:
+        middle = (low + high + 1) // 2
+        if rows[middle, column] <= time:
+            low = middle
+        else:
+            high = middle - 1
+    return low
 
 
 def value_of(piece: Row, first: int, degree: int, u: Any) -> Any:

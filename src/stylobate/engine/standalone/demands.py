@@ -10,6 +10,7 @@ import numpy.typing as npt
 from stylobate.engine.kernel.bound import FromZero
 from stylobate.engine.kernel.columns import LOG, Log, Setup, Trace
 from stylobate.engine.kernel.driver.events import TraceKind
+from stylobate.engine.standalone.bases import last_begun
 from stylobate.engine.standalone.runs import Base, loads, states_at
 from stylobate.engine.tolerances import SAMPLES_PER_PERIOD
 
@@ -108,15 +109,7 @@ def _set_loads(entries: Row, at: Any, model: Any, base: Base, row: Row, tau: Any
 
 def _entry_at(entries: Row, tau: Any) -> Any:
     """Return the number of the entry that holds a time."""
-    low: Any = 0
-    high: Any = len(entries) - 1
-    while low < high:
-        middle = (low + high + 1) // 2
-        if entries[middle, Trace.START] <= tau:
-            low = middle
-        else:
-            high = middle - 1
-    return low
+    return last_begun(entries, Trace.START, 0, len(entries) - 1, tau)
 
 
 def _refined(entries: Row, model: Any, base: Base, row: Row, load: Any, between: tuple[Any, Any], peak: Any) -> Any:

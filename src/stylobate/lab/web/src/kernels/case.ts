@@ -6,10 +6,8 @@ import { START } from "../page/server/declared";
 import { Refused } from "../page/server/source";
 import { filled, general } from "./general";
 import type { Declared, Kernels, Numbers } from "./kernels";
+import { Unknown } from "./refusals";
 import { type Shaking, type Vector, shakingOf } from "./shaking";
-
-/** The case has something that no program knows. */
-export class Unknown extends Error {}
 
 export interface Case {
   /** Name of the program. */

@@ -2,13 +2,13 @@
 
 import type { Part, Value } from "../page/case/description";
 import { Refused } from "../page/server/source";
-import { Unknown, checked, numberOf, refuseOthers } from "./case";
-import { CONTRADICTION } from "./contradiction";
+import { checked, numberOf, refuseOthers } from "./case";
 import { imported } from "./instances";
 import { OwnRecords, type Samples } from "./own-records";
 import { type Common, type Described as OfProgram, Program } from "./program";
 import { STACK, Tables } from "./tables";
 import type { Setup, StartWorker } from "./worker-pool";
+import { CONTRADICTION, Unknown } from "./refusals";
 
 export type Numbers = Readonly<Record<string, number>>;
 

@@ -5,11 +5,12 @@ import { offBranch } from "../page/case/starting";
 import type { Described, ResponseCurves, Start } from "../page/server/schema";
 import { type Layer, NotMine } from "../page/server/source";
 import { columnNumbers, simulated } from "./answer";
-import { Unknown, caseOf, numberOf, refuseOthers } from "./case";
+import { caseOf, numberOf, refuseOthers } from "./case";
 import type { Kernels } from "./kernels";
 import { type OnBranch, startMap } from "./plane";
 import { asPython, asToml } from "./snippets";
 import type { StartWorker } from "./worker-pool";
+import { Unknown } from "./refusals";
 
 /** What is smaller over what is larger, of the circles of a motion that is a circle. */
 const NO_CIRCLE = 1e-12;

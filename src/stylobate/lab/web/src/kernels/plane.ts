@@ -6,11 +6,12 @@ import { withValue } from "../page/case/quantities";
 import type { GridResult, Job, PlaneBegun, PlaneCells } from "../page/server/schema";
 import { type JobRequest, NotMine, type Started } from "../page/server/source";
 import { numbersOf, usualDuration } from "./answer";
-import { type Case, Unknown, caseOf, numberOf } from "./case";
+import { type Case, caseOf, numberOf } from "./case";
 import type { Kernels } from "./kernels";
 import { type Program, joined } from "./program";
 import type { Tabulated } from "./tables";
 import { type Compute, type Member, type StartWorker, WorkerPool, workersFor } from "./worker-pool";
+import { Unknown } from "./refusals";
 
 /** Steps between the cells that are computed. */
 const STRIDES = [8, 4, 2, 1];

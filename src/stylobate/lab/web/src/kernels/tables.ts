@@ -1,8 +1,8 @@
 /** Tables of base motions: the polynomials of records, pulses and sweeps, computed by a program of the package. */
 
 import { Refused } from "../page/server/source";
-import { CONTRADICTION } from "./contradiction";
 import type { Samples } from "./own-records";
+import { CONTRADICTION } from "./refusals";
 
 /** A tabulated base motion: its polynomials, and the numbers of `Table` by name. */
 export interface Tabulated {
