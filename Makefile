@@ -103,7 +103,7 @@ docs: $(VENV)/.core $(VENV)/.docs $(LAB)  ## the documentation into docs/_build/
 
 FIGURES := $(filter-out %/saving.py %/choose_a_model.py,$(wildcard docs/figures/*.py))
 
-figures: $(VENV)/.core  ## all figures and animations of the documentation into docs/_static, ten minutes on two cores
+figures: $(VENV)/.core $(VENV)/.test $(PAGE)  ## all figures and animations of the documentation into docs/_static, ten minutes on two cores
 	for one in $(FIGURES); do echo "$$one"; $(BIN)/python "$$one" || exit 1; done
 
 sheet: $(VENV)/.core  ## all kinds of figures in light, dark, one column and as a slide into figure-sheet/, to look at
