@@ -36,6 +36,10 @@ _WHOLE = re.compile(r"[0-9]{1,12}")
 _DECIMAL_COMMA = re.compile(r"[-+]?\d*[.,]?\d*,\d+([EeDd][-+]?\d+)?")
 
 
+class NoRecordError(FileError):
+    """A file that holds no record of accelerations; in a folder it is left out."""
+
+
 def read_bytes(path: Path) -> bytes:
     """Read the bytes of a file; decompress gzip.
 
@@ -96,9 +100,9 @@ class Text:
             text = content.decode("latin-1")
         return cls(path, tuple(text.rstrip("\x1a\x00").replace("\r\n", "\n").replace("\r", "\n").split("\n")))
 
-    def fault(self, index: int, what: str) -> FileError:
-        """Return a FileError that names the file and the line at `index`."""
-        return FileError(f"{self.path}, line {index + 1}: {what}")
+    def fault(self, index: int, what: str, kind: type[FileError] = FileError) -> FileError:
+        """Return a FileError that names the file and the line at `index`, the last one if the file ends before."""
+        return kind(f"{self.path}, line {min(index + 1, len(self.lines))}: {what}")
 
     def number(self, index: int, token: str) -> float:
         """Parse a token of the line at `index` as a finite number."""
