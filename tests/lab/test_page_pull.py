@@ -48,6 +48,20 @@ def test_a_column_that_is_let_go_starts_from_rest_at_the_tilt_in_the_hand(page):
     page.wait_for_function("tilt => location.hash.includes(`tilt=${tilt.join()}`)", arg=tilt)
 
 
+def test_a_lesson_says_nothing_of_a_case_that_is_not_its_own(page, address):
+    page.goto("about:blank")
+    page.goto(f"{address}/#lesson=critical")
+    shown(page)
+    said, back = page.locator(".said"), page.get_by_role("button", name="Back to the lesson")
+    said.get_by_text("We set it rolling").wait_for()
+    assert back.is_hidden()
+    pulled(page, (30.0, 0.0))
+    assert said.inner_text().startswith("This case is no longer that of the lesson")
+    back.click()
+    said.get_by_text("We set it rolling").wait_for()
+    assert back.is_hidden()
+
+
 def test_a_drag_beside_the_column_turns_the_view_and_no_pull_overturns_it(page):
     before = page.evaluate(f"() => {DESCRIPTION}.tilt")
     x, y = on_the_column(page)

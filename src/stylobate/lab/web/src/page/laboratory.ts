@@ -263,7 +263,7 @@ export class Laboratory {
   #show(view: View): void {
     setUnitsOf(view.description.column["shape"]);
     this.#controls.show(view.description, this.#scales, view.start, view.lesson);
-    this.#lesson.show(view.lesson, view.description, this.#scales);
+    this.#lesson.show(view, this.#scales);
     this.#host.classList.toggle("learning", view.lesson !== null);
     this.#tabs.show(view.tab);
     this.#planesHost.classList.toggle("mapped", isPlaneKind(view.tab));

@@ -89,7 +89,6 @@ export class Pull {
     canvas.addEventListener("pointermove", this.#move, { capture: true });
     canvas.addEventListener("pointerup", this.#up, { capture: true });
     canvas.addEventListener("pointercancel", this.#broken, { capture: true });
-    canvas.addEventListener("touchstart", this.#touched, { passive: false });
   }
 
   dispose(): void {
@@ -98,7 +97,6 @@ export class Pull {
     canvas.removeEventListener("pointermove", this.#move, { capture: true });
     canvas.removeEventListener("pointerup", this.#up, { capture: true });
     canvas.removeEventListener("pointercancel", this.#broken, { capture: true });
-    canvas.removeEventListener("touchstart", this.#touched);
   }
 
   readonly #down = (event: PointerEvent): void => {
@@ -147,13 +145,6 @@ export class Pull {
     if (this.#hold?.pointer !== event.pointerId) return;
     this.#letGo();
     this.#hearing.dropped();
-  };
-
-  /** A finger on the column pulls it: it does not scroll the page. */
-  readonly #touched = (event: TouchEvent): void => {
-    const [touch] = event.touches;
-    const taken = this.#hold !== null || (touch !== undefined && this.#gripAt(this.#placeOf(touch), NEAR_FINGER));
-    if (taken) event.preventDefault();
   };
 
   #letGo(): void {

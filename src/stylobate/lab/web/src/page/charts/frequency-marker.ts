@@ -25,6 +25,8 @@ export class FrequencyMarker {
   readonly #extent: () => Extent;
   readonly #moved: (frequency: number) => void;
   #value = 1;
+  /** The finger that went down beside the marker: a tap moves the marker there, a swipe scrolls the page. */
+  #tapped: number | null = null;
 
   constructor(host: HTMLElement, extent: () => Extent, moved: (frequency: number) => void) {
     this.#host = host;
@@ -36,6 +38,10 @@ export class FrequencyMarker {
     host.addEventListener("pointermove", (event) => {
       if (host.hasPointerCapture(event.pointerId)) this.#follow(event);
     });
+    host.addEventListener("click", (event) => {
+      if (this.#tapped === event.pointerId) this.#follow(event);
+      this.#tapped = null;
+    });
     this.root.addEventListener("keydown", (event) => this.#key(event));
   }
 
@@ -43,11 +49,11 @@ export class FrequencyMarker {
     this.root.hidden = frequency === null;
     if (frequency === null) return;
     this.#value = frequency;
-    const { left, width, range } = this.#extent();
-    const { share, side } = placeOf(frequency, range);
+    const { left, range } = this.#extent();
+    const { side } = placeOf(frequency, range);
     const value = withUnit(frequency, "rad/s", 4);
     const text = side === "inside" ? value : `${value}, ${side} the range that is shown`;
-    this.root.style.transform = `translateX(${(left + share * width).toFixed(1)}px)`;
+    this.root.style.transform = `translateX(${(left + this.#place()).toFixed(1)}px)`;
     this.root.dataset["side"] = side;
     this.root.title = side === "inside" ? "" : `Ω = ${text}`;
     this.root.setAttribute("aria-valuemin", String(Math.min(range[0], frequency)));
@@ -61,13 +67,23 @@ export class FrequencyMarker {
     const { left, width } = this.#extent();
     const place = event.clientX - this.#host.getBoundingClientRect().left - left;
     if (place < -GRIP || place > width + GRIP) return;
+    if (event.pointerType === "touch" && Math.abs(place - this.#place()) > FINGER) {
+      this.#tapped = event.pointerId;
+      return;
+    }
     this.#host.setPointerCapture(event.pointerId);
     this.root.focus({ preventScroll: true });
     event.preventDefault();
     this.#follow(event);
   }
 
-  #follow(event: PointerEvent): void {
+  /** Returns where the marker stands, from the beginning of the range [px]. */
+  #place(): number {
+    const { width, range } = this.#extent();
+    return placeOf(this.#value, range).share * width;
+  }
+
+  #follow(event: MouseEvent): void {
     const { left, width, range } = this.#extent();
     const share = (event.clientX - this.#host.getBoundingClientRect().left - left) / width;
     this.#to(range[0] + Math.min(Math.max(share, 0), 1) * (range[1] - range[0]));
@@ -111,5 +127,5 @@ export function placeOf(
   return { share: (frequency - low) / (high - low), side: "inside" };
 }
 
-/** How far beside the range a hand may still grasp [px]. */
-const GRIP = 12;
+/** How far beside the range a hand may still grasp, and how far beside the marker a finger [px]. */
+const [GRIP, FINGER] = [12, 24];

@@ -64,6 +64,7 @@ export class Histories {
     const run = this.#run;
     if (run === null) return;
     const { time } = run.answer.series;
+    const end = Math.max(time.at(-1) ?? 0, this.#second?.run.answer.series.time.at(-1) ?? 0);
     const [offered, [above, below]] = [offeredHistories(run), chosenHistories(run, this.#wanted)];
     const cloud = this.#cloud && { ...this.#cloud, unit: run.answer.column.slenderness };
     for (const [chart, name] of [
@@ -74,6 +75,7 @@ export class Histories {
       chart.show(time, history, offered, {
         cloud: name === "tilt" ? cloud : null,
         second: secondHistory(history, this.#second),
+        end,
       });
     }
   }

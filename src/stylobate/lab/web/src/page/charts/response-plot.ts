@@ -102,9 +102,9 @@ export class ResponsePlot {
     return (this.#picture?.critical ?? []).flatMap((frequency) => {
       const x = this.plot.valToPos(frequency, "x", true);
       if (!(x >= from && x <= to)) return [];
-      const text = `critical ${joined(formatted(frequency, 4), "rad/s")}`;
-      const { width } = ctx.measureText(text);
-      return [{ x, text, place: labelPlace(x, width, [from, to], marked, LABEL_GAP * uPlot.pxRatio) }];
+      const value = joined(formatted(frequency, 4), "rad/s");
+      const texts = [`critical ${value}`, value].map((text) => ({ text, width: ctx.measureText(text).width }));
+      return [{ x, ...labelBeside(x, texts, [from, to], marked, LABEL_GAP * uPlot.pxRatio) }];
     });
   }
 
@@ -157,6 +157,12 @@ export class ResponsePlot {
       // Beside the top of its line: unstable to the left and stable to the right.
       ctx.textBaseline = "top";
       ctx.textAlign = place.align;
+      const { width } = ctx.measureText(text);
+      ctx.globalAlpha = 0.8; // a curve may run below it
+      ctx.fillStyle = themeColour("panel");
+      ctx.fillRect(place.align === "left" ? place.at : place.at - width, bbox.top, width, 15 * ratio);
+      ctx.globalAlpha = 1;
+      ctx.fillStyle = themeColour("muted");
       ctx.fillText(text, place.at, bbox.top + 2 * ratio);
     }
     ctx.restore();
@@ -239,22 +245,24 @@ export interface LabelPlace {
   readonly align: "left" | "right";
 }
 
-/** Returns where the label of the line at `x` has room: to the right, or where the marker does not cross it. */
-export function labelPlace(
+/** Returns the first of the texts that has room beside the line at `x`, where the marker does not cross it. */
+export function labelBeside(
   x: number,
-  width: number,
+  texts: readonly { readonly text: string; readonly width: number }[],
   [from, to]: readonly [number, number],
   marked: number | null,
   gap: number,
-): LabelPlace {
+): { readonly text: string; readonly place: LabelPlace } {
   const right: LabelPlace = { at: x + gap, align: "left" };
   const left: LabelPlace = { at: x - gap, align: "right" };
-  const beyond: LabelPlace = { at: (marked ?? x) + 2 * gap, align: "left" };
-  const crossed = (low: number, high: number): boolean => marked !== null && marked > low - gap && marked < high + gap;
-  const fits = ({ at, align }: LabelPlace): boolean => (align === "left" ? at + width <= to : at - width >= from);
-  const clear = ({ at, align }: LabelPlace): boolean =>
-    align === "left" ? !crossed(at, at + width) : !crossed(at - width, at);
-  return [right, left, beyond].find((one) => fits(one) && clear(one)) ?? (fits(right) ? right : left);
+  const free = ({ at, align }: LabelPlace, width: number): boolean => {
+    const [low, high] = align === "left" ? [at, at + width] : [at - width, at];
+    return low >= from && high <= to && !(marked !== null && marked > low - gap && marked < high + gap);
+  };
+  const found = texts.flatMap(({ text, width }) =>
+    [right, left].filter((place) => free(place, width)).map((place) => ({ text, place })),
+  );
+  return found[0] ?? { text: texts.at(-1)!.text, place: x < (from + to) / 2 ? right : left };
 }
 
 function drawDot(plot: uPlot, x: number, y: number, stable: boolean): void {

@@ -22,6 +22,8 @@ export type Cloud = Pick<Variations, "times" | "tilts" | "outcomes"> & { readonl
 export interface Company {
   readonly cloud: Cloud | null;
   readonly second: SecondHistory | null;
+  /** Until when the longer of the runs lasts [s]. */
+  readonly end: number;
 }
 
 /** Widths of a line alone, and of the first of two [px]. */
@@ -54,6 +56,7 @@ export class TimeChart {
   #history: History | null = null;
   #cloud: Cloud | null = null;
   #second: SecondHistory | null = null;
+  #end = 0;
   /** The bands of runs whose swings lie too close together to be drawn one by one. */
   #bands: { readonly first: Envelope | null; readonly second: Envelope | null } = { first: null, second: null };
   #offered = "";
@@ -78,8 +81,14 @@ export class TimeChart {
   }
 
   /** Shows a history, one of those that are offered, in its company. */
-  show(time: readonly number[], history: History, offered: readonly HistoryName[], { cloud, second }: Company): void {
+  show(
+    time: readonly number[],
+    history: History,
+    offered: readonly HistoryName[],
+    { cloud, second, end }: Company,
+  ): void {
     this.#history = history;
+    this.#end = end;
     this.#cloud = cloud;
     this.#second = second;
     this.#plot.series[1]!.width = second === null ? ALONE : FIRST;
@@ -103,7 +112,7 @@ export class TimeChart {
   /** Draws the run, as a band where its swings lie too close together at the width of the plot. */
   #draw(time: readonly number[], history: History): void {
     const width = this.#plot.over.clientWidth;
-    const end = this.#span(null, time.at(-1) ?? 0)[1];
+    const end = this.#span(null)[1];
     const bandOf = (times: readonly number[], values: Numbers): Envelope | null =>
       envelopeOf(times, values, (width * ((times.at(-1) ?? 0) - (times[0] ?? 0))) / end);
     this.#bands = {
@@ -152,7 +161,7 @@ export class TimeChart {
         width: 400,
         height: 120,
         scales: {
-          x: { time: false, range: (_, from, to) => this.#span(from, to) },
+          x: { time: false, range: (_, from) => this.#span(from) },
           y: { range: () => this.#limits() },
         },
         axes: [across(timeLabel), { ...upright(" "), label: () => this.#history?.label ?? "" }],
@@ -177,9 +186,9 @@ export class TimeChart {
   }
 
   /** Returns from when to when the plot reaches: as long as the longer run. */
-  #span(from: number | null, to: number | null): [number, number] {
-    const [start, end] = [from ?? 0, Math.max(to ?? 0, this.#second?.time.at(-1) ?? 0)];
-    return [start, end > start ? end : start + 1];
+  #span(from: number | null): [number, number] {
+    const start = from ?? 0;
+    return [start, this.#end > start ? this.#end : start + 1];
   }
 
   #limits(): [number, number] {

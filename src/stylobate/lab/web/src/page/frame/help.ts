@@ -89,7 +89,7 @@ const WORDS: readonly Entry[] = [
 ];
 
 const PULL =
-  "Drag the column to pull it, by mouse or finger. When you let go, the run starts from rest at that tilt. " +
+  "Drag the column to pull it, by mouse, or by a finger sideways. When you let go, the run starts from rest at that tilt. " +
   "The tilt fields under “Initial condition” do the same. Drag beside the column to turn the view.";
 
 export class Help {
@@ -98,8 +98,9 @@ export class Help {
 
   constructor() {
     const close = button("Close", { class: "primary" }, () => this.#dialog.close());
+    const title = element("h2", { tabindex: -1, autofocus: true }, "Legend and glossary"); // it opens at its top
     this.#dialog.append(
-      element("h2", {}, "Legend and glossary"),
+      title,
       element(
         "p",
         {},

@@ -31,7 +31,7 @@ export class ComparisonForm {
   readonly #differs: HTMLSelectElement;
   readonly #value = element("span", { class: "compare-value" });
   readonly #remove: HTMLButtonElement;
-  readonly #outcome = element("p", { class: "compare-outcome", "aria-live": "polite", hidden: true });
+  readonly #outcome = element("p", { class: "compare-outcome", tabindex: 0, "aria-live": "polite", hidden: true });
   readonly #badge = element("strong");
   #control: ValueControl | null = null;
   /** For which difference, of which case, the control of the value was made. */

@@ -159,6 +159,7 @@ export class MotionView {
     );
     const [drawn, other] = this.#drawn;
     this.clock.setRange(0, Math.max(...this.#drawn.map(({ time }) => time.at(-1) ?? 0)));
+    this.#transport.redraw(); // its ticks stand where the clock is as long
     this.stage?.show(drawn!, shownUnit("m"), second && { motion: other!, labels: second.labels });
     this.#curves.show(first, second && { run: { ...first, answer: second.answer }, labels: second.labels });
     this.#fall.textContent = second === null ? "from here on: not computed" : "pale: after the end of its run";

@@ -6,6 +6,8 @@ import { mapQuantities, valueOf, withValue, type ColumnScales, type Quantity } f
 import { NumberField } from "../controls/number-field";
 import { button, element, newId } from "../frame/dom";
 import { capital, withUnit, words } from "../frame/format";
+import { START } from "../server/declared";
+import type { View } from "../view/state";
 
 export interface LessonHearing {
   readonly changed: (description: Description) => void;
@@ -28,6 +30,9 @@ export class LessonCard {
   readonly #task = element("p", { class: "task" });
   readonly #control = element("div", { class: "lesson-control" });
   readonly #said = element("p", { class: "said", "aria-live": "polite" });
+  readonly #restore = button("Back to the lesson", { class: "small", hidden: true }, () => {
+    if (this.#lesson !== null) this.#hearing.gone(this.#lesson);
+  });
   readonly #next: HTMLButtonElement;
   readonly #nextTitle = element("span", { class: "next-title" });
   #lesson: Lesson | null = null;
@@ -35,6 +40,8 @@ export class LessonCard {
   #description: Description | null = null;
   #outcome: string | null = null;
   #critical: number | null = null;
+  /** Whether the case is that of the lesson, but for its control. */
+  #own = true;
   /** What small variations of the run add; empty where there are none. */
   #varied = "";
 
@@ -58,17 +65,20 @@ export class LessonCard {
       element("nav", { "aria-label": "Tour" }, list, this.#next, close),
       element("div", { class: "asked" }, this.#question, this.#task),
       this.#control,
-      this.#said,
+      element("div", { class: "said-line" }, this.#said, this.#restore),
     );
   }
 
-  /** Shows the lesson of this name, or none; the ranges of its control follow from the column. */
-  show(name: string | null, description: Description, scales: ColumnScales): void {
+  /** Shows the lesson of a view, or none; the ranges of its control follow from the column. */
+  show({ lesson: name, description, start }: View, scales: ColumnScales): void {
     const lesson = this.#about.lessons.find((one) => one.id === name) ?? null;
     this.#description = description;
     this.root.hidden = lesson === null;
     if (lesson !== this.#lesson) this.#begin(lesson, scales);
     this.#shown?.show(description);
+    this.#own = lesson === null || isOf(lesson, description, start);
+    this.#restore.hidden = this.#own;
+    this.#say();
   }
 
   /** Says what an outcome means; null: it is not known yet, and what was said is no longer sure. */
@@ -151,7 +161,8 @@ export class LessonCard {
   }
 
   #say(): void {
-    const text = this.#outcome === null ? undefined : this.#lesson?.said[this.#outcome];
+    const own = this.#outcome === null ? undefined : this.#lesson?.said[this.#outcome];
+    const text = this.#own ? own : CHANGED;
     if (text === undefined) return;
     const critical = this.#critical === null ? "" : ` ${withUnit(this.#critical, "rad/s", 4)}`;
     // What “Vary it” was asked for is answered: the question gives way to the answer.
@@ -159,6 +170,25 @@ export class LessonCard {
     const line = said.replaceAll(/ ?\{critical\}/g, critical);
     if (line !== this.#said.textContent) this.#said.textContent = line;
   }
+}
+
+/** What a lesson says of a case that is not its own. */
+const CHANGED = "This case is no longer that of the lesson: what the lesson says of it need not hold.";
+
+/** Returns whether a case is that of a lesson, but for its control. */
+export function isOf(
+  { description: own, control, view }: Lesson,
+  description: Description,
+  start: View["start"],
+): boolean {
+  const changed = control.number === undefined ? null : valueOf(description, control.number);
+  if (changed === undefined) return false;
+  const expected = changed === null ? own : withValue(own, control.number!, changed);
+  const chosen = (control.options ?? []).flatMap(({ change }) => Object.keys(change));
+  const alike = (name: string): boolean => written(expected[name] ?? null) === written(description[name] ?? null);
+  const parts = ["column", "model", "motion"].filter((name) => !chosen.includes(name));
+  const started = (view["start"] ?? null) === null ? START.every(alike) : true;
+  return start === (view["start"] ?? null) && started && parts.every(alike);
 }
 
 function titleOf(lesson: Lesson, place: number): string {
