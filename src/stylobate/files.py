@@ -10,6 +10,7 @@ import shutil
 import stat
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
+from functools import lru_cache
 from io import StringIO
 from pathlib import Path
 from typing import Any
@@ -25,6 +26,30 @@ _SEAL_LENGTH = len(_LABEL) + hashlib.sha256().digest_size * 2 + 1
 # A label with at least so many intact bytes marks a seal.
 _LABEL_BYTES_SEEN = len(_LABEL) // 2
 _RESTORE = "Restore it from a copy, or compute it again"
+
+
+def file_of(path: str | os.PathLike[str]) -> Path:
+    """Return the file that holds a path: the path itself, or the archive above it, as in quakes.zip/CLS000.AT2."""
+    path = Path(path)
+    return path if path.exists() else next((one for one in path.parents if one.is_file()), path)
+
+
+def sha256_of(path: str | os.PathLike[str]) -> str:
+    """Return the SHA-256 of a file in hexadecimal digits; a file is read once until it changes.
+
+    Raises
+    ------
+    OSError
+        If it cannot be read.
+    """
+    found = Path(path).stat()
+    return _sha256(str(path), found.st_mtime_ns, found.st_size)
+
+
+@lru_cache(maxsize=4096)
+def _sha256(path: str, _time: int, _size: int) -> str:
+    with Path(path).open("rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()
 
 
 def write_whole(path: str | Path, content: bytes | str) -> Path:

@@ -106,6 +106,8 @@ def cases(folder):
         options = {"step": 0.02} if name in ("no times", "one name") else {}
         units = {} if "[g]" in header or "cm/s" in header or "m/s2" in header else {"units": "g"}
         yield f"named: {name}", {"q.csv": f"{header}\n{in_rows(*columns, between=between)}"}, {**options, **units}
+    yield "three columns without names", {"q.txt": in_rows(TIMES, SHAKEN, SHAKEN[::-1])}, {"units": "m/s2"}
+    yield "four columns", {"q.txt": in_rows(TIMES, SHAKEN, SHAKEN[::-1], 0.3 * SHAKEN)}, {"units": "m/s2"}
     yield "rounded times", {"q.txt": rounded}, {"units": "g"}
     yield "rounded times of a known step", {"q.txt": rounded}, {"units": "g", "step": 0.005}
     yield "strong and long", {"q.txt": in_rows(np.arange(200), 50.0 * SHAKEN)}, {"units": "m/s2"}
@@ -123,7 +125,8 @@ def refusals(pair, table):
         "a decimal comma": "0.00 0.1\n0.02 0,2\n0.04 x\n",
         "unequal steps": in_rows(np.delete(TIMES, [7, 20]), np.delete(SHAKEN, [7, 20])),
         "times backwards": "0.2 1\n0.1 1\n0.0 1\n",
-        "three columns": "0 1 2\n1 1 2\n",
+        "five columns": "0 1 2 3 4\n1 1 2 3 4\n",
+        "velocities": in_rows(TIMES, SHAKEN, np.cumsum(SHAKEN) * 0.02),
         "a short line": "0 1\n1 1\n2\n",
         "one row": "0.0 0.1\n",
         "no step": "0.1\n0.2\n",

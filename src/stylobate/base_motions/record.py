@@ -29,6 +29,7 @@ from stylobate.errors import (
     require_not_negative,
     require_positive,
 )
+from stylobate.files import file_of, sha256_of
 from stylobate.text import four_digits
 
 if TYPE_CHECKING:
@@ -64,14 +65,14 @@ class RecordOrigin:
         Parameters
         ----------
         paths
-            The file or the files.
+            The file or the files; a file in an archive by its path below that of the archive.
         **arguments
             Arguments of the reading as plain values; None for arguments not given.
         """
         one = isinstance(paths, Path)
         files = [paths] if isinstance(paths, Path) else list(paths)
         names = [str(path.absolute()) for path in files]
-        digests = {name: hashlib.sha256(path.read_bytes()).hexdigest() for name, path in zip(names, files, strict=True)}
+        digests = {str(one): sha256_of(one) for one in map(file_of, names)}
         given = {name: value for name, value in arguments.items() if value is not None}
         return cls({"path": names[0] if one else tuple(names), **given, "file_sha256": digests})
 

@@ -11,7 +11,8 @@ from stylobate.base_motions import Record
 from stylobate.config.description import Config
 from stylobate.config.records import Reading, RecordMotion
 from stylobate.errors import ConfigError, FileError, ParameterError
-from stylobate.records.events import EventFiles, find_files
+from stylobate.records.events import EventFiles
+from stylobate.records.sources import find_files
 
 
 class EventConfig(Config):
@@ -117,7 +118,7 @@ class RecordsConfig(Reading):
 
 
 def _files_of(event: EventConfig) -> tuple[Path, ...]:
-    return find_files([event.files if isinstance(event.files, tuple) else (event.files,)])[0][0].files
+    return find_files([event.files if isinstance(event.files, tuple) else (event.files,)]).stated[0].files
 
 
 def _collected(build: Callable[[], Any], problems: list[str]) -> Any:

@@ -1,6 +1,5 @@
 """Records in descriptions: their files, the steps of their processing, and the motion that they describe."""
 
-import hashlib
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -12,10 +11,12 @@ from stylobate.base_motions import Record
 from stylobate.base_motions.record import RecordOrigin
 from stylobate.config.description import Config, Hertz, MetresPerSquareSecond, Radians, Seconds
 from stylobate.errors import FileError, ParameterError
+from stylobate.files import file_of, sha256_of
 
 if TYPE_CHECKING:
     from stylobate.records import RecordFormat
-    from stylobate.records.events import EventFiles, RecordSource
+    from stylobate.records.events import EventFiles
+    from stylobate.records.sources import RecordSource
 
 
 def relocated(values: Any, folder: Path) -> Any:
@@ -40,8 +41,16 @@ def relocated(values: Any, folder: Path) -> Any:
         return {name: relocated(value, folder) for name, value in values.items()}
     places = {path: _place(path, digest, folder) for path, digest in digests.items()}
     path = values.get("path")
-    moved = [places.get(one, one) for one in path] if isinstance(path, list) else places.get(str(path), path)
+    moved = [_moved(one, places) for one in path] if isinstance(path, list) else _moved(path, places)
     return {**values, "path": moved, "file_sha256": {places[name]: digest for name, digest in digests.items()}}
+
+
+def _moved(path: Any, places: Mapping[str, str]) -> Any:
+    """Return the new path of a file, or of a part of a file."""
+    for old, new in places.items():
+        if path == old or str(path).startswith((f"{old}/", f"{old}\\")):
+            return new + str(path)[len(old) :]
+    return path
 
 
 def _place(path: str, digest: str, folder: Path) -> str:
@@ -53,7 +62,7 @@ def _place(path: str, digest: str, folder: Path) -> str:
     for above in (here, *here.parents):
         for count in range(1, len(old.parts)):
             found = above.joinpath(*old.parts[-count:])
-            if found.is_file() and hashlib.sha256(found.read_bytes()).hexdigest() == digest:
+            if found.is_file() and sha256_of(found) == digest:
                 return str(found)
     return path
 
@@ -192,6 +201,8 @@ class Reading(Config):
         Handling of components of unequal time step.
     format
         Format of the files; detected by default.
+    response
+        StationXML that converts counts of waveform files to accelerations.
     one_component
         Whether to accept records of one component without a warning.
     processing
@@ -203,16 +214,18 @@ class Reading(Config):
     columns: dict[str, str] | None = None
     lengths: Literal["trim", "pad"] = "trim"
     steps: Literal["refuse", "resample"] = "refuse"
-    format: Literal["at2", "asc", "table", "csv", "waveform"] | None = None
+    format: Literal["at2", "asc", "cosmos", "csmip", "geonet", "table", "csv", "waveform"] | None = None
+    response: str | None = None
     one_component: bool = False
     processing: tuple[RecordStep, ...] = ()
 
     def find(self, source: "RecordSource", directions: Mapping[str, float | str]) -> "tuple[EventFiles, ...]":
         """Return the events in these files; see `find_events`."""
         from stylobate.records.events import find_events
-        from stylobate.records.joining import reader
+        from stylobate.records.reading import FileReading, read_parts
 
-        return find_events(source, reader(self.step, self.columns, self._format()), directions)
+        how = FileReading.of(self.step, self.columns, self._format(), self.response)
+        return find_events(source, lambda path: read_parts(path, how), directions)
 
     def join(self, event: "EventFiles") -> Record:
         """Return the record of an event; see `join_event`."""
@@ -326,8 +339,8 @@ class RecordMotion(Reading):
             raise ParameterError("either path (one file, or the files of one event) or sample must be given")
         if self.path is not None and not 1 <= len(self.paths) <= _LONGEST_EVENT:
             raise ParameterError(f"path must name one to three files of one event, got {len(self.paths)}")
-        digests = [self._sha256(path) for path in self.paths]
-        for path, found in zip(self.paths, digests, strict=True):
+        for path in dict.fromkeys(str(file_of(path)) for path in self.paths):
+            found = self._sha256(path)
             was = self.file_sha256.get(path, found)
             if was != found:
                 raise ParameterError(
@@ -337,7 +350,7 @@ class RecordMotion(Reading):
 
     def _sha256(self, path: str) -> str:
         try:
-            return hashlib.sha256(Path(path).read_bytes()).hexdigest()
+            return sha256_of(path)
         except OSError as error:
             remedy = "; the result was made with it: put it there or beside the result" if self.file_sha256 else ""
             raise FileError(f"cannot read {path}: {error.strerror or error}{remedy}") from None
@@ -350,7 +363,13 @@ class RecordMotion(Reading):
             return sample_record(self.sample)
         if isinstance(self.path, str) and not (self.directions or self.name):
             return read_record(
-                self.path, self.units, step=self.step, columns=self.columns, axis=self.axis, format=self._format()
+                self.path,
+                self.units,
+                step=self.step,
+                columns=self.columns,
+                axis=self.axis,
+                format=self._format(),
+                response=self.response,
             )
         self._refuse(("axis",), "files that are joined")
         (event,) = self.find({self.name: self.paths} if self.name else [self.paths], self._directions())

@@ -24,6 +24,7 @@ from stylobate.config.description import Config
 from stylobate.config.study import study_of
 from stylobate.errors import LARGEST, SMALLEST
 from stylobate.lab.limits import Limits, RefusedError
+from stylobate.records.containers import is_container
 from stylobate.units import size_of, split
 
 
@@ -205,7 +206,9 @@ def _line(problem: Any) -> str:
 
 
 def _require_unpacked_size(name: str, content: bytes, most: int) -> None:
-    """Refuse a gzip file of more than `most` bytes when unpacked, without unpacking more than these."""
+    """Refuse a gzip file of more than `most` bytes when unpacked, without unpacking more than these; and archives."""
+    if is_container(content):
+        raise RefusedError(422, [f"{name}: an archive or a workbook. Upload the files of one event, unpacked."])
     if not content.startswith(_GZIP):
         return
     size = 0

@@ -3,8 +3,8 @@ from .intensities import (
     rocking_measures,
 )
 from .intensity_table import intensity_table
-from .joining import Lengths, Steps, read_records, sample_record
-from .reading import RecordFormat, read_record, write_at2, write_csv
+from .joining import Lengths, Steps, read_record, read_records, sample_record
+from .reading import RecordFormat, write_at2, write_csv
 from .spectra import response_spectra
 from .synthesis import CloughPenzien, EvolvingNoise, random_vibration
 

@@ -1,13 +1,7 @@
-"""Files of strong-motion databases: AT2 of PEER, ASC of ESM and ITACA, and waveforms that ObsPy reads."""
+"""Files of strong-motion databases: AT2 of PEER, ASC of ESM and ITACA."""
 
-import io
 import re
-from pathlib import Path
-from typing import Any
 
-import numpy as np
-
-from stylobate.errors import FileError, UnsupportedError
 from stylobate.records.directions import Component, Direction
 from stylobate.records.text_files import SECOND, Text, is_number, time_unit_of, unit_of, unknown_unit
 
@@ -182,62 +176,3 @@ def _title(values: dict[str, str]) -> str:
     date, time = values.get("EVENT_DATE_YYYYMMDD", ""), values.get("EVENT_TIME_HHMMSS", "")
     when = f"{date[:4]}-{date[4:6]}-{date[6:]} {time}".strip(" -")
     return ", ".join(filter(None, (event, when, station, values["STREAM"])))
-
-
-# ObsPy's calibration of these formats is in m/s².
-_IN_SI = ("KNET",)
-
-
-def read_waveform(path: Path, content: bytes) -> Component:
-    """Read the component in a waveform file with ObsPy.
-
-    Raises
-    ------
-    UnsupportedError
-        If ObsPy is not installed.
-    FileError
-        If ObsPy cannot read the file, or the file holds no trace or several.
-
-    Notes
-    -----
-    Samples are counts times the calibration in the header (`trace.stats.calib`); the instrument's response is not
-    removed.
-    """
-    try:
-        import obspy
-    except ImportError:
-        raise UnsupportedError(
-            f'{path}: no text. To read a waveform such as miniSEED, install ObsPy: pip install "stylobate[records]"'
-        ) from None
-    try:
-        stream = obspy.read(io.BytesIO(content))
-    except Exception as error:  # ObsPy's readers raise exceptions of any type; their texts name temporary files
-        raise FileError(
-            f"{path}: ObsPy cannot read it: its format is unknown or its content damaged. Download the file again, or "
-            "export the record as text or miniSEED"
-        ) from error
-    if len(stream) != 1:
-        remedy = "Write each trace to a file of its own, and fill its gaps"
-        raise FileError(f"{path}: the file must hold one trace without gaps, got {len(stream)} traces. {remedy}")
-    (trace,) = stream
-    stats = trace.stats
-    samples = np.ma.filled(np.ma.asarray(trace.data, dtype=float), np.nan) * float(stats.calib)
-    if len(samples) < 2 or not np.all(np.isfinite(samples)):  # noqa: PLR2004  a step has two ends
-        remedy = "Download the file again, or fill its gaps"
-        raise FileError(f"{path}: the trace must have at least two finite samples without gaps. {remedy}")
-    return Component(
-        samples=samples,
-        step=float(stats.delta),
-        unit="m/s²" if stats.get("_format") in _IN_SI else None,
-        direction=_direction_of_trace(stats),
-        title=f"{trace.id} {stats.starttime}",
-    )
-
-
-def _direction_of_trace(stats: Any) -> Direction | None:
-    sac = stats.get("sac", {})
-    if "cmpaz" in sac and "cmpinc" in sac:
-        if float(sac["cmpinc"]) == 0.0:
-            return Direction(vertical=1)
-        return Direction.of(float(sac["cmpaz"]))
-    return direction_of_channel(str(stats.channel))

@@ -1,15 +1,14 @@
-"""Files that form one event: found in folders and lists, grouped by names and headers."""
+"""Files that form one event: grouped by lists, names and headers."""
 
-import os
 import re
 import warnings
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import takewhile
 from pathlib import Path
-from typing import Self, TypeVar
+from typing import Self
 
-from stylobate.errors import FileError, ParameterError, StylobateError, UnlikelyInputWarning
+from stylobate.errors import ParameterError, StylobateError, UnlikelyInputWarning
 from stylobate.records.directions import (
     Component,
     Direction,
@@ -21,137 +20,26 @@ from stylobate.records.directions import (
     split_name,
     stem_of,
 )
-
-# Other files of a download: velocities, displacements and search results.
-_OTHER = re.compile(r".*\.[VD]T2|.*\.(?:VEL|DIS)\.(?:.*\.)?ASC|_SearchResults\.csv", re.IGNORECASE)
-
-
-def accelerations_among(files: Iterable[Path]) -> list[Path]:
-    """Return the files of a folder except files whose names denote other data than accelerations.
-
-    The result excludes velocities, displacements and search results of a PEER download (`.VT2`, `.DT2`,
-    `_SearchResults.csv`), velocities and displacements of ESM and ITACA (`….VEL.MP.ASC`, `….DIS.MP.ASC`), and hidden
-    files. If nothing else remains, all files that are not hidden are returned.
-
-    >>> names = ["RSN1_A000.AT2", "RSN1_A000.VT2", "RSN1_A000.DT2.gz", "_SearchResults.csv", ".DS_Store"]
-    >>> [path.name for path in accelerations_among(map(Path, names))]
-    ['RSN1_A000.AT2']
-    """
-    shown = [path for path in files if not path.name.startswith(".")]
-    return [path for path in shown if not _OTHER.fullmatch(path.name.removesuffix(".gz"))] or shown
-
-
-OnePath = str | os.PathLike[str]
-RecordSource = OnePath | Iterable[OnePath | Iterable[OnePath]] | Mapping[str, OnePath | Iterable[OnePath]]
-"""A folder, a pattern or a file; a list of these and of lists, each of one event; or such lists by name."""
-
-_T = TypeVar("_T")
-_SIGNS = "*?["
-
-
-@dataclass(frozen=True, slots=True)
-class StatedEvent:
-    """Files that the user lists as one event, and the optional name of the event."""
-
-    files: tuple[Path, ...]
-    name: str | None = None
-
-
-def find_files(source: RecordSource) -> tuple[list[StatedEvent], list[Path]]:
-    """Find the listed events and the other files, each once.
-
-    Raises
-    ------
-    FileError
-        If there are no files, or a pattern or a folder has none.
-    ParameterError
-        If something in `source` is no path.
-    """
-    if isinstance(source, Mapping):
-        return [StatedEvent(_all_of(files), name) for name, files in source.items()], []
-    if isinstance(source, (str, os.PathLike)):
-        return [], _expanded(source)
-    stated: list[StatedEvent] = []
-    loose: list[Path] = []
-    for one in _each(source):
-        if isinstance(one, (str, os.PathLike)):
-            loose += _expanded(one)
-        else:
-            stated.append(StatedEvent(_all_of(one)))
-    if not (stated or loose):
-        raise FileError("no files were given")
-    taken = {path.absolute() for event in stated for path in event.files}
-    return stated, [path for path in dict.fromkeys(loose) if path.absolute() not in taken]
-
-
-def require_path(name: str, value: object) -> Path:
-    """Convert `value` to a path, or raise ParameterError."""
-    if isinstance(value, (str, os.PathLike)):
-        return Path(value)
-    raise ParameterError(f"{name}: must be a path (got {value!r}). Give a string or a pathlib.Path.")
-
-
-def is_list_of_files(source: RecordSource) -> bool:
-    """Return whether a source names each of its files: no folder, no pattern."""
-    if isinstance(source, (str, os.PathLike, Mapping)) or not isinstance(source, (list, tuple)):
-        return False
-    return all(isinstance(one, (str, os.PathLike)) and Path(one).is_file() for one in source)
-
-
-def _all_of(files: OnePath | Iterable[OnePath]) -> tuple[Path, ...]:
-    each = [files] if isinstance(files, (str, os.PathLike)) else _each(files)
-    found = tuple(path for one in each for path in _expanded(one))
-    if not found:
-        raise FileError("no files were given for an event")
-    return found
-
-
-def _each(source: Iterable[_T]) -> Iterable[_T]:
-    if isinstance(source, Iterable):
-        return source
-    raise ParameterError(
-        f'source: must be a path, or lists of the files of each event (got {source!r}). Give such as "quakes".'
-    )
-
-
-def _expanded(source: OnePath) -> list[Path]:
-    """Return the sorted acceleration files of a folder or pattern; any other path unchanged."""
-    path = require_path("source", source)
-    if path.is_dir():
-        return _in_folder(path)
-    if path.exists() or not any(sign in str(path) for sign in _SIGNS):
-        return [path]
-    start = Path(path.anchor) if path.is_absolute() else Path()
-    found = sorted(accelerations_among(one for one in start.glob(str(path.relative_to(start))) if one.is_file()))
-    if not found:
-        raise FileError(f"{source}: no file has such a name")
-    return found
-
-
-def _in_folder(folder: Path) -> list[Path]:
-    """Return the acceleration files of a folder."""
-    files = sorted(accelerations_among(path for path in folder.iterdir() if path.is_file()))
-    if not files:
-        raise FileError(f"{folder}: the folder has no files")
-    return files
-
+from stylobate.records.reading import Part
+from stylobate.records.sources import RecordSource, find_files, is_list_of_files
+from stylobate.records.text_files import NoRecordError
 
 _LONGEST = 3
 # Maximum length of a common part of names that is too short for a name.
 _SHORTEST_NAME = 3
 _DATE = re.compile(r"\d{1,4}[-/.]\d{1,2}[-/.]\d{1,4}|\b(?:19|20)\d\d\b")
 
-Read = Callable[[Path], Component]
+Read = Callable[[Path], Sequence[Part]]
 
 
 @dataclass(frozen=True, slots=True)
 class EventFile:
-    """A file of an event: its component or reading error, and the data in its name and header.
+    """A file of an event, or a part of a file: its component or reading error, and the data in its name and header.
 
     Parameters
     ----------
     path
-        The file.
+        The file, or the part of a file.
     content
         The component, or the error raised while reading.
     event
@@ -166,6 +54,8 @@ class EventFile:
         Suffix of the name that marks a processed copy, such as "_scaled".
     guessed
         Whether only three digits at the end of the name state the direction; the digits may be a serial number.
+    of_station
+        Whether the file states the event: a file of the channels of stations.
     """
 
     path: Path
@@ -176,16 +66,16 @@ class EventFile:
     title: str
     remark: str = ""
     guessed: bool = False
+    of_station: bool = False
 
     @classmethod
-    def of(cls, path: Path, read: Read, given: Direction | None) -> Self:
-        """Describe a file by its name and header and by the component that `read` returns."""
+    def of(cls, part: Part, given: Direction | None) -> Self:
+        """Describe a part of a file by its name and its content."""
+        path, content = part.path, part.content
+        if part.event is not None and isinstance(content, Component):
+            return cls(path, content, part.event, given or content.direction, None, "", of_station=True)
         stem = stem_of(path)
         number = record_number(stem)
-        try:
-            content: Component | StylobateError = read(path)
-        except StylobateError as error:
-            content = error
         header = content.direction if isinstance(content, Component) else None
         title = _title(content.title) if isinstance(content, Component) else ""
         event, named = _named(path, stem, header)
@@ -197,11 +87,17 @@ class EventFile:
     def among_others(self) -> "EventFile":
         """Return this file as one of several of one event: a weak sign in its name suffices for its direction."""
         event, direction = split_name(stem_of(self.path), unsure=True)
-        return self if self.direction or not direction else replace(self, event=event, direction=direction)
+        return (
+            self
+            if self.direction or self.of_station or not direction
+            else replace(self, event=event, direction=direction)
+        )
 
     @property
     def key(self) -> tuple[object, ...]:
         """Key that all files of one event share: number and suffix, otherwise title and name, or folder and name."""
+        if self.of_station:
+            return ("station", self.path.parent, self.event)
         if self.number is not None:
             return ("number", self.number, self.remark)
         return ("title", self.title, self.event) if self.title else ("name", self.path.parent, self.event)
@@ -240,7 +136,7 @@ def find_events(
     source
         Folders, patterns, files; lists of the files of one event.
     read
-        Function that reads the component of a file.
+        Function that reads the components of a file.
     directions
         Directions by file name: azimuth [degrees], "up", or another name of a direction.
 
@@ -262,27 +158,67 @@ def find_events(
     Warns
     -----
     UnlikelyInputWarning
-        If only the digits at the end of two names, such as 000 and 090, show that the files belong together.
+        If only the digits at the end of two names, such as 000 and 090, show that the files belong together. If files
+        in a folder or an archive hold no record: they are left out.
     """
-    stated, loose = find_files(source)
+    sources = find_files(source)
     if not isinstance(directions, Mapping | None):
         raise ParameterError(
             f'directions: must be by name of a file (got {directions!r}). Give such as {{"q_1.csv": 90.0}}.'
         )
     given = {name: Direction.of(direction) for name, direction in (directions or {}).items()}
-    names = {path.name for path in [*loose, *(path for event in stated for path in event.files)]}
-    if unknown := given.keys() - names:
+    listed = [(_parts_of(event.files, read), event.name) for event in sources.stated]
+    loose = _with_records(_parts_of(sources.loose, read), sources.found)
+    if unknown := given.keys() - {
+        part.path.name for parts in (*(parts for parts, _ in listed), loose) for part in parts
+    }:
         raise ParameterError(f"directions must name files that are read, got {', '.join(sorted(unknown))}")
 
-    def files_of(paths: Iterable[Path]) -> list[EventFile]:
-        return [EventFile.of(path, read, given.get(path.name)) for path in paths]
+    def files_of(parts: Iterable[Part]) -> list[EventFile]:
+        return [EventFile.of(part, given.get(part.path.name)) for part in parts]
 
-    events = [EventFiles.of(files_of(event.files), event.name, stated=True) for event in stated]
-    if not stated and is_list_of_files(source) and _are_one_event(loose, given):
+    events = [EventFiles.of(files_of(parts), name, stated=True) for parts, name in listed]
+    if not listed and is_list_of_files(source) and _are_one_event([part.path for part in loose], given):
         events.append(EventFiles.of(files_of(loose), stated=True))
     else:
         events += [EventFiles.of(files) for files in _grouped(files_of(loose))]
     return tuple(sorted(events, key=lambda event: event.name))
+
+
+def _parts_of(paths: Iterable[Path], read: Read) -> list[Part]:
+    """Return the parts of files; an error of a file stands for its parts."""
+    parts: list[Part] = []
+    for path in paths:
+        try:
+            parts += read(path)
+        except StylobateError as error:
+            parts.append(Part(path, error))
+    return parts
+
+
+def _with_records(parts: Sequence[Part], found: Iterable[Path]) -> list[Part]:
+    """Return the parts without those that were found beside the others and hold no record; a warning lists these.
+
+    Raises
+    ------
+    NoRecordError
+        If no part holds a record.
+    """
+    folder = {*found}
+    others = [part for part in parts if (part.found or part.path in folder) and isinstance(part.content, NoRecordError)]
+    if not others:
+        return [*parts]
+    if len(others) == len(parts):
+        assert isinstance(others[0].content, NoRecordError)
+        raise others[0].content
+    names = ", ".join(part.path.name for part in others)
+    several = len(others) > 1
+    message = (
+        f"{others[0].path.parent}: {len(others)} {'files hold' if several else 'file holds'} no record and "
+        f"{'are' if several else 'is'} left out: {names}"
+    )
+    warnings.warn(message, UnlikelyInputWarning, stacklevel=3)
+    return [part for part in parts if part not in others]
 
 
 def _are_one_event(paths: Sequence[Path], given: Mapping[str, Direction]) -> bool:

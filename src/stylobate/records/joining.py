@@ -13,10 +13,11 @@ import numpy as np
 
 from stylobate.base_motions.record import Record, RecordOrigin
 from stylobate.base_motions.signal_processing import energy
-from stylobate.errors import FileError, ParameterError, StylobateError, UnlikelyInputWarning, require_positive
+from stylobate.errors import FileError, ParameterError, StylobateError, UnlikelyInputWarning
 from stylobate.records.directions import Component, Directed, Direction, along_axes
-from stylobate.records.events import EventFile, EventFiles, Read, RecordSource, find_events
-from stylobate.records.reading import RecordFormat, as_record, plain_reading, read_component
+from stylobate.records.events import EventFile, EventFiles, find_events
+from stylobate.records.reading import FileReading, RecordFormat, as_record, read_parts
+from stylobate.records.sources import OnePath, RecordSource, require_path
 from stylobate.text import did_you_mean
 
 _SAME_STEP = 1e-9
@@ -45,6 +46,80 @@ class _Part:
     record: Record  # along x, in the sense of its direction; or of all axes, if its file has several
 
 
+def read_record(
+    path: OnePath,
+    units: str | None = None,
+    *,
+    step: float | None = None,
+    columns: Mapping[str, str] | None = None,
+    axis: str | None = None,
+    format: RecordFormat | None = None,  # noqa: A002  the word of the field
+    response: OnePath | None = None,
+) -> Record:
+    """Read a record from one file.
+
+    Parameters
+    ----------
+    path
+        The file; gzip is unpacked. A file in an archive, a sheet of a workbook or a channel of a waveform file has a
+        path below it: `quakes.zip/CLS000.AT2`, `book.xlsx/Sheet1`, `event.mseed/IU.ANMO.00.HNE`.
+    units
+        Unit of the accelerations: "g", "m/s²" (m/s2), "cm/s²" (cm/s2, gal) or "mm/s²". Optional only if the file states
+        the unit, which is never guessed.
+    step
+        Time step [s], for a file without step: a single column, or an AT2 file without the line of NPTS and DT.
+    columns
+        Names of the columns "time", "x", "y" and "z" of a CSV file.
+    axis
+        Axis of the record along which a single component acts: "x", "y" or "z". None is z if the file states up or down
+        (for down with reversed sign), otherwise x.
+    format
+        Format of the file; None detects it.
+    response
+        StationXML, or another file of station metadata that ObsPy reads, which converts the counts of a waveform file
+        to accelerations and states the directions of its channels.
+
+    Raises
+    ------
+    FileError
+        If the file is missing, empty, cut short, holds something that is not a number, unequal steps, a gap, or several
+        records, or does not state its unit; with the number of the line.
+    ParameterError
+        If units are unknown or contradict the file.
+    UnsupportedError
+        If only ObsPy or openpyxl reads the format and it is not installed.
+
+    Warns
+    -----
+    UnlikelyInputWarning
+        If the peak exceeds 3 g, for example because a file in cm/s² is read in g. If a file that states no unit of time
+        has steps of more than 0.5 s or lasts more than 2 h, for example because its times are in ms.
+    """
+    path, how = require_path("path", path), FileReading.of(step, columns, format, response)
+    parts = read_parts(path, how)
+    if len(parts) == 1 and parts[0].event is None:
+        content = parts[0].content
+        if isinstance(content, StylobateError):
+            raise content
+        record = as_record(content, parts[0].path, units, axis)
+    else:
+        record = _only_event(path, how, units, axis)
+    origin = RecordOrigin.of_files(path, axis=axis, one_component=True, units=units, **how.plain)
+    return replace(record, origin=origin)
+
+
+def _only_event(path: Path, how: FileReading, units: str | None, axis: str | None) -> Record:
+    """Return the record of the only event in a file of several components."""
+    events = find_events(path, lambda one: read_parts(one, how))
+    if len(events) > 1:
+        names = ", ".join(event.name for event in events)
+        remedy = f"Read them by read_records, or name a part, such as {events[0].paths[0]}"
+        raise FileError(f"{path}: the file must hold one record, got {len(events)}: {names}. {remedy}")
+    if axis is not None:
+        raise ParameterError(f"axis must be left out for a file of several components, got {axis!r}")
+    return join_event(events[0], units)
+
+
 def read_records(
     source: RecordSource,
     units: str | None = None,
@@ -55,6 +130,7 @@ def read_records(
     lengths: Lengths = Lengths.TRIM,
     steps: Steps = Steps.REFUSE,
     format: RecordFormat | None = None,  # noqa: A002  the word of the field
+    response: OnePath | None = None,
     one_component: bool = False,
 ) -> tuple[Record, ...]:
     """Read records and join the components of each event.
@@ -62,7 +138,8 @@ def read_records(
     Files are joined by the first rule that applies: the user lists them as one event; they have one PEER record number
     (`RSN143_…`) and one folder or one title in their headers; their headers name one event, date and station and their
     names differ by the direction only; they are in one folder and their names differ by the direction only: `CLS000`,
-    `CLS090`, `CLS-UP`; `site_NS`, `site_EW`; `TAB-L1`, `TAB-T1`; `q_HNE`, `q_HNN`. The direction of a component comes
+    `CLS090`, `CLS-UP`; `site_NS`, `site_EW`; `TAB-L1`, `TAB-T1`; `q_HNE`, `q_HNN`. In a file of channels, those of one
+    station and instrument are one event. The direction of a component comes
     from `directions`, else from the header, else from the name. Files with a suffix such as `_scaled` are not joined
     with files without it.
 
@@ -70,9 +147,10 @@ def read_records(
     ----------
     source
         A folder, a pattern such as `quakes/*.AT2`, or a file; or a list of these. A list in this list, or each value of
-        a mapping from names, holds the files of one event. A folder stands for all its files, except hidden files and
-        files whose names denote velocities, displacements or the search results of a PEER download.
-    units, step, columns, format
+        a mapping from names, holds the files of one event. A folder or an archive stands for all its files, except
+        hidden files, files whose names denote velocities, displacements or the search results of a PEER download, and
+        files that hold no record, which a warning lists.
+    units, step, columns, format, response
         As in `read_record`, for all files.
     directions
         Directions by file name with suffix: the azimuth, clockwise from north [degrees], "up", "down", or another name
@@ -116,14 +194,16 @@ def read_records(
     components of unknown azimuth (L and T, H1 and H2, X and Y) are x and y, in this order. A single horizontal
     component acts along x.
     """
+    how = FileReading.of(step, columns, format, response)
     reading = {
         "one_component": True,
         "lengths": lengths.name.lower(),
         "steps": steps.name.lower(),
-        **plain_reading(units, step, columns, format),
+        "units": units,
+        **how.plain,
     }
     records = []
-    for event in find_events(source, reader(step, columns, format), directions):
+    for event in find_events(source, lambda path: read_parts(path, how), directions):
         record = join_event(event, units, lengths, steps)
         stated = {path.name: directions[path.name] for path in event.paths if directions and path.name in directions}
         name = event.name if isinstance(source, Mapping) else None
@@ -132,16 +212,6 @@ def read_records(
     for record in () if one_component else records:
         remark_on_missing_components(record)
     return tuple(records)
-
-
-def reader(
-    step: float | None = None,
-    columns: Mapping[str, str] | None = None,
-    format: RecordFormat | None = None,  # noqa: A002
-) -> Read:
-    """Return a function that reads the component in a file, with these arguments of `read_record`."""
-    step = None if step is None else require_positive("step", step, "s")
-    return lambda path: read_component(path, step, columns, format)
 
 
 def join_event(

@@ -1,25 +1,49 @@
-"""Reading of a record from one file, and writing."""
+"""What files of records hold: the components, in their formats; conversion to SI units, and writing."""
 
 import os
 import warnings
-from collections.abc import Mapping
-from dataclasses import replace
+import zlib
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from enum import Enum
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from stylobate.base_motions.record import AXES, Record, RecordOrigin
+from stylobate.base_motions.record import AXES, Record
 from stylobate.base_motions.signal_processing import Floats
 from stylobate.column import STANDARD_GRAVITY
-from stylobate.errors import FileError, ParameterError, UnlikelyInputWarning, require_positive
-from stylobate.files import write_whole
-from stylobate.records.databases import is_asc, is_at2, is_wrapped, read_asc, read_at2, read_waveform
-from stylobate.records.directions import Component
-from stylobate.records.events import require_path
-from stylobate.records.tables import TextTable, read_named_columns, read_table
-from stylobate.records.text_files import KNOWN, REMARKS, Text, in_si, is_binary, read_bytes, require_unit
+from stylobate.errors import FileError, ParameterError, StylobateError, UnlikelyInputWarning, require_positive
+from stylobate.files import file_of, write_whole
+from stylobate.records.agencies import (
+    Channel,
+    is_cosmos,
+    is_csmip,
+    is_geonet,
+    read_cosmos,
+    read_csmip,
+    read_geonet,
+)
+from stylobate.records.containers import is_container, members
+from stylobate.records.databases import is_asc, is_at2, is_wrapped, read_asc, read_at2
+from stylobate.records.directions import Component, is_one_set, stem_of
+from stylobate.records.sources import accelerations_among, require_path
+from stylobate.records.tables import TextTable, has_rows_of_numbers, read_named_columns, read_table
+from stylobate.records.text_files import (
+    KNOWN,
+    REMARKS,
+    NoRecordError,
+    Text,
+    as_utf8,
+    in_si,
+    is_binary,
+    read_bytes,
+    require_readable,
+    require_unit,
+    unpacked,
+)
+from stylobate.records.waveforms import is_waveform, read_waveform
 
 # Horizontal and vertical peaks of earthquakes are below, except a few close to the fault [g].
 _LARGEST_PEAK = 3.0
@@ -35,114 +59,189 @@ class RecordFormat(Enum):
 
     AT2 = "PEER AT2"
     ASC = "ESM and ITACA ASC, with the header of DYNA 1.x"
-    TABLE = "one column of accelerations, or time and acceleration"
+    COSMOS = "COSMOS, version 1.20"
+    CSMIP = "CSMIP, volumes 1 and 2"
+    GEONET = "GeoNet, volumes 1 and 2"
+    TABLE = "one column of accelerations, or time and up to three accelerations"
     CSV = "named columns"
     WAVEFORM = "whatever ObsPy reads"
 
 
-def read_record(
-    path: str | os.PathLike[str],
-    units: str | None = None,
-    *,
-    step: float | None = None,
-    columns: Mapping[str, str] | None = None,
-    axis: str | None = None,
-    format: RecordFormat | None = None,  # noqa: A002  the word of the field
-) -> Record:
-    """Read a record from one file.
+@dataclass(frozen=True, slots=True)
+class FileReading:
+    """Arguments by which files are read, as of `read_records`."""
+
+    step: float | None = None
+    columns: Mapping[str, str] | None = None
+    format: RecordFormat | None = None
+    response: str | None = None
+
+    @classmethod
+    def of(
+        cls,
+        step: float | None,
+        columns: Mapping[str, str] | None,
+        format: RecordFormat | None,  # noqa: A002
+        response: str | os.PathLike[str] | None,
+    ) -> "FileReading":
+        """Check the arguments.
+
+        Raises
+        ------
+        ParameterError
+            If the step is not positive.
+        """
+        step = None if step is None else require_positive("step", step, "s")
+        return cls(step, columns, format, None if response is None else str(require_path("response", response)))
+
+    @property
+    def plain(self) -> dict[str, Any]:
+        """The arguments as plain values for the origin of a record."""
+        return {
+            "step": self.step,
+            "columns": None if self.columns is None else dict(self.columns),
+            "format": None if self.format is None else self.format.name.lower(),
+            "response": self.response,
+        }
+
+
+@dataclass(frozen=True, slots=True)
+class Part:
+    """A component in a file, or the error raised while it was read.
 
     Parameters
     ----------
     path
-        The file; gzip is unpacked.
-    units
-        Unit of the accelerations: "g", "m/s²" (m/s2), "cm/s²" (cm/s2, gal) or "mm/s²". Optional only if the file states
-        the unit, which is never guessed.
-    step
-        Time step [s], for a file without step: a single column, or an AT2 file without the line of NPTS and DT.
-    columns
-        Names of the columns "time", "x", "y" and "z" of a CSV file.
-    axis
-        Axis of the record along which a single component acts: "x", "y" or "z". None is z if the file states up or down
-        (for down with reversed sign), otherwise x.
-    format
-        Format of the file; None detects it.
+        The file; in a file of several components, a path below it, as in `quakes.zip/CLS000.AT2`.
+    content
+        The component, or the error.
+    event
+        Name of the record to which it belongs, if the file states it: the components of a station are one record.
+    found
+        Whether the part was found in an archive and not named.
+    """
+
+    path: Path
+    content: Component | StylobateError
+    event: str | None = None
+    found: bool = False
+
+
+def read_parts(path: Path, how: FileReading) -> list[Part]:
+    """Read the components in a file, in the units of the file; archives and files of stations have several.
+
+    Parameters
+    ----------
+    path
+        The file, or a part of it, such as `quakes.zip/CLS000.AT2` or `event.mseed/IU.ANMO.00.HNE`.
+    how
+        Arguments of the reading.
 
     Raises
     ------
     FileError
-        If the file is missing, empty, cut short, holds something that is not a number or unequal steps, or does not
-        state its unit; with the number of the line.
-    ParameterError
-        If units are unknown or contradict the file.
-    UnsupportedError
-        If only ObsPy reads the format and it is not installed.
-
-    Warns
-    -----
-    UnlikelyInputWarning
-        If the peak exceeds 3 g, for example because a file in cm/s² is read in g. If a file that states no unit of time
-        has steps of more than 0.5 s or lasts more than 2 h, for example because its times are in ms.
+        If the file cannot be read, or has no such part.
     """
-    path = require_path("path", path)
-    step = None if step is None else require_positive("step", step, "s")
-    record = as_record(read_component(path, step, columns, format), path, units, axis)
-    origin = RecordOrigin.of_files(path, axis=axis, one_component=True, **plain_reading(units, step, columns, format))
-    return replace(record, origin=origin)
+    file = file_of(path)
+    parts = list(_parts(file, read_bytes(file), how, path))
+    named = [part for part in parts if part.path == path or path in part.path.parents]
+    if not named:
+        listed = ", ".join(part.path.relative_to(file).as_posix() for part in parts) or "nothing to read"
+        raise FileError(f"{path}: {file.name} has no such part. It has {listed}")
+    return named
 
 
-def plain_reading(
-    units: str | None,
-    step: float | None,
-    columns: Mapping[str, str] | None,
-    format: RecordFormat | None,  # noqa: A002
-) -> dict[str, Any]:
-    """Convert the arguments of the reading to plain values for the origin of a record."""
-    return {
-        "units": units,
-        "step": step,
-        "columns": None if columns is None else dict(columns),
-        "format": None if format is None else format.name.lower(),
-    }
+def _parts(path: Path, content: bytes, how: FileReading, wanted: Path) -> Iterator[Part]:
+    """Yield the parts of a file; of an archive, those that contain `wanted` or lie below it."""
+    content = as_utf8(content)
+    if is_container(content):
+
+        def chosen(paths: Iterable[Path]) -> list[Path]:
+            return [one for one in accelerations_among(paths) if one == wanted or _share_a_line(one, wanted)]
+
+        for place, packed in members(path, content, chosen):
+            try:
+                yield from (
+                    replace(part, found=part.path != wanted) for part in _parts(place, unpacked(packed), how, wanted)
+                )
+            except (StylobateError, OSError, EOFError, zlib.error) as error:
+                fault = error if isinstance(error, StylobateError) else FileError(f"{place}: cannot be read: {error}")
+                yield Part(place, fault, found=place != wanted)
+        return
+    channels = _channels(path, content, how)
+    if isinstance(channels, Component):
+        yield Part(path, channels)
+    elif len(channels) == 1:
+        yield Part(path, channels[0].component)
+    else:
+        events = _events(path, channels)
+        yield from (Part(path / one.name, one.component, event) for one, event in zip(channels, events, strict=True))
 
 
-def read_component(
-    path: Path,
-    step: float | None,
-    columns: Mapping[str, str] | None,
-    format: RecordFormat | None,  # noqa: A002
-) -> Component:
-    """Read the component of a file in the units of the file."""
-    content = read_bytes(path)
-    if is_binary(content) and format in (None, RecordFormat.AT2) and _is_called_at2(path):
+def _share_a_line(one: Path, other: Path) -> bool:
+    return one in other.parents or other in one.parents
+
+
+def _events(path: Path, channels: Sequence[Channel]) -> list[str]:
+    """Return the name of the record of each channel: those of a station are one, unless it has many instruments."""
+    stem = stem_of(path) + (" uncorrected" if path.suffix.lower() in _UNCORRECTED else "")
+    stations: dict[str, list[Channel]] = {}
+    for one in channels:
+        stations.setdefault(one.station, []).append(one)
+    names = []
+    for one in channels:
+        station = stations[one.station]
+        name = stem if len(stations) == 1 else f"{stem} {one.station}"
+        ways = [other.component.direction for other in station]
+        known = [way for way in ways if way is not None]
+        names.append(name if len(known) == len(ways) and is_one_set(known) else f"{name} {one.name}")
+    return names
+
+
+_UNCORRECTED = (".v1", ".v1a", ".raw")
+
+
+def _channels(path: Path, content: bytes, how: FileReading) -> Component | list[Channel]:
+    """Read the component of a file, or its channels."""
+    require_readable(path, content)
+    if is_binary(content) and how.format in (None, RecordFormat.AT2) and _is_called_at2(path):
         raise FileError(f"{path}: no AT2 file: it is no text, and has no header with NPTS and DT. Download it again")
-    if format is RecordFormat.WAVEFORM or (
-        format is None and (is_binary(content) or content.startswith(b"Origin Time"))
-    ):
-        return read_waveform(path, content)
+    if how.format is RecordFormat.WAVEFORM or (how.format is None and (is_binary(content) or is_waveform(content))):
+        return read_waveform(path, content, None if how.response is None else Path(how.response))
     if is_binary(content):
         remedy = "Leave format out, or export the record as text"
-        raise FileError(f"{path}: a binary file, not {format.value if format else 'text'}. {remedy}")
-    return _read_text(Text.of(path, content), step, columns, format)
+        raise FileError(f"{path}: a binary file, not {how.format.value if how.format else 'text'}. {remedy}")
+    text = Text.of(path, content)
+    for agency, (is_its, read) in _AGENCIES.items():
+        if how.format is agency or (how.format is None and is_its(text)):
+            return read(text)
+    return _read_text(text, how)
 
 
-def _read_text(
-    text: Text,
-    step: float | None,
-    columns: Mapping[str, str] | None,
-    format: RecordFormat | None,  # noqa: A002
-) -> Component:
+_AGENCIES: Mapping[RecordFormat, tuple[Callable[[Text], bool], Callable[[Text], list[Channel]]]] = {
+    RecordFormat.COSMOS: (is_cosmos, read_cosmos),
+    RecordFormat.CSMIP: (is_csmip, read_csmip),
+    RecordFormat.GEONET: (is_geonet, read_geonet),
+}
+
+
+def _read_text(text: Text, how: FileReading) -> Component:
     if all(not line.strip() or line.lstrip().startswith(REMARKS[0]) for line in text.lines):
-        raise text.fault(len(text.lines) - 1, "the file has no numbers. Export it again")
+        raise text.fault(len(text.lines) - 1, "the file has no numbers. Export it again", NoRecordError)
     without_header = _is_called_at2(text.path) and is_wrapped(text)
-    if format is RecordFormat.AT2 or (format is None and (is_at2(text) or without_header)):
-        return read_at2(text, step)
-    if format is RecordFormat.ASC or (format is None and is_asc(text)):
+    if how.format is RecordFormat.AT2 or (how.format is None and (is_at2(text) or without_header)):
+        return read_at2(text, how.step)
+    if how.format is RecordFormat.ASC or (how.format is None and is_asc(text)):
         return read_asc(text)
-    table = TextTable.of(text, named=columns is not None)
-    if format is RecordFormat.CSV or (format is None and table.names is not None):
-        return read_named_columns(table, columns, step)
-    return read_table(table, step)
+    try:
+        table = TextTable.of(text, named=how.columns is not None)
+        if how.format is RecordFormat.CSV or (how.format is None and table.names is not None):
+            return read_named_columns(table, how.columns, how.step)
+        return read_table(table, how.step)
+    except FileError as error:
+        if how.format is None and not has_rows_of_numbers(text):
+            raise NoRecordError(str(error)) from None
+        raise
 
 
 def _is_called_at2(path: Path) -> bool:
@@ -154,7 +253,7 @@ def as_record(component: Component, path: Path, units: str | None, axis: str | N
     factor, unit_text = _scale(component, path, units)
     _require_possible(component, path)
     provenance: tuple[str, ...] = (
-        f"read from {path.name}, {unit_text}" + (f": {component.title}" if component.title else ""),
+        f"read from {shown_name(path)}, {unit_text}" + (f": {component.title}" if component.title else ""),
     )
     _remark_on_the_peak(factor * component.samples, path, unit_text)
     _remark_on_the_times(component, path)
@@ -206,6 +305,11 @@ def _remark_on_the_times(component: Component, path: Path) -> None:
         "State the unit beside the name of the times, such as time [ms] or time [s], or give times and step in s"
     )
     warnings.warn(message, UnlikelyInputWarning, stacklevel=2)
+
+
+def shown_name(path: Path) -> str:
+    """Return the name of a file, or of a part of a file with the name of the file before it."""
+    return path.relative_to(file_of(path).parent).as_posix()
 
 
 def name_of(path: Path) -> str:

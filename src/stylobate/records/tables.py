@@ -14,10 +14,12 @@ import numpy as np
 
 from stylobate.base_motions.record import AXES
 from stylobate.base_motions.signal_processing import Floats
+from stylobate.errors import FileError
 from stylobate.records.directions import Component, Directed, Direction, along_axes, is_one_set, split_name
 from stylobate.records.text_files import (
     REMARKS,
     SECOND,
+    NoRecordError,
     Text,
     TimeUnit,
     is_number,
@@ -90,7 +92,7 @@ class TextTable:
         width = len(_fields(body[0][1], separator)) if body else 0
         names = _names([line for _, line in header], width, separator, named=named) if header and body else None
         unnamed_csv = names is None and separator is not None and any(separator in line for _, line in header)
-        if not body or unnamed_csv or not all(_is_header(line, width) for _, line in header):
+        if not body or unnamed_csv or not all(_is_header(line, width, separator) for _, line in header):
             return cls._with_names_in_first_line(text, lines, named=named)
         if names is None:
             return cls(text, [(at, _pieces(line)) for at, line in body])
@@ -151,9 +153,9 @@ def _is_row(line: str) -> bool:
     return bool(pieces) and all(map(is_number, pieces))
 
 
-def _is_header(line: str, width: int) -> bool:
+def _is_header(line: str, width: int, separator: str | None) -> bool:
     """Return whether a line above the numbers is a header and not a faulty row of numbers."""
-    pieces = _pieces(line)
+    pieces = _pieces(line) if separator is None else _fields(line, separator)
     spoilt = len(pieces) == width and any(map(_DIGITS.match, pieces))
     return bool(_HAS_LETTER.search(line)) and not spoilt
 
@@ -190,8 +192,13 @@ def _header_fields(line: str, width: int, separator: str | None) -> list[str] | 
     return next((fields for fields in splits if len(fields) == width), None)
 
 
+def has_rows_of_numbers(text: Text) -> bool:
+    """Return whether a text has at least two lines of numbers only, as every table of a record has."""
+    return sum(map(_is_row, text.lines)) > 1
+
+
 def read_table(table: TextTable, step: float | None) -> Component:
-    """Read the component of a table without names: a column of accelerations, or times and accelerations.
+    """Read a table without names: a column of accelerations, or times and accelerations along x, y and z.
 
     Raises
     ------
@@ -205,9 +212,9 @@ def read_table(table: TextTable, step: float | None) -> Component:
     if not rows:
         raise text.fault(len(text.lines) - 1, "the file has no numbers. Export it again")
     width = len(rows[0][1])
-    if width > _TIME_AND_ACCELERATION:
+    if width > 1 + len(AXES):
         text.rows(rows[:1])
-        what = "one (acceleration) or two (time, acceleration) are expected. Name them in the first line"
+        what = "one (acceleration) to four (time, x, y, z) are expected. Name them in the first line"
         raise text.fault(rows[0][0], f"{width} columns: {what}")
     for at, row in rows:
         if len(row) != width:
@@ -221,7 +228,31 @@ def read_table(table: TextTable, step: float | None) -> Component:
         require_two(text, places)
         return Component(samples=values[:, 0], step=step, unit=None, states_time_unit=False)
     start, own = equal_steps(text, values[:, 0], places, step)
-    return Component(samples=values[:, 1], step=own, start=start, unit=None, states_time_unit=False)
+    if width == _TIME_AND_ACCELERATION:
+        return Component(samples=values[:, 1], step=own, start=start, unit=None, states_time_unit=False)
+    _require_no_integral(text, places[0], values[:, 1:], own)
+    samples = np.pad(values[:, 1:], ((0, 0), (0, 1 + len(AXES) - width)))
+    title = f"columns 2 to {width} as {', '.join(AXES[: width - 1])}"
+    return Component(samples=samples, step=own, start=start, unit=None, title=title, states_time_unit=False)
+
+
+# Correlation of a column with the integral of the one before from which it is taken for a velocity.
+_ALIKE = 0.98
+
+
+def _require_no_integral(text: Text, line: int, values: Floats, step: float) -> None:
+    """Raise FileError if a column is the integral of the one before: velocity and displacement, no components."""
+    for place in range(values.shape[1] - 1):
+        before, after = values[:, place], values[:, place + 1]
+        gained, own = step * np.cumsum(before), after - after.mean()
+        gained = gained - gained.mean()
+        size = float(np.linalg.norm(gained) * np.linalg.norm(own))
+        if len(values) > _FEW and size > 0.0 and float(gained @ own) > _ALIKE * size:
+            what = f"column {place + 3} looks like the integral of column {place + 2}, a velocity or displacement"
+            raise text.fault(line, f"{what}. Name the columns in the first line, such as time, x and velocity")
+
+
+_FEW = 20  # samples among which a correlation tells nothing
 
 
 def read_named_columns(table: TextTable, columns: Mapping[str, str] | None, step: float | None) -> Component:
@@ -311,7 +342,8 @@ def _chosen(text: Text, line: int, names: list[str], columns: Mapping[str, str] 
     likely = accelerations or others
     if not components and (len(likely) != 1 or any(_spells_direction(names[place]) for place in others)):
         listed = ", ".join(names)
-        raise text.fault(line, f"which of {listed} is the acceleration? state columns, or name it x or acceleration")
+        what = f"which of {listed} is the acceleration? state columns, or name it x or acceleration"
+        raise text.fault(line, what, FileError if times else NoRecordError)
     return chosen | (components or {"x": likely[0]})
 
 

@@ -22,16 +22,13 @@ REMARKS = ("#", "%", "!", "//")
 
 _GZIP = b"\x1f\x8b"
 _UTF_16 = (b"\xff\xfe", b"\xfe\xff")
-_EXCEL = b"\xd0\xcf\x11\xe0"
 # First bytes of archives and documents that may hold records, but not as text.
 _PACKED = {
-    b"PK\x03\x04": "a zip archive. Unpack it and read the files in it",
     b"Rar!": "a rar archive. Unpack it and read the files in it",
     b"7z\xbc\xaf": "a 7z archive. Unpack it and read the files in it",
-    _EXCEL: "an Excel workbook. Save its sheet as CSV and read that",
+    b"\xd0\xcf\x11\xe0": "an Excel workbook of the old form. Save it as xlsx, or its sheet as CSV, and read that",
     b"%PDF": "a PDF document. Save its numbers as text and read that",
 }
-_WORKBOOK = b"xl/workbook"
 _WHOLE = re.compile(r"[0-9]{1,12}")
 _DECIMAL_COMMA = re.compile(r"[-+]?\d*[.,]?\d*,\d+([EeDd][-+]?\d+)?")
 
@@ -46,23 +43,41 @@ def read_bytes(path: Path) -> bytes:
     Raises
     ------
     FileError
-        If it cannot be read, is empty, or is an archive or a workbook.
+        If it cannot be read.
     """
     try:
-        content = path.read_bytes()
-        content = gzip.decompress(content) if content.startswith(_GZIP) else content
+        return unpacked(path.read_bytes())
     except (OSError, EOFError, zlib.error) as error:
         reason = getattr(error, "strerror", None) or str(error)
         several = path.is_dir() or "*" in path.name
         damaged = isinstance(error, (EOFError, zlib.error, gzip.BadGzipFile))
         remedy = ". Read folders and patterns with read_records" if several else ". Download the file again" * damaged
         raise FileError(f"{path}: cannot be read: {reason}{remedy}") from error
+
+
+def unpacked(content: bytes) -> bytes:
+    """Return the content of a file, decompressed if it is packed with gzip."""
+    return gzip.decompress(content) if content.startswith(_GZIP) else content
+
+
+def as_utf8(content: bytes) -> bytes:
+    """Return UTF-16 with its mark as UTF-8, and other content unchanged."""
+    return content.decode("utf-16", errors="replace").encode() if content.startswith(_UTF_16) else content
+
+
+def require_readable(path: Path, content: bytes) -> None:
+    """Refuse a file that no reader opens.
+
+    Raises
+    ------
+    NoRecordError
+        If it is empty, or an archive or document that cannot be opened.
+    """
     if not content.strip():
-        raise FileError(f"{path}: the file is empty. Download or export it again")
+        raise NoRecordError(f"{path}: the file is empty. Download or export it again")
     for begin, what in _PACKED.items():
         if content.startswith(begin):
-            raise FileError(f"{path}: {_PACKED[_EXCEL] if _WORKBOOK in content else what}")
-    return content.decode("utf-16", errors="replace").encode() if content.startswith(_UTF_16) else content
+            raise NoRecordError(f"{path}: {what}")
 
 
 def is_binary(content: bytes) -> bool:
@@ -92,10 +107,23 @@ class Text:
     lines: tuple[str, ...]
 
     @classmethod
+    def read(cls, path: Path) -> "Text":
+        """Read the lines of a text file, unpacked if it is packed with gzip.
+
+        Raises
+        ------
+        FileError
+            If it cannot be read, or is empty, or an archive or a document.
+        """
+        content = read_bytes(path)
+        require_readable(path, content)
+        return cls.of(path, content)
+
+    @classmethod
     def of(cls, path: Path, content: bytes) -> "Text":
-        """Decode `content` to lines: UTF-8, otherwise Latin-1, with any line ends."""
+        """Decode `content` to lines: UTF-8, UTF-16 with its mark, otherwise Latin-1, with any line ends."""
         try:
-            text = content.decode("utf-8-sig")
+            text = as_utf8(content).decode("utf-8-sig")
         except UnicodeDecodeError:
             text = content.decode("latin-1")
         return cls(path, tuple(text.rstrip("\x1a\x00").replace("\r\n", "\n").replace("\r", "\n").split("\n")))

@@ -126,15 +126,14 @@ def test_lines_keep_their_numbers_below_a_header(tmp_path):
 @pytest.mark.parametrize(
     ("begin", "what"),
     [
-        (b"PK\x03\x04\x14\x00", "a zip archive. Unpack it"),
-        (b"PK\x03\x04\x14\x00\x06\x00xl/workbook.xml", "an Excel workbook. Save its sheet as CSV"),
-        (b"\xd0\xcf\x11\xe0\xa1\xb1", "an Excel workbook. Save its sheet as CSV"),
+        (b"PK\x03\x04\x14\x00", "cannot be unpacked: it is damaged, or packed in an unknown way. Unpack it"),
+        (b"\xd0\xcf\x11\xe0\xa1\xb1", "an Excel workbook of the old form. Save it as xlsx"),
         (b"Rar!\x1a\x07", "a rar archive. Unpack it"),
         (b"%PDF-1.7", "a PDF document. Save its numbers as text"),
     ],
 )
 @pytest.mark.parametrize("asked", [None, RecordFormat.CSV, RecordFormat.WAVEFORM])
-def test_archives_and_workbooks_are_named_with_their_remedy(tmp_path, begin, what, asked):
+def test_archives_that_are_not_read_are_named_with_their_remedy(tmp_path, begin, what, asked):
     path = tmp_path / "a.dat"
     path.write_bytes(begin + bytes(64))
     with pytest.raises(FileError) as raised:

@@ -246,9 +246,9 @@ BROKEN = {
     "backwards": ("0 1\n0 2\n0 3\n", "g", r"line 2: unequal time steps"),
     "ragged": (TABLE + "0.14\n", "g", r"line 8: 1 columns, the lines before have 2"),
     "wide": (
-        "0 1 2\n1 2 3\n",
+        "0 1 2 3 4\n1 2 3 4 5\n",
         "g",
-        r"line 1: 3 columns: one \(acceleration\) or two \(time, acceleration\) are expected",
+        r"line 1: 5 columns: one \(acceleration\) to four \(time, x, y, z\) are expected",
     ),
     "word": (TABLE.replace("-0.25", "minus"), "g", r"line 3: not a number: 'minus'"),
     "one": ("0.0 1.0\n", "g", r"line 1: the file is too short: one sample"),

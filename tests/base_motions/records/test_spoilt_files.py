@@ -37,13 +37,14 @@ PIECES = (
     "DT=",
     "UNITS",
 )
+FORMATS = (RecordFormat.AT2, RecordFormat.ASC, RecordFormat.TABLE, RecordFormat.CSV)
 OPTIONS = (
     {},
     {"units": "g"},
     {"units": "g", "step": 0.01},
     {"columns": {"time": "time", "x": "x"}},
     {"units": "m/s2", "axis": "z"},
-    *({"units": "g", "step": 0.01, "format": one} for one in RecordFormat if one is not RecordFormat.WAVEFORM),
+    *({"units": "g", "step": 0.01, "format": one} for one in FORMATS),
 )
 
 

@@ -32,7 +32,7 @@ from stylobate.errors import (
 from stylobate.models import Model
 from stylobate.models.declared import model_quantities
 from stylobate.records.tables import TextTable
-from stylobate.records.text_files import KNOWN, Text, in_si, read_bytes, unit_of
+from stylobate.records.text_files import KNOWN, Text, in_si, unit_of
 from stylobate.results.report_details import DesignSpectrum, ReportDetails
 from stylobate.results.verdict import FEW_RECORDS, require_variations
 from stylobate.run_arguments import Accuracy, numbers_of
@@ -104,7 +104,7 @@ class DesignSpectrumConfig(Config):
 
 def _read(path: str) -> tuple[tuple[tuple[float, float], ...], str | None]:
     """Read the points of a file, and the unit of accelerations in its first line."""
-    table = TextTable.of(Text.of(Path(path), read_bytes(Path(path))))
+    table = TextTable.of(Text.read(Path(path)))
     text = table.text
     units = None if table.names is None else _stated_unit(text, table.names_at, table.names)
     points: list[tuple[float, float]] = []

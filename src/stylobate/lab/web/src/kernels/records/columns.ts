@@ -19,9 +19,9 @@ export function readTable({ text, rows }: TextTable, step: number | null): Compo
   const [first] = rows;
   if (!first) throw text.fault(text.lines.length - 1, NO_NUMBERS);
   const width = first[1].length;
-  if (width > 2) {
+  if (width > 4) {
     requireNumbers(text, first);
-    const wanted = "one (acceleration) or two (time, acceleration) are expected. Name them in the first line";
+    const wanted = "one (acceleration) to four (time, x, y, z) are expected. Name them in the first line";
     throw text.fault(first[0], `${width} columns: ${wanted}`);
   }
   for (const row of rows) {
@@ -29,7 +29,7 @@ export function readTable({ text, rows }: TextTable, step: number | null): Compo
     requireNumbers(text, row);
     throw text.fault(row[0], `${row[1].length} columns, the lines before have ${width}. Correct the line`);
   }
-  const columns = text.columns(rows, width === 1 ? [0] : [0, 1]);
+  const columns = text.columns(rows, [...first[1].keys()]);
   const places = rows.map(([at]) => at);
   const rest = { unit: null, direction: null, title: "", statesTimeUnit: false };
   if (width === 1) {
@@ -37,9 +37,38 @@ export function readTable({ text, rows }: TextTable, step: number | null): Compo
     requireTwo(text, places);
     return { columns, step, start: 0, ...rest };
   }
-  const [times = new Float64Array(), accelerations = times] = columns;
+  const [times = new Float64Array(), ...accelerations] = columns;
   const [start, own] = equalSteps(text, times, places, step);
-  return { columns: [accelerations], step: own, start, ...rest };
+  if (accelerations.length === 1) return { columns: accelerations, step: own, start, ...rest };
+  requireNoIntegral(text, places[0]!, accelerations, own);
+  const title = `columns 2 to ${width} as ${["x", "y", "z"].slice(0, width - 1).join(", ")}`;
+  const nothing = new Float64Array(times.length);
+  return { columns: [0, 1, 2].map((place) => accelerations[place] ?? nothing), step: own, start, ...rest, title };
+}
+
+/** Correlation with the integral of the column before from which a column counts as a velocity, and how many samples. */
+const [ALIKE, FEW] = [0.98, 20];
+
+/** Refuses a column that is the integral of the one before: velocity and displacement, no components. */
+function requireNoIntegral(text: RecordText, line: number, columns: readonly Float64Array[], step: number): void {
+  columns.slice(1).forEach((after, place) => {
+    let sum = 0;
+    const gained = centred(columns[place]!.map((value) => (sum += step * value)));
+    const own = centred(after);
+    const [both, size] = [dot(gained, own), Math.sqrt(dot(gained, gained) * dot(own, own))];
+    if (after.length <= FEW || !(size > 0) || !(both > ALIKE * size)) return;
+    const what = `column ${place + 3} looks like the integral of column ${place + 2}, a velocity or displacement`;
+    throw text.fault(line, `${what}. Name the columns in the first line, such as time, x and velocity`);
+  });
+}
+
+function centred(values: Float64Array): Float64Array {
+  const mean = values.reduce((sum, value) => sum + value, 0) / values.length;
+  return values.map((value) => value - mean);
+}
+
+function dot(one: Float64Array, other: Float64Array): number {
+  return one.reduce((sum, value, i) => sum + value * other[i]!, 0);
 }
 
 function requireNumbers(text: RecordText, [at, fields]: Row): void {

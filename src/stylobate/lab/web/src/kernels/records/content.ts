@@ -7,13 +7,12 @@ import { RecordText, notReadHere } from "./text";
 const MOST = 32 << 20;
 /** First signs of archives and documents that may hold records, but not as text. */
 const PACKED: readonly (readonly [begin: string, what: string])[] = [
-  ["PK\x03\x04", "a zip archive. Unpack it and read the files in it"],
+  ["PK\x03\x04", "an archive or a workbook. Upload the files of one event, unpacked."],
   ["Rar!", "a rar archive. Unpack it and read the files in it"],
   ["7z\xbc\xaf", "a 7z archive. Unpack it and read the files in it"],
-  ["\xd0\xcf\x11\xe0", "an Excel workbook. Save its sheet as CSV and read that"],
+  ["\xd0\xcf\x11\xe0", "an Excel workbook of the old form. Save it as xlsx, or its sheet as CSV, and read that"],
   ["%PDF", "a PDF document. Save its numbers as text and read that"],
 ];
-const WORKBOOK = "an Excel workbook. Save its sheet as CSV and read that";
 
 /** Returns the text of a file that is given in base64. */
 export async function textOf(name: string, content: string): Promise<RecordText> {
@@ -24,7 +23,7 @@ export async function textOf(name: string, content: string): Promise<RecordText>
     throw new Refused(422, [`${name}: the file is empty. Download or export it again`]);
   }
   const packed = PACKED.find(([begin]) => latin.startsWith(begin))?.[1];
-  if (packed !== undefined) throw new Refused(422, [`${name}: ${latin.includes("xl/workbook") ? WORKBOOK : packed}`]);
+  if (packed !== undefined) throw new Refused(422, [`${name}: ${packed}`]);
   const text = decoded(latin, unzipped ?? bytesOf(sent));
   if (/[\x00-\x08\x0b\x0e-\x19\x1b-\x1f]/.test(text.slice(0, 4096))) throw binary(name);
   return new RecordText(name, text);

@@ -41,7 +41,8 @@ export function tableOf(text: RecordText): TextTable {
   const width = fieldsOf(first, separator).length;
   const names = namesIn(header, width, separator);
   const unnamedCsv = names === null && separator !== null && header.some(([, line]) => line.includes(separator));
-  if (unnamedCsv || !header.every(([, line]) => isHeader(line, width))) return withNamesInFirstLine(text, lines);
+  if (unnamedCsv || !header.every(([, line]) => isHeader(line, width, separator)))
+    return withNamesInFirstLine(text, lines);
   const split = (line: string): string[] => (names === null ? pieces(line) : fieldsOf(line, separator));
   return { text, rows: body.map(([at, line]) => [at, split(line)]), names, namesAt: header.at(-1)?.[0] ?? 0 };
 }
@@ -96,8 +97,8 @@ function isRow(line: string): boolean {
 }
 
 /** Returns whether a line above the numbers is a header and not a faulty row of numbers. */
-function isHeader(line: string, width: number): boolean {
-  const found = pieces(line);
+function isHeader(line: string, width: number, separator: string | null): boolean {
+  const found = separator === null ? pieces(line) : fieldsOf(line, separator);
   const spoilt = found.length === width && found.some((piece) => STARTS_WITH_DIGIT.test(piece));
   return /\p{L}/u.test(line) && !spoilt;
 }
