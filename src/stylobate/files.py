@@ -2,20 +2,21 @@
 
 import csv
 import hashlib
+import math
 import os
 import platform
 import re
 import secrets
 import shutil
 import stat
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from functools import lru_cache
-from io import StringIO
+from io import BytesIO, StringIO
 from pathlib import Path
 from typing import Any
 
-from stylobate.errors import FileError
+from stylobate.errors import FileError, UnsupportedError
 
 # Parts are named after the beginning of the file's name, the machine, the process, and a number drawn at random.
 _STEM = 40
@@ -147,6 +148,44 @@ def csv_text(header: Iterable[str], rows: Iterable[Iterable[Any]]) -> str:
     writer.writerow(header)
     writer.writerows(rows)
     return text.getvalue()
+
+
+def write_workbook(path: str | Path, tables: Mapping[str, Iterable[Iterable[Any]]]) -> Path:
+    """Write an Excel workbook with one sheet for each table of rows, the first of which is bold and stays in sight.
+
+    Raises
+    ------
+    UnsupportedError
+        If openpyxl is not installed.
+    FileError
+        If the file cannot be written.
+    """
+    try:
+        from openpyxl import Workbook
+        from openpyxl.cell import WriteOnlyCell
+        from openpyxl.styles import Font
+    except ImportError:
+        remedy = 'install openpyxl: pip install "stylobate[records]"; or write CSV'
+        raise UnsupportedError(f"{path}: to write an Excel workbook, {remedy}") from None
+    book = Workbook(write_only=True)
+    for title, rows in tables.items():
+        sheet = book.create_sheet(title)
+        sheet.freeze_panes = "A2"
+        for place, row in enumerate(rows):
+            cells = [WriteOnlyCell(sheet, value=_in_cell(value)) for value in row]
+            for cell in cells if place == 0 else ():
+                cell.font = Font(bold=True)
+            sheet.append(cells)
+    content = BytesIO()
+    book.save(content)
+    return write_whole(path, content.getvalue())
+
+
+def _in_cell(value: Any) -> Any:
+    """Return a value as a cell holds it: a number that is not finite as an empty cell."""
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
+    return value if isinstance(value, (int, float, str, bool)) or value is None else str(value)
 
 
 def sealed(content: bytes | memoryview) -> bytes:

@@ -100,7 +100,7 @@ COMPUTING = (
         "earthquakes.fragility_study.FragilityStudy.runs",
     ),
     *("earthquakes.assess", "paper.check_paper", "lab.serving.serve", "lab.static_site.write"),
-    *("cli.records.print_table", "records.response_spectra"),
+    *("cli.records._horizontal", "records.response_spectra"),
 )
 
 STUDY = """

@@ -9,7 +9,7 @@ import pytest
 import stylobate as sb
 from stylobate.cli.main import run
 from stylobate.column import STANDARD_GRAVITY
-from stylobate.records import intensity_measures
+from stylobate.records import intensity_measures, intensity_table
 
 READING = ["--units", "g", "--step", "0.01"]
 
@@ -56,6 +56,32 @@ def test_it_lists_each_component_with_its_file_and_its_measures(quakes, tmp_path
     assert drawn.read_bytes().startswith(b"\x89PNG")
 
 
+def test_it_lists_the_measures_of_the_horizontal_motion(quakes, tmp_path, capsys):
+    openpyxl = pytest.importorskip("openpyxl")
+    table, book = tmp_path / "table.csv", tmp_path / "book.xlsx"
+    for output in (table, book):
+        arguments = ["records", f"{quakes}/TAB*", *READING, "--period", "0.5", "--output", str(output), "--json"]
+        assert run(arguments) == 0
+    _, listed = capsys.readouterr().out.split("}\n{")
+    (one,) = json.loads("{" + listed)["records"]
+    (record,) = sb.read_records(f"{quakes}/TAB*", "g", step=0.01)
+    median, largest = (intensity_table(record, period=0.5, component=component) for component in ("RotD50", "RotD100"))
+    for name in ("pga", "pgv", "sa"):
+        assert one["horizontal"][f"{name}_rotd50"] == pytest.approx(float(median[name][0]), rel=1e-12)
+        assert one["horizontal"][f"{name}_rotd100"] == pytest.approx(float(largest[name][0]), rel=1e-12)
+    for name in ("cav", "arias", "duration_5_95", "fiv3"):
+        assert one["horizontal"][name] == pytest.approx(float(median[name][0]), rel=1e-12)
+    with (tmp_path / "table-horizontal.csv").open(encoding="utf-8") as file:
+        (row,) = csv.DictReader(file)
+    assert float(row["Sa(0.5 s) RotD50 [g]"]) == pytest.approx(float(median["sa"][0]) / STANDARD_GRAVITY)
+    sheets = openpyxl.load_workbook(book)
+    assert sheets.sheetnames == ["components", "horizontal"]
+    header, values = sheets["horizontal"].iter_rows(values_only=True)
+    assert header == tuple(row)
+    assert values[1:] == pytest.approx([float(row[name]) for name in header[1:]])
+    assert sheets["components"].max_row == 4  # three components below the header
+
+
 def test_it_lists_the_records_of_a_study_with_its_listed_events(quakes, capsys):
     study = quakes.parent / "study.toml"
     study.write_text(
@@ -82,7 +108,7 @@ def test_components_that_were_trimmed_are_noted(quakes, capsys):
     [
         ([], "records: none were given"),
         (["quakes/*.none"], "quakes/*.none: no file has such a name"),
-        (["quakes", "--output", "table.nc"], "--output must end with .csv, got 'table.nc'"),
+        (["quakes", "--output", "table.nc"], "--output must end with .csv or .xlsx, got 'table.nc'"),
         (["quakes", "--figure", "drawn.txt"], "--figure must end with"),
         (["a.toml", "quakes"], "SOURCE: a study must stand alone (got a.toml, quakes)"),
         (["empty.toml"], "the study has no records"),

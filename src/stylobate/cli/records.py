@@ -1,6 +1,6 @@
 """`stylobate records`: files, components and intensities of ground-motion records."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -8,14 +8,17 @@ from stylobate import config, earthquakes
 from stylobate.cli.command import Positional, command
 from stylobate.cli.options import Options, read_source
 from stylobate.cli.output import check_place, check_writable, print_json, print_table, save_figure
+from stylobate.column import STANDARD_GRAVITY
 from stylobate.config.options import FIGURE, JSON, ONE_COMPONENT, SAMPLE, STEP, UNITS, Group, Option
-from stylobate.errors import FileError, ParameterError
-from stylobate.files import csv_text, write_whole
+from stylobate.errors import FileError, ParameterError, require_positive
+from stylobate.files import csv_text, write_whole, write_workbook
+from stylobate.progress import Progress, report_of, shows_progress
 from stylobate.text import plural
 
 if TYPE_CHECKING:
     from stylobate.base_motions import Record
     from stylobate.records.intensities import ComponentRow
+    from stylobate.records.intensity_table import HorizontalRow
 
 _PERIODS = (0.05, 5.0, 60)
 _COLUMNS = {
@@ -33,6 +36,21 @@ _COLUMNS = {
     "residual_velocity": "residual velocity [m/s]",
 }
 _SHOWN = tuple(name for name in _COLUMNS if name not in ("origin", "pga"))
+_HORIZONTAL = {
+    "record": "record",
+    "pga_rotd50": "PGA RotD50 [g]",
+    "pga_rotd100": "PGA RotD100 [g]",
+    "pgv_rotd50": "PGV RotD50 [m/s]",
+    "pgv_rotd100": "PGV RotD100 [m/s]",
+    "sa_rotd50": "Sa({period:g} s) RotD50 [g]",
+    "sa_rotd100": "Sa({period:g} s) RotD100 [g]",
+    "cav": "CAV [m/s]",
+    "arias": "Arias [m/s]",
+    "duration_5_95": "D5-95 [s]",
+    "fiv3": "FIV3({period:g} s) [m/s]",
+}
+_IN_G = ("pga_rotd50", "pga_rotd100", "sa_rotd50", "sa_rotd100")
+_TABLES = (".csv", ".xlsx")
 
 
 @command(
@@ -49,44 +67,61 @@ _SHOWN = tuple(name for name in _COLUMNS if name not in ("origin", "pga"))
             UNITS,
             STEP,
             ONE_COMPONENT,
-            Option("spectral_damping", "damping ratio of the spectra in the figure; 0.05 by default", default=0.05),
+            Option("response", "StationXML that converts counts of waveform files to accelerations", Path),
+            Option("period", "natural period of Sa and FIV3; 1 s by default", default=1.0, unit="s"),
+            Option(
+                "spectral_damping", "damping ratio of Sa, and of spectra in the figure; 0.05 by default", default=0.05
+            ),
         ),
-        Group.of("Output", FIGURE, Option("output", "save the table into this file (.csv)", Path), JSON),
+        Group.of("Output", FIGURE, Option("output", "save the tables into this file (.csv, .xlsx)", Path), JSON),
     ),
 )
 def records(options: Options) -> None:
     """List ground-motion records, their components and their intensities.
 
     The components of an event are joined as in all commands: by record number, header or name, or as a study lists
-    them. The table holds peaks, Arias intensity, significant duration and residual velocity. Examples:
+    them. The first table holds peaks, Arias intensity, significant duration and residual velocity of each component.
+    The second holds measures of the horizontal motion: median (RotD50) and maximum (RotD100) over its directions; CAV,
+    Arias intensity, duration and FIV3 are medians. Archives, workbooks and waveform files are read like folders. For
+    example:
 
     stylobate records quakes --figure quakes.png --output quakes.csv
+
+    stylobate records PEER.zip --period 0.5 --output quakes.xlsx
+
+    stylobate records event.mseed --response station.xml
 
     stylobate records 'a/RSN786*.AT2' 'b/*_NS.txt' 'b/*_EW.txt' --units g --step 0.01
 
     stylobate records study.toml
     """
-    figure, output = options["figure"], options["output"]
+    figure, output, period = options["figure"], options["output"], require_positive("--period", options["period"], "s")
     check_writable(figure)
     _check_table(output)
-    if figure is not None:
-        options.use("spectral_damping")
+    damping = options["spectral_damping"]
     values = _values(options["sources"] or [], options)
     options.refuse_unused()
     listed = list(config.RecordsConfig.parse(values).build().values())
     from stylobate.records.intensities import component_rows, notes_on
 
     rows = {record.name: component_rows(record) for record in listed}
+    horizontal = {one.record: one._asdict() for one in _horizontal(listed, period, damping)}
+    if figure is not None:
+        _draw(listed, damping, figure)
     notes = [note for record in listed for note in notes_on(record)]
     if output is not None:
-        _save(rows, output)
-    if figure is not None:
-        _draw(listed, options["spectral_damping"], figure)
+        _save(output, rows, horizontal.values(), period)
     if options["as_json"]:
-        print_json({"records": [_summary(record, rows[record.name]) for record in listed], "notes": notes})
+        summaries = [
+            {**_summary(record, rows[record.name]), "horizontal": horizontal.get(record.name)} for record in listed
+        ]
+        print_json({"records": summaries, "period": period, "notes": notes})
         return
     cells = [[_written(value) for value in _row(row, _SHOWN)] for group in rows.values() for row in group]
     print_table(plural(len(listed), "record"), cells, [_COLUMNS[name] for name in _SHOWN])
+    if horizontal:
+        lines = [[_written(value) for value in _in_g(one)] for one in horizontal.values()]
+        print_table("horizontal motion", lines, _horizontal_header(period))
     for name, group in rows.items():
         print(f"{name}: {'; '.join(f'{row.axis} {row.origin}' for row in group)}")
     for note in notes:
@@ -99,7 +134,7 @@ def _values(sources: Sequence[str], options: Options) -> dict[str, Any]:
     if options["sample_records"]:
         values["samples"] = tuple(options["sample_records"])
     # Samples state these numbers.
-    of_files = ("units", "step", "one_component") if values.get("source") or values.get("event") else ()
+    of_files = ("units", "step", "one_component", "response") if values.get("source") or values.get("event") else ()
     return values | options.pick(*of_files)
 
 
@@ -121,14 +156,52 @@ def _described(sources: Sequence[str], options: Options) -> dict[str, Any]:
 def _check_table(output: Path | None) -> None:
     if output is None:
         return
-    if output.suffix != ".csv":
-        raise ParameterError(f"--output must end with .csv, got {str(output)!r}")
+    if output.suffix not in _TABLES:
+        raise ParameterError(f"--output must end with .csv or .xlsx, got {str(output)!r}")
     check_place(output)
 
 
-def _save(rows: Mapping[str, Sequence["ComponentRow"]], output: Path) -> None:
-    table = (_row(row, tuple(_COLUMNS)) for group in rows.values() for row in group)
-    write_whole(output, csv_text(_COLUMNS.values(), table))
+@shows_progress("horizontal measures")
+def _horizontal(
+    listed: Iterable["Record"], period: float, damping: float, progress: Progress = None
+) -> list["HorizontalRow"]:
+    """Return the measures of the records that move horizontally."""
+    from stylobate.records.intensity_table import horizontal_row
+
+    moving = [record for record in listed if set(record.axes) & {"x", "y"}]
+    rows, report = [], report_of(progress)
+    for done, record in enumerate(moving, start=1):
+        rows.append(horizontal_row(record, period, damping))
+        report(done, len(moving))
+    return rows
+
+
+def _horizontal_header(period: float) -> list[str]:
+    return [name.format(period=period) for name in _HORIZONTAL.values()]
+
+
+def _in_g(row: Mapping[str, Any]) -> list[Any]:
+    return [row[name] / STANDARD_GRAVITY if name in _IN_G else row[name] for name in _HORIZONTAL]
+
+
+def _save(
+    output: Path,
+    rows: Mapping[str, Sequence["ComponentRow"]],
+    horizontal: Iterable[Mapping[str, Any]],
+    period: float,
+) -> None:
+    """Write the tables: two sheets of a workbook, or two CSV files, the second with -horizontal in its name."""
+    components = [_row(row, tuple(_COLUMNS)) for group in rows.values() for row in group]
+    tables = {
+        "components": [list(_COLUMNS.values()), *components],
+        "horizontal": [_horizontal_header(period), *map(_in_g, horizontal)],
+    }
+    if output.suffix == ".xlsx":
+        write_workbook(output, tables)
+        return
+    for name, (header, *body) in tables.items():
+        path = output if name == "components" else output.with_stem(f"{output.stem}-{name}")
+        write_whole(path, csv_text(header, body))
 
 
 def _draw(listed: Sequence["Record"], damping: float, figure: Path) -> None:

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable, Iterable
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -113,7 +113,7 @@ def intensity_table(
 
 def _measures(record: Record, period: float, damping: float, component: HorizontalComponent) -> dict[str, float]:
     along = _Horizontal(record, component)
-    pga, pgv = (horizontal_peak(record, order, component) for order in (ACCELERATION, VELOCITY))
+    pga, pgv = (along.peak(order) for order in (ACCELERATION, VELOCITY))
     psa = along.spectral(period * np.array([1.0, *np.geomspace(_FIRST, _LAST, _PERIODS)]), damping)
     return {
         "pga": pga,
@@ -122,10 +122,85 @@ def _measures(record: Record, period: float, damping: float, component: Horizont
         "sa": float(psa[0]),
         "sa_avg": float(np.exp(np.mean(np.log(psa[1:])))),
         "fiv3": along.measure(lambda one: filtered_incremental_velocity(one.samples[:, 0], one.step, period)),
-        "cav": along.measure(lambda one: float(cumulative_absolute_velocity(one)[0])),
-        "arias": along.measure(lambda one: float(arias_intensity(one)[0])),
-        "duration_5_95": along.measure(lambda one: float(significant_duration(one)[0])),
+        "cav": along.measure(_cav),
+        "arias": along.measure(_arias),
+        "duration_5_95": along.measure(_duration),
     }
+
+
+class HorizontalRow(NamedTuple):
+    """Measures of the horizontal motion of a record: medians over the directions, and some maxima.
+
+    Parameters
+    ----------
+    record
+        Name of the record.
+    pga_rotd50, pga_rotd100, sa_rotd50, sa_rotd100
+        Peak ground acceleration, and spectral pseudo-acceleration at the period [m/s²].
+    pgv_rotd50, pgv_rotd100, cav, arias, fiv3
+        Peak ground velocity, cumulative absolute velocity, Arias intensity, filtered incremental velocity [m/s].
+    duration_5_95
+        Significant duration [s].
+    """
+
+    record: str
+    pga_rotd50: float
+    pga_rotd100: float
+    pgv_rotd50: float
+    pgv_rotd100: float
+    sa_rotd50: float
+    sa_rotd100: float
+    cav: float
+    arias: float
+    duration_5_95: float
+    fiv3: float
+
+
+def horizontal_row(record: Record, period: float, damping: float = 0.05) -> HorizontalRow:
+    """Compute the measures of the horizontal motion of a record; see `intensity_table`.
+
+    Parameters
+    ----------
+    record
+        The record.
+    period
+        Natural period of the oscillator [s].
+    damping
+        Its damping ratio.
+
+    Raises
+    ------
+    ParameterError
+        If the record does not move horizontally, or half its sampling rate is below 1 Hz.
+    """
+    median, largest = (_Horizontal(record, one) for one in (HorizontalComponent.ROTD50, HorizontalComponent.ROTD100))
+    at = np.array([period])
+    pga, pgv = ([one.peak(order) for one in (median, largest)] for order in (ACCELERATION, VELOCITY))
+    return HorizontalRow(
+        record=record.name,
+        pga_rotd50=pga[0],
+        pga_rotd100=pga[1],
+        pgv_rotd50=pgv[0],
+        pgv_rotd100=pgv[1],
+        sa_rotd50=float(median.spectral(at, damping)[0]),
+        sa_rotd100=float(largest.spectral(at, damping)[0]),
+        cav=median.measure(_cav),
+        arias=median.measure(_arias),
+        duration_5_95=median.measure(_duration),
+        fiv3=median.measure(lambda one: filtered_incremental_velocity(one.samples[:, 0], one.step, period)),
+    )
+
+
+def _cav(one: Record) -> float:
+    return float(cumulative_absolute_velocity(one)[0])
+
+
+def _arias(one: Record) -> float:
+    return float(arias_intensity(one)[0])
+
+
+def _duration(one: Record) -> float:
+    return float(significant_duration(one)[0])
 
 
 class _Horizontal:
@@ -137,6 +212,10 @@ class _Horizontal:
         if not directions:
             raise ParameterError(f"records: must move horizontally (got {record!r}). Leave it out.")
         self._line = math.atan2(directions[0][1], directions[0][0]) if len(directions) == 1 else None
+
+    def peak(self, order: int) -> float:
+        """Return the peak of the acceleration or the velocity."""
+        return horizontal_peak(self._record, order, self._component)
 
     def measure(self, of_one: Callable[[Record], float]) -> float:
         """Combine a measure of one component, called with a record whose component is x."""
