@@ -12,7 +12,7 @@ from stylobate.base_motions import BASE_AT_REST
 from stylobate.base_motions.combined import Sum
 from stylobate.base_motions.pulses import Waveform
 from stylobate.config import SimulationConfig, config_of, read_config, study_config
-from stylobate.errors import ConfigError, FileError, UnsupportedError
+from stylobate.errors import ConfigError, FileError, ParameterError, UnsupportedError
 from stylobate.models.declared import MODELS as KINDS
 from stylobate.provenance import provenance_of_run
 
@@ -328,3 +328,17 @@ def test_a_pulse_of_the_users_own_waveform_keeps_only_its_repr():
     stored = provenance_of_run(model, sb.Pulse(waveform=Bump()), duration=5.0, tilt=(0.1, 0.2))
     assert stored["motion"]["kind"] == "other"
     assert "Bump" in stored["motion"]["repr"]
+
+
+@pytest.mark.parametrize("diameter", [0.6, "60 cm", "600 mm", "0.6"])
+def test_files_may_state_diameters_in_place_of_radii(diameter):
+    numbers = {"height": 3.0, "density": 2500.0}
+    described = {"motion": {"kind": "rest"}, "duration": 1.0}
+    found = SimulationConfig.parse({"column": {"diameter": diameter, **numbers}, **described}).column.build()
+    assert found == sb.Column.solid(radius=0.3, **numbers)
+    hollow = SimulationConfig.parse({"column": {"diameter": diameter, "inner_diameter": 0.5, **numbers}, **described})
+    assert hollow.column.build() == sb.Column.hollow(radius=0.3, inner_radius=0.25, **numbers)
+    with pytest.raises(ParameterError, match="column: diameter and radius must not both be given"):
+        SimulationConfig.parse({"column": {"diameter": diameter, "radius": 0.3, **numbers}, **described})
+    with pytest.raises(ConfigError, match=r"column\.radius"):
+        SimulationConfig.parse({"column": {"diameter": "wide", **numbers}, **described})

@@ -315,7 +315,7 @@ def _record(table: Mapping[str, Any], options: Options) -> dict[str, Any]:
     """Return the options of a record; only a record from files can lack a component."""
     if "record" not in options.declared:
         return {}
-    stated = options.pick("units", "step", "scale", "rotation", "tail")
+    stated = options.pick("units", "step", "response", "scale", "rotation", "tail")
     files = [str(path) for path in options["record"] or ()]
     if files:
         stated["path"] = files[0] if len(files) == 1 else files

@@ -9,7 +9,7 @@ from stylobate.cli.command import Positional, command
 from stylobate.cli.options import Options, read_source
 from stylobate.cli.output import check_place, check_writable, print_json, print_table, save_figure
 from stylobate.column import STANDARD_GRAVITY
-from stylobate.config.options import FIGURE, JSON, ONE_COMPONENT, SAMPLE, STEP, UNITS, Group, Option
+from stylobate.config.options import FIGURE, JSON, ONE_COMPONENT, RESPONSE, SAMPLE, STEP, UNITS, Group, Option
 from stylobate.errors import FileError, ParameterError, require_positive
 from stylobate.files import csv_text, write_whole, write_workbook
 from stylobate.progress import Progress, report_of, shows_progress
@@ -67,7 +67,7 @@ _TABLES = (".csv", ".xlsx")
             UNITS,
             STEP,
             ONE_COMPONENT,
-            Option("response", "StationXML that converts counts of waveform files to accelerations", Path),
+            RESPONSE,
             Option("period", "natural period of Sa and FIV3; 1 s by default", default=1.0, unit="s"),
             Option(
                 "spectral_damping", "damping ratio of Sa, and of spectra in the figure; 0.05 by default", default=0.05

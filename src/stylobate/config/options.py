@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any, get_args, get_origin
 
 from stylobate.errors import FileError, ParameterError
+from stylobate.files import file_of
 from stylobate.kinds import loaded
 from stylobate.quantities import Parameter, parameters_of
 from stylobate.units import UnitError, is_number, read
@@ -238,7 +239,7 @@ def listed(names: Sequence[str], word: str = "or") -> str:
 def readable(paths: list[Path] | None) -> list[Path] | None:
     """Raise FileError at once for a file that is missing: the code that reads it takes seconds to import."""
     for path in paths or ():
-        if not path.is_file():
+        if not file_of(path).is_file():
             raise FileError(f"cannot read {path}: No such file or directory")
     return paths
 
@@ -266,6 +267,7 @@ EARLY_END = Group.of(
     "Run",
     Option("end_converged", "end converged runs early: circular motion, 300 periods or more", bool),
 )
+RESPONSE = Option("response", "StationXML that converts counts of waveform files to accelerations", str)
 ONE_COMPONENT = Option("one_component", "accept records of one component without a warning", bool)
 SAMPLE = 'record that comes with the package: "el centro 1940", or "el centro 1940 corrected"'
 
@@ -285,6 +287,7 @@ _RECORD_OPTIONS: Mapping[str, Option] = {
     "sample": Option("sample_record", SAMPLE, str),
     "units": UNITS,
     "step": STEP,
+    "response": RESPONSE,
     "scale": Option("scale", "factor of a record"),
     "rotation": Option("rotation", "rotation of a record about the vertical", unit="rad"),
     "tail": Option("tail", "free vibration time after a record", unit="s"),

@@ -13,11 +13,13 @@ from stylobate.base_motions.declared import MOTIONS
 from stylobate.column import SHAPES, Column
 from stylobate.config.description import Config
 from stylobate.config.records import RecordMotion
+from stylobate.errors import ParameterError
 from stylobate.kinds import Place, with_places
 from stylobate.models import Model
 from stylobate.models.declared import MODELS
 from stylobate.provenance import values_of_motion
 from stylobate.quantities import Parameter, Quantity, parameters_of, states
+from stylobate.units import is_number, split
 
 _D = TypeVar("_D", bound=Config)
 
@@ -135,8 +137,28 @@ def is_dimensionless(described: Any) -> bool:
 
 
 def _with_shape(described: Any) -> Any:
-    """Add the shape that the numbers imply to the values of a column without one; solid by default."""
-    return {"shape": implied_shape(described) or "solid", **described} if isinstance(described, Mapping) else described
+    """Add the shape that the numbers imply to the values of a column without one, solid by default; halve diameters."""
+    if not isinstance(described, Mapping):
+        return described
+    numbers = {name: value for name, value in described.items() if name not in _DIAMETERS}
+    for name, radius in _DIAMETERS.items():
+        if name in described and radius in described:
+            raise ParameterError(f"column: {name} and {radius} must not both be given. Remove one")
+        if name in described:
+            numbers[radius] = _half(described[name])
+    return {"shape": implied_shape(numbers) or "solid", **numbers}
+
+
+_DIAMETERS = {"diameter": "radius", "inner_diameter": "inner_radius", "top_diameter": "top_radius"}
+"""Lengths that files may state in place of radii."""
+
+
+def _half(length: Any) -> Any:
+    """Return half of a length; text with a unit keeps it, and what is no number is left to the check of radii."""
+    if isinstance(length, str) and is_number(length):
+        number, unit = split(length)
+        return f"{0.5 * float(number)!r} {unit}".strip()
+    return 0.5 * length if isinstance(length, (int, float)) and not isinstance(length, bool) else length
 
 
 if TYPE_CHECKING:

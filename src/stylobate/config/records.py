@@ -405,7 +405,7 @@ def anchored(values: Any, folder: Path) -> Any:
         return [anchored(value, folder) for value in values]
     if not isinstance(values, Mapping):
         return values
-    of_files = {"path"} if values.get("kind") == "record" else set()
+    of_files = {"path", "response"} if values.get("kind") == "record" else set()
     found = {
         name: _from(value, folder) if name in of_files else anchored(value, folder) for name, value in values.items()
     }
@@ -419,7 +419,7 @@ def anchored(values: Any, folder: Path) -> Any:
 def _source_from(records: Any, folder: Path) -> Any:
     if not isinstance(records, Mapping):
         return _from(records, folder)
-    found = {name: _from(value, folder) if name == "source" else value for name, value in records.items()}
+    found = {name: _from(value, folder) if name in ("source", "response") else value for name, value in records.items()}
     if isinstance(events := records.get("event"), list):
         found["event"] = [_source_of_event(one, folder) for one in events]
     return found

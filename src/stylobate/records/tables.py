@@ -252,7 +252,7 @@ def _require_no_integral(text: Text, line: int, values: Floats, step: float) -> 
             raise text.fault(line, f"{what}. Name the columns in the first line, such as time, x and velocity")
 
 
-_FEW = 20  # samples among which a correlation tells nothing
+_FEW = 20  # samples, of which a correlation shows nothing
 
 
 def read_named_columns(table: TextTable, columns: Mapping[str, str] | None, step: float | None) -> Component:
