@@ -270,6 +270,17 @@ def test_mistakes_are_told_in_one_line(folder, capsys, monkeypatch, options, mes
     assert "\n" not in told
 
 
+@pytest.mark.parametrize("name", ["SA(0.5)", "Sa(0.5 s)", "spectral acceleration at 0.5 s, 5 % damping"])
+def test_a_spectral_acceleration_is_named_alike_everywhere(folder, capsys, monkeypatch, name):
+    monkeypatch.chdir(folder)
+    (folder / "sa.csv").write_text("Sa(0.5 s) RotD50 [g], annual rate [1/a]\n0.05, 0.01\n0.5, 0.001\n3, 0.00001\n")
+    arguments = ["fragility", "study.toml", "--intensity", name, "--hazard", "sa.csv", "--hazard-units", "g", "--json"]
+    assert run(arguments) == 0
+    told = json.loads(capsys.readouterr().out)
+    assert "spectral acceleration at 0.5 s, 5 % damping" in json.dumps(told, ensure_ascii=False)
+    assert told["limit_states"][-1]["annual_rate"] > 0.0
+
+
 def test_a_description_tells_all_its_mistakes():
     values = {
         "column": {"shape": "dimensionless", "slenderness": 0.1},

@@ -37,7 +37,7 @@ def points(tmp_path, content, **given):
             "larger component",
         ),
         ("# peak ground velocity [cm/s], rate\n", "m s-1", 0.01, "peak ground velocity", None),
-        ("SA(0.50 s) RotD100 [cm/s²],rate\n", "m s-2", 0.01, "spectral acceleration at 0.5 s", "RotD100"),
+        ("SA(0.50 s) RotD100 [cm/s²],rate\n", "m s-2", 0.01, "spectral acceleration at 0.5 s, 5 % damping", "RotD100"),
         ("Intensity [m/s2]\tlambda\n", "m s-2", 1.0, "", None),
         ("# Olympia, Greece\nPGA/(g tan α), rate\n", None, 1.0, "PGA/(g tan α)", None),
     ],
@@ -102,7 +102,9 @@ def test_a_hazard_curve_of_openquake_is_that_of_a_site(tmp_path, remark):
         assert found.intensity == pytest.approx((0.980665, 3.92266, 5.88399))
         assert found.exceedance == (0.3, 0.02, 0.001)
         assert (found.investigation_time, found.units, found.component) == (50.0, "m s-2", "RotD50")
-    assert found.measure == ("peak ground acceleration" if remark is OLD else "spectral acceleration at 0.1 s")
+    assert found.measure == (
+        "peak ground acceleration" if remark is OLD else "spectral acceleration at 0.1 s, 5 % damping"
+    )
 
 
 def test_a_table_of_openquake_with_one_site_needs_no_choice_and_its_velocities_are_in_cm_per_second(tmp_path):
@@ -223,13 +225,21 @@ def test_spellings_of_a_year_are_annual_rates(tmp_path, second):
     ["SA(0.5 s)", "sa(.5)", "PSA 0.5s", "Sa at 0.50 sec", "SA(0.5 s), 5 % damping", "Sa (0.5 s) (5% damped)"],
 )
 def test_a_spectral_acceleration_is_named_by_its_period_in_seconds(tmp_path, name):
-    assert points(tmp_path, f"{name} [g]; rate\n{NUMBERS}").measure == "spectral acceleration at 0.5 s"
+    assert points(tmp_path, f"{name} [g]; rate\n{NUMBERS}").measure == "spectral acceleration at 0.5 s, 5 % damping"
+
+
+@pytest.mark.parametrize(("name", "damping"), [("SA(0.5 s) 10 % damping", 10), ("SA(0.5 s, 2 %)", 2)])
+def test_a_spectral_acceleration_may_state_its_damping(tmp_path, name, damping):
+    measure = points(tmp_path, f"{name} [g]; rate\n{NUMBERS}").measure
+    assert measure == f"spectral acceleration at 0.5 s, {damping} % damping"
 
 
 @pytest.mark.parametrize(
     "name",
-    ["Sa(2 Hz)", "SA(500 ms)", "SA(0.5 s) 10 % damping", "SA(0.5 s, 2 %)", "SA(0.5-1.5 s)", "SA(0.5 s) vertical"],
+    ["Sa(2 Hz)", "SA(500 ms)", "SA(0.5-1.5 s)", "SA(0.5 s) vertical"],
 )
 def test_other_spectral_accelerations_are_refused_and_not_taken_for_one_of_a_period(tmp_path, name):
-    with pytest.raises(FileError, match=r'5 % damping, got .*\. Name its period in seconds, such as "SA\(0.5 s\)"$'):
+    with pytest.raises(
+        FileError, match=r'a spectral acceleration, got .*\. Name its period in seconds, such as "SA\(0.5 s\)"$'
+    ):
         points(tmp_path, f"{name} [g]; rate\n{NUMBERS}")

@@ -40,7 +40,7 @@ _FRAGILITY = Group.of(
     ONE_COMPONENT,
     Option(
         "intensity",
-        "'peak ground acceleration' (by default), 'peak ground velocity', 'PGA/(g tan α)' or 'p PGV/(g tan α)'",
+        "PGA (by default), PGV, 'SA(0.5 s)', 'PGA/(g tan α)' or 'p PGV/(g tan α)'",
         str,
     ),
     Option(

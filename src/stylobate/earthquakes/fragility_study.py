@@ -10,6 +10,7 @@ import numpy as np
 import xarray as xr
 
 from stylobate.base_motions import BaseMotion
+from stylobate.column import STANDARD_GRAVITY
 from stylobate.earthquakes.config.fragility import FragilitySetup
 from stylobate.earthquakes.config.hazard import HazardPoints
 from stylobate.earthquakes.fragility import Counting, HazardCurve, annual_rate, dispersion_parts
@@ -176,7 +177,6 @@ class FragilityStudy:
 
 _UNITS = {"m s-2": "m/s²", "m s-1": "m/s", "1": "1"}
 _FIRST_LINE = "“PGA RotD50 [g], annual rate [1/a]”"
-_DAMPING = ", 5 % damping"  # hazard curves with another damping are refused
 
 
 def site_hazard(points: HazardPoints, intensity: IntensityMeasure) -> HazardCurve:
@@ -197,10 +197,9 @@ def site_hazard(points: HazardPoints, intensity: IntensityMeasure) -> HazardCurv
         raise ParameterError(
             f'fragility.hazard: intensity measure not stated. {named} measure, such as "PGA" or "SA(0.5 s)".'
         )
-    measure = points.measure + (_DAMPING if points.measure.startswith("spectral") else "")
-    if measure and measure != quantity.value:
+    if points.measure and points.measure != quantity.value:
         raise ParameterError(
-            f"fragility.hazard uses {measure!r}, but the fragility uses {quantity.value!r}. Provide both for "
+            f"fragility.hazard uses {points.measure!r}, but the fragility uses {quantity.value!r}. Provide both for "
             "the same intensity measure."
         )
     common: dict[str, Any] = {"units": quantity.units, "quantity": quantity.value, "component": points.component}
@@ -288,8 +287,9 @@ def table_of_fits(
     runs: xr.Dataset, fits: xr.Dataset, parts: xr.Dataset | None, rates: xr.Dataset | None
 ) -> ResultTable:
     """Make a table of the fits: a row for each limit state, and remarks."""
-    unit = _BRACKETED.get(str(fits["median"].attrs.get("units")), "")
-    header = ["limit state", f"median{unit}", "dispersion", "reached", "not monotonic"]
+    units = str(fits["median"].attrs.get("units"))
+    in_g = ["median [g]"] if units == "m s-2" else []
+    header = ["limit state", f"median{_BRACKETED.get(units, '')}", *in_g, "dispersion", "reached", "not monotonic"]
     if rates is not None:
         header += ["per year", f"in {rates.attrs['years']:g} years"]
     rows = [_row(fits, rates, place) for place in range(fits.sizes["limit_state"])]
@@ -311,13 +311,13 @@ def table_of_fits(
         remarks.append(describe_parts(parts))
     if rates is not None:
         remarks += [*_of_hazard(rates), *_remarks_on_rates(rows)]
-    return ResultTable(title, header, [_cells(row) for row in rows], remarks)
+    return ResultTable(title, header, [_cells(row, in_g=bool(in_g)) for row in rows], remarks)
 
 
 _BRACKETED = {"m s-2": " [m/s²]", "m s-1": " [m/s]"}
 
 
-def _cells(row: Mapping[str, Any]) -> list[str]:
+def _cells(row: Mapping[str, Any], *, in_g: bool) -> list[str]:
     fitted = row["status"] == "fitted"
     median, dispersion = (
         f"{_short(row[f'{name}_low'])} to {_short(row[f'{name}_high'])}" for name in ("median", "dispersion")
@@ -326,6 +326,7 @@ def _cells(row: Mapping[str, Any]) -> list[str]:
     cells = [
         row["name"],
         f"{_short(row['median'])}, {median}" if fitted else f"{row['status']}: {median}",
+        *([_short(row["median"] / STANDARD_GRAVITY) if fitted else ""] if in_g else ()),
         f"{_short(row['dispersion'])}, {dispersion}" if fitted else "",
         f"{row['runs_reached']} of {row['runs']}{unknown}",
         f"{row['non_monotone_records']}" if row["non_monotone_records"] > 0 else "",

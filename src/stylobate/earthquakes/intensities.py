@@ -1,6 +1,7 @@
 """Intensity measures of records, with the definition of the horizontal component."""
 
 import math
+import re
 from dataclasses import dataclass
 from enum import Enum
 from typing import Self
@@ -107,6 +108,49 @@ class SpectralAcceleration:
                 return max(along)
 
 
+_SHORT = {"pga": Intensity.PEAK_ACCELERATION, "pgv": Intensity.PEAK_VELOCITY}
+_SPECTRAL = re.compile(
+    r"(?:spectral acceleration|psa|sa)(?: at)?[\s(]*(?P<period>\d*\.?\d+)\s*(?:s|secs?|seconds?)?\s*\)?"
+    r"(?:[\s,(]*(?P<damping>\d*\.?\d+)\s*%(?:\s*damp(?:ing|ed))?\s*\)?)?"
+)
+
+
+def quantity_named(name: str, text: object) -> Intensity | SpectralAcceleration:
+    """Return the measured quantity of a name, in full or as engineers write it.
+
+    Parameters
+    ----------
+    name
+        Name of the argument, for messages.
+    text
+        "PGA", "PGV", "SA(0.5)", "Sa(0.5 s, 2 %)" or a full name; a damping that is not stated is 5 %.
+
+    Raises
+    ------
+    ParameterError
+        If no quantity has this name.
+
+    Examples
+    --------
+    >>> quantity_named("intensity", "PGA").value
+    'peak ground acceleration'
+    >>> quantity_named("intensity", "Sa(0.5 s)") == SpectralAcceleration(0.5)
+    True
+    """
+    lower = " ".join(str(text).lower().split())
+    known = {one.value.lower(): one for one in Intensity} | _SHORT
+    if isinstance(text, str) and lower in known:
+        return known[lower]
+    if isinstance(text, str) and (found := _SPECTRAL.fullmatch(lower)):
+        period, damping = float(found["period"]), float(found["damping"] or 5.0)
+        return SpectralAcceleration(period, float(f"{0.01 * damping:.12g}"))
+    listed = ", ".join(repr(one.value) for one in Intensity)
+    raise ParameterError(
+        f"{name} must be {listed}, or a spectral acceleration, got {text!r}. Name its period in seconds, such as "
+        '"SA(0.5 s)"'
+    )
+
+
 @dataclass(frozen=True, slots=True)
 class IntensityMeasure:
     """An intensity measure with the definition of its horizontal component.
@@ -138,11 +182,7 @@ class IntensityMeasure:
         definition = HorizontalComponent.named(component)
         if isinstance(intensity, (Intensity, SpectralAcceleration)):
             return cls(intensity, definition)
-        for one in Intensity:
-            if one.value == intensity:
-                return cls(one, definition)
-        known = ", ".join(repr(one.value) for one in Intensity)
-        raise ParameterError(f"intensity must be {known}, or SpectralAcceleration(period); got {intensity!r}")
+        return cls(quantity_named("intensity", intensity), definition)
 
     @property
     def name(self) -> str:

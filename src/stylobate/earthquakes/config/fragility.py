@@ -59,7 +59,8 @@ class Fragility(Config):
     scales
         Factors of the records: a table as below, without a name.
     intensity
-        Name of an intensity measure; or a table with the `period` [s] and `damping` of a spectral acceleration.
+        Name of an intensity measure, such as "PGA" or "SA(0.5 s)"; or a table with the `period` [s] and `damping` of a
+        spectral acceleration.
     component
         Horizontal component of the intensity: "RotD50", "RotD100", "geometric mean" or "larger component".
     rotations

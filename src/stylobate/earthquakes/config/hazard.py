@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any, TypeAlias, TypeVar
 
 from stylobate.config.description import Config
+from stylobate.earthquakes.intensities import quantity_named
 from stylobate.errors import FileError, ParameterError, require_positive
 from stylobate.records.intensities import HorizontalComponent
 from stylobate.records.text_files import REMARKS, begins_with_a_number, in_si, unit_of
@@ -35,7 +36,7 @@ class HazardPoints:
     units
         "m s-2", "m s-1" or "1"; None if not stated.
     measure
-        Name of the intensity measure, such as "spectral acceleration at 0.5 s"; empty if not stated.
+        Name of the intensity measure, such as "peak ground acceleration"; empty if not stated.
     component
         Definition of the horizontal component; None if not stated.
     source
@@ -385,19 +386,12 @@ def _chosen(site: Site | None, places: list[tuple[float, float]]) -> int:
 # Units of velocities; units of accelerations are those of records.
 _VELOCITIES = {"m/s": 1.0, "ms-1": 1.0, "cm/s": 0.01, "cms-1": 0.01, "mm/s": 0.001, "mms-1": 0.001}
 _PER_YEAR = ("1/a", "a-1", "1/y", "1/yr", "1/year", "y-1", "yr-1")
-_MEASURES = ("peak ground acceleration", "peak ground velocity", "PGA/(g tan α)", "p PGV/(g tan α)")
-_SHORT = {"pga": _MEASURES[0], "pgv": _MEASURES[1], **{name.lower(): name for name in _MEASURES}}
 # Names of a column that do not state the measure.
 _OPEN = ("", "intensity", "intensity measure", "im", "iml")
 
 # Name of a column, and its unit in brackets at the end; round brackets may belong to the name, as in SA(0.5 s).
 _SQUARE = re.compile(r"\s*(?P<name>.*?)\s*\[(?P<unit>[^\]]*)\]\s*")
 _ROUND = re.compile(r"\s*(?P<name>.*?)\s*\((?P<unit>[^()]*)\)\s*")
-_PERIOD = r"(?P<{}>\d*\.?\d+)\s*(?:s|secs?|seconds?)?"
-_SPECTRAL = re.compile(
-    rf"(?:spectral acceleration|psa|sa)(?: at)?\s*(?:\(\s*{_PERIOD.format('inside')}\s*\)|{_PERIOD.format('period')})"
-    r"[\s,(]*(?:5(?:\.0*)?\s*%(?:\s*damp(?:ing|ed))?\)?)?"
-)
 _COMPONENT = re.compile(
     r"[\s,(_-]*\b(?P<component>(?:gm)?rot[a-z]*\d+|geometric mean|geomean|larger component|vector(?: maximum)?)\b"
     r"[\s,)_-]*",
@@ -448,15 +442,7 @@ def _exceedance_column(header: str) -> dict[str, Any]:
 
 def _measure(text: str) -> str:
     """Return the full name of an intensity measure."""
-    lower = " ".join(text.lower().split())
-    if spectral := _SPECTRAL.fullmatch(lower):
-        return f"spectral acceleration at {float(spectral['inside'] or spectral['period']):g} s"
-    if lower not in _SHORT:
-        raise ParameterError(
-            f"measure must be {', '.join(map(repr, _MEASURES))}, or a spectral acceleration of 5 % damping, "
-            f'got {text!r}. Name its period in seconds, such as "SA(0.5 s)"'
-        )
-    return _SHORT[lower]
+    return quantity_named("measure", text).value
 
 
 def _unit(text: str) -> str | None:
