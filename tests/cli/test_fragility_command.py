@@ -119,7 +119,7 @@ def test_a_described_study_is_that_of_its_parts(folder):
     fits = study.fits(runs)
     assert fits.attrs["counting"] == Counting.FIRST.value
     curve = HazardCurve(**HAZARD, units="1", quantity="PGA/(g tan α)")
-    rates = study.rates(fits)
+    rates = study.rates(runs, fits)
     np.testing.assert_array_equal(rates["annual_rate"], annual_rate(fits, curve)["annual_rate"])
     assert study.parts(runs).attrs["limit_state"] == "overturning"
     assert study.parts(runs.isel(property_sample=0)) is None

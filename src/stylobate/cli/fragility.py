@@ -80,6 +80,7 @@ _FRAGILITY = Group.of(
         metavar="NUMBER|LON,LAT",
     ),
     Option("years", "period of the stated probability; 50 by default", unit="a"),
+    Option("target_rate", "annual rate that is accepted: the result states whether the rates are below it"),
 )
 _RUNS_FIGURE = Group.of("Output", Option("runs_figure", "draw the runs into this file", Path))
 
@@ -128,7 +129,7 @@ def fragility(options: Options) -> None:
         assert saved is not None
         runs = saved
     fits = study.fits(runs)
-    found = runs, fits, study.parts(runs), study.rates(fits)
+    found = runs, fits, study.parts(runs), study.rates(runs, fits)
     if options["runs_figure"] is not None:
         save_plot(runs, options["runs_figure"])
     if options["output"] is not None:
@@ -146,7 +147,7 @@ def fragility(options: Options) -> None:
 
 _OF_HAZARD = ("hazard", "hazard_units", "hazard_component", "hazard_site")
 # Options that change the fits and not the runs.
-_OF_FITS = ("counting", "confidence", "resamples", *_OF_HAZARD, "years", "runs_figure")
+_OF_FITS = ("counting", "confidence", "resamples", *_OF_HAZARD, "years", "target_rate", "runs_figure")
 
 
 def _description(saved: "xr.Dataset", source: Path | None) -> dict[str, Any]:
@@ -212,7 +213,7 @@ def _table(values: Mapping[str, Any], options: Options) -> Any:
     if options["spread"]:
         table["spreads"] = dict(_spread(text) for text in options["spread"])
     table |= _hazard(table.get("hazard"), options)
-    rates = ("years",) if table.get("hazard") is not None else ()
+    rates = ("years", "target_rate") if table.get("hazard") is not None else ()
     table |= options.pick("intensity", "component", "seed", "counting", "confidence", "resamples", *rates)
     renamed = options.pick("free_tail", "property_samples")
     return table | {{"free_tail": "tail", "property_samples": "samples"}[name]: one for name, one in renamed.items()}

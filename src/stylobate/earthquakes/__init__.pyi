@@ -6,6 +6,7 @@ from .figures.incremental import plot_directions
 from .figures.spectra import plot_records
 from .fragility.annual_rate import HazardCurve, annual_rate
 from .fragility.dispersion import SampleDesign, dispersion_parts
+from .fragility.empirical_rate import empirical_rate
 from .fragility.fit import fit_fragility, fragility_of_runs, lognormal_fragility
 from .fragility.likelihood import FitStatus
 from .fragility.observations import Counting, limit_states, reached_intervals
@@ -46,6 +47,7 @@ __all__ = [
     "compare_intensities",
     "compare_rules",
     "dispersion_parts",
+    "empirical_rate",
     "fit_fragility",
     "fragility_of_runs",
     "incremental_dynamic_analysis",

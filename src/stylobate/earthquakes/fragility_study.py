@@ -13,7 +13,7 @@ from stylobate.base_motions import BaseMotion
 from stylobate.column import STANDARD_GRAVITY
 from stylobate.earthquakes.config.fragility import FragilitySetup
 from stylobate.earthquakes.config.hazard import HazardPoints
-from stylobate.earthquakes.fragility import Counting, HazardCurve, annual_rate, dispersion_parts
+from stylobate.earthquakes.fragility import Counting, HazardCurve, annual_rate, dispersion_parts, empirical_rate
 from stylobate.earthquakes.fragility.annual_rate import require_same_component
 from stylobate.earthquakes.fragility.fit import fragility_of_runs
 from stylobate.earthquakes.incremental import incremental_dynamic_analysis
@@ -33,7 +33,7 @@ from stylobate.text import plural
 _OVERTURNING = "overturning"
 _LEAST = 2
 # Streams of random numbers from one seed.
-_OF_SAMPLES, _OF_RESAMPLES, _OF_PARTS = range(3)
+_OF_SAMPLES, _OF_RESAMPLES, _OF_PARTS, _OF_RATE = range(4)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -56,6 +56,8 @@ class FragilityStudy:
         Hazard curve, in `intensity` and `component`.
     years
         Time for which probabilities are stated.
+    target_rate
+        Annual rate that is accepted [1/a], or None.
     options
         Options of all runs.
     """
@@ -76,6 +78,7 @@ class FragilityStudy:
     resamples: int = 1000
     hazard: HazardCurve | None = None
     years: float = 50.0
+    target_rate: float | None = None
     options: RunOptions
 
     @classmethod
@@ -108,6 +111,7 @@ class FragilityStudy:
             resamples=table.resamples,
             hazard=None if setup.hazard is None else site_hazard(setup.hazard, intensity),
             years=table.years,
+            target_rate=table.target_rate,
             options=RunOptions(**setup.options),  # type: ignore[typeddict-item]
         )
 
@@ -162,9 +166,27 @@ class FragilityStudy:
         rng = self._stream(_OF_PARTS)
         return dispersion_parts(level, plain, confidence=self.confidence, rng=rng).assign_attrs(limit_state=limit_state)
 
-    def rates(self, fits: xr.Dataset) -> xr.Dataset | None:
-        """Compute annual rates of the limit states; None without a hazard."""
-        return None if self.hazard is None else annual_rate(fits, self.hazard, years=self.years)
+    def rates(self, runs: xr.Dataset, fits: xr.Dataset) -> xr.Dataset | None:
+        """Compute annual rates of the limit states, by the fitted curves and counted; None without a hazard."""
+        if self.hazard is None:
+            return None
+        counted = empirical_rate(
+            runs["intensity"],
+            runs["reached"],
+            self.hazard,
+            record=runs["record"],
+            property_sample=runs["property_sample"] if "property_sample" in runs.dims else None,
+            years=self.years,
+            confidence=self.confidence,
+            resamples=self.resamples,
+            rng=self._stream(_OF_RATE),
+        )
+        fitted = annual_rate(fits, self.hazard, years=self.years)
+        names = {
+            name: f"counted_{name}" for name in ("annual_rate", "rate_low", "rate_high", "rate_least", "rate_most")
+        }
+        own = {"target_rate": self.target_rate} if self.target_rate is not None else {}
+        return fitted.merge(counted[[*names]].rename(names)).assign_attrs(own)
 
     def _yardstick(self) -> dict[str, list[float]]:
         """Return Housner's damping of the column at each peak tilt, in tipping angles."""
@@ -263,7 +285,8 @@ _PARTS = [
 ]  # as from dispersion_parts
 
 
-_OF_RATES = ("annual_rate", "rate_low", "rate_high", "probability", "share_beyond")
+_OF_COUNTED = tuple(f"counted_{name}" for name in ("annual_rate", "rate_low", "rate_high", "rate_least", "rate_most"))
+_OF_RATES = ("annual_rate", "rate_low", "rate_high", "probability", "share_beyond", *_OF_COUNTED)
 
 
 def _row(fits: xr.Dataset, rates: xr.Dataset | None, place: int) -> dict[str, Any]:
@@ -291,7 +314,7 @@ def table_of_fits(
     in_g = ["median [g]"] if units == "m s-2" else []
     header = ["limit state", f"median{_BRACKETED.get(units, '')}", *in_g, "dispersion", "reached", "not monotonic"]
     if rates is not None:
-        header += ["per year", f"in {rates.attrs['years']:g} years"]
+        header += ["per year, fitted", "per year, counted", f"in {rates.attrs['years']:g} years"]
     rows = [_row(fits, rates, place) for place in range(fits.sizes["limit_state"])]
     over = " × ".join(plural(runs.sizes[dim], str(dim).replace("_", " ")) for dim in runs["outcome"].dims)
     title = f"{number_of_runs(runs, f': {over}')}; {model_named(runs)}; over the {runs.attrs['intensity']}"
@@ -310,7 +333,7 @@ def table_of_fits(
     if parts is not None:
         remarks.append(describe_parts(parts))
     if rates is not None:
-        remarks += [*_of_hazard(rates), *_remarks_on_rates(rows)]
+        remarks += [*_of_hazard(rates), *_remarks_on_rates(rows), *_against_target(rates, rows)]
     return ResultTable(title, header, [_cells(row, in_g=bool(in_g)) for row in rows], remarks)
 
 
@@ -337,12 +360,14 @@ def _cells(row: Mapping[str, Any], *, in_g: bool) -> list[str]:
 
 
 def _rate_cells(row: Mapping[str, Any]) -> list[str]:
-    """Write the annual rate and the probability; a rate may be withheld."""
+    """Write the annual rates and the probability; a rate may be withheld."""
+    rate, low, high = (row[name] for name in _OF_COUNTED[:3])
+    counted = f"{rate:.2e}" + (f", {low:.1e} to {high:.1e}" if math.isfinite(low) else "")
     if row["rate_withheld"]:
-        return ["withheld", "withheld"]
+        return ["withheld", counted, "withheld"]
     if not math.isfinite(row["annual_rate"]):
-        return ["", ""]
-    return [f"{row['annual_rate']:.2e}", _percent(row["probability"])]
+        return ["", counted, ""]
+    return [f"{row['annual_rate']:.2e}", counted, _percent(row["probability"])]
 
 
 def _percent(probability: float) -> str:
@@ -374,6 +399,33 @@ def _remarks_on_rates(rows: Sequence[Mapping[str, Any]]) -> list[str]:
             bounds = f"it is between {row['rate_low']:.1e} and {row['rate_high']:.1e} per year"
             lines.append(f"annual rate of {row['name']!r}: withheld: {why}; {bounds}")
     return lines
+
+
+def _against_target(rates: xr.Dataset, rows: Sequence[Mapping[str, Any]]) -> list[str]:
+    """State for each limit state whether its annual rate is below the target, by the interval of the counted rate."""
+    target = rates.attrs.get("target_rate")
+    return [] if target is None else [f"{row['name']}: {compared_with_target(row, float(target))}" for row in rows]
+
+
+def compared_with_target(row: Mapping[str, Any], target: float) -> str:
+    """Return whether an annual rate is below a target [1/a], above it, or undecided by its interval.
+
+    Parameters
+    ----------
+    row
+        Numbers of a limit state: the counted rate, with its interval.
+    target
+        Accepted annual rate [1/a].
+    """
+    rate, low, high = (row[name] for name in _OF_COUNTED[:3])
+    if not math.isfinite(low):
+        how = "below" if rate < target else "above"
+        return f"{how} the target of {target:.1e} per year, without an interval"
+    if high < target:
+        return f"below the target of {target:.1e} per year"
+    if low > target:
+        return f"above the target of {target:.1e} per year"
+    return f"not decided against the target of {target:.1e} per year, which lies in the interval. Add records"
 
 
 def _short(value: float) -> str:

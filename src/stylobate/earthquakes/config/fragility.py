@@ -85,6 +85,8 @@ class Fragility(Config):
         Hazard curve of the site: a table as below.
     years
         Period of the stated probability [years].
+    target_rate
+        Annual rate that is accepted [1/year]: with a hazard, the result states whether the rates are below it.
     """
 
     scales: Scales
@@ -101,6 +103,7 @@ class Fragility(Config):
     resamples: int = 1000
     hazard: Hazard | None = None
     years: float = 50.0
+    target_rate: float | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -191,6 +194,7 @@ class FragilityConfig(ManyRuns):
             "seed": lambda: require_whole("seed", table.seed, least=0, most=LARGEST_SEED),
             "resamples": lambda: require_whole("resamples", table.resamples, least=0),
             "years": lambda: require_positive("years", table.years, "a"),
+            "target_rate": lambda: require_positive("target_rate", table.target_rate or 1.0, "1/a"),
             "tail": lambda: require_not_negative("tail", table.tail or 0.0, "s"),
             "rotations": lambda: [require_finite("rotations", angle, "rad") for angle in table.rotations],
         }

@@ -359,12 +359,16 @@ def _require_fragility(fragility: xr.Dataset, hazard: HazardCurve) -> None:
         )
     if not isinstance(hazard, HazardCurve):
         raise ParameterError(f"hazard must be a HazardCurve, got {type(hazard).__name__}")
-    unit = fragility["median"].attrs.get("units", "1")
+    require_same_unit(fragility["median"].attrs.get("units", "1"), hazard)
+    require_same_component(fragility["median"].attrs.get("component"), hazard.component)
+
+
+def require_same_unit(unit: str, hazard: HazardCurve) -> None:
+    """Raise ParameterError unless fragility and hazard have one unit."""
     if unit != hazard.units:
         raise ParameterError(
             f"hazard must have the unit of the fragility, {unit!r}, got {hazard.units!r}; convert one of them"
         )
-    require_same_component(fragility["median"].attrs.get("component"), hazard.component)
 
 
 def require_same_component(fragility: str | None, hazard: str | HorizontalComponent | None) -> None:

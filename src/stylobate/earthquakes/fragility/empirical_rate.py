@@ -1,0 +1,166 @@
+"""Annual rates straight from runs, without a fitted curve: each run stands for the intensities around its own.
+
+    rate = (1/n) Σ_r ∫ 1_r(x) |dλ(x)|                                                                      (1)
+
+over the n records r, with 1_r(x) = 1 where the run nearest to x on a logarithmic axis reached the limit state. The
+boundaries between runs are geometric means of neighbouring intensities, so that with these boundaries e_i
+
+    ∫ 1_r |dλ| = Σ_i 1_r(x_i) (λ(e_i) − λ(e_i+1))                                                         (2)
+
+Survival above an intensity that overturned the column counts as survival, which no lognormal curve can show.
+"""
+
+import numpy as np
+import xarray as xr
+
+from stylobate.earthquakes.fragility.annual_rate import HazardCurve, require_same_component, require_same_unit
+from stylobate.earthquakes.fragility.observations import LIMIT_STATE, NOT_KNOWN, Data, Floats, Integers, Observations
+from stylobate.errors import ParameterError, require_positive, require_whole
+from stylobate.studies.proportions import require_confidence
+
+_FEWEST = 2
+
+
+def empirical_rate(
+    intensity: Data,
+    reached: Data,
+    hazard: HazardCurve,
+    *,
+    record: Data | None = None,
+    property_sample: Data | None = None,
+    years: float = 50.0,
+    confidence: float = 0.95,
+    resamples: int = 1000,
+    rng: np.random.Generator | None = None,
+) -> xr.Dataset:
+    """Compute the annual rate at which each limit state is reached from the runs alone, (1), with an interval.
+
+    Parameters
+    ----------
+    intensity, reached, record, property_sample
+        Runs, as for `fit_fragility`; a record is needed.
+    hazard
+        Annual rates of exceedance of this intensity; beyond its ends it is continued with the slopes it has there.
+    years
+        Time for which the probability of one or more failures is stated, for a Poisson process.
+    confidence
+        Confidence level of the interval.
+    resamples
+        Number of bootstrap samples of the records; 0 for no interval.
+    rng
+        Random numbers of the bootstrap.
+
+    Returns
+    -------
+    xarray.Dataset
+        Of kind "empirical annual rate". Over `limit_state`: `annual_rate` [1/a]; `rate_low` and `rate_high`, its
+        interval by percentiles of the resamples of the records, NaN for fewer than two records; `rate_least` and
+        `rate_most`, bounds for what happens beyond the scales of the runs: above the last scale of a record the column
+        always stands or always falls, and it always falls below a first scale that reached the limit state;
+        `probability` in `years` years. Over `record` too: `record_rate`.
+
+    Raises
+    ------
+    ParameterError
+        If no record is named, unit or horizontal component of intensity and hazard differ, or a number is out of range.
+
+    Notes
+    -----
+    Above its last scale a record counts as there; below its first scale it counts as not reached. Runs that are not
+    known are left out. Samples of properties count alike within their record, and records alike.
+
+    Examples
+    --------
+    >>> hazard = HazardCurve(intensity=[0.1, 10.0], rate=[1e-1, 1e-5])  # 1e-3/x²
+    >>> found = empirical_rate([1.0, 4.0, 9.0], [False, True, False], hazard, record=[1, 1, 1])
+    >>> round(found["annual_rate"].item() / 1e-3, 12) == round(1 / 2**2 - 1 / 6**2, 12)
+    True
+    """
+    time, level = require_positive("years", years, "a"), require_confidence(confidence)
+    count = require_whole("resamples", resamples, least=0)
+    seen = Observations.of(intensity, reached, record, property_sample)
+    if seen.record is None or seen.series is None:
+        raise ParameterError("record: missing. Name the record of each run, for example record=names")
+    require_same_unit(str(seen.attributes.get("units", "1")), hazard)
+    require_same_component(seen.attributes.get("component"), hazard.component)
+    of_record = np.array([seen.record[seen.series == one][0] for one in range(seen.series.max() + 1)])
+    parts = np.array(
+        [
+            [_series_rate(seen.intensity[runs], state[runs], hazard) for runs in _each(seen.series)]
+            for state in seen.reached
+        ]
+    )  # (limit states, series, 3)
+    records = np.arange(len(seen.records))
+    each = np.stack([np.nanmean(parts[:, of_record == one], axis=1) for one in records], axis=1)
+    rate, least, most = (np.nanmean(each[:, :, place], axis=1) for place in range(3))
+    low, high = _interval(each[:, :, 0], level, count, rng)
+    per_year = {"units": "a-1"}
+    percent = f"{100.0 * level:g} %"
+    data = {
+        "annual_rate": (rate, "annual rate, counted"),
+        "rate_low": (low, f"lower end of its {percent} interval over records"),
+        "rate_high": (high, f"upper end of its {percent} interval over records"),
+        "rate_least": (least, "lower bound beyond the scales"),
+        "rate_most": (most, "upper bound beyond the scales"),
+    }
+    return xr.Dataset(
+        {name: (LIMIT_STATE, values, {**per_year, "long_name": text}) for name, (values, text) in data.items()}
+        | {
+            "record_rate": ((LIMIT_STATE, "record"), each[:, :, 0], {**per_year, "long_name": "annual rate, counted"}),
+            "probability": (
+                LIMIT_STATE,
+                -np.expm1(-rate * time),
+                {"units": "1", "long_name": f"probability in {time:g} years"},
+            ),
+        },
+        coords={LIMIT_STATE: list(seen.names), "record": list(seen.records)},
+        attrs={
+            "kind": "empirical annual rate",
+            "years": time,
+            "confidence": level,
+            "resamples": count,
+            "hazard_origin": hazard.origin,
+        },
+    )
+
+
+def _each(series: Integers) -> list[Floats]:
+    return [series == one for one in range(series.max() + 1)]
+
+
+def _series_rate(intensity: Floats, state: Integers, hazard: HazardCurve) -> tuple[float, float, float]:
+    """Return (2) of one series of runs, and its bounds beyond the scales; NaN without known runs."""
+    known = state != NOT_KNOWN
+    order = np.argsort(intensity[known], kind="stable")
+    u, hit = np.log(intensity[known][order]), state[known][order] == 1
+    if u.size == 0:
+        return np.nan, np.nan, np.nan
+    between = _exceedance(hazard, 0.5 * (u[1:] + u[:-1]))
+    first, last = (float(_exceedance(hazard, u[end : end + 1 or None])[0]) for end in (0, -1))
+    upper, lower = np.append(between, 0.0), np.insert(between, 0, first)
+    rate = float(np.sum((lower - upper)[hit]))
+    least = rate - (last if hit[-1] else 0.0)
+    beyond = (np.inf if hit[0] and hazard.slopes[0] > 0.0 else 0.0) + (0.0 if hit[-1] else last)
+    return rate, least, rate + beyond
+
+
+def _exceedance(hazard: HazardCurve, u: Floats) -> Floats:
+    """Return λ at exp(u), beyond the ends of the curve continued with its slopes there."""
+    ends, slopes, known = hazard.log_intensity, hazard.slopes, hazard.log_rate
+    inside = np.interp(u, ends, known)
+    below = np.where(u < ends[0], known[0] - slopes[0] * (u - ends[0]), inside)
+    return np.asarray(np.exp(np.where(u > ends[-1], known[-1] - slopes[-1] * (u - ends[-1]), below)))
+
+
+def _interval(each: Floats, level: float, count: int, rng: np.random.Generator | None) -> tuple[Floats, Floats]:
+    """Return the percentiles of the mean over resampled records; `each` has the shape (limit states, records)."""
+    states, records = each.shape
+    if count == 0 or records < _FEWEST:
+        return np.full(states, np.nan), np.full(states, np.nan)
+    if rng is None:
+        raise ParameterError(f"rng: missing, needed for resamples={count}. Pass np.random.default_rng(0)")
+    chosen = rng.integers(records, size=(count, records))
+    means = np.nanmean(each[:, chosen], axis=2)
+    tails = 0.5 * (1.0 - level)
+    low, high = np.quantile(means, [tails, 1.0 - tails], axis=1)
+    return low, high
