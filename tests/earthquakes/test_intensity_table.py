@@ -86,7 +86,7 @@ def test_the_filtered_incremental_velocity_is_that_of_another_integration():
     rest = np.zeros(3000)
     dense = np.concatenate([rest, dense, rest])
     # the analogue filter s² + √2 ωs + ω², integrated as an oscillator of the damping ratio √½
-    from stylobate.records.spectra import oscillator_response
+    from stylobate.base_motions.oscillator import oscillator_response
 
     omega = 2.0 * np.pi
     filtered = -(omega**2) * oscillator_response(dense[:, np.newaxis], 1e-3, 1.0, math.sqrt(0.5))[0][:, 0]

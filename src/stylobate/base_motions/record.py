@@ -12,6 +12,7 @@ import numpy.typing as npt
 
 from stylobate.base_motions.base import ACCELERATION, VELOCITY, Components
 from stylobate.base_motions.combined import BaseMotion
+from stylobate.base_motions.oscillator import floor_motion
 from stylobate.base_motions.signal_processing import (
     Floats,
     baseline_corrected,
@@ -430,6 +431,19 @@ class Record(BaseMotion):
         arguments: dict[str, Any] = {"highpass": highpass, "lowpass": lowpass, "order": order, "causal": causal}
         samples, note = filtered(self.samples, self.step, **arguments)
         return self.changed(note, samples=samples, origin=self._then("filtered", **arguments))
+
+    def floor_motion(self, *, period: float, damping: float = 0.05) -> "Record":
+        """Compute the motion of a floor or a pedestal: that of an oscillator on this ground (see `oscillator`).
+
+        The horizontal components pass through it, the vertical component stays. The result goes on until the floor is
+        at rest.
+        """
+        flat, step, note = floor_motion(self.samples[:, :2], self.step, period, damping)
+        fine, coarse = np.arange(len(flat)) * step, np.arange(len(self.samples)) * self.step
+        vertical = np.interp(fine, coarse, self.samples[:, 2], right=0.0)
+        samples = np.column_stack([flat, vertical])
+        origin = self._then("floor_motion", period=period, damping=damping)
+        return self.changed(note, samples=samples, step=step, origin=origin)
 
     def baseline_corrected(self, degree: int = 1) -> "Record":
         """Subtract the derivative of a polynomial fitted to the velocity (see `signal_processing`)."""

@@ -149,6 +149,14 @@ class FilteredStep(_Step):
     causal: bool = False
 
 
+class FloorStep(_Step):
+    """Take the motion of a floor of natural `period` [s] and `damping` ratio on this ground."""
+
+    method: Literal["floor_motion"] = "floor_motion"
+    period: Seconds
+    damping: float = 0.05
+
+
 class BaselineStep(_Step):
     """Subtract the derivative of a polynomial of this `degree` fitted to the velocity."""
 
@@ -167,6 +175,7 @@ AnyStep = (
     | TailStep
     | ResampledStep
     | FilteredStep
+    | FloorStep
     | BaselineStep
 )
 

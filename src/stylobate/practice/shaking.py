@@ -116,7 +116,7 @@ def _record_of(motion: BaseMotion) -> Record:
 
 def _spectrum(record: Record, damping: float) -> Floats:
     """Return the peak of the horizontal vector of pseudo-accelerations at `PERIODS`, at most 0.2 % low."""
-    from stylobate.records.spectra import oscillator_response
+    from stylobate.base_motions.oscillator import oscillator_response
 
     own, peaks = record.step * np.arange(len(record.samples)), []
     for period in PERIODS:

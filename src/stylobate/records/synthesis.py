@@ -22,11 +22,11 @@ import numpy as np
 from scipy.optimize import brentq
 from scipy.special import gammaincinv, gammaln
 
+from stylobate.base_motions.oscillator import oscillator_response
 from stylobate.base_motions.record import AXES, Record
 from stylobate.base_motions.signal_processing import Floats, samples_within_limit
 from stylobate.column import STANDARD_GRAVITY
 from stylobate.errors import ParameterError, require_finite, require_positive, require_whole
-from stylobate.records.spectra import oscillator_response
 
 Density = Callable[[Floats], Floats]
 """One-sided power spectral density G(f) [(m/s²)²/Hz] of frequencies [Hz]."""

@@ -8,10 +8,10 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import stylobate as sb
+from stylobate.base_motions.oscillator import oscillator_response
 from stylobate.errors import ParameterError
 from stylobate.records import response_spectra
 from stylobate.records.intensities import over_directions
-from stylobate.records.spectra import oscillator_response
 
 STEP = 0.02
 SAMPLES = np.random.default_rng(11).normal(size=(101, 2))
