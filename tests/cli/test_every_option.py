@@ -83,6 +83,7 @@ BASES = {
         (*TUBE, "--sample-records", "el centro 1940", *SCALES, *SLIDING),
     ],
     "records": [("--sample-records", "el centro 1940"), ("study.toml",), ("study.toml", "--figure", "records.png")],
+    "select": [("--sample-records", "el centro 1940", "--target", "target.csv")],
     "assess": [("study.toml",)],
     "paper": [()],
     "lab": [()],
@@ -99,7 +100,13 @@ COMPUTING = (
         "earthquakes.rocking_spectrum",
         "earthquakes.fragility_study.FragilityStudy.runs",
     ),
-    *("earthquakes.assess", "paper.check_paper", "lab.serving.serve", "lab.static_site.write"),
+    *(
+        "earthquakes.record_selection.select_records",
+        "earthquakes.assess",
+        "paper.check_paper",
+        "lab.serving.serve",
+        "lab.static_site.write",
+    ),
     *("cli.records._horizontal", "records.response_spectra"),
 )
 
@@ -156,6 +163,7 @@ def parsers_are_kept():
 def nothing_is_computed(monkeypatch, tmp_path):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "study.toml").write_text(STUDY, encoding="utf-8")
+    (tmp_path / "target.csv").write_text("period [s], Sa [g]\n0.1, 0.9\n3.0, 0.2\n", encoding="utf-8")
     (tmp_path / VALUES[0]).touch()  # no folder can have this name
     opened = []
     monkeypatch.setattr("webbrowser.open", opened.append)

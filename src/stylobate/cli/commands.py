@@ -42,6 +42,7 @@ COMMANDS = {
         "cli.feeder:feeder", "Compute the sheet of a feeder: hops, speed, steepest track and posture of a part."
     ),
     "records": Entry("cli.records:records", "List ground-motion records, their components and their intensities."),
+    "select": Entry("cli.select:select", "Choose records whose spectra fit a target, and scale them."),
     "assess": Entry("cli.assess:assess", "Assess whether columns survive records, and how robust the answer is."),
     "spectrum": Entry(
         "earthquakes:overturning_intervals", "Compute overturning intervals of the amplitude, or rocking spectra."

@@ -23,14 +23,17 @@ class EventConfig(Config):
     files
         Paths or patterns of the files of one event.
     directions
-        Direction of each file, in the same order: an azimuth [degrees] or a name such as "up".
+        Direction of each file, in the same order or by its name: an azimuth [degrees] or a name such as "up".
     name
         Name of the record.
+    scale
+        Factor of the record.
     """
 
     files: str | tuple[str, ...]
-    directions: tuple[float | str, ...] = ()
+    directions: dict[str, float | str] | tuple[float | str, ...] = ()
     name: str | None = None
+    scale: float | None = None
 
 
 class RecordsConfig(Reading):
@@ -102,7 +105,7 @@ class RecordsConfig(Reading):
 
     def _stated(self, event: EventConfig, paths: tuple[Path, ...]) -> Record:
         directions = event.directions or self._own(paths)
-        return self._motion(paths, name=event.name, directions=directions).build()
+        return self._motion(paths, name=event.name, directions=directions, scale=event.scale).build()
 
     def _found(self, event: EventFiles) -> Record:
         record = self.join(event)

@@ -23,6 +23,7 @@ from .property_spreads import (
     UniformSpread,
     property_samples,
 )
+from .record_selection import select_records
 from .spectrum_study import overturning_intervals, rocking_spectrum
 from .verdict_study import repeat_verdict, verdict
 
@@ -63,5 +64,6 @@ __all__ = [
     "repeat_verdict",
     "rocking_spectrum",
     "scores",
+    "select_records",
     "verdict",
 ]

@@ -191,6 +191,17 @@ def horizontal_row(record: Record, period: float, damping: float = 0.05) -> Hori
     )
 
 
+def horizontal_spectrum(record: Record, periods: Floats, damping: float, component: HorizontalComponent) -> Floats:
+    """Compute the spectrum of the horizontal motion of a record, one number for each period [m/s²].
+
+    Raises
+    ------
+    ParameterError
+        If the record does not move horizontally.
+    """
+    return _Horizontal(record, component).spectral(periods, damping)
+
+
 def _cav(one: Record) -> float:
     return float(cumulative_absolute_velocity(one)[0])
 
