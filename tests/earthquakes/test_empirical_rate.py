@@ -9,7 +9,7 @@ import xarray as xr
 from scipy.integrate import quad
 
 from stylobate.earthquakes import HazardCurve, annual_rate, empirical_rate, lognormal_fragility
-from stylobate.earthquakes.fragility_study import compared_with_target
+from stylobate.earthquakes.fragility.empirical_rate import compared_with_target
 from stylobate.errors import ParameterError
 
 CURVE = HazardCurve(intensity=[0.05, 0.2, 1.0, 5.0], rate=[3e-2, 6e-3, 2.5e-4, 2e-6])
@@ -100,10 +100,9 @@ def test_mistakes_are_one_line():
 
 def test_a_rate_is_compared_with_its_target_by_its_interval():
     def said(rate, low, high, target=1e-4):
-        row = {"counted_annual_rate": rate, "counted_rate_low": low, "counted_rate_high": high}
-        return compared_with_target(row, target)
+        return compared_with_target(rate, low, high, target)
 
     assert said(1e-5, 5e-6, 5e-5) == "below the target of 1.0e-04 per year"
     assert said(1e-3, 5e-4, 5e-3) == "above the target of 1.0e-04 per year"
-    assert said(1e-4, 5e-5, 5e-4).startswith("not decided against the target of 1.0e-04 per year, which lies in the")
+    assert said(1e-4, 5e-5, 5e-4) == "not decided: the target of 1.0e-04 per year lies in the interval. Add records"
     assert said(1e-5, math.nan, math.nan) == "below the target of 1.0e-04 per year, without an interval"

@@ -420,8 +420,9 @@ def anchored(values: Any, folder: Path) -> Any:
     }
     if "records" in values:
         found["records"] = _source_from(values["records"], folder)
-    if isinstance(values.get("design_spectrum"), Mapping):
-        found["design_spectrum"] = _file_from(values["design_spectrum"], "file", folder)
+    for name in ("design_spectrum", "hazard"):
+        if isinstance(values.get(name), Mapping):
+            found[name] = _file_from(values[name], "file", folder)
     return found
 
 

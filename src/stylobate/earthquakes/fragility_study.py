@@ -15,6 +15,7 @@ from stylobate.earthquakes.config.fragility import FragilitySetup
 from stylobate.earthquakes.config.hazard import HazardPoints
 from stylobate.earthquakes.fragility import Counting, HazardCurve, annual_rate, dispersion_parts, empirical_rate
 from stylobate.earthquakes.fragility.annual_rate import require_same_component
+from stylobate.earthquakes.fragility.empirical_rate import compared_with_target
 from stylobate.earthquakes.fragility.fit import fragility_of_runs
 from stylobate.earthquakes.incremental import incremental_dynamic_analysis
 from stylobate.earthquakes.intensities import Intensity, IntensityMeasure, SpectralAcceleration
@@ -201,8 +202,8 @@ _UNITS = {"m s-2": "m/s²", "m s-1": "m/s", "1": "1"}
 _FIRST_LINE = "“PGA RotD50 [g], annual rate [1/a]”"
 
 
-def site_hazard(points: HazardPoints, intensity: IntensityMeasure) -> HazardCurve:
-    """Build the hazard curve through `points`.
+def site_hazard(points: HazardPoints, intensity: IntensityMeasure, where: str = "fragility.hazard") -> HazardCurve:
+    """Build the hazard curve through `points`; `where` is its place in a description, for messages.
 
     Raises
     ------
@@ -211,17 +212,15 @@ def site_hazard(points: HazardPoints, intensity: IntensityMeasure) -> HazardCurv
         no hazard curve.
     """
     quantity = intensity.quantity
-    _require_unit(points, intensity)
+    _require_unit(points, intensity, where)
     if not points.measure and quantity.units != "1":
         named = (
             f"Name it in the first line of {points.source}, such as {_FIRST_LINE}, or give" if points.source else "Give"
         )
-        raise ParameterError(
-            f'fragility.hazard: intensity measure not stated. {named} measure, such as "PGA" or "SA(0.5 s)".'
-        )
+        raise ParameterError(f'{where}: intensity measure not stated. {named} measure, such as "PGA" or "SA(0.5 s)".')
     if points.measure and points.measure != quantity.value:
         raise ParameterError(
-            f"fragility.hazard uses {points.measure!r}, but the fragility uses {quantity.value!r}. Provide both for "
+            f"{where} uses {points.measure!r}, but the fragility uses {quantity.value!r}. Provide both for "
             "the same intensity measure."
         )
     common: dict[str, Any] = {"units": quantity.units, "quantity": quantity.value, "component": points.component}
@@ -232,21 +231,19 @@ def site_hazard(points: HazardPoints, intensity: IntensityMeasure) -> HazardCurv
         time = points.investigation_time
         return HazardCurve.of_probabilities(points.intensity, points.exceedance, investigation_time=time, **common)
     except ParameterError as error:
-        raise ParameterError(
-            f"fragility.{error}" if str(error).startswith("hazard:") else f"fragility.hazard: {error}"
-        ) from None
+        raise ParameterError(f"{where}: {str(error).removeprefix('hazard: ')}") from None
 
 
-def _require_unit(points: HazardPoints, intensity: IntensityMeasure) -> None:
+def _require_unit(points: HazardPoints, intensity: IntensityMeasure, place: str) -> None:
     units, name = intensity.quantity.units, intensity.quantity.value
     if points.units == units or (points.units is None and units == "1"):
         return
     if points.units is None:
         where = f"name it in the first line of {points.source}, such as" if points.source else "give units, such as"
         example = f"{_FIRST_LINE}, or give units" if points.source else 'units = "g"'
-        raise ParameterError(f"fragility.hazard does not state the unit of its intensity; {where} {example}")
+        raise ParameterError(f"{place} does not state the unit of its intensity; {where} {example}")
     raise ParameterError(
-        f"fragility.hazard uses an intensity in {_UNITS[points.units]}, but the fragility uses {name!r} in "
+        f"{place} uses an intensity in {_UNITS[points.units]}, but the fragility uses {name!r} in "
         f"{_UNITS[units]}. Provide both for the same intensity measure."
     )
 
@@ -404,28 +401,10 @@ def _remarks_on_rates(rows: Sequence[Mapping[str, Any]]) -> list[str]:
 def _against_target(rates: xr.Dataset, rows: Sequence[Mapping[str, Any]]) -> list[str]:
     """State for each limit state whether its annual rate is below the target, by the interval of the counted rate."""
     target = rates.attrs.get("target_rate")
-    return [] if target is None else [f"{row['name']}: {compared_with_target(row, float(target))}" for row in rows]
-
-
-def compared_with_target(row: Mapping[str, Any], target: float) -> str:
-    """Return whether an annual rate is below a target [1/a], above it, or undecided by its interval.
-
-    Parameters
-    ----------
-    row
-        Numbers of a limit state: the counted rate, with its interval.
-    target
-        Accepted annual rate [1/a].
-    """
-    rate, low, high = (row[name] for name in _OF_COUNTED[:3])
-    if not math.isfinite(low):
-        how = "below" if rate < target else "above"
-        return f"{how} the target of {target:.1e} per year, without an interval"
-    if high < target:
-        return f"below the target of {target:.1e} per year"
-    if low > target:
-        return f"above the target of {target:.1e} per year"
-    return f"not decided against the target of {target:.1e} per year, which lies in the interval. Add records"
+    if target is None:
+        return []
+    counted = [(row["name"], *(float(row[name]) for name in _OF_COUNTED[:3])) for row in rows]
+    return [f"{name}: {compared_with_target(rate, low, high, target)}" for name, rate, low, high in counted]
 
 
 def _short(value: float) -> str:

@@ -38,7 +38,7 @@ from stylobate.earthquakes.assessment.verdicts import (
     verdict_runs,
     verdicts_on,
 )
-from stylobate.earthquakes.fragility import fit_fragility
+from stylobate.earthquakes.fragility import HazardCurve, annual_rate, empirical_rate, fit_fragility
 from stylobate.earthquakes.fragility.observations import LIMIT_STATE
 from stylobate.earthquakes.intensities import Intensity, IntensityMeasure
 from stylobate.earthquakes.study_inputs import Records, remark_on
@@ -47,6 +47,7 @@ from stylobate.models import Model
 from stylobate.progress import Progress, in_parts, report_of, shows_progress
 from stylobate.provenance import provenance_of_run
 from stylobate.quantities import exact_repr
+from stylobate.records.intensities import HorizontalComponent
 from stylobate.results.assessment import Assessment
 from stylobate.results.report_details import ReportDetails
 from stylobate.results.verdict import FEW_RECORDS, require_variations
@@ -77,6 +78,9 @@ def assess(
     planar: bool = True,
     contact: bool = True,
     least_records: int = FEW_RECORDS,
+    hazard: HazardCurve | None = None,
+    years: float = 50.0,
+    target_rate: float | None = None,
     title: str = "Columns under records",
     notes: Sequence[str] = (),
     details: ReportDetails | None = None,
@@ -126,6 +130,13 @@ def assess(
         Whether runs compute contact demands.
     least_records
         With fewer records no fragility is fitted, because its intervals would be too narrow.
+    hazard
+        Hazard curve of the site: with it the annual rate of each limit state follows, counted from the runs, and from a
+        fitted curve if there are enough records. Its intensity may be any of `quantity_named`.
+    years
+        Time for which probabilities are stated.
+    target_rate
+        Annual rate that is accepted [1/a]; each rate is compared with it.
     title, notes
         Title of the assessment; assumptions of its author, for the report.
     details
@@ -147,7 +158,8 @@ def assess(
         Its data: "columns" and "records", their properties; "verdicts" over column, record, dissipation, vertical and
         scale: `overturned` (1, 0, −1 not decided), `outcome`, `tilt_ratio`, contact demand; "margins" over
         column, case, record and interval; "variations" over column, record and scale; "sliding" over
-        column, record and scale; "planar"; "fragility" over column if there are enough records; "histories" over
+        column, record and scale; "planar"; "fragility" over column if there are enough records;
+        "rates" over column with a hazard curve; "histories" over
         column and run, under the governing record of each column; "summary", counts;
         "practice" over column, record, scale and rule, the answers of `stylobate.practice.rules_of_practice`;
         "spectra" over record and period, "ground_motions" over record and instant, for the figures of the report.
@@ -228,8 +240,18 @@ def assess(
         data["planar"] = _over_columns([planar_of(inputs, name, parts, executor=executor) for name in names], names)
     if len(inputs.records) >= inputs.least_records:
         peaks = data["records"]["median_peak_acceleration"]
+        about = IntensityMeasure(Intensity.PEAK_ACCELERATION)
         data["fragility"] = _over_columns(
-            [_fragility_of(one["reached"].isel(margin_scale=inputs.scanned), peaks) for one in margins], names
+            [
+                _fragility_of(*_observed(one["reached"].isel(margin_scale=inputs.scanned), peaks, about))
+                for one in margins
+            ],
+            names,
+        )
+    if hazard is not None:
+        data["rates"] = _over_columns(
+            [_rates_of(inputs, name, one["reached"], hazard, years) for name, one in zip(names, margins, strict=True)],
+            names,
         )
     governing = [governing_record(one, other, inputs.as_recorded) for one, other in zip(verdicts, margins, strict=True)]
     runs = [
@@ -246,6 +268,9 @@ def assess(
         "sliding": sliding,
         "resolution": margins[0].attrs["resolution"],
     }
+    if hazard is not None:
+        more["hazard"] = {"quantity": hazard.quantity, "component": hazard.component, "origin": hazard.origin}
+        more |= {"years": require_positive("years", years, "a"), "target_rate": target_rate}
     today = dt.datetime.now().astimezone().date().isoformat()
     more["details"] = {**details.values(), "date": details.date or today}
     return Assessment(data=data, setting={**_setting(inputs), **more})
@@ -312,37 +337,62 @@ def _setting(inputs: Inputs) -> dict[str, Any]:
     }
 
 
-_RESAMPLES = 200
+_RESAMPLES, _COUNTED = 200, 2000
 _SEED = 0
 
 
-def _fragility_of(reached: xr.DataArray, peak_acceleration: xr.DataArray) -> xr.Dataset:
-    """Fit the fragility of one column over the peak ground acceleration.
+def _observed(
+    reached: xr.DataArray, intensity: xr.DataArray, measure: IntensityMeasure
+) -> tuple[xr.DataArray, xr.DataArray, xr.DataArray]:
+    """Return intensity, state and record of the runs of one column.
 
     Parameters
     ----------
     reached
         Over `record`, `limit_state` and `margin_scale`: 1 reached, 0 not reached, −1 undecided.
-    peak_acceleration
-        Peak acceleration over `record` [m/s²]: RotD50, or the peak of the only component.
+    intensity
+        Intensity of the unscaled records, over `record`.
+    measure
+        The intensity measure.
     """
-    about = IntensityMeasure(Intensity.PEAK_ACCELERATION).attributes
     names = reached["record"].to_numpy()
     scales = reached["margin_scale"].to_numpy()
-    values = np.multiply.outer(peak_acceleration.sel(record=names).to_numpy(), scales)
-    intensity = xr.DataArray(values, dims=("record", "scale"), attrs=about)
+    values = np.multiply.outer(intensity.sel(record=names).to_numpy(), scales)
     states = xr.DataArray(
         reached.transpose(LIMIT_STATE, "record", "margin_scale").to_numpy(),
         dims=(LIMIT_STATE, "record", "scale"),
         coords={LIMIT_STATE: reached[LIMIT_STATE].to_numpy()},
     )
-    return fit_fragility(
-        intensity,
-        states,
-        record=xr.DataArray(names, dims="record"),
-        resamples=_RESAMPLES,
+    levels = xr.DataArray(values, dims=("record", "scale"), attrs=measure.attributes)
+    return levels, states, xr.DataArray(names, dims="record")
+
+
+def _fragility_of(intensity: xr.DataArray, states: xr.DataArray, record: xr.DataArray) -> xr.Dataset:
+    """Fit the fragility of one column."""
+    return fit_fragility(intensity, states, record=record, resamples=_RESAMPLES, rng=np.random.default_rng(_SEED))
+
+
+def _rates_of(inputs: Inputs, name: str, reached: xr.DataArray, hazard: HazardCurve, years: float) -> xr.Dataset:
+    """Compute the annual rates of one column: counted from its runs, and by a fitted curve if records are many."""
+    component = hazard.component or HorizontalComponent.ROTD50
+    measure = IntensityMeasure.named(hazard.quantity, component)
+    column = inputs.columns[name][CENTRAL].column
+    each = [measure.of(inputs.records[str(one)], column) for one in reached["record"].to_numpy()]
+    intensity = xr.DataArray(each, dims="record", coords={"record": reached["record"]})
+    observed = _observed(reached, intensity, measure)
+    counted = empirical_rate(
+        *observed[:2],
+        hazard,
+        record=observed[2],
+        years=years,
+        resamples=_COUNTED,
         rng=np.random.default_rng(_SEED),
-    )
+    ).drop_vars(["record_rate", "record"])
+    if len(inputs.records) < inputs.least_records:
+        return counted
+    scanned = _observed(reached.isel(margin_scale=inputs.scanned), intensity, measure)
+    fitted = annual_rate(_fragility_of(*scanned), hazard, years=years)["annual_rate"]
+    return counted.assign(fitted_rate=fitted)
 
 
 _ACTS = "with"

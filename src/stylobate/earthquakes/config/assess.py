@@ -19,6 +19,10 @@ from stylobate.config.description import Config, Seconds, built
 from stylobate.config.levels import LEVELS, is_by_level, problems_of_the_levels
 from stylobate.config.parts import DEFAULT_MODEL, ColumnConfig, ModelConfig, described_model, number_or_word
 from stylobate.config.record_collection import RecordsConfig
+from stylobate.earthquakes.config.hazard import Hazard
+from stylobate.earthquakes.fragility import HazardCurve
+from stylobate.earthquakes.fragility_study import site_hazard
+from stylobate.earthquakes.intensities import IntensityMeasure
 from stylobate.errors import (
     LARGEST_SEED,
     ConfigError,
@@ -223,6 +227,12 @@ class AssessConfig(Config):
         Date, for the report.
     about_records
         Text on each record, by its name, for the report.
+    hazard
+        Hazard curve of the site, for annual rates: a table as below.
+    years
+        Period of the stated probability [years].
+    target_rate
+        Annual rate that is accepted [1/year]: each rate is compared with it.
     design_spectrum
         Design spectrum to draw beside those of the records: a table as below.
     spectral_period
@@ -256,6 +266,9 @@ class AssessConfig(Config):
     project: str = ""
     date: dt.date | None = None
     about_records: dict[str, str] = Field(default_factory=dict)
+    hazard: Hazard | None = None
+    years: float = 50.0
+    target_rate: float | None = None
     design_spectrum: DesignSpectrumConfig | None = None
     spectral_period: Seconds = 1.0
 
@@ -311,9 +324,12 @@ class AssessConfig(Config):
             warnings.warn(remark.message, remark.category, stacklevel=2)
         problems += self._problems_of_the_remarks(records)
         details = self._details(problems)
+        hazard = None if self.hazard is None else built("hazard", partial(_site_hazard, self.hazard), problems)
         if problems:
             raise ConfigError(problems)
-        options = {"details": details} | {name: getattr(self, name) for name in (*_PASSED, *self._of_runs())}
+        options = {"details": details, "hazard": hazard} | {
+            name: getattr(self, name) for name in (*_PASSED, *self._of_runs())
+        }
         options["notes"] = (
             *self.notes,
             *(f"Warning: {one.message}" for one in remarks if one.category is UnlikelyInputWarning),
@@ -373,6 +389,8 @@ class AssessConfig(Config):
             lambda: require_variations(self.variations),
             lambda: require_whole("seed", self.seed, least=0, most=LARGEST_SEED),
             lambda: require_not_negative("tail", self.tail or 0.0, "s"),
+            lambda: require_positive("years", self.years, "a"),
+            lambda: require_positive("target_rate", 1.0 if self.target_rate is None else self.target_rate, "1/a"),
             *(partial(require_positive, "scales", scale) for scale in self.scales),
             *(partial(require_positive, f"friction_coefficient.{name}", one) for name, one in by_column.items()),
         ]
@@ -403,6 +421,15 @@ class AssessConfig(Config):
         return [*unknown, *(f"friction_coefficient: {name!r} has none; state one for each column" for name in lacking)]
 
 
+def _site_hazard(hazard: Hazard) -> HazardCurve:
+    """Build a hazard curve in the intensity that it states."""
+    points = hazard.points()
+    if not points.measure or points.component is None:
+        lacking = "component" if points.measure else "measure"
+        raise ParameterError(f'{lacking}: missing. State it, such as measure = "PGA" and component = "RotD50"')
+    return site_hazard(points, IntensityMeasure.named(points.measure, points.component), "hazard")
+
+
 def _problems_of_the_margin(scales: npt.NDArray[np.float64]) -> list[str]:
     if scales.size < 2:  # noqa: PLR2004  edges lie between two
         return [f"margin.number must be 2 or more, got {scales.size}"]
@@ -425,5 +452,5 @@ _PLACEHOLDERS: dict[str, Any] = {
 
 _PASSED = (
     *("title", "dissipation", "friction_coefficient", "scales", "width", "tail", "planar", "contact"),
-    *("sliding", "contact_laws", "variations", "seed", "least_records", "notes"),
+    *("sliding", "contact_laws", "variations", "seed", "least_records", "notes", "years", "target_rate"),
 )

@@ -10,6 +10,8 @@ boundaries between runs are geometric means of neighbouring intensities, so that
 Survival above an intensity that overturned the column counts as survival, which no lognormal curve can show.
 """
 
+import math
+
 import numpy as np
 import xarray as xr
 
@@ -122,6 +124,29 @@ def empirical_rate(
             "hazard_origin": hazard.origin,
         },
     )
+
+
+def compared_with_target(rate: float, low: float, high: float, target: float) -> str:
+    """Return whether an annual rate is below a target, above it, or not decided by its interval, in words.
+
+    Parameters
+    ----------
+    rate, low, high
+        Annual rate with its interval [1/a]; NaN for an interval that is not known.
+    target
+        Annual rate that is accepted [1/a].
+
+    Examples
+    --------
+    >>> compared_with_target(1e-5, 5e-6, 5e-5, 1e-4)
+    'below the target of 1.0e-04 per year'
+    """
+    stated = f"the target of {target:.1e} per year"
+    if not math.isfinite(low):
+        return f"{'below' if rate < target else 'above'} {stated}, without an interval"
+    if low <= target <= high:
+        return f"not decided: {stated} lies in the interval. Add records"
+    return f"{'below' if high < target else 'above'} {stated}"
 
 
 def _each(series: Integers) -> list[Floats]:

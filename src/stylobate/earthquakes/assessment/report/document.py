@@ -370,6 +370,7 @@ def report_sections(
         PageSection("Comparison with the planar calculation", [*planar, *shown("planar", "planar-bias")]),
         PageSection("Rules of practice", [RULES, *rules] if (rules := shown("rules-of-practice")) else []),
         PageSection("Fragility", [_fragility_text(assessment), *drawn("fragility"), *shown("fragility")]),
+        PageSection("Annual rates", [_rates_text(assessment), *rates] if (rates := shown("rates")) else []),
         PageSection("Columns and damping", [_model_text(assessment), *shown("columns", "dissipation")]),
         PageSection("Assumptions", [_assumptions(assessment)]),
         PageSection("What is not covered", [not_covered(assessment)]),
@@ -475,6 +476,19 @@ def _fragility_text(assessment: Assessment) -> str:
         f"Lognormal curves by maximum likelihood over the peak ground acceleration (RotD50) of {count} "
         "scaled records, at the central dissipation; intervals by bootstrap over the records. Records with survival "
         "above an overturning scale are counted run by run. The curves describe these records, not a site."
+    )
+
+
+def _rates_text(assessment: Assessment) -> str:
+    hazard = assessment.setting["hazard"]
+    component = f", {hazard['component']}" if hazard["component"] else ""
+    origin = f" Its rates come from {hazard['origin']}." if hazard["origin"] else ""
+    return (
+        f"The hazard curve of the site states the annual rate at which each {hazard['quantity']}{component} is "
+        f"exceeded.{origin} The counted rate needs no fragility curve: each run of the scan stands for the intensities "
+        "around its own, and survival above an overturning scale counts as survival. Its interval is a bootstrap over "
+        "the records, at 95 % confidence. The fitted rate is that of a lognormal curve; it is left out with few "
+        "records. Both are at the central dissipation."
     )
 
 

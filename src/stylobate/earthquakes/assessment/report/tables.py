@@ -38,6 +38,7 @@ from stylobate.earthquakes.assessment.report.wording import (
     tilt_cells,
     verdict,
 )
+from stylobate.earthquakes.fragility.empirical_rate import compared_with_target
 from stylobate.plots.page import PageTable
 from stylobate.results.assessment import Assessment
 from stylobate.results.verdict import LABELS, interval_text, percent
@@ -442,6 +443,23 @@ def _fragility(assessment: Assessment) -> PageTable:
     return PageTable(header, rows)
 
 
+def _rates(assessment: Assessment) -> PageTable:
+    years, target = assessment.setting.get("years", 50.0), assessment.setting.get("target_rate")
+    header = (
+        *("column", "limit state", "annual rate, counted [1/a]", "from", "to", "annual rate, fitted [1/a]"),
+        *(f"probability in {years:g} years", *(["against the target"] if target is not None else [])),
+    )
+    rows = []
+    for where, one in cells_of(assessment, "rates", "column", "limit_state"):
+        rate, low, high = (float(one[name]) for name in ("annual_rate", "rate_low", "rate_high"))
+        fitted = float(one["fitted_rate"]) if "fitted_rate" in one else math.nan
+        said = [] if target is None else [compared_with_target(rate, low, high, float(target))]
+        written = (f"{value:.2e}" if math.isfinite(value) else "" for value in (rate, low, high, fitted))
+        chance = f"{100.0 * float(one['probability']):.2g} %"
+        rows.append((where[0], where[1].replace("α", "α_c"), *written, chance, *said))
+    return PageTable(header, rows)
+
+
 def _columns(assessment: Assessment) -> PageTable:
     header = (
         *("column", "radius [m]", "height [m]", "centre of mass [m]", "mass [kg]", "c = r/h", "α_c [°]", "R [m]"),
@@ -563,6 +581,7 @@ _TABLES: dict[str, Callable[[Assessment], PageTable]] = {
     "planar-bias": _planar_bias,
     "rules-of-practice": _practice,
     "fragility": _fragility,
+    "rates": _rates,
     "columns": _columns,
     "dissipation": _dissipation,
     "record-provenance": _provenance,
