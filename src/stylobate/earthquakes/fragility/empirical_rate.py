@@ -69,7 +69,8 @@ def empirical_rate(
     Notes
     -----
     Above its last scale a record counts as there; below its first scale it counts as not reached. Runs that are not
-    known are left out. Samples of properties count alike within their record, and records alike.
+    known are left out. Samples of properties count alike within their record, and records alike. Below about twenty
+    records an interval by percentiles is too narrow: of three records it is at most their range.
 
     Examples
     --------

@@ -44,6 +44,7 @@ from stylobate.plots.page import PageSection, PageTable, Picture, page, png_of
 from stylobate.progress import Progress, Report, report_of, shows_progress
 from stylobate.results.assessment import Assessment
 from stylobate.results.verdict import few_records, yardstick_text
+from stylobate.text import plural
 
 # Tables of a dozen columns fit a wide screen; a narrow screen scrolls tables and figures. In print, figures are only as
 # wide as legibility needs, so that a page holds two or three.
@@ -483,11 +484,13 @@ def _rates_text(assessment: Assessment) -> str:
     hazard = assessment.setting["hazard"]
     component = f", {hazard['component']}" if hazard["component"] else ""
     origin = f" Its rates come from {hazard['origin']}." if hazard["origin"] else ""
+    count = assessment.data["records"].sizes["record"]
+    few = f"; with {plural(count, 'record')} it is too narrow" if few_records(count) else ""
     return (
         f"The hazard curve of the site states the annual rate at which each {hazard['quantity']}{component} is "
         f"exceeded.{origin} The counted rate needs no fragility curve: each run of the scan stands for the intensities "
         "around its own, and survival above an overturning scale counts as survival. Its interval is a bootstrap over "
-        "the records, at 95 % confidence. The fitted rate is that of a lognormal curve; it is left out with few "
+        f"the records, at 95 % confidence{few}. The fitted rate is that of a lognormal curve; it is left out with few "
         "records. Both are at the central dissipation."
     )
 
