@@ -270,6 +270,21 @@ def test_mistakes_are_told_in_one_line(folder, capsys, monkeypatch, options, mes
     assert "\n" not in told
 
 
+def test_curves_are_written_for_other_programs_without_those_that_have_no_fit(folder, caplog, monkeypatch, capsys):
+    monkeypatch.chdir(folder)
+    arguments = ["fragility", "study.toml", "--intensity", "PGA", "--hazard", str(folder / "none.csv")]
+    (folder / "none.csv").write_text("PGA RotD50 [g], annual rate [1/a]\n0.05, 0.01\n3, 0.00001\n")
+    assert run([*arguments, "--export", "statue.xml", "--object", "statue", "--json"]) == 0
+    text = (folder / "statue.xml").read_text(encoding="utf-8")
+    assert 'id="statue"' in text
+    states = json.loads(capsys.readouterr().out)["limit_states"]
+    fitted = [one["name"] for one in states if one["status"] == "fitted"]
+    assert text.count("<params") == len(fitted) > 0
+    assert run([*arguments, "--export", "statue.xlsx"]) == 0
+    assert (folder / "statue.xlsx").stat().st_size > 1000
+    assert run(["fragility", "study.toml", "--object", "statue"]) == 2
+
+
 @pytest.mark.parametrize("name", ["SA(0.5)", "Sa(0.5 s)", "spectral acceleration at 0.5 s, 5 % damping"])
 def test_a_spectral_acceleration_is_named_alike_everywhere(folder, capsys, monkeypatch, name):
     monkeypatch.chdir(folder)

@@ -1,6 +1,7 @@
 """`stylobate fragility`: probability of overturning versus intensity, and its annual rate."""
 
 import json
+import logging
 from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -8,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from stylobate.base_motions import BASE_AT_REST
 from stylobate.cli.command import command
 from stylobate.cli.options import Options, overlay, read_source, with_axes
-from stylobate.cli.output import check_writable, open_kind, print_json, save_plot
+from stylobate.cli.output import check_place, check_writable, open_kind, print_json, save_plot
 from stylobate.cli.study import check_outputs, computed, end, is_to_compute, save, show
 from stylobate.config.options import (
     COLUMN,
@@ -82,7 +83,16 @@ _FRAGILITY = Group.of(
     Option("years", "period of the stated probability; 50 by default", unit="a"),
     Option("target_rate", "annual rate that is accepted: the result states whether the rates are below it"),
 )
-_RUNS_FIGURE = Group.of("Output", Option("runs_figure", "draw the runs into this file", Path))
+_RUNS_FIGURE = Group.of(
+    "Output",
+    Option("runs_figure", "draw the runs into this file", Path),
+    Option(
+        "export",
+        "write the curves for another program: OpenQuake (.xml), pelicun (.csv), IN-CORE (.json), or a table (.xlsx)",
+        Path,
+    ),
+    Option("object", "name of the object in these files; column by default", str),
+)
 
 
 @command(
@@ -116,6 +126,9 @@ def fragility(options: Options) -> None:
     complete = True
     check_outputs(options)
     check_writable(options["runs_figure"])
+    if options["export"] is not None:
+        _check_export(options["export"])
+        options.use("object")
     saved = open_kind(options["source"], "fragility", ("incremental dynamic analysis",))
     values = _overlay(_described(options) if saved is None else _description(saved, options["source"]), options)
     description = FragilityConfig.parse(values)
@@ -136,6 +149,8 @@ def fragility(options: Options) -> None:
         save(runs, options["output"])
     if options["figure"] is not None:
         save_plot(fits, options["figure"])
+    if options["export"] is not None:
+        _export(fits, options["export"], options["object"] or "column")
     from stylobate.earthquakes.fragility_study import plain_fits, table_of_fits
 
     if options["as_json"]:
@@ -145,9 +160,41 @@ def fragility(options: Options) -> None:
     end(runs, options, complete=complete)
 
 
+_EXPORTS = (".xml", ".csv", ".json", ".xlsx")
+
+
+def _check_export(path: Path) -> None:
+    if path.suffix not in _EXPORTS:
+        raise ParameterError(f"--export must end with {', '.join(_EXPORTS)}, got {str(path)!r}")
+    check_place(path)
+
+
+def _export(fits: "xr.Dataset", path: Path, name: str) -> None:
+    """Write the curves of the limit states that have one; a workbook has all."""
+    from stylobate.earthquakes.fragility import FitStatus, export_fragility
+
+    fitted = fits["status"].to_numpy() == FitStatus.FITTED
+    if path.suffix != ".xlsx" and fitted.any():
+        without = fits["limit_state"].to_numpy()[~fitted].tolist()
+        fits = fits.isel(limit_state=fitted)
+        if without:
+            logging.getLogger("stylobate").warning("%s: without %s, which have no fit", path, ", ".join(without))
+    export_fragility(fits, path, name=name)
+
+
 _OF_HAZARD = ("hazard", "hazard_units", "hazard_component", "hazard_site")
 # Options that change the fits and not the runs.
-_OF_FITS = ("counting", "confidence", "resamples", *_OF_HAZARD, "years", "target_rate", "runs_figure")
+_OF_FITS = (
+    "counting",
+    "confidence",
+    "resamples",
+    *_OF_HAZARD,
+    "years",
+    "target_rate",
+    "runs_figure",
+    "export",
+    "object",
+)
 
 
 def _description(saved: "xr.Dataset", source: Path | None) -> dict[str, Any]:

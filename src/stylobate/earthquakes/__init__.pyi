@@ -7,6 +7,7 @@ from .figures.spectra import plot_records
 from .fragility.annual_rate import HazardCurve, annual_rate
 from .fragility.dispersion import SampleDesign, dispersion_parts
 from .fragility.empirical_rate import empirical_rate
+from .fragility.export import export_fragility
 from .fragility.fit import fit_fragility, fragility_of_runs, lognormal_fragility
 from .fragility.likelihood import FitStatus
 from .fragility.observations import Counting, limit_states, reached_intervals
@@ -49,6 +50,7 @@ __all__ = [
     "compare_rules",
     "dispersion_parts",
     "empirical_rate",
+    "export_fragility",
     "fit_fragility",
     "fragility_of_runs",
     "incremental_dynamic_analysis",

@@ -6,6 +6,7 @@ The functions accept runs of any origin: they need intensity, record and limit s
 from stylobate.earthquakes.fragility.annual_rate import HazardCurve, annual_rate
 from stylobate.earthquakes.fragility.dispersion import SampleDesign, dispersion_parts
 from stylobate.earthquakes.fragility.empirical_rate import empirical_rate
+from stylobate.earthquakes.fragility.export import export_fragility
 from stylobate.earthquakes.fragility.fit import fit_fragility, lognormal_fragility
 from stylobate.earthquakes.fragility.likelihood import FitStatus
 from stylobate.earthquakes.fragility.observations import Counting, limit_states, reached_intervals
@@ -18,6 +19,7 @@ __all__ = [
     "annual_rate",
     "dispersion_parts",
     "empirical_rate",
+    "export_fragility",
     "fit_fragility",
     "limit_states",
     "lognormal_fragility",
