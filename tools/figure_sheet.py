@@ -139,6 +139,12 @@ RESULTS: dict[str, Callable[[], Any]] = {
     "overturning intervals of one": lambda: sb.earthquakes.overturning_intervals(
         WOBBLING, sb.sample_record(), scales=np.linspace(0.3, 2.0, 60)
     ),
+    "record selection": lambda: sb.earthquakes.select_records(
+        list(quakes().values()),
+        sb.results.DesignSpectrum(period=(0.05, 0.15, 0.5, 2.5), acceleration=(4.0, 9.0, 9.0, 1.8)),
+        number=3,
+        scales=(0.25, 20.0),
+    ),
     "rocking spectrum": lambda: sb.earthquakes.rocking_spectrum(
         WOBBLING, sb.sample_record(), over={"size": np.geomspace(0.3, 3.0, 25), "scale": [0.5, 1.0]}
     ),
