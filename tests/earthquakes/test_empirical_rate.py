@@ -87,6 +87,22 @@ def test_what_is_not_known_is_left_out_and_a_fall_at_once_has_no_upper_bound():
     assert math.isinf(at_once["rate_most"].item())
 
 
+def test_a_record_of_which_no_run_is_known_is_left_out():
+    levels = np.tile(LEVELS[:3], (3, 1))
+    states = np.array([[0, 1, 1], [-1, -1, -1], [0, 0, 1]])
+    record = np.repeat(["a", "b", "c"], 3).reshape(3, 3)
+    found = empirical_rate(levels, states, CURVE, record=record, resamples=50, rng=np.random.default_rng(0))
+    known = [0, 2]
+    own = empirical_rate(
+        levels[known], states[known], CURVE, record=record[known], resamples=50, rng=np.random.default_rng(0)
+    )
+    for name in ("annual_rate", "rate_low", "rate_high", "rate_least", "rate_most"):
+        assert found[name].item() == own[name].item()
+    assert math.isnan(found["record_rate"].sel(record="b").item())
+    none = empirical_rate(levels[1], states[1], CURVE, record=record[1], resamples=50, rng=np.random.default_rng(0))
+    assert all(math.isnan(none[name].item()) for name in ("annual_rate", "rate_low", "rate_high", "probability"))
+
+
 def test_mistakes_are_one_line():
     arguments = (LEVELS, LEVELS > 1.0, CURVE)
     with pytest.raises(ParameterError, match=r"^record: missing\. Name the record of each run"):

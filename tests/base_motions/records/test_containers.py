@@ -89,7 +89,7 @@ def test_an_archive_in_an_archive_and_a_packed_file_in_it_are_read(tmp_path):
     same_motion(sb.read_record(plain), WAVES)
 
 
-def test_a_damaged_or_locked_archive_is_refused_in_one_line(tmp_path):
+def test_a_damaged_archive_and_one_of_empty_files_are_refused_in_one_line(tmp_path):
     files = {path.name: path.read_bytes() for path in at2_files(tmp_path)}
     whole = zipped(tmp_path / "whole.zip", files).read_bytes()
     damaged = tmp_path / "damaged.zip"

@@ -94,8 +94,8 @@ def empirical_rate(
         ]
     )  # (limit states, series, 3)
     records = np.arange(len(seen.records))
-    each = np.stack([np.nanmean(parts[:, of_record == one], axis=1) for one in records], axis=1)
-    rate, least, most = (np.nanmean(each[:, :, place], axis=1) for place in range(3))
+    each = np.stack([_mean(parts[:, of_record == one], axis=1) for one in records], axis=1)
+    rate, least, most = _mean(each, axis=1).T
     low, high = _interval(each[:, :, 0], level, count, rng)
     per_year = {"units": "a-1"}
     percent = f"{100.0 * level:g} %"
@@ -154,6 +154,13 @@ def _each(series: Integers) -> list[Floats]:
     return [series == one for one in range(series.max() + 1)]
 
 
+def _mean(values: Floats, axis: int) -> Floats:
+    """Return the mean of the known values along an axis, NaN where none is known."""
+    known = ~np.isnan(values)
+    count, total = known.sum(axis=axis), values.sum(axis=axis, where=known)
+    return np.asarray(np.divide(total, count, out=np.full(total.shape, np.nan), where=count > 0))
+
+
 def _series_rate(intensity: Floats, state: Integers, hazard: HazardCurve) -> tuple[float, float, float]:
     """Return (2) of one series of runs, and its bounds beyond the scales; NaN without known runs."""
     known = state != NOT_KNOWN
@@ -180,13 +187,13 @@ def _exceedance(hazard: HazardCurve, u: Floats) -> Floats:
 
 def _interval(each: Floats, level: float, count: int, rng: np.random.Generator | None) -> tuple[Floats, Floats]:
     """Return the percentiles of the mean over resampled records; `each` has the shape (limit states, records)."""
-    states, records = each.shape
-    if count == 0 or records < _FEWEST:
-        return np.full(states, np.nan), np.full(states, np.nan)
-    if rng is None:
+    low, high = np.full((2, len(each)), np.nan)
+    if count > 0 and each.shape[1] >= _FEWEST and rng is None:
         raise ParameterError(f"rng: missing, needed for resamples={count}. Pass np.random.default_rng(0)")
-    chosen = rng.integers(records, size=(count, records))
-    means = np.nanmean(each[:, chosen], axis=2)
     tails = 0.5 * (1.0 - level)
-    low, high = np.quantile(means, [tails, 1.0 - tails], axis=1)
+    for place, state in enumerate(each):
+        known = state[~np.isnan(state)]
+        if rng is not None and count > 0 and known.size >= _FEWEST:
+            means = known[rng.integers(known.size, size=(count, known.size))].mean(axis=1)
+            low[place], high[place] = np.quantile(means, [tails, 1.0 - tails])
     return low, high
