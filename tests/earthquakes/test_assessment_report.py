@@ -2,6 +2,7 @@
 
 import csv
 import re
+import sys
 from dataclasses import replace
 from html.parser import HTMLParser
 
@@ -14,16 +15,9 @@ from matplotlib.patches import Rectangle
 import stylobate as sb
 from stylobate.earthquakes import assess, assessment_report, assessment_tables
 from stylobate.earthquakes.assessment.assess import summary_of
-from stylobate.earthquakes.assessment.margins import demands_to_margin
+from stylobate.earthquakes.assessment.margins import demands_to_margin, states_at_scales
 from stylobate.earthquakes.assessment.report import document
-from stylobate.earthquakes.assessment.report.document import (
-    column_findings,
-    document_table,
-    not_covered,
-    report_sections,
-    summary_text,
-    verdict_table,
-)
+from stylobate.earthquakes.assessment.report.answers import answer_table, probability_over_records
 from stylobate.earthquakes.assessment.report.figures import (
     history_figure,
     margins_figure,
@@ -32,10 +26,15 @@ from stylobate.earthquakes.assessment.report.figures import (
     spectra_figure,
     tilts_figure,
 )
+from stylobate.earthquakes.assessment.report.findings import column_findings, summary_text, verdict_table
+from stylobate.earthquakes.assessment.report.sections import document_table, not_covered, report_sections
+from stylobate.earthquakes.assessment.report.sketch import objects_figure
 from stylobate.earthquakes.assessment.report.tables import drifting
 from stylobate.earthquakes.assessment.report.wording import at_most, intervals, least_scale
 from stylobate.earthquakes.figures.overturning_intervals import UNDECIDED
+from stylobate.plots.page import require_pdf
 from stylobate.results import DesignSpectrum, ReportDetails
+from stylobate.studies.proportions import wilson_interval
 
 DETAILS = ReportDetails(
     author="N. Author",
@@ -153,26 +152,18 @@ def page(folder):
 
 
 @pytest.mark.slow
-def test_the_report_holds_every_cell_of_every_table_and_so_do_the_files(found, folder, page):
-    cells = {plain(cell) for cell in page.cells}
+def test_files_and_workbook_hold_every_cell_of_every_table(found, folder):
+    openpyxl = pytest.importorskip("openpyxl")
+    book = openpyxl.load_workbook(folder / "tables.xlsx")
     tables = assessment_tables(found)
+    assert set(book.sheetnames) == set(tables)
     for name, table in tables.items():
         with (folder / "tables" / f"{name}.csv").open(encoding="utf-8", newline="") as file:
             header, *rows = csv.reader(file)
         assert header == list(table.header)
         assert rows == [list(row) for row in table.rows]
-        assert {plain(cell) for row in table.rows for cell in row} <= cells
-    assert {
-        "verdicts",
-        "margins",
-        "runs",
-        "tilts",
-        "variations",
-        "near-scales",
-        "planar",
-        "governing",
-        "records",
-    } <= set(tables)
+        cells = [[cell or "" for cell in row] for row in book[name].iter_rows(values_only=True)]
+        assert cells == [header, *rows]
 
 
 def test_the_tables_hold_the_numbers_of_the_assessment(found):
@@ -212,13 +203,20 @@ def test_the_page_names_every_record_column_and_what_it_rests_on(found, page):
     wanted += [record["digest"] for record in found.setting["records"].values()]
     for words in wanted:
         assert words in text, words
-    for heading in ("Assumptions", "What is not covered", "Contact demand", "Software", "References"):
+    for heading in (
+        "Assumptions",
+        "What is not covered",
+        "Contact demand",
+        "How to repeat this assessment",
+        "References",
+    ):
         assert heading in page.headings
 
 
 def test_verdicts_promise_nothing(found, folder):
     summary = (folder / "summary.txt").read_text(encoding="utf-8")
-    assert summary == summary_text(found, [document_table(found), verdict_table(found)])
+    heads = [document_table(found), verdict_table(found), answer_table(found, 1.0)]
+    assert summary == summary_text(found, heads)
     assert "did not overturn" in summary
     words = summary + " ".join(
         cell for table in assessment_tables(found).values() for row in table.rows for cell in row
@@ -404,7 +402,8 @@ def test_undecided_scales_are_drawn_named_and_written_as_such(found):
     assert "not decided: lifted off" in labels
     grey = [bar for bar in figure.axes[0].patches if bar.get_facecolor()[:3] == to_rgb(UNDECIDED.colour)]
     margins = hidden.data["margins"].sel(column="stout")
-    assert len(grey) == margins.sizes["record"] * margins.sizes["case"]
+    drawn = ("low", "central", "high", "central, other contact law")
+    assert len(grey) == margins.sizes["record"] * len(drawn)
     for bar in grey:
         assert bar.get_x() == pytest.approx(begin)
         assert bar.get_x() + bar.get_width() == pytest.approx(end)
@@ -600,25 +599,124 @@ def section(assessment, title):
     return own.content
 
 
-def test_the_section_of_variations_states_what_varied_or_that_nothing_did(found):
-    title = "Small variations and near scales"
-    words, *tables = section(found, title)
-    assert words.startswith("Each verdict was repeated 20 times with everything varied at once")
+def test_the_section_of_outcomes_states_what_varied_or_that_nothing_did(found):
+    title = "Outcomes at the stated scales"
+    words, table, *_ = section(found, title)
+    assert "Each verdict was repeated 20 times with everything varied at once" in words
     assert "the tolerance, and the contact law" in words
-    assert [table.header[3] for table in tables] == ["under small variations", "low"]
+    assert "small variations (90 % interval)" in table.header
     one_law = replace(found, setting={**found.setting, "contact_laws": False})
     assert "the contact law" not in section(one_law, title)[0]
     without = {name: one for name, one in found.data.items() if name != "variations"}
     bare = replace(found, data=without, setting={**found.setting, "variations": 0})
     bare = replace(bare, data={**without, "summary": summary_of(without, ["strong", "strong"])})
-    words, *tables = section(bare, title)
-    assert words.startswith("No verdict was repeated under small variations (variations = 0), so it is not known")
-    assert "41 scales within 10 %" in words
-    assert [table.header[3] for table in tables] == ["low"]
+    words, table, *_ = section(bare, title)
+    assert "No verdict was repeated under small variations (variations = 0), so it is not known" in words
+    assert "small variations (90 % interval)" not in table.header
     assert "No verdict was repeated under small variations here" in summary_text(bare, [])
     assert "were therefore repeated under small variations" in summary_text(found, [])
     assert "small variations disagree" not in assessment_tables(bare)["summary"].header
     assert "variations" not in assessment_tables(bare)
+
+
+def test_rows_of_outcomes_that_say_nothing_are_counted_and_left_out(found):
+    _, table, remark = section(found, "Outcomes at the stated scales")
+    verdicts, variations, margins = (found.data[name] for name in ("verdicts", "variations", "margins"))
+    cases = [name for name in margins["case"].values if name.endswith("other contact law")]
+    at = states_at_scales(margins, verdicts["scale"]).sel(case=cases)
+    says = (verdicts["overturned"] != 0).any(("dissipation", "vertical")) | (at != 0).any("case")
+    says = says | (variations["overturned"] + variations["open"] > 0) | (margins["in_band"] > 0).any("case")
+    assert len(table.rows) == int(says.sum()) > 0
+    assert remark.startswith(f"{int((~says).sum())} more rows with no case that overturned")
+    for column, record, scale, *cells in table.rows:
+        assert bool(says.sel(column=column, record=record, scale=float(scale)))
+        row = dict(zip(table.header[3:], cells, strict=True))
+        states = verdicts["overturned"].sel(column=column, record=record, scale=float(scale), vertical="with")
+        for level in ("low", "central", "high"):
+            assert (row[level] == "overturned") == bool(states.sel(dissipation=level) == 1)
+
+
+def test_the_probability_counts_each_record_once_and_undecided_runs_on_both_sides():
+    shares = np.array([1.0, 0.0, 0.5, 0.0])
+    share, low, high = probability_over_records(shares, np.zeros(4))
+    assert share == 0.375
+    assert (low, high) == pytest.approx([float(end) for end in wilson_interval(1.5, 4)], rel=1e-12)
+    _, low_open, high_open = probability_over_records(shares, np.array([0.0, 0.5, 0.0, 0.0]))
+    assert low_open == low
+    assert high_open == pytest.approx(float(wilson_interval(2.0, 4)[1]), rel=1e-12)
+    nothing = probability_over_records(np.zeros(2), np.ones(2))
+    assert np.isnan(nothing[0])
+    assert nothing[1:] == (0.0, 1.0)
+
+
+@pytest.mark.parametrize("spread", [0.2, 1.0, 20.0])
+def test_the_interval_of_the_probability_covers_it_however_much_records_differ(spread):
+    rng, mean, count = np.random.default_rng(7), 0.3, 12
+    covered = 0
+    for _ in range(2000):
+        shares = rng.binomial(200, rng.beta(spread * mean, spread * (1.0 - mean), count)) / 200.0
+        _, low, high = probability_over_records(shares, np.zeros(count))
+        covered += low <= mean <= high
+    # Three standard deviations of the coverage of 2000 draws are 1.5 %; Wilson's own of 12 trials varies by 2 %.
+    assert covered / 2000.0 >= 0.915
+
+
+def test_the_first_page_answers_with_class_probability_and_margin(found):
+    table = answer_table(found, 1.0)
+    shares = found.data["variations"]["share"].sel(scale=1.0)
+    for name, verdict, probability, least in table.rows:
+        share = 100.0 * float(shares.sel(column=name).mean())
+        assert probability.startswith(f"{share:.0f} % (")
+        assert verdict in ("NOT shown safe", "Survival NOT robust", "Survived every run")
+        smallest = float(found.data["margins"]["least_overturning"].sel(column=name).min())
+        assert least.startswith("No scale" if np.isnan(smallest) else at_most(smallest))
+    without = {name: one for name, one in found.data.items() if name != "variations"}
+    plain = answer_table(replace(found, data=without), 1.0)
+    states = found.data["verdicts"]["overturned"].sel(column="slim <1>", scale=1.0, vertical="with")
+    assert plain.rows[0][2].startswith(f"{100.0 * float((states == 1).mean()):.0f} % (")
+
+
+def test_a_sketch_turns_about_the_rim_and_an_overturned_body_lies_on_the_ground(found):
+    names = list(BODIES)
+    figure = objects_figure(found, names, names)
+    for place, (name, body) in enumerate(BODIES.items()):
+        standing, *turned = (patch.get_xy()[:-1] for patch in figure.axes[place].patches)
+        assert standing[:, 0].max() == pytest.approx(body.radius)
+        ratio = float(found.data["histories"]["peak_tilt_ratio"].sel(column=name, run="stated"))
+        assert len(turned) == (ratio > 0.0)
+        for outline in turned:
+            np.testing.assert_allclose(outline[1], (body.radius, 0.0), atol=1e-12)
+            sides = [np.linalg.norm(np.roll(one, 1, axis=0) - one, axis=1) for one in (standing, outline)]
+            np.testing.assert_allclose(sides[0], sides[1], rtol=1e-12)
+            if np.isinf(ratio):
+                np.testing.assert_allclose(outline[2], (body.radius + body.height, 0.0), atol=1e-12)
+                assert outline[:, 1].min() >= -1e-12
+
+
+def test_a_pdf_has_page_numbers_a_running_title_and_a_bookmark_for_each_section(found, tmp_path):
+    pypdf = pytest.importorskip("pypdf")
+    try:
+        require_pdf()
+    except sb.errors.UnsupportedError as lacking:
+        pytest.skip(str(lacking))
+    few = _only(found, "stout", "weak & quiet")
+    assessment_report(few, tmp_path, pdf=True)
+    reader = pypdf.PdfReader(tmp_path / "report.pdf")
+    texts = [one.extract_text() for one in reader.pages]
+    for place, text in enumerate(texts):
+        assert f"Page {place + 1} of {len(texts)}" in text
+        assert "Two columns" in text
+    title, sections = reader.outline
+    assert title.title == "Two columns"
+    assert [one.title for one in sections] == [one.heading for one in report_sections(few, assessment_tables(few), {})]
+    assert reader.metadata.author == "N. Author"
+
+
+def test_without_weasyprint_a_pdf_is_refused_before_anything_is_written(found, tmp_path, monkeypatch):
+    monkeypatch.setitem(sys.modules, "weasyprint", None)
+    with pytest.raises(sb.errors.UnsupportedError, match=r'pip install "stylobate\[pdf\]"'):
+        assessment_report(_only(found, "stout", "weak & quiet"), tmp_path / "new", pdf=True)
+    assert not (tmp_path / "new").exists()
 
 
 def test_margins_are_stated_as_upper_bounds(found):
@@ -680,11 +778,12 @@ def test_damping_is_compared_with_what_impacts_lose_and_levels_on_one_side_are_f
     values = columns["housner_damping"].sel(column="stout").values
     changed = columns.assign(damping_side=xr.full_like(columns["damping_side"], side, dtype=object))
     assessment = replace(found, data={**found.data, "columns": changed})
-    words = dict(column_findings(assessment, "stout").rows)["damping"]
+    findings = dict(column_findings(assessment, "stout").rows)
+    words = findings["damping"]
     text = ", ".join(f"{value:.2g}" for value in values)
     assert words.startswith(f"Housner's impacts lose as much as η = {text} at a peak tilt of ¼, ½, ¾ α_c.")
     flag = f" All stated levels of damping lie {side} Housner's: state why, or add a level near it."
-    assert words.endswith(flag) is flagged
+    assert findings["verdict"].endswith(flag) is flagged
     assert all(row[2].endswith(flag) is flagged for row in verdict_table(assessment).rows)
 
 

@@ -28,6 +28,7 @@ _SHOWN = ("column", "scale", "did not overturn it", "overturned it", "not decide
 
 @command(
     Option("folder", "folder of report, tables and figures; NAME-assessment beside the study by default", Path),
+    Option("pdf", "write report.pdf too, with page numbers and bookmarks", bool, default=False),
     Option("store", "store of the parts that are computed; FOLDER/store by default", Path),
     argument=Positional(text="study, a TOML file; or a saved assessment (.nc) to show again", required=True),
     groups=(COMPUTING.reduced_to("threads"), Group.of("Output", JSON)),
@@ -41,11 +42,17 @@ def assess(options: Options) -> None:
 
     stylobate assess study.toml
 
+    stylobate assess study.toml --pdf
+
     stylobate assess study-assessment/assessment.nc --folder again
     """
-    source = options["source"]
+    source, pdf = options["source"], options["pdf"]
     if not source.is_file():
         raise FileError(f"cannot read {source}: No such file or directory")
+    if pdf:
+        from stylobate.plots.page import require_pdf
+
+        require_pdf()
     target = options["folder"] or source.with_name(f"{source.stem}-assessment")
     check_place(target / "report.html" if target.exists() else target)
     setup = None
@@ -61,7 +68,7 @@ def assess(options: Options) -> None:
             result = _computed(setup, options["store"] or target / "store", options["threads"])
         lines = part_lines()
         drawn = None if lines is None else partial(lines, "drawing figures")
-        report = earthquakes.assessment_report(result, target, progress=drawn)
+        report = earthquakes.assessment_report(result, target, pdf=pdf, progress=drawn)
     summary = earthquakes.assessment_tables(result)["summary"]
     if options["as_json"]:
         print_json({"summary": _rows(summary), "setting": result.setting, "report": str(report)})

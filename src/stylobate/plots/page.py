@@ -9,6 +9,8 @@ from io import BytesIO
 
 from matplotlib.figure import Figure
 
+from stylobate.errors import UnsupportedError
+
 # Dots per inch of embedded figures; the page scales them to its width.
 _RESOLUTION = 160
 # Tables of this many columns or more are printed small.
@@ -55,24 +57,57 @@ class PageTable:
 
 
 @dataclass(frozen=True, slots=True)
+class PageList:
+    """A list of plain texts; of each, the words before the first colon are bold."""
+
+    items: Sequence[str]
+
+
+Part = str | Picture | PageTable | PageList
+"""What a page consists of; text is a paragraph."""
+
+
+@dataclass(frozen=True, slots=True)
 class PageSection:
-    """A heading with paragraphs, pictures and tables, in this order of `content`."""
+    """A heading with paragraphs, pictures, tables and lists, in this order of `content`."""
 
     heading: str
-    content: Sequence[str | Picture | PageTable]
+    content: Sequence[Part]
 
 
-def page(title: str, introduction: Sequence[str | Picture | PageTable], sections: Sequence[PageSection]) -> str:
-    """Return the HTML of a page; all text is escaped, figures are embedded as PNG."""
+def page(
+    title: str, introduction: Sequence[Part], sections: Sequence[PageSection], *, style: str = "", author: str = ""
+) -> str:
+    """Return the HTML of a page; all text is escaped, figures are embedded as PNG.
+
+    Parameters
+    ----------
+    title, author
+        Title of the page and, for its metadata, the name of its author.
+    introduction, sections
+        Content before the links to the sections, and the sections.
+    style
+        Style rules after those of all pages.
+    """
     links = "".join(f'<a href="#s{i}">{escape(section.heading)}</a>' for i, section in enumerate(sections))
     body = "".join(_section(i, section) for i, section in enumerate(sections))
     lead = "".join(map(_part, introduction))
+    named = f'<meta name="author" content="{escape(author)}">' if author else ""
     return (
         '<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8">'
-        '<meta name="viewport" content="width=device-width, initial-scale=1">'
-        f"<title>{escape(title)}</title><style>{_STYLE}</style></head>"
+        f'<meta name="viewport" content="width=device-width, initial-scale=1">{named}'
+        f"<title>{escape(title)}</title><style>{_STYLE}{style}</style></head>"
         f"<body><h1>{escape(title)}</h1>{lead}<nav>{links}</nav>{body}</body></html>\n"
     )
+
+
+def style_text(text: str) -> str:
+    r"""Return `text` as a string of a style sheet; it cannot end the string or the style element.
+
+    >>> print(style_text("A </style>"))
+    "A \3c \2f style\3e "
+    """
+    return '"' + "".join(one if one.isalnum() or one in " .,-–:" else f"\\{ord(one):x} " for one in text) + '"'
 
 
 # Minus signs for hyphens, and no line break, in numbers such as -0.025 and 2e-12.
@@ -89,14 +124,21 @@ def _section(index: int, section: PageSection) -> str:
     return f'<section id="s{index}"><h2>{escape(section.heading)}</h2>{parts}</section>'
 
 
-def _part(part: str | Picture | PageTable) -> str:
+def _part(part: Part) -> str:
     match part:
         case str():
             return f"<p>{_text(part)}</p>"
+        case PageList():
+            return f"<ul>{''.join(map(_item, part.items))}</ul>"
         case Picture():
             return _picture(part)
         case PageTable():
             return _table(part)
+
+
+def _item(text: str) -> str:
+    subject, colon, rest = text.partition(":")
+    return f"<li><strong>{_text(subject)}</strong>{colon}{_text(rest)}</li>" if colon else f"<li>{_text(text)}</li>"
 
 
 def png_of(figure: Figure, resolution: float = _RESOLUTION) -> bytes:
@@ -119,3 +161,29 @@ def _table(table: PageTable) -> str:
     rows = "".join("<tr>" + "".join(f"<td>{_text(cell)}</td>" for cell in row) + "</tr>" for row in table.rows)
     kind = "wide many" if len(table.header) >= _MANY_COLUMNS else "wide"
     return f'<div class="{kind}"><table><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table></div>'
+
+
+def pdf_of(html: str) -> bytes:
+    """Set a page as a PDF: with page numbers if its style asks for them, and a bookmark for each heading.
+
+    Raises
+    ------
+    UnsupportedError
+        If WeasyPrint, or Pango which it needs, is not installed.
+    """
+    require_pdf()
+    from weasyprint import HTML
+
+    written: bytes = HTML(string=html).write_pdf(pdf_tags=True)
+    return written
+
+
+def require_pdf() -> None:
+    """Raise UnsupportedError if `pdf_of` lacks WeasyPrint or Pango."""
+    try:
+        import weasyprint  # noqa: F401  an extra, slow to import
+    except (ImportError, OSError):  # an OSError: WeasyPrint is installed, but not the library Pango
+        raise UnsupportedError(
+            'a PDF needs WeasyPrint and the library Pango: pip install "stylobate[pdf]", and Pango by the system\'s '
+            "packages; or print the page in a browser"
+        ) from None

@@ -20,6 +20,7 @@ from stylobate.earthquakes.assessment.margins import (
     margin_runs,
     margins_of,
     of_one_width,
+    states_at_scales,
 )
 from stylobate.earthquakes.assessment.records import (
     column_properties,
@@ -53,7 +54,6 @@ from stylobate.results.report_details import ReportDetails
 from stylobate.results.verdict import FEW_RECORDS, require_variations
 from stylobate.run_arguments import FREE_TAIL, RunOptions
 from stylobate.studies.checks import require_no_limits
-from stylobate.studies.maps.uncertainty_exponent import overturned_or_not
 from stylobate.studies.sweeps import Executor
 
 # Packages whose versions can change the last digits of the results.
@@ -446,7 +446,7 @@ def summary_of(data: Mapping[str, xr.Dataset], governing: list[str]) -> xr.Datas
     others = margins["case"].str.endswith(OTHER_LAW)
     own_law, other_law = margins.isel(case=~others), margins.isel(case=others)
     if bool(others.any()):
-        law = _at_scales(margins, verdicts["scale"]).where(others, drop=True)
+        law = states_at_scales(margins, verdicts["scale"]).where(others, drop=True)
         counts["overturned_other_law"] = (law == 1).any("case").sum("record")
     counts["in_band"] = (margins["in_band"] > 0).any("case").sum("record")
     if "variations" in data:
@@ -483,14 +483,6 @@ def summary_of(data: Mapping[str, xr.Dataset], governing: list[str]) -> xr.Datas
             "decided_to": central_margins["decided_to"].min("record", skipna=False),
         }
     ).transpose("column", ...)
-
-
-def _at_scales(margins: xr.Dataset, scales: xr.DataArray) -> xr.DataArray:
-    """Return the states of the scan at the stated scales: 1 overturned, 0 not, negative undecided."""
-    state = margins["outcome"].copy(data=overturned_or_not(margins))
-    stated = [state.sel(margin_scale=scale, method="nearest").drop_vars("margin_scale") for scale in scales.to_numpy()]
-    joined: xr.DataArray = xr.concat(stated, dim=scales)
-    return joined
 
 
 def _least_records(margins: xr.Dataset) -> list[str]:

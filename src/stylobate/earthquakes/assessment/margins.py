@@ -96,6 +96,14 @@ def of_one_width(margins: list[xr.Dataset]) -> list[xr.Dataset]:
     return margins
 
 
+def states_at_scales(margins: xr.Dataset, scales: xr.DataArray) -> xr.DataArray:
+    """Return the states of the scan at the stated scales: 1 overturned, 0 not, negative undecided."""
+    state = margins["outcome"].copy(data=overturned_or_not(margins))
+    stated = [state.sel(margin_scale=scale, method="nearest").drop_vars("margin_scale") for scale in scales.to_numpy()]
+    joined: xr.DataArray = xr.concat(stated, dim=scales)
+    return joined
+
+
 def demands_to_margin(margins: xr.Dataset, stated: float) -> dict[str, xr.DataArray]:
     """Compute the friction needed up to the margin, and the smallest scale at which it exceeds the `stated` one."""
     need, scale = margins["friction_demand"], margins["margin_scale"]

@@ -8,6 +8,7 @@ import numpy as np
 import xarray as xr
 
 from stylobate.earthquakes.assessment.inputs import OTHER_LAW
+from stylobate.earthquakes.assessment.margins import states_at_scales
 from stylobate.earthquakes.assessment.report.wording import (
     CENTRAL,
     OVERTURNED,
@@ -20,7 +21,6 @@ from stylobate.earthquakes.assessment.report.wording import (
     records,
     stated_friction,
 )
-from stylobate.errors import Outcome
 from stylobate.results.assessment import Assessment
 from stylobate.results.verdict import VerdictWord, percent
 
@@ -160,10 +160,10 @@ def _with_other_law(
     """Map each record that is not `known` to the levels at which it overturned the column with the other law."""
     margins = assessment.data["margins"].sel(column=column)
     cases = [str(name) for name in margins["case"].to_numpy() if str(name).endswith(OTHER_LAW)]
+    fallen = states_at_scales(margins, xr.DataArray([scale], dims="scale")).isel(scale=0) == 1
     found: dict[str, tuple[str, ...]] = {}
     for name in _names(margins):
-        states = margins["outcome"].sel(record=name, case=cases).sel(margin_scale=scale, method="nearest")
-        at = [case.removesuffix(OTHER_LAW) for case in cases if int(states.sel(case=case)) == Outcome.OVERTURNED]
+        at = [case.removesuffix(OTHER_LAW) for case in cases if bool(fallen.sel(record=name, case=case))]
         if at and name not in known:
             found[name] = tuple(at)
     return found

@@ -1,4 +1,4 @@
-"""Figures of an assessment, each with its caption: records, margins, tilts, contact, small variations, histories."""
+"""Figures of an assessment, each with its caption: records, margins, tilts, small variations, histories."""
 
 import math
 from collections.abc import Sequence
@@ -14,8 +14,10 @@ from matplotlib.patches import Patch
 from matplotlib.ticker import FuncFormatter, NullFormatter
 
 from stylobate.column import STANDARD_GRAVITY
+from stylobate.earthquakes.assessment.inputs import CENTRAL, OTHER_LAW
 from stylobate.earthquakes.assessment.report.column_verdict import rises
-from stylobate.earthquakes.assessment.report.wording import SMALLEST_TILT, labels, number, stated_friction
+from stylobate.earthquakes.assessment.report.sketch import OBJECTS, objects_figure
+from stylobate.earthquakes.assessment.report.wording import SMALLEST_TILT, labels, number
 from stylobate.earthquakes.figures.fragility import plot_fragility
 from stylobate.earthquakes.figures.overturning_intervals import UNDECIDED, undecided_label, undecided_reasons
 from stylobate.plots.cells import fill_options
@@ -25,8 +27,12 @@ from stylobate.plots.style import BLACK, BLUE, GREEN, GREY, ORANGE, PALETTE, PUR
 from stylobate.results.assessment import Assessment
 from stylobate.results.verdict import CLEAR
 
-# Heights of a line in a figure of records, of the frame, and of the tallest figure [inches].
-_ROW, _FRAME, _TALLEST = 0.17, 1.5, 9.0
+# Width of figures; heights of a line, of the frame, and of the smallest and the tallest figure [inches].
+_WIDTH, _ROW, _FRAME, _SMALLEST, _TALLEST = 7.1, 0.1, 1.05, 2.3, 9.0
+# Height of a record and of the frame of a figure of tilts or shares [inches].
+_TILT_ROW, _TILT_FRAME = 0.34, 1.5
+# With more records, a figure of margins has the central cases only.
+_ALL_LEVELS = 8
 _BAR = 0.8
 _MARKS = ("v", "o", "^", "D", "s", "P", "X")
 _COLOURS = (SKY, BLUE, BLACK, GREEN, PURPLE, ORANGE)
@@ -46,9 +52,10 @@ _UNDECIDED_MARK: dict[str, Any] = {"marker": "x", "linestyle": "none", "markersi
 def margins_figure(assessment: Assessment, column: str) -> Figure:
     """Draw the overturning intervals of each record for a column, one line for each case."""
     own = assessment.data["margins"].sel(column=column)
-    cases, records = labels(own, "case"), labels(own)
+    records = labels(own)
+    cases = _drawn_cases(labels(own, "case"), len(records))
     lines = len(records) * (len(cases) + 1)
-    figure = new_figure(min(_FRAME + _ROW * lines, _TALLEST))
+    figure = new_figure(min(max(_FRAME + _ROW * lines, _SMALLEST), _TALLEST), width=_WIDTH)
     axes = figure.subplots()
     low, high, _ = assessment.setting["margin_scales"]
     heights, lines_of = [], []
@@ -58,7 +65,7 @@ def margins_figure(assessment: Assessment, column: str) -> Figure:
             _interval_line(axes, own.sel(record=record, case=case), height, (low, high))
             heights.append(height)
             lines_of.append(f"{record} · {case}" if line == 0 else case)
-    axes.set_yticks(heights, lines_of, fontsize="small")
+    axes.set_yticks(heights, lines_of, fontsize=6.5)
     axes.set(xscale="log", xlim=(low, high), xlabel="scale factor of the record [1]", ylim=(lines - 0.5, -1.0))
     _plain(axes)
     axes.grid(visible=False, axis="y")
@@ -81,6 +88,12 @@ def margins_figure(assessment: Assessment, column: str) -> Figure:
     axes.plot(scanned, np.full(scanned.size, -0.75), "|", color=GREY, markersize=4.0)
     axes.set_title(f"{column}: scale factors that overturned it")
     return figure
+
+
+def _drawn_cases(cases: list[str], records: int) -> list[str]:
+    """Return the levels of dissipation and the central one with the other contact law; of many records the latter."""
+    levels = [case for case in cases if "," not in case and (case == CENTRAL or records <= _ALL_LEVELS)]
+    return [*levels, *(case for case in cases if case == f"{CENTRAL}{OTHER_LAW}")]
 
 
 def _interval_line(axes: Axes, own: xr.Dataset, height: float, ends: tuple[float, float]) -> None:
@@ -140,29 +153,6 @@ def _look(place: int) -> dict[str, Any]:
 def _placed(values: np.ndarray) -> np.ndarray:
     """Return the abscissas of tilts: overturned runs beyond all others, large tilts limited to stay below these."""
     return np.where(np.isinf(values), _FALLEN, np.minimum(values, _FALLEN - 0.16))
-
-
-@styled
-def _contact_figure(assessment: Assessment, column: str) -> Figure:
-    """Draw the friction that the runs of each record needed, and the stated coefficient."""
-    own = assessment.data["verdicts"]["friction_demand"].sel(column=column)
-    records = labels(own)
-    figure, axes = _rows_figure(records)
-    scales = own["scale"].to_numpy()
-    handles = []
-    for place, scale in enumerate(scales):
-        values = own.sel(scale=scale).stack(run=("dissipation", "vertical")).transpose("record", "run").to_numpy()
-        look = _look(place)
-        heights = np.repeat(np.arange(len(records)), values.shape[1]) + 0.15 * (place - 0.5 * (scales.size - 1))
-        axes.plot(values.ravel(), heights, linestyle="none", markersize=4.5, **look)
-        handles.append(Line2D([], [], linestyle="none", label=f"scale {scale:g}, each run", **look))
-    stated = stated_friction(assessment, column)
-    axes.axvline(stated, color=VERMILION, linestyle="--", linewidth=1.6)
-    handles.append(Line2D([], [], color=VERMILION, linestyle="--", label=f"stated coefficient {stated:g}"))
-    axes.set(xlim=(0.0, None), xlabel="friction force needed / normal force [1]")
-    axes.set_title(f"{column}: contact demand")
-    figure.legend(handles=handles, loc="outside lower center", ncols=3)
-    return figure
 
 
 @styled
@@ -245,7 +235,7 @@ def _run_words(run: xr.Dataset) -> str:
 
 
 def _rows_figure(records: list[str]) -> tuple[Figure, Axes]:
-    figure = new_figure(min(_FRAME + 2.0 * _ROW * len(records), _TALLEST))
+    figure = new_figure(min(_TILT_FRAME + _TILT_ROW * len(records), _TALLEST))
     axes = figure.subplots()
     axes.set_yticks(range(len(records)), records, fontsize="small")
     axes.set_ylim(len(records) - 0.5, -0.5)
@@ -263,14 +253,14 @@ def _plain(axes: Axes) -> None:
 _RECORDS_A_FIGURE = 6
 """Number of records in one figure of components."""
 # Height of a row and of the frame [inches]; largest number of records that have a colour each.
-_RECORD_ROW, _RECORD_FRAME, _COLOURED = 0.85, 0.75, 6
+_RECORD_ROW, _RECORD_FRAME, _COLOURED = 0.62, 0.75, 6
 
 
 @styled
 def _records_figure(assessment: Assessment, records: Sequence[str]) -> Figure:
     """Draw the components of records against time, one row for each record."""
     own = assessment.data["ground_motions"]
-    figure = new_figure(_RECORD_FRAME + _RECORD_ROW * len(records))
+    figure = new_figure(_RECORD_FRAME + _RECORD_ROW * len(records), width=_WIDTH)
     grid = figure.subplots(len(records), 3, squeeze=False, sharey="row", sharex="row")
     for row, name in zip(grid, records, strict=True):
         one = own.sel(record=name)
@@ -292,7 +282,7 @@ def spectra_figure(assessment: Assessment) -> Figure:
     """Draw the response spectra of the records, their mean, and the design spectrum if it is given."""
     own = assessment.data["spectra"]["spectral_acceleration"].transpose("record", "period") / STANDARD_GRAVITY
     period = own["period"].to_numpy()
-    figure = new_figure(3.3)
+    figure = new_figure(2.6, width=_WIDTH)
     axes = figure.subplots()
     few = own.sizes["record"] <= _COLOURED
     for place, name in enumerate(own["record"].to_numpy()):
@@ -322,11 +312,26 @@ Pictures = dict[str, Picture]
 def report_pictures(assessment: Assessment) -> Pictures:
     """Return the pictures by file name; each name begins with the name of the section."""
     drawn = replace(assessment, data={name: with_literal_names(data) for name, data in assessment.data.items()})
-    found = _of_records(drawn)
-    names = (assessment.data["columns"]["column"], drawn.data["columns"]["column"])
-    for place, (name, column) in enumerate(zip(*(one.to_numpy() for one in names), strict=True)):
+    columns, called = labels(drawn.data["columns"], "column"), labels(assessment.data["columns"], "column")
+    found = _of_objects(drawn, columns, called) | _of_records(drawn)
+    for place, (name, column) in enumerate(zip(called, columns, strict=True)):
         found |= _of_column(drawn, str(column), str(name), place + 1)
     return found
+
+
+def _of_objects(assessment: Assessment, columns: Sequence[str], called: Sequence[str]) -> Pictures:
+    """Return the sketches of the columns, a few in each picture."""
+    caption = (
+        "The objects to one scale. Dashed: at their peak tilt under the record below, or lying if it overturned them, "
+        "at central dissipation. Middle: the record along x (black) and y (orange). Below: the tilt; dashed, the "
+        "tipping angle α_c."
+    )
+    return {
+        f"objects-{first // OBJECTS + 1}": Picture(
+            objects_figure(assessment, columns[first : first + OBJECTS], called[first : first + OBJECTS]), caption
+        )
+        for first in range(0, len(columns), OBJECTS)
+    }
 
 
 def _of_records(assessment: Assessment) -> Pictures:
@@ -355,19 +360,14 @@ def _of_column(assessment: Assessment, column: str, called: str, place: int) -> 
     if bool((assessment.data["margins"]["intervals"].sel(column=column) > 0).any()):
         found[f"margins-{place}"] = Picture(
             margins_figure(assessment, column),
-            f"{called}: scale factors of each record at which it overturned (hatched) or did not, at each dissipation. "
-            "An interval narrower than the step of the scan may have been missed.",
+            f"{called}: scale factors of each record at which it overturned (hatched) or did not. An interval narrower "
+            "than the step of the scan may have been missed.",
         )
     if bool((assessment.data["histories"]["peak_tilt_ratio"].sel(column=column) > SMALLEST_TILT).any()):
         found[f"history-{place}"] = Picture(
             history_figure(assessment, column),
             f"{called} under its governing record. Left: tilt and base acceleration against time. Right: path of the "
             "tilt. Dashed: the tipping angle α_c, at which the centre of mass stands above the rim.",
-        )
-    if bool((assessment.data["verdicts"]["friction_demand"].sel(column=column) > 0.0).any()):
-        found[f"contact-{place}"] = Picture(
-            _contact_figure(assessment, column),
-            f"{called}: friction needed in each run. Dashed: the stated coefficient.",
         )
     with_vertical = any(rises(assessment, name) for name in labels(assessment.data["records"]))
     vertical = " (vertical component included)" if with_vertical else ""

@@ -213,6 +213,20 @@ def cells_of(assessment: Assessment, part: str, *dims: str) -> Iterator[tuple[tu
         yield from cells(assessment.data[part], *dims)
 
 
+def how_to_read(assessment: Assessment) -> str:
+    """Explain the meaning and the limits of a verdict."""
+    repeated = (
+        "Verdicts were therefore repeated under small variations: read their shares, not single runs."
+        if assessment.setting["variations"]
+        else "No verdict was repeated under small variations here, so it is not known whether any is repeatable."
+    )
+    return (
+        "How to read this: a verdict reports runs of a rigid column under these records only. “Did not overturn” does "
+        "not prove that the column cannot overturn. Near the overturning limit, a single rocking run is barely "
+        f"repeatable. {repeated}"
+    )
+
+
 ASSUMPTIONS: tuple[tuple[str, str], ...] = (
     ("body", "a rigid body of revolution in one piece, symmetric about its axis, on a flat circular base"),
     ("ground", "rigid, level and flat; the base acceleration acts on the whole footprint at once"),
@@ -306,7 +320,9 @@ PLANAR = (
 RULES = (
     "Hand formulas and clauses for unanchored bodies, beside the simulation at central dissipation with the vertical "
     "component. No verdict depends on them. A rule of design is meant to be strict: it may call a column unsafe that "
-    "survives. Where the last column states no, the text of the clause was not compared: check it before quoting it."
+    "survives. A cell such as 3 (2) / 1 (0) means that the rule calls 3 records unsafe, of which the column survives "
+    "2, and 1 record safe, of which none overturns the column. Where “clause checked” states no, the text of the "
+    "clause was not compared: check it before quoting it."
 )
 """Explanation of the rules of practice."""
 

@@ -1,0 +1,145 @@
+"""The answer of an assessment: how probable it is that a record overturns a column, and with what interval."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from stylobate.earthquakes.assessment.report.column_verdict import column_verdict, least_overturning_scale
+from stylobate.earthquakes.assessment.report.wording import CENTRAL, labels
+from stylobate.earthquakes.fragility.empirical_rate import compared_with_target
+from stylobate.plots.page import PageTable
+from stylobate.results.assessment import Assessment
+from stylobate.results.verdict import interval_text, percent
+from stylobate.studies.proportions import Floats, fraction_interval
+from stylobate.text import plural
+
+CONFIDENCE = 0.95
+"""Confidence level of the intervals of probabilities."""
+
+_OVERTURNING = "overturning"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Probability:
+    """Probability that a record of the kind of those assessed overturns a column at a scale.
+
+    Attributes
+    ----------
+    share
+        Mean over the records of the share of runs that overturned the column; NaN if no run was decided.
+    low, high
+        Ends of the interval at `CONFIDENCE`: the lower end counts no undecided run, the upper end counts all of them.
+    records, runs
+        Number of records, and of runs under each.
+    """
+
+    share: float
+    low: float
+    high: float
+    records: int
+    runs: int
+
+    def __str__(self) -> str:
+        """Return the probability with its interval."""
+        interval = interval_text(self.low, self.high)
+        return f"not known ({interval})" if math.isnan(self.share) else f"{percent(self.share)} ({interval})"
+
+
+def probability_over_records(overturned: Floats, undecided: Floats) -> tuple[float, float, float]:
+    """Estimate a probability of overturning from the shares of runs under each record.
+
+    The runs under one record are not independent: each record counts as one trial, whose result is the share of its
+    runs. A share varies over the records at most as much as a trial with outcome 0 or 1 of the same mean does.
+    Therefore Wilson's interval of as many trials as there are records is, up to its approximation, at least as wide as
+    it must be.
+
+    Parameters
+    ----------
+    overturned, undecided
+        Shares of the runs under each record that overturned the column, and that were not decided.
+
+    Returns
+    -------
+    tuple
+        Estimate, lower end and upper end; the estimate is NaN if no run was decided.
+    """
+    low, high = fraction_interval(overturned.sum(), undecided.sum(), overturned.size, confidence=CONFIDENCE)
+    decided = undecided < 1.0
+    known = overturned[decided] / (1.0 - undecided[decided])
+    return float(known.mean()) if known.size else math.nan, float(low), float(high)
+
+
+def overturning_probability(assessment: Assessment, column: str, scale: float) -> Probability:
+    """Estimate the probability that a record overturns a column at a scale.
+
+    The runs are the small variations of each record; without variations the runs at each stated dissipation, with the
+    vertical component.
+    """
+    if "variations" in assessment.data:
+        own = assessment.data["variations"].sel(column=column, scale=scale)
+        total = own["runs"].to_numpy()
+        overturned, undecided = own["overturned"].to_numpy() / total, own["open"].to_numpy() / total
+        runs = int(total.max())
+    else:
+        verdicts = assessment.data["verdicts"]["overturned"].sel(column=column, scale=scale, vertical="with")
+        states = verdicts.transpose("record", "dissipation").to_numpy()
+        overturned, undecided, runs = (states == 1).mean(axis=1), (states < 0).mean(axis=1), states.shape[1]
+    share, low, high = probability_over_records(overturned, undecided)
+    return Probability(share=share, low=low, high=high, records=overturned.size, runs=runs)
+
+
+def answer_table(assessment: Assessment, scale: float) -> PageTable:
+    """Tabulate the answer on each column: class, probability at `scale`, smallest overturning scale, annual rate."""
+    header = ["object", "verdict", f"probability of overturning ({CONFIDENCE:.0%} interval)".replace("%", " %")]
+    header.append("smallest scale that overturned it, at most")
+    rated = "rates" in assessment.data
+    years = assessment.setting.get("years", 50.0)
+    header += [f"annual rate of overturning; in {years:g} years"] if rated else []
+    rows = []
+    for name in labels(assessment.data["columns"], "column"):
+        found = column_verdict(assessment, name, scale)
+        row = [name, found.verdict.value]
+        if found.describes:
+            row += [str(overturning_probability(assessment, name, scale)), _least_words(assessment, name)]
+        else:
+            row += ["–", "–"]
+        row += [_rate_words(assessment, name) if found.describes else "–"] if rated else []
+        rows.append(row)
+    return PageTable(header, rows)
+
+
+def _least_words(assessment: Assessment, name: str) -> str:
+    """State the smallest overturning scale of the central case and of all cases."""
+    words = least_overturning_scale(assessment, name)
+    return words.removeprefix("Smallest overturning scale of all cases: at most ").rstrip(".")
+
+
+def _rate_words(assessment: Assessment, name: str) -> str:
+    rates = assessment.data["rates"].sel(column=name)
+    if _OVERTURNING not in rates["limit_state"].to_numpy():
+        return "–"
+    own = rates.sel(limit_state=_OVERTURNING)
+    rate, low, high = (float(own[end]) for end in ("annual_rate", "rate_low", "rate_high"))
+    interval = f" ({low:.1e} to {high:.1e})" if np.isfinite([low, high]).all() else ""
+    target = assessment.setting.get("target_rate")
+    against = "" if target is None else f"; {compared_with_target(rate, low, high, float(target))}"
+    return f"{rate:.1e} per year{interval}; {100.0 * float(own['probability']):.2g} %{against}"
+
+
+def answer_text(assessment: Assessment, scale: float) -> str:
+    """Explain the probability of the answer."""
+    first = labels(assessment.data["columns"], "column")[0]
+    one = overturning_probability(assessment, first, scale)
+    varied = (
+        f"each record was run {one.runs} times with everything varied at once that is not known exactly: record, "
+        "column, base, damping and contact law"
+        if "variations" in assessment.data
+        else f"each record was run at {plural(one.runs, 'level')} of dissipation"
+    )
+    return (
+        f"The probability is that of a record drawn from the population of these {plural(one.records, 'record')}: "
+        f"{varied}. Runs under one record count as one trial, so the interval is wide if records are few. Read the "
+        f"smallest scale as “at most”: narrower intervals may lie below. Named are its record, dissipation and, if not "
+        f"the given one, contact law; the {CENTRAL} case stands in the section on margins."
+    )

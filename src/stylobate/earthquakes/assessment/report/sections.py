@@ -1,0 +1,300 @@
+"""The pages of a report: the first page with question and answer, then short texts with tables and figures."""
+
+from collections.abc import Mapping
+
+from stylobate.earthquakes.assessment.report import shown_tables
+from stylobate.earthquakes.assessment.report.answers import answer_table, answer_text
+from stylobate.earthquakes.assessment.report.column_verdict import level_words, recorded_scale
+from stylobate.earthquakes.assessment.report.findings import column_findings
+from stylobate.earthquakes.assessment.report.tables import drifting
+from stylobate.earthquakes.assessment.report.wording import (
+    ASSUMPTIONS,
+    INTENSITIES,
+    NOT_COVERED,
+    PLANAR,
+    REFERENCES,
+    RULES,
+    SLIP_AND_FLIGHT,
+    TILT,
+    VERDICT_CLASSES,
+    how_to_read,
+    labels,
+    listed,
+    number,
+    scales,
+)
+from stylobate.plots.page import PageList, PageSection, PageTable, Part, Picture
+from stylobate.results.assessment import Assessment
+from stylobate.results.verdict import few_records
+from stylobate.text import plural
+
+
+def document_table(assessment: Assessment) -> PageTable:
+    """Tabulate project, author, date, study file and program, if stated."""
+    details = assessment.setting.get("details", {})
+    study = details.get("study_file", "")
+    lines = {
+        "project": details.get("project", ""),
+        "author": details.get("author", ""),
+        "date": details.get("date", ""),
+        "study file": f"{study}, SHA-256 {details.get('study_sha256', '')}" if study else "",
+        "computed with": f"stylobate {assessment.setting['version']}",
+    }
+    return PageTable(("document", ""), [(name, str(words)) for name, words in lines.items() if words])
+
+
+def first_page(assessment: Assessment, pictures: Mapping[str, Picture]) -> list[Part]:
+    """Return question, objects, answer and assumptions."""
+    scale = recorded_scale(assessment)
+    return [
+        _document_line(assessment),
+        _question(assessment, scale),
+        answer_table(assessment, scale),
+        answer_text(assessment, scale),
+        *([pictures["objects-1"]] if "objects-1" in pictures else []),
+        "What is assumed:",
+        PageList(_assumed(assessment)),
+    ]
+
+
+def _document_line(assessment: Assessment) -> str:
+    """Return project, author, date and program in one line."""
+    rows = [row for row in document_table(assessment).rows if row[0] != "study file"]
+    return " · ".join(f"{name}: {words}" for name, words in rows)
+
+
+def _question(assessment: Assessment, scale: float) -> str:
+    names = labels(assessment.data["columns"], "column")
+    what = f"{listed(names, 'and')} stand" if len(names) > 1 else f"{names[0]} stands"
+    count = plural(assessment.data["records"].sizes["record"], "record")
+    return (
+        f"Question: {what} free, without anchorage. {'Do they' if len(names) > 1 else 'Does it'} remain standing under "
+        f"{count} {level_words(scale)}, and what would overturn {'them' if len(names) > 1 else 'it'}?"
+    )
+
+
+def _assumed(assessment: Assessment) -> list[str]:
+    """List the assumptions that decide the answer, and those of the author."""
+    setting = assessment.setting
+    frictions = sorted({float(value) for value in setting["friction_coefficient"].values()})
+    damping = shown_tables.damping(assessment)
+    levels = [name for name in damping.header[1:] if "Housner" not in name]
+    stated = "; ".join(f"{row[0]} {', '.join(row[1 : 1 + len(levels)])}" for row in damping.rows)
+    sides = assessment.data["columns"]["damping_side"]
+    one_sided = [f"{name} {sides.sel(column=name).item()}" for name in labels(sides, "column")]
+    one_sided = [words for words in one_sided if words.endswith((" below", " above"))]
+    flag = f" All levels lie on one side of Housner's impacts: {listed(one_sided, 'and')} them." if one_sided else ""
+    return [
+        "Body: rigid, in one piece, on a flat circular base on level rigid ground; upright and at rest at the start.",
+        f"Contact: {_laws(assessment)}; friction coefficient {', '.join(map(number, frictions))} as stated.",
+        f"Damping ({', '.join(levels)}): {stated}; not measured, see the section on damping.{flag}",
+        f"Records: scaled by {scales(setting['scales'])} with their vertical components, then {_followed(assessment)}.",
+        *(f"Stated by the author: {note}" for note in map(str, setting["notes"]) if not note.startswith("Warning: ")),
+        *(note for note in map(str, setting["notes"]) if note.startswith("Warning: ")),
+    ]
+
+
+def _laws(assessment: Assessment) -> str:
+    """Name the given contact laws, and the other ones that were assessed."""
+    given = sorted({str(one["model"].get("kind", "own")) for one in assessment.setting["columns"].values()})
+    if not assessment.setting["contact_laws"]:
+        return listed(given, "and")
+    if "variations" not in assessment.data:
+        return f"{listed(given, 'and')}, and the other contact law"
+    others = [name for name in labels(assessment.data["variations"], "contact_law") if name not in given]
+    return f"{listed(given, 'and')}, and {listed(others, 'and')} as the other contact law"
+
+
+def _followed(assessment: Assessment) -> str:
+    tail = assessment.setting["tail"]
+    if isinstance(tail, str):
+        return f"{tail} of free vibration, with the frequency parameter p of the column"
+    return f"{number(tail)} s of free vibration"
+
+
+def report_sections(
+    assessment: Assessment, tables: Mapping[str, PageTable], pictures: Mapping[str, Picture]
+) -> list[PageSection]:
+    """Return the sections of the report that have content."""
+
+    def drawn(name: str) -> list[Part]:
+        return [picture for file, picture in pictures.items() if file.startswith(f"{name}-")]
+
+    def shown(*names: str) -> list[Part]:
+        return [tables[name] for name in names if name in tables]
+
+    columns = labels(assessment.data["columns"], "column")
+    more_objects = [picture for picture in drawn("objects") if picture is not pictures.get("objects-1")]
+    planar = PLANAR if "planar" in assessment.data else ["No planar calculation was asked for (planar = false)."]
+    found = [
+        PageSection(
+            "Objects one by one",
+            [*more_objects, *shown("columns"), *(column_findings(assessment, name) for name in columns)],
+        ),
+        PageSection(
+            "Records",
+            [
+                _record_text(assessment),
+                *shown("events"),
+                shown_tables.records(assessment, tables["records"]),
+                *drawn("records"),
+                *drawn("spectra"),
+            ],
+        ),
+        PageSection("Outcomes at the stated scales", [_outcome_text(assessment), *shown_tables.outcomes(assessment)]),
+        PageSection("Margins", [_margin_text(assessment), shown_tables.margins(assessment), *drawn("margins")]),
+        PageSection("Tilt and displacement", [TILT, *shown_tables.tilts(assessment), *planar, *shown("planar-bias")]),
+        PageSection("Contact demand", [_contact_text(assessment), shown_tables.contact(assessment), *shown("sliding")]),
+        PageSection("Damping", [_damping_text(assessment), shown_tables.damping(assessment)]),
+        PageSection("Rules of practice", _rules(assessment, tables)),
+        PageSection("Fragility", [_fragility_text(assessment), *drawn("fragility"), *shown("fragility")]),
+        PageSection("Annual rates", [_rates_text(assessment), *rates] if (rates := shown("rates")) else []),
+        PageSection(
+            "How to read the verdicts",
+            [how_to_read(assessment), PageTable(("class of verdict", "meaning"), VERDICT_CLASSES)],
+        ),
+        PageSection("Assumptions", [_assumptions(assessment)]),
+        PageSection("What is not covered", [not_covered(assessment)]),
+        PageSection("How to repeat this assessment", [_repeat(assessment), shown_tables.inputs(assessment)]),
+        PageSection("References", [PageTable(("subject", "source"), REFERENCES)]),
+    ]
+    return [section for section in found if section.content]
+
+
+def _record_text(assessment: Assessment) -> str:
+    drift = drifting(assessment)
+    remark = (
+        f" Drift: at the end of {listed(drift, 'and')} the velocity exceeds 5 % of PGV. Filter the record or correct "
+        "its baseline, or state why the drift is acceptable."
+        if drift
+        else ""
+    )
+    return f"Scale 1 is the record as processed; the section on repetition lists the processing. {INTENSITIES}{remark}"
+
+
+def _outcome_text(assessment: Assessment) -> str:
+    runs = assessment.setting["variations"]
+    laws = ", and the contact law" if assessment.setting["contact_laws"] else ""
+    varied = (
+        f"Each verdict was repeated {runs} times with everything varied at once: scale, clock, low-pass and direction "
+        "of the record; size and slenderness of the column; dissipation from the lowest to the highest stated level; a "
+        f"base out of level by a tenth of a degree; a small disturbance at the start; the tolerance{laws}. The table "
+        "states the share that overturned the column, and what decided most. Below 5 % with its whole interval the "
+        "column stands, above 95 % it overturns, between it is undecided."
+        if runs
+        else "No verdict was repeated under small variations (variations = 0), so it is not known which verdicts are "
+        "repeatable."
+    )
+    return (
+        f"Each record was run at scale {scales(assessment.setting['scales'])} and every stated dissipation with "
+        f"{_laws(assessment)}; also, at central dissipation, without its vertical component. Each run continued for "
+        f"{_followed(assessment)}; a column that had not overturned by then counts as not overturned. {varied} The "
+        "last column counts overturning scales among 41 within 10 % of the stated one, the largest share of all cases."
+    )
+
+
+def _margin_text(assessment: Assessment) -> str:
+    low, high, count = assessment.setting["margin_scales"]
+    resolution = assessment.setting["resolution"]
+    return (
+        f"The table has the smallest scale factor that overturned the column, by level of dissipation and contact law. "
+        f"Every record was run at {count} scale factors from {number(low)} to {number(high)} and, below the first "
+        "overturning one, at 2000 more; each change of the outcome was located by bisection to "
+        f"{100.0 * assessment.setting['width']:g} %. Narrower intervals may lie below, so read each margin as “at "
+        "most”. Overturning is not monotonic: a column may survive above the margin, and near the limit the outcome is "
+        f"erratic. {resolution[0].upper()}{resolution[1:]}. “>” marks a record that overturned the column at no scale "
+        "up to this one. PGA, PGV and Sa are those of the record at its central margin. tables/margins.csv has all "
+        "overturning intervals."
+    )
+
+
+def _contact_text(assessment: Assessment) -> str:
+    if not assessment.setting["contact"]:
+        return "The friction needed was not computed (contact = false): it is not known whether the base would slip."
+    return (
+        "The friction needed is the peak ratio of horizontal to normal force in a run, up to overturning if the "
+        "column overturned. If it exceeds the stated coefficient, the base would slip, and the run no longer "
+        "describes the column. The class of a verdict considers the given contact law only: with the other law, a "
+        "column that passes close to the vertical rolls fast round its rim, and the friction that it needs there is "
+        "that of a rigid rim in one point, which a real edge does not reach. tables/contact-by-record.csv and "
+        "tables/contact-to-margin.csv have the demand of each record and case."
+    )
+
+
+def _damping_text(assessment: Assessment) -> str:
+    kinds = sorted({str(one["model"].get("kind", "own")) for one in assessment.setting["columns"].values()})
+    return (
+        f"Equations of motion: {', '.join(kinds)}. The damping of a column that rocks in three dimensions is not a "
+        "material constant and is seldom measured. The yardstick is the damping that loses as much energy per cycle as "
+        "the impacts of a planar block by Housner's formula, at three peak tilts. Levels on both sides of it are the "
+        "recipe; each verdict is given at all of them."
+    )
+
+
+def _fragility_text(assessment: Assessment) -> str:
+    count, least = assessment.data["records"].sizes["record"], assessment.setting["least_records"]
+    few = few_records(count)
+    if "fragility" not in assessment.data:
+        why = few or "a probability needs more records"
+        return f"Not fitted: at least {least} records are required (least_records). {why[0].upper()}{why[1:]}."
+    return (f"{few}. " if few else "") + (
+        f"Lognormal curves by maximum likelihood over the peak ground acceleration (RotD50) of {count} "
+        "scaled records, at the central dissipation; intervals by bootstrap over the records. Records with survival "
+        "above an overturning scale are counted run by run. The curves describe these records, not a site."
+    )
+
+
+def _rates_text(assessment: Assessment) -> str:
+    hazard = assessment.setting["hazard"]
+    component = f", {hazard['component']}" if hazard["component"] else ""
+    origin = f" Its rates come from {hazard['origin']}." if hazard["origin"] else ""
+    count = assessment.data["records"].sizes["record"]
+    few = f"; with {plural(count, 'record')} it is too narrow" if few_records(count) else ""
+    return (
+        f"The hazard curve of the site states the annual rate at which each {hazard['quantity']}{component} is "
+        f"exceeded.{origin} The counted rate needs no fragility curve: each run of the scan stands for the intensities "
+        "around its own, and survival above an overturning scale counts as survival. Its interval is a bootstrap over "
+        f"the records, at 95 % confidence{few}. The fitted rate is that of a lognormal curve; it is left out with few "
+        "records. Both are at the central dissipation."
+    )
+
+
+def _rules(assessment: Assessment, tables: Mapping[str, PageTable]) -> list[Part]:
+    if "rules-of-practice" not in tables:
+        return []
+    return [RULES, shown_tables.rules(assessment, tables["rules-of-practice"])]
+
+
+def _assumptions(assessment: Assessment) -> PageTable:
+    notes = [
+        ("records, as read" if note.startswith("Warning: ") else "stated by the author", note)
+        for note in map(str, assessment.setting["notes"])
+    ]
+    return PageTable(("subject", "what is assumed"), [*ASSUMPTIONS, *notes])
+
+
+def not_covered(assessment: Assessment) -> PageTable:
+    """Tabulate the subjects that the assessment does not cover."""
+    return PageTable(
+        ("subject", "why it matters"), [*NOT_COVERED, SLIP_AND_FLIGHT[bool(assessment.setting["sliding"])]]
+    )
+
+
+def _repeat(assessment: Assessment) -> PageList:
+    """State command, inputs with their SHA-256, versions and options."""
+    setting = assessment.setting
+    study = str(setting.get("details", {}).get("study_file", ""))
+    command = f"Command: stylobate assess {study}" if study else "Called from Python: stylobate.earthquakes.assess"
+    digest = setting.get("details", {}).get("study_sha256", "")
+    versions = {"stylobate": setting["version"], **setting.get("software", {})}
+    options = {"seed of the small variations": setting["seed"], **setting["options"]}
+    return PageList(
+        [
+            command,
+            *([f"Study file: {study}, SHA-256 {digest}"] if study else []),
+            f"Versions: {', '.join(f'{name} {value}' for name, value in versions.items())}",
+            f"Options: {', '.join(f'{name} {value}' for name, value in options.items())}",
+            "Files beside this report: tables/*.csv and tables.xlsx with every table, figures/*.png, summary.txt, "
+            "and assessment.nc with all numbers, from which stylobate assess writes this report again.",
+        ]
+    )
