@@ -5,28 +5,23 @@ Run it with `python docs/figures/assess.py`; it runs the study examples/assess/s
 
 import sys
 import tempfile
-import textwrap
-from io import BytesIO
 from pathlib import Path
 
-from matplotlib.figure import Figure
-from matplotlib.image import imread
+from playwright.sync_api import sync_playwright
 from saving import save
 
 import stylobate as sb
-from stylobate.earthquakes.assessment.report.document import summary_text, verdict_table
 from stylobate.earthquakes.assessment.report.figures import (
     margins_figure,
     shares_figure,
-    spectra_figure,
 )
 from stylobate.results import Assessment
 
 ROOT = Path(__file__).parents[2]
 FOLDER = ROOT / "docs" / "_static" / "assess"
 STUDY = ROOT / "examples" / "assess" / "study.toml"
-_LINE = 122  # characters
-_FONT = 8.0  # points
+# Width of the type area of A4 and margin of the picture [CSS pixels]; points per CSS pixel of the picture.
+_WIDTH, _MARGIN, _DENSITY = 680, 24, 2
 
 
 def assessed(store: Path) -> Assessment:
@@ -37,31 +32,32 @@ def assessed(store: Path) -> Assessment:
     )
 
 
-def head(found: Assessment, spectra: Figure) -> Figure:
-    """Draw the first page of the report: title, verdicts, findings, spectra; the page itself needs a browser."""
-    title, *lines = summary_text(found, [verdict_table(found)]).splitlines()
-    text = "\n".join(textwrap.fill(line, _LINE) for line in lines)
-    height = (text.count("\n") + 2) * 1.35 * _FONT / 72  # inches
-    figure = Figure(figsize=(7.4, height + 0.6 + 3.2))
-    words, below = figure.subplots(2, 1, height_ratios=(height, 3.2))
-    for axes in (words, below):
-        axes.set_axis_off()
-    words.text(0.0, 1.02, title, fontsize=14, fontweight="bold", va="bottom")
-    words.text(0.0, 1.0, text, fontsize=_FONT, va="top", linespacing=1.35)
-    buffer = BytesIO()
-    spectra.savefig(buffer, format="png", dpi=300)
-    buffer.seek(0)
-    below.imshow(imread(buffer))
-    figure.subplots_adjust(left=0.03, right=0.98, top=0.95, bottom=0.01, hspace=0.0)
-    return figure
+def photograph(report: Path, into: Path) -> None:
+    """Draw the first page of the report as a browser prints it."""
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(
+            executable_path="/usr/bin/chromium", args=["--no-sandbox"]
+        )
+        page = browser.new_page(
+            viewport={"width": _WIDTH + 2 * _MARGIN, "height": 1200},
+            device_scale_factor=_DENSITY,
+        )
+        page.goto(report.as_uri())
+        page.emulate_media(media="print")
+        page.add_style_tag(content=f"body {{ padding: {_MARGIN}px !important; }}")
+        end = page.locator("section").first.bounding_box()
+        assert end is not None
+        clip = {"x": 0, "y": 0, "width": _WIDTH + 2 * _MARGIN, "height": end["y"]}
+        page.screenshot(path=into, clip=clip, full_page=True)
+        browser.close()
 
 
 def main(store: Path) -> None:
     """Draw all of them."""
     found = assessed(store)
-    margins = margins_figure(found, "slim column")
-    save(head(found, spectra_figure(found)), FOLDER / "report.png")
-    save(margins, FOLDER / "margins.png")
+    report = sb.earthquakes.assessment_report(found, store / "report")
+    photograph(report, FOLDER / "report.png")
+    save(margins_figure(found, "slim column"), FOLDER / "margins.png")
     save(shares_figure(found, "slim column", 1.0), FOLDER / "variations.png")
 
 

@@ -198,8 +198,9 @@ setup = config.build()
 found = sb.earthquakes.assess(setup.columns, setup.records, **setup.options)
 
 # %%
-# The report is one HTML page that needs no other file and no network. Beside it are its
-# tables (CSV), its figures (PNG), a summary, and all numbers (`assessment.nc`).
+# The report is one HTML page that needs no other file and no network; with `pdf=True`
+# (`--pdf`) it is also a PDF. Beside it are tables (CSV, xlsx), figures (PNG), a
+# summary, and all numbers (`assessment.nc`).
 report = sb.earthquakes.assessment_report(found, folder / "study-assessment")
 for path in sorted(report.parent.iterdir()):
     print(path.name)
@@ -208,7 +209,8 @@ for path in sorted(report.parent.iterdir()):
 # Step 8: read the report
 # -----------------------
 #
-# The report begins with one verdict per column.
+# The report begins with the answer: a verdict per column, and the probability that a
+# record of this kind overturns it. The summary has the same lines.
 summary = (report.parent / "summary.txt").read_text(encoding="utf-8")
 print("\n".join(line for line in summary.splitlines() if "column: " in line))
 
@@ -227,8 +229,9 @@ for row in (table.header, *table.rows):
 # runs would not show this.
 
 # %%
-# Two figures of the report for the slim column. The first shows all overturning
-# intervals of the scale, for each record and each damping value.
+# Three figures. The first page of the report shows the columns to scale, each with the
+# record that governs it. The second figure shows all overturning intervals of the scale
+# for the slim column, for each record and each damping value.
 figures = report.parent / "figures"
 
 
@@ -241,10 +244,11 @@ def show(path):
     axes.set_axis_off()
 
 
+show(figures / "objects-1.png")
 show(figures / "margins-1.png")
 
 # %%
-# The second shows the share of small variations that overturn the column at the
+# The third shows the share of small variations that overturn the column at the
 # recorded level, and the share of the scales within 10 % that do so. Between the dashed
 # limits a case is undecided, even if the central run survived.
 show(figures / "variations-1-scale-1.png")

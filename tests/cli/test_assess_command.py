@@ -2,6 +2,7 @@
 
 import hashlib
 import json
+import sys
 
 import numpy as np
 import pytest
@@ -11,6 +12,7 @@ from stylobate import earthquakes
 from stylobate.cli.main import run
 from stylobate.earthquakes.assessment.report import document
 from stylobate.earthquakes.assessment.report.figures import report_pictures
+from stylobate.plots import page
 from stylobate.results.assessment import Assessment
 
 STUDY = """
@@ -103,6 +105,23 @@ def test_a_study_gives_a_report_that_is_kept_and_shown_again(study, tmp_path, ca
     assert run(["assess", str(study), "--folder", str(folder)]) == 2
     assert "holds the assessment 'One column'; name another folder" in capsys.readouterr().err
     assert (folder / "report.html").read_text(encoding="utf-8") == drawn
+
+
+def test_a_pdf_is_written_on_demand_and_refused_before_the_work_without_its_library(study, monkeypatch, capsys):
+    folder = study.with_name("study-assessment")
+    monkeypatch.setattr(page, "pdf_of", lambda html: b"%PDF of " + html[:15].encode())
+    monkeypatch.setattr(page, "require_pdf", lambda: None)
+    monkeypatch.setattr(document, "pdf_of", page.pdf_of)
+    monkeypatch.setattr(document, "report_pictures", lambda _: {})
+    assert run(["assess", str(study), "--pdf"]) == 0
+    assert (folder / "report.pdf").read_bytes() == b"%PDF of <!DOCTYPE html>"
+    monkeypatch.undo()
+    monkeypatch.setitem(sys.modules, "weasyprint", None)
+    monkeypatch.setattr(earthquakes, "assess", None)  # nothing is computed
+    capsys.readouterr()
+    assert run(["assess", str(study), "--pdf"]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert 'pip install "stylobate[pdf]"' in line
 
 
 def test_an_interrupted_assessment_says_how_to_go_on(study, tmp_path, capsys, monkeypatch):

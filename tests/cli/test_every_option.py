@@ -120,7 +120,7 @@ records = {samples = ["el centro 1940"]}
 
 MEMBERS = get_args(get_args(MotionConfig)[0])
 # What changes the form of what is printed only.
-_OF_PRINTING = ("as_json",)
+_OF_PRINTING = ("as_json", "pdf")
 
 
 def exactly(value):

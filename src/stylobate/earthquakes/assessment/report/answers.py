@@ -131,15 +131,21 @@ def answer_text(assessment: Assessment, scale: float) -> str:
     """Explain the probability of the answer."""
     first = labels(assessment.data["columns"], "column")[0]
     one = overturning_probability(assessment, first, scale)
+    several = one.records > 1
+    each = "each record" if several else "the record"
+    population = (
+        f"The probability is that of a record drawn from the population of these {one.records} records"
+        if several
+        else "One record hardly bounds the probability under others like it"
+    )
     varied = (
-        f"each record was run {one.runs} times with everything varied at once that is not known exactly: record, "
+        f"{each} was run {one.runs} times with everything varied at once that is not known exactly: record, "
         "column, base, damping and contact law"
         if "variations" in assessment.data
-        else f"each record was run at {plural(one.runs, 'level')} of dissipation"
+        else f"{each} was run at {plural(one.runs, 'level')} of dissipation"
     )
     return (
-        f"The probability is that of a record drawn from the population of these {plural(one.records, 'record')}: "
-        f"{varied}. Runs under one record count as one trial, so the interval is wide if records are few. Read the "
-        f"smallest scale as “at most”: narrower intervals may lie below. Named are its record, dissipation and, if not "
-        f"the given one, contact law; the {CENTRAL} case stands in the section on margins."
+        f"{population}: {varied}. Runs under one record count as one trial, so the interval is wide if records are "
+        "few. Read the smallest scale as “at most”: narrower intervals may lie below. Named are its record, its "
+        f"dissipation and, if not the given one, contact law; the {CENTRAL} case stands in the section on margins."
     )

@@ -203,7 +203,7 @@ def damping(assessment: Assessment) -> PageTable:
 def _parameters(stated: dict[str, float]) -> str:
     """State the dissipation parameters of a level; damping alone is η."""
     if set(stated) == {"damping"}:
-        return f"η = {_two_digits(stated['damping'])}"
+        return f"η\u00a0=\u00a0{_two_digits(stated['damping'])}"
     return ", ".join(f"{name} {number(value)}" for name, value in stated.items())
 
 

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
 
 from stylobate.column import STANDARD_GRAVITY
-from stylobate.earthquakes.assessment.report.wording import number
+from stylobate.earthquakes.assessment.report.wording import SMALLEST_TILT, number
 from stylobate.earthquakes.figures.overturning_intervals import undecided_label, undecided_reasons
 from stylobate.plots.geometry import Floats, Shape
 from stylobate.plots.labels import literal
@@ -71,7 +71,7 @@ def _sketch(axes: Axes, shape: Shape, run: xr.Dataset) -> None:
     axes.plot([0.0], [shape.mass_height], marker="o", color=BLACK, markersize=3.0)
     ratio = float(run["peak_tilt_ratio"])
     fallen = math.isinf(ratio)
-    if fallen or ratio > 0.0:
+    if fallen or ratio >= SMALLEST_TILT:
         # A column that overturned lies on the line from its base rim to its top rim.
         lying = 0.5 * math.pi + math.atan2(top - r, height)
         angle = lying if fallen else ratio * math.atan(shape.slenderness)
@@ -94,7 +94,9 @@ def _outcome(run: xr.Dataset, ratio: float) -> str:
         return undecided_label(run["outcome"])
     if math.isinf(ratio):
         return "overturned"
-    return rf"did not overturn: {number(ratio)} $\alpha_c$" if ratio > 0.0 else "did not move"
+    if ratio < SMALLEST_TILT:
+        return "hardly rocked" if ratio > 0.0 else "did not move"
+    return rf"did not overturn: peak tilt {number(ratio)} $\alpha_c$"
 
 
 def _record(axes: Axes, run: xr.Dataset, record: str) -> None:
@@ -123,10 +125,11 @@ def _frame(row: Sequence[Axes], tallest: float, widest: float) -> None:
             edge.set_visible(False)
     bar = max(one for one in _BARS if one <= _BAR_SHARE * tallest or one == _BARS[0])
     end = right - 0.04 * (right - left)
-    row[0].plot([end, end], [0.04 * tallest, 0.04 * tallest + bar], color=GREY, linewidth=2.0, solid_capstyle="butt")
+    top = (1.0 + 0.5 * _ROOM) * tallest
+    row[0].plot([end, end], [top - bar, top], color=GREY, linewidth=2.0, solid_capstyle="butt")
     row[0].annotate(
         f"{bar:g} m",
-        (end, 0.04 * tallest + 0.5 * bar),
+        (end, top - 0.5 * bar),
         xytext=(-3, 0),
         textcoords="offset points",
         ha="right",
