@@ -55,6 +55,22 @@ def incremental() -> Any:
     )
 
 
+def counted_rate() -> Any:
+    """Return the annual rate counted from the runs of an incremental dynamic analysis."""
+    runs = incremental()
+    intensity = np.geomspace(0.5, 20.0, 30)
+    hazard = sb.earthquakes.HazardCurve(
+        intensity=intensity,
+        rate=1e-2 / intensity**2,
+        units="m s-2",
+        quantity="peak ground acceleration",
+        component="RotD50",
+    )
+    return sb.earthquakes.empirical_rate(
+        runs["intensity"], runs["reached"], hazard, record=runs["record"], rng=np.random.default_rng(0)
+    )
+
+
 def reached() -> Any:
     """Return the intervals of these runs that overturned."""
     runs = incremental()
@@ -132,6 +148,7 @@ RESULTS: dict[str, Callable[[], Any]] = {
         sb.earthquakes.lognormal_fragility(3.0, 0.4),
         sb.earthquakes.HazardCurve(intensity=np.geomspace(0.5, 20.0, 30), rate=1e-2 / np.geomspace(0.5, 20.0, 30) ** 2),
     ),
+    "empirical annual rate": counted_rate,
     "reached intervals": reached,
     "overturning intervals": lambda: sb.earthquakes.overturning_intervals(
         WOBBLING, PULSE, scales=np.geomspace(0.3, 4.0, 40), over={"size": np.geomspace(0.5, 2.0, 9)}

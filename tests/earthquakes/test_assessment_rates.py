@@ -7,6 +7,7 @@ import pytest
 
 import stylobate as sb
 from stylobate.earthquakes import HazardCurve, assess, empirical_rate, incremental_dynamic_analysis
+from stylobate.earthquakes.assessment.report.figures import report_pictures
 from stylobate.earthquakes.assessment.report.tables import assessment_tables
 from stylobate.earthquakes.config.assess import AssessConfig
 from stylobate.errors import ConfigError
@@ -78,6 +79,12 @@ def test_few_records_have_a_counted_rate_alone_and_without_hazard_there_is_none(
     assert re.fullmatch(r"\d\.\d\de-\d\d", row[2])
     assert row[5] == ""
     assert row[-1] == "above the target of 1.0e-09 per year"
+    assert {row[-1] for row in assessment_tables(found)["rates"].rows if row[1] != "overturning"} == {"–"}
+    (above, below) = report_pictures(found)["rates-1"].figure.axes
+    np.testing.assert_allclose(above.lines[0].get_xydata(), np.transpose([HAZARD.intensity, HAZARD.rate]), rtol=1e-12)
+    own = found.data["rates"].sel(column="slim", limit_state="overturning")
+    heights, edges, _ = below.patches[0].get_data()
+    np.testing.assert_allclose(heights * np.diff(np.log(edges)), own["contribution"] / own["annual_rate"], rtol=1e-12)
     bare = assessed(None)
     assert "rates" not in bare.data
     assert "rates" not in assessment_tables(bare)

@@ -8,6 +8,7 @@ import pytest
 import xarray as xr
 from scipy.integrate import quad
 
+import stylobate as sb
 from stylobate.earthquakes import HazardCurve, annual_rate, empirical_rate, lognormal_fragility
 from stylobate.earthquakes.fragility.empirical_rate import compared_with_target
 from stylobate.errors import ParameterError
@@ -43,6 +44,35 @@ def test_the_rate_is_that_of_an_integration_by_hand(seed):
     np.testing.assert_allclose(found["record_rate"][0], expected, rtol=1e-10)
     assert found["annual_rate"].item() == pytest.approx(np.mean(expected), rel=1e-10)
     assert found["probability"].item() == pytest.approx(-math.expm1(-50.0 * np.mean(expected)), rel=1e-10)
+
+
+def test_contributions_are_integrals_over_their_bins_and_sum_to_the_rate():
+    rng = np.random.default_rng(11)
+    reached = rng.random((3, LEVELS.size)) < 0.5
+    record = np.repeat(np.arange(3), LEVELS.size).reshape(reached.shape)
+    found = empirical_rate(np.broadcast_to(LEVELS, reached.shape), reached, CURVE, record=record, resamples=0, bins=7)
+    within, above = found["contribution"][0].to_numpy(), found["rate_above"].item()
+    assert within.sum() + above == pytest.approx(found["annual_rate"].item(), rel=1e-12)
+    assert found["bin_from"][0] == pytest.approx(LEVELS[0])
+    assert found["bin_to"][-1] == pytest.approx(LEVELS[-1])
+    last = CURVE.at(LEVELS[-1:])[0]  # above the last intensity a record stays as it is there
+    assert above == pytest.approx(reached[:, -1].mean() * last, rel=1e-10)
+    edges = np.sqrt(LEVELS[1:] * LEVELS[:-1])
+    fine = np.geomspace(LEVELS[0], LEVELS[-1], 200_001)
+    hit = reached[:, np.searchsorted(edges, np.sqrt(fine[1:] * fine[:-1]))].mean(axis=0)
+    summed, _ = np.histogram(fine[:-1], [*found["bin_from"], np.inf], weights=hit * -np.diff(CURVE.at(fine)))
+    # Of 200 000 steps one beside each of the edges may be on its wrong side.
+    np.testing.assert_allclose(within, summed, rtol=0.0, atol=1e-4 * within.sum())
+
+
+def test_the_figure_draws_shares_of_the_rate_whose_area_is_what_lies_within_the_runs():
+    reached = np.array([[0, 0, 0, 1, 1, 0, 1, 1, 1], [0, 0, 0, 0, 0, 0, 0, 1, 1]])
+    record = np.repeat(np.arange(2), LEVELS.size).reshape(reached.shape)
+    found = empirical_rate(np.broadcast_to(LEVELS, reached.shape), reached, CURVE, record=record, resamples=0)
+    (steps,) = sb.plot(found).axes[1].patches
+    heights, edges, _ = steps.get_data()
+    within = 1.0 - found["rate_above"].item() / found["annual_rate"].item()
+    assert np.sum(heights * np.diff(np.log(edges))) == pytest.approx(within, rel=1e-12)
 
 
 def test_many_lognormal_records_give_the_rate_of_the_lognormal_curve():

@@ -1,6 +1,7 @@
 """Figures of fragility: curves with observed fractions, annual rates; and of verdicts under small variations."""
 
 import textwrap
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -167,21 +168,39 @@ def plot_annual_rate(found: xr.Dataset) -> Figure:
     Contributions are fractions of the rate of their limit state, over the logarithm of the intensity, so that areas are
     fractions. Vertical lines are the medians of the fragilities. The legend states the fraction beyond the curve.
     """
+    return _draw_rates(found, _rate_of)
+
+
+@figure_of("empirical annual rate")
+@styled
+def plot_empirical_rate(found: xr.Dataset) -> Figure:
+    """Draw the hazard curve, and below it the contribution of each intensity to the annual rate counted from runs.
+
+    Contributions are drawn as in the figure of an annual rate. The legend states the rate with its interval over
+    records, and the fraction above the highest intensity of the runs.
+    """
+    return _draw_rates(found, _counted_rate_of)
+
+
+def _draw_rates(found: xr.Dataset, label: Callable[[xr.Dataset, float], str]) -> Figure:
+    """Draw a hazard curve with the medians, if there are any, and the contributions to the annual rates."""
     figure = new_figure(_RATE_HEIGHT)
     above, below = figure.subplots(2, 1, sharex=True)
-    above.plot(found["hazard_intensity"], found["hazard_rate"], color=BLACK, marker="o", markersize=3.5)
+    curve = found.isel(limit_state=0)
+    above.plot(curve["hazard_intensity"], curve["hazard_rate"], color=BLACK, marker="o", markersize=3.5)
     above.set(xscale="log", yscale="log", ylabel="annual rate\nof exceedance [1/a]")
-    edges = np.append(found["bin_from"].to_numpy(), found["bin_to"].to_numpy()[-1:])
-    width = np.diff(np.log(edges))
     handles = []
     for place in range(found.sizes["limit_state"]):
         state = found.isel(limit_state=place)
         colour = PALETTE[place % len(PALETTE)]
         dash: Any = DASHES[place % len(DASHES)]
-        share = state["contribution"].to_numpy() / state["annual_rate"].item()
-        below.stairs(share / width, edges, color=colour, linestyle=dash, linewidth=1.6)
-        above.axvline(state["median"].item(), color=colour, linestyle=dash, linewidth=1.2)
-        handles.append(Line2D([], [], color=colour, linestyle=dash, label=_rate_of(state, found.attrs["years"])))
+        rate, edges = state["annual_rate"].item(), np.append(state["bin_from"], state["bin_to"][-1:])
+        if rate > 0.0:
+            share = state["contribution"].to_numpy() / rate / np.diff(np.log(edges))
+            below.stairs(share, edges, color=colour, linestyle=dash, linewidth=1.6)
+        if "median" in state:
+            above.axvline(state["median"].item(), color=colour, linestyle=dash, linewidth=1.2)
+        handles.append(Line2D([], [], color=colour, linestyle=dash, label=label(state, found.attrs["years"])))
     below.set_ylabel("share of the annual rate,\nfor each factor e of intensity")
     below.set_ylim(bottom=0.0)
     below.set_xlabel(axis_label(found["bin_intensity"]))
@@ -203,6 +222,17 @@ def _rate_of(state: xr.Dataset, years: float) -> str:
         f"{name}\n{rate:.2e} /a, {100.0 * state['probability'].item():.2g} % in {years:g} a\n"
         f"{bounds}\n{100.0 * state['share_beyond'].item():.2g} % from beyond the curve"
     )
+
+
+def _counted_rate_of(state: xr.Dataset, years: float) -> str:
+    name = str(state["limit_state"].item()).replace("α", r"$\alpha_c$")
+    rate, low, high = (state[key].item() for key in ("annual_rate", "rate_low", "rate_high"))
+    if not rate > 0.0:
+        return f"{name}\n{'not reached' if rate == 0.0 else 'no run known'}"
+    interval = f"\n{100.0 * state.attrs['confidence']:g} %: {low:.2e} to {high:.2e}" if np.isfinite(low) else ""
+    above = 100.0 * state["rate_above"].item() / rate
+    chance = f"{100.0 * state['probability'].item():.2g} % in {years:g} a"
+    return f"{name}\n{rate:.2e} /a, {chance}{interval}\n{above:.2g} % from above the runs"
 
 
 @figure_of("reached intervals")

@@ -13,6 +13,7 @@ Survival above an intensity that overturned the column counts as survival, which
 import math
 
 import numpy as np
+import numpy.typing as npt
 import xarray as xr
 
 from stylobate.earthquakes.fragility.annual_rate import HazardCurve, require_same_component, require_same_unit
@@ -34,6 +35,7 @@ def empirical_rate(
     confidence: float = 0.95,
     resamples: int = 1000,
     rng: np.random.Generator | None = None,
+    bins: int = 40,
 ) -> xr.Dataset:
     """Compute the annual rate at which each limit state is reached from the runs alone, (1), with an interval.
 
@@ -51,6 +53,8 @@ def empirical_rate(
         Number of bootstrap samples of the records; 0 for no interval.
     rng
         Random numbers of the bootstrap.
+    bins
+        Number of intervals of the intensity, of one ratio, in which contributions are summed.
 
     Returns
     -------
@@ -59,7 +63,9 @@ def empirical_rate(
         interval by percentiles of the resamples of the records, NaN for fewer than two records; `rate_least` and
         `rate_most`, bounds for what happens beyond the scales of the runs: above the last scale of a record the column
         always stands or always falls, and it always falls below a first scale that reached the limit state;
-        `probability` in `years` years. Over `record` too: `record_rate`.
+        `probability` in `years` years. Over `record` too: `record_rate`. Over `bin` too: `contribution` [1/a], with
+        `bin_from`, `bin_to` and `bin_intensity` from the lowest to the highest intensity of the runs; `rate_above` is
+        the contribution above. Also the hazard curve, over `point`.
 
     Raises
     ------
@@ -80,7 +86,7 @@ def empirical_rate(
     True
     """
     time, level = require_positive("years", years, "a"), require_confidence(confidence)
-    count = require_whole("resamples", resamples, least=0)
+    count, pieces = require_whole("resamples", resamples, least=0), require_whole("bins", bins, least=1)
     seen = Observations.of(intensity, reached, record, property_sample)
     if seen.record is None or seen.series is None:
         raise ParameterError("record: missing. Name the record of each run, for example record=names")
@@ -93,9 +99,20 @@ def empirical_rate(
             for state in seen.reached
         ]
     )  # (limit states, series, 3)
-    records = np.arange(len(seen.records))
-    each = np.stack([_mean(parts[:, of_record == one], axis=1) for one in records], axis=1)
+    lowest, highest = math.log(seen.intensity.min()), math.log(seen.intensity.max())
+    edges = np.linspace(lowest, highest, pieces + 1)
+    below = np.array(
+        [
+            [_rate_below(seen.intensity[runs], state[runs], hazard, edges) for runs in _each(seen.series)]
+            for state in seen.reached
+        ]
+    )  # (limit states, series, edges)
+    each, each_below = (
+        _of_records(parts, of_record, len(seen.records)),
+        _of_records(below, of_record, len(seen.records)),
+    )
     rate, least, most = _mean(each, axis=1).T
+    contribution = np.diff(_mean(each_below, axis=1), axis=1)
     low, high = _interval(each[:, :, 0], level, count, rng)
     per_year = {"units": "a-1"}
     percent = f"{100.0 * level:g} %"
@@ -105,7 +122,11 @@ def empirical_rate(
         "rate_high": (high, f"upper end of its {percent} interval over records"),
         "rate_least": (least, "lower bound beyond the scales"),
         "rate_most": (most, "upper bound beyond the scales"),
+        "rate_above": (rate - contribution.sum(axis=1), "contribution above the highest intensity of the runs"),
     }
+    component = {} if hazard.component is None else {"component": str(hazard.component)}
+    about = {"units": hazard.units, "long_name": ", ".join([hazard.quantity, *component.values()]), **component}
+    ends = np.exp(edges)
     return xr.Dataset(
         {name: (LIMIT_STATE, values, {**per_year, "long_name": text}) for name, (values, text) in data.items()}
         | {
@@ -115,8 +136,21 @@ def empirical_rate(
                 -np.expm1(-rate * time),
                 {"units": "1", "long_name": f"probability in {time:g} years"},
             ),
+            "contribution": (
+                (LIMIT_STATE, "bin"),
+                contribution,
+                {**per_year, "long_name": "contribution to the annual rate"},
+            ),
+            "bin_from": ("bin", ends[:-1], about),
+            "bin_to": ("bin", ends[1:], about),
+            "hazard_rate": ("point", np.exp(hazard.log_rate), {**per_year, "long_name": "annual rate of exceedance"}),
         },
-        coords={LIMIT_STATE: list(seen.names), "record": list(seen.records)},
+        coords={
+            LIMIT_STATE: list(seen.names),
+            "record": list(seen.records),
+            "bin_intensity": ("bin", np.sqrt(ends[:-1] * ends[1:]), about),
+            "hazard_intensity": ("point", np.exp(hazard.log_intensity), about),
+        },
         attrs={
             "kind": "empirical annual rate",
             "years": time,
@@ -154,6 +188,11 @@ def _each(series: Integers) -> list[Floats]:
     return [series == one for one in range(series.max() + 1)]
 
 
+def _of_records(parts: Floats, of_record: Integers, records: int) -> Floats:
+    """Average the parts of each limit state, shape (limit states, series, …), over the series of each record."""
+    return np.stack([_mean(parts[:, of_record == one], axis=1) for one in range(records)], axis=1)
+
+
 def _mean(values: Floats, axis: int) -> Floats:
     """Return the mean of the known values along an axis, NaN where none is known."""
     known = ~np.isnan(values)
@@ -161,11 +200,27 @@ def _mean(values: Floats, axis: int) -> Floats:
     return np.asarray(np.divide(total, count, out=np.full(total.shape, np.nan), where=count > 0))
 
 
-def _series_rate(intensity: Floats, state: Integers, hazard: HazardCurve) -> tuple[float, float, float]:
-    """Return (2) of one series of runs, and its bounds beyond the scales; NaN without known runs."""
+def _known_runs(intensity: Floats, state: Integers) -> tuple[Floats, npt.NDArray[np.bool_]]:
+    """Return the logarithm of the intensity of each run that is known, rising, and whether it reached the state."""
     known = state != NOT_KNOWN
     order = np.argsort(intensity[known], kind="stable")
-    u, hit = np.log(intensity[known][order]), state[known][order] == 1
+    return np.log(intensity[known][order]), state[known][order] == 1
+
+
+def _rate_below(intensity: Floats, state: Integers, hazard: HazardCurve, edges: Floats) -> Floats:
+    """Return the part of (2) of one series that lies below each of the `edges`, in logarithms; NaN without runs."""
+    u, hit = _known_runs(intensity, state)
+    if u.size == 0:
+        return np.full(edges.size, np.nan)
+    between = 0.5 * (u[1:] + u[:-1])
+    low, high = np.insert(between, 0, u[0])[hit], np.append(between, np.inf)[hit]
+    reached = np.clip(edges[:, np.newaxis], low, high)
+    return np.asarray(np.sum(_exceedance(hazard, low) - _exceedance(hazard, reached), axis=1))
+
+
+def _series_rate(intensity: Floats, state: Integers, hazard: HazardCurve) -> tuple[float, float, float]:
+    """Return (2) of one series of runs, and its bounds beyond the scales; NaN without known runs."""
+    u, hit = _known_runs(intensity, state)
     if u.size == 0:
         return np.nan, np.nan, np.nan
     between = _exceedance(hazard, 0.5 * (u[1:] + u[:-1]))

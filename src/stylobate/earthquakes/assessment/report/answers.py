@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from stylobate.earthquakes.assessment.report.column_verdict import column_verdict, least_overturning_scale
-from stylobate.earthquakes.assessment.report.wording import CENTRAL, labels
+from stylobate.earthquakes.assessment.report.wording import CENTRAL, OVERTURNING, labels
 from stylobate.earthquakes.fragility.empirical_rate import compared_with_target
 from stylobate.plots.page import PageTable
 from stylobate.results.assessment import Assessment
@@ -16,8 +16,6 @@ from stylobate.text import plural
 
 CONFIDENCE = 0.95
 """Confidence level of the intervals of probabilities."""
-
-_OVERTURNING = "overturning"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -117,9 +115,9 @@ def _least_words(assessment: Assessment, name: str) -> str:
 
 def _rate_words(assessment: Assessment, name: str) -> str:
     rates = assessment.data["rates"].sel(column=name)
-    if _OVERTURNING not in rates["limit_state"].to_numpy():
+    if OVERTURNING not in rates["limit_state"].to_numpy():
         return "–"
-    own = rates.sel(limit_state=_OVERTURNING)
+    own = rates.sel(limit_state=OVERTURNING)
     rate, low, high = (float(own[end]) for end in ("annual_rate", "rate_low", "rate_high"))
     interval = f" ({low:.1e} to {high:.1e})" if np.isfinite([low, high]).all() else ""
     target = assessment.setting.get("target_rate")

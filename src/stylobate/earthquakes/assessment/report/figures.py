@@ -17,9 +17,10 @@ from stylobate.column import STANDARD_GRAVITY
 from stylobate.earthquakes.assessment.inputs import CENTRAL, OTHER_LAW
 from stylobate.earthquakes.assessment.report.column_verdict import rises
 from stylobate.earthquakes.assessment.report.sketch import OBJECTS, objects_figure
-from stylobate.earthquakes.assessment.report.wording import SMALLEST_TILT, labels, number
-from stylobate.earthquakes.figures.fragility import plot_fragility
+from stylobate.earthquakes.assessment.report.wording import OVERTURNING, SMALLEST_TILT, labels, number
+from stylobate.earthquakes.figures.fragility import plot_empirical_rate, plot_fragility
 from stylobate.earthquakes.figures.overturning_intervals import UNDECIDED, undecided_label, undecided_reasons
+from stylobate.earthquakes.fragility.observations import LIMIT_STATE
 from stylobate.plots.cells import fill_options
 from stylobate.plots.labels import literal, with_literal_names
 from stylobate.plots.page import Picture
@@ -316,7 +317,7 @@ def report_pictures(assessment: Assessment) -> Pictures:
     found = _of_objects(drawn, columns, called) | _of_records(drawn)
     for place, (name, column) in enumerate(zip(called, columns, strict=True)):
         found |= _of_column(drawn, str(column), str(name), place + 1)
-    return found
+    return found | _of_rates(drawn)
 
 
 def _of_objects(assessment: Assessment, columns: Sequence[str], called: Sequence[str]) -> Pictures:
@@ -352,6 +353,18 @@ def _of_records(assessment: Assessment) -> Pictures:
         f"one axis is that of its component.{over}",
     )
     return found
+
+
+def _of_rates(assessment: Assessment) -> Pictures:
+    """Return the figure of the annual rates of overturning by intensity, counted from the runs."""
+    if "rates" not in assessment.data:
+        return {}
+    own = assessment.data["rates"].sel(limit_state=OVERTURNING, drop=True).rename(column=LIMIT_STATE)
+    caption = (
+        "Hazard curve of the site and, below, the intensities that contribute to the annual rate of overturning, "
+        "counted from the runs at central dissipation: the area of a range is its share of the rate."
+    )
+    return {"rates-1": Picture(plot_empirical_rate(own), caption)}
 
 
 def _of_column(assessment: Assessment, column: str, called: str, place: int) -> Pictures:

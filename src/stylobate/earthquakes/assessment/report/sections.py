@@ -148,7 +148,9 @@ def report_sections(
         PageSection("Damping", [_damping_text(assessment), shown_tables.damping(assessment)]),
         PageSection("Rules of practice", _rules(assessment, tables)),
         PageSection("Fragility", [_fragility_text(assessment), *drawn("fragility"), *shown("fragility")]),
-        PageSection("Annual rates", [_rates_text(assessment), *rates] if (rates := shown("rates")) else []),
+        PageSection(
+            "Annual rates", [_rates_text(assessment), *rates, *drawn("rates")] if (rates := shown("rates")) else []
+        ),
         PageSection(
             "How to read the verdicts",
             [how_to_read(assessment), PageTable(("class of verdict", "meaning"), VERDICT_CLASSES)],

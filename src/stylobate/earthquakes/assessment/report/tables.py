@@ -16,6 +16,7 @@ from stylobate.earthquakes.assessment.report.column_verdict import (
     largest_decided,
     rises,
 )
+from stylobate.earthquakes.assessment.report.rate_tables import fragility_table, rate_table
 from stylobate.earthquakes.assessment.report.wording import (
     CENTRAL,
     TILT_HEADER,
@@ -38,7 +39,6 @@ from stylobate.earthquakes.assessment.report.wording import (
     tilt_cells,
     verdict,
 )
-from stylobate.earthquakes.fragility.empirical_rate import compared_with_target
 from stylobate.plots.page import PageTable
 from stylobate.results.assessment import Assessment
 from stylobate.results.verdict import LABELS, interval_text, percent
@@ -429,37 +429,6 @@ def _practice(assessment: Assessment) -> PageTable:
     return PageTable(header, rows)
 
 
-def _fragility(assessment: Assessment) -> PageTable:
-    header = (
-        *("column", "limit state", "median PGA, RotD50 [m/s²]", "median from", "median to", "dispersion β_f"),
-        *("β_f from", "β_f to", "runs", "runs that reached it", "records with survival above an overturning scale"),
-    )
-    fitted = ("median", "median_low", "median_high", "dispersion", "dispersion_low", "dispersion_high")
-    seen = ("runs", "runs_reached", "non_monotone_records")
-    rows = []
-    for where, one in cells_of(assessment, "fragility", "column", "limit_state"):
-        column, state = where[0], where[1].replace("α", "α_c")  # the symbol of the report
-        rows.append((column, state, *numbers(one, *fitted), *counts(one, *seen)))
-    return PageTable(header, rows)
-
-
-def _rates(assessment: Assessment) -> PageTable:
-    years, target = assessment.setting.get("years", 50.0), assessment.setting.get("target_rate")
-    header = (
-        *("column", "limit state", "annual rate, counted [1/a]", "from", "to", "annual rate, fitted [1/a]"),
-        *(f"probability in {years:g} years", *(["against the target"] if target is not None else [])),
-    )
-    rows = []
-    for where, one in cells_of(assessment, "rates", "column", "limit_state"):
-        rate, low, high = (float(one[name]) for name in ("annual_rate", "rate_low", "rate_high"))
-        fitted = float(one["fitted_rate"]) if "fitted_rate" in one else math.nan
-        said = [] if target is None else [compared_with_target(rate, low, high, float(target))]
-        written = (f"{value:.2e}" if math.isfinite(value) else "" for value in (rate, low, high, fitted))
-        chance = f"{100.0 * float(one['probability']):.2g} %"
-        rows.append((where[0], where[1].replace("α", "α_c"), *written, chance, *said))
-    return PageTable(header, rows)
-
-
 def _columns(assessment: Assessment) -> PageTable:
     header = (
         *("column", "radius [m]", "height [m]", "centre of mass [m]", "mass [kg]", "c = r/h", "α_c [°]", "R [m]"),
@@ -580,8 +549,8 @@ _TABLES: dict[str, Callable[[Assessment], PageTable]] = {
     "planar": _planar,
     "planar-bias": _planar_bias,
     "rules-of-practice": _practice,
-    "fragility": _fragility,
-    "rates": _rates,
+    "fragility": fragility_table,
+    "rates": rate_table,
     "columns": _columns,
     "dissipation": _dissipation,
     "record-provenance": _provenance,

@@ -13,6 +13,8 @@ from stylobate.results.assessment import Assessment
 from stylobate.results.verdict import percent
 
 CENTRAL = "central"
+OVERTURNING = "overturning"
+"""Name of the limit state."""
 OVERTURNED, STOOD, UNDECIDED = "overturned", "did not overturn", "not decided"
 _MOST_NAMES = 8
 # A relative difference of the size of rounding does not raise the last digit of an upper bound.
