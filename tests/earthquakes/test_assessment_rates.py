@@ -109,6 +109,21 @@ def test_a_study_states_its_hazard(tmp_path):
     assert sb.config.read_config(tmp_path / "study.toml")["hazard"]["file"] == str(tmp_path / "site.csv")
 
 
+def test_a_table_of_openquake_is_read_and_asked_for_its_component(tmp_path):
+    path = tmp_path / "hazard_curve-mean-SA(0.5)_1.csv"
+    path.write_text(
+        "#,,,,,\"generated_by='OpenQuake engine 3.16', kind='mean', investigation_time=50.0, imt='SA(0.5)'\"\n"
+        "lon,lat,depth,poe-0.05,poe-0.2,poe-0.8\n14.5,42.1,0.0,0.9,0.3,0.02\n"
+    )
+    with pytest.raises(ConfigError, match=r'^hazard: component: missing. State it, such as component = "RotD50"$'):
+        AssessConfig.parse({**STUDY, "hazard": {"file": str(path)}}).build()
+    hazard = {"file": str(path), "component": "geometric mean"}
+    found = AssessConfig.parse({**STUDY, "hazard": hazard}).build().options["hazard"]
+    np.testing.assert_allclose(found.intensity, 9.80665 * np.array([0.05, 0.2, 0.8]), rtol=1e-12)
+    np.testing.assert_allclose(found.rate, -np.log1p(-np.array([0.9, 0.3, 0.02])) / 50.0, rtol=1e-12)
+    assert (found.quantity, found.component) == ("spectral acceleration at 0.5 s, 5 % damping", "geometric mean")
+
+
 @pytest.mark.parametrize(
     ("hazard", "line"),
     [

@@ -426,7 +426,8 @@ def _site_hazard(hazard: Hazard) -> HazardCurve:
     points = hazard.points()
     if not points.measure or points.component is None:
         lacking = "component" if points.measure else "measure"
-        raise ParameterError(f'{lacking}: missing. State it, such as measure = "PGA" and component = "RotD50"')
+        measure = "" if points.measure else 'measure = "PGA" and '
+        raise ParameterError(f'{lacking}: missing. State it, such as {measure}component = "RotD50"')
     return site_hazard(points, IntensityMeasure.named(points.measure, points.component), "hazard")
 
 
