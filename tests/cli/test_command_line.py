@@ -145,13 +145,16 @@ def test_simulate_animates_the_run_it_prints(tmp_path, capsys):
         ),
         (["simulate", *COLUMN, "--duration", "1", "--figure", "run.xyz"], ["cannot draw into run.xyz"]),
         (
-            ["simulate", *COLUMN, "--duration", "1", "--output", "run.csv"],
-            ["--output must end with .nc, got 'run.csv'"],
+            ["simulate", *COLUMN, "--duration", "1", "--output", "run.txt"],
+            ["--output must end with .nc, .csv or .xlsx, got 'run.txt'"],
         ),
-        (["simulate", *COLUMN, "--duration", "1", "--output", "run.zarr"], ["--output must end with .nc, got"]),
         (
-            ["response", *COLUMN, *MOTION[:4], "--angular-frequency-range", "1", "3", "--output", "response.csv"],
-            ["--output must end with .nc, got 'response.csv'"],
+            ["simulate", *COLUMN, "--duration", "1", "--output", "run.zarr"],
+            ["--output must end with .nc, .csv or .xlsx, got"],
+        ),
+        (
+            ["response", *COLUMN, *MOTION[:4], "--angular-frequency-range", "1", "3", "--output", "response.txt"],
+            ["--output must end with .nc, .csv or .xlsx, got 'response.txt'"],
         ),
         (
             ["response", *COLUMN, *MOTION[:4], "--angular-frequency-range", "-1", "3"],

@@ -239,7 +239,7 @@ def test_dask_workers_compute_the_same(tmp_path):
         ),
         ([*MAP, *MORE, "--x", "dampng", "0.1", "1", "2"], ["map.x: dampng is not known here; did you mean damping?"]),
         ([*MAP, *MORE, "--x", "colour", "0.1", "1", "2"], ["map.x: colour is not known here; known are tilt_x,"]),
-        ([*MAP, "--output", "map.csv"], ["--output must end with .nc or .zarr, got 'map.csv'"]),
+        ([*MAP, "--output", "map.txt"], ["--output must end with .nc, .zarr, .csv or .xlsx, got 'map.txt'"]),
         ([*MAP, "--x-spacing", "cubic"], ["map.x.spacing: input should be 'linear' or 'log', got 'cubic'"]),
         (
             [*MAP, "--x", "angular-frequency", "0", "6", "3"],

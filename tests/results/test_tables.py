@@ -1,11 +1,14 @@
 """Results as tables in pandas: one row per run or sample, a column per number."""
 
+import csv
+
 import numpy as np
 import pytest
 
 import stylobate as sb
 from stylobate.errors import ParameterError
-from stylobate.results import to_dataframe
+from stylobate.results import to_dataframe, write_table
+from stylobate.text import unit_in_text
 
 COLUMN = sb.Column.solid(radius=0.3, height=3.0, density=2700.0)
 MODEL = sb.Rolling(COLUMN, damping=0.1)
@@ -117,3 +120,30 @@ def test_an_orbit_is_a_table_over_one_period_and_a_branch_has_a_row_per_orbit():
     assert len(rows) == len(branch.path)
     np.testing.assert_array_equal(rows["angular_frequency"], [point.value for point in branch.path])
     assert rows.attrs["units"]["mean_tilt"] == "rad"
+
+
+@pytest.mark.parametrize("ending", [".csv", ".xlsx"])
+def test_a_written_table_has_the_rows_and_units_of_the_dataframe(tmp_path, ending):
+    runs = sb.simulate_ensemble(MODEL, CIRCLE, duration=4.0, parameters={"acceleration": [0.05, 0.15]})
+    table = to_dataframe(runs).reset_index()
+    path = write_table(runs, tmp_path / f"runs{ending}")
+    if ending == ".csv":
+        header, *rows = csv.reader(path.read_text(encoding="utf-8").splitlines())
+    else:
+        sheet = pytest.importorskip("openpyxl").load_workbook(path).active
+        header, *rows = sheet.iter_rows(values_only=True)
+    assert [name.partition(" [")[0] for name in header] == list(table.columns)
+    units = {name: unit.strip("]") for name, _, unit in (one.partition(" [") for one in header)}
+    assert units["peak_tilt"] == unit_in_text(runs["peak_tilt"].attrs["units"])
+    for name, *cells in zip(table.columns, *rows, strict=True):
+        for cell, value in zip(cells, table[name], strict=True):
+            if ending == ".csv":
+                assert cell == str(value)
+            else:
+                assert cell is None if isinstance(value, float) and not np.isfinite(value) else cell == value
+
+
+def test_a_table_of_another_ending_is_refused(tmp_path):
+    runs = sb.simulate_ensemble(MODEL, CIRCLE, duration=1.0)
+    with pytest.raises(sb.errors.ParameterError, match=r"path: must end with \.csv or \.xlsx \(got '.*runs\.ods'\)"):
+        write_table(runs, tmp_path / "runs.ods")

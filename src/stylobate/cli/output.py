@@ -16,6 +16,7 @@ from unicodedata import combining, east_asian_width
 
 from stylobate.errors import FileError, ParameterError, require_positive
 from stylobate.files import write_whole
+from stylobate.results.tables import TABLES
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -117,7 +118,7 @@ def check_writable(figure: Path | None, output: Path | None = None, *, stores: b
     figure
         A file whose ending names a format for figures.
     output
-        File of the data: netCDF, or a store if `stores` is true.
+        File of the data: netCDF or a table, or a store if `stores` is true.
     stores
         Whether the command supports stores.
 
@@ -137,9 +138,10 @@ def check_writable(figure: Path | None, output: Path | None = None, *, stores: b
             f"cannot draw into {figure}: interactive figures need Plotly (pip install stylobate[interactive])"
         )
     if output is not None:
-        endings = (NETCDF, STORE) if stores else (NETCDF,)
+        endings = (NETCDF, *((STORE,) if stores else ()), *TABLES)
         if output.suffix not in endings:
-            raise ParameterError(f"--output must end with {' or '.join(endings)}, got {str(output)!r}")
+            listed = f"{', '.join(endings[:-1])} or {endings[-1]}"
+            raise ParameterError(f"--output must end with {listed}, got {str(output)!r}")
         if output.suffix == STORE and output.is_dir():  # to continue; nothing is written if the store is complete
             output = None
     for path in (figure, output):

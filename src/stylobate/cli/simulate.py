@@ -13,6 +13,7 @@ from stylobate.cli.options import Options, overlay, read_source
 from stylobate.cli.output import NETCDF, check_animation, check_writable, deliver, print_table, relocated, save_plot
 from stylobate.config.options import COLUMN, MODEL, MOTION, OUTPUT, RECORD, Option, run_numbers
 from stylobate.errors import Outcome, ParameterError, UnlikelyInputWarning
+from stylobate.results.tables import TABLES, write_table
 from stylobate.run_arguments import Accuracy, InitialConditions, SingleRun
 from stylobate.text import four_digits
 
@@ -125,7 +126,7 @@ class VerdictOfCase:
     def deliver(self, verdict: "Verdict | None") -> None:
         """Write the verdict into the files that the options name."""
         if verdict is not None and self.output is not None:
-            verdict.save(self.output)
+            _save(verdict, self.output)
         if verdict is not None and self.figure is not None:
             save_plot(verdict, self.figure)
 
@@ -228,8 +229,11 @@ def simulate(options: Options) -> None:
         _animate(run, options["animation"], options["speed"], case.title(run, verdict))
 
 
-def _save(run: "Run", path: Path) -> None:
-    run.save(path)
+def _save(result: "Run | Verdict", path: Path) -> None:
+    if path.suffix in TABLES:
+        write_table(result.data, path)
+    else:
+        result.save(path)
 
 
 def _animate(run: "Run", path: Path, speed: float | None, title: str | None) -> None:

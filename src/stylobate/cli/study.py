@@ -28,6 +28,7 @@ from stylobate.cli.terminal import INTERRUPTED
 from stylobate.config.study import Analysis, Study, declared_numbers, own_options, study_of
 from stylobate.errors import FileError, Interrupted, ParameterError, StylobateError
 from stylobate.kinds import loaded
+from stylobate.results.tables import TABLES, write_table
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -289,8 +290,10 @@ def computed(study: Callable[..., "xr.Dataset"], setup: "Setup", options: Option
 
 
 def save(result: "xr.Dataset", output: Path) -> None:
-    """Write a result into a netCDF file; a store already holds its result."""
-    if not _is_store(output):
+    """Write a result into a netCDF file or a table; a store already holds its result."""
+    if output.suffix in TABLES:
+        write_table(result, output)
+    elif not _is_store(output):
         from stylobate.results.storage import write_netcdf
 
         write_netcdf(result, output)

@@ -304,11 +304,15 @@ COMPUTING = Group.of(
 )
 FIGURE = Option("figure", "draw into this file (.png, .pdf, .svg, or .html to zoom and hover)", Path)
 JSON = Option("as_json", "print JSON instead of a table", bool, flag="--json", default=False)
-OUTPUT = Group.of("Output", FIGURE, Option("output", "save the result as netCDF (.nc)", Path), JSON)
+OUTPUT = Group.of(
+    "Output", FIGURE, Option("output", "save the result as netCDF (.nc), or as a table (.csv, .xlsx)", Path), JSON
+)
 OUTPUT_OR_STORE = Group.of(
     "Output",
     FIGURE,
-    Option("output", "save the result as netCDF (.nc), or in a store (.zarr) for --resume", Path),
+    Option(
+        "output", "save the result as netCDF (.nc), in a store (.zarr) for --resume, or as a table (.csv, .xlsx)", Path
+    ),
     JSON,
 )
 

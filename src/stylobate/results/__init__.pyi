@@ -4,7 +4,7 @@ from .outcomes import ContactClass
 from .report_details import DesignSpectrum, ReportDetails
 from .rules import OutcomeRules
 from .run import Event, Run
-from .tables import to_dataframe
+from .tables import to_dataframe, write_table
 from .verdict import Verdict, VerdictWord
 
 __all__ = [
@@ -19,4 +19,5 @@ __all__ = [
     "Verdict",
     "VerdictWord",
     "to_dataframe",
+    "write_table",
 ]

@@ -3,11 +3,13 @@
 import json
 import math
 from collections.abc import Hashable, Iterable, Iterator, Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from stylobate.errors import ParameterError
+from stylobate.files import csv_text, write_whole, write_workbook
 from stylobate.text import did_you_mean, plural, unit_in_text
 
 if TYPE_CHECKING:
@@ -128,6 +130,48 @@ def to_dataframe(data: "xr.Dataset", over: str | Sequence[str] | None = None) ->
     known = {*columns, *table.index.names}
     table.attrs["units"] = {name: unit for name, unit in units.items() if name in known}
     return table
+
+
+TABLES = (".csv", ".xlsx")
+"""Endings of files of a table."""
+
+
+def write_table(data: "xr.Dataset", path: str | Path) -> Path:
+    """Write the table of a run, an ensemble or a study, as of `to_dataframe`, into a CSV file or an Excel workbook.
+
+    The first row has the names, with units in brackets; numbers that are not finite are empty cells of a workbook.
+
+    Parameters
+    ----------
+    data
+        The Dataset.
+    path
+        File that ends with `.csv` or `.xlsx`.
+
+    Raises
+    ------
+    ParameterError
+        If the path has another ending.
+    UnsupportedError
+        If openpyxl is not installed and the path ends with `.xlsx`.
+    FileError
+        If the file cannot be written.
+    """
+    target = Path(path)
+    if target.suffix not in TABLES:
+        raise ParameterError(f"path: must end with {' or '.join(TABLES)} (got {str(path)!r}). Change the ending.")
+    table = to_dataframe(data)
+    units = {name: unit_in_text(unit) for name, unit in table.attrs["units"].items()}
+    table = table.reset_index() if None not in table.index.names else table
+    header = [f"{name} [{units[name]}]" if units.get(name) else str(name) for name in table.columns]
+    rows = table.astype(object).to_numpy().tolist()
+    if target.suffix == ".xlsx":
+        return write_workbook(target, {str(data.attrs.get("kind", "run"))[:_SHEET]: [header, *rows]})
+    return write_whole(target, csv_text(header, rows))
+
+
+# Largest number of characters in the name of a sheet.
+_SHEET = 31
 
 
 def _rows_of(data: "xr.Dataset", over: str | Sequence[str] | None) -> tuple[Hashable, ...]:
