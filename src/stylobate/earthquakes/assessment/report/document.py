@@ -9,6 +9,7 @@ from stylobate.earthquakes.assessment.report.column_verdict import recorded_scal
 from stylobate.earthquakes.assessment.report.figures import Pictures, report_pictures
 from stylobate.earthquakes.assessment.report.findings import summary_text, verdict_table
 from stylobate.earthquakes.assessment.report.sections import document_table, first_page, report_sections
+from stylobate.earthquakes.assessment.report.sketch import OBJECTS
 from stylobate.earthquakes.assessment.report.tables import assessment_tables
 from stylobate.errors import FileError, UnsupportedError
 from stylobate.files import csv_text, write_whole, write_workbook
@@ -17,7 +18,7 @@ from stylobate.progress import Progress, Report, report_of, shows_progress
 from stylobate.results.assessment import Assessment
 
 # Tables of a dozen columns fit a wide screen; a narrow screen scrolls tables and figures. Pages of paper have a running
-# title and numbers; tables break between rows, and only the first page is kept to itself.
+# title and numbers; tables break between rows.
 _STYLE = """
 .wide + .wide { margin-top: 1.4rem; } nav a { display: inline-block; }
 body > .wide td:nth-child(-n+2) { font-weight: 600; } ul { padding-left: 1.2rem; }
@@ -36,7 +37,7 @@ body > .wide td:nth-child(-n+2) { font-weight: 600; } ul { padding-left: 1.2rem;
   th, td { padding: .1rem .3rem; overflow-wrap: break-word; }
   .many table { font-size: 6.8pt; } .wide + .wide { margin-top: .6rem; } figure { margin: .5rem 0; }
   figure img { width: 100%; max-height: 21cm; object-fit: contain; } figcaption { font-size: 8pt; }
-  section:first-of-type { break-before: page; } section:first-of-type h2 { margin-top: 0; } }
+  section:first-of-type { break-before: BREAK; } }
 """
 
 
@@ -105,7 +106,9 @@ def _page(assessment: Assessment, pictures: Pictures) -> str:
     named = " · ".join(
         words for words in (str(details.get("project", "")), author, str(details.get("date", ""))) if words
     )
-    style = _STYLE.replace("TITLE", style_text(title)).replace("NAMED", style_text(named))
+    alone = assessment.data["columns"].sizes["column"] <= OBJECTS  # the answer to many flows over a page
+    style = _STYLE.replace("BREAK", "page" if alone else "auto")
+    style = style.replace("TITLE", style_text(title)).replace("NAMED", style_text(named))
     sections = report_sections(assessment, assessment_tables(assessment), pictures)
     return page(title, first_page(assessment, pictures), sections, style=style, author=author)
 

@@ -6,6 +6,7 @@ from stylobate.earthquakes.assessment.report import shown_tables
 from stylobate.earthquakes.assessment.report.answers import answer_table, answer_text
 from stylobate.earthquakes.assessment.report.column_verdict import level_words, recorded_scale
 from stylobate.earthquakes.assessment.report.findings import column_findings
+from stylobate.earthquakes.assessment.report.sketch import OBJECTS
 from stylobate.earthquakes.assessment.report.tables import drifting
 from stylobate.earthquakes.assessment.report.wording import (
     ASSUMPTIONS,
@@ -76,22 +77,31 @@ def _question(assessment: Assessment, scale: float) -> str:
 def _assumed(assessment: Assessment) -> list[str]:
     """List the assumptions that decide the answer, and those of the author."""
     setting = assessment.setting
-    frictions = sorted({float(value) for value in setting["friction_coefficient"].values()})
+    frictions = _by_object({name: number(float(one)) for name, one in setting["friction_coefficient"].items()})
     damping = shown_tables.damping(assessment)
     levels = [name for name in damping.header[1:] if "Housner" not in name]
-    stated = "; ".join(f"{row[0]} {', '.join(row[1 : 1 + len(levels)])}" for row in damping.rows)
+    stated = _by_object({row[0]: ", ".join(row[1 : 1 + len(levels)]) for row in damping.rows})
     sides = assessment.data["columns"]["damping_side"]
     one_sided = [f"{name} {sides.sel(column=name).item()}" for name in labels(sides, "column")]
     one_sided = [words for words in one_sided if words.endswith((" below", " above"))]
     flag = f" All levels lie on one side of Housner's impacts: {listed(one_sided, 'and')} them." if one_sided else ""
     return [
         "Body: rigid, in one piece, on a flat circular base on level rigid ground; upright and at rest at the start.",
-        f"Contact: {_laws(assessment)}; friction coefficient {', '.join(map(number, frictions))} as stated.",
-        f"Damping ({', '.join(levels)}): {stated}; not measured, see the section on damping.{flag}",
+        f"Contact: {_laws(assessment)}; friction coefficient as stated: {frictions}.",
+        f"Damping ({', '.join(levels)}): {stated}. Not measured, see the section on damping.{flag}",
         f"Records: scaled by {scales(setting['scales'])} with their vertical components, then {_followed(assessment)}.",
         *(f"Stated by the author: {note}" for note in map(str, setting["notes"]) if not note.startswith("Warning: ")),
         *(note for note in map(str, setting["notes"]) if note.startswith("Warning: ")),
     ]
+
+
+def _by_object(words: Mapping[str, str]) -> str:
+    """State what differs between objects by object; once if it does not, and by a reference for many objects."""
+    if len(set(words.values())) == 1:
+        return next(iter(words.values()))
+    if len(words) > OBJECTS:
+        return "one for each object, listed below"
+    return "; ".join(f"{name} {one}" for name, one in words.items())
 
 
 def _laws(assessment: Assessment) -> str:

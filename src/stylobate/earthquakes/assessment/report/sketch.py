@@ -102,7 +102,8 @@ def _outcome(run: xr.Dataset, ratio: float) -> str:
 def _record(axes: Axes, run: xr.Dataset, record: str) -> None:
     for axis, colour in (("x", BLACK), ("y", ORANGE)):
         axes.plot(run["time"], run[f"base_{axis}"] / STANDARD_GRAVITY, color=colour, linewidth=0.5, label=axis)
-    axes.set_title(f"{literal(record)}, scale {float(run['scale']):g}", fontsize="small", pad=2.0)
+    scale = float(run["scale"])
+    axes.set_title(literal(record) if scale == 1.0 else f"{scale:g} × {literal(record)}", fontsize="small", pad=2.0)
     axes.tick_params(labelbottom=False, labelsize=7.5)
 
 
