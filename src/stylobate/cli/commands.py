@@ -44,6 +44,10 @@ COMMANDS = {
     "records": Entry("cli.records:records", "List ground-motion records, their components and their intensities."),
     "select": Entry("cli.select:select", "Choose records whose spectra fit a target, and scale them."),
     "assess": Entry("cli.assess:assess", "Assess whether columns survive records, and how robust the answer is."),
+    "inventory": Entry(
+        "cli.inventory:inventory",
+        "Rank the objects of a table by how probably the records of their sites overturn them.",
+    ),
     "spectrum": Entry(
         "earthquakes:overturning_intervals", "Compute overturning intervals of the amplitude, or rocking spectra."
     ),

@@ -140,8 +140,8 @@ def _with_shape(described: Any) -> Any:
     """Add the shape that the numbers imply to the values of a column without one, solid by default; halve diameters."""
     if not isinstance(described, Mapping):
         return described
-    numbers = {name: value for name, value in described.items() if name not in _DIAMETERS}
-    for name, radius in _DIAMETERS.items():
+    numbers = {name: value for name, value in described.items() if name not in DIAMETERS}
+    for name, radius in DIAMETERS.items():
         if name in described and radius in described:
             raise ParameterError(f"column: {name} and {radius} must not both be given. Remove one")
         if name in described:
@@ -149,7 +149,7 @@ def _with_shape(described: Any) -> Any:
     return {"shape": implied_shape(numbers) or "solid", **numbers}
 
 
-_DIAMETERS = {"diameter": "radius", "inner_diameter": "inner_radius", "top_diameter": "top_radius"}
+DIAMETERS = {"diameter": "radius", "inner_diameter": "inner_radius", "top_diameter": "top_radius"}
 """Lengths that files may state in place of radii."""
 
 

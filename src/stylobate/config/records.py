@@ -401,7 +401,7 @@ class RecordMotion(Reading):
 
 
 def anchored(values: Any, folder: Path) -> Any:
-    """Make the paths of records in plain values relative to `folder`.
+    """Make the paths of records, hazard curves and tables in plain values relative to `folder`.
 
     Parameters
     ----------
@@ -420,6 +420,8 @@ def anchored(values: Any, folder: Path) -> Any:
     }
     if "records" in values:
         found["records"] = _source_from(values["records"], folder)
+    if isinstance(values.get("objects"), str):  # the table of an inventory
+        found["objects"] = _from(values["objects"], folder)
     for name in ("design_spectrum", "hazard"):
         if isinstance(values.get(name), Mapping):
             found[name] = _file_from(values[name], "file", folder)

@@ -2,6 +2,7 @@ from .assessment.assess import assess
 from .assessment.report import assessment_report, assessment_tables
 from .calibration import Calibration, calibrate, reliability, scores
 from .config.assess import AssessConfig
+from .config.inventory import InventoryConfig
 from .figures.incremental import plot_directions
 from .figures.spectra import plot_records
 from .fragility.annual_rate import HazardCurve, annual_rate
@@ -14,6 +15,10 @@ from .fragility.observations import Counting, limit_states, reached_intervals
 from .incremental import incremental_dynamic_analysis
 from .intensities import SpectralAcceleration
 from .intensity_comparison import compare_intensities
+from .inventories.export import export_inventory
+from .inventories.objects import InventoryObject, InventorySite
+from .inventories.study import inventory
+from .inventories.table import read_inventory
 from .planar_comparison import planar_bias
 from .practice_study import compare_rules
 from .property_spreads import (
@@ -35,6 +40,9 @@ __all__ = [
     "Counting",
     "FitStatus",
     "HazardCurve",
+    "InventoryConfig",
+    "InventoryObject",
+    "InventorySite",
     "LogUniformSpread",
     "LognormalSpread",
     "NormalSpread",
@@ -51,9 +59,11 @@ __all__ = [
     "dispersion_parts",
     "empirical_rate",
     "export_fragility",
+    "export_inventory",
     "fit_fragility",
     "fragility_of_runs",
     "incremental_dynamic_analysis",
+    "inventory",
     "limit_states",
     "lognormal_fragility",
     "overturning_intervals",
@@ -62,6 +72,7 @@ __all__ = [
     "plot_records",
     "property_samples",
     "reached_intervals",
+    "read_inventory",
     "reliability",
     "repeat_verdict",
     "rocking_spectrum",

@@ -46,7 +46,8 @@ _DIGITS = re.compile(r"[-+]?\.?\d")
 _HAS_LETTER = re.compile(r"[^\W\d_]")
 _WIDE_SPACE = re.compile(r"\s{2,}")
 _RULE = re.compile(r"[-=_+|\s]+")
-_NAME = re.compile(r"\s*(?P<name>[^\[(]*?)\s*(?:[\[(](?P<unit>[^\])]*)[\])])?\s*")
+NAME_AND_UNIT = re.compile(r"\s*(?P<name>[^\[(]*?)\s*(?:[\[(](?P<unit>[^\])]*)[\])])?\s*")
+"""The name of a column, and its unit in brackets."""
 _WRITE_POINTS = "Write decimal points, or put semicolons between the columns"
 
 Line = tuple[int, str]
@@ -277,7 +278,7 @@ def read_named_columns(table: TextTable, columns: Mapping[str, str] | None, step
     text, first = table.text, table.names_at
     if table.names is None:
         raise text.fault(table.rows[0][0] if table.rows else 0, "no names of columns. Write them above the numbers")
-    header = [_NAME.fullmatch(name) for name in table.names]
+    header = [NAME_AND_UNIT.fullmatch(name) for name in table.names]
     names = [found["name"].strip() if found else "" for found in header]
     units = [found["unit"] if found else None for found in header]
     chosen = _chosen(text, first, names, columns)

@@ -140,7 +140,7 @@ def _with_name(values: Any) -> Any:
     return {**_MARGIN, **values, "name": "scale"} if isinstance(values, dict) and "values" not in values else values
 
 
-def _as_source(values: Any) -> Any:
+def as_source(values: Any) -> Any:
     """Convert a folder, a pattern or a list of files to the values of records."""
     return {"source": values} if isinstance(values, (str, list, tuple)) else values
 
@@ -244,7 +244,7 @@ class AssessConfig(Config):
     model: ModelConfig = described_model(DEFAULT_MODEL)
     dissipation: dict[str, Annotated[dict[str, Any], BeforeValidator(_as_level)]]
     friction_coefficient: Annotated[float | dict[str, float], BeforeValidator(_as_friction)]
-    records: Annotated[RecordsConfig, BeforeValidator(_as_source)]
+    records: Annotated[RecordsConfig, BeforeValidator(as_source)]
     scales: tuple[float, ...] = (1.0,)
     margin: Annotated[Axis, BeforeValidator(_with_name)] = Field(
         default_factory=lambda: Axis.parse({**_MARGIN, "name": "scale"})
@@ -324,7 +324,7 @@ class AssessConfig(Config):
             warnings.warn(remark.message, remark.category, stacklevel=2)
         problems += self._problems_of_the_remarks(records)
         details = self._details(problems)
-        hazard = None if self.hazard is None else built("hazard", partial(_site_hazard, self.hazard), problems)
+        hazard = None if self.hazard is None else built("hazard", partial(hazard_as_stated, self.hazard), problems)
         if problems:
             raise ConfigError(problems)
         options = {"details": details, "hazard": hazard} | {
@@ -421,7 +421,7 @@ class AssessConfig(Config):
         return [*unknown, *(f"friction_coefficient: {name!r} has none; state one for each column" for name in lacking)]
 
 
-def _site_hazard(hazard: Hazard) -> HazardCurve:
+def hazard_as_stated(hazard: Hazard) -> HazardCurve:
     """Build a hazard curve in the intensity that it states."""
     points = hazard.points()
     if not points.measure or points.component is None:

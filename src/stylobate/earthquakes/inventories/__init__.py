@@ -1,0 +1,1 @@
+"""Inventories: many objects of one table under the records of their sites, ranked by how probably they overturn."""

@@ -1,0 +1,175 @@
+"""Rows of tables of objects as text: CSV files as spreadsheets write them, workbooks, and GeoPackages."""
+
+import csv
+import math
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, NamedTuple, Self
+
+from stylobate.errors import FileError, UnsupportedError
+from stylobate.files import file_of
+from stylobate.records.containers import is_container, members
+from stylobate.records.text_files import Text, read_bytes, require_readable
+
+_GEOPACKAGE = ".gpkg"
+_SEPARATORS = ";\t,"
+_WHOLE = re.compile(r"-?\d+\.0")
+
+
+class Row(NamedTuple):
+    """A row of a table: its place, its cells by heading, and its geometry as well-known binary."""
+
+    place: str
+    cells: Mapping[str, str]
+    geometry: bytes = b""
+
+
+@dataclass(frozen=True, slots=True)
+class ObjectTable:
+    """The rows of a table of objects as text.
+
+    Parameters
+    ----------
+    path
+        The file, for messages.
+    headings
+        Headings of the columns.
+    rows
+        The rows that are not empty.
+    problems
+        A line for each row that does not fit the headings.
+    crs
+        Coordinate reference system of the geometries; empty without one.
+    """
+
+    path: Path
+    headings: tuple[str, ...]
+    rows: tuple[Row, ...]
+    problems: tuple[str, ...] = ()
+    crs: str = ""
+
+    @classmethod
+    def read(cls, path: Path) -> Self:
+        """Read a CSV file, a workbook (its first sheet, or FILE.xlsx/SHEET), or a GeoPackage.
+
+        Raises
+        ------
+        FileError
+            If the file cannot be read, or has no heading or no row.
+        UnsupportedError
+            If a package is missing that reads it.
+        """
+        file = file_of(path)
+        if file.suffix.lower() == _GEOPACKAGE:
+            found = cls._of_geopackage(path)
+        else:
+            content = read_bytes(file)
+            require_readable(file, content)
+            if is_container(content):
+                found = cls._of_text(_first(path, file, content), whole=_WHOLE)
+            else:
+                found = cls._of_text(Text.of(path, content))
+        if not found.rows and not found.problems:
+            raise FileError(f"{path}: the table has no rows. Write one object in each row, below the headings.")
+        return found
+
+    @classmethod
+    def _of_text(cls, text: Text, whole: re.Pattern[str] | None = None) -> Self:
+        """Read separated values; of a workbook `whole` numbers lose their decimals."""
+        lines = [line if line.strip() else "" for line in text.lines]
+        begin = next((at for at, line in enumerate(lines) if line and not line.startswith("#")), None)
+        if begin is None:
+            raise FileError(f"{text.path}: no headings. Write the names of the columns in the first line.")
+        separator = max(_SEPARATORS, key=lines[begin].count)
+        reader = csv.reader([f"{line}\n" for line in lines[begin:]], delimiter=separator)
+        headings = [heading.strip() for heading in next(reader)]
+        while headings and not headings[-1]:
+            headings.pop()
+        rows: list[Row] = []
+        problems: list[str] = []
+        for cells in reader:
+            place = f"{text.path.name}, row {begin + reader.line_num}"
+            plain = [one.replace("\N{NO-BREAK SPACE}", " ").strip() for one in cells]
+            if whole is not None:
+                plain = [one.removesuffix(".0") if whole.fullmatch(one) else one for one in plain]
+            if not any(plain):
+                continue
+            if any(plain[len(headings) :]):
+                remedy = "Write decimal points, or put semicolons between the columns." if separator == "," else ""
+                problems.append(
+                    f"{place}: {len(plain)} cells, but {len(headings)} headings. {remedy or 'Correct the row.'}"
+                )
+                continue
+            plain += [""] * (len(headings) - len(plain))
+            rows.append(Row(place, dict(zip(headings, plain, strict=False))))
+        _require_distinct(text.path, headings)
+        return cls(text.path, tuple(headings), tuple(rows), tuple(problems))
+
+    @classmethod
+    def _of_geopackage(cls, path: Path) -> Self:
+        """Read the first layer of a GeoPackage, or FILE.gpkg/LAYER."""
+        raw = geopackages(path)
+        file = file_of(path)
+        layer = None if file == path else path.name
+        try:
+            meta, _, geometry, columns = raw.read(file, layer=layer)
+        except Exception as error:  # GDAL raises errors of many kinds
+            raise FileError(f"{path}: cannot be read ({error}). Save it again as GeoPackage.") from error
+        headings = tuple(str(name) for name in meta["fields"])
+        shapes = [None] * (len(columns[0]) if columns else 0) if geometry is None else geometry
+        rows = tuple(
+            Row(
+                f"{path.name}, row {place}",
+                dict(zip(headings, map(_as_text, cells), strict=True)),
+                shape or b"",
+            )
+            for place, (shape, *cells) in enumerate(zip(shapes, *columns, strict=True), start=1)
+        )
+        _require_distinct(path, headings)
+        return cls(path, headings, rows, crs=str(meta.get("crs") or ""))
+
+
+def geopackages(path: Path) -> Any:
+    """Return the reader and writer of GeoPackages.
+
+    Raises
+    ------
+    UnsupportedError
+        If pyogrio is not installed.
+    """
+    try:
+        import pyogrio.raw
+    except ImportError:
+        raise UnsupportedError(
+            f'{path}: a GeoPackage needs pyogrio: pip install "stylobate[geo]"; or save the table as CSV.'
+        ) from None
+    return pyogrio.raw
+
+
+def _first(path: Path, file: Path, content: bytes) -> Text:
+    """Return the named sheet of a workbook, or file of an archive, or the first one."""
+
+    def chosen(places: Any) -> list[Path]:
+        listed = list(places)
+        if path == file:
+            return listed[:1]
+        if path not in listed:
+            raise FileError(f"{path}: no such sheet. Choose from {', '.join(one.name for one in listed)}.")
+        return [path]
+
+    place, text = next(iter(members(file, content, chosen)))
+    return Text.of(file if path == file else place, text)
+
+
+def _as_text(value: Any) -> str:
+    if value is None or (isinstance(value, float) and math.isnan(value)):
+        return ""
+    return str(value.item() if hasattr(value, "item") else value).strip()
+
+
+def _require_distinct(path: Path, headings: Sequence[str]) -> None:
+    for place, heading in enumerate(headings):
+        if heading in headings[:place]:
+            raise FileError(f"{path}: two columns have the heading {heading!r}. Rename or remove one.")
