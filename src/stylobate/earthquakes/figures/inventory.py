@@ -17,7 +17,9 @@ Floats = npt.NDArray[np.float64]
 _HEIGHT, _ROW, _MOST_ROWS = 2.2, 0.19, 40
 # Place of overturned columns on the axis of tilts, beyond 1.
 _BEYOND = 1.15
-# Smallest probability that a logarithmic axis of rates shows, as a fraction of the largest.
+# Share of samples from which a figure calls an object one that slides.
+_MOST_OF_ITS_RUNS = 0.5
+# Smallest rate that the axis shows, as a fraction of the largest.
 _DECADES = 1e-6
 
 
@@ -64,14 +66,17 @@ def plot_inventory(found: xr.Dataset) -> Figure:
 def _draw_tilts(axes: Axes, shown: xr.Dataset, places: npt.NDArray[np.intp], colours: list[str]) -> None:
     middle, upper = (np.minimum(shown[name].to_numpy(), _BEYOND) for name in ("tilt_median", "tilt_84"))
     axes.hlines(places, middle, np.where(np.isnan(upper), middle, upper), color=colours, linewidth=1.6)
-    fallen = middle >= _BEYOND
-    axes.scatter(
-        middle[~fallen], places[~fallen], s=16.0, c=[one for one, at in zip(colours, fallen, strict=True) if not at]
-    )
-    axes.scatter(middle[fallen], places[fallen], s=22.0, marker="x", color=VERMILION)
-    axes.scatter(
-        upper[(upper >= _BEYOND) & ~fallen], places[(upper >= _BEYOND) & ~fallen], s=16.0, marker=">", color=VERMILION
-    )
+    stands = middle < _BEYOND
+    own = [colour for colour, one in zip(colours, stands, strict=True) if one]
+    axes.scatter(middle[stands], places[stands], s=16.0, c=own, zorder=3)
+    for at, mark in ((middle >= _BEYOND, "x"), (stands & (upper >= _BEYOND), ">")):
+        axes.scatter(np.full(int(at.sum()), _BEYOND), places[at], s=18.0, marker=mark, color=VERMILION, zorder=3)
+    for place, rank, slides in zip(
+        places, *(shown[name].to_numpy() for name in ("rank", "sliding_share")), strict=True
+    ):
+        if rank == 0:
+            reason = "slides before it rocks" if slides > _MOST_OF_ITS_RUNS else "not known"
+            axes.text(0.0, place, reason, va="center", fontsize="x-small", color=GREY)
     axes.axvline(1.0, color=BLACK, linewidth=0.8, linestyle="--")
     axes.set_xlim(-0.03, _BEYOND + 0.06)
     axes.set_xticks([0.0, 0.5, 1.0, _BEYOND], ["0", "0.5", "1", "over-\nturned"])

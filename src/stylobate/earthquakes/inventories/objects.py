@@ -1,7 +1,8 @@
 """Objects of an inventory: the numbers of a column with their uncertainty, and the runs that are drawn from them."""
 
 import warnings
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from itertools import product
 from typing import Any, TypeAlias
@@ -195,9 +196,10 @@ class PreparedObject:
         drawn = self.samples(runs, seed)
         ends = {name: (float(values.min()), float(values.max())) for name, values in drawn.items()}
         try:
-            for name in set(ends) & set(self.of_model):
-                for value in ends[name]:
-                    _quantity(self.model, name).checked(name, value)
+            with unquestioned():
+                for name in sorted(set(ends) & set(self.of_model)):
+                    for value in ends[name]:
+                        _quantity(self.model, name).checked(name, value)
             lengths = {name: both for name, both in ends.items() if name in self.numbers}
             corners = [dict(zip(lengths, values, strict=True)) for values in product(*lengths.values())]
             if lengths and not all(self._fits(one) for one in corners):
@@ -209,15 +211,14 @@ class PreparedObject:
 
     def _fits(self, numbers: Mapping[str, float]) -> bool:
         try:
-            self._column(numbers)
+            with unquestioned():
+                self._column(numbers)
         except (ParameterError, ArithmeticError):
             return False
         return True
 
     def _column(self, numbers: Mapping[str, float]) -> Column:
-        with warnings.catch_warnings():  # the nominal numbers have been questioned already
-            warnings.simplefilter("ignore", UnlikelyInputWarning)
-            return self.make(**{**self.numbers, **numbers})
+        return self.make(**{**self.numbers, **numbers})
 
     def draws(self, runs: int, seed: int) -> dict[str, Floats]:
         """Return the numbers of column and model of each run, with `slenderness` and `frequency_parameter`.
@@ -232,7 +233,8 @@ class PreparedObject:
         own = (*OF_RUNS, "slenderness", "frequency_parameter")
         if of_column:
             rows = zip(*(values.tolist() for values in of_column.values()), strict=True)
-            columns = [self._column(dict(zip(of_column, row, strict=True))) for row in rows]
+            with unquestioned():
+                columns = [self._column(dict(zip(of_column, row, strict=True))) for row in rows]
             table = np.array([[getattr(column, name) for name in own] for column in columns])
         else:
             table = np.tile([getattr(self.model.column, name) for name in own], (runs, 1))
@@ -243,8 +245,17 @@ class PreparedObject:
     @property
     def base(self) -> Model:
         """The nominal model without the height of the body, which would bound the samples of other objects."""
-        changed: Model = replace(self.model, column=replace(self.model.column, height=None))  # type: ignore[type-var]
+        with unquestioned():
+            changed: Model = replace(self.model, column=replace(self.model.column, height=None))  # type: ignore[type-var]
         return changed
+
+
+@contextmanager
+def unquestioned() -> Iterator[None]:
+    """Ignore warnings about unlikely numbers, for samples of numbers that have been questioned."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", UnlikelyInputWarning)
+        yield
 
 
 def _quantity(model: Model, name: str) -> Quantity:

@@ -14,7 +14,7 @@ import xarray as xr
 
 from stylobate.base_motions import BaseMotion, OneOf
 from stylobate.earthquakes.assessment.inputs import identities
-from stylobate.earthquakes.inventories.objects import OF_RUNS, Draws, PreparedObject
+from stylobate.earthquakes.inventories.objects import OF_RUNS, Draws, PreparedObject, unquestioned
 from stylobate.earthquakes.study_inputs import tail_of
 from stylobate.engine import simulate_ensemble
 from stylobate.models import Model
@@ -207,14 +207,15 @@ class _Work:
         duration = values.pop("duration")
         values["scale"] = np.tile(self.scales, task.values["motion"].size)
         every: Callable[[int, int], None] | bool = False if progress is None else progress
-        found = simulate_ensemble(
-            self.model,
-            self.motion,
-            duration=duration,
-            parameters=values,
-            threads=threads,
-            progress=every,
-            demands=True,
-            **self.options,
-        )
+        with unquestioned():
+            found = simulate_ensemble(
+                self.model,
+                self.motion,
+                duration=duration,
+                parameters=values,
+                threads=threads,
+                progress=every,
+                demands=True,
+                **self.options,
+            )
         return Computed({name: found[name].to_numpy() for name in KEPT})

@@ -6,7 +6,6 @@ as `radius_spread` holds the uncertainty of the number. All other columns are ca
 
 import math
 import re
-import warnings
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
@@ -14,10 +13,10 @@ from pathlib import Path
 from typing import Any
 
 from stylobate.config.parts import DIAMETERS
-from stylobate.earthquakes.inventories.objects import InventoryObject
+from stylobate.earthquakes.inventories.objects import InventoryObject, unquestioned
 from stylobate.earthquakes.inventories.rows import ObjectTable, Row
 from stylobate.earthquakes.property_spreads import LognormalSpread, NormalSpread, Spread
-from stylobate.errors import ConfigError, ParameterError, UnlikelyInputWarning
+from stylobate.errors import ConfigError, ParameterError
 from stylobate.models.declared import MODELS, column_quantities
 from stylobate.quantities import Quantity, parameters_of
 from stylobate.records.tables import NAME_AND_UNIT
@@ -126,8 +125,7 @@ def read_inventory(
         if one is None:
             continue
         try:
-            with warnings.catch_warnings():  # the study questions the numbers
-                warnings.simplefilter("ignore", UnlikelyInputWarning)
+            with unquestioned():  # the study questions the numbers
                 one.prepared(model)
         except ConfigError as error:
             problems += error.problems
@@ -295,8 +293,7 @@ def _value(cell: str, heading: Heading, *, commas: bool) -> Any:
         return cell.lower()
     number, unit = split(_plain(cell, commas=commas))
     value = read(f"{number} {unit or heading.unit}".strip(), quantity.unit)
-    with warnings.catch_warnings():  # the study questions the numbers
-        warnings.simplefilter("ignore", UnlikelyInputWarning)
+    with unquestioned():  # the study questions the numbers
         return quantity.checked(heading.name, value)
 
 
