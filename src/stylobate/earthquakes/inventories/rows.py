@@ -3,7 +3,7 @@
 import csv
 import math
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NamedTuple, Self
@@ -150,16 +150,16 @@ def geopackages(path: Path) -> Any:
 
 def _first(path: Path, file: Path, content: bytes) -> Text:
     """Return the named sheet of a workbook, or file of an archive, or the first one."""
+    listed: list[Path] = []
 
-    def chosen(places: Any) -> list[Path]:
-        listed = list(places)
-        if path == file:
-            return listed[:1]
-        if path not in listed:
-            raise FileError(f"{path}: no such sheet. Choose from {', '.join(one.name for one in listed)}.")
-        return [path]
+    def chosen(places: Iterable[Path]) -> list[Path]:
+        listed.extend(places)
+        return listed[:1] if path == file else [one for one in listed if one == path]
 
-    place, text = next(iter(members(file, content, chosen)))
+    found = next(members(file, content, chosen), None)
+    if found is None:
+        raise FileError(f"{path}: no such sheet. Choose from {', '.join(one.name for one in listed)}.")
+    place, text = found
     return Text.of(file if path == file else place, text)
 
 

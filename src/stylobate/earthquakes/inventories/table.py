@@ -21,7 +21,7 @@ from stylobate.models.declared import MODELS, column_quantities
 from stylobate.quantities import Quantity, parameters_of
 from stylobate.records.tables import NAME_AND_UNIT
 from stylobate.text import did_you_mean
-from stylobate.units import UnitError, read, split
+from stylobate.units import UnitError, is_number, read, split
 
 _OF_FRICTION = Quantity(symbol="μ", text="friction coefficient of the contact", gt=0.0)
 _WORDS = ("name", "site", "shape")
@@ -292,6 +292,9 @@ def _value(cell: str, heading: Heading, *, commas: bool) -> Any:
     if cell.lower() in quantity.by_word:
         return cell.lower()
     number, unit = split(_plain(cell, commas=commas))
+    if quantity.by_word and not is_number(number):
+        words = " or ".join(map(repr, quantity.by_word))
+        raise ParameterError(f"must be a number or {words}, got {cell!r}")
     value = read(f"{number} {unit or heading.unit}".strip(), quantity.unit)
     with unquestioned():  # the study questions the numbers
         return quantity.checked(heading.name, value)
