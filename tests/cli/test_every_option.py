@@ -85,6 +85,7 @@ BASES = {
     "records": [("--sample-records", "el centro 1940"), ("study.toml",), ("study.toml", "--figure", "records.png")],
     "select": [("--sample-records", "el centro 1940", "--target", "target.csv")],
     "assess": [("study.toml",)],
+    "inventory": [("objects.csv", "--sample-records", "el centro 1940"), ("inventory.toml",)],
     "paper": [()],
     "lab": [()],
 }
@@ -103,6 +104,7 @@ COMPUTING = (
     *(
         "earthquakes.record_selection.select_records",
         "earthquakes.assess",
+        "earthquakes.inventory",
         "paper.check_paper",
         "lab.serving.serve",
         "lab.static_site.write",
@@ -115,6 +117,14 @@ friction_coefficient = 0.6
 scales = [1.0]
 columns.tank = {radius = 0.2, height = 2.0, density = 2700.0}
 dissipation = {low = {damping = 0.01}, central = {damping = 0.05}, high = {damping = 0.1}}
+records = {samples = ["el centro 1940"]}
+"""
+
+OBJECTS = "name,radius,height,density,damping,friction_coefficient\nvase,0.05,0.4,2200,0.05,0.5\n"
+
+INVENTORY = """
+objects = "objects.csv"
+[sites.""]
 records = {samples = ["el centro 1940"]}
 """
 
@@ -164,6 +174,8 @@ def nothing_is_computed(monkeypatch, tmp_path):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "study.toml").write_text(STUDY, encoding="utf-8")
     (tmp_path / "target.csv").write_text("period [s], Sa [g]\n0.1, 0.9\n3.0, 0.2\n", encoding="utf-8")
+    (tmp_path / "objects.csv").write_text(OBJECTS, encoding="utf-8")
+    (tmp_path / "inventory.toml").write_text(INVENTORY, encoding="utf-8")
     (tmp_path / VALUES[0]).touch()  # no folder can have this name
     opened = []
     monkeypatch.setattr("webbrowser.open", opened.append)
