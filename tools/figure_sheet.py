@@ -162,6 +162,20 @@ RESULTS: dict[str, Callable[[], Any]] = {
         number=3,
         scales=(0.25, 20.0),
     ),
+    "inventory": lambda: sb.earthquakes.inventory(
+        [
+            sb.earthquakes.InventoryObject(
+                name=f"column {place}",
+                column={"radius": 0.06 + 0.01 * place, "height": 0.9, "density": 2400.0},
+                model={"damping": 0.05},
+                friction_coefficient=0.15 if place == 1 else 0.6,  # one slides
+                spreads={"radius": sb.earthquakes.LognormalSpread(0.03)},
+            )
+            for place in range(12)
+        ],
+        quakes(),
+        samples=6,
+    ),
     "rocking spectrum": lambda: sb.earthquakes.rocking_spectrum(
         WOBBLING, sb.sample_record(), over={"size": np.geomspace(0.3, 3.0, 25), "scale": [0.5, 1.0]}
     ),

@@ -17,6 +17,7 @@ PAGES = (
     "getting-started/first-steps",
     "how-to/choose-damping",
     "how-to/fragility",
+    "how-to/inventory",
     "how-to/kitchen-experiments",
 )
 _BLOCK = re.compile(

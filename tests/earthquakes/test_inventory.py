@@ -144,6 +144,7 @@ def test_an_object_that_slides_before_it_rocks_has_no_rank_and_no_probability():
     found = ranked([STOUT, slippery])
     assert found["object"].to_numpy().tolist()[-1] == "slippery"
     one = found.sel(object="slippery", scale=1.0)
+    assert float(one["friction_demand_median"]) > 0.1
     share = float(one["sliding_share"])
     shape = (len(QUAKES), 4, 0)
     c = 2.0 * drawn(slippery, "radius", 0.1, *shape) / drawn(slippery, "height", 1.4, *shape)
@@ -152,7 +153,14 @@ def test_an_object_that_slides_before_it_rocks_has_no_rank_and_no_probability():
     assert np.isnan(one["probability"].sel(limit_state="overturning"))
     least, most = (float(one[f"probability_{end}"].sel(limit_state="overturning")) for end in ("least", "most"))
     assert most - least == pytest.approx(share, abs=1e-12)
-    assert float(one["slip_share"]) >= share * float(one["probability_most"].sel(limit_state="tilt 0.001 α")) - 1.0
+
+
+def test_a_run_that_needs_less_friction_than_it_has_neither_slides_nor_rocks():
+    weak = [quake(place, peak=0.05) for place in range(3)]
+    found = ranked([replace(SLIM, friction_coefficient=0.1)], weak).isel(object=0, scale=0)
+    assert float(found["friction_demand_84"]) < 0.1 < float(found["slenderness"])
+    assert found["probability_most"].to_numpy().tolist() == [0.0] * 5
+    assert (int(found["rank"]), float(found["sliding_share"]), float(found["slip_share"])) == (1, 0.0, 0.0)
 
 
 def test_undecided_runs_widen_the_bounds_and_withhold_the_probability():

@@ -17,7 +17,7 @@ Floats = npt.NDArray[np.float64]
 _HEIGHT, _ROW, _MOST_ROWS = 2.2, 0.19, 40
 # Place of overturned columns on the axis of tilts, beyond 1.
 _BEYOND = 1.15
-# Share of samples from which a figure calls an object one that slides.
+# Share of runs from which a figure calls an object one that slides.
 _MOST_OF_ITS_RUNS = 0.5
 # Smallest rate that the axis shows, as a fraction of the largest.
 _DECADES = 1e-6
@@ -71,10 +71,8 @@ def _draw_tilts(axes: Axes, shown: xr.Dataset, places: npt.NDArray[np.intp], col
     axes.scatter(middle[stands], places[stands], s=16.0, c=own, zorder=3)
     for at, mark in ((middle >= _BEYOND, "x"), (stands & (upper >= _BEYOND), ">")):
         axes.scatter(np.full(int(at.sum()), _BEYOND), places[at], s=18.0, marker=mark, color=VERMILION, zorder=3)
-    for place, rank, slides in zip(
-        places, *(shown[name].to_numpy() for name in ("rank", "sliding_share")), strict=True
-    ):
-        if rank == 0:
+    for place, tilt, slides in zip(places, middle, shown["sliding_share"].to_numpy(), strict=True):
+        if np.isnan(tilt):
             reason = "slides before it rocks" if slides > _MOST_OF_ITS_RUNS else "not known"
             axes.text(0.0, place, reason, va="center", fontsize="x-small", color=GREY)
     axes.axvline(1.0, color=BLACK, linewidth=0.8, linestyle="--")

@@ -23,8 +23,8 @@ ENDINGS = (".csv", ".xlsx", ".gpkg")
 
 _SHOWN = 20
 _ENDS = ("", "_low", "_high", "_least", "_most")
-_OF_SCALE = ("tilt_median", "tilt_84", "friction_demand_median", "friction_demand_84", "slip_share")
-_SHARES = ("sliding_share", "undecided_share")
+_SHARES = ("sliding_share", "undecided_share", "slip_share")
+_OF_SCALE = ("tilt_median", "tilt_84", "friction_demand_median", "friction_demand_84", *_SHARES)
 
 
 def export_inventory(found: xr.Dataset, path: str | Path) -> Path:
@@ -108,7 +108,7 @@ def ranking_rows(found: xr.Dataset) -> tuple[list[str], list[list[Any]]]:
         for name in others
     }
     columns |= {f"{name.replace('_', ' ')}{suffix}": own[name].to_numpy().tolist() for name in _OF_SCALE}
-    columns |= {name.replace("_", " "): found[name].to_numpy().tolist() for name in (*_SHARES, "runs")}
+    columns["runs"] = found["runs"].to_numpy().tolist()
     columns["note"] = notes_of(found)
     provenance = json.loads(str(found.attrs["provenance"]))
     inputs = dict.fromkeys(
@@ -147,7 +147,7 @@ def _cell(value: Any) -> Any:
 
 def notes_of(found: xr.Dataset) -> list[str]:
     """Return a note on each object: why its number is withheld, or that some of its runs would slip."""
-    names = ("rank", "slenderness", "friction_coefficient", *_SHARES, "slip_share")
+    names = ("rank", "slenderness", "friction_coefficient", *_SHARES)
     own = found.isel(scale=as_recorded(found))
     return list(map(_note, *(own[name].to_numpy().tolist() for name in names)))
 
@@ -155,12 +155,14 @@ def notes_of(found: xr.Dataset) -> list[str]:
 def _note(rank: int, c: float, friction: float, sliding: float, undecided: float, slip: float) -> str:
     parts = [] if rank else ["withheld"]
     if sliding > 0.0:
-        share = "slides before it rocks" if sliding == 1.0 else f"{100.0 * sliding:.0f} % of samples slide first"
+        share = (
+            "slides before it rocks" if sliding == 1.0 else f"slides before it rocks in {100.0 * sliding:.2g} % of runs"
+        )
         parts.append(f"{share}: µ = {friction:.3g}, r/h = {c:.3g}")
     if undecided > 0.0:
         parts.append(f"{100.0 * undecided:.2g} % of runs undecided")
-    if slip > 0.0 and sliding < 1.0:
-        parts.append(f"{100.0 * slip:.0f} % of runs need more friction")
+    if slip > sliding:
+        parts.append(f"{100.0 * slip:.2g} % of runs need more friction")
     return "; ".join(parts)
 
 

@@ -1,8 +1,9 @@
 """Ranking of an inventory: probabilities with intervals over records, peak tilts, friction and annual rates.
 
 With the share s_r of the samples of record r that reach a limit state, the probability is the mean of s_r over the
-records; its interval is `clustered_interval`. A run is not known if it is undecided, or if its sample slides before it
-rocks: its friction coefficient is below r/h. A lower bound counts such runs as not reached, an upper bound as reached.
+records; its interval is `clustered_interval`. A run is not known if it is undecided, or if the column slides before it
+rocks: its friction coefficient is below r/h, and the run needs more friction. A lower bound counts such runs as not
+reached, an upper bound as reached.
 """
 
 import zlib
@@ -12,7 +13,6 @@ from functools import cache
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import xarray as xr
 
 from stylobate.earthquakes.fragility import HazardCurve, empirical_rate
@@ -71,7 +71,8 @@ class Evaluation:
         dict
             Values by the names of the variables of the ranking: over scale, limit state or both.
         """
-        slides = one.friction < part["slenderness"]
+        # A run without slip holds until friction is exceeded: below r/h, the column then slides and does not rock.
+        slides = (one.friction < part["slenderness"]) & (part["peak_friction_demand"] > one.friction)
         reached = limit_states(part, slenderness=part["slenderness"]).where(~slides, np.int8(NOT_KNOWN))
         reached = reached.transpose(LIMIT_STATE, "scale", "record", "property_sample")
         codes = reached.to_numpy()
@@ -80,6 +81,7 @@ class Evaluation:
         _, high = clustered_interval(most, confidence=self.confidence)
         bounds = least.mean(axis=-1), most.mean(axis=-1)
         known = bounds[1] - bounds[0] <= MATTERS
+        sliding = slides.mean(("record", "property_sample")).to_numpy()
         demand = part["peak_friction_demand"].transpose("scale", ...).to_numpy()
         demand = demand.reshape(len(self.scales), -1)
         found = {
@@ -88,11 +90,11 @@ class Evaluation:
             "probability_high": high,
             "probability_least": bounds[0],
             "probability_most": bounds[1],
-            **{f"tilt_{name}": values for name, values in _tilt_quantiles(part, slides.to_numpy()).items()},
+            **{f"tilt_{name}": values for name, values in _tilt_quantiles(part, slides).items()},
             **{f"friction_demand_{name}": _quantile(demand, share) for name, share in _QUANTILES.items()},
             "slip_share": (demand > one.friction).mean(axis=-1),
-            "sliding_share": float(slides.mean()),
-            "undecided_share": float((codes[-1] == NOT_KNOWN).mean()) - float(slides.mean()),
+            "sliding_share": sliding,
+            "undecided_share": (codes[-1] == NOT_KNOWN).mean(axis=(-2, -1)) - sliding,
             "runs": int(part["outcome"].size),
         }
         if hazard is None or intensity is None:
@@ -141,10 +143,10 @@ def limit_state_names() -> tuple[str, ...]:
     return tuple(names)
 
 
-def _tilt_quantiles(part: xr.Dataset, slides: npt.NDArray[np.bool_]) -> dict[str, Floats]:
+def _tilt_quantiles(part: xr.Dataset, slides: xr.DataArray) -> dict[str, Floats]:
     """Return quantiles of the peak tilt over α_c at each scale: infinite if overturned, NaN if not known."""
-    ratios = tilt_ratios(part, part["slenderness"]).transpose("scale", "record", "property_sample").to_numpy()
-    known = ~np.isnan(ratios) & ~slides
+    ratios = tilt_ratios(part, part["slenderness"]).where(~slides).transpose("scale", ...).to_numpy()
+    known = ~np.isnan(ratios)
     flat = (len(ratios), -1)
     below, above = (np.where(known, ratios, other).reshape(flat) for other in (0.0, np.inf))
     found = {}
@@ -170,8 +172,8 @@ VARIABLES: Mapping[str, tuple[str, str, tuple[str, ...]]] = {
     "friction_demand_median": ("median of the peak friction demand", "1", ("scale",)),
     "friction_demand_84": ("84 % quantile of the peak friction demand", "1", ("scale",)),
     "slip_share": ("share of runs that need more than the friction coefficient", "1", ("scale",)),
-    "sliding_share": ("share of samples that slide before they rock", "1", ()),
-    "undecided_share": ("share of undecided runs", "1", ()),
+    "sliding_share": ("share of runs that slide before they rock", "1", ("scale",)),
+    "undecided_share": ("share of undecided runs", "1", ("scale",)),
     "runs": ("runs", "1", ()),
     "annual_rate": ("annual rate, counted", "a-1", (LIMIT_STATE,)),
     "rate_low": ("lower end of its interval over records", "a-1", (LIMIT_STATE,)),

@@ -115,9 +115,8 @@ def inventory(
           differ by more than 0.05.
         * Over `scale`: `tilt_median` and `tilt_84`, quantiles of the peak tilt over α_c, infinite if overturned;
           `friction_demand_median` and `friction_demand_84`; `slip_share`, the share of runs that need more than the
-          friction coefficient.
-        * `sliding_share`, the share of samples that slide before they rock, whose runs count as not known;
-          `undecided_share`, the share of undecided runs at the scale nearest to 1.
+          friction coefficient; `sliding_share`, the share of runs that slide before they rock, and `undecided_share`,
+          both not known.
         * With hazard curves, over `limit_state`: `annual_rate`, its interval `rate_low` and `rate_high` and bounds
           `rate_least` and `rate_most`, as from `empirical_rate`. If all sites have one, it is the rank's number.
         * `carried` over `column`, further cells of the table; `geometry` in hexadecimal digits.
