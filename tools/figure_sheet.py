@@ -166,9 +166,9 @@ RESULTS: dict[str, Callable[[], Any]] = {
         [
             sb.earthquakes.InventoryObject(
                 name=f"column {place}",
-                column={"radius": 0.06 + 0.01 * place, "height": 0.9, "density": 2400.0},
+                column={"radius": 0.06 + 0.01 * place, "height": 1.6, "density": 2400.0},
                 model={"damping": 0.05},
-                friction_coefficient=0.15 if place == 1 else 0.6,  # one slides
+                friction_coefficient=0.05 if place == 1 else 0.6,  # one slides
                 spreads={"radius": sb.earthquakes.LognormalSpread(0.03)},
             )
             for place in range(12)

@@ -74,7 +74,8 @@ def _draw_tilts(axes: Axes, shown: xr.Dataset, places: npt.NDArray[np.intp], col
     for place, tilt, slides in zip(places, middle, shown["sliding_share"].to_numpy(), strict=True):
         if np.isnan(tilt):
             reason = "slides before it rocks" if slides > _MOST_OF_ITS_RUNS else "not known"
-            axes.text(0.0, place, reason, va="center", fontsize="x-small", color=GREY)
+            behind = {"facecolor": axes.get_facecolor(), "edgecolor": "none", "pad": 1.0}
+            axes.text(0.0, place, reason, va="center", fontsize="x-small", color=GREY, bbox=behind)
     axes.axvline(1.0, color=BLACK, linewidth=0.8, linestyle="--")
     axes.set_xlim(-0.03, _BEYOND + 0.06)
     axes.set_xticks([0.0, 0.5, 1.0, _BEYOND], ["0", "0.5", "1", "over-\nturned"])

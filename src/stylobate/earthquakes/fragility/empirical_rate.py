@@ -11,6 +11,8 @@ Survival above an intensity that overturned the column counts as survival, which
 """
 
 import math
+from dataclasses import dataclass
+from typing import Self
 
 import numpy as np
 import numpy.typing as npt
@@ -92,27 +94,19 @@ def empirical_rate(
         raise ParameterError("record: missing. Name the record of each run, for example record=names")
     require_same_unit(str(seen.attributes.get("units", "1")), hazard)
     require_same_component(seen.attributes.get("component"), hazard.component)
-    of_record = np.array([seen.record[seen.series == one][0] for one in range(seen.series.max() + 1)])
-    parts = np.array(
-        [
-            [_series_rate(seen.intensity[runs], state[runs], hazard) for runs in _each(seen.series)]
-            for state in seen.reached
-        ]
-    )  # (limit states, series, 3)
+    of_record = seen.record[np.unique(seen.series, return_index=True)[1]]
+    parts = np.array([_series_rates(seen.intensity, state, seen.series, hazard) for state in seen.reached])
+    # (limit states, series, 3)
+    records = np.arange(len(seen.records))
+    each = np.stack([_mean(parts[:, of_record == one], axis=1) for one in records], axis=1)
+    rate, least, most = _mean(each, axis=1).T
     lowest, highest = math.log(seen.intensity.min()), math.log(seen.intensity.max())
     edges = np.linspace(lowest, highest, pieces + 1)
-    below = np.array(
-        [
-            [_rate_below(seen.intensity[runs], state[runs], hazard, edges) for runs in _each(seen.series)]
-            for state in seen.reached
-        ]
-    )  # (limit states, series, edges)
-    each, each_below = (
-        _of_records(parts, of_record, len(seen.records)),
-        _of_records(below, of_record, len(seen.records)),
-    )
-    rate, least, most = _mean(each, axis=1).T
-    contribution = np.diff(_mean(each_below, axis=1), axis=1)
+    below = [
+        _rate_below(_Stretches.of(seen.intensity, state, seen.series), weights, hazard, edges)
+        for state, weights in zip(seen.reached, _weights(parts[:, :, 0], of_record), strict=True)
+    ]
+    contribution = np.diff(below, axis=1)
     low, high = _interval(each[:, :, 0], level, count, rng)
     per_year = {"units": "a-1"}
     percent = f"{100.0 * level:g} %"
@@ -184,15 +178,6 @@ def compared_with_target(rate: float, low: float, high: float, target: float) ->
     return f"{'below' if high < target else 'above'} {stated}"
 
 
-def _each(series: Integers) -> list[Floats]:
-    return [series == one for one in range(series.max() + 1)]
-
-
-def _of_records(parts: Floats, of_record: Integers, records: int) -> Floats:
-    """Average the parts of each limit state, shape (limit states, series, …), over the series of each record."""
-    return np.stack([_mean(parts[:, of_record == one], axis=1) for one in range(records)], axis=1)
-
-
 def _mean(values: Floats, axis: int) -> Floats:
     """Return the mean of the known values along an axis, NaN where none is known."""
     known = ~np.isnan(values)
@@ -200,36 +185,78 @@ def _mean(values: Floats, axis: int) -> Floats:
     return np.asarray(np.divide(total, count, out=np.full(total.shape, np.nan), where=count > 0))
 
 
-def _known_runs(intensity: Floats, state: Integers) -> tuple[Floats, npt.NDArray[np.bool_]]:
-    """Return the logarithm of the intensity of each run that is known, rising, and whether it reached the state."""
-    known = state != NOT_KNOWN
-    order = np.argsort(intensity[known], kind="stable")
-    return np.log(intensity[known][order]), state[known][order] == 1
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Stretches:
+    """The known runs of several series, each with the stretch of intensity that it stands for; all in logarithms.
+
+    Attributes
+    ----------
+    at, low, high
+        Intensity of each run, and the ends of its stretch; the last one of a series has no end. Shape (runs,).
+    hit
+        Whether the run reached the limit state.
+    group
+        Series of each run; runs are sorted by series and intensity.
+    begins, ends
+        Whether the run is the first or the last one of its series.
+    """
+
+    at: Floats
+    low: Floats
+    high: Floats
+    hit: npt.NDArray[np.bool_]
+    group: Integers
+    begins: npt.NDArray[np.bool_]
+    ends: npt.NDArray[np.bool_]
+
+    @classmethod
+    def of(cls, intensity: Floats, state: Integers, series: Integers) -> Self:
+        """Sort the known runs; there may be none."""
+        known = state != NOT_KNOWN
+        u, group, hit = np.log(intensity[known]), series[known], state[known] == 1
+        order = np.lexsort((u, group))
+        u, group, hit = u[order], group[order], hit[order]
+        begins = np.diff(group, prepend=-1) > 0
+        ends = np.append(begins[1:], True)[: u.size]
+        between = 0.5 * (u[1:] + u[:-1])
+        low = np.where(begins, u, np.insert(between, 0, 0.0)[: u.size])
+        high = np.where(ends, np.inf, np.append(between, np.inf)[: u.size])
+        return cls(at=u, low=low, high=high, hit=hit, group=group, begins=begins, ends=ends)
 
 
-def _rate_below(intensity: Floats, state: Integers, hazard: HazardCurve, edges: Floats) -> Floats:
-    """Return the part of (2) of one series that lies below each of the `edges`, in logarithms; NaN without runs."""
-    u, hit = _known_runs(intensity, state)
-    if u.size == 0:
-        return np.full(edges.size, np.nan)
-    between = 0.5 * (u[1:] + u[:-1])
-    low, high = np.insert(between, 0, u[0])[hit], np.append(between, np.inf)[hit]
-    reached = np.clip(edges[:, np.newaxis], low, high)
-    return np.asarray(np.sum(_exceedance(hazard, low) - _exceedance(hazard, reached), axis=1))
+def _series_rates(intensity: Floats, state: Integers, series: Integers, hazard: HazardCurve) -> Floats:
+    """Return (2) of each series and its bounds beyond the scales, shape (series, 3); NaN without known runs."""
+    runs, count = _Stretches.of(intensity, state, series), int(series.max()) + 1
+    rates = np.full((count, 3), np.nan)
+    if runs.at.size == 0:
+        return rates
+    own, of_series = _exceedance(hazard, runs.at), runs.group[runs.ends]
+    fall = _exceedance(hazard, runs.low) - np.where(
+        runs.ends, 0.0, _exceedance(hazard, np.where(runs.ends, 0.0, runs.high))
+    )
+    rate = np.bincount(runs.group, weights=np.where(runs.hit, fall, 0.0), minlength=count)[of_series]
+    first, last = runs.hit[runs.begins], runs.hit[runs.ends]
+    beyond = np.where(first & (hazard.slopes[0] > 0.0), np.inf, 0.0) + np.where(last, 0.0, own[runs.ends])
+    least = rate - np.where(last, own[runs.ends], 0.0)
+    rates[of_series] = np.stack([rate, least, rate + beyond], axis=-1)
+    return rates
 
 
-def _series_rate(intensity: Floats, state: Integers, hazard: HazardCurve) -> tuple[float, float, float]:
-    """Return (2) of one series of runs, and its bounds beyond the scales; NaN without known runs."""
-    u, hit = _known_runs(intensity, state)
-    if u.size == 0:
-        return np.nan, np.nan, np.nan
-    between = _exceedance(hazard, 0.5 * (u[1:] + u[:-1]))
-    first, last = (float(_exceedance(hazard, u[end : end + 1 or None])[0]) for end in (0, -1))
-    upper, lower = np.append(between, 0.0), np.insert(between, 0, first)
-    rate = float(np.sum((lower - upper)[hit]))
-    least = rate - (last if hit[-1] else 0.0)
-    beyond = (np.inf if hit[0] and hazard.slopes[0] > 0.0 else 0.0) + (0.0 if hit[-1] else last)
-    return rate, least, rate + beyond
+def _weights(rates: Floats, of_record: Integers) -> Floats:
+    """Return the weight of each series in the mean over records, shape (limit states, series); 0 if it is not known."""
+    known = ~np.isnan(rates)
+    each = np.array([np.bincount(of_record, weights=one)[of_record] for one in known])  # known series of its record
+    share = np.divide(known, each, out=np.zeros(rates.shape), where=known)
+    records = share.sum(axis=1, keepdims=True)
+    return np.divide(share, records, out=np.zeros(rates.shape), where=records > 0.0)
+
+
+def _rate_below(runs: _Stretches, weights: Floats, hazard: HazardCurve, edges: Floats) -> Floats:
+    """Return the part of (1) below each of the `edges`, in logarithms; `weights` are those of the series."""
+    low, high, weight = runs.low[runs.hit], runs.high[runs.hit], weights[runs.group[runs.hit]]
+    begun = _exceedance(hazard, low)
+    parts = [float(weight @ (begun - _exceedance(hazard, np.clip(edge, low, high)))) for edge in edges]
+    return np.array(parts)
 
 
 def _exceedance(hazard: HazardCurve, u: Floats) -> Floats:
