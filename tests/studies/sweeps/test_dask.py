@@ -163,3 +163,25 @@ def test_a_lost_scheduler_is_told_and_the_store_goes_on(grid, tmp_path, assert_s
 def test_a_scheduler_that_does_not_answer_is_named(points):
     with pytest.raises(StylobateError, match=r"no Dask scheduler answers at tcp://127\.0\.0\.1:1"):
         run_sweep(points, executor=Dask(address="tcp://127.0.0.1:1", wait=0.5))
+
+
+def test_workers_compute_the_objects_of_an_inventory_as_threads_do(client, monkeypatch, tmp_path):
+    monkeypatch.setattr("stylobate.earthquakes.inventories.runs._BLOCK_OF_WORKER", 8)
+    objects = [
+        sb.earthquakes.InventoryObject(
+            name=f"column {place}",
+            column={"radius": 0.06 + 0.03 * place, "height": 1.0, "density": 2400.0},
+            model={"damping": 0.05},
+            friction_coefficient=0.6,
+            spreads={"radius": sb.earthquakes.LognormalSpread(0.05)},
+        )
+        for place in range(4)
+    ]
+    pulse = sb.Pulse.one_sine(acceleration=2.5, angular_frequency=5.0)
+    alone = sb.earthquakes.inventory(objects, pulse, samples=4, progress=False)
+    spread = sb.earthquakes.inventory(
+        objects, pulse, samples=4, progress=False, executor=Dask(client=client), store=tmp_path
+    )
+    assert spread.identical(alone)
+    assert 0.0 < float(alone["probability"].sel(limit_state="overturning").mean()) < 1.0
+    assert len(list(tmp_path.glob("*.nc"))) == 4

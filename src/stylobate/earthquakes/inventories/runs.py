@@ -30,6 +30,8 @@ _log = logging.getLogger("stylobate")
 _LAYOUT = 1
 # Maximum number of runs in a block of several objects; an object with more runs is a block by itself.
 _BLOCK = 16_384
+# The same for executors whose workers compute a block on one thread each.
+_BLOCK_OF_WORKER = 4096
 KEPT = ("outcome", "peak_tilt", "peak_friction_demand")
 """Results of a run that are kept."""
 _RUN_DIMS = ("record", "property_sample", "scale")
@@ -138,7 +140,8 @@ class SiteRuns:
     def _computed(
         self, objects: Sequence[PreparedObject], executor: Executor, progress: Report
     ) -> Iterator[tuple[PreparedObject, xr.Dataset]]:
-        blocks = list(self._blocks(objects))
+        most = _BLOCK if isinstance(executor, Threads) else min(_BLOCK, _BLOCK_OF_WORKER)
+        blocks = list(self._blocks(objects, most))
         work = _Work(objects[0].base, OneOf(motions=tuple(self.records.values())), self.scales, self.options)
         with closing(executor.results(work, self._tasks(blocks), progress)) as results:
             for task, computed in results:
@@ -148,10 +151,10 @@ class SiteRuns:
                     begin = series.stop
                     yield one, self._part(one, arrays["slenderness"][series], computed.arrays, series)
 
-    def _blocks(self, objects: Sequence[PreparedObject]) -> Iterator[list[PreparedObject]]:
+    def _blocks(self, objects: Sequence[PreparedObject], most: int) -> Iterator[list[PreparedObject]]:
         block: list[PreparedObject] = []
         for one in objects:
-            if block and sum(map(self.runs_of, block)) + self.runs_of(one) > _BLOCK:
+            if block and sum(map(self.runs_of, block)) + self.runs_of(one) > most:
                 yield block
                 block = []
             block.append(one)
