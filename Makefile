@@ -121,6 +121,7 @@ bench: $(VENV)/.core $(VENV)/.test  ## the benchmarks, beside the engines that c
 	$(BIN)/python -m benchmarks.ensembles.contacts
 	$(BIN)/python -m benchmarks.ensembles.sliding
 	$(BIN)/python -m benchmarks.ensembles.records
+	$(BIN)/python -m benchmarks.inventories
 	$(BIN)/python -m benchmarks.early_ends
 	$(BIN)/python -m benchmarks.orbits
 	$(BIN)/python -m benchmarks.page

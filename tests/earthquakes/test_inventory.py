@@ -205,7 +205,8 @@ def test_each_object_meets_the_records_of_its_site():
     found = ranked(objects, sites)
     assert found["object"].to_numpy().tolist() == ["above", "below"]
     assert found["runs"].to_numpy().tolist() == [8, 12]
-    above = ranked([replace(SLIM, name="above")], QUAKES[:2])
+    above = ranked([replace(SLIM, name="above", site="of no importance with one site")], QUAKES[:2])
+    assert above["site"].item().startswith("of no importance")
     np.testing.assert_array_equal(found["probability"].sel(object="above"), above["probability"].sel(object="above"))
 
 

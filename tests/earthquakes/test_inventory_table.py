@@ -114,6 +114,12 @@ def test_bad_rows_are_all_listed_with_row_column_value_and_remedy(tmp_path):
         assert line.startswith(begin), (line, begin)
 
 
+def test_a_model_that_slides_or_is_planar_is_refused(tmp_path):
+    for kind in ("sliding", "planar_rocking", "wobling"):
+        with pytest.raises(ParameterError, match="model: must be three-dimensional with permanent contact"):
+            read_inventory(table(tmp_path, PLAIN), model=kind)
+
+
 def test_a_heading_like_a_known_name_is_refused_and_carried_on_request(tmp_path):
     path = table(tmp_path, PLAIN.replace("room", "weight"))
     (line,) = problems(path)

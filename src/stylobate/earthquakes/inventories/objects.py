@@ -17,6 +17,7 @@ from stylobate.earthquakes.property_spreads import Spread, shares_of
 from stylobate.earthquakes.study_inputs import Records
 from stylobate.errors import ConfigError, ParameterError, UnlikelyInputWarning, require_positive
 from stylobate.models import Model
+from stylobate.models.declared import MODELS
 from stylobate.quantities import Quantity, parameters_of
 from stylobate.studies.sweeps.designs import Floats
 from stylobate.text import did_you_mean
@@ -146,6 +147,8 @@ class PreparedObject:
         Arguments of the constructor.
     friction
         Friction coefficient.
+    site
+        Name of the site whose records the object meets.
     """
 
     given: InventoryObject
@@ -153,6 +156,7 @@ class PreparedObject:
     make: Callable[..., Column]
     numbers: Mapping[str, float]
     friction: float
+    site: str = ""
 
     @property
     def name(self) -> str:
@@ -256,6 +260,15 @@ def unquestioned() -> Iterator[None]:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UnlikelyInputWarning)
         yield
+
+
+def require_model(kind: str) -> None:
+    """Raise ParameterError unless the package has a three-dimensional model of this kind that never slips."""
+    known = [name for name, make in MODELS.items() if name != "sliding" and not getattr(make, "planar_only", False)]
+    if kind not in known:
+        raise ParameterError(
+            f"model: must be three-dimensional with permanent contact (got {kind!r}). Use {', '.join(known)}."
+        )
 
 
 def _quantity(model: Model, name: str) -> Quantity:

@@ -236,7 +236,7 @@ def ranked(
     lengths = {LIMIT_STATE: len(names), "scale": len(scales)}
     data: dict[str, Any] = {
         "rank": ("object", np.where(withheld, 0, np.arange(1, len(order) + 1)), cf_attributes("1", "rank")),
-        "site": ("object", [objects[name].given.site for name in order], {"long_name": "site"}),
+        "site": ("object", [objects[name].given.site or objects[name].site for name in order], {"long_name": "site"}),
     }
     for name, (text, units, dims) in VARIABLES.items():
         if name in _OF_RATES and not any(name in one for one in numbers.values()):

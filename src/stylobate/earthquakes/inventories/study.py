@@ -18,7 +18,13 @@ from stylobate.earthquakes.assessment.inputs import identities
 from stylobate.earthquakes.config.verdict import described_spread
 from stylobate.earthquakes.fragility import HazardCurve
 from stylobate.earthquakes.intensities import Intensity, IntensityMeasure
-from stylobate.earthquakes.inventories.objects import OF_RUNS, InventoryObject, InventorySite, PreparedObject
+from stylobate.earthquakes.inventories.objects import (
+    OF_RUNS,
+    InventoryObject,
+    InventorySite,
+    PreparedObject,
+    require_model,
+)
 from stylobate.earthquakes.inventories.ranking import Evaluation, limit_state_names, ranked
 from stylobate.earthquakes.inventories.runs import SiteRuns
 from stylobate.earthquakes.study_inputs import Records, named_records
@@ -33,7 +39,6 @@ from stylobate.errors import (
     require_positive,
     require_whole,
 )
-from stylobate.models.declared import MODELS
 from stylobate.parameter_quantities import attributes_of
 from stylobate.progress import Progress, report_of, shows_progress
 from stylobate.provenance import provenance_of_run
@@ -154,7 +159,7 @@ def inventory(
     """
     require_no_limits(options)
     factors = _factors(scales)
-    _require_model(model)
+    require_model(model)
     states = limit_state_names()
     if limit_state not in states:
         remedy = did_you_mean(limit_state, states) or f"Use one of {', '.join(states)}."
@@ -187,12 +192,12 @@ def inventory(
         seed=start,
     )
     numbers: dict[str, dict[str, Any]] = {}
-    total = sum(of_sites[one.given.site].runs_of(one) for one in prepared.values())
+    total = sum(of_sites[one.site].runs_of(one) for one in prepared.values())
     report, done = report_of(progress), [0]
     folder = None if store is None else Path(store)
     try:
         for name, runs in of_sites.items():
-            own = [one for _, one in sorted(prepared.items()) if one.given.site == name]
+            own = [one for _, one in sorted(prepared.items()) if one.site == name]
             hazard = places[name].hazard
             intensity = None if hazard is None else _intensity(hazard, runs)
             parts = runs.parts(own, folder, executor, lambda part, _: report(sum(done) + part, total))
@@ -235,14 +240,6 @@ def _factors(scales: npt.ArrayLike) -> tuple[float, ...]:
     return tuple(sorted({require_positive("scales", value) for value in values}))
 
 
-def _require_model(kind: str) -> None:
-    known = [name for name, make in MODELS.items() if name != "sliding" and not getattr(make, "planar_only", False)]
-    if kind not in known:
-        raise ParameterError(
-            f"model: must be three-dimensional with permanent contact (got {kind!r}). Use {', '.join(known)}."
-        )
-
-
 def _sites(sites: Records | InventorySite | Mapping[str, InventorySite]) -> dict[str, InventorySite]:
     if isinstance(sites, Mapping) and any(isinstance(one, InventorySite) for one in sites.values()):
         for name, one in sites.items():
@@ -265,15 +262,15 @@ def _prepared(
     for one in objects:
         if not isinstance(one, InventoryObject):
             raise ParameterError(f"objects: must be InventoryObjects (got {one!r}). Use read_inventory.")
-        placed = _at_a_site(one, sites, problems)
+        name = _site_of(one, sites, problems)
         if one.name in found:
             problems.append(f"{one.place}: the name {one.name!r} is that of {found[one.name].given.place}. Rename one.")
             continue
         try:
             with _questions_of(one):
-                prepared = placed.prepared(kind)
-            if placed.site in sites:
-                site = sites[placed.site]
+                prepared = replace(one.prepared(kind), site=name)
+            if name in sites:
+                site = sites[name]
                 prepared.check_samples(len(site.records) * site.samples_of(prepared), site.seed)
             found[one.name] = prepared
         except ConfigError as error:
@@ -283,15 +280,14 @@ def _prepared(
     return found
 
 
-def _at_a_site(one: InventoryObject, sites: Mapping[str, SiteRuns], problems: list[str]) -> InventoryObject:
-    """Return the object with the name of its site, which may be left out if there is one site."""
-    if one.site in sites:
-        return one
-    if len(sites) == 1 and (not one.site or "" in sites):
-        return replace(one, site=next(iter(sites)))
-    remedy = did_you_mean(one.site, sites) or f"Use {', '.join(sites)}."
-    problems.append(f"{one.place}: site: unknown (got {one.site!r}); {remedy}")
-    return one
+def _site_of(one: InventoryObject, sites: Mapping[str, SiteRuns], problems: list[str]) -> str:
+    """Return the name of the site of an object: the one site, if it has no name or the object states none."""
+    if one.site not in sites:
+        if len(sites) == 1 and (not one.site or "" in sites):
+            return next(iter(sites))
+        remedy = did_you_mean(one.site, sites) or f"Use {', '.join(sites)}."
+        problems.append(f"{one.place}: site: unknown (got {one.site!r}); {remedy}")
+    return one.site
 
 
 @contextmanager
@@ -373,7 +369,7 @@ def _provenance(
                 "shape": one.make.__name__,
                 "model": {"kind": one.model.name, **{number: getattr(one.model, number) for number in one.of_model}},
                 "friction_coefficient": one.friction,
-                "site": one.given.site,
+                "site": one.site,
                 "spreads": {number: described_spread(spread) for number, spread in one.given.spreads.items()},
             }
             for name, one in sorted(objects.items())

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from stylobate.config.parts import DIAMETERS
-from stylobate.earthquakes.inventories.objects import InventoryObject, unquestioned
+from stylobate.earthquakes.inventories.objects import InventoryObject, require_model, unquestioned
 from stylobate.earthquakes.inventories.rows import ObjectTable, Row
 from stylobate.earthquakes.property_spreads import LognormalSpread, NormalSpread, Spread
 from stylobate.errors import ConfigError, ParameterError
@@ -113,6 +113,7 @@ def read_inventory(
     ({'radius': 0.0625, 'height': 0.55, 'density': 2100.0}, {'radius': NormalSpread(deviation=0.0005, mean=None,
     least=0.0, most=inf)}, {'room': '12'})
     """
+    require_model(model)
     table = ObjectTable.read(Path(path))
     known, others = _headings(table, model, carry)
     given = dict(defaults or {})
