@@ -46,7 +46,7 @@ COMMANDS = {
     "assess": Entry("cli.assess:assess", "Assess whether columns survive records, and how robust the answer is."),
     "inventory": Entry(
         "cli.inventory:inventory",
-        "Rank the objects of a table by how probably the records of their sites overturn them.",
+        "Rank the objects of a table by how probably they overturn.",
     ),
     "spectrum": Entry(
         "earthquakes:overturning_intervals", "Compute overturning intervals of the amplitude, or rocking spectra."
