@@ -7,6 +7,7 @@ from .figures.incremental import plot_directions
 from .figures.spectra import plot_records
 from .fragility.annual_rate import HazardCurve, annual_rate
 from .fragility.dispersion import SampleDesign, dispersion_parts
+from .fragility.displacement_limits import LimitState
 from .fragility.empirical_rate import empirical_rate
 from .fragility.export import export_fragility
 from .fragility.fit import fit_fragility, fragility_of_runs, lognormal_fragility
@@ -30,6 +31,7 @@ from .property_spreads import (
     property_samples,
 )
 from .record_selection import select_records
+from .slip_study import slip_analysis
 from .spectrum_study import overturning_intervals, rocking_spectrum
 from .verdict_study import repeat_verdict, verdict
 
@@ -43,6 +45,7 @@ __all__ = [
     "InventoryConfig",
     "InventoryObject",
     "InventorySite",
+    "LimitState",
     "LogUniformSpread",
     "LognormalSpread",
     "NormalSpread",
@@ -78,5 +81,6 @@ __all__ = [
     "rocking_spectrum",
     "scores",
     "select_records",
+    "slip_analysis",
     "verdict",
 ]

@@ -10,12 +10,13 @@ import numpy.typing as npt
 import xarray as xr
 
 from stylobate.base_motions import BaseMotion, OneOf
-from stylobate.earthquakes.fragility.observations import limit_states
+from stylobate.earthquakes.fragility.displacement_limits import LimitState, Response, checked_limit_states
+from stylobate.earthquakes.fragility.observations import limit_states as reached_states
 from stylobate.earthquakes.intensities import Intensity, IntensityMeasure, SpectralAcceleration
 from stylobate.earthquakes.study_inputs import Records, named_records, tail_of
 from stylobate.engine.parameters import changed_model
 from stylobate.errors import Outcome, ParameterError, as_numbers, require_finite
-from stylobate.models import Model
+from stylobate.models import Model, Sliding
 from stylobate.parameter_quantities import attributes_of, quantity_of
 from stylobate.records.intensities import HorizontalComponent
 from stylobate.results.outcomes import NOT_COMPUTED
@@ -50,6 +51,7 @@ def incremental_dynamic_analysis(
     tail: float | None = None,
     intensity: str | Intensity | SpectralAcceleration = Intensity.PEAK_ACCELERATION,
     component: str | HorizontalComponent = HorizontalComponent.ROTD50,
+    limit_states: Sequence[LimitState] = (),
     **run: Unpack[RunsOfOwnLength],
 ) -> tuple[Sweep, Label]:
     """Compute the response of a column to each record at each scale (incremental dynamic analysis).
@@ -81,6 +83,9 @@ def incremental_dynamic_analysis(
         The intensity measure of each run: "peak ground acceleration", "peak ground velocity", "PGA/(g tan α)",
         "p PGV/(g tan α)" or a `SpectralAcceleration`; and the definition of its horizontal component: "RotD50",
         "RotD100", "geometric mean" or "larger component". For a motion along one line all definitions agree.
+    limit_states
+        Limits of the displacement by tilt, of the response "neighbours", besides those of `limit_states`. Slip has
+        `slip_analysis`.
     **run
 
     Returns
@@ -117,12 +122,29 @@ def incremental_dynamic_analysis(
            [0, 0, 1]], dtype=int8)
     """
     require_no_limits(options_of(run))
+    limits = _of_tilt(model, checked_limit_states(limit_states))
     plan = Plan.of(
         model, records, scales, rotations, vertical, parameters, tail, IntensityMeasure.named(intensity, component)
     )
 
     sweep = Sweep.points(model, plan.motion, at=plan.points, **options_of(run))
-    return sweep, lambda runs: plan.labelled(_unfolded(runs, plan.lengths))
+    return sweep, lambda runs: plan.labelled(_unfolded(runs, plan.lengths), limits)
+
+
+def _of_tilt(model: Model, limits: tuple[LimitState, ...]) -> tuple[LimitState, ...]:
+    """Return the limit states, which a model without slip can decide."""
+    for place, one in enumerate(limits):
+        if isinstance(model, Sliding):
+            raise ParameterError(
+                f"limit_states: are not computed for the model sliding (got {one.name!r}). Use slip_analysis, if the "
+                "column slides before it rocks, or another model."
+            )
+        if one.kind is not Response.NEIGHBOURS:
+            raise ParameterError(
+                f"limit_states[{place}]: the model {model.name} does not slip (got {one.name!r}). Use slip_analysis "
+                'with the model Sliding, or limit the response "neighbours".'
+            )
+    return limits
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -258,21 +280,24 @@ class Plan:
         scaled = values[:, :, np.newaxis] * self.scales
         return xr.DataArray(scaled if of_column else scaled[:, 0], dims=dims, attrs=self.intensity.attributes)
 
-    def labelled(self, runs: xr.Dataset) -> xr.Dataset:
+    def labelled(self, runs: xr.Dataset, limits: Sequence[LimitState] = ()) -> xr.Dataset:
         """Add tilt ratios, limit states, intensities and coordinates to `runs`, which are over all dimensions."""
-        slenderness = xr.DataArray([model.column.slenderness for model in self.sampled], dims="property_sample")
+        columns = [model.column for model in self.sampled]
+        slenderness = xr.DataArray([column.slenderness for column in columns], dims="property_sample")
+        exceeded = {one.name: one.of_tilt(runs["peak_tilt"], columns, "property_sample") for one in limits}
         labelled = runs.assign(
             tilt_ratio=tilt_ratios(runs, slenderness),
-            reached=limit_states(runs, slenderness=slenderness),
+            reached=reached_states(runs, slenderness=slenderness, exceeded=exceeded),
             intensity=self.levels,
             followed=(("record", "property_sample"), self.followed, {"units": "s", "long_name": "duration"}),
             computed=((), int((runs["outcome"] != NOT_COMPUTED).sum()), {"units": "1", "long_name": "runs computed"}),
-        ).assign_coords(self._coordinates())
+        ).assign_coords(self.coordinates())
         lone = dict.fromkeys(self.left_out, 0)
         found = labelled.isel(lone).drop_vars("property_sample" if "property_sample" in self.left_out else [])
         return found.assign_attrs(kind="incremental dynamic analysis", intensity=self.intensity.name)
 
-    def _coordinates(self) -> dict[str, Any]:
+    def coordinates(self) -> dict[str, Any]:
+        """Return the coordinates of all dimensions, including those left out."""
         samples = {name: ("property_sample", values, attributes_of(name)) for name, values in self.parameters.items()}
         return {
             "record": list(self.records),

@@ -66,7 +66,7 @@ class Shaking:
         """
         from stylobate.records.intensities import HorizontalComponent, horizontal_peak, peak_acceleration
 
-        record = _record_of(motion)
+        record = record_of(motion)
         vector = HorizontalComponent.ROTD100
         return cls(
             peak_acceleration=horizontal_peak(record, ACCELERATION, vector),
@@ -102,15 +102,30 @@ class Shaking:
         return np.asarray(np.where(period < first, stiff, np.where(period > last, soft, inside)))
 
 
-def _record_of(motion: BaseMotion) -> Record:
+def record_of(motion: BaseMotion, per_period: int = _PER_PERIOD) -> Record:
+    """Return a base motion that ends as a record: itself, or sampled.
+
+    Parameters
+    ----------
+    motion
+        The base motion.
+    per_period
+        Samples per period of the highest frequency of a base motion that is no record. The accelerations are linear
+        between samples, which is (2π/`per_period`)²/8 of the peak off at most.
+
+    Raises
+    ------
+    ParameterError
+        If `motion` is no base motion, or never ends.
+    """
     if not isinstance(motion, BaseMotion):
         raise ParameterError(f"motion: must be a base motion (got {motion!r}). Pass a record or a pulse.")
     if not 0.0 < motion.duration < math.inf:
         raise ParameterError(f"motion: must end after t = 0 (got {motion!r}). Pass a record or a pulse.")
     if isinstance(motion, Record):
         return motion
-    number = math.ceil(_PER_PERIOD * motion.duration * max(motion.highest_frequency, 1.0) / (2.0 * math.pi)) + 1
-    times = np.linspace(0.0, motion.duration, max(number, _PER_PERIOD))
+    number = math.ceil(per_period * motion.duration * max(motion.highest_frequency, 1.0) / (2.0 * math.pi)) + 1
+    times = np.linspace(0.0, motion.duration, max(number, per_period))
     return Record(samples=motion.acceleration(times), step=float(times[1]))
 
 

@@ -379,6 +379,9 @@ def lognormal_fragility(
 _SERIES = ("rotation", "vertical", "property_sample")
 
 
+_KINDS = ("incremental dynamic analysis", "slip analysis")
+
+
 def fragility_of_runs(
     runs: xr.Dataset,
     *,
@@ -392,7 +395,8 @@ def fragility_of_runs(
     Parameters
     ----------
     runs
-        From `incremental_dynamic_analysis`, complete or partial; after an interruption some runs are not known.
+        From `incremental_dynamic_analysis`, complete or partial; after an interruption some runs are not known. Or
+        from `slip_analysis`.
     counting
         How runs above the first that reached the limit state count, if the column survives there.
     confidence, resamples, rng
@@ -422,7 +426,7 @@ def fragility_of_runs(
     >>> int(fallen["runs"]), int(fallen["runs_reached"])
     (28, 16)
     """
-    if not isinstance(runs, xr.Dataset) or runs.attrs.get("kind") != "incremental dynamic analysis":
+    if not isinstance(runs, xr.Dataset) or runs.attrs.get("kind") not in _KINDS:
         got = runs.attrs.get("kind") if isinstance(runs, xr.Dataset) else repr(runs)
         raise ParameterError(f"runs must be an incremental dynamic analysis, got {got}")
     reached: Any = runs["reached"]

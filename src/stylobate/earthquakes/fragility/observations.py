@@ -4,7 +4,7 @@ Overturning is not monotonic: a column may survive a stronger motion. See Zhang 
 of free-standing blocks under cycloidal pulses", J. Eng. Mech. 127 (2001).
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
 from typing import Any, Self, TypeAlias
@@ -199,6 +199,7 @@ def limit_states(
     *,
     slenderness: npt.ArrayLike | xr.DataArray | None = None,
     tilt_ratios: Sequence[float] = (1e-3, 0.1, 0.5, 1.0),
+    exceeded: Mapping[str, xr.DataArray] | None = None,
 ) -> xr.DataArray:
     """Find the limit states that each run reached: peak tilts in fractions of α_c = arctan c, and overturning.
 
@@ -214,6 +215,8 @@ def limit_states(
         c of each run; by default the coordinate `slenderness` of `runs`.
     tilt_ratios
         Peak tilts over α_c, positive. A run that starts at a larger tilt has reached it from the start.
+    exceeded
+        Further limit states by name: whether each run exceeded them by its peak tilt. They follow the others.
 
     Returns
     -------
@@ -250,11 +253,13 @@ def limit_states(
     limits = {
         f"tilt {require_positive(f'tilt_ratios[{place}]', ratio):g} α": ratio for place, ratio in enumerate(tilt_ratios)
     }
-    exceeded = [fallen | (tilt > ratio * critical) for ratio in limits.values()]
+    further = dict(exceeded or {})
+    by_tilt = [fallen | (tilt > ratio * critical) for ratio in limits.values()]
     computed = codes != NOT_COMPUTED
+    ways = [*by_tilt, fallen, *(fallen | one for one in further.values())]
     unreached = xr.zeros_like(codes, dtype=np.int8).where(decided, np.int8(NOT_KNOWN))
-    states = [unreached.where(~(reached & computed), np.int8(1)) for reached in [*exceeded, fallen]]
-    names = xr.DataArray([*limits, "overturning"], dims=LIMIT_STATE, name=LIMIT_STATE)
+    states = [unreached.where(~(reached & computed), np.int8(1)) for reached in ways]
+    names = xr.DataArray([*limits, "overturning", *further], dims=LIMIT_STATE, name=LIMIT_STATE)
     joined: xr.DataArray = xr.concat(states, dim=names).rename("reached")
     joined.attrs = {}
     return joined.assign_attrs(
