@@ -17,7 +17,7 @@ from stylobate.earthquakes.assessment.inputs import Inputs
 from stylobate.earthquakes.assessment.margins import _in_band, governing_record
 from stylobate.earthquakes.assessment.records import record_properties
 from stylobate.earthquakes.assessment.report.column_verdict import VerdictClass, column_verdict
-from stylobate.earthquakes.assessment.verdicts import sliding_model
+from stylobate.earthquakes.assessment.sliding import sliding_model
 from stylobate.earthquakes.study_inputs import remark_on
 from stylobate.errors import FileError, ParameterError, UnlikelyInputWarning
 from stylobate.records.intensities import drifts

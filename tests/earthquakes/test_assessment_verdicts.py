@@ -244,9 +244,11 @@ def test_small_variations_settle_a_run_that_is_numerically_uncertain():
 
 def test_a_column_that_slides_before_it_rocks_is_not_described_where_a_record_can_make_it_slide():
     found = column_verdict(made(FALLEN, friction=0.2, slips={"A": 0.6, "B": 1.2, "C": 3.0}), "k", 1.0)
-    assert found.verdict is VerdictClass.NOT_DESCRIBED
-    assert "friction 0.2 is less than r/h = 0.25" in found.sentence
+    assert found.verdict is VerdictClass.SLIDES
+    assert not found.describes
+    assert found.line.startswith("Slides before it rocks: μ = 0.2 < r/h = 0.25. ")
     assert "under 1 of 3 records (A)" in found.sentence
+    assert found.sentence.endswith("Set sliding = true to compute its slip.")
     assert column_verdict(made(friction=0.2, slips={"A": 1.1, "B": 1.2, "C": 3.0}), "k", 1.0).describes
 
 

@@ -13,7 +13,7 @@ import xarray as xr
 
 from stylobate.base_motions import Record
 from stylobate.config.levels import Dissipation
-from stylobate.earthquakes.assessment.inputs import CENTRAL, OTHER_LAW, Inputs, Parts
+from stylobate.earthquakes.assessment.inputs import CENTRAL, OTHER_LAW, Inputs, LimitStates, Parts
 from stylobate.earthquakes.assessment.margins import (
     governing_record,
     histories_of,
@@ -29,13 +29,18 @@ from stylobate.earthquakes.assessment.records import (
     record_properties,
     spectra_of,
 )
+from stylobate.earthquakes.assessment.sliding import (
+    sliding_of,
+    sliding_runs,
+    slip_margin_runs,
+    slip_margins_of,
+    states_with_slip,
+)
 from stylobate.earthquakes.assessment.verdicts import (
     planar_of,
     planar_runs,
     share_runs,
     shares_of,
-    sliding_of,
-    sliding_runs,
     verdict_runs,
     verdicts_on,
 )
@@ -43,7 +48,7 @@ from stylobate.earthquakes.fragility import HazardCurve, annual_rate, empirical_
 from stylobate.earthquakes.fragility.observations import LIMIT_STATE
 from stylobate.earthquakes.intensities import Intensity, IntensityMeasure
 from stylobate.earthquakes.study_inputs import Records, remark_on
-from stylobate.errors import LARGEST_SEED, require_positive, require_whole
+from stylobate.errors import LARGEST_SEED, require_not_negative, require_positive, require_whole
 from stylobate.models import Model
 from stylobate.progress import Progress, in_parts, report_of, shows_progress
 from stylobate.provenance import provenance_of_run
@@ -75,6 +80,8 @@ def assess(
     variations: int = 200,
     seed: int = 0,
     sliding: bool = False,
+    limit_states: LimitStates = (),
+    friction_dispersion: float = 0.1,
     planar: bool = True,
     contact: bool = True,
     least_records: int = FEW_RECORDS,
@@ -122,8 +129,14 @@ def assess(
     seed
         Seed of the variations.
     sliding
-        Whether columns that slide before they rock (friction coefficient below r/h) are also run with the model
-        `Sliding`, under each record at each of the `scales`: some seconds per run.
+        Whether to compute the slip of columns that slide before they rock (friction coefficient below r/h), under each
+        record at each of the `scales` and over the scan of the margin. Fragility and rates of these columns are then
+        those of `limit_states`.
+    limit_states
+        Limits of the displacement, one sequence for all columns or a mapping by column. "neighbours" also limits the
+        displacement by tilt of columns that rock.
+    friction_dispersion
+        Standard deviation of the logarithm of the friction coefficient among the small variations of slip.
     planar
         Whether to compare with Housner's planar column.
     contact
@@ -158,8 +171,8 @@ def assess(
         Its data: "columns" and "records", their properties; "verdicts" over column, record, dissipation, vertical and
         scale: `overturned` (1, 0, −1 not decided), `outcome`, `tilt_ratio`, contact demand; "margins" over
         column, case, record and interval; "variations" over column, record and scale; "sliding" over
-        column, record and scale; "planar"; "fragility" over column if there are enough records;
-        "rates" over column with a hazard curve; "histories" over
+        column, record and scale, and "slip_margins" over column, record and scale of the scan; "planar"; "fragility"
+        over column if there are enough records; "rates" over column with a hazard curve; "histories" over
         column and run, under the governing record of each column; "summary", counts;
         "practice" over column, record, scale and rule, the answers of `stylobate.practice.rules_of_practice`;
         "spectra" over record and period, "ground_motions" over record and instant, for the figures of the report.
@@ -211,6 +224,8 @@ def assess(
         contact_laws=contact_laws,
         variations=require_variations(variations),
         seed=require_whole("seed", seed, least=0, most=LARGEST_SEED),
+        limit_states=limit_states,
+        friction_dispersion=require_not_negative("friction_dispersion", friction_dispersion),
         width=require_positive("width", width),
         tail=tail,
         least_records=require_whole("least_records", least_records, least=2),
@@ -234,23 +249,24 @@ def assess(
     }
     if inputs.variations:
         data["variations"] = _over_columns([shares_of(inputs, name, parts, executor=executor) for name in names], names)
+    states = [one["reached"] for one in margins]
     if sliding and inputs.sliding_first:
+        slips = [slip_margins_of(inputs, name, parts) for name in names]
         data["sliding"] = _over_columns([sliding_of(inputs, name, parts) for name in names], names)
+        data["slip_margins"] = _over_columns(slips, names)
+        states = [states_with_slip(inputs, *one) for one in zip(names, states, slips, strict=True)]
     if planar:
         data["planar"] = _over_columns([planar_of(inputs, name, parts, executor=executor) for name in names], names)
     if len(inputs.records) >= inputs.least_records:
         peaks = data["records"]["median_peak_acceleration"]
         about = IntensityMeasure(Intensity.PEAK_ACCELERATION)
         data["fragility"] = _over_columns(
-            [
-                _fragility_of(*_observed(one["reached"].isel(margin_scale=inputs.scanned), peaks, about))
-                for one in margins
-            ],
+            [_fragility_of(*_observed(one.isel(margin_scale=inputs.scanned), peaks, about)) for one in states],
             names,
         )
     if hazard is not None:
         data["rates"] = _over_columns(
-            [_rates_of(inputs, name, one["reached"], hazard, years) for name, one in zip(names, margins, strict=True)],
+            [_rates_of(inputs, name, one, hazard, years) for name, one in zip(names, states, strict=True)],
             names,
         )
     governing = [governing_record(one, other, inputs.as_recorded) for one, other in zip(verdicts, margins, strict=True)]
@@ -280,7 +296,8 @@ def _runs(inputs: Inputs, *, planar: bool, sliding: bool) -> int:
     each = verdict_runs(inputs) + margin_runs(inputs) + 3
     each += share_runs(inputs)
     each += planar_runs(inputs) if planar else 0
-    return each * len(inputs.columns) + (sliding_runs(inputs) if sliding else 0)
+    slips = sliding_runs(inputs) + slip_margin_runs(inputs) if sliding else 0
+    return each * len(inputs.columns) + slips
 
 
 def _over_columns(found: Sequence[xr.Dataset], names: Sequence[str]) -> xr.Dataset:
@@ -324,6 +341,14 @@ def _setting(inputs: Inputs) -> dict[str, Any]:
             for name, levels in inputs.dissipation.items()
         },
         "friction_coefficient": dict(inputs.friction),
+        "friction_dispersion": inputs.friction_dispersion,
+        "limit_states": {
+            name: [
+                {"response": one.kind.value, "limit": one.limit, "height": one.height, "name": one.name}
+                for one in limits
+            ]
+            for name, limits in inputs.limits.items()
+        },
         "scales": inputs.scales.tolist(),
         "margin_scales": [float(inputs.margin_scales[0]), float(inputs.margin_scales[-1]), inputs.margin_scales.size],
         "width": inputs.width,

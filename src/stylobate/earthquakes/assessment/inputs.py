@@ -13,6 +13,7 @@ import xarray as xr
 
 from stylobate.base_motions import BASE_AT_REST, BaseMotion, Record
 from stylobate.config.levels import OF_DISSIPATION, Dissipation, at_levels, levels_by_column
+from stylobate.earthquakes.fragility.displacement_limits import LimitState, checked_limit_states
 from stylobate.earthquakes.study_inputs import Records, named_records
 from stylobate.earthquakes.verdict_study import has_other_contact_law, with_other_contact_law
 from stylobate.engine.parameters import changed_model, model_names
@@ -24,6 +25,10 @@ from stylobate.results.keyed_store import KeyedStore
 from stylobate.run_arguments import RunOptions
 from stylobate.studies.sweeps.designs import Floats
 from stylobate.studies.sweeps.fingerprint import identity_of
+from stylobate.text import did_you_mean
+
+LimitStates: TypeAlias = Sequence[LimitState] | Mapping[str, Sequence[LimitState]]
+"""Limit states of all columns, or of each by its name."""
 
 CENTRAL = "central"
 NO_VERTICAL = "central, no vertical"
@@ -73,6 +78,10 @@ class Inputs:
         Minimum number of records for a fragility.
     options
         Options of all runs.
+    limits
+        Limit states of displacement of each column.
+    friction_dispersion
+        Standard deviation of the logarithm of the friction coefficient among small variations.
     """
 
     columns: Mapping[str, Mapping[str, Model]]
@@ -89,6 +98,8 @@ class Inputs:
     seed: int
     least_records: int
     options: RunOptions
+    limits: Mapping[str, tuple[LimitState, ...]] = field(default_factory=dict)
+    friction_dispersion: float = 0.1
 
     @classmethod
     def of(
@@ -101,6 +112,7 @@ class Inputs:
         margin_scales: npt.ArrayLike,
         *,
         contact_laws: bool,
+        limit_states: LimitStates = (),
         **more: Any,
     ) -> Self:
         """Check the arguments of an assessment; raise ParameterError for an invalid one."""
@@ -117,6 +129,7 @@ class Inputs:
             scales=stated,
             margin_scales=_joined(scan, stated),
             scan=scan,
+            limits=_limits(limit_states, columns),
             contact_laws=contact_laws and all(map(has_other_contact_law, columns.values())),
             **more,
         )
@@ -137,6 +150,11 @@ class Inputs:
         return tuple(
             name for name, levels in self.columns.items() if self.friction[name] < levels[CENTRAL].column.slenderness
         )
+
+    @property
+    def limit_names(self) -> tuple[str, ...]:
+        """Names of the limit states of displacement of all columns."""
+        return tuple(dict.fromkeys(one.name for limits in self.limits.values() for one in limits))
 
     @property
     def has_vertical(self) -> bool:
@@ -252,6 +270,16 @@ def _frictions(given: float | Mapping[str, float] | None, columns: Sequence[str]
             what = "is no column" if name in given else "has none; state one for each column"
             raise ParameterError(f"friction_coefficient: {name!r} {what}")
     return {name: require_positive(f"friction_coefficient.{name}", given[name]) for name in columns}
+
+
+def _limits(given: LimitStates, columns: Mapping[str, Model]) -> dict[str, tuple[LimitState, ...]]:
+    """Return the limit states of each column."""
+    by_column = given if isinstance(given, Mapping) else dict.fromkeys(columns, given)
+    for name in by_column:
+        if name not in columns:
+            remedy = did_you_mean(name, columns) or "leave it out"
+            raise ParameterError(f"limit_states: {name!r} is no column; {remedy}")
+    return {name: checked_limit_states(by_column.get(name, ()), f"limit_states.{name}") for name in columns}
 
 
 def _rising(name: str, values: npt.ArrayLike, *, least: int) -> Floats:

@@ -10,7 +10,8 @@ import xarray as xr
 from stylobate.base_motions import BaseMotion, OneOf
 from stylobate.column import Column
 from stylobate.earthquakes.assessment.inputs import CENTRAL, NO_VERTICAL, Inputs, Parts
-from stylobate.earthquakes.fragility.observations import limit_states
+from stylobate.earthquakes.fragility.displacement_limits import Response
+from stylobate.earthquakes.fragility.observations import LIMIT_STATE, NOT_KNOWN, limit_states
 from stylobate.earthquakes.incremental import tilt_ratios, without_vertical
 from stylobate.earthquakes.spectrum_study import overturning_intervals
 from stylobate.earthquakes.study_inputs import tail_of
@@ -59,7 +60,13 @@ def margins_of(inputs: Inputs, column: str, parts: Parts, *, contact: bool, exec
     joined: xr.Dataset = xr.concat(found, dim=xr.Variable("case", cases), data_vars="all", join="override")
     body = inputs.columns[column][CENTRAL].column
     scanned = joined[["outcome", "peak_tilt"]].sel(case=CENTRAL)
-    reached = limit_states(scanned, slenderness=body.slenderness).transpose("record", "limit_state", "margin_scale")
+    nearby = [one for one in inputs.limits.get(column, ()) if one.kind is Response.NEIGHBOURS]
+    exceeded = {one.name: one.of_tilt(scanned["peak_tilt"], [body], "column") for one in nearby}
+    reached = limit_states(scanned, slenderness=body.slenderness, exceeded=exceeded)
+    if inputs.limit_names:  # slip is not known without slip, nor are the limits of other columns
+        own = [str(name) for name in reached[LIMIT_STATE].to_numpy() if name not in exceeded]
+        reached = reached.reindex({LIMIT_STATE: [*own, *inputs.limit_names]}, fill_value=np.int8(NOT_KNOWN))
+    reached = reached.transpose("record", LIMIT_STATE, "margin_scale")
     labelled = joined.drop_vars("peak_tilt").assign(
         tilt_ratio=tilt_ratios(joined, body.slenderness),
         reached=reached.drop_vars("case"),

@@ -3,7 +3,6 @@
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from enum import Enum
-from typing import TypeAlias
 
 import numpy as np
 import xarray as xr
@@ -139,9 +138,6 @@ class LimitState:
                 f"height: missing in the limit state {self.name!r}, and the column has none. State it, such as 2.0."
             )
         return column.height
-
-
-LimitStates: TypeAlias = Sequence[LimitState]
 
 
 def checked_limit_states(given: Iterable[LimitState], where: str = "limit_states") -> tuple[LimitState, ...]:

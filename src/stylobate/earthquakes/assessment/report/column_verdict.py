@@ -201,6 +201,7 @@ class VerdictClass(Enum):
     OVERTURNED = "NOT shown safe"
     OPEN = "Survival NOT robust"
     SURVIVED = "Survived every run"
+    SLIDES = "Slides before it rocks"
     NOT_DESCRIBED = "Not described by these runs"
 
 
@@ -213,8 +214,8 @@ class ColumnVerdict:
 
     @property
     def describes(self) -> bool:
-        """Whether the runs describe the column."""
-        return self.verdict is not VerdictClass.NOT_DESCRIBED
+        """Whether the runs without slip describe the column."""
+        return self.verdict not in (VerdictClass.SLIDES, VerdictClass.NOT_DESCRIBED)
 
     @property
     def line(self) -> str:
@@ -237,7 +238,7 @@ def column_verdict(assessment: Assessment, column: str, scale: float) -> ColumnV
     cases, where = cases_of(assessment, column, scale), level_words(scale)
     total = len(cases.records)
     if slides := _slides_first(assessment, column, scale):
-        return ColumnVerdict(VerdictClass.NOT_DESCRIBED, slides)
+        return ColumnVerdict(VerdictClass.SLIDES, slides)
     if cases.overturned or cases.at_other_dissipation or cases.with_other_law:
         return ColumnVerdict(VerdictClass.OVERTURNED, _overturned(cases, where))
     if cases.none_decided:
@@ -323,17 +324,22 @@ def _slides_first(assessment: Assessment, column: str, scale: float) -> str:
         return ""
     own, total = assessment.data["columns"].sel(column=column), slips.sizes["record"]
     friction, slenderness = float(own["friction_coefficient"]), float(own["slenderness"])
+    computed = "sliding" in assessment.data
+    answer = (
+        f"{_slid(assessment, column, scale)}{_slip_varied(assessment, column, scale)}"
+        f"{_limits_reached(assessment, column, scale)}"
+        if computed
+        else " Runs without slip do not describe it. Set sliding = true to compute its slip."
+    )
     return (
-        f"the stated friction {number(friction)} is less than r/h = {number(slenderness)}, so the column slides before "
-        f"it rocks. Horizontal accelerations above about {number(friction)} g make it slide; {level_words(scale)} "
-        f"this happens under {records(len(sliding), total)} ({listed(sliding)}).{_slid(assessment, column, scale)}"
+        f"μ = {number(friction)} < r/h = {number(slenderness)}. Horizontal accelerations above about "
+        f"{number(friction)} g make it slide; {level_words(scale)} this happens under {records(len(sliding), total)} "
+        f"({listed(sliding)}).{answer}"
     )
 
 
 def _slid(assessment: Assessment, column: str, scale: float) -> str:
-    """State the outcomes with the sliding model; empty if it was not run."""
-    if "sliding" not in assessment.data:
-        return ""
+    """State the outcomes of a column that slides."""
     runs = assessment.data["sliding"].sel(column=column, scale=scale)
     names = runs["record"].to_numpy().astype(str)
     by_state = [(words, names[runs["overturned"].to_numpy() == state]) for state, words in _SLID.items()]
@@ -347,6 +353,43 @@ def _slid(assessment: Assessment, column: str, scale: float) -> str:
     doubtful = names[runs["uncertain"].to_numpy() == 1].tolist()
     doubt = f" Rounding or the rest threshold could alter the outcome under {listed(doubtful)}." if doubtful else ""
     return f" With the sliding model it {', '.join([*found, *slid])}.{doubt}"
+
+
+def _slip_varied(assessment: Assessment, column: str, scale: float) -> str:
+    """State the interval of the largest slip under small variations, and the residual; empty if none was varied."""
+    runs = assessment.data["sliding"].sel(column=column, scale=scale)
+    if "peak_slip_low" not in runs or not bool((runs["known_variations"] > 0).any()):
+        return ""
+    phrases = []
+    for name, verb in (("peak_slip", "slide"), ("residual_slip", "end")):
+        median = runs[f"{name}_median"]
+        one = runs.isel(record=int(median.fillna(-1.0).argmax("record")))
+        low, high = (number(1000.0 * float(one[f"{name}_{end}"])) for end in ("low", "high"))
+        where = "" if name == "peak_slip" else " from its start"
+        phrases.append(
+            f"it {verb}s {'by ' if verb == 'slide' else ''}{low} to {high} mm{where} ({one['record'].item()})"
+        )
+    return f" Under 90 % of the small variations of record and friction {listed(phrases, 'and')}."
+
+
+def _limits_reached(assessment: Assessment, column: str, scale: float) -> str:
+    """State for each limit state of a column that slides whether it is kept; empty without limit states."""
+    runs = assessment.data["sliding"].sel(column=column, scale=scale)
+    stated = [one["name"] for one in assessment.setting.get("limit_states", {}).get(column, ())]
+    if "reached" not in runs or not stated:
+        return ""
+    phrases = []
+    for name in stated:
+        own = runs.sel(limit_state=name)
+        state = own["reached"].to_numpy()
+        share = float(own["reached_share"].fillna(0.0).max())
+        varied = f", and in up to {percent(share)} of the small variations" if share > 0.0 else ""
+        unknown = f", not known under {listed(_where(own['reached'] < 0))}" if (state < 0).any() else ""
+        if (state == 1).any():
+            phrases.append(f"{name} reached under {listed(_where(own['reached'] == 1))}{varied}{unknown}")
+        else:
+            phrases.append(f"{name} not reached{varied.replace(', and', ', but')}{unknown}")
+    return f" Limit states: {'; '.join(phrases)}."
 
 
 def _reservations(assessment: Assessment, column: str, scale: float, cases: Cases) -> list[str]:

@@ -260,8 +260,9 @@ SLIP_AND_FLIGHT: dict[bool, tuple[str, str]] = {
     False: ("slip and flight", "the sliding model (kind sliding) was not run: sliding = false"),
     True: (
         "slip and flight",
-        "the sliding model (kind sliding) was run only for columns that slide before they rock, at the central "
-        "dissipation; all other runs assume that the base neither slips nor lifts off",
+        "slip was computed only for columns that slide before they rock: on the whole base, and by the sliding model "
+        "(kind sliding) at the central dissipation where the base falls faster than g; all other runs assume that the "
+        "base neither slips nor lifts off",
     ),
 }
 """Remark on slip and flight, by the option `sliding`."""
@@ -284,9 +285,11 @@ VERDICT_CLASSES: tuple[tuple[str, str], ...] = (
         "whose outcome rounding could alter counts only if small variations do not settle the case",
     ),
     (
-        "Not described by these runs",
-        "the column slides before it rocks, because the stated friction is less than r/h, or no run was decided",
+        "Slides before it rocks",
+        "the stated friction is less than r/h, and a record makes the column slide; with sliding = true its slip, and "
+        "whether it keeps the stated limits, are computed",
     ),
+    ("Not described by these runs", "no run was decided"),
 )
 
 INTENSITIES = (
