@@ -55,6 +55,12 @@ _FRAGILITY = Group.of(
     Option(
         "spread", "uncertain property and its lognormal dispersion; repeat it", list[str], metavar="NAME=DISPERSION"
     ),
+    Option(
+        "limit_state",
+        "limit of the displacement [m]: slip, residual, neighbours (at a height [m]) or edge; repeat it",
+        list[str],
+        metavar="RESPONSE=LIMIT[@HEIGHT]",
+    ),
     Option("property_samples", "number of samples of the uncertain properties", int),
     Option("seed", "seed of samples and resamples; 0 by default", int),
     Option(
@@ -129,7 +135,7 @@ def fragility(options: Options) -> None:
     if options["export"] is not None:
         _check_export(options["export"])
         options.use("object")
-    saved = open_kind(options["source"], "fragility", ("incremental dynamic analysis",))
+    saved = open_kind(options["source"], "fragility", ("incremental dynamic analysis", "slip analysis"))
     values = _overlay(_described(options) if saved is None else _description(saved, options["source"]), options)
     description = FragilityConfig.parse(values)
     read = is_to_compute(saved, options, shown_with=_OF_FITS)
@@ -249,6 +255,8 @@ _VERTICAL = {"on": (True,), "off": (False,), "both": (True, False)}
 
 
 def _table(values: Mapping[str, Any], options: Options) -> Any:
+    from stylobate.earthquakes.config.limit_states import limit_state_of_text
+
     described = with_axes(values, options, "fragility", ("scales",)).get("fragility", {})
     if not isinstance(described, Mapping):
         return described
@@ -259,6 +267,8 @@ def _table(values: Mapping[str, Any], options: Options) -> Any:
         table["vertical"] = _VERTICAL[options["vertical"]]
     if options["spread"]:
         table["spreads"] = dict(_spread(text) for text in options["spread"])
+    if options["limit_state"]:
+        table["limit_states"] = [limit_state_of_text(text) for text in options["limit_state"]]
     table |= _hazard(table.get("hazard"), options)
     rates = ("years", "target_rate") if table.get("hazard") is not None else ()
     table |= options.pick("intensity", "component", "seed", "counting", "confidence", "resamples", *rates)

@@ -66,6 +66,7 @@ _T = TypeVar("_T")
 Number = Annotated[float, Quantity()]
 Seconds = Annotated[float, Quantity(unit="s")]
 Radians = Annotated[float, Quantity(unit="rad")]
+Metres = Annotated[float, Quantity(unit="m")]
 Hertz = Annotated[float, Quantity(unit="Hz")]
 MetresPerSquareSecond = Annotated[float, Quantity(unit="m/s²")]
 """Numbers that a description states in SI units, or as text with a unit, such as "5 ms"."""

@@ -15,14 +15,17 @@ from stylobate.earthquakes.config.fragility import FragilitySetup
 from stylobate.earthquakes.config.hazard import HazardPoints
 from stylobate.earthquakes.fragility import Counting, HazardCurve, annual_rate, dispersion_parts, empirical_rate
 from stylobate.earthquakes.fragility.annual_rate import require_same_component
+from stylobate.earthquakes.fragility.displacement_limits import LimitState
 from stylobate.earthquakes.fragility.empirical_rate import compared_with_target
 from stylobate.earthquakes.fragility.fit import fragility_of_runs
 from stylobate.earthquakes.incremental import incremental_dynamic_analysis
 from stylobate.earthquakes.intensities import Intensity, IntensityMeasure, SpectralAcceleration
 from stylobate.earthquakes.property_spreads import Spread, property_samples
+from stylobate.earthquakes.slip_study import KIND as SLIP_ANALYSIS
+from stylobate.earthquakes.slip_study import slip_analysis
 from stylobate.earthquakes.study_inputs import remark_on
 from stylobate.errors import ParameterError
-from stylobate.models import Model
+from stylobate.models import Model, Sliding
 from stylobate.progress import shows_progress
 from stylobate.records.intensities import HorizontalComponent
 from stylobate.results.tables import ResultTable, model_named, number_of_runs
@@ -61,6 +64,8 @@ class FragilityStudy:
         Annual rate that is accepted [1/a], or None.
     options
         Options of all runs.
+    limit_states
+        Limits of the displacement. With the model `Sliding` they are those of `slip_analysis`.
     """
 
     model: Model
@@ -81,6 +86,7 @@ class FragilityStudy:
     years: float = 50.0
     target_rate: float | None = None
     options: RunOptions
+    limit_states: tuple[LimitState, ...] = ()
 
     @classmethod
     def of(cls, setup: FragilitySetup) -> Self:
@@ -114,6 +120,7 @@ class FragilityStudy:
             years=table.years,
             target_rate=table.target_rate,
             options=RunOptions(**setup.options),  # type: ignore[typeddict-item]
+            limit_states=setup.limit_states,
         )
 
     @shows_progress("incremental dynamic analysis")
@@ -125,6 +132,8 @@ class FragilityStudy:
         if self.spreads:
             rng = self._stream(_OF_SAMPLES)
             samples = property_samples(self.model, self.spreads, count=self.samples, rng=rng)
+        if self.limit_states and isinstance(self.model, Sliding):
+            return self._slips(self.model, samples, run)
         found = incremental_dynamic_analysis(
             self.model,
             self.records,
@@ -135,10 +144,36 @@ class FragilityStudy:
             tail=self.tail,
             intensity=self.intensity,
             component=self.component,
+            limit_states=self.limit_states,
             **run,
             **self.options,
         )
         return found.assign_attrs(self._yardstick())
+
+    def _slips(self, model: Sliding, samples: Mapping[str, Any] | None, run: Computing) -> xr.Dataset:
+        """Compute the slip of a column that slides before it rocks; a rotation of the records changes no limit state.
+
+        Raises
+        ------
+        ParameterError
+            If a store is given: the analysis keeps none.
+        """
+        if run.get("store") is not None:
+            raise ParameterError(
+                f"store: slip analyses keep none (got {str(run['store'])!r}). Write the result to a file that ends "
+                "with .nc."
+            )
+        return slip_analysis(
+            model,
+            self.records,
+            scales=self.scales,
+            limit_states=self.limit_states,
+            vertical=self.vertical,
+            parameters=samples,
+            intensity=self.intensity,
+            component=self.component,
+            progress=run.get("progress"),
+        )
 
     def fits(self, runs: xr.Dataset) -> xr.Dataset:
         """Fit the fragility of each limit state; with two records or more, intervals are a bootstrap over records."""
@@ -150,14 +185,16 @@ class FragilityStudy:
             resamples=self.resamples if several else 0,
             rng=self._stream(_OF_RESAMPLES),
         )
-        return found.assign_attrs(self._yardstick())
+        return found if runs.attrs["kind"] == SLIP_ANALYSIS else found.assign_attrs(self._yardstick())
 
-    def parts(self, runs: xr.Dataset, limit_state: str = _OVERTURNING) -> xr.Dataset | None:
+    def parts(self, runs: xr.Dataset, limit_state: str | None = None) -> xr.Dataset | None:
         """Split the dispersion into records and properties; None if the data do not suffice.
 
         The runs must have one rotation, one choice of the vertical component, and at least two records, two samples
-        and two scales.
+        and two scales. The limit state is overturning by default, and the first one of slip.
         """
+        slips = runs.attrs["kind"] == SLIP_ANALYSIS
+        limit_state = limit_state or (str(runs["limit_state"].to_numpy()[0]) if slips else _OVERTURNING)
         sizes = [runs.sizes.get(name, 1) for name in ("record", "property_sample", "scale")]
         if min(sizes) < _LEAST or any(name in runs.dims for name in ("rotation", "vertical")):
             return None
@@ -264,7 +301,9 @@ def plain_fits(
         "limit_states": [_row(fits, rates, place) for place in range(fits.sizes["limit_state"])],
         "housner_damping": [
             {"amplitude": amplitude, "damping": damping}
-            for amplitude, damping in zip(fits.attrs["housner_amplitudes"], fits.attrs["housner_damping"], strict=True)
+            for amplitude, damping in zip(
+                fits.attrs.get("housner_amplitudes", ()), fits.attrs.get("housner_damping", ()), strict=True
+            )
         ],
         "dispersion_parts": None if parts is None else {name: float(parts[name]) for name in _PARTS},
         "intervals": fits.attrs["intervals"],
@@ -320,7 +359,11 @@ def table_of_fits(
     few = few_records(records)
     remarks = [
         f"{percent} intervals: {fits.attrs['intervals']}; runs counted {fits.attrs['counting']}",
-        f"damping: Housner's impacts lose as {yardstick_text(fits.attrs['housner_damping'])}",
+        *(
+            [f"damping: Housner's impacts lose as {yardstick_text(fits.attrs['housner_damping'])}"]
+            if "housner_damping" in fits.attrs
+            else ["slip of a column that slides before it rocks; damping has no effect"]
+        ),
         *([few] if few else []),
     ]
     if worst > 0:
@@ -413,10 +456,12 @@ def _short(value: float) -> str:
 
 def describe_parts(parts: xr.Dataset) -> str:
     """Describe in a line the parts of the dispersion due to records and to properties."""
-    what = "dispersion of the minimum scales that overturn"
+    state = str(parts.attrs.get("limit_state", _OVERTURNING))
+    reach = "overturn" if state == _OVERTURNING else f"reach {state}"
+    what = f"dispersion of the minimum scales that {reach}"
     if not math.isfinite(float(parts["total_dispersion"])):
         reasons = {
-            "reached_at_once": "overturn at the first scale",
+            "reached_at_once": f"{reach} at the first scale",
             "never_reached": "at none",
             "not_known": "undecided",
         }

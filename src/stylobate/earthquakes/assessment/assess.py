@@ -13,7 +13,7 @@ import xarray as xr
 
 from stylobate.base_motions import Record
 from stylobate.config.levels import Dissipation
-from stylobate.earthquakes.assessment.inputs import CENTRAL, OTHER_LAW, Inputs, LimitStates, Parts
+from stylobate.earthquakes.assessment.inputs import CENTRAL, OTHER_LAW, Inputs, Parts
 from stylobate.earthquakes.assessment.margins import (
     governing_record,
     histories_of,
@@ -45,6 +45,7 @@ from stylobate.earthquakes.assessment.verdicts import (
     verdicts_on,
 )
 from stylobate.earthquakes.fragility import HazardCurve, annual_rate, empirical_rate, fit_fragility
+from stylobate.earthquakes.fragility.displacement_limits import LimitStates
 from stylobate.earthquakes.fragility.observations import LIMIT_STATE
 from stylobate.earthquakes.intensities import Intensity, IntensityMeasure
 from stylobate.earthquakes.study_inputs import Records, remark_on

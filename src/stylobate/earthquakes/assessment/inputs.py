@@ -13,7 +13,7 @@ import xarray as xr
 
 from stylobate.base_motions import BASE_AT_REST, BaseMotion, Record
 from stylobate.config.levels import OF_DISSIPATION, Dissipation, at_levels, levels_by_column
-from stylobate.earthquakes.fragility.displacement_limits import LimitState, checked_limit_states
+from stylobate.earthquakes.fragility.displacement_limits import LimitState, LimitStates, checked_limit_states
 from stylobate.earthquakes.study_inputs import Records, named_records
 from stylobate.earthquakes.verdict_study import has_other_contact_law, with_other_contact_law
 from stylobate.engine.parameters import changed_model, model_names
@@ -26,9 +26,6 @@ from stylobate.run_arguments import RunOptions
 from stylobate.studies.sweeps.designs import Floats
 from stylobate.studies.sweeps.fingerprint import identity_of
 from stylobate.text import did_you_mean
-
-LimitStates: TypeAlias = Sequence[LimitState] | Mapping[str, Sequence[LimitState]]
-"""Limit states of all columns, or of each by its name."""
 
 CENTRAL = "central"
 NO_VERTICAL = "central, no vertical"

@@ -20,7 +20,9 @@ from stylobate.config.levels import LEVELS, is_by_level, problems_of_the_levels
 from stylobate.config.parts import DEFAULT_MODEL, ColumnConfig, ModelConfig, described_model, number_or_word
 from stylobate.config.record_collection import RecordsConfig
 from stylobate.earthquakes.config.hazard import Hazard
+from stylobate.earthquakes.config.limit_states import LimitStateConfig, built_limit_states
 from stylobate.earthquakes.fragility import HazardCurve
+from stylobate.earthquakes.fragility.displacement_limits import LimitStates
 from stylobate.earthquakes.fragility_study import site_hazard
 from stylobate.earthquakes.intensities import IntensityMeasure
 from stylobate.errors import (
@@ -155,6 +157,15 @@ def _as_level(values: Any) -> Any:
     return (_LEVELS if is_by_level(values) else _LEVEL).validate_python(values)
 
 
+def _as_limit_states(values: Any) -> Any:
+    """Validate one list of limit states, or one for each column."""
+    return (_LIMITS_BY_COLUMN if isinstance(values, Mapping) else _LIMITS).validate_python(values)
+
+
+_LIMITS: TypeAdapter[tuple[LimitStateConfig, ...]] = TypeAdapter(tuple[LimitStateConfig, ...])
+_LIMITS_BY_COLUMN: TypeAdapter[dict[str, tuple[LimitStateConfig, ...]]] = TypeAdapter(
+    dict[str, tuple[LimitStateConfig, ...]]
+)
 _DAMPING = number_or_word(model_quantities()["damping"])
 _LEVEL: TypeAdapter[dict[str, float | str]] = TypeAdapter(dict[str, _DAMPING])  # type: ignore[valid-type]
 _LEVELS: TypeAdapter[dict[str, dict[str, float | str]]] = TypeAdapter(dict[str, dict[str, _DAMPING]])  # type: ignore[valid-type]
@@ -204,7 +215,11 @@ class AssessConfig(Config):
     seed
         Seed of the small variations.
     sliding
-        Whether to run the model `sliding` too, for columns that slide before they rock.
+        Whether to compute the slip of columns that slide before they rock.
+    limit_states
+        Limits of the displacement: a list of tables as below, or one for each column by its name.
+    friction_dispersion
+        Standard deviation of the logarithm of the friction coefficient among the small variations of slip.
     planar
         Whether to run Housner's planar model too.
     contact
@@ -255,6 +270,10 @@ class AssessConfig(Config):
     variations: int = 200
     seed: int = 0
     sliding: bool = False
+    limit_states: Annotated[
+        tuple[LimitStateConfig, ...] | dict[str, tuple[LimitStateConfig, ...]], BeforeValidator(_as_limit_states)
+    ] = ()
+    friction_dispersion: float = 0.1
     planar: bool = True
     contact: bool = True
     least_records: int = FEW_RECORDS
@@ -325,9 +344,10 @@ class AssessConfig(Config):
         problems += self._problems_of_the_remarks(records)
         details = self._details(problems)
         hazard = None if self.hazard is None else built("hazard", partial(hazard_as_stated, self.hazard), problems)
+        limits = self._limit_states(problems)
         if problems:
             raise ConfigError(problems)
-        options = {"details": details, "hazard": hazard} | {
+        options = {"details": details, "hazard": hazard, "limit_states": limits} | {
             name: getattr(self, name) for name in (*_PASSED, *self._of_runs())
         }
         options["notes"] = (
@@ -352,6 +372,18 @@ class AssessConfig(Config):
         except (ParameterError, FileError) as error:
             problems.append(str(error))
             return None
+
+    def _limit_states(self, problems: list[str]) -> LimitStates:
+        """Build the limit states of all columns, or of each."""
+        given = self.limit_states
+        if not isinstance(given, dict):
+            return built_limit_states("limit_states", given, problems)
+        problems += [
+            f"limit_states: {name!r} is no column; {did_you_mean(name, self.columns) or 'leave it out'}"
+            for name in given
+            if name not in self.columns
+        ]
+        return {name: built_limit_states(f"limit_states.{name}", one, problems) for name, one in given.items()}
 
     def _problems_of_the_remarks(self, records: Mapping[str, Record]) -> list[str]:
         return [
@@ -389,6 +421,7 @@ class AssessConfig(Config):
             lambda: require_variations(self.variations),
             lambda: require_whole("seed", self.seed, least=0, most=LARGEST_SEED),
             lambda: require_not_negative("tail", self.tail or 0.0, "s"),
+            lambda: require_not_negative("friction_dispersion", self.friction_dispersion),
             lambda: require_positive("years", self.years, "a"),
             lambda: require_positive("target_rate", 1.0 if self.target_rate is None else self.target_rate, "1/a"),
             *(partial(require_positive, "scales", scale) for scale in self.scales),
@@ -453,5 +486,15 @@ _PLACEHOLDERS: dict[str, Any] = {
 
 _PASSED = (
     *("title", "dissipation", "friction_coefficient", "scales", "width", "tail", "planar", "contact"),
-    *("sliding", "contact_laws", "variations", "seed", "least_records", "notes", "years", "target_rate"),
+    *(
+        "sliding",
+        "friction_dispersion",
+        "contact_laws",
+        "variations",
+        "seed",
+        "least_records",
+        "notes",
+        "years",
+        "target_rate",
+    ),
 )

@@ -13,7 +13,9 @@ from stylobate.config.description import Config, Radians, Seconds, built
 from stylobate.config.record_collection import RecordsConfig
 from stylobate.config.simulation import ManyRuns
 from stylobate.earthquakes.config.hazard import Hazard, HazardPoints
+from stylobate.earthquakes.config.limit_states import LimitStateConfig, built_limit_states
 from stylobate.earthquakes.config.verdict import AnySpread
+from stylobate.earthquakes.fragility.displacement_limits import LimitState
 from stylobate.errors import (
     LARGEST_SEED,
     ConfigError,
@@ -81,6 +83,9 @@ class Fragility(Config):
         Confidence level of intervals.
     resamples
         Number of bootstrap resamples of the records; 0 for profile likelihood.
+    limit_states
+        Limits of the displacement: a list of tables as below. With the model `sliding` the column slides before it
+        rocks, and its slip is computed in place of runs that rock. Other models have limits of "neighbours" only.
     hazard
         Hazard curve of the site: a table as below.
     years
@@ -101,6 +106,7 @@ class Fragility(Config):
     counting: Literal["as computed", "first"] = "as computed"
     confidence: float = 0.95
     resamples: int = 1000
+    limit_states: tuple[LimitStateConfig, ...] = ()
     hazard: Hazard | None = None
     years: float = 50.0
     target_rate: float | None = None
@@ -124,6 +130,8 @@ class FragilitySetup:
         Points of the hazard curve, or None.
     options
         Arguments that all runs share.
+    limit_states
+        Limit states of displacement.
     """
 
     model: Model
@@ -132,6 +140,7 @@ class FragilitySetup:
     scales: tuple[float, ...]
     hazard: HazardPoints | None
     options: dict[str, Any]
+    limit_states: tuple[LimitState, ...] = ()
 
 
 class FragilityConfig(ManyRuns):
@@ -165,11 +174,12 @@ class FragilityConfig(ManyRuns):
         table, problems = self.fragility, self._problems()
         scales = built("fragility.scales", table.scales.build, problems)
         hazard = None if table.hazard is None else _points(table.hazard, problems)
+        limits = built_limit_states("fragility.limit_states", table.limit_states, problems)
         records = self._records(problems) if read else {}
         model, _, options = self.common(problems, ("duration",))
         given = {name: one for name, one in options.items() if one is not None}
         assert scales is not None
-        return FragilitySetup(model, records, table, tuple(scales.tolist()), hazard, given)
+        return FragilitySetup(model, records, table, tuple(scales.tolist()), hazard, given, limits)
 
     def _records(self, problems: list[str]) -> dict[str, Record]:
         try:

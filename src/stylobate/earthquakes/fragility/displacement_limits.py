@@ -1,8 +1,9 @@
 """Limit states of displacement: slip, residual position, free distance to neighbours and to the edge of a plinth."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from enum import Enum
+from typing import TypeAlias
 
 import numpy as np
 import xarray as xr
@@ -138,6 +139,10 @@ class LimitState:
                 f"height: missing in the limit state {self.name!r}, and the column has none. State it, such as 2.0."
             )
         return column.height
+
+
+LimitStates: TypeAlias = Sequence[LimitState] | Mapping[str, Sequence[LimitState]]
+"""Limit states of all columns, or of each by its name."""
 
 
 def checked_limit_states(given: Iterable[LimitState], where: str = "limit_states") -> tuple[LimitState, ...]:

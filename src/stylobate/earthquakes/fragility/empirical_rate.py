@@ -161,7 +161,7 @@ def compared_with_target(rate: float, low: float, high: float, target: float) ->
     Parameters
     ----------
     rate, low, high
-        Annual rate with its interval [1/a]; NaN for an interval that is not known.
+        Annual rate with its interval [1/a]; NaN for a rate or an interval that is not known.
     target
         Annual rate that is accepted [1/a].
 
@@ -171,6 +171,8 @@ def compared_with_target(rate: float, low: float, high: float, target: float) ->
     'below the target of 1.0e-04 per year'
     """
     stated = f"the target of {target:.1e} per year"
+    if math.isnan(rate):
+        return "not known: no run of it is decided"
     if not math.isfinite(low):
         return f"{'below' if rate < target else 'above'} {stated}, without an interval"
     if low <= target <= high:
