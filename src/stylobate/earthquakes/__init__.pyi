@@ -31,6 +31,7 @@ from .property_spreads import (
     property_samples,
 )
 from .record_selection import select_records
+from .slip_paths import slip_paths
 from .slip_study import slip_analysis
 from .spectrum_study import overturning_intervals, rocking_spectrum
 from .verdict_study import repeat_verdict, verdict
@@ -82,5 +83,6 @@ __all__ = [
     "scores",
     "select_records",
     "slip_analysis",
+    "slip_paths",
     "verdict",
 ]

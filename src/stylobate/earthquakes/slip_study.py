@@ -3,12 +3,13 @@
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from stylobate.base_motions import BaseMotion, OneOf
+from stylobate.base_motions import BaseMotion, OneOf, Record
 from stylobate.earthquakes.fragility.displacement_limits import LimitState, checked_limit_states
 from stylobate.earthquakes.fragility.observations import LIMIT_STATE, NOT_KNOWN
 from stylobate.earthquakes.incremental import Plan, without_vertical
@@ -69,7 +70,8 @@ def slip_analysis(
         Of kind "slip analysis". Over `record`, `vertical`, `property_sample` and `scale`: `peak_slip`, the largest
         distance from the start [m]; `residual_slip`, `residual_x` and `residual_y`, distance and position at the end
         [m]; `slip_path`, the length of the path [m]; `time_sliding` [s]; `outcome`, AT_REST, or −1 for a run that the
-        block does not describe; `intensity`; over `limit_state` too `reached`: 1 reached, 0 not, −1 not known.
+        block does not describe; `intensity`; over `limit_state` too `reached`: 1 reached, 0 not, −1 not known; over
+        `limit_state` only the coordinates `limit` [m] and `response`.
 
         The block does not describe a run in which the base falls faster than g, so that the column lifts off, or whose
         friction coefficient is r/h or more, so that it rocks first. Its numbers are NaN.
@@ -97,7 +99,7 @@ def slip_analysis(
     >>> (1000.0 * found["peak_slip"]).round(1).values.tolist(), found["reached"].values.tolist()
     ([0.0, 109.9, 522.7], [[0, 1, 1]])
     """
-    _check_model(model)
+    checked_sliding(model)
     limits = checked_limit_states(limit_states)
     plan = Plan.of(model, records, scales, 0.0, vertical, parameters, 0.0, IntensityMeasure.named(intensity, component))
     _require_slip_first(plan)
@@ -149,10 +151,28 @@ class Lanes:
         return slip_under(motion, self.friction, self.scale, self.gravity)
 
 
-def slip_under(motion: BaseMotion, friction: npt.ArrayLike, scale: npt.ArrayLike, gravity: float) -> BlockSlip:
+def slip_under(
+    motion: BaseMotion, friction: npt.ArrayLike, scale: npt.ArrayLike, gravity: float, *, traced: bool = False
+) -> BlockSlip:
     """Compute the slip of blocks with these frictions under a base motion that ends, at these scales."""
-    record = record_of(motion, _PER_PERIOD)
-    return block_slip(record, friction_coefficient=friction, horizontal=scale, vertical=scale, gravity=gravity)
+    record = sampled_finely(motion)
+    return block_slip(
+        record, friction_coefficient=friction, horizontal=scale, vertical=scale, gravity=gravity, traced=traced
+    )
+
+
+def sampled_finely(motion: BaseMotion) -> Record:
+    """Return a base motion that ends as a record: itself, or sampled 400 times per period."""
+    return record_of(motion, _PER_PERIOD)
+
+
+def limit_coordinates(limits: Sequence[LimitState]) -> dict[str, Any]:
+    """Return the coordinates of limit states: `limit` [m] and `response`, over `limit_state`."""
+    return {
+        LIMIT_STATE: np.array([one.name for one in limits], dtype=str),
+        "limit": (LIMIT_STATE, np.array([one.limit for one in limits]), {"units": "m", "long_name": "limit"}),
+        "response": (LIMIT_STATE, np.array([one.kind.value for one in limits], dtype=str)),
+    }
 
 
 def slides_first(model: Sliding) -> bool:
@@ -160,7 +180,14 @@ def slides_first(model: Sliding) -> bool:
     return bool(model.friction_coefficient < model.column.slenderness)
 
 
-def _check_model(model: object) -> None:
+def checked_sliding(model: object) -> None:
+    """Check a model for the slip of a block: `Sliding`, level, with one positive friction coefficient.
+
+    Raises
+    ------
+    ParameterError
+        If the model is another one.
+    """
     if not isinstance(model, Sliding):
         raise ParameterError(f"model: must be Sliding (got {model!r}). Pass Sliding(column, friction_coefficient=…).")
     static = model.static_friction_coefficient
@@ -262,7 +289,7 @@ def _labelled(
         reached=reached_by_slip(runs, limits),
         intensity=plan.levels,
         computed=((), int(described.sum()), {"units": "1", "long_name": "runs computed"}),
-    ).assign_coords(coordinates)
+    ).assign_coords(coordinates | limit_coordinates(limits))
     lone = {name: 0 for name in plan.left_out if name != "rotation"}
     kept = labelled.isel(lone).drop_vars("property_sample" if "property_sample" in plan.left_out else [])
     motion = OneOf(motions=tuple(plan.records.values()))

@@ -34,6 +34,7 @@ from stylobate.earthquakes.assessment.sliding import (
     sliding_runs,
     slip_margin_runs,
     slip_margins_of,
+    slip_paths_of,
     states_with_slip,
 )
 from stylobate.earthquakes.assessment.verdicts import (
@@ -172,8 +173,8 @@ def assess(
         Its data: "columns" and "records", their properties; "verdicts" over column, record, dissipation, vertical and
         scale: `overturned` (1, 0, −1 not decided), `outcome`, `tilt_ratio`, contact demand; "margins" over
         column, case, record and interval; "variations" over column, record and scale; "sliding" over
-        column, record and scale, and "slip_margins" over column, record and scale of the scan; "planar"; "fragility"
-        over column if there are enough records; "rates" over column with a hazard curve; "histories" over
+        column, record and scale, "slip_margins" over column, record and scale of the scan, and "slip_paths"; "planar";
+        "fragility" over column if there are enough records; "rates" over column with a hazard curve; "histories" over
         column and run, under the governing record of each column; "summary", counts;
         "practice" over column, record, scale and rule, the answers of `stylobate.practice.rules_of_practice`;
         "spectra" over record and period, "ground_motions" over record and instant, for the figures of the report.
@@ -255,6 +256,7 @@ def assess(
         slips = [slip_margins_of(inputs, name, parts) for name in names]
         data["sliding"] = _over_columns([sliding_of(inputs, name, parts) for name in names], names)
         data["slip_margins"] = _over_columns(slips, names)
+        data["slip_paths"] = slip_paths_of(inputs, names)
         states = [states_with_slip(inputs, *one) for one in zip(names, states, slips, strict=True)]
     if planar:
         data["planar"] = _over_columns([planar_of(inputs, name, parts, executor=executor) for name in names], names)

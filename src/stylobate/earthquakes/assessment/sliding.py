@@ -11,6 +11,7 @@ from stylobate.earthquakes.assessment.inputs import CENTRAL, Inputs, Parts
 from stylobate.earthquakes.fragility.displacement_limits import LimitState
 from stylobate.earthquakes.fragility.observations import LIMIT_STATE, NOT_KNOWN
 from stylobate.earthquakes.property_spreads import VARIATIONS, LognormalSpread, shares_of
+from stylobate.earthquakes.slip_paths import slip_paths
 from stylobate.earthquakes.slip_study import attributes_of_slip, reached_by_slip, slip_numbers, slip_under
 from stylobate.earthquakes.study_inputs import tail_of
 from stylobate.engine import simulate
@@ -334,6 +335,35 @@ def _end_of(inputs: Inputs, column: str, record: str, limit: LimitState, first: 
         place = max(int(hits[0]), 1) if hits.size else _BETWEEN - 1
         low, high = float(between[place - 1]), float(between[place])
     return high
+
+
+def slip_paths_of(inputs: Inputs, columns: Sequence[str]) -> xr.Dataset:
+    """Compute the paths in plan of columns that slide before they rock, at the stated scale nearest to 1.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over `column`, `record` and `sample`: `time` [s], `slip_x` and `slip_y` [m], as from `slip_paths`; NaN for a
+        column that rocks before it slides. Over `column` only `scale`.
+    """
+    scale = float(inputs.scales[inputs.as_recorded])
+    blank = np.full((len(inputs.records), 1), np.nan)
+    nothing = xr.Dataset(
+        dict.fromkeys(("time", "slip_x", "slip_y"), (("record", "sample"), blank)),
+        coords={"record": list(inputs.records)},
+    )
+    paths = [
+        slip_paths(
+            sliding_model(inputs.columns[name][CENTRAL], inputs.friction[name]), dict(inputs.records), scale=scale
+        ).drop_vars([LIMIT_STATE, "limit", "response"])
+        if name in inputs.sliding_first
+        else nothing
+        for name in columns
+    ]
+    longest = max(one.sizes["sample"] for one in paths)
+    padded = [one.pad(sample=(0, longest - one.sizes["sample"]), constant_values=np.nan) for one in paths]
+    joined: xr.Dataset = xr.concat(padded, dim=xr.Variable("column", list(columns)), combine_attrs="drop_conflicts")
+    return joined.assign(scale=("column", np.full(len(columns), scale), {"units": "1", "long_name": "scale"}))
 
 
 def states_with_slip(inputs: Inputs, column: str, reached: xr.DataArray, slip: xr.Dataset | None) -> xr.DataArray:
