@@ -24,6 +24,11 @@ LOOKS: dict[str, tuple[str, Any]] = {
 }
 STONE = sb.Column.solid(radius=0.35, height=5.2, density=2700.0)
 PIN = sb.Sliding(sb.Column.solid(radius=0.03, height=0.2, density=884.0), friction_coefficient=0.25)
+STOUT = sb.Column.solid(radius=0.5, height=3.0, density=2700.0)
+LIMITS = [
+    sb.earthquakes.LimitState(response="slip", limit=0.05),
+    sb.earthquakes.LimitState(response="edge", limit=0.15),
+]
 SLENDER = sb.Slender(sb.Column.dimensionless(slenderness=0.1), damping=0.1)
 WOBBLING = sb.Wobbling(STONE, damping=0.05)
 CIRCLE = sb.Harmonic.circular(acceleration=0.065, angular_frequency=1.8)
@@ -143,6 +148,12 @@ RESULTS: dict[str, Callable[[], Any]] = {
         STONE, sb.Harmonic.circular(acceleration=1.0, angular_frequency=3.0), tilt=(0.03, 0.0), duration=8.0
     ),
     "incremental dynamic analysis": incremental,
+    "slip analysis": lambda: sb.earthquakes.slip_analysis(
+        sb.Sliding(STOUT, friction_coefficient=0.12), quakes(), scales=np.geomspace(0.1, 1.0, 25), limit_states=LIMITS
+    ),
+    "slip paths": lambda: sb.earthquakes.slip_paths(
+        sb.Sliding(STOUT, friction_coefficient=0.12), quakes(), scale=0.4, limit_states=LIMITS
+    ),
     "fragility": lambda: sb.earthquakes.fragility_of_runs(incremental()),
     "annual rate": lambda: sb.earthquakes.annual_rate(
         sb.earthquakes.lognormal_fragility(3.0, 0.4),

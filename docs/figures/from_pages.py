@@ -19,6 +19,7 @@ PAGES = (
     "how-to/fragility",
     "how-to/inventory",
     "how-to/kitchen-experiments",
+    "how-to/sliding-limits",
 )
 _BLOCK = re.compile(
     r"(% skip: next\n\n)?^```python\n(.*?)^```$", re.DOTALL | re.MULTILINE
