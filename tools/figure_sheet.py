@@ -149,10 +149,10 @@ RESULTS: dict[str, Callable[[], Any]] = {
     ),
     "incremental dynamic analysis": incremental,
     "slip analysis": lambda: sb.earthquakes.slip_analysis(
-        sb.Sliding(STOUT, friction_coefficient=0.12), quakes(), scales=np.geomspace(0.1, 1.0, 25), limit_states=LIMITS
+        sb.Sliding(STOUT, friction_coefficient=0.12), quakes(), scales=np.geomspace(0.8, 8.0, 25), limit_states=LIMITS
     ),
     "slip paths": lambda: sb.earthquakes.slip_paths(
-        sb.Sliding(STOUT, friction_coefficient=0.12), quakes(), scale=0.4, limit_states=LIMITS
+        sb.Sliding(STOUT, friction_coefficient=0.12), quakes(), scale=3.0, limit_states=LIMITS
     ),
     "fragility": lambda: sb.earthquakes.fragility_of_runs(incremental()),
     "annual rate": lambda: sb.earthquakes.annual_rate(

@@ -9,7 +9,13 @@ import xarray as xr
 
 from stylobate.base_motions import OneOf
 from stylobate.earthquakes.fragility.displacement_limits import LimitState, checked_limit_states
-from stylobate.earthquakes.slip_study import checked_sliding, limit_coordinates, sampled_finely, slip_under
+from stylobate.earthquakes.slip_study import (
+    checked_sliding,
+    limit_coordinates,
+    require_slip_first,
+    sampled_finely,
+    slip_under,
+)
 from stylobate.earthquakes.study_inputs import Records, named_records
 from stylobate.errors import require_positive
 from stylobate.models import Sliding
@@ -36,8 +42,8 @@ def slip_paths(
     -------
     xarray.Dataset
         Of kind "slip paths". Over `record` and `sample`: `time` [s] and the position `slip_x`, `slip_y` relative to the
-        base [m], at most 1000 points and the end; NaN beyond the end of a record, and for a record under which the
-        column is not a sliding block, see `slip_analysis`. Over `limit_state`: `limit` [m] and `response`.
+        base [m] while the column slips, at most 1000 points, and last the residual position. NaN beyond, and for a
+        record under which the base falls faster than g. Over `limit_state`: `limit` [m] and `response`.
 
     Raises
     ------
@@ -53,7 +59,7 @@ def slip_paths(
     >>> round(1000.0 * float(abs(found["slip_x"]).max()), 1)
     109.9
     """
-    checked_sliding(model)
+    require_slip_first([checked_sliding(model)])
     limits = checked_limit_states(limit_states)
     named, factor = named_records(records), require_positive("scale", scale)
     friction, gravity = float(model.friction_coefficient), model.column.gravity
@@ -82,9 +88,12 @@ def slip_paths(
 
 
 def _thinned(times: Floats, path: Floats, residual: Floats, *, flies: bool) -> Floats:
-    """Return rows of time and position, at most `_POINTS` and the end; the time of the rest after it is not known."""
+    """Return rows of time and position while the column slips, at most `_POINTS`, and the end of the record."""
     if flies:
         return np.full((1, 3), np.nan)
-    every = max(1, math.ceil(len(path) / _POINTS))
-    rows = np.column_stack([times, path])[::every]
+    moved = np.any(np.diff(path, axis=0) != 0.0, axis=1)
+    kept = np.append(moved, False) | np.append(False, moved)  # both ends of each step with slip
+    kept[0] = True
+    rows = np.column_stack([times, path])[kept]
+    rows = rows[:: max(1, math.ceil(len(rows) / _POINTS))]
     return np.vstack([rows, [times[-1], *residual]])

@@ -102,7 +102,7 @@ def slip_analysis(
     checked_sliding(model)
     limits = checked_limit_states(limit_states)
     plan = Plan.of(model, records, scales, 0.0, vertical, parameters, 0.0, IntensityMeasure.named(intensity, component))
-    _require_slip_first(plan)
+    require_slip_first([checked_sliding(one) for one in plan.sampled])
     report, lanes = report_of(progress), Lanes.of(plan)
     motions = [one if acts else without_vertical(one) for one in plan.records.values() for acts in plan.vertical]
     found = []
@@ -135,7 +135,7 @@ class Lanes:
     @classmethod
     def of(cls, plan: Plan) -> "Lanes":
         """Return the runs of a plan."""
-        models = [one for one in plan.sampled if isinstance(one, Sliding)]
+        models = [checked_sliding(one) for one in plan.sampled]
         friction = np.array([float(one.friction_coefficient) for one in models])
         first = np.array([slides_first(one) for one in models])
         count = plan.scales.size
@@ -180,8 +180,8 @@ def slides_first(model: Sliding) -> bool:
     return bool(model.friction_coefficient < model.column.slenderness)
 
 
-def checked_sliding(model: object) -> None:
-    """Check a model for the slip of a block: `Sliding`, level, with one positive friction coefficient.
+def checked_sliding(model: object) -> Sliding:
+    """Return a model that slides as a block: `Sliding`, level, with one positive friction coefficient.
 
     Raises
     ------
@@ -204,11 +204,11 @@ def checked_sliding(model: object) -> None:
         raise ParameterError(
             f"friction_coefficient: must be positive (got {model.friction_coefficient!r}). State it, such as 0.15."
         )
+    return model
 
 
-def _require_slip_first(plan: Plan) -> None:
-    """Raise ParameterError if no property sample slides before it rocks."""
-    models = [one for one in plan.sampled if isinstance(one, Sliding)]
+def require_slip_first(models: Sequence[Sliding]) -> None:
+    """Raise ParameterError if none of the models slides before it rocks."""
     if any(map(slides_first, models)):
         return
     slenderness = f"{models[0].column.slenderness:.4g}"

@@ -131,13 +131,13 @@ def _slip_at(inputs: Inputs, column: str, record: str, scale: float) -> xr.Datas
         "residual_y": x * np.sin(rotation) + y * np.cos(rotation),
         **{name: numbers[name][1:] for name in ("peak_slip", "residual_slip")},
     }
+    stretched = {
+        _varied(name): np.where(known, values * varied["clock"] ** 2, np.nan) for name, values in turned.items()
+    }
     return xr.Dataset(
         {
             **{name: stated[name] for name in _RUN},
-            **{
-                _varied(name): ("variation", np.where(known, values * varied["clock"] ** 2, np.nan))
-                for name, values in turned.items()
-            },
+            **{name: ("variation", values if values.size else [np.nan]) for name, values in stretched.items()},
         }
     )
 

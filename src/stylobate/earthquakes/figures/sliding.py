@@ -51,8 +51,8 @@ def plot_slip(found: xr.Dataset) -> Figure:
     _draw_slips(axes, slip, level)
     _draw_limits(axes, found)
     axes.set_xlabel(axis_label(found["intensity"]))
-    friction = "" if "friction_coefficient" not in found.coords else ", of all property samples"
-    axes.set_title(f"slip of {plural(_records(slip), 'record')}{friction}")
+    samples = ", of all property samples" if "property_sample" in found.dims else ""
+    axes.set_title(f"slip under {plural(_records(slip), 'record')}{samples}")
     figure.legend(loc="outside right upper")
     return figure
 
@@ -96,8 +96,8 @@ def plot_slip_paths(found: xr.Dataset) -> Figure:
             continue
         farthest = max(farthest, float(np.hypot(x[known], y[known]).max()))
         colour = _colour(place, len(names))
-        label = {"label": literal(name)} if len(names) <= _NAMED else {}
-        axes.plot(x[known], y[known], color=colour, linewidth=1.1, **label)
+        label = literal(name) if len(names) <= _NAMED else None
+        axes.plot(x[known], y[known], color=colour, linewidth=1.1, label=label)
         axes.plot(x[known][-1], y[known][-1], "o", color=colour, markersize=4.0)
     axes.plot(0.0, 0.0, "+", color=BLACK, markersize=9.0, label="start")
     axes.plot([], [], "o", color=GREY, markersize=4.0, linestyle="none", label="end")
@@ -109,7 +109,7 @@ def plot_slip_paths(found: xr.Dataset) -> Figure:
     reach = _AROUND * (farthest or _SMALLEST)
     axes.set(xlim=(-reach, reach), ylim=(-reach, reach), aspect="equal")
     axes.set(xlabel="slip along x [mm]", ylabel="slip along y [mm]")
-    axes.set_title(f"path of the base in plan, {float(found.attrs.get('scale', 1.0)):g} times the record")
+    axes.set_title(f"path of the base in plan, scale {float(found.attrs.get('scale', 1.0)):g}")
     figure.legend(loc="outside right upper")
     return figure
 
@@ -128,8 +128,8 @@ def _draw_slips(axes: Axes, slip: xr.DataArray, level: xr.DataArray | None) -> N
     for place, name in enumerate(names):
         colour = _colour(place, len(names))
         for series, (x, y) in enumerate(zip(levels[place], values[place], strict=True)):
-            label = {"label": literal(name)} if series == 0 and len(names) <= _NAMED else {}
-            axes.plot(x, np.where(y >= _SMALLEST, y, np.nan), color=colour, linewidth=1.2, **label)
+            label = literal(name) if series == 0 and len(names) <= _NAMED else None
+            axes.plot(x, np.where(y >= _SMALLEST, y, np.nan), color=colour, linewidth=1.2, label=label)
     if len(names) > _NAMED:
         axes.plot([], [], color=GREY, linewidth=1.2, label=plural(len(names), "record"))
     axes.set(xscale="log", yscale="log", ylabel="largest distance from the start [mm]")

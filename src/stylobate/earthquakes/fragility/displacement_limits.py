@@ -32,8 +32,8 @@ class Response(Enum):
             return value
         names = [one.value for one in cls]
         if value not in names:
-            remedy = did_you_mean(str(value), names) or f"Use one of {', '.join(names)}"
-            raise ParameterError(f"response: unknown (got {value!r}). {remedy[0].upper()}{remedy[1:]}.")
+            remedy = did_you_mean(str(value), names) or f"use one of {', '.join(names)}."
+            raise ParameterError(f"response: unknown (got {value!r}). {remedy[0].upper()}{remedy[1:]}")
         return cls(value)
 
 

@@ -63,7 +63,8 @@ def limit_table(assessment: Assessment) -> PageTable:
         *("column", "record", "limit state", "scale", "state", "share of small variations"),
         *("smallest scale that reaches it", "a larger scale does not"),
     )
-    known, rows = sliding_columns(assessment), []
+    known = sliding_columns(assessment)
+    rows: list[tuple[str, ...]] = []
     if "limit_state" not in assessment.data.get("sliding", xr.Dataset()).dims:
         return PageTable(header, rows)
     for where, one in cells_of(assessment, "sliding", "column", "record", "limit_state", "scale"):
