@@ -226,6 +226,13 @@ def test_a_geopackage_carries_its_geometry_through(tmp_path):
     export_inventory(found, tmp_path / "ranking.gpkg")
     meta, _, geometry, columns = raw.read(tmp_path / "ranking.gpkg")
     assert meta["crs"] == "EPSG:4326"
+    own = dict(zip(meta["fields"], columns, strict=True))
+    assert own["tilt median"].dtype == np.float64
+    assert (
+        own["probability of overturning"].tolist()
+        == found["probability"].sel(limit_state="overturning", scale=1.0).to_numpy().tolist()
+    )
+    assert set(own["room"]) == {"12", "7"}
     by_name = dict(zip(columns[list(meta["fields"]).index("name")], geometry, strict=True))
     assert by_name == {"amphora": points[0], "jug": points[1]}
 

@@ -250,7 +250,7 @@ def _weights(rates: Floats, of_record: Integers) -> Floats:
     each = np.array([np.bincount(of_record, weights=one)[of_record] for one in known])  # known series of its record
     share = np.divide(known, each, out=np.zeros(rates.shape), where=known)
     records = share.sum(axis=1, keepdims=True)
-    return np.divide(share, records, out=np.zeros(rates.shape), where=records > 0.0)
+    return np.asarray(np.divide(share, records, out=np.zeros(rates.shape), where=records > 0.0))
 
 
 def _rate_below(runs: _Stretches, weights: Floats, hazard: HazardCurve, edges: Floats) -> Floats:

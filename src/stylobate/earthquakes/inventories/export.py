@@ -2,7 +2,7 @@
 
 import json
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
@@ -22,6 +22,7 @@ ENDINGS = (".csv", ".xlsx", ".gpkg")
 """Endings of the files of a ranking."""
 
 _SHOWN = 20
+_OVERTURNED = "overturned"
 _ENDS = ("", "_low", "_high", "_least", "_most")
 _SHARES = ("sliding_share", "undecided_share", "slip_share")
 _OF_SCALE = ("tilt_median", "tilt_84", "friction_demand_median", "friction_demand_84", *_SHARES)
@@ -142,7 +143,7 @@ def _cell(value: Any) -> Any:
     """Return a number as a cell: nothing for NaN, a word for infinity."""
     if isinstance(value, float) and math.isnan(value):
         return ""
-    return "overturned" if value == math.inf else value
+    return _OVERTURNED if value == math.inf else value
 
 
 def notes_of(found: xr.Dataset) -> list[str]:
@@ -192,16 +193,12 @@ def _write_geopackage(found: xr.Dataset, target: Path, header: list[str], rows: 
 
 
 def _field(values: Iterable[Any]) -> Any:
-    """Return a field of a GeoPackage: numbers, with NaN for empty cells, or words."""
-    cells = list(values)
-    if all(isinstance(one, (int, float)) for one in cells):
-        return np.array(cells)
-    if all(isinstance(one, (int, float)) or one in ("", "overturned") for one in cells) and any(
-        isinstance(one, (int, float)) for one in cells
-    ):
-        special: Mapping[str, float] = {"": math.nan, "overturned": math.inf}
-        return np.array([special[one] if isinstance(one, str) else float(one) for one in cells])
-    return np.array([str(one) for one in cells], dtype=object)
+    """Return a field of a GeoPackage: numbers, NaN for empty cells and infinite for overturned, or words."""
+    cells, special = list(values), {"": math.nan, _OVERTURNED: math.inf}
+    numbers = [special.get(one) if isinstance(one, str) else one for one in cells]
+    if None in numbers or not any(one != "" for one in cells):
+        return np.array([str(one) for one in cells], dtype=object)
+    return np.array(numbers)
 
 
 def table_of_ranking(found: xr.Dataset) -> ResultTable:
@@ -243,7 +240,7 @@ def _line(one: xr.Dataset, note: str, *, by_rate: bool) -> list[str]:
     cells += [f"{probability:.3g}" if math.isfinite(probability) else "withheld", f"{low:.2g} to {high:.2g}"]
     for name in ("tilt_median", "tilt_84"):
         tilt = float(one[name])
-        cells.append("overturned" if math.isinf(tilt) else "" if math.isnan(tilt) else f"{tilt:.2g}")
+        cells.append(_OVERTURNED if math.isinf(tilt) else "" if math.isnan(tilt) else f"{tilt:.2g}")
     return [*cells, note]
 
 

@@ -6,12 +6,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from stylobate.earthquakes.assessment.report.column_verdict import column_verdict, least_overturning_scale
-from stylobate.earthquakes.assessment.report.wording import CENTRAL, OVERTURNING, labels
+from stylobate.earthquakes.assessment.report.sliding_tables import sliding_columns, stated_limits
+from stylobate.earthquakes.assessment.report.wording import CENTRAL, OVERTURNING, labels, number
 from stylobate.earthquakes.fragility.empirical_rate import compared_with_target
 from stylobate.plots.page import PageTable
 from stylobate.results.assessment import Assessment
-from stylobate.results.verdict import interval_text, percent
-from stylobate.studies.proportions import Floats, fraction_interval
+from stylobate.results.verdict import percent
+from stylobate.studies.proportions import Floats, clustered_interval
 from stylobate.text import plural
 
 CONFIDENCE = 0.95
@@ -40,31 +41,27 @@ class Probability:
 
     def __str__(self) -> str:
         """Return the probability with its interval."""
-        interval = interval_text(self.low, self.high)
-        return f"not known ({interval})" if math.isnan(self.share) else f"{percent(self.share)} ({interval})"
+        return _stated(self.share, self.low, self.high)
 
 
-def probability_over_records(overturned: Floats, undecided: Floats) -> tuple[float, float, float]:
-    """Estimate a probability of overturning from the shares of runs under each record.
-
-    The runs under one record are not independent: each record counts as one trial, whose result is the share of its
-    runs. A share varies over the records at most as much as a trial with outcome 0 or 1 of the same mean does.
-    Therefore Wilson's interval of as many trials as there are records is, up to its approximation, at least as wide as
-    it must be.
+def probability_over_records(reached: Floats, undecided: Floats) -> tuple[float, float, float]:
+    """Estimate a probability from the shares of runs under each record, with its `clustered_interval`.
 
     Parameters
     ----------
-    overturned, undecided
-        Shares of the runs under each record that overturned the column, and that were not decided.
+    reached, undecided
+        Shares of the runs under each record that overturned the column, or reached another limit state, and of those
+        that were not decided.
 
     Returns
     -------
     tuple
         Estimate, lower end and upper end; the estimate is NaN if no run was decided.
     """
-    low, high = fraction_interval(overturned.sum(), undecided.sum(), overturned.size, confidence=CONFIDENCE)
+    low, _ = clustered_interval(reached, confidence=CONFIDENCE)
+    _, high = clustered_interval(reached + undecided, confidence=CONFIDENCE)
     decided = undecided < 1.0
-    known = overturned[decided] / (1.0 - undecided[decided])
+    known = reached[decided] / (1.0 - undecided[decided])
     return float(known.mean()) if known.size else math.nan, float(low), float(high)
 
 
@@ -100,11 +97,32 @@ def answer_table(assessment: Assessment, scale: float) -> PageTable:
         row = [name, found.verdict.value]
         if found.describes:
             row += [str(overturning_probability(assessment, name, scale)), _least_words(assessment, name)]
+            row += [_rate_words(assessment, name)] if rated else []
         else:
-            row += ["–", "–"]
-        row += [_rate_words(assessment, name) if found.describes else "–"] if rated else []
+            slip = name in sliding_columns(assessment)
+            row += [_slip_words(assessment, name, scale) if slip else "–", "–", *(["–"] if rated else [])]
         rows.append(row)
     return PageTable(header, rows)
+
+
+def _slip_words(assessment: Assessment, name: str, scale: float) -> str:
+    """State the slip of a column that slides before it rocks, and the probability of each of its limit states."""
+    own = assessment.data["sliding"].sel(column=name, scale=scale)
+    low, high = (number(1000.0 * float(own[f"all_peak_slip_{end}"])) for end in ("low", "high"))
+    phrases = [f"slips {low} to {high} mm (90 % of runs)"]
+    for state in stated_limits(assessment, name):
+        one = own.sel(limit_state=state)
+        single, varied = (one["reached"] == 1).to_numpy(), one["reached_share"].to_numpy()
+        shares = np.where(np.isnan(varied), single, varied)
+        unknown = np.where(np.isnan(varied) & (one["reached"] < 0).to_numpy(), 1.0, 0.0)
+        share, least, most = probability_over_records(shares, unknown)
+        phrases.append(f"{state}: {_stated(share, least, most)}")
+    return "; ".join(phrases)
+
+
+def _stated(share: float, low: float, high: float) -> str:
+    interval = f"{percent(low).removesuffix(' %')} to {percent(high)}"
+    return f"not known ({interval})" if math.isnan(share) else f"{percent(share)} ({interval})"
 
 
 def _least_words(assessment: Assessment, name: str) -> str:

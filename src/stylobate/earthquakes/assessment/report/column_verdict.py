@@ -233,6 +233,11 @@ def level_words(scale: float) -> str:
     return "at the recorded level" if scale == 1.0 else f"at {scale:g} times the recorded level"
 
 
+def slides_at(assessment: Assessment, column: str, scale: float) -> bool:
+    """Return whether a column slides before it rocks under some record at a scale: runs without slip do not hold."""
+    return bool((assessment.data["margins"]["standing_slip"].sel(column=column) <= scale).any())
+
+
 def column_verdict(assessment: Assessment, column: str, scale: float) -> ColumnVerdict:
     """Return the verdict on a column at a scale."""
     cases, where = cases_of(assessment, column, scale), level_words(scale)

@@ -36,7 +36,7 @@ body > .wide td:nth-child(-n+2) { font-weight: 600; } ul { padding-left: 1.2rem;
   ul { margin: .4rem 0; padding-left: 1rem; } table { font-size: 7.6pt; line-height: 1.25; }
   th, td { padding: .1rem .3rem; overflow-wrap: break-word; }
   .many table { font-size: 6.8pt; } .wide + .wide { margin-top: .6rem; } figure { margin: .5rem 0; }
-  figure img { width: 100%; max-height: 21cm; object-fit: contain; } figcaption { font-size: 8pt; }
+  figure img { width: 100%; max-height: 10cm; object-fit: contain; } figcaption { font-size: 8pt; }
   section:first-of-type { break-before: BREAK; } }
 """
 

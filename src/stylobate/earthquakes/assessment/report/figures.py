@@ -15,8 +15,9 @@ from matplotlib.ticker import FuncFormatter, NullFormatter
 
 from stylobate.column import STANDARD_GRAVITY
 from stylobate.earthquakes.assessment.inputs import CENTRAL, OTHER_LAW
-from stylobate.earthquakes.assessment.report.column_verdict import rises
+from stylobate.earthquakes.assessment.report.column_verdict import recorded_scale, rises, slides_at
 from stylobate.earthquakes.assessment.report.sketch import OBJECTS, objects_figure
+from stylobate.earthquakes.assessment.report.sliding_tables import slip_pictures
 from stylobate.earthquakes.assessment.report.wording import OVERTURNING, SMALLEST_TILT, labels, number
 from stylobate.earthquakes.figures.fragility import plot_empirical_rate, plot_fragility
 from stylobate.earthquakes.figures.overturning_intervals import UNDECIDED, undecided_label, undecided_reasons
@@ -370,7 +371,8 @@ def _of_rates(assessment: Assessment) -> Pictures:
 def _of_column(assessment: Assessment, column: str, called: str, place: int) -> Pictures:
     """Return the pictures of a `column`, which is `called` otherwise outside figures."""
     found = {}
-    if bool((assessment.data["margins"]["intervals"].sel(column=column) > 0).any()):
+    slides = slides_at(assessment, column, recorded_scale(assessment))
+    if not slides and bool((assessment.data["margins"]["intervals"].sel(column=column) > 0).any()):
         found[f"margins-{place}"] = Picture(
             margins_figure(assessment, column),
             f"{called}: scale factors of each record at which it overturned (hatched) or did not. An interval narrower "
@@ -399,6 +401,7 @@ def _of_column(assessment: Assessment, column: str, called: str, place: int) -> 
                 "interval (bar), and share of the scales within 10 % that do so (marks, one for each case). Between "
                 "the dashed limits the case is undecided.",
             )
+    found |= {f"{name}-{place}": one for name, one in slip_pictures(assessment, column).items()}
     if "fragility" in assessment.data:
         found[f"fragility-{place}"] = Picture(
             plot_fragility(assessment.data["fragility"].sel(column=column)), f"{called}: fragility."

@@ -39,7 +39,8 @@ def verdict_table(assessment: Assessment) -> PageTable:
     for name in labels(assessment.data["columns"], "column"):
         found = column_verdict(assessment, name, recorded_scale(assessment))
         margin = f" {least_overturning_scale(assessment, name)}" if found.describes else ""
-        sentence = f"{found.sentence[0].upper()}{found.sentence[1:]}{margin}{_levels_remark(assessment, name)}"
+        first = found.sentence[0].upper() if found.sentence[0].isascii() else found.sentence[0]
+        sentence = f"{first}{found.sentence[1:]}{margin}{_levels_remark(assessment, name)}"
         rows.append((name, found.verdict.value, sentence))
     return PageTable(("column", "verdict", "in one line"), rows)
 

@@ -33,6 +33,8 @@ def rate_table(assessment: Assessment) -> PageTable:
     rows = []
     for where, one in cells_of(assessment, "rates", "column", "limit_state"):
         rate, low, high = (float(one[name]) for name in ("annual_rate", "rate_low", "rate_high"))
+        if math.isnan(rate):  # runs without slip do not describe it, or it is a limit of another column
+            continue
         fitted = float(one["fitted_rate"]) if "fitted_rate" in one else math.nan
         said = [] if target is None else [_against(where[1], rate, low, high, float(target))]
         written = (f"{value:.2e}" if math.isfinite(value) else "" for value in (rate, low, high, fitted))

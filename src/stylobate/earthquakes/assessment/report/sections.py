@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 from stylobate.earthquakes.assessment.report import shown_tables
 from stylobate.earthquakes.assessment.report.answers import answer_table, answer_text
-from stylobate.earthquakes.assessment.report.column_verdict import level_words, recorded_scale
+from stylobate.earthquakes.assessment.report.column_verdict import level_words, recorded_scale, slides_at
 from stylobate.earthquakes.assessment.report.findings import column_findings
 from stylobate.earthquakes.assessment.report.sketch import OBJECTS
 from stylobate.earthquakes.assessment.report.tables import drifting
@@ -136,6 +136,7 @@ def report_sections(
     columns = labels(assessment.data["columns"], "column")
     more_objects = [picture for picture in drawn("objects") if picture is not pictures.get("objects-1")]
     planar = PLANAR if "planar" in assessment.data else ["No planar calculation was asked for (planar = false)."]
+    slips = shown("slip-summary", "slip-limits", "slip")
     found = [
         PageSection(
             "Objects one by one",
@@ -151,10 +152,17 @@ def report_sections(
                 *drawn("spectra"),
             ],
         ),
-        PageSection("Outcomes at the stated scales", [_outcome_text(assessment), *shown_tables.outcomes(assessment)]),
-        PageSection("Margins", [_margin_text(assessment), shown_tables.margins(assessment), *drawn("margins")]),
+        PageSection(
+            "Outcomes at the stated scales",
+            [f"{_outcome_text(assessment)}{_left_out(assessment)}", *shown_tables.outcomes(assessment)],
+        ),
+        PageSection(
+            "Margins",
+            [f"{_margin_text(assessment)}{_left_out(assessment)}", shown_tables.margins(assessment), *drawn("margins")],
+        ),
         PageSection("Tilt and displacement", [TILT, *shown_tables.tilts(assessment), *planar, *shown("planar-bias")]),
-        PageSection("Contact demand", [_contact_text(assessment), shown_tables.contact(assessment), *shown("sliding")]),
+        PageSection("Contact demand", [_contact_text(assessment), shown_tables.contact(assessment)]),
+        PageSection("Slip", [_slip_text(assessment), *slips, *drawn("slip")] if slips else []),
         PageSection("Damping", [_damping_text(assessment), shown_tables.damping(assessment)]),
         PageSection("Rules of practice", _rules(assessment, tables)),
         PageSection("Fragility", [_fragility_text(assessment), *drawn("fragility"), *shown("fragility")]),
@@ -205,6 +213,15 @@ def _outcome_text(assessment: Assessment) -> str:
     )
 
 
+def _left_out(assessment: Assessment) -> str:
+    """Name the columns that slide before they rock, which runs without slip do not describe; empty if none does."""
+    scale = recorded_scale(assessment)
+    names = [name for name in labels(assessment.data["columns"], "column") if slides_at(assessment, name, scale)]
+    if not names:
+        return ""
+    return f" Left out: {listed(names, 'and')}, which {'slides before it rocks' if len(names) == 1 else 'slide first'}."
+
+
 def _margin_text(assessment: Assessment) -> str:
     low, high, count = assessment.setting["margin_scales"]
     resolution = assessment.setting["resolution"]
@@ -230,6 +247,18 @@ def _contact_text(assessment: Assessment) -> str:
         "column that passes close to the vertical rolls fast round its rim, and the friction that it needs there is "
         "that of a rigid rim in one point, which a real edge does not reach. tables/contact-by-record.csv and "
         "tables/contact-to-margin.csv have the demand of each record and case."
+    )
+
+
+def _slip_text(assessment: Assessment) -> str:
+    dispersion = number(float(assessment.setting["friction_dispersion"]))
+    return (
+        "A column whose friction coefficient is below r/h slides before it rocks. While it stands on its whole base it "
+        "moves as Newmark's sliding block in two horizontal directions, at its stated friction. Intervals have 90 % of "
+        f"{assessment.setting['variations']} small variations: scale, clock and direction of the record, and the "
+        f"friction coefficient with a dispersion of {dispersion} (logarithm). Slip need not grow with the scale, so "
+        "every scale was computed. Not known are runs in which the base falls faster than g, and variations whose "
+        "friction reaches r/h."
     )
 
 

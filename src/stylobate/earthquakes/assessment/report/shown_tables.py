@@ -12,7 +12,7 @@ import xarray as xr
 
 from stylobate.earthquakes.assessment.inputs import OTHER_LAW
 from stylobate.earthquakes.assessment.margins import states_at_scales
-from stylobate.earthquakes.assessment.report.column_verdict import acts_in, rises
+from stylobate.earthquakes.assessment.report.column_verdict import acts_in, recorded_scale, rises, slides_at
 from stylobate.earthquakes.assessment.report.wording import (
     CENTRAL,
     OVERTURNED,
@@ -72,6 +72,8 @@ def outcomes(assessment: Assessment) -> list[Part]:
     rows = []
     for where, one in cells(verdicts, *_PLACES):
         column, record, scale = where[0], where[1], float(where[2])
+        if slides_at(assessment, column, scale):
+            continue
         own = margins.sel(column=column, record=record)
         states = [_state(float(one["overturned"].sel(dissipation=level, vertical=_ACTS))) for level in levels]
         at_scale = scanned.sel(column=column, record=record, scale=scale)
@@ -114,6 +116,8 @@ def margins(assessment: Assessment) -> PageTable:
     header = ("object", "record", *every, "PGA [g]", "PGV [m/s]", f"Sa({period:g} s) [g]")
     rows = []
     for (column, record), one in cells(own, "column", "record"):
+        if slides_at(assessment, column, recorded_scale(assessment)):
+            continue
         scales = [_smallest(assessment, one, record, case) for case in every]
         least = float(one["least_overturning"].sel(case=CENTRAL))
         rows.append((column, record, *scales, *_at_scale(assessment, record, least, period)))
@@ -148,6 +152,8 @@ def tilts(assessment: Assessment) -> list[Part]:
     rows, still = [], []
     for where, one in cells(assessment.data["verdicts"], *_PLACES):
         column, record, scale = where[0], where[1], float(where[2])
+        if slides_at(assessment, column, scale):
+            continue
         body = assessment.data["columns"].sel(column=column)
         most = float(one["tilt_ratio"].max())
         row = (*where, *tilt_cells(float(one["tilt_ratio"].sel(dissipation=CENTRAL, vertical=_ACTS)), body), tilt(most))

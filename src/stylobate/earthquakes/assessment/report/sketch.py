@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -10,6 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
 
 from stylobate.column import STANDARD_GRAVITY
+from stylobate.earthquakes.assessment.report.column_verdict import slides_at
 from stylobate.earthquakes.assessment.report.wording import SMALLEST_TILT, number
 from stylobate.earthquakes.figures.overturning_intervals import undecided_label, undecided_reasons
 from stylobate.plots.geometry import Floats, Shape
@@ -52,33 +54,36 @@ def objects_figure(assessment: Assessment, columns: Sequence[str], names: Sequen
     widest = max(2.0 * max(shape.radius, shape.top_radius) for shape in shapes)
     for place, (column, shape) in enumerate(zip(columns, shapes, strict=True)):
         run = assessment.data["histories"].sel(column=column, run="stated")
-        _sketch(grid[0, place], shape, run)
+        slides = slides_at(assessment, column, float(run["scale"]))
+        _sketch(grid[0, place], shape, run, slides=slides)
         grid[0, place].set_title(column, fontsize="medium", loc="center")
         record = str(assessment.data["summary"]["governing"].sel(column=column).item())
         _record(grid[1, place], run, record)
-        _tilt(grid[2, place], run)
+        _tilt(grid[2, place], run, slides=slides)
     _frame(grid[0], tallest, widest)
     grid[1, 0].set_ylabel("record [g]")
     grid[2, 0].set_ylabel(r"tilt $\theta/\alpha_c$")
     return figure
 
 
-def _sketch(axes: Axes, shape: Shape, run: xr.Dataset) -> None:
-    """Draw the side of a body, its centre of mass, and its outline at the peak tilt."""
+def _sketch(axes: Axes, shape: Shape, run: xr.Dataset, *, slides: bool) -> None:
+    """Draw the side of a body, its centre of mass, and its outline at the peak tilt unless it slides first."""
     r, top, height = shape.radius, shape.top_radius, shape.height
     side = np.array([(-r, 0.0), (r, 0.0), (top, height), (-top, height)])
     axes.add_patch(Polygon(side, facecolor=_FACE, edgecolor=BLACK, linewidth=1.1))
     axes.plot([0.0], [shape.mass_height], marker="o", color=BLACK, markersize=3.0)
     ratio = float(run["peak_tilt_ratio"])
     fallen = math.isinf(ratio)
-    if fallen or ratio >= SMALLEST_TILT:
+    if not slides and (fallen or ratio >= SMALLEST_TILT):
         # A column that overturned lies on the line from its base rim to its top rim.
         lying = 0.5 * math.pi + math.atan2(top - r, height)
         angle = lying if fallen else ratio * math.atan(shape.slenderness)
         outline = _turned(side, r, angle)
         axes.add_patch(Polygon(outline, fill=False, edgecolor=VERMILION, linewidth=1.0, linestyle="--"))
     axes.set_xlabel(
-        f"2r = {number(2.0 * r)} m, height {number(height)} m\n{_outcome(run, ratio)}", fontsize="small", labelpad=2.0
+        f"2r = {number(2.0 * r)} m, height {number(height)} m\n{_outcome(run, ratio, slides=slides)}",
+        fontsize="small",
+        labelpad=2.0,
     )
 
 
@@ -89,7 +94,9 @@ def _turned(points: Floats, radius: float, angle: float) -> Floats:
     return np.stack([radius + x * cosine + z * sine, z * cosine - x * sine], axis=-1)
 
 
-def _outcome(run: xr.Dataset, ratio: float) -> str:
+def _outcome(run: xr.Dataset, ratio: float, *, slides: bool) -> str:
+    if slides:
+        return "slides before it rocks"
     if undecided_reasons(run["outcome"]):
         return undecided_label(run["outcome"])
     if math.isinf(ratio):
@@ -107,8 +114,13 @@ def _record(axes: Axes, run: xr.Dataset, record: str) -> None:
     axes.tick_params(labelbottom=False, labelsize=7.5)
 
 
-def _tilt(axes: Axes, run: xr.Dataset) -> None:
-    axes.plot(run["time"], run["amplitude"], color=BLUE, linewidth=0.9)
+def _tilt(axes: Axes, run: xr.Dataset, *, slides: bool) -> None:
+    shown = run["amplitude"] * np.nan if slides else run["amplitude"]
+    axes.plot(run["time"], shown, color=BLUE, linewidth=0.9)
+    if slides:
+        axes.set_xlim(0.0, float(run["time"].max()))
+        middle: dict[str, Any] = {"transform": axes.transAxes, "ha": "center", "va": "center"}
+        axes.text(0.5, 0.35, "no tilt while it slides", color=GREY, fontsize="small", **middle)
     axes.axhline(1.0, color=VERMILION, linestyle="--", linewidth=0.9)
     axes.set(ylim=(0.0, _MOST_TILT), xlabel="time [s]")
     axes.tick_params(labelsize=7.5)

@@ -69,7 +69,7 @@ def limit_table(assessment: Assessment) -> PageTable:
         return PageTable(header, rows)
     for where, one in cells_of(assessment, "sliding", "column", "record", "limit_state", "scale"):
         column, record, state, _ = where
-        if column not in known or state not in _stated(assessment, column):
+        if column not in known or state not in stated_limits(assessment, column):
             continue
         margin = assessment.data["slip_margins"].sel(column=column, record=record, limit_state=state)
         least, share = float(margin["least_reaching"]), float(one["reached_share"])
@@ -116,7 +116,8 @@ def slip_pictures(assessment: Assessment, column: str) -> dict[str, Picture]:
     }
 
 
-def _stated(assessment: Assessment, column: str) -> tuple[str, ...]:
+def stated_limits(assessment: Assessment, column: str) -> tuple[str, ...]:
+    """Return the names of the limit states of a column."""
     return tuple(one["name"] for one in assessment.setting.get("limit_states", {}).get(column, ()))
 
 

@@ -17,6 +17,7 @@ from stylobate.earthquakes.assessment.report.column_verdict import (
     rises,
 )
 from stylobate.earthquakes.assessment.report.rate_tables import fragility_table, rate_table
+from stylobate.earthquakes.assessment.report.sliding_tables import limit_table, slip_summary_table, slip_table
 from stylobate.earthquakes.assessment.report.wording import (
     CENTRAL,
     TILT_HEADER,
@@ -330,20 +331,6 @@ def _friction_to_margin(assessment: Assessment) -> PageTable:
     return PageTable(header, rows)
 
 
-def _sliding(assessment: Assessment) -> PageTable:
-    """Tabulate the runs with the sliding model, for the columns that slide before they rock."""
-    header = (
-        *("column", "record", "scale", "verdict with the sliding model", "peak slip [mm]", "residual slip [mm]"),
-        "time sliding [s]",
-    )
-    rows = []
-    for where, run in cells_of(assessment, "sliding", *_PLACES):
-        if not math.isnan(float(run["time_sliding"])):
-            slips = (number(1000.0 * float(run[name])) for name in ("peak_slip", "residual_slip"))
-            rows.append((*where, verdict(float(run["overturned"])), *slips, number(float(run["time_sliding"]))))
-    return PageTable(header, rows)
-
-
 def _small_variations(assessment: Assessment) -> PageTable:
     """Tabulate the share of small variations that overturn each column, and the word that follows from it."""
     header = (
@@ -543,7 +530,9 @@ _TABLES: dict[str, Callable[[Assessment], PageTable]] = {
     "verdicts-by-record": _verdicts_by_record,
     "contact-by-record": _friction_by_record,
     "contact-to-margin": _friction_to_margin,
-    "sliding": _sliding,
+    "slip": slip_table,
+    "slip-summary": slip_summary_table,
+    "slip-limits": limit_table,
     "variations": _small_variations,
     "near-scales": _near_scales,
     "planar": _planar,
