@@ -328,3 +328,36 @@ def test_names_that_are_not_known_are_told_as_they_stand_in_the_file():
         *(line for line in told.value.problems if "fragility.spreads.size: a spread must have a kind" in line),
     )
     assert told.value.problems[-1] == "fragility.smaples is not known here; did you mean samples?"
+
+
+SLIDING = ["--model", "sliding", "--friction-coefficient", "0.06", "--limit-state", "slip=5 mm"]
+
+
+def test_a_column_that_slides_first_has_the_fragility_of_its_slip(folder, capsys, monkeypatch):
+    monkeypatch.chdir(folder)
+    body = ["--radius", "0.4", "--height", "4", "--density", "2700", "--records", "quakes", *SCALES, *SLIDING]
+    spread = ["--spread", "friction_coefficient=0.2", "--property-samples", "3"]
+    assert run(["fragility", *body, *spread, "--output", "runs.nc", "--json"]) == 0
+    told = json.loads(capsys.readouterr().out)
+    assert [one["name"] for one in told["limit_states"]] == ["slip 5 mm"]
+    assert told["runs"] == 4 * 3 * 6
+    with xr.open_dataset("runs.nc") as runs:
+        assert runs.attrs["kind"] == "slip analysis"
+        assert (runs["reached"].sel(limit_state="slip 5 mm") == (runs["peak_slip"] >= 0.005)).all()
+    # saved runs are fitted again, and another limit computes them again
+    assert run(["fragility", "runs.nc", "--counting", "first"]) == 0
+    assert "slip of a column that slides before it rocks" in capsys.readouterr().out
+    assert run(["fragility", "runs.nc", "--limit-state", "edge=0.1", "--json"]) == 0
+    assert [one["name"] for one in json.loads(capsys.readouterr().out)["limit_states"]] == ["edge 100 mm"]
+    assert run(["fragility", *body, "--output", "runs.zarr"]) != 0
+    assert "store: slip analyses keep none" in capsys.readouterr().err
+
+
+def test_a_column_that_rocks_has_the_fragility_of_its_neighbours(folder, capsys, monkeypatch):
+    monkeypatch.chdir(folder)
+    limit = ["--limit-state", "neighbours=0.1@3"]
+    assert run(["fragility", *COLUMN, "--records", "quakes", *SCALES, *limit, "--json"]) == 0
+    names = [one["name"] for one in json.loads(capsys.readouterr().out)["limit_states"]]
+    assert names[-2:] == ["overturning", "neighbours 100 mm at 3 m"]
+    assert run(["fragility", *COLUMN, "--records", "quakes", *SCALES, "--limit-state", "slip=0.1"]) != 0
+    assert "limit_states[0]: the model wobbling does not slip (got 'slip 100 mm')" in capsys.readouterr().err

@@ -317,7 +317,9 @@ def test_a_mean_of_five_percent_is_not_divided_by_a_design_spectrum_of_another_d
     assert any(row["spectrum of the site [g]"] != "–" for row in rows)
 
 
-@pytest.mark.parametrize(("asked", "words"), [(False, "was not run"), (True, "was computed only for columns that slide")])
+@pytest.mark.parametrize(
+    ("asked", "words"), [(False, "was not run"), (True, "was computed only for columns that slide")]
+)
 def test_what_is_not_covered_depends_on_whether_sliding_was_asked_for(found, asked, words):
     (row,) = [
         row

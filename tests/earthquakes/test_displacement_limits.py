@@ -67,6 +67,8 @@ def test_neighbours_without_a_height_are_as_high_as_the_column():
     bare = sb.Column.dimensionless(slenderness=0.1)
     with pytest.raises(ParameterError, match="height: missing in the limit state 'neighbours 100 mm'"):
         of_column.of_tilt(tilts, [bare], "c")
+    with pytest.raises(ParameterError, match="height: missing"):  # before anything runs
+        sb.earthquakes.incremental_dynamic_analysis(sb.Wobbling(bare), PULSES, scales=[1.0], limit_states=[of_column])
 
 
 def test_runs_that_rock_reach_the_neighbours_by_their_tilt_and_by_overturning():

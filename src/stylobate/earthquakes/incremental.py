@@ -144,6 +144,7 @@ def _of_tilt(model: Model, limits: tuple[LimitState, ...]) -> tuple[LimitState, 
                 f"limit_states[{place}]: the model {model.name} does not slip (got {one.name!r}). Use slip_analysis "
                 'with the model Sliding, or limit the response "neighbours".'
             )
+        one.height_on(model.column)
     return limits
 
 

@@ -240,7 +240,9 @@ def attributes_of_slip(name: str) -> dict[str, str]:
     return {"units": unit, "long_name": long_name}
 
 
-def reached_by_slip(slip: xr.Dataset, limits: Sequence[LimitState]) -> xr.DataArray:
+def reached_by_slip(
+    slip: xr.Dataset, limits: Sequence[LimitState], shifts: Mapping[str, xr.DataArray] | None = None
+) -> xr.DataArray:
     """Return which limit states runs reached, over `limit_state` first: 1 reached, 0 not, −1 not known.
 
     Parameters
@@ -249,10 +251,16 @@ def reached_by_slip(slip: xr.Dataset, limits: Sequence[LimitState]) -> xr.DataAr
         Runs with `peak_slip` and `residual_slip` [m], NaN if not known.
     limits
         The limit states.
+    shifts
+        Displacements by tilt [m] by the name of a limit state of neighbours. The sum of both peaks is an upper bound.
     """
     peak, residual = slip["peak_slip"], slip["residual_slip"]
     known = peak.notnull()
-    states = [one.of_slip(peak, residual).astype(np.int8).where(known, np.int8(NOT_KNOWN)) for one in limits]
+    peaks = {name: peak + shift for name, shift in (shifts or {}).items()}
+    states = [
+        one.of_slip(peaks.get(one.name, peak), residual).astype(np.int8).where(known, np.int8(NOT_KNOWN))
+        for one in limits
+    ]
     names = xr.DataArray([one.name for one in limits], dims=LIMIT_STATE, name=LIMIT_STATE).astype(str)
     blank = xr.full_like(peak, NOT_KNOWN, dtype=np.int8).expand_dims({LIMIT_STATE: 0})
     joined: xr.DataArray = xr.concat(states, dim=names) if states else blank.assign_coords({LIMIT_STATE: names})

@@ -29,7 +29,8 @@ class Assessment(ByContent):
     ----------
     data
         Datasets by name: "columns", "records", "spectra", "ground_motions", "verdicts", "margins", "histories" and
-        "summary"; "variations", "sliding", "planar" and "fragility" if they were requested.
+        "summary"; "variations", "sliding", "slip_margins", "slip_paths", "planar", "fragility" and "rates" if they were
+        requested.
     setting
         Inputs of the assessment as plain values: title, version, models, dissipation, friction, processing of the
         records, scales, range of the margins, the `ReportDetails`, versions of the software.

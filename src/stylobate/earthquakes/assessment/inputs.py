@@ -13,7 +13,12 @@ import xarray as xr
 
 from stylobate.base_motions import BASE_AT_REST, BaseMotion, Record
 from stylobate.config.levels import OF_DISSIPATION, Dissipation, at_levels, levels_by_column
-from stylobate.earthquakes.fragility.displacement_limits import LimitState, LimitStates, checked_limit_states
+from stylobate.earthquakes.fragility.displacement_limits import (
+    LimitState,
+    LimitStates,
+    Response,
+    checked_limit_states,
+)
 from stylobate.earthquakes.study_inputs import Records, named_records
 from stylobate.earthquakes.verdict_study import has_other_contact_law, with_other_contact_law
 from stylobate.engine.parameters import changed_model, model_names
@@ -270,13 +275,18 @@ def _frictions(given: float | Mapping[str, float] | None, columns: Sequence[str]
 
 
 def _limits(given: LimitStates, columns: Mapping[str, Model]) -> dict[str, tuple[LimitState, ...]]:
-    """Return the limit states of each column."""
+    """Return the limit states of each column; neighbours have a height."""
     by_column = given if isinstance(given, Mapping) else dict.fromkeys(columns, given)
     for name in by_column:
         if name not in columns:
             remedy = did_you_mean(name, columns) or "leave it out"
             raise ParameterError(f"limit_states: {name!r} is no column; {remedy}")
-    return {name: checked_limit_states(by_column.get(name, ()), f"limit_states.{name}") for name in columns}
+    found = {name: checked_limit_states(by_column.get(name, ()), f"limit_states.{name}") for name in columns}
+    for name, limits in found.items():
+        for one in limits:
+            if one.kind is Response.NEIGHBOURS:
+                one.height_on(columns[name].column)
+    return found
 
 
 def _rising(name: str, values: npt.ArrayLike, *, least: int) -> Floats:

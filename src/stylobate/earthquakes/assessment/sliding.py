@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 from stylobate.earthquakes.assessment.inputs import CENTRAL, Inputs, Parts
-from stylobate.earthquakes.fragility.displacement_limits import LimitState
+from stylobate.earthquakes.fragility.displacement_limits import LimitState, Response
 from stylobate.earthquakes.fragility.observations import LIMIT_STATE, NOT_KNOWN
 from stylobate.earthquakes.property_spreads import VARIATIONS, LognormalSpread, shares_of
 from stylobate.earthquakes.slip_paths import slip_paths
@@ -221,7 +221,15 @@ def _reached(inputs: Inputs, column: str, joined: xr.Dataset) -> dict[str, xr.Da
     stated = joined[["peak_slip", "residual_slip"]]
     # an overturned column has reached every limit
     stated = stated.where(joined["overturned"] != 1, math.inf)
-    states, several = _on_all(inputs, reached_by_slip(stated, own)), _on_all(inputs, reached_by_slip(varied, own))
+    # a column that lands after a flight may tilt too
+    body = inputs.columns[column][CENTRAL].column
+    tilt = joined["tilt_ratio"].where(np.isfinite(joined["tilt_ratio"]), 0.0) * body.tipping_angle
+    shifts = {one.name: one.shift(tilt, [body], "column") for one in own if one.kind is Response.NEIGHBOURS}
+    states, several = (
+        _on_all(inputs, reached_by_slip(stated, own, shifts)),
+        _on_all(inputs, reached_by_slip(varied, own)),
+    )
+    states = states.where((joined["overturned"] >= 0) | (states == 1), np.int8(NOT_KNOWN)).astype(np.int8)
     share = (several == 1).sum("variation") / (several >= 0).sum("variation")
     return {
         "reached": states,

@@ -106,9 +106,11 @@ class LimitState:
         return (residual if self.kind is Response.RESIDUAL else peak) >= self.limit
 
     def of_tilt(self, tilt: xr.DataArray, columns: Sequence[Column], over: str) -> xr.DataArray:
-        """Return whether a column that does not slip reaches a limit of "neighbours" by its tilt.
+        """Return whether a column that does not slip reaches a limit of "neighbours" by its tilt; see `shift`."""
+        return self.shift(tilt, columns, over) >= self.limit
 
-        The displacement at the height z is z sin θ + r (1 − cos θ), with the contact point at rest.
+    def shift(self, tilt: xr.DataArray, columns: Sequence[Column], over: str) -> xr.DataArray:
+        """Compute the displacement [m] at the height z by a tilt: z sin θ + r (1 − cos θ), contact point at rest.
 
         Parameters
         ----------
@@ -124,14 +126,21 @@ class LimitState:
         ParameterError
             If the height is not stated and the column has none.
         """
-        heights = xr.DataArray([self._height_on(column) for column in columns], dims=over)
+        heights = xr.DataArray([self.height_on(column) for column in columns], dims=over)
         radii = xr.DataArray([column.radius for column in columns], dims=over)
         if len(columns) == 1:
             heights, radii = heights.isel({over: 0}), radii.isel({over: 0})
-        shift: xr.DataArray = heights * np.sin(tilt) + radii * (1.0 - np.cos(tilt))
-        return shift >= self.limit
+        moved: xr.DataArray = heights * np.sin(tilt) + radii * (1.0 - np.cos(tilt))
+        return moved
 
-    def _height_on(self, column: Column) -> float:
+    def height_on(self, column: Column) -> float:
+        """Return the height of the limit on a column [m]: as stated, or that of the column.
+
+        Raises
+        ------
+        ParameterError
+            If the height is not stated and the column has none.
+        """
         if self.height is not None:
             return self.height
         if column.height is None:
