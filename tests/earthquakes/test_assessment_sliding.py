@@ -177,6 +177,10 @@ def test_a_column_keeps_limits_of_its_own():
 def test_a_run_that_lifts_off_is_that_of_the_model_that_slides():
     record = quakes()["q0"]
     jolt = record.scaled(1.0, vertical=-1.2 * STOUT.gravity / record.samples[:, 2].min())
+    model = sb.Sliding(STOUT, friction_coefficient=FRICTION, damping=0.1)
+    run = sb.simulate(model, jolt, duration=jolt.duration + 2.0, rtol=1e-6)
+    assert run.measures["time_flying"] > 0.0
+    peak = np.hypot(*run.data["footprint"].transpose("axis", "time").to_numpy()).max()
     found = sb.earthquakes.assess(
         {"stout": sb.Slender(STOUT)},
         {"jolt": jolt},
@@ -189,14 +193,12 @@ def test_a_run_that_lifts_off_is_that_of_the_model_that_slides():
         contact=False,
         contact_laws=False,
         sliding=True,
+        limit_states=[LimitState(response="neighbours", limit=factor * peak) for factor in (0.99, 1.01)],
         rtol=1e-6,
     )
     own = found.data["sliding"].isel(column=0, record=0, scale=0)
-    run = sb.simulate(
-        sb.Sliding(STOUT, friction_coefficient=FRICTION, damping=0.1), jolt, duration=jolt.duration + 2.0, rtol=1e-6
-    )
-    assert run.measures["time_flying"] > 0.0
     assert float(own["residual_slip"]) == pytest.approx(run.measures["residual_displacement"], rel=1e-9)
+    assert own["reached"].values.tolist() == [1, 0]
     assert int(own["known_variations"]) == 0
     margins = found.data["slip_margins"].isel(column=0, record=0)
     assert float(margins["decided_to"]) < 1.0

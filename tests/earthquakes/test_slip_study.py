@@ -2,9 +2,11 @@
 
 import numpy as np
 import pytest
+import xarray as xr
 
 import stylobate as sb
 from stylobate.earthquakes import LimitState, slip_analysis, slip_paths
+from stylobate.earthquakes.slip_study import reached_by_slip
 from stylobate.errors import ParameterError
 
 COLUMN = sb.Column.solid(radius=0.5, height=3.0, density=2700.0)
@@ -49,6 +51,14 @@ def test_limit_states_are_reached_where_the_slip_exceeds_them():
         own = found["reached"].sel(limit_state=limit.name)
         assert (own == 1).values.tolist() == (by >= limit.limit).values.tolist()
         assert {0, 1} <= set(np.unique(own))
+
+
+def test_a_tilt_counts_for_neighbours_besides_the_slip():
+    slip = xr.Dataset({name: ("run", [0.05, 0.05, np.nan]) for name in ("peak_slip", "residual_slip")})
+    shifts = {"neighbours 80 mm": xr.DataArray([0.02, 0.04, 0.04], dims="run")}
+    reached = reached_by_slip(slip, LIMITS, shifts)
+    assert reached.sel(limit_state="neighbours 80 mm").values.tolist() == [0, 1, -1]
+    assert reached.sel(limit_state="slip 30 mm").values.tolist() == [1, 1, -1]
 
 
 def test_a_slip_can_fall_with_the_scale():
