@@ -34,7 +34,7 @@ from stylobate.earthquakes.assessment.report.wording import at_most, intervals, 
 from stylobate.earthquakes.figures.overturning_intervals import UNDECIDED
 from stylobate.plots.page import require_pdf
 from stylobate.results import DesignSpectrum, ReportDetails
-from stylobate.studies.proportions import wilson_interval
+from stylobate.studies.proportions import clustered_interval
 
 DETAILS = ReportDetails(
     author="N. Author",
@@ -291,19 +291,52 @@ def test_spectra_are_drawn_with_their_mean_and_the_design_spectrum(found):
     assert axes.get_ylim()[0] == 0.0
 
 
-def test_slips_of_the_sliding_model_are_tabulated_in_millimetres_where_it_was_run(found):
-    verdicts = found.data["verdicts"]["tilt_ratio"].sel(dissipation="central", vertical="with", drop=True)
-    ran = verdicts["column"] == "stout"
-    values = {"overturned": 0.0, "peak_slip": 0.12345, "residual_slip": 0.012345, "time_sliding": 2.345}
-    data = xr.Dataset({name: xr.full_like(verdicts, value).where(ran) for name, value in values.items()})
-    table = assessment_tables(replace(found, data={**found.data, "sliding": data}))["sliding"]
-    rows = [dict(zip(table.header, row, strict=True)) for row in table.rows]
-    places = [(row["column"], row["record"], row["scale"]) for row in rows]
-    assert places == [("stout", name, scale) for name in ("strong", "weak & quiet") for scale in ("0.5", "1")]
-    for row in rows:
-        assert (row["peak slip [mm]"], row["residual slip [mm]"]) == ("123", "12.3")
-        assert (row["time sliding [s]"], row["verdict with the sliding model"]) == ("2.35", "did not overturn")
-    assert "sliding" not in assessment_tables(found)
+@pytest.fixture(scope="module")
+def sliding():
+    return assess(
+        {name: sb.Slender(body) for name, body in BODIES.items()},
+        [record("strong", 3.0), record("weak & quiet", 0.2)],
+        dissipation=DISSIPATION,
+        friction_coefficient={"slim <1>": 0.6, "stout": 0.15},
+        sliding=True,
+        limit_states=[sb.earthquakes.LimitState(response="slip", limit=0.02)],
+        margin_scales=np.geomspace(0.5, 3.0, 9),
+        variations=12,
+        planar=False,
+        contact=False,
+        tail=2.0,
+    )
+
+
+def test_slip_is_answered_on_the_first_page_and_tabulated_in_millimetres(sliding):
+    slim, stout = answer_table(sliding, 1.0).rows
+    own = sliding.data["sliding"].sel(column="stout", scale=1.0)
+    assert stout[1] == "Slides before it rocks"
+    low, high = (1000.0 * float(own[f"all_peak_slip_{end}"]) for end in ("low", "high"))
+    assert stout[2].startswith(f"slips {low:.3g} to {high:.3g} mm (90 % of runs); slip 20 mm: ")
+    assert slim[1] != "Slides before it rocks"
+    table = assessment_tables(sliding)["slip"]
+    rows = {row[1]: dict(zip(table.header, row, strict=True)) for row in table.rows}
+    assert {row[0] for row in table.rows} == {"stout"}
+    for name, row in rows.items():
+        assert row["peak slip [mm]"] == f"{1000.0 * float(own['peak_slip'].sel(record=name)):.3g}"
+    states = assessment_tables(sliding)["slip-limits"]
+    reached = {row[1]: dict(zip(states.header, row, strict=True))["state"] for row in states.rows}
+    expected = {name: "reached" if float(own["peak_slip"].sel(record=name)) >= 0.02 else "not reached" for name in rows}
+    assert reached == expected
+    assert set(reached.values()) == {"reached", "not reached"}
+
+
+def test_runs_without_slip_of_a_column_that_slides_first_are_not_shown(sliding, found):
+    _, table, *_ = section(sliding, "Outcomes at the stated scales")
+    assert {row[0] for row in table.rows} == {"slim <1>"}
+    words, table = section(sliding, "Margins")[:2]
+    assert "Left out: stout, which slides before it rocks." in words
+    assert {row[0] for row in table.rows} == {"slim <1>"}
+    (body,) = objects_figure(sliding, ["stout"], ["stout"]).axes[0].patches
+    assert body.get_xy()[:, 1].max() == BODIES["stout"].height
+    assert not any(one.heading == "Slip" for one in report_sections(found, assessment_tables(found), {}))
+    assert "slip" not in assessment_tables(found)
 
 
 def test_a_mean_of_five_percent_is_not_divided_by_a_design_spectrum_of_another_damping(found):
@@ -642,13 +675,15 @@ def test_the_probability_counts_each_record_once_and_undecided_runs_on_both_side
     shares = np.array([1.0, 0.0, 0.5, 0.0])
     share, low, high = probability_over_records(shares, np.zeros(4))
     assert share == 0.375
-    assert (low, high) == pytest.approx([float(end) for end in wilson_interval(1.5, 4)], rel=1e-12)
-    _, low_open, high_open = probability_over_records(shares, np.array([0.0, 0.5, 0.0, 0.0]))
+    assert (low, high) == pytest.approx([float(end) for end in clustered_interval(shares)], rel=1e-12)
+    unknown = np.array([0.0, 0.5, 0.0, 0.0])
+    _, low_open, high_open = probability_over_records(shares, unknown)
     assert low_open == low
-    assert high_open == pytest.approx(float(wilson_interval(2.0, 4)[1]), rel=1e-12)
+    assert high_open == pytest.approx(float(clustered_interval(shares + unknown)[1]), rel=1e-12)
     nothing = probability_over_records(np.zeros(2), np.ones(2))
     assert np.isnan(nothing[0])
-    assert nothing[1:] == (0.0, 1.0)
+    assert nothing[1] == 0.0
+    assert nothing[2] == 1.0
 
 
 @pytest.mark.parametrize("spread", [0.2, 1.0, 20.0])
@@ -659,7 +694,7 @@ def test_the_interval_of_the_probability_covers_it_however_much_records_differ(s
         shares = rng.binomial(200, rng.beta(spread * mean, spread * (1.0 - mean), count)) / 200.0
         _, low, high = probability_over_records(shares, np.zeros(count))
         covered += low <= mean <= high
-    # Three standard deviations of the coverage of 2000 draws are 1.5 %; Wilson's own of 12 trials varies by 2 %.
+    # Three standard deviations of the coverage of 2000 draws are 1.5 %; that of 12 trials of its own varies by 2 %.
     assert covered / 2000.0 >= 0.915
 
 

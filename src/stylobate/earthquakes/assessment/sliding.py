@@ -175,9 +175,14 @@ def _quantiles(values: xr.DataArray, dims: Sequence[str], name: str) -> dict[str
     found = {}
     for end, share in _QUANTILES.items():
         words = {**about, "long_name": f"{about['long_name']}, {100.0 * share:g} % quantile"}
-        known = values.quantile(share, dims, skipna=True) if values.notnull().any() else values.max(dims)
-        found[f"{name}_{end}"] = known.drop_vars("quantile", errors="ignore").assign_attrs(words)
+        found[f"{name}_{end}"] = _quantile(values, share, dims).assign_attrs(words)
     return found
+
+
+def _quantile(values: xr.DataArray, share: float, dims: Sequence[str]) -> xr.DataArray:
+    """Return a quantile of the known values over dimensions; NaN where none is known."""
+    known = values.notnull().any(dims)
+    return values.where(known, 0.0).quantile(share, dims, skipna=True).drop_vars("quantile").where(known)
 
 
 def _spread(joined: xr.Dataset) -> dict[str, xr.DataArray]:
@@ -199,14 +204,13 @@ def _direction(joined: xr.Dataset) -> dict[str, xr.DataArray]:
     turn = xr.apply_ufunc(np.arctan2, x * other_y - y * other_x, x * other_x + y * other_y)
     angle = xr.apply_ufunc(np.abs, turn)
     moved = joined["residual_slip"] > 0.0
-    within = angle.where(moved)
-    within = within.quantile(_WITHIN, "variation") if bool(within.notnull().any()) else within.max("variation")
+    within = _quantile(angle.where(moved), _WITHIN, ["variation"])
     azimuth = xr.apply_ufunc(np.arctan2, y, x)
     return {
         "residual_azimuth": azimuth.where(moved).assign_attrs(
             units="rad", long_name="azimuth of the residual slip, from x towards y"
         ),
-        "azimuth_within": within.drop_vars("quantile", errors="ignore").assign_attrs(
+        "azimuth_within": within.assign_attrs(
             units="rad", long_name=f"angle on both sides that has {100.0 * _WITHIN:g} % of the small variations"
         ),
     }

@@ -360,7 +360,10 @@ def _of_rates(assessment: Assessment) -> Pictures:
     """Return the figure of the annual rates of overturning by intensity, counted from the runs."""
     if "rates" not in assessment.data:
         return {}
-    own = assessment.data["rates"].sel(limit_state=OVERTURNING, drop=True).rename(column=LIMIT_STATE)
+    rates = assessment.data["rates"].sel(limit_state=OVERTURNING, drop=True)
+    own = rates.sel(column=rates["annual_rate"].notnull()).rename(column=LIMIT_STATE)
+    if not own.sizes[LIMIT_STATE]:
+        return {}
     caption = (
         "Hazard curve of the site and, below, the intensities that contribute to the annual rate of overturning, "
         "counted from the runs at central dissipation: the area of a range is its share of the rate."

@@ -18,6 +18,8 @@ def fragility_table(assessment: Assessment) -> PageTable:
     seen = ("runs", "runs_reached", "non_monotone_records")
     rows = []
     for where, one in cells_of(assessment, "fragility", "column", "limit_state"):
+        if int(one["runs"]) == 0:
+            continue
         column, state = where[0], where[1].replace("α", "α_c")  # the symbol of the report
         rows.append((column, state, *numbers(one, *fitted), *counts(one, *seen)))
     return PageTable(header, rows)
