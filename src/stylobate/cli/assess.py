@@ -1,8 +1,7 @@
 """`stylobate assess`: columns under a folder of records, with a self-contained report."""
 
-import hashlib
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import replace
 from functools import partial
@@ -15,14 +14,17 @@ from stylobate import config, earthquakes, studies
 from stylobate.cli.command import Positional, command
 from stylobate.cli.options import Options
 from stylobate.cli.output import NETCDF, check_place, print_json, print_table
+from stylobate.cli.record_sources import RECORD_SOURCES, with_record_sources
 from stylobate.cli.terminal import INTERRUPTED, log_lines, part_lines
 from stylobate.config.options import COMPUTING, JSON, Group, Option
 from stylobate.errors import FileError, Interrupted
+from stylobate.files import file_of, sha256_of
 
 if TYPE_CHECKING:
     from stylobate.earthquakes.config.assess import AssessmentSetup
     from stylobate.results.assessment import Assessment
 
+_TOML = ".toml"
 _SHOWN = ("column", "scale", "did not overturn it", "overturned it", "not decided", "undecided under small variations")
 
 
@@ -30,13 +32,17 @@ _SHOWN = ("column", "scale", "did not overturn it", "overturned it", "not decide
     Option("folder", "folder of report, tables and figures; NAME-assessment beside the study by default", Path),
     Option("pdf", "write report.pdf too, with page numbers and bookmarks", bool, default=False),
     Option("store", "store of the parts that are computed; FOLDER/store by default", Path),
-    argument=Positional(text="study, a TOML file; or a saved assessment (.nc) to show again", required=True),
-    groups=(COMPUTING.reduced_to("threads"), Group.of("Output", JSON)),
+    argument=Positional(
+        text="study, a TOML file; a table of objects (.csv, .xlsx, .gpkg); or a saved assessment (.nc) to show again",
+        required=True,
+    ),
+    groups=(Group.of("Records", *RECORD_SOURCES), COMPUTING.reduced_to("threads"), Group.of("Output", JSON)),
 )
 def assess(options: Options) -> None:
     """Assess whether columns survive records, and how robust the answer is.
 
     A study is a TOML file: columns, a folder of records, the dissipation at three levels, the friction coefficient.
+    In place of a study, a table of objects, as for `inventory`, and records suffice.
     The command writes report.html, which needs no other file and no network; also tables, figures, a summary and the
     numbers. It stores each computed part: after Ctrl-C the same command continues. Examples:
 
@@ -44,22 +50,27 @@ def assess(options: Options) -> None:
 
     stylobate assess study.toml --pdf
 
+    stylobate assess objects.csv --records quakes --pdf
+
     stylobate assess study-assessment/assessment.nc --folder again
     """
     source, pdf = options["source"], options["pdf"]
-    if not source.is_file():
+    file = file_of(source)
+    if not file.is_file():
         raise FileError(f"cannot read {source}: No such file or directory")
     if pdf:
         from stylobate.plots.page import require_pdf
 
         require_pdf()
-    target = options["folder"] or source.with_name(f"{source.stem}-assessment")
+    target = options["folder"] or file.with_name(f"{file.stem}-assessment")
     check_place(target / "report.html" if target.exists() else target)
     setup = None
     if source.suffix == NETCDF:
         options.refuse_unused(f"to show {source}, for which it computes nothing")
     else:
-        setup = _described(source, target)
+        values = config.read_config(source) if source.suffix == _TOML else {"columns": str(source)}
+        setup = _described(with_record_sources(values, options), file, target)
+        options.refuse_unused()
     print(f"stylobate: writing into {target}", file=sys.stderr)
     with _locked(target):
         if setup is None:
@@ -113,12 +124,11 @@ def _loaded(source: Path) -> "Assessment":
     return Assessment.load(source)
 
 
-def _described(source: Path, target: Path) -> "AssessmentSetup":
-    description = earthquakes.AssessConfig.parse(config.read_config(source))
+def _described(values: Mapping[str, Any], source: Path, target: Path) -> "AssessmentSetup":
+    description = earthquakes.AssessConfig.parse(values)
     _refuse_folder_of_another(target, description.title)
     setup = description.build()
-    digest = hashlib.sha256(source.read_bytes()).hexdigest()
-    setup.options["details"] = replace(setup.options["details"], study_file=source.name, study_sha256=digest)
+    setup.options["details"] = replace(setup.options["details"], study_file=source.name, study_sha256=sha256_of(source))
     return setup
 
 

@@ -1,7 +1,6 @@
 """`stylobate inventory`: many objects of one table, ranked by how probably they overturn."""
 
 import sys
-from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -11,9 +10,10 @@ from stylobate import config, earthquakes, studies
 from stylobate.cli.command import Positional, command
 from stylobate.cli.options import Options
 from stylobate.cli.output import NETCDF, check_place, check_writable, print_json, save_plot
+from stylobate.cli.record_sources import RECORD_SOURCES, with_record_sources
 from stylobate.cli.study import executor_of, show
 from stylobate.cli.terminal import INTERRUPTED, log_lines
-from stylobate.config.options import COMPUTING, FIGURE, JSON, ONE_COMPONENT, SAMPLE, STEP, UNITS, Group, Option
+from stylobate.config.options import COMPUTING, FIGURE, JSON, Group, Option
 from stylobate.errors import FileError, Interrupted, ParameterError, UnsupportedError
 from stylobate.files import file_of
 
@@ -31,11 +31,7 @@ _TOML = ".toml"
     groups=(
         Group.of(
             "Inventory",
-            Option("records", "folder of records, pattern such as 'quakes/*.AT2', or file; repeat it", list[str]),
-            Option("sample_records", SAMPLE, list[str]),
-            UNITS,
-            STEP,
-            ONE_COMPONENT,
+            *RECORD_SOURCES,
             Option(
                 "property_samples", "number of samples of the uncertain numbers for each record; 20 by default", int
             ),
@@ -137,15 +133,7 @@ def _values(source: Path, options: Options) -> dict[str, Any]:
     values = config.read_config(source) if source.suffix == _TOML else {"objects": str(source)}
     stated = options.pick("property_samples", "limit_state", "seed", "confidence")
     values |= {_RENAMED.get(name, name): value for name, value in stated.items()}
-    records = values.get("records")
-    table: dict[str, Any] = dict(records) if isinstance(records, Mapping) else {"source": records} if records else {}
-    if options["records"] or options["sample_records"]:
-        table = {name: value for name, value in table.items() if name not in ("source", "event", "samples", "only")}
-        table |= {"source": tuple(options["records"])} if options["records"] else {}
-        table |= {"samples": tuple(options["sample_records"])} if options["sample_records"] else {}
-    if table.get("source") or table.get("event"):  # samples state their units
-        table |= options.pick("units", "step", "one_component")
-    return {**values, "records": table} if table else values
+    return with_record_sources(values, options)
 
 
 def _write_folder(found: "xr.Dataset", folder: Path) -> None:

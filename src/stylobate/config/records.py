@@ -420,8 +420,9 @@ def anchored(values: Any, folder: Path) -> Any:
     }
     if "records" in values:
         found["records"] = _source_from(values["records"], folder)
-    if isinstance(values.get("objects"), str):  # the table of an inventory
-        found["objects"] = _from(values["objects"], folder)
+    for name in ("objects", "columns"):  # a table of objects
+        if isinstance(values.get(name), str):
+            found[name] = _from(values[name], folder)
     for name in ("design_spectrum", "hazard"):
         if isinstance(values.get(name), Mapping):
             found[name] = _file_from(values[name], "file", folder)

@@ -21,6 +21,7 @@ from stylobate.config.parts import DEFAULT_MODEL, ColumnConfig, ModelConfig, des
 from stylobate.config.record_collection import RecordsConfig
 from stylobate.earthquakes.config.hazard import Hazard
 from stylobate.earthquakes.config.limit_states import LimitStateConfig, built_limit_states
+from stylobate.earthquakes.config.object_table import described_by_table
 from stylobate.earthquakes.fragility import HazardCurve
 from stylobate.earthquakes.fragility.displacement_limits import LimitStates
 from stylobate.earthquakes.fragility_study import site_hazard
@@ -190,7 +191,9 @@ class AssessConfig(Config):
     title
         Title of the report.
     columns
-        Columns by name: tables as `column`.
+        Columns by name: tables as `column`. Or a path of a table of objects (CSV, Excel, GeoPackage), as for an
+        inventory: it then states friction coefficients and, if `dissipation` does not, the central damping, of which
+        the low and the high level are half and twice.
     model
         Model of all columns.
     dissipation
@@ -301,7 +304,7 @@ class AssessConfig(Config):
             With one line for each mistake; if the dissipation is missing, a line shows how to state it.
         """
         problems: list[str] = []
-        given = dict(values)
+        given = described_by_table(values) if isinstance(values.get("columns"), str) else dict(values)
         for name, remedy in _NEEDED.items():
             if name not in given:
                 problems.append(f"{name} is missing: {remedy}")
