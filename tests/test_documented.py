@@ -164,7 +164,9 @@ def test_every_kind_and_number_is_on_the_page_of_the_files(part, extensions):
     assert f"```{{numbers}} {part}\n" in PAGES["descriptions.md"]
     listed = {one.name for one in fields.numbers(part)}
     named = {name for one in fields.kinds(part) for name in (*one.needed, *one.optional)}
-    assert named - {"motion", "motions"} == listed
+    composed = {"motion", "motions", "parts", "elevations"}
+    assert named - composed == listed
+    assert all(f"`{name}`" in PAGES["descriptions.md"] for name in named & composed)
 
 
 def test_every_spread_has_its_table():

@@ -11,7 +11,7 @@ from typing import Annotated, Any, Literal, Union, get_args, get_origin
 from pydantic import BaseModel
 from pydantic_core import PydanticUndefined
 
-from stylobate.column import SHAPES
+from stylobate.column import SHAPES, SHAPES_IN_FILES
 from stylobate.config import study_config
 from stylobate.kinds import loaded
 from stylobate.models.declared import MODELS
@@ -19,7 +19,7 @@ from stylobate.quantities import Parameter, parameters_of
 from stylobate.run_arguments import run_numbers
 
 PARTS: Mapping[str, Callable[[], Mapping[str, Callable[..., Any]]]] = {
-    "column": lambda: SHAPES,
+    "column": lambda: {**SHAPES, **SHAPES_IN_FILES},
     "model": lambda: MODELS,
     "motion": lambda: loaded("stylobate.base_motions.declared:MOTIONS"),
 }
@@ -69,19 +69,18 @@ def _kind(name: str, make: Callable[..., Any]) -> Kind:
     text = _as_noun((inspect.getdoc(make) or "").partition("\n")[0])
     if name == _READ_FROM_FILES:
         return Kind(name, text, (), ())
-    declared = parameters_of(make)
-    others = [
-        one
-        for one in ("motion", "motions")
-        if one in inspect.signature(make).parameters
-    ]
-    others += ["motion"] if "self" in inspect.signature(make).parameters else []
+    declared, arguments = parameters_of(make), inspect.signature(make).parameters
+    others = [one for one in ("motion", "motions", "parts") if one in arguments]
+    others += ["motion"] if "self" in arguments else []
     needed = [one for one in declared if declared[one].required]
     return Kind(
         name,
         text,
         (*others, *needed),
-        tuple(one for one in declared if not declared[one].required),
+        (
+            *(one for one in ("elevations",) if one in arguments),
+            *(one for one in declared if not declared[one].required),
+        ),
     )
 
 

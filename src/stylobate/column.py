@@ -1,14 +1,17 @@
 """The column: a rigid body of revolution that stands free on its flat circular base."""
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Annotated, Any, Self
+from itertools import accumulate
+from typing import Annotated, Any, Literal, Self
 
 import numpy as np
 
 from stylobate.elementwise import atan2, hypot, larger, sqrt
-from stylobate.errors import ParameterError, as_float, require_positive
+from stylobate.errors import ParameterError, as_float, require_not_negative, require_positive
+from stylobate.liquids import TankLiquid
+from stylobate.mass_properties import MassProperties, circumscribed_radius, inscribed_radius, joined, prism
 from stylobate.quantities import Declared, Quantity, checked_arguments, question_input
 
 STANDARD_GRAVITY = 9.80665
@@ -34,6 +37,13 @@ Density = Annotated[
 Gravity = Annotated[
     float, Quantity(symbol="g", unit="m/s²", text="acceleration of gravity", gt=0.0, slider=(0.5, 15.0))
 ]
+
+Sides = Annotated[int, Quantity(symbol="n", text="number of sides", ge=3, le=1000, whole=True)]
+Side = Annotated[float, Quantity(symbol="b", unit="m", text="length of a side", gt=0.0, unlikely_above=50.0)]
+Circle = Annotated[Literal["inscribed", "circumscribed"], Quantity(text="circle in place of the polygon")]
+Thickness = Annotated[float, Quantity(unit="m", text="thickness", gt=0.0)]
+LiquidDepth = Annotated[float, Quantity(symbol="H_l", unit="m", text="depth of the liquid", gt=0.0)]
+Liquid = Annotated[Literal["frozen", "impulsive", "level"], Quantity(text="motion of the liquid")]
 
 TopRadius = Annotated[float, Quantity(symbol="r_t", unit="m", text="radius of the top", gt=0.0)]
 MassHeight = Annotated[float, Quantity(symbol="h", unit="m", text="height of the centre of mass", gt=0.0)]
@@ -158,17 +168,7 @@ class Column(Declared):
         ParameterError
             If both density and mass are given, or neither.
         """
-        if (density is None) == (mass is None):
-            got = "neither" if density is None else f"{density!r} kg/m³ and {mass!r} kg"
-            raise ParameterError(f"density or mass: a solid column needs one of them (got {got}). State one.")
-        if density is None:
-            assert mass is not None
-            density = mass / (math.pi * (radius * radius) * height)
-            if not _LIGHTEST <= density <= _DENSEST:
-                question_input(
-                    f"mass: {mass:.6g} kg is unlikely, with a density of {density:.4g} kg/m³. "
-                    "Check its unit, such as g, kg or t, and those of radius and height."
-                )
+        density = _density(density, mass, math.pi * (radius * radius) * height)
         column = cls.frustum(radius=radius, top_radius=radius, height=height, density=density, gravity=gravity)
         return column if mass is None else replace(column, mass=mass)
 
@@ -234,6 +234,124 @@ class Column(Declared):
             height=height,
             gravity=gravity,
         )
+
+    @classmethod
+    @checked_arguments
+    def prism(
+        cls,
+        *,
+        sides: Sides,
+        side: Side,
+        height: Height,
+        density: Density | None = None,
+        mass: Mass | None = None,
+        circle: Circle = "inscribed",
+        gravity: Gravity = STANDARD_GRAVITY,
+    ) -> Self:
+        """Describe a solid prism on a regular polygon of `sides` of length `side` [m] that stands on a circle.
+
+        Mass and inertia are exact. Uplift and tipping angle of the inscribed circle are lower bounds of those of the
+        polygon in every direction, those of the circumscribed circle upper bounds. Overturning has no such bound.
+
+        Examples
+        --------
+        >>> pedestal = Column.prism(sides=4, side=0.5, height=1.2, density=2700.0)
+        >>> round(pedestal.radius, 3), round(pedestal.mass, 3)
+        (0.25, 810.0)
+        """
+        inner = inscribed_radius(sides, side)
+        density = _density(density, mass, 0.5 * sides * side * inner * height)
+        column = cls(
+            radius=inner if circle == "inscribed" else circumscribed_radius(sides, side),
+            **prism(sides, side, height, density)._asdict(),
+            height=height,
+            gravity=gravity,
+        )
+        return column if mass is None else replace(column, mass=mass)
+
+    @classmethod
+    @checked_arguments
+    def from_parts(
+        cls, parts: "Sequence[Column]", *, elevations: Sequence[float] | None = None, radius: Radius | None = None
+    ) -> Self:
+        """Join coaxial columns into one rigid body, such as a statue fixed to its plinth.
+
+        Parameters
+        ----------
+        parts
+            The columns, each with a height, from the bottom up.
+        elevations
+            Height of the base of each part above the floor [m]; by default each part stands on the part before it.
+            Parts may overlap, as a core in a tube does.
+        radius
+            Radius of the circle on which the body stands [m]; by default the radius of the lowest part. State it for a
+            body on feet or on a ring without mass, whose parts may all be above the floor.
+
+        Raises
+        ------
+        ParameterError
+            If there are no parts, if a part has no height or another gravity, if the elevations do not fit the parts,
+            or if no part stands on the floor and no radius is given.
+
+        Examples
+        --------
+        >>> plinth = Column.solid(radius=0.4, height=0.9, density=2300.0)
+        >>> statue = Column.frustum(radius=0.25, top_radius=0.15, height=1.7, density=2700.0)
+        >>> both = Column.from_parts([plinth, statue])
+        >>> round(both.height, 2), round(both.mass_height, 2), round(both.slenderness, 2)
+        (2.6, 0.87, 0.46)
+        """
+        bases = _bases_of(parts, elevations)
+        lowest = min(range(len(parts)), key=bases.__getitem__)
+        if radius is None and bases[lowest] > 0.0:
+            raise ParameterError(
+                f"elevations: no part stands on the floor (got {bases[lowest]!r} m for the lowest). "
+                "Lower the parts, or state the radius of their feet."
+            )
+        return cls(
+            radius=parts[lowest].radius if radius is None else radius,
+            **joined(map(_at, bases, parts))._asdict(),
+            height=max(base + float(one.height or 0.0) for base, one in zip(bases, parts, strict=True)),
+            gravity=parts[0].gravity,
+        )
+
+    @classmethod
+    @checked_arguments
+    def tank(
+        cls,
+        *,
+        radius: Radius,
+        height: Height,
+        wall_thickness: Thickness,
+        floor_thickness: Thickness | None = None,
+        density: Density,
+        liquid_depth: LiquidDepth,
+        liquid_density: Density = 1000.0,
+        liquid: Liquid = "frozen",
+        gravity: Gravity = STANDARD_GRAVITY,
+    ) -> Self:
+        """Describe an open rigid tank with a flat floor and liquid as a rigid body, in one limit of its motion.
+
+        The limit `liquid` is "frozen", liquid as a solid; "impulsive", for shaking much faster than the sloshing: the
+        impulsive mass without the weight of the rest; or "level", for motion much slower than the sloshing: all liquid
+        at its metacentre. No rigid body moves as a tank with liquid does: run all three. The floor is as thick as the
+        wall unless stated; lengths are in m, densities in kg/m³. `stylobate.theory.TankLiquid` has the equations.
+        """
+        floor = wall_thickness if floor_thickness is None else floor_thickness
+        inner = radius - wall_thickness
+        if inner <= 0.0:
+            raise ParameterError(f"wall_thickness: must be below the radius (got {wall_thickness!r} m). Reduce it.")
+        if liquid_depth > height - floor:
+            room = f"{height - floor:.6g} m"
+            raise ParameterError(f"liquid_depth: must be at most {room} (got {liquid_depth!r} m). Reduce it.")
+        plate = cls.solid(radius=inner, height=floor, density=density, gravity=gravity)
+        wall = cls.hollow(radius=radius, inner_radius=inner, height=height, density=density, gravity=gravity)
+        contents = cls.solid(radius=inner, height=liquid_depth, density=liquid_density, gravity=gravity)
+        if liquid == "frozen":
+            return cls.from_parts([wall, plate, contents], elevations=[0.0, 0.0, floor])
+        moving = TankLiquid(radius=inner, depth=liquid_depth, gravity=gravity).point_mass(contents.mass, liquid)
+        whole = joined([_at(0.0, wall), _at(0.0, plate), moving.raised(floor)])
+        return cls(radius=radius, **whole._asdict(), height=height, gravity=gravity)
 
     @classmethod
     def dimensionless(
@@ -417,6 +535,53 @@ class Column(Declared):
         return float((1.0 - self.housner_restitution**2) * highest / (2.0 * action))
 
 
+def _at(elevation: float, one: Column) -> MassProperties:
+    """Return the mass properties of a column whose base is at an `elevation` [m]."""
+    return MassProperties(one.mass, elevation + one.mass_height, one.transverse_inertia, one.axial_inertia)
+
+
+def _bases_of(parts: Sequence[Column], elevations: Sequence[float] | None) -> list[float]:
+    """Return the heights of the bases of the parts of a body; raise ParameterError if the parts do not fit together."""
+    if not parts:
+        raise ParameterError("parts: a body needs at least one part (got none). State its columns from the bottom up.")
+    for place, one in enumerate(parts):
+        if not isinstance(one, Column):
+            raise ParameterError(
+                f"parts[{place}]: must be a column (got {one!r}). Describe it by Column.solid or another."
+            )
+        if one.height is None:
+            raise ParameterError(f"parts[{place}]: has no height (got {one!r}). State the height of the part.")
+        if one.gravity != parts[0].gravity:
+            raise ParameterError(
+                f"parts[{place}]: gravity differs from that of the first part (got {one.gravity!r} m/s², not "
+                f"{parts[0].gravity!r} m/s²). Use the same gravity for all parts."
+            )
+    if elevations is None:
+        return list(accumulate((float(one.height or 0.0) for one in parts[:-1]), initial=0.0))
+    if len(elevations) != len(parts):
+        raise ParameterError(
+            f"elevations: must have one number for each of {len(parts)} parts (got {len(elevations)}). State all."
+        )
+    return [require_not_negative(f"elevations[{place}]", one, "m") for place, one in enumerate(elevations)]
+
+
+def _density(density: float | None, mass: float | None, volume: float) -> float:
+    """Return the density of a solid body that states either its density or its mass."""
+    if (density is None) == (mass is None):
+        got = "neither" if density is None else f"{density!r} kg/m³ and {mass!r} kg"
+        raise ParameterError(f"density or mass: a solid column needs one of them (got {got}). State one.")
+    if density is not None:
+        return density
+    assert mass is not None
+    density = mass / volume
+    if not _LIGHTEST <= density <= _DENSEST:
+        question_input(
+            f"mass: {mass:.6g} kg is unlikely, with a density of {density:.4g} kg/m³. "
+            "Check its unit, such as g, kg or t, and those of radius and height."
+        )
+    return density
+
+
 SHAPES: Mapping[str, Callable[..., Column]] = {
     "solid": Column.solid,
     "hollow": Column.hollow,
@@ -425,3 +590,10 @@ SHAPES: Mapping[str, Callable[..., Column]] = {
     "given": Column,
 }
 """The ways to describe a column, by their name in files and on the command line."""
+
+SHAPES_IN_FILES: Mapping[str, Callable[..., Column]] = {
+    "prism": Column.prism,
+    "tank": Column.tank,
+    "parts": Column.from_parts,
+}
+"""Further ways to describe a column in files; the command line and the laboratory have no options for them."""

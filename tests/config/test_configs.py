@@ -107,6 +107,24 @@ COLUMNS = {
     'shape = "given"\nradius = 0.5\nmass_height = 5\nmass=1e3\ntransverse_inertia=8e3\naxial_inertia=125': sb.Column(
         radius=0.5, mass_height=5.0, mass=1e3, transverse_inertia=8e3, axial_inertia=125.0
     ),
+    "sides = 6\nside = 0.4\nheight = 2\nmass = 1500": sb.Column.prism(sides=6, side=0.4, height=2.0, mass=1500.0),
+    'shape = "prism"\nsides = 4\nside = "60 cm"\nheight = 2\ndensity = 2300\ncircle = "circumscribed"': sb.Column.prism(
+        sides=4, side=0.6, height=2.0, density=2300.0, circle="circumscribed"
+    ),
+    'diameter = 2\nheight = 3\nwall_thickness = "6 mm"\ndensity = 7850\nliquid_depth = 2.5\nliquid = "level"': (
+        sb.Column.tank(radius=1.0, height=3.0, wall_thickness=0.006, density=7850.0, liquid_depth=2.5, liquid="level")
+    ),
+    "parts = [{diameter = 0.8, height = 1, density = 2300}, {sides = 4, side = 0.4, height = 1.5, density = 2700}]": (
+        sb.Column.from_parts(
+            [
+                sb.Column.solid(radius=0.4, height=1.0, density=2300.0),
+                sb.Column.prism(sides=4, side=0.4, height=1.5, density=2700.0),
+            ]
+        )
+    ),
+    'diameter = 1\nelevations = ["10 cm"]\nparts = [{radius = 0.4, height = 1, density = 2300}]': sb.Column.from_parts(
+        [sb.Column.solid(radius=0.4, height=1.0, density=2300.0)], elevations=[0.1], radius=0.5
+    ),
 }
 
 
@@ -127,6 +145,19 @@ def test_every_shape_of_column_can_be_written(text, tmp_path):
     setup = described(f"duration = 5.0\n[column]\n{text}", tmp_path).build()
     assert setup.model == sb.Wobbling(COLUMNS[text])
     assert setup.motion == BASE_AT_REST
+
+
+def test_a_mistake_in_a_part_of_a_column_is_named_with_its_place():
+    stone = {"radius": 0.4, "height": 1.0, "density": 2300.0}
+    with pytest.raises(ConfigError) as caught:
+        SimulationConfig.parse(
+            {"column": {"parts": [stone, {**stone, "hight": 2.0}, {"radius": 0.4}]}, "duration": 1.0}
+        )
+    lines = str(caught.value)
+    assert "column.parts.1.hight does not belong" in lines
+    assert "column.parts.2.height is missing" in lines
+    with pytest.raises(ConfigError, match=r"^column: parts\[1\]: has no height"):
+        SimulationConfig.parse({"column": {"parts": [stone, {"slenderness": 0.1}]}, "duration": 1.0}).build()
 
 
 @pytest.mark.parametrize("motion", MOTIONS.values(), ids=lambda motion: type(motion).__name__)

@@ -54,6 +54,9 @@ def test_a_run_needs_a_duration_in_a_file_where_it_needs_one_in_python_and_has_t
         ({"radius": 0.5, "inner_radius": 0.2, "height": 5.0, "density": 2000.0}, "hollow"),
         ({"radius": 0.5, "top_radius": 0.4, "height": 5.0, "density": 2000.0}, "frustum"),
         ({"slenderness": 0.1}, "dimensionless"),
+        ({"sides": 4, "side": 0.5, "height": 2.0, "mass": 900.0}, "prism"),
+        ({"radius": 1.0, "height": 2.0, "wall_thickness": 0.01, "density": 7850.0, "liquid_depth": 1.5}, "tank"),
+        ({"parts": [{"shape": "solid", "radius": 0.5, "height": 5.0, "density": 2000.0}]}, "parts"),
         (
             {"radius": 1.0, "mass_height": 5.0, "mass": 1.0, "transverse_inertia": 20.0, "axial_inertia": 0.5},
             "given",

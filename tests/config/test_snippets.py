@@ -42,6 +42,19 @@ CASES = {
         "tilt": [0.05, 0.01],
         "duration": 3.0,
     },
+    "column of parts": {
+        "column": {
+            "shape": "parts",
+            "parts": [
+                {"shape": "prism", "sides": 4, "side": 0.8, "height": 1.0, "density": 2300.0},
+                {"shape": "frustum", "radius": 0.3, "top_radius": 0.2, "height": 1.5, "density": 2700.0},
+            ],
+            "elevations": [0.05, 1.05],
+            "radius": 0.35,
+        },
+        "tilt": [0.05, 0.01],
+        "duration": 3.0,
+    },
     "rules": {"column": COLUMN, "motion": STRAIGHT, "duration": 30.0, "rules": {"periods": 4.0}},
     "waves in three directions": {
         "column": COLUMN,

@@ -10,7 +10,7 @@ from pydantic_core import PydanticCustomError
 
 from stylobate.base_motions import BaseMotion, Record
 from stylobate.base_motions.declared import MOTIONS
-from stylobate.column import SHAPES, Column
+from stylobate.column import SHAPES, SHAPES_IN_FILES, Column
 from stylobate.config.description import Config
 from stylobate.config.records import RecordMotion
 from stylobate.errors import ParameterError
@@ -118,17 +118,41 @@ class DescribedColumn(Config):
         return column
 
 
-_BY_SHAPE = configs_of(DescribedColumn, "shape", SHAPES)
+class ColumnOfColumns(DescribedColumn):
+    """Several columns as one rigid body, and numbers."""
+
+    parts: tuple["ColumnConfig", ...]
+    elevations: tuple[Annotated[float, Quantity(unit="m")], ...] | None = None
+
+    def build(self) -> Column:
+        """Return the column."""
+        numbers = self.model_dump(exclude={"shape", "parts"})
+        column: Column = self.make([one.build() for one in self.parts], **numbers)
+        return column
+
+
+def _column_config(shape: str, make: Callable[..., Column]) -> type[Config]:
+    """Return the description class of a shape; one that is made of columns describes them too."""
+    base = ColumnOfColumns if "parts" in inspect.signature(make).parameters else DescribedColumn
+    return config_of_kind(base, "shape", shape, make)
+
+
+_BY_SHAPE = {shape: _column_config(shape, make) for shape, make in {**SHAPES, **SHAPES_IN_FILES}.items()}
 
 
 def implied_shape(names: Iterable[str]) -> str | None:
-    """Return the shape to which one of these `names` belongs exclusively, or None."""
+    """Return the shape to which one of these `names` belongs exclusively, or None; shapes of files come first."""
     given = set(names)
-    for shape, make in SHAPES.items():
-        others = {name for other in SHAPES.values() if other is not make for name in parameters_of(other)}
-        if given & (parameters_of(make).keys() - others):
-            return shape
+    for shapes, among in ((SHAPES_IN_FILES, {**SHAPES, **SHAPES_IN_FILES}), (SHAPES, SHAPES)):
+        for shape, make in shapes.items():
+            others = {name for other in among.values() if other is not make for name in _names_of(other)}
+            if given & (_names_of(make) - others):
+                return shape
     return None
+
+
+def _names_of(make: Callable[..., Column]) -> set[str]:
+    return set(inspect.signature(make).parameters)
 
 
 def is_dimensionless(described: Any) -> bool:

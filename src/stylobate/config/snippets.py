@@ -46,18 +46,23 @@ def as_python(description: SimulationConfig) -> str:
     print(run.outcome.name, "-", run.reason)
     sb.plot(run).savefig("run.png")
     """
-    column, model = description.column.model_dump(exclude_defaults=True), description.model
-    shape = str(getattr(description.column, "shape"))  # noqa: B009  every member of the union has one
-    column.pop("shape", None)
-    maker = "sb.Column" if shape == "given" else f"sb.Column.{shape}"
+    model = description.model
     numbers = model.model_dump(exclude={"kind"}, exclude_defaults=True)
-    lines = ["import stylobate as sb", "", f"column = {maker}({_keywords(column)})"]
+    lines = ["import stylobate as sb", "", f"column = {_column(description.column)}"]
     lines.append(f"model = {_maker(MODELS, model.kind)}({_joined(['column', *_of_model(model.make, numbers)])})")
     moved = description.motion.kind != "rest"
     if moved:
         lines.append(f"motion = {_motion(description.motion)}")
     lines += _run(description, moved=moved)
     return "\n".join([*lines, *_SHOWN, ""])
+
+
+def _column(column: Any) -> str:
+    """Return the Python expression of a described column."""
+    numbers = _keywords(column.model_dump(exclude={"shape", "parts"}, exclude_defaults=True))
+    maker = "" if column.make is sb.Column else f".{column.make.__name__}"
+    parts = [f"[{', '.join(_column(one) for one in column.parts)}]"] if hasattr(column, "parts") else []
+    return f"sb.Column{maker}({_joined([*parts, numbers])})"
 
 
 def _of_model(make: Callable[..., Any], numbers: Mapping[str, Any]) -> Iterable[str]:

@@ -10,6 +10,7 @@ from typing import Any, get_args
 from pydantic_core import PydanticUndefined
 
 from stylobate.base_motions.declared import composite_kinds, motion_quantities
+from stylobate.column import SHAPES
 from stylobate.config.description import Config
 from stylobate.config.parts import DESCRIBED_MODELS, ColumnConfig, MotionConfig, moves
 from stylobate.engine.parameters import COLUMN_NAMES, MOTION_NAMES
@@ -26,7 +27,11 @@ def about(limits: Limits) -> answers.About:
     return answers.About(
         version=version("stylobate"),
         limits=asdict(limits),
-        shapes=[answers.Kind(**one) for one in _kinds(_members(ColumnConfig), "shape")],
+        shapes=[
+            answers.Kind(**one)
+            for one in _kinds(_members(ColumnConfig), "shape")
+            if one["kind"] in SHAPES  # the others are available in files only
+        ],
         models=[answers.Kind(**one) for one in _kinds(DESCRIBED_MODELS, "kind")],
         motions=[
             answers.Kind(**one, moves=moves(one))

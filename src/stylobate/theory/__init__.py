@@ -6,6 +6,7 @@ with the tipping angle α_c, and η the damping. Arguments are numbers or arrays
 numbers; arrays give arrays of the broadcast shape, with NaN (False in a truth value) where there is no solution.
 """
 
+from stylobate.liquids import TankLiquid
 from stylobate.theory.averaging import AveragedRolling, HighFrequencyRolling, averaged_rolling, high_frequency_rolling
 from stylobate.theory.block_motion import BlockPhase, BlockSegment
 from stylobate.theory.conveying import BlockCycle, block_cycle, hopping_speed, mean_block_speed
@@ -83,6 +84,7 @@ __all__ = [
     "SlippingRolling",
     "StartOfMotion",
     "SteadyRolling",
+    "TankLiquid",
     "angle_of_turn",
     "averaged_rolling",
     "block_cycle",
