@@ -20,6 +20,8 @@ PAGES = (
     "how-to/inventory",
     "how-to/kitchen-experiments",
     "how-to/sliding-limits",
+    "how-to/square-bases",
+    "how-to/tanks",
 )
 _BLOCK = re.compile(
     r"(% skip: next\n\n)?^```python\n(.*?)^```$", re.DOTALL | re.MULTILINE
