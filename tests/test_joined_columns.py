@@ -2,6 +2,7 @@
 
 import math
 from itertools import permutations
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -10,6 +11,8 @@ from hypothesis import strategies as st
 from scipy.integrate import quad
 
 import stylobate as sb
+from stylobate.config import read_config
+from stylobate.earthquakes import AssessConfig
 from stylobate.errors import ParameterError
 
 lengths = st.floats(0.05, 20.0)
@@ -200,3 +203,11 @@ def test_an_impossible_prism_is_refused(stated, message):
     with pytest.raises(ParameterError) as caught:
         sb.Column.prism(side=0.6, height=2.0, **stated)
     assert str(caught.value) == message
+
+
+def test_the_study_of_a_cask_describes_the_cask_of_its_page():
+    described = AssessConfig.parse(read_config(Path(__file__).parents[1] / "examples" / "cask" / "study.toml"))
+    overpack = sb.Column.hollow(radius=1.685, inner_radius=0.935, height=6.1, density=3240.0)
+    canister = sb.Column.solid(radius=0.87, height=4.8, mass=41000.0)
+    cask = sb.Column.from_parts([overpack, canister], elevations=[0.0, 0.5])
+    assert described.columns["cask"].build() == cask
