@@ -293,6 +293,22 @@ def test_another_shape_or_kind_on_the_command_line_replaces_that_of_the_file(tmp
     assert (told["motion"]["stroke"], told["motion"]["frequency"]) == (0.01, 2.0)
 
 
+@pytest.mark.parametrize(
+    ("column", "radius"),
+    [
+        ("radius = 0.5\nheight = 4.0\ndensity = 2700.0\n", 0.4),
+        ("radius = 0.5\ninner_radius = 0.2\nheight = 4.0\ndensity = 2700.0\n", 0.4),
+        ("parts = [{radius = 0.5, height = 4.0, density = 2700.0}]\n", 0.4),
+    ],
+)
+def test_a_number_on_the_command_line_keeps_the_shape_that_the_file_implies(column, radius, tmp_path, capsys):
+    description = tmp_path / "run.toml"
+    description.write_text(f"duration = 1.0\n[column]\n{column}")
+    assert run(["simulate", str(description), "--radius", str(radius), "--json"]) == 0
+    made = json.loads(capsys.readouterr().out)["provenance"]["column"]
+    assert (made["radius"], made["height"]) == (radius, 4.0)
+
+
 def test_an_empty_boundary_is_told_in_words(capsys):
     arguments = ["--motion", "straight", "--acceleration", "0.1", "--angular-frequency-range", "2", "2.5"]
     assert run(["boundary", *COLUMN, *arguments, "--bounds", "0.1", "0.12", "--at", "0.11"]) == 0

@@ -254,6 +254,7 @@ def _column(values: dict[str, Any], options: Options, problems: list[str]) -> li
                 f"column: the file describes another shape (got {shape!r}). "
                 f"To replace it, add --shape {implied or 'solid'} and all of its numbers."
             )
+        values["column"] = {**table, "shape": shape}  # an implied shape is kept
     shape = shape or implied or "solid"
     numbers, names = _numbers(part, shape, options, problems)
     merge(values, "column", {**numbers, "shape": shape}, tag="shape")
