@@ -10,7 +10,7 @@ import numpy as np
 
 from stylobate.elementwise import atan2, hypot, larger, sqrt
 from stylobate.errors import ParameterError, as_float, require_not_negative, require_positive
-from stylobate.liquids import TankLiquid
+from stylobate.liquids import TankLiquid, point_mass
 from stylobate.mass_properties import MassProperties, circumscribed_radius, inscribed_radius, joined, prism
 from stylobate.quantities import Declared, Quantity, checked_arguments, question_input
 
@@ -41,7 +41,8 @@ Gravity = Annotated[
 Sides = Annotated[int, Quantity(symbol="n", text="number of sides", ge=3, le=1000, whole=True)]
 Side = Annotated[float, Quantity(symbol="b", unit="m", text="length of a side", gt=0.0, unlikely_above=50.0)]
 Circle = Annotated[Literal["inscribed", "circumscribed"], Quantity(text="circle in place of the polygon")]
-Thickness = Annotated[float, Quantity(unit="m", text="thickness", gt=0.0)]
+WallThickness = Annotated[float, Quantity(unit="m", text="thickness of the wall", gt=0.0)]
+FloorThickness = Annotated[float, Quantity(unit="m", text="thickness of the floor", gt=0.0)]
 LiquidDepth = Annotated[float, Quantity(symbol="H_l", unit="m", text="depth of the liquid", gt=0.0)]
 Liquid = Annotated[Literal["frozen", "impulsive", "level"], Quantity(text="motion of the liquid")]
 
@@ -322,8 +323,8 @@ class Column(Declared):
         *,
         radius: Radius,
         height: Height,
-        wall_thickness: Thickness,
-        floor_thickness: Thickness | None = None,
+        wall_thickness: WallThickness,
+        floor_thickness: FloorThickness | None = None,
         density: Density,
         liquid_depth: LiquidDepth,
         liquid_density: Density = 1000.0,
@@ -349,7 +350,7 @@ class Column(Declared):
         contents = cls.solid(radius=inner, height=liquid_depth, density=liquid_density, gravity=gravity)
         if liquid == "frozen":
             return cls.from_parts([wall, plate, contents], elevations=[0.0, 0.0, floor])
-        moving = TankLiquid(radius=inner, depth=liquid_depth, gravity=gravity).point_mass(contents.mass, liquid)
+        moving = point_mass(TankLiquid(radius=inner, depth=liquid_depth, gravity=gravity), contents.mass, liquid)
         whole = joined([_at(0.0, wall), _at(0.0, plate), moving.raised(floor)])
         return cls(radius=radius, **whole._asdict(), height=height, gravity=gravity)
 

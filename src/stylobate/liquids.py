@@ -5,6 +5,7 @@ Potential flow of small amplitude under a horizontal acceleration of the tank, a
 
 import math
 from dataclasses import dataclass
+from typing import Literal
 
 from stylobate.errors import require_positive
 from stylobate.mass_properties import MassProperties
@@ -92,15 +93,6 @@ class TankLiquid:
         root = _ROOTS[0]
         return math.sqrt(root * self.gravity / self.radius * math.tanh(root * self.depth / self.radius))
 
-    def point_mass(self, mass: float, limit: str) -> MassProperties:
-        """Return the point that stands for a `mass` [kg] of liquid, with heights above the floor of the tank.
-
-        The limit "impulsive" is shaking much faster than the sloshing, "level" motion much slower.
-        """
-        if limit == "impulsive":
-            return MassProperties(mass * self.impulsive_fraction, self.impulsive_height, 0.0, 0.0)
-        return MassProperties(mass, self.metacentre, 0.0, 0.0)
-
     def _modes(self) -> list[tuple[float, float]]:
         """Return the fraction and the height, in depths, of each mode of sloshing."""
         ratio, found = self.depth / self.radius, []
@@ -113,6 +105,16 @@ class TankLiquid:
             bend = 4.0 * small / (1.0 - small * small) - 1.0 / slope
             found.append((2.0 * slope / (x * (root * root - 1.0)), 1.0 + bend / x))
         return found
+
+
+def point_mass(liquid: TankLiquid, mass: float, limit: Literal["impulsive", "level"]) -> MassProperties:
+    """Return the point that stands for a `mass` [kg] of liquid, at a height above the floor of the tank.
+
+    The limit "impulsive" is shaking much faster than the sloshing, "level" motion much slower.
+    """
+    if limit == "impulsive":
+        return MassProperties(mass * liquid.impulsive_fraction, liquid.impulsive_height, 0.0, 0.0)
+    return MassProperties(mass, liquid.metacentre, 0.0, 0.0)
 
 
 def _root(number: int) -> float:

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import stylobate as sb
+from stylobate.column import SHAPES
 from stylobate.config import SimulationConfig, study_config
 from stylobate.lab.options import presets
 from stylobate.lab.tasks import speed_of_pictures
@@ -213,6 +214,15 @@ def test_pictures_of_every_preset_show_each_swing_of_the_base(preset):
     assert pictures_in_a_second * end <= 1400.5
     if setup.motion.period is not None:
         assert pictures_in_a_second * setup.motion.period >= 4.0
+
+
+def test_the_page_offers_the_shapes_of_plain_numbers_and_runs_those_of_files(client):
+    assert {one["kind"] for one in client.get("/api/about").json()["shapes"]} == set(SHAPES)
+    stone = {"shape": "prism", "sides": 4, "side": 0.6, "height": 2.0, "density": 2700.0}
+    body = {"column": {"shape": "parts", "parts": [stone, stone]}, "tilt": [0.02, 0.0], "duration": 1.0}
+    answer = client.post("/api/simulate", json=body).json()
+    made = sb.Column.prism(sides=4, side=0.6, height=4.0, density=2700.0)
+    assert answer["column"]["slenderness"] == pytest.approx(made.slenderness, rel=SENT)
 
 
 def test_it_tells_under_which_motions_a_run_needs_no_duration(client):
