@@ -17,7 +17,11 @@ from stylobate.earthquakes import assess, assessment_report, assessment_tables
 from stylobate.earthquakes.assessment.assess import summary_of
 from stylobate.earthquakes.assessment.margins import demands_to_margin, states_at_scales
 from stylobate.earthquakes.assessment.report import document
-from stylobate.earthquakes.assessment.report.answers import answer_table, probability_over_records
+from stylobate.earthquakes.assessment.report.answers import (
+    answer_table,
+    overturning_probability,
+    probability_over_records,
+)
 from stylobate.earthquakes.assessment.report.figures import (
     history_figure,
     margins_figure,
@@ -231,7 +235,8 @@ def test_a_column_that_always_overturns_and_one_that_never_moves_are_described_s
     assert row[1] == "NOT shown safe"
     assert row[2].startswith(
         "Overturned at the recorded level under the one record (strong). 100 % of the small variations overturn it "
-        "(strong). Smallest overturning scale of all cases: at most "
+        "(strong). Under strong it needs a friction of 0.712, more than stated: its base would slip. Smallest "
+        "overturning scale of all cases: at most "
     )
     findings = dict(column_findings(never, "stout").rows)
     assert findings["tilt, at the recorded level"] == "It did not rock."
@@ -312,8 +317,10 @@ def test_slip_is_answered_on_the_first_page_and_tabulated_in_millimetres(sliding
     slim, stout = answer_table(sliding, 1.0).rows
     own = sliding.data["sliding"].sel(column="stout", scale=1.0)
     assert stout[1] == "Slides before it rocks"
-    low, high = (1000.0 * float(own[f"all_peak_slip_{end}"]) for end in ("low", "high"))
-    assert stout[2].startswith(f"slips {low:.3g} to {high:.3g} mm (90 % of runs); slip 20 mm: ")
+    strong = own.sel(record="strong")
+    stated, low, high = (1000.0 * float(strong[f"peak_slip{end}"]) for end in ("", "_low", "_high"))
+    interval = f"{low:.3g} to {high:.3g}, 90 % of its variations"
+    assert stout[2].startswith(f"slips up to {stated:.3g} mm ({interval}) under strong; slip 20 mm: ")
     assert slim[1] != "Slides before it rocks"
     table = assessment_tables(sliding)["slip"]
     rows = {row[1]: dict(zip(table.header, row, strict=True)) for row in table.rows}
@@ -325,6 +332,33 @@ def test_slip_is_answered_on_the_first_page_and_tabulated_in_millimetres(sliding
     expected = {name: "reached" if float(own["peak_slip"].sel(record=name)) >= 0.02 else "not reached" for name in rows}
     assert reached == expected
     assert set(reached.values()) == {"reached", "not reached"}
+
+
+def test_variations_whose_friction_reaches_the_slenderness_are_counted_and_may_rock(sliding):
+    own = sliding.data["sliding"]
+    few = own.assign(known_variations=own["known_variations"] * 0 + 9)
+    _, stout = answer_table(replace(sliding, data={**sliding.data, "sliding": few}), 1.0).rows
+    rocks = str(overturning_probability(sliding, "stout", 1.0))
+    assert stout[2].endswith(f"but in 25 % of the variations friction reaches r/h, and it may rock: overturns {rocks}")
+    assert "may rock" not in answer_table(sliding, 1.0).rows[1][2]
+    rows = assessment_tables(sliding)["summary"].rows
+    assert {row[0] for row in rows if "slides" in row} == {"stout"}
+
+
+def test_the_command_the_inputs_and_what_the_table_carries_are_in_the_report(found):
+    details = {
+        **found.setting["details"],
+        "command": "stylobate assess objects.csv --records 'my quakes'",
+        "table_file": "objects.csv",
+        "table_sha256": "cd34" * 16,
+        "about_columns": {"stout": "room 12, inventory number B-007"},
+    }
+    stated = replace(found, setting={**found.setting, "details": details})
+    listed, _ = section(stated, "How to repeat this assessment")
+    assert "Command: stylobate assess objects.csv --records 'my quakes'" in listed.items
+    assert f"Table of objects: objects.csv, SHA-256 {'cd34' * 16}" in listed.items
+    assert f"Study file: two.toml, SHA-256 {'ab12' * 16}" in listed.items
+    assert column_findings(stated, "stout").rows[0] == ("object", "room 12, inventory number B-007")
 
 
 def test_runs_without_slip_of_a_column_that_slides_first_are_not_shown(sliding, found):
@@ -639,7 +673,7 @@ def test_the_section_of_outcomes_states_what_varied_or_that_nothing_did(found):
     words, table, *_ = section(found, title)
     assert "Each verdict was repeated 20 times with everything varied at once" in words
     assert "the tolerance, and the contact law" in words
-    assert "small variations (90 % interval)" in table.header
+    assert "small variations" in table.header
     one_law = replace(found, setting={**found.setting, "contact_laws": False})
     assert "the contact law" not in section(one_law, title)[0]
     without = {name: one for name, one in found.data.items() if name != "variations"}
@@ -647,7 +681,7 @@ def test_the_section_of_outcomes_states_what_varied_or_that_nothing_did(found):
     bare = replace(bare, data={**without, "summary": summary_of(without, ["strong", "strong"])})
     words, table, *_ = section(bare, title)
     assert "No verdict was repeated under small variations (variations = 0), so it is not known" in words
-    assert "small variations (90 % interval)" not in table.header
+    assert "small variations" not in table.header
     assert "No verdict was repeated under small variations here" in summary_text(bare, [])
     assert "were therefore repeated under small variations" in summary_text(found, [])
     assert "small variations disagree" not in assessment_tables(bare)["summary"].header
@@ -668,7 +702,7 @@ def test_rows_of_outcomes_that_say_nothing_are_counted_and_left_out(found):
         row = dict(zip(table.header[3:], cells, strict=True))
         states = verdicts["overturned"].sel(column=column, record=record, scale=float(scale), vertical="with")
         for level in ("low", "central", "high"):
-            assert (row[level] == "overturned") == bool(states.sel(dissipation=level) == 1)
+            assert (row[level] == "yes") == bool(states.sel(dissipation=level) == 1)
 
 
 def test_the_probability_counts_each_record_once_and_undecided_runs_on_both_sides():

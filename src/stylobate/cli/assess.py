@@ -1,5 +1,6 @@
 """`stylobate assess`: columns under a folder of records, with a self-contained report."""
 
+import shlex
 import sys
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
     from stylobate.results.assessment import Assessment
 
 _TOML = ".toml"
+_HEAD = ("title", "author", "project")
 _SHOWN = ("column", "scale", "did not overturn it", "overturned it", "not decided", "undecided under small variations")
 
 
@@ -36,7 +38,12 @@ _SHOWN = ("column", "scale", "did not overturn it", "overturned it", "not decide
         text="study, a TOML file; a table of objects (.csv, .xlsx, .gpkg); or a saved assessment (.nc) to show again",
         required=True,
     ),
-    groups=(Group.of("Records", *RECORD_SOURCES), COMPUTING.reduced_to("threads"), Group.of("Output", JSON)),
+    groups=(
+        Group.of("Records", *RECORD_SOURCES),
+        Group.of("Report", *(Option(name, f"{name} of the report", str) for name in _HEAD)),
+        COMPUTING.reduced_to("threads"),
+        Group.of("Output", JSON),
+    ),
 )
 def assess(options: Options) -> None:
     """Assess whether columns survive records, and how robust the answer is.
@@ -69,14 +76,13 @@ def assess(options: Options) -> None:
         options.refuse_unused(f"to show {source}, for which it computes nothing")
     else:
         values = config.read_config(source) if source.suffix == _TOML else {"columns": str(source)}
-        setup = _described(with_record_sources(values, options), file, target)
+        values = {**with_record_sources(values, options), **options.pick(*_HEAD)}
+        store, threads = options["store"] or target / "store", options["threads"]
         options.refuse_unused()
+        setup = _described(values, file, target, _command(options, file))
     print(f"stylobate: writing into {target}", file=sys.stderr)
     with _locked(target):
-        if setup is None:
-            result = _loaded(source)
-        else:
-            result = _computed(setup, options["store"] or target / "store", options["threads"])
+        result = _loaded(source) if setup is None else _computed(setup, store, threads)
         lines = part_lines()
         drawn = None if lines is None else partial(lines, "drawing figures")
         report = earthquakes.assessment_report(result, target, pdf=pdf, progress=drawn)
@@ -88,7 +94,7 @@ def assess(options: Options) -> None:
         rows = [[row[place] for place in shown] for row in summary.rows]
         print_table(str(result.setting["title"]), rows, [summary.header[place] for place in shown])
         print((target / "summary.txt").read_text(encoding="utf-8").partition("\n")[2])
-        print(f"report: {report}")
+        print(f"report: {report.with_suffix('.pdf') if pdf else report}")
 
 
 @contextmanager
@@ -124,11 +130,25 @@ def _loaded(source: Path) -> "Assessment":
     return Assessment.load(source)
 
 
-def _described(values: Mapping[str, Any], source: Path, target: Path) -> "AssessmentSetup":
+def _command(options: Options, source: Path) -> str:
+    """Return the command that repeats the computation, with the options that change its result."""
+    words = ["stylobate", "assess", source.name]
+    for option in RECORD_SOURCES:
+        value = options[option.name]
+        given = value if isinstance(value, (list, tuple)) else [value]
+        for one in given:
+            if one is not None and one is not False:
+                words += [option.written_flag, *([] if one is True else [str(one)])]
+    return shlex.join(words)
+
+
+def _described(values: Mapping[str, Any], source: Path, target: Path, command: str) -> "AssessmentSetup":
     description = earthquakes.AssessConfig.parse(values)
     _refuse_folder_of_another(target, description.title)
     setup = description.build()
-    setup.options["details"] = replace(setup.options["details"], study_file=source.name, study_sha256=sha256_of(source))
+    setup.options["details"] = replace(
+        setup.options["details"], study_file=source.name, study_sha256=sha256_of(source), command=command
+    )
     return setup
 
 

@@ -64,6 +64,12 @@ class ReportDetails:
         Date of the assessment, such as "2026-05-14"; by default the day on which it is computed.
     study_file, study_sha256
         Name of the study file and its SHA-256; `stylobate assess` fills them in.
+    command
+        Command that repeats the assessment; `stylobate assess` fills it in.
+    table_file, table_sha256
+        Name of the table of objects and its SHA-256, if the columns come from one.
+    about_columns
+        Inventory number, place or material of a column, by its name.
     about_records
         Event, station, magnitude or distance of a record, by the name of the record.
     design_spectrum
@@ -77,6 +83,10 @@ class ReportDetails:
     date: str = ""
     study_file: str = ""
     study_sha256: str = ""
+    command: str = ""
+    table_file: str = ""
+    table_sha256: str = ""
+    about_columns: Mapping[str, str] = field(default_factory=dict)
     about_records: Mapping[str, str] = field(default_factory=dict)
     design_spectrum: DesignSpectrum | None = None
     spectral_period: float = 1.0
@@ -86,4 +96,5 @@ class ReportDetails:
 
     def values(self) -> dict[str, Any]:
         """Return the details as plain values that JSON can hold."""
-        return {**asdict(self), "about_records": dict(self.about_records)}
+        about = {"about_records": dict(self.about_records), "about_columns": dict(self.about_columns)}
+        return {**asdict(self), **about}

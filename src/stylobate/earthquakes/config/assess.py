@@ -36,6 +36,7 @@ from stylobate.errors import (
     require_positive,
     require_whole,
 )
+from stylobate.files import file_of, sha256_of
 from stylobate.models import Model
 from stylobate.models.declared import model_quantities
 from stylobate.records.tables import TextTable
@@ -243,6 +244,10 @@ class AssessConfig(Config):
         Project, for the report.
     date
         Date, for the report.
+    about_columns
+        Text on each column, by its name, for the report.
+    table
+        Path of the table of objects that `columns` named.
     about_records
         Text on each record, by its name, for the report.
     hazard
@@ -287,6 +292,8 @@ class AssessConfig(Config):
     author: str = ""
     project: str = ""
     date: dt.date | None = None
+    about_columns: dict[str, str] = Field(default_factory=dict)
+    table: str = ""
     about_records: dict[str, str] = Field(default_factory=dict)
     hazard: Hazard | None = None
     years: float = 50.0
@@ -369,6 +376,9 @@ class AssessConfig(Config):
                 project=self.project,
                 date="" if self.date is None else self.date.isoformat(),
                 about_records=self.about_records,
+                about_columns=self.about_columns,
+                table_file=file_of(Path(self.table)).name if self.table else "",
+                table_sha256=sha256_of(file_of(Path(self.table))) if self.table else "",
                 design_spectrum=None if given is None else given.build(),
                 spectral_period=self.spectral_period,
             )

@@ -41,6 +41,8 @@ def described_by_table(values: Mapping[str, Any]) -> dict[str, Any]:
         "columns": {one.given.name: dict(one.given.column) for one in prepared},
         "friction_coefficient": {one.given.name: one.friction for one in prepared},
         "dissipation": {one.given.name: _levels(one) for one in prepared},
+        "about_columns": {one.given.name: about for one in prepared if (about := _about(one.given))},
+        "table": str(values["columns"]),
     }
     kept = {name: value for name, value in values.items() if name != "columns"}
     return {**own, **kept}
@@ -53,6 +55,11 @@ def _prepared(given: InventoryObject, kind: str, problems: list[str]) -> Prepare
     except ConfigError as error:
         problems += error.problems
         return None
+
+
+def _about(one: InventoryObject) -> str:
+    """Return the cells that the table carries, such as the room, in words."""
+    return ", ".join(f"{heading} {cell}" for heading, cell in one.carried.items() if cell)
 
 
 def _require_one_site(objects: Sequence[InventoryObject]) -> None:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from stylobate.earthquakes.assessment.report.column_verdict import column_verdict, least_overturning_scale
-from stylobate.earthquakes.assessment.report.sliding_tables import sliding_columns, stated_limits
+from stylobate.earthquakes.assessment.report.sliding_tables import share_that_rocks, sliding_columns, stated_limits
 from stylobate.earthquakes.assessment.report.wording import CENTRAL, OVERTURNING, labels, number
 from stylobate.earthquakes.fragility.empirical_rate import compared_with_target
 from stylobate.plots.page import PageTable
@@ -86,7 +86,8 @@ def overturning_probability(assessment: Assessment, column: str, scale: float) -
 
 def answer_table(assessment: Assessment, scale: float) -> PageTable:
     """Tabulate the answer on each column: class, probability at `scale`, smallest overturning scale, annual rate."""
-    header = ["object", "verdict", f"probability of overturning ({CONFIDENCE:.0%} interval)".replace("%", " %")]
+    slip = ", or slip" if sliding_columns(assessment) else ""
+    header = ["object", "verdict", f"probability of overturning ({100.0 * CONFIDENCE:g} % interval){slip}"]
     header.append("smallest scale that overturned it, at most")
     rated = "rates" in assessment.data
     years = assessment.setting.get("years", 50.0)
@@ -99,24 +100,31 @@ def answer_table(assessment: Assessment, scale: float) -> PageTable:
             row += [str(overturning_probability(assessment, name, scale)), _least_words(assessment, name)]
             row += [_rate_words(assessment, name)] if rated else []
         else:
-            slip = name in sliding_columns(assessment)
-            row += [_slip_words(assessment, name, scale) if slip else "–", "–", *(["–"] if rated else [])]
+            computed = name in sliding_columns(assessment)
+            row += [_slip_words(assessment, name, scale) if computed else "–", "–", *(["–"] if rated else [])]
         rows.append(row)
     return PageTable(header, rows)
 
 
 def _slip_words(assessment: Assessment, name: str, scale: float) -> str:
-    """State the slip of a column that slides before it rocks, and the probability of each of its limit states."""
+    """State the largest slip of a column, the probability of its limit states, and what friction leaves open."""
     own = assessment.data["sliding"].sel(column=name, scale=scale)
-    low, high = (number(1000.0 * float(own[f"all_peak_slip_{end}"])) for end in ("low", "high"))
-    phrases = [f"slips {low} to {high} mm (90 % of runs)"]
+    worst = own.isel(record=int(own["peak_slip"].fillna(-1.0).argmax("record")))
+    low, high = (1000.0 * float(worst[f"peak_slip_{end}"]) for end in ("low", "high"))
+    stated = 1000.0 * float(worst["peak_slip"])
+    interval = "" if math.isnan(low) else f" ({number(low)} to {number(high)}, 90 % of its variations)"
+    phrases = [f"slips up to {number(stated)} mm{interval} under {worst['record'].item()}"]
     for state in stated_limits(assessment, name):
         one = own.sel(limit_state=state)
         single, varied = (one["reached"] == 1).to_numpy(), one["reached_share"].to_numpy()
         shares = np.where(np.isnan(varied), single, varied)
         unknown = np.where(np.isnan(varied) & (one["reached"] < 0).to_numpy(), 1.0, 0.0)
-        share, least, most = probability_over_records(shares, unknown)
-        phrases.append(f"{state}: {_stated(share, least, most)}")
+        phrases.append(f"{state}: {_stated(*probability_over_records(shares, unknown))}")
+    if share := share_that_rocks(assessment, name, scale):
+        rocks = str(overturning_probability(assessment, name, scale))
+        phrases.append(
+            f"but in {percent(share)} of the variations friction reaches r/h, and it may rock: overturns {rocks}"
+        )
     return "; ".join(phrases)
 
 

@@ -35,6 +35,7 @@ body > .wide td:nth-child(-n+2) { font-weight: 600; } ul { padding-left: 1.2rem;
   h2 { margin: 1rem 0 .3rem; font-size: 12pt; } p { margin: .35rem 0; orphans: 3; widows: 3; }
   ul { margin: .4rem 0; padding-left: 1rem; } table { font-size: 7.6pt; line-height: 1.25; }
   th, td { padding: .1rem .3rem; overflow-wrap: break-word; }
+  .many td:nth-child(2) { overflow-wrap: anywhere; min-width: 2.3cm; } body > figure img { max-height: 8.6cm; }
   .many table { font-size: 6.8pt; } .wide + .wide { margin-top: .6rem; } figure { margin: .5rem 0; }
   figure img { width: 100%; max-height: 10cm; object-fit: contain; } figcaption { font-size: 8pt; }
   section:first-of-type { break-before: BREAK; } }

@@ -51,7 +51,9 @@ def column_findings(assessment: Assessment, name: str) -> PageTable:
     first = recorded_scale(assessment)
     verdict = column_verdict(assessment, name, first)
     described = verdict.describes
+    about = assessment.setting.get("details", {}).get("about_columns", {}).get(name, "")
     subjects = {
+        "object": str(about),
         "verdict": f"{verdict.line}{_levels_remark(assessment, name)}",
         f"tilt, {level_words(first)}": _tilt(assessment, name, first) if described else "",
     }
@@ -71,7 +73,9 @@ def summary_text(assessment: Assessment, heads: Sequence[PageTable]) -> str:
     for name in labels(assessment.data["columns"], "column"):
         findings = column_findings(assessment, name)
         blocks.append("\n".join([findings.header[0], *(": ".join(row) for row in findings.rows)]))
-    return "\n\n".join([str(assessment.setting["title"]), *blocks, how_to_read(assessment)]) + "\n"
+    return (
+        "\n\n".join([str(assessment.setting["title"]), *blocks, f"How to read this: {how_to_read(assessment)}"]) + "\n"
+    )
 
 
 def _tilt(assessment: Assessment, name: str, scale: float) -> str:

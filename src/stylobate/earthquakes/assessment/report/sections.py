@@ -86,10 +86,13 @@ def _assumed(assessment: Assessment) -> list[str]:
     one_sided = [words for words in one_sided if words.endswith((" below", " above"))]
     flag = f" All levels lie on one side of Housner's impacts: {listed(one_sided, 'and')} them." if one_sided else ""
     return [
-        "Body: rigid, in one piece, on a flat circular base on level rigid ground; upright and at rest at the start.",
+        "Body: rigid, in one piece, on a flat circular base on level rigid ground, upright and at rest at the start. "
+        "The "
+        "radius is that of the foot, which may be narrower than the belly.",
         f"Contact: {_laws(assessment)}; friction coefficient as stated: {frictions}.",
         f"Damping ({', '.join(levels)}): {stated}. Not measured, see the section on damping.{flag}",
-        f"Records: scaled by {scales(setting['scales'])} with their vertical components, then {_followed(assessment)}.",
+        f"Records: scaled by {scales(setting['scales'])}, with a vertical component where they have one, then "
+        f"{_followed(assessment)}.",
         *(f"Stated by the author: {note}" for note in map(str, setting["notes"]) if not note.startswith("Warning: ")),
         *(note for note in map(str, setting["notes"]) if note.startswith("Warning: ")),
     ]
@@ -136,6 +139,7 @@ def report_sections(
     columns = labels(assessment.data["columns"], "column")
     more_objects = [picture for picture in drawn("objects") if picture is not pictures.get("objects-1")]
     planar = PLANAR if "planar" in assessment.data else ["No planar calculation was asked for (planar = false)."]
+    biases = shown_tables.bias(assessment, tables["planar-bias"]) if "planar-bias" in tables else []
     slips = shown("slip-summary", "slip-limits", "slip")
     found = [
         PageSection(
@@ -160,7 +164,7 @@ def report_sections(
             "Margins",
             [f"{_margin_text(assessment)}{_left_out(assessment)}", shown_tables.margins(assessment), *drawn("margins")],
         ),
-        PageSection("Tilt and displacement", [TILT, *shown_tables.tilts(assessment), *planar, *shown("planar-bias")]),
+        PageSection("Tilt and displacement", [TILT, *shown_tables.tilts(assessment), *planar, *biases]),
         PageSection("Contact demand", [_contact_text(assessment), shown_tables.contact(assessment)]),
         PageSection("Slip", [_slip_text(assessment), *slips, *drawn("slip")] if slips else []),
         PageSection("Damping", [_damping_text(assessment), shown_tables.damping(assessment)]),
@@ -209,7 +213,8 @@ def _outcome_text(assessment: Assessment) -> str:
         f"Each record was run at scale {scales(assessment.setting['scales'])} and every stated dissipation with "
         f"{_laws(assessment)}; also, at central dissipation, without its vertical component. Each run continued for "
         f"{_followed(assessment)}; a column that had not overturned by then counts as not overturned. {varied} The "
-        "last column counts overturning scales among 41 within 10 % of the stated one, the largest share of all cases."
+        "last column counts overturning scales among 41 within 10 % of the stated one, the largest share of all cases. "
+        "“Yes” marks a case that overturned the column, “none” a record without a vertical component."
     )
 
 
@@ -246,7 +251,9 @@ def _contact_text(assessment: Assessment) -> str:
         "describes the column. The class of a verdict considers the given contact law only: with the other law, a "
         "column that passes close to the vertical rolls fast round its rim, and the friction that it needs there is "
         "that of a rigid rim in one point, which a real edge does not reach. tables/contact-by-record.csv and "
-        "tables/contact-to-margin.csv have the demand of each record and case."
+        "tables/contact-to-margin.csv have the demand of each record and case. The smallest scale that needs "
+        "more is that of any run of the scan, at any level of dissipation: it can lie below a stated scale whose own "
+        "runs need less."
     )
 
 
@@ -303,7 +310,7 @@ def _rates_text(assessment: Assessment) -> str:
 def _rules(assessment: Assessment, tables: Mapping[str, PageTable]) -> list[Part]:
     if "rules-of-practice" not in tables:
         return []
-    return [RULES, shown_tables.rules(assessment, tables["rules-of-practice"])]
+    return [RULES, *shown_tables.rules(assessment, tables["rules-of-practice"])]
 
 
 def _assumptions(assessment: Assessment) -> PageTable:
@@ -324,15 +331,18 @@ def not_covered(assessment: Assessment) -> PageTable:
 def _repeat(assessment: Assessment) -> PageList:
     """State command, inputs with their SHA-256, versions and options."""
     setting = assessment.setting
-    study = str(setting.get("details", {}).get("study_file", ""))
-    command = f"Command: stylobate assess {study}" if study else "Called from Python: stylobate.earthquakes.assess"
-    digest = setting.get("details", {}).get("study_sha256", "")
+    details = setting.get("details", {})
+    study, digest = (str(details.get(f"study_{what}", "")) for what in ("file", "sha256"))
+    stated = str(details.get("command", "")) or f"stylobate assess {study}"
+    command = f"Command: {stated}" if study else "Called from Python: stylobate.earthquakes.assess"
+    table = str(details.get("table_file", ""))
     versions = {"stylobate": setting["version"], **setting.get("software", {})}
     options = {"seed of the small variations": setting["seed"], **setting["options"]}
     return PageList(
         [
             command,
-            *([f"Study file: {study}, SHA-256 {digest}"] if study else []),
+            *([f"Study file: {study}, SHA-256 {digest}"] if study and study != table else []),
+            *([f"Table of objects: {table}, SHA-256 {details['table_sha256']}"] if table else []),
             f"Versions: {', '.join(f'{name} {value}' for name, value in versions.items())}",
             f"Options: {', '.join(f'{name} {value}' for name, value in options.items())}",
             "Files beside this report: tables/*.csv and tables.xlsx with every table, figures/*.png, summary.txt, "

@@ -15,8 +15,8 @@ from stylobate.earthquakes.assessment.margins import states_at_scales
 from stylobate.earthquakes.assessment.report.column_verdict import acts_in, recorded_scale, rises, slides_at
 from stylobate.earthquakes.assessment.report.wording import (
     CENTRAL,
-    OVERTURNED,
     SMALLEST_TILT,
+    TOO_FEW,
     UNDECIDED,
     at_most,
     cells,
@@ -65,10 +65,12 @@ def outcomes(assessment: Assessment) -> list[Part]:
     others = [level for level in levels if f"{level}{OTHER_LAW}" in labels(margins, "case")]
     scanned = states_at_scales(margins, verdicts["scale"])
     vertical = any(rises(assessment, name) for name in labels(assessment.data["records"]))
-    header = ["object", "record", "scale", *levels, *(f"{level}, other law" for level in others)]
+    several = verdicts.sizes["scale"] > 1
+    header = ["object", "record", *(["scale"] if several else []), *levels]
+    header += [f"{level}, other law" for level in others]
     header += ["no vertical"] if vertical else []
-    header += ["small variations (90 % interval)", "decided most by"] if "variations" in assessment.data else []
-    header.append("within 10 % of the scale")
+    header += ["small variations", "decided most by"] if "variations" in assessment.data else []
+    header.append("within 10 %")
     rows = []
     for where, one in cells(verdicts, *_PLACES):
         column, record, scale = where[0], where[1], float(where[2])
@@ -80,21 +82,22 @@ def outcomes(assessment: Assessment) -> list[Part]:
         states += [_state(float(at_scale.sel(case=f"{level}{OTHER_LAW}"))) for level in others]
         if vertical:
             without = float(one["overturned"].sel(dissipation=CENTRAL).isel(vertical=-1))
-            states.append(_state(without) if rises(assessment, record) else "")
+            states.append(_state(without) if rises(assessment, record) else "none")
         varied = _varied(assessment, column, record, scale)
         share = float(own["band_share"].sel(scale=scale).max("case").fillna(0.0))
         found = bool((own["in_band"].sel(scale=scale) > 0).any())
-        rows.append((*where, *states, *varied, near_share(share) if found else _NOTHING))
+        places = where if several else where[:2]
+        rows.append((*places, *states, *varied, near_share(share) if found else _NOTHING))
     return without_empty_rows(
         PageTable(header, rows),
-        lambda row: any(cell not in ("", _NOTHING) for cell in row[3:]),
+        lambda row: any(cell not in ("none", _NOTHING) for cell in row[3 if several else 2 :]),
         "verdicts-by-record",
         "no case that overturned or was not decided",
     )
 
 
 def _state(overturned: float) -> str:
-    return OVERTURNED if overturned > 0.0 else _NOTHING if overturned == 0.0 else UNDECIDED
+    return "yes" if overturned > 0.0 else _NOTHING if overturned == 0.0 else UNDECIDED
 
 
 def _varied(assessment: Assessment, column: str, record: str, scale: float) -> tuple[str, ...]:
@@ -127,7 +130,7 @@ def margins(assessment: Assessment) -> PageTable:
 def _smallest(assessment: Assessment, margins: xr.Dataset, record: str, case: str) -> str:
     """State the smallest overturning scale of a case; without one, the largest decided scale after a ">"."""
     if not acts_in(assessment, record, case):
-        return ""
+        return "none"
     least, decided = (float(margins[name].sel(case=case)) for name in ("least_overturning", "decided_to"))
     if math.isnan(least):
         return f"> {number(decided)}" if math.isfinite(decided) else UNDECIDED
@@ -229,22 +232,26 @@ def _selected(table: PageTable, columns: list[str]) -> PageTable:
     return PageTable(columns, [[row[at] for at in places] for row in table.rows])
 
 
-# With more objects, the table of rules has a row for each object and rule.
-_ABREAST = 5
+def rules(assessment: Assessment, table: PageTable) -> list[Part]:
+    """Tabulate the answers of rules of practice, rules side by side, and their clauses, from the `table` of all."""
+    scale = f"{recorded_scale(assessment):g}"
+    clauses: dict[str, tuple[str, str]] = {}
+    of_each: dict[str, dict[str, str]] = {}
+    for column, at, rule, unsafe, survives, safe, overturns, clause, checked in table.rows:
+        clauses[rule] = (clause, checked)
+        if at == scale:
+            slides = slides_at(assessment, column, float(at))
+            answer = f"{unsafe} / {safe}" if slides else f"{unsafe} ({survives}) / {safe} ({overturns})"
+            of_each.setdefault(column, {})[rule] = answer
+    rows = [(column, *(answers[rule] for rule in clauses)) for column, answers in of_each.items()]
+    stated = [(rule, *one) for rule, one in clauses.items()]
+    return [PageTable(("object", *clauses), rows), PageTable(("rule", "formula or clause", "clause checked"), stated)]
 
 
-def rules(assessment: Assessment, table: PageTable) -> PageTable:
-    """Tabulate the answers of rules of practice, objects side by side, from the `table` with a row for each object."""
-    objects = labels(assessment.data["columns"], "column")
-    if len(objects) > _ABREAST:
-        return table
-    of_each: dict[tuple[str, ...], dict[str, str]] = {}
-    for row in table.rows:
-        column, scale, rule, unsafe, survives, safe, overturns, clause, checked = row
-        answer = f"{unsafe} ({survives}) / {safe} ({overturns})"
-        of_each.setdefault((rule, clause, checked, scale), {})[column] = answer
-    rows = [(*rule, *(answers.get(name, "") for name in objects)) for rule, answers in of_each.items()]
-    return PageTable(("rule", "clause", "clause checked", "scale", *objects), rows)
+def bias(assessment: Assessment, table: PageTable) -> list[Part]:
+    """Return the rows of the `table` of planar against three-dimensional tilts that compare some records."""
+    known = [row for row in table.rows if row[2] != TOO_FEW and not slides_at(assessment, row[0], float(row[1]))]
+    return [PageTable(table.header, known)] if known else []
 
 
 def inputs(assessment: Assessment) -> PageTable:

@@ -50,16 +50,18 @@ def objects_figure(assessment: Assessment, columns: Sequence[str], names: Sequen
     shapes = [Shape.of_column(assessment.setting["columns"][name]["column"]) for name in names]
     figure = new_figure(_HEIGHT, width=_WIDTH)
     grid = figure.subplots(3, len(columns), squeeze=False, height_ratios=(2.2, 0.75, 0.9), sharey="row")
-    tallest = max(shape.height for shape in shapes)
-    widest = max(2.0 * max(shape.radius, shape.top_radius) for shape in shapes)
+    every = [Shape.of_column(one["column"]) for one in assessment.setting["columns"].values()]
+    tallest = max(shape.height for shape in every)
+    widest = max(2.0 * max(shape.radius, shape.top_radius) for shape in every)
     for place, (column, shape) in enumerate(zip(columns, shapes, strict=True)):
         run = assessment.data["histories"].sel(column=column, run="stated")
         slides = slides_at(assessment, column, float(run["scale"]))
         _sketch(grid[0, place], shape, run, slides=slides)
         grid[0, place].set_title(column, fontsize="medium", loc="center")
         record = str(assessment.data["summary"]["governing"].sel(column=column).item())
-        _record(grid[1, place], run, record)
+        _record(grid[1, place], _ground_motion(assessment, record, run), record, float(run["scale"]))
         _tilt(grid[2, place], run, slides=slides)
+        grid[2, place].sharex(grid[1, place])
     _frame(grid[0], tallest, widest)
     grid[1, 0].set_ylabel("record [g]")
     grid[2, 0].set_ylabel(r"tilt $\theta/\alpha_c$")
@@ -106,10 +108,18 @@ def _outcome(run: xr.Dataset, ratio: float, *, slides: bool) -> str:
     return rf"did not overturn: peak tilt {number(ratio)} $\alpha_c$"
 
 
-def _record(axes: Axes, run: xr.Dataset, record: str) -> None:
+def _ground_motion(assessment: Assessment, record: str, run: xr.Dataset) -> dict[str, Floats]:
+    """Return time [s] and accelerations [m/s²] of a record to its end; without it, those of the run."""
+    if "ground_motions" not in assessment.data:
+        return {"time": run["time"].to_numpy(), **{axis: run[f"base_{axis}"].to_numpy() for axis in "xy"}}
+    own = assessment.data["ground_motions"].sel(record=record)
+    scaled = float(run["scale"]) * own["acceleration"]
+    return {"time": own["time"].to_numpy(), **{axis: scaled.sel(axis=axis).to_numpy() for axis in "xy"}}
+
+
+def _record(axes: Axes, motion: dict[str, Floats], record: str, scale: float) -> None:
     for axis, colour in (("x", BLACK), ("y", ORANGE)):
-        axes.plot(run["time"], run[f"base_{axis}"] / STANDARD_GRAVITY, color=colour, linewidth=0.5, label=axis)
-    scale = float(run["scale"])
+        axes.plot(motion["time"], motion[axis] / STANDARD_GRAVITY, color=colour, linewidth=0.5, label=axis)
     axes.set_title(literal(record) if scale == 1.0 else f"{scale:g} × {literal(record)}", fontsize="small", pad=2.0)
     axes.tick_params(labelbottom=False, labelsize=7.5)
 
@@ -118,7 +128,6 @@ def _tilt(axes: Axes, run: xr.Dataset, *, slides: bool) -> None:
     shown = run["amplitude"] * np.nan if slides else run["amplitude"]
     axes.plot(run["time"], shown, color=BLUE, linewidth=0.9)
     if slides:
-        axes.set_xlim(0.0, float(run["time"].max()))
         middle: dict[str, Any] = {"transform": axes.transAxes, "ha": "center", "va": "center"}
         axes.text(0.5, 0.35, "no tilt while it slides", color=GREY, fontsize="small", **middle)
     axes.axhline(1.0, color=VERMILION, linestyle="--", linewidth=0.9)

@@ -105,15 +105,22 @@ def slip_pictures(assessment: Assessment, column: str) -> dict[str, Picture]:
     return {
         "slip": Picture(
             plot_slip_margins(margins, limits),
-            f"{column}: largest distance of the base from its start over the scale of each record; "
-            "horizontal lines are the limits.",
+            f"{column}: largest distance of the base from its start over the scale of each record."
+            + (" Horizontal lines are the limits." if limits else ""),
         ),
         "slip-paths": Picture(
             plot_slip_paths(stated),
-            f"{column}: path of the base in plan at {scale:g} times the records; circles are the limits about the "
-            "start.",
+            f"{column}: path of the base in plan at {scale:g} times the records."
+            + (" Circles are the limits about the start." if limits else ""),
         ),
     }
+
+
+def share_that_rocks(assessment: Assessment, column: str, scale: float) -> float:
+    """Return the share of the small variations whose friction reaches r/h, so that the column need not slide first."""
+    known = assessment.data["sliding"]["known_variations"].sel(column=column, scale=scale)
+    total = int(assessment.setting["variations"])
+    return 1.0 - float(known.max()) / total if total else 0.0
 
 
 def stated_limits(assessment: Assessment, column: str) -> tuple[str, ...]:

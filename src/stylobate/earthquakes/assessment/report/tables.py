@@ -15,12 +15,14 @@ from stylobate.earthquakes.assessment.report.column_verdict import (
     column_verdict,
     largest_decided,
     rises,
+    slides_at,
 )
 from stylobate.earthquakes.assessment.report.rate_tables import fragility_table, rate_table
 from stylobate.earthquakes.assessment.report.sliding_tables import limit_table, slip_summary_table, slip_table
 from stylobate.earthquakes.assessment.report.wording import (
     CENTRAL,
     TILT_HEADER,
+    TOO_FEW,
     at_most,
     cells,
     cells_of,
@@ -99,6 +101,9 @@ def _summary(assessment: Assessment) -> PageTable:
     )
     rows = []
     for where, one in cells(own, "column", "scale"):
+        if slides_at(assessment, where[0], float(where[1])):  # runs without slip do not describe it
+            rows.append((*where, *(["slides"] * (len(header) - 2))))
+            continue
         tilted = tilt_cells(float(one["peak_tilt_ratio"]), assessment.data["columns"].sel(column=where[0]))
         rows.append((*where, *counts(one, *names, *optional), *tilted, number(float(one["friction_demand"]))))
     return PageTable(header, rows)
@@ -392,7 +397,7 @@ def _planar_bias(assessment: Assessment) -> PageTable:
     rows = []
     for where, one in cells_of(assessment, "planar", "column", "scale"):
         mean = float(one["bias"])
-        words = "too few records" if math.isnan(mean) else number(mean)
+        words = TOO_FEW if math.isnan(mean) else number(mean)
         compared = counts(one, "compared", "only_space", "only_planar")
         rows.append((*where, words, *numbers(one, "standard_error"), *compared))
     return PageTable(header, rows)
@@ -418,7 +423,8 @@ def _practice(assessment: Assessment) -> PageTable:
 
 def _columns(assessment: Assessment) -> PageTable:
     header = (
-        *("column", "radius [m]", "height [m]", "centre of mass [m]", "mass [kg]", "c = r/h", "α_c [°]", "R [m]"),
+        *("column", "radius [m]", "height [m]", "centre of mass [m]", "mass [kg]", "mass / (π r² height) [kg/m³]"),
+        *("c = r/h", "α_c [°]", "R [m]"),
         *("p [1/s]", "rocks above [m/s²]", "stated friction", "displaced point"),
     )
     names = (
@@ -429,7 +435,9 @@ def _columns(assessment: Assessment) -> PageTable:
     for where, one in cells(assessment.data["columns"], "column"):
         values = {name: float(one[name]) for name in names}
         values["tipping_angle"] = math.degrees(values["tipping_angle"])
-        rows.append((*where, *(number(value, 4) for value in values.values()), shown_point(one)[1]))
+        shown = [number(value, 4) for value in values.values()]
+        density = values["mass"] / (math.pi * values["radius"] ** 2 * values["height"])
+        rows.append((*where, *shown[:4], number(density), *shown[4:], shown_point(one)[1]))
     return PageTable(header, rows)
 
 

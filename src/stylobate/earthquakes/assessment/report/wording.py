@@ -13,6 +13,7 @@ from stylobate.results.assessment import Assessment
 from stylobate.results.verdict import percent
 
 CENTRAL = "central"
+TOO_FEW = "too few records"
 OVERTURNING = "overturning"
 """Name of the limit state."""
 OVERTURNED, STOOD, UNDECIDED = "overturned", "did not overturn", "not decided"
@@ -223,7 +224,7 @@ def how_to_read(assessment: Assessment) -> str:
         else "No verdict was repeated under small variations here, so it is not known whether any is repeatable."
     )
     return (
-        "How to read this: a verdict reports runs of a rigid column under these records only. “Did not overturn” does "
+        "A verdict reports runs of a rigid column under these records only. “Did not overturn” does "
         "not prove that the column cannot overturn. Near the overturning limit, a single rocking run is barely "
         f"repeatable. {repeated}"
     )
@@ -326,8 +327,8 @@ RULES = (
     "Hand formulas and clauses for unanchored bodies, beside the simulation at central dissipation with the vertical "
     "component. No verdict depends on them. A rule of design is meant to be strict: it may call a column unsafe that "
     "survives. A cell such as 3 (2) / 1 (0) means that the rule calls 3 records unsafe, of which the column survives "
-    "2, and 1 record safe, of which none overturns the column. Where “clause checked” states no, the text of the "
-    "clause was not compared: check it before quoting it."
+    "2, and 1 record safe, of which none overturns the column; without parentheses the column slides first. Where "
+    "“clause checked” states no, the text of the clause was not compared: check it before quoting it."
 )
 """Explanation of the rules of practice."""
 
