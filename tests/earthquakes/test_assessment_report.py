@@ -773,10 +773,10 @@ def test_a_pdf_has_page_numbers_a_running_title_and_a_bookmark_for_each_section(
     few = _only(found, "stout", "weak & quiet")
     assessment_report(few, tmp_path, pdf=True)
     reader = pypdf.PdfReader(tmp_path / "report.pdf")
-    texts = [one.extract_text() for one in reader.pages]
+    texts = ["".join(one.extract_text().split()) for one in reader.pages]  # kerning may look like a space
     for place, text in enumerate(texts):
-        assert f"Page {place + 1} of {len(texts)}" in text
-        assert "Two columns" in text
+        assert f"Page{place + 1}of{len(texts)}" in text
+        assert "Twocolumns" in text
     title, sections = reader.outline
     assert title.title == "Two columns"
     assert [one.title for one in sections] == [one.heading for one in report_sections(few, assessment_tables(few), {})]
