@@ -62,7 +62,7 @@ def test_a_table_becomes_a_ranking_with_figure_and_numbers(folder, capsys):
     made = folder / "plain-inventory"
     assert {path.name for path in made.iterdir()} >= {"ranking.csv", "inventory.nc", "ranking.png", "store"}
     rows = ranking(made / "ranking.csv")
-    assert [row["rank"] for row in rows] == ["1", "2", "3", ""]
+    assert [row["rank"] for row in rows] == ["1", "1", "3", ""]  # two overturn in every run
     assert rows[-1]["note"] == "withheld; slides before it rocks in 67 % of runs: µ = 0.1, r/h = 0.32"
     assert {row["name"]: row["room"] for row in rows} == {"slim": "1", "stout": "2", "far": "3", "slippery": "4"}
     assert (folder / "more.csv").read_bytes() == (made / "ranking.csv").read_bytes()

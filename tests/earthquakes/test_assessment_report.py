@@ -22,6 +22,7 @@ from stylobate.earthquakes.assessment.report.answers import (
     overturning_probability,
     probability_over_records,
 )
+from stylobate.earthquakes.assessment.report.column_verdict import cases_of
 from stylobate.earthquakes.assessment.report.figures import (
     history_figure,
     margins_figure,
@@ -31,12 +32,12 @@ from stylobate.earthquakes.assessment.report.figures import (
     tilts_figure,
 )
 from stylobate.earthquakes.assessment.report.findings import column_findings, summary_text, verdict_table
-from stylobate.earthquakes.assessment.report.sections import document_table, not_covered, report_sections
+from stylobate.earthquakes.assessment.report.sections import document_table, first_page, not_covered, report_sections
 from stylobate.earthquakes.assessment.report.sketch import objects_figure
 from stylobate.earthquakes.assessment.report.tables import drifting
 from stylobate.earthquakes.assessment.report.wording import at_most, intervals, least_scale
 from stylobate.earthquakes.figures.overturning_intervals import UNDECIDED
-from stylobate.plots.page import require_pdf
+from stylobate.plots.page import PageList, require_pdf
 from stylobate.results import DesignSpectrum, ReportDetails
 from stylobate.studies.proportions import clustered_interval
 
@@ -343,6 +344,17 @@ def test_variations_whose_friction_reaches_the_slenderness_are_counted_and_may_r
     assert "may rock" not in answer_table(sliding, 1.0).rows[1][2]
     rows = assessment_tables(sliding)["summary"].rows
     assert {row[0] for row in rows if "slides" in row} == {"stout"}
+
+
+def test_the_first_page_states_whether_the_other_contact_law_matters(found):
+    (listed,) = [part for part in first_page(found, {}) if isinstance(part, PageList)]
+    (words,) = [item for item in listed.items if item.startswith("Contact: ")]
+    cases = {name: cases_of(found, name, 1.0).with_other_law for name in BODIES}
+    only = [name for name, one in cases.items() if one]
+    expected = (
+        f"some record overturned {' and '.join(only)}." if only else "No record overturned an object with the other"
+    )
+    assert expected in words
 
 
 def test_the_command_the_inputs_and_what_the_table_carries_are_in_the_report(found):

@@ -128,6 +128,16 @@ def test_objects_are_ranked_by_probability_then_by_tilt():
     assert np.all(np.diff(by_tilt) <= 0.0)
 
 
+def test_objects_that_are_equal_share_a_rank():
+    twins = [replace(SLIM, name=name, spreads={}) for name in ("b", "a")]
+    found = ranked([*twins, STOUT])
+    assert dict(zip(found["object"].values.tolist(), found["rank"].values.tolist(), strict=True)) == {
+        "a": 1,
+        "b": 1,
+        STOUT.name: 3,
+    }
+
+
 def test_intervals_contain_the_probability_and_shrink_with_records():
     few = ranked([SLIM], QUAKES[:2])
     many = ranked([SLIM], [quake(place) for place in range(12)])

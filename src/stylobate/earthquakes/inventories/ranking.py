@@ -196,7 +196,7 @@ def ranked(
     """Rank the objects by the annual rate of a limit state, or by its probability if an object has no rate.
 
     Objects whose number is withheld follow without a rank, in the order of their upper bounds. Equal numbers are ranked
-    by the median peak tilt, then by name.
+    by the median peak tilt; objects that are equal in this too share a rank, in the order of their names.
 
     Parameters
     ----------
@@ -232,10 +232,11 @@ def ranked(
         )
 
     order = sorted(objects, key=key)
-    withheld = np.array([key(name)[0] for name in order])
+    keys = [key(name) for name in order]
+    ranks = [0 if one[0] else 1 + next(at for at, other in enumerate(keys) if other[:3] == one[:3]) for one in keys]
     lengths = {LIMIT_STATE: len(names), "scale": len(scales)}
     data: dict[str, Any] = {
-        "rank": ("object", np.where(withheld, 0, np.arange(1, len(order) + 1)), cf_attributes("1", "rank")),
+        "rank": ("object", np.array(ranks), cf_attributes("1", "rank")),
         "site": ("object", [objects[name].given.site or objects[name].site for name in order], {"long_name": "site"}),
     }
     for name, (text, units, dims) in VARIABLES.items():

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 from stylobate.earthquakes.assessment.report import shown_tables
 from stylobate.earthquakes.assessment.report.answers import answer_table, answer_text
-from stylobate.earthquakes.assessment.report.column_verdict import level_words, recorded_scale, slides_at
+from stylobate.earthquakes.assessment.report.column_verdict import cases_of, level_words, recorded_scale, slides_at
 from stylobate.earthquakes.assessment.report.findings import column_findings
 from stylobate.earthquakes.assessment.report.sketch import OBJECTS
 from stylobate.earthquakes.assessment.report.tables import drifting
@@ -89,7 +89,7 @@ def _assumed(assessment: Assessment) -> list[str]:
         "Body: rigid, in one piece, on a flat circular base on level rigid ground, upright and at rest at the start. "
         "The "
         "radius is that of the foot, which may be narrower than the belly.",
-        f"Contact: {_laws(assessment)}; friction coefficient as stated: {frictions}.",
+        f"Contact: {_laws(assessment)}; friction coefficient as stated: {frictions}.{_of_other_law(assessment)}",
         f"Damping ({', '.join(levels)}): {stated}. Not measured, see the section on damping.{flag}",
         f"Records: scaled by {scales(setting['scales'])}, with a vertical component where they have one, then "
         f"{_followed(assessment)}.",
@@ -116,6 +116,21 @@ def _laws(assessment: Assessment) -> str:
         return f"{listed(given, 'and')}, and the other contact law"
     others = [name for name in labels(assessment.data["variations"], "contact_law") if name not in given]
     return f"{listed(given, 'and')}, and {listed(others, 'and')} as the other contact law"
+
+
+def _of_other_law(assessment: Assessment) -> str:
+    """State which columns only the other contact law overturned at the stated scale nearest to 1."""
+    if not assessment.setting["contact_laws"]:
+        return ""
+    scale = recorded_scale(assessment)
+    names = [
+        name
+        for name in labels(assessment.data["columns"], "column")
+        if not slides_at(assessment, name, scale) and cases_of(assessment, name, scale).with_other_law
+    ]
+    if not names:
+        return " No record overturned an object with the other law only."
+    return f" With the other law only, some record overturned {listed(names, 'and')}."
 
 
 def _followed(assessment: Assessment) -> str:

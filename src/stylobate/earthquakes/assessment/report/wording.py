@@ -359,6 +359,10 @@ REFERENCES: tuple[tuple[str, str], ...] = (
         "D. Vamvatsikos, C. A. Cornell, Incremental dynamic analysis, Earthquake Engng Struct. Dyn. 31, 491–514, 2002",
     ),
     (
+        "rules of practice",
+        "documentation of stylobate, page Rules of practice: the source of each formula and clause",
+    ),
+    (
         "equations of motion",
         "documentation of stylobate, pages Models and Equations: a rigid body whose rim rolls without slip, with "
         "viscous damping of the tilt",
