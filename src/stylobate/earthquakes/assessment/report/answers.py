@@ -5,8 +5,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from stylobate.earthquakes.assessment.report.column_verdict import column_verdict, least_overturning_scale
-from stylobate.earthquakes.assessment.report.sliding_tables import share_that_rocks, sliding_columns, stated_limits
+from stylobate.earthquakes.assessment.report.column_verdict import (
+    column_verdict,
+    least_overturning_scale,
+    share_that_rocks,
+)
+from stylobate.earthquakes.assessment.report.sliding_tables import sliding_columns, stated_limits
 from stylobate.earthquakes.assessment.report.wording import CENTRAL, OVERTURNING, labels, number
 from stylobate.earthquakes.fragility.empirical_rate import compared_with_target
 from stylobate.plots.page import PageTable

@@ -378,8 +378,7 @@ def _slip_varied(assessment: Assessment, column: str, scale: float) -> str:
         phrases.append(
             f"it {verb}s {'by ' if verb == 'slide' else ''}{low} to {high} mm{where} ({one['record'].item()})"
         )
-    total = int(assessment.setting["variations"])
-    rocks = 1.0 - float(runs["known_variations"].max()) / total
+    rocks = share_that_rocks(assessment, column, scale)
     left = (
         f" In {percent(rocks)} of the variations friction reaches r/h: they are left out here, and the column may then "
         "rock as runs without slip describe it."
@@ -387,6 +386,13 @@ def _slip_varied(assessment: Assessment, column: str, scale: float) -> str:
         else ""
     )
     return f" Under 90 % of the small variations of record and friction {listed(phrases, 'and')}.{left}"
+
+
+def share_that_rocks(assessment: Assessment, column: str, scale: float) -> float:
+    """Return the share of the small variations whose friction reaches r/h, so that the column need not slide first."""
+    known = assessment.data["sliding"]["known_variations"].sel(column=column, scale=scale)
+    total = int(assessment.setting["variations"])
+    return 1.0 - float(known.max()) / total if total else 0.0
 
 
 def _limits_reached(assessment: Assessment, column: str, scale: float) -> str:

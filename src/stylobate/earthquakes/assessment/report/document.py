@@ -1,5 +1,6 @@
 """The report of an assessment: a page, the same as a PDF, and a file for each table and figure."""
 
+from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
@@ -13,7 +14,7 @@ from stylobate.earthquakes.assessment.report.sketch import OBJECTS
 from stylobate.earthquakes.assessment.report.tables import assessment_tables
 from stylobate.errors import FileError, UnsupportedError
 from stylobate.files import csv_text, write_whole, write_workbook
-from stylobate.plots.page import page, pdf_of, png_of, style_text
+from stylobate.plots.page import PageTable, page, pdf_of, png_of, style_text
 from stylobate.progress import Progress, Report, report_of, shows_progress
 from stylobate.results.assessment import Assessment
 
@@ -70,7 +71,7 @@ def assessment_report(
     target = Path(folder)
     tables = assessment_tables(assessment)
     pictures = _drawn(report_pictures(assessment), report_of(progress))
-    text = _page(assessment, pictures)
+    text = _page(assessment, tables, pictures)
     printed = pdf_of(text) if pdf else b""
     heads = [
         document_table(assessment),
@@ -100,7 +101,7 @@ def assessment_report(
     return report
 
 
-def _page(assessment: Assessment, pictures: Pictures) -> str:
+def _page(assessment: Assessment, tables: Mapping[str, PageTable], pictures: Pictures) -> str:
     """Return the page of an assessment, with its running title for paper."""
     title, details = str(assessment.setting["title"]), assessment.setting.get("details", {})
     author = str(details.get("author", ""))
@@ -110,7 +111,7 @@ def _page(assessment: Assessment, pictures: Pictures) -> str:
     alone = assessment.data["columns"].sizes["column"] <= OBJECTS  # the answer to many flows over a page
     style = _STYLE.replace("BREAK", "page" if alone else "auto")
     style = style.replace("TITLE", style_text(title)).replace("NAMED", style_text(named))
-    sections = report_sections(assessment, assessment_tables(assessment), pictures)
+    sections = report_sections(assessment, tables, pictures)
     return page(title, first_page(assessment, pictures), sections, style=style, author=author)
 
 

@@ -7,12 +7,12 @@ import math
 from collections.abc import Callable
 from pathlib import PurePath
 
-import numpy as np
 import xarray as xr
 
 from stylobate.earthquakes.assessment.inputs import OTHER_LAW
 from stylobate.earthquakes.assessment.margins import states_at_scales
 from stylobate.earthquakes.assessment.report.column_verdict import acts_in, recorded_scale, rises, slides_at
+from stylobate.earthquakes.assessment.report.tables import spectral_accelerations, spectral_period
 from stylobate.earthquakes.assessment.report.wording import (
     CENTRAL,
     SMALLEST_TILT,
@@ -114,7 +114,7 @@ def _varied(assessment: Assessment, column: str, record: str, scale: float) -> t
 def margins(assessment: Assessment) -> PageTable:
     """Tabulate the smallest overturning scales, both contact laws side by side, and the record at the central one."""
     own = assessment.data["margins"]
-    period = float(assessment.setting.get("details", {}).get("spectral_period", 1.0))
+    period = spectral_period(assessment)
     every = labels(own, "case")
     header = ("object", "record", *every, "PGA [g]", "PGV [m/s]", f"Sa({period:g} s) [g]")
     rows = []
@@ -123,7 +123,7 @@ def margins(assessment: Assessment) -> PageTable:
             continue
         scales = [_smallest(assessment, one, record, case) for case in every]
         least = float(one["least_overturning"].sel(case=CENTRAL))
-        rows.append((column, record, *scales, *_at_scale(assessment, record, least, period)))
+        rows.append((column, record, *scales, *_at_scale(assessment, record, least)))
     return PageTable(header, rows)
 
 
@@ -137,13 +137,10 @@ def _smallest(assessment: Assessment, margins: xr.Dataset, record: str, case: st
     return at_most(least, 3)
 
 
-def _at_scale(assessment: Assessment, record: str, scale: float, period: float) -> tuple[str, str, str]:
+def _at_scale(assessment: Assessment, record: str, scale: float) -> tuple[str, str, str]:
     own = assessment.data["records"].sel(record=record)
     peak, velocity = (scale * float(own[f"median_peak_{what}"]) for what in ("acceleration", "velocity"))
-    spectral = math.nan
-    if "spectra" in assessment.data:
-        values = assessment.data["spectra"]["spectral_acceleration"].sel(record=record)
-        spectral = scale * float(np.interp(math.log(period), np.log(values["period"].to_numpy()), values.to_numpy()))
+    spectral = scale * spectral_accelerations(assessment).get(record, math.nan)
     return in_g(peak), number(velocity), in_g(spectral)
 
 
@@ -222,7 +219,7 @@ def _two_digits(value: float) -> str:
 
 def records(assessment: Assessment, table: PageTable) -> PageTable:
     """Return the intensities that decide, of the `table` of all intensities of the records."""
-    period = float(assessment.setting.get("details", {}).get("spectral_period", 1.0))
+    period = spectral_period(assessment)
     names = ["record", "definition", "PGA [g]", "PGV [m/s]", f"Sa({period:g} s) [g]", "PGA, vector [g]"]
     return _selected(table, [*names, "PGA up [g]", "duration [s]", "step [s]", "drift"])
 

@@ -116,13 +116,6 @@ def slip_pictures(assessment: Assessment, column: str) -> dict[str, Picture]:
     }
 
 
-def share_that_rocks(assessment: Assessment, column: str, scale: float) -> float:
-    """Return the share of the small variations whose friction reaches r/h, so that the column need not slide first."""
-    known = assessment.data["sliding"]["known_variations"].sel(column=column, scale=scale)
-    total = int(assessment.setting["variations"])
-    return 1.0 - float(known.max()) / total if total else 0.0
-
-
 def stated_limits(assessment: Assessment, column: str) -> tuple[str, ...]:
     """Return the names of the limit states of a column."""
     return tuple(one["name"] for one in assessment.setting.get("limit_states", {}).get(column, ()))

@@ -131,8 +131,8 @@ def _without_component(title: str) -> str:
 
 def _intensities(assessment: Assessment) -> PageTable:
     """Tabulate the intensities of each record as recorded."""
-    own, period = assessment.data["records"], _period(assessment)
-    spectral = _spectral(assessment)
+    own, period = assessment.data["records"], spectral_period(assessment)
+    spectral = spectral_accelerations(assessment)
     header = (
         *("record", "definition", "PGA [g]", "PGA [m/s²]", "PGV [m/s]", f"Sa({period:g} s) [g]", "PGA, vector [g]"),
         *("PGA along x [g]", "PGA along y [g]", "PGA up [g]", "PGV, vector [m/s]", "duration [s]", "step [s]"),
@@ -172,7 +172,7 @@ def _spectra(assessment: Assessment) -> PageTable:
     header = ["period [s]", *(f"{name} [g]" for name in each), "mean [g]"]
     header += [f"{design['name']} [g]", "mean / design"] if design else []
     rows = []
-    for period in sorted({*_SHOWN_PERIODS, _period(assessment)}):
+    for period in sorted({*_SHOWN_PERIODS, spectral_period(assessment)}):
         values = np.array([_at(own.sel(record=name), period) for name in labels(assessment.data["records"])])
         shown = values if len(each) == values.size else (values.min(), values.max())
         row = [f"{period:g}", *map(in_g, shown), in_g(values.mean())]
@@ -189,7 +189,7 @@ def margin_intensities(assessment: Assessment) -> PageTable:
 
     One row has the smallest scale of the central case; another has the smallest scale of all cases if that is smaller.
     """
-    period = _period(assessment)
+    period = spectral_period(assessment)
     header = (
         *(
             "column",
@@ -225,7 +225,7 @@ def _at_scale(assessment: Assessment, record: str, scale: float, highest: float)
     above = "> " if math.isnan(scale) and not math.isnan(highest) else ""
     scale = highest if math.isnan(scale) else scale
     peak, velocity = (scale * float(own[f"median_peak_{what}"]) for what in ("acceleration", "velocity"))
-    spectral = scale * _spectral(assessment).get(record, math.nan)
+    spectral = scale * spectral_accelerations(assessment).get(record, math.nan)
     vector = scale * float(own["peak_acceleration"])
     shown = (in_g(peak), number(peak), number(velocity), in_g(spectral), number(spectral), in_g(vector))
     stated = f"{above}{number(scale, 4)}" if above else at_most(scale)
@@ -502,16 +502,17 @@ def drifting(assessment: Assessment) -> list[str]:
     return [str(name) for name in own["record"].to_numpy()[own["drifts"].to_numpy() == 1]]
 
 
-def _period(assessment: Assessment) -> float:
+def spectral_period(assessment: Assessment) -> float:
+    """Return the natural period of the spectral acceleration that tables show [s]."""
     return float(assessment.setting.get("details", {}).get("spectral_period", 1.0))
 
 
-def _spectral(assessment: Assessment) -> dict[str, float]:
+def spectral_accelerations(assessment: Assessment) -> dict[str, float]:
     """Return the spectral acceleration of each record at the stated period [m/s²]; empty if there are no spectra."""
     if "spectra" not in assessment.data:
         return {}
     own = assessment.data["spectra"]["spectral_acceleration"]
-    return {name: _at(own.sel(record=name), _period(assessment)) for name in labels(assessment.data["records"])}
+    return {name: _at(own.sel(record=name), spectral_period(assessment)) for name in labels(assessment.data["records"])}
 
 
 def _at(spectrum: xr.DataArray, period: float) -> float:
