@@ -19,8 +19,6 @@ from stylobate.earthquakes.assessment.margins import demands_to_margin, states_a
 from stylobate.earthquakes.assessment.report import document
 from stylobate.earthquakes.assessment.report.answers import (
     answer_table,
-    overturning_probability,
-    probability_over_records,
 )
 from stylobate.earthquakes.assessment.report.column_verdict import cases_of
 from stylobate.earthquakes.assessment.report.figures import (
@@ -39,7 +37,8 @@ from stylobate.earthquakes.assessment.report.wording import at_most, intervals, 
 from stylobate.earthquakes.figures.overturning_intervals import UNDECIDED
 from stylobate.plots.page import PageList, require_pdf
 from stylobate.results import DesignSpectrum, ReportDetails
-from stylobate.studies.proportions import clustered_interval
+
+from .two_columns import BODIES, DISSIPATION, made_record, section
 
 DETAILS = ReportDetails(
     author="N. Author",
@@ -51,26 +50,13 @@ DETAILS = ReportDetails(
     design_spectrum=DesignSpectrum(period=(0.0, 0.5, 2.0), acceleration=(2.0, 5.0, 1.0), name="spectrum of the site"),
     spectral_period=0.8,
 )
-BODIES = {
-    name: sb.Column.solid(radius=radius, height=2.0, density=2700.0)
-    for name, radius in (("slim <1>", 0.2), ("stout", 0.45))
-}
-DISSIPATION = {"low": {"damping": 0.01}, "central": {"damping": 0.05}, "high": {"damping": 0.1}}
-
-
-def record(name, peak):
-    time = 0.02 * np.arange(101)
-    wave = np.sin(np.pi * time / 2.0) * np.sin(2.0 * np.pi * time)
-    return sb.Record(
-        samples=peak * np.stack([wave, 0.4 * wave**2], axis=-1), step=0.02, name=name, provenance=(f"made for {name}",)
-    )
 
 
 @pytest.fixture(scope="module")
 def found():
     bare = assess(
         {name: sb.Slender(body) for name, body in BODIES.items()},
-        [record("strong", 9.0), record("weak & quiet", 0.2)],
+        [made_record("strong", 9.0), made_record("weak & quiet", 0.2)],
         dissipation=DISSIPATION,
         friction_coefficient=0.6,
         scales=[0.5, 1.0],
@@ -297,55 +283,6 @@ def test_spectra_are_drawn_with_their_mean_and_the_design_spectrum(found):
     assert axes.get_ylim()[0] == 0.0
 
 
-@pytest.fixture(scope="module")
-def sliding():
-    return assess(
-        {name: sb.Slender(body) for name, body in BODIES.items()},
-        [record("strong", 3.0), record("weak & quiet", 0.2)],
-        dissipation=DISSIPATION,
-        friction_coefficient={"slim <1>": 0.6, "stout": 0.15},
-        sliding=True,
-        limit_states=[sb.earthquakes.LimitState(response="slip", limit=0.02)],
-        margin_scales=np.geomspace(0.5, 3.0, 9),
-        variations=12,
-        planar=False,
-        contact=False,
-        tail=2.0,
-    )
-
-
-def test_slip_is_answered_on_the_first_page_and_tabulated_in_millimetres(sliding):
-    slim, stout = answer_table(sliding, 1.0).rows
-    own = sliding.data["sliding"].sel(column="stout", scale=1.0)
-    assert stout[1] == "Slides before it rocks"
-    strong = own.sel(record="strong")
-    stated, low, high = (1000.0 * float(strong[f"peak_slip{end}"]) for end in ("", "_low", "_high"))
-    interval = f"{low:.3g} to {high:.3g}, 90 % of its variations"
-    assert stout[2].startswith(f"slips up to {stated:.3g} mm ({interval}) under strong; slip 20 mm: ")
-    assert slim[1] != "Slides before it rocks"
-    table = assessment_tables(sliding)["slip"]
-    rows = {row[1]: dict(zip(table.header, row, strict=True)) for row in table.rows}
-    assert {row[0] for row in table.rows} == {"stout"}
-    for name, row in rows.items():
-        assert row["peak slip [mm]"] == f"{1000.0 * float(own['peak_slip'].sel(record=name)):.3g}"
-    states = assessment_tables(sliding)["slip-limits"]
-    reached = {row[1]: dict(zip(states.header, row, strict=True))["state"] for row in states.rows}
-    expected = {name: "reached" if float(own["peak_slip"].sel(record=name)) >= 0.02 else "not reached" for name in rows}
-    assert reached == expected
-    assert set(reached.values()) == {"reached", "not reached"}
-
-
-def test_variations_whose_friction_reaches_the_slenderness_are_counted_and_may_rock(sliding):
-    own = sliding.data["sliding"]
-    few = own.assign(known_variations=own["known_variations"] * 0 + 9)
-    _, stout = answer_table(replace(sliding, data={**sliding.data, "sliding": few}), 1.0).rows
-    rocks = str(overturning_probability(sliding, "stout", 1.0))
-    assert stout[2].endswith(f"but in 25 % of the variations friction reaches r/h, and it may rock: overturns {rocks}")
-    assert "may rock" not in answer_table(sliding, 1.0).rows[1][2]
-    rows = assessment_tables(sliding)["summary"].rows
-    assert {row[0] for row in rows if "slides" in row} == {"stout"}
-
-
 def test_the_first_page_states_whether_the_other_contact_law_matters(found):
     (listed,) = [part for part in first_page(found, {}) if isinstance(part, PageList)]
     (words,) = [item for item in listed.items if item.startswith("Contact: ")]
@@ -371,18 +308,6 @@ def test_the_command_the_inputs_and_what_the_table_carries_are_in_the_report(fou
     assert f"Table of objects: objects.csv, SHA-256 {'cd34' * 16}" in listed.items
     assert f"Study file: two.toml, SHA-256 {'ab12' * 16}" in listed.items
     assert column_findings(stated, "stout").rows[0] == ("object", "room 12, inventory number B-007")
-
-
-def test_runs_without_slip_of_a_column_that_slides_first_are_not_shown(sliding, found):
-    _, table, *_ = section(sliding, "Outcomes at the stated scales")
-    assert {row[0] for row in table.rows} == {"slim <1>"}
-    words, table = section(sliding, "Margins")[:2]
-    assert "Left out: stout, which slides before it rocks." in words
-    assert {row[0] for row in table.rows} == {"slim <1>"}
-    (body,) = objects_figure(sliding, ["stout"], ["stout"]).axes[0].patches
-    assert body.get_xy()[:, 1].max() == BODIES["stout"].height
-    assert not any(one.heading == "Slip" for one in report_sections(found, assessment_tables(found), {}))
-    assert "slip" not in assessment_tables(found)
 
 
 def test_a_mean_of_five_percent_is_not_divided_by_a_design_spectrum_of_another_damping(found):
@@ -675,11 +600,6 @@ def test_each_stated_scale_that_moved_a_column_has_a_figure_of_shares(found):
     assert not any(name.startswith("variations") for name in report_pictures(bare))
 
 
-def section(assessment, title):
-    (own,) = [one for one in report_sections(assessment, assessment_tables(assessment), {}) if one.heading == title]
-    return own.content
-
-
 def test_the_section_of_outcomes_states_what_varied_or_that_nothing_did(found):
     title = "Outcomes at the stated scales"
     words, table, *_ = section(found, title)
@@ -715,33 +635,6 @@ def test_rows_of_outcomes_that_say_nothing_are_counted_and_left_out(found):
         states = verdicts["overturned"].sel(column=column, record=record, scale=float(scale), vertical="with")
         for level in ("low", "central", "high"):
             assert (row[level] == "yes") == bool(states.sel(dissipation=level) == 1)
-
-
-def test_the_probability_counts_each_record_once_and_undecided_runs_on_both_sides():
-    shares = np.array([1.0, 0.0, 0.5, 0.0])
-    share, low, high = probability_over_records(shares, np.zeros(4))
-    assert share == 0.375
-    assert (low, high) == pytest.approx([float(end) for end in clustered_interval(shares)], rel=1e-12)
-    unknown = np.array([0.0, 0.5, 0.0, 0.0])
-    _, low_open, high_open = probability_over_records(shares, unknown)
-    assert low_open == low
-    assert high_open == pytest.approx(float(clustered_interval(shares + unknown)[1]), rel=1e-12)
-    nothing = probability_over_records(np.zeros(2), np.ones(2))
-    assert np.isnan(nothing[0])
-    assert nothing[1] == 0.0
-    assert nothing[2] == 1.0
-
-
-@pytest.mark.parametrize("spread", [0.2, 1.0, 20.0])
-def test_the_interval_of_the_probability_covers_it_however_much_records_differ(spread):
-    rng, mean, count = np.random.default_rng(7), 0.3, 12
-    covered = 0
-    for _ in range(2000):
-        shares = rng.binomial(200, rng.beta(spread * mean, spread * (1.0 - mean), count)) / 200.0
-        _, low, high = probability_over_records(shares, np.zeros(count))
-        covered += low <= mean <= high
-    # Three standard deviations of the coverage of 2000 draws are 1.5 %; that of 12 trials of its own varies by 2 %.
-    assert covered / 2000.0 >= 0.915
 
 
 def test_the_first_page_answers_with_class_probability_and_margin(found):
