@@ -15,11 +15,11 @@ import numpy as np
 from stylobate.base_motions.record import AXES
 from stylobate.base_motions.signal_processing import Floats
 from stylobate.errors import FileError
+from stylobate.records.contents import NoRecordError
 from stylobate.records.directions import Component, Directed, Direction, along_axes, is_one_set, split_name
 from stylobate.records.text_files import (
     REMARKS,
     SECOND,
-    NoRecordError,
     Text,
     TimeUnit,
     is_number,

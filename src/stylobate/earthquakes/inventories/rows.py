@@ -11,7 +11,8 @@ from typing import Any, NamedTuple, Self
 from stylobate.errors import FileError, UnsupportedError
 from stylobate.files import file_of
 from stylobate.records.containers import is_container, members
-from stylobate.records.text_files import Text, read_bytes, require_readable
+from stylobate.records.contents import Allowance, read_bytes, require_readable
+from stylobate.records.text_files import Text
 
 _GEOPACKAGE = ".gpkg"
 _SEPARATORS = ";\t,"
@@ -65,10 +66,11 @@ class ObjectTable:
         if file.suffix.lower() == _GEOPACKAGE:
             found = cls._of_geopackage(path)
         else:
-            content = read_bytes(file)
+            allowance = Allowance()
+            content = read_bytes(file, allowance)
             require_readable(file, content)
             if is_container(content):
-                found = cls._of_text(_first(path, file, content), whole=_WHOLE)
+                found = cls._of_text(_first(path, file, content, allowance), whole=_WHOLE)
             else:
                 found = cls._of_text(Text.of(path, content))
         if not found.rows and not found.problems:
@@ -148,7 +150,7 @@ def geopackages(path: Path) -> Any:
     return pyogrio.raw
 
 
-def _first(path: Path, file: Path, content: bytes) -> Text:
+def _first(path: Path, file: Path, content: bytes, allowance: Allowance) -> Text:
     """Return the named sheet of a workbook, or file of an archive, or the first one."""
     listed: list[Path] = []
 
@@ -156,7 +158,7 @@ def _first(path: Path, file: Path, content: bytes) -> Text:
         listed.extend(places)
         return listed[:1] if path == file else [one for one in listed if one == path]
 
-    found = next(members(file, content, chosen), None)
+    found = next(members(file, content, chosen, allowance), None)
     if found is None:
         raise FileError(f"{path}: no such sheet. Choose from {', '.join(one.name for one in listed)}.")
     place, text = found
