@@ -159,8 +159,11 @@ def read_bytes(path: Path, allowance: Allowance | None = None) -> bytes:
     try:
         with path.open("rb") as file:
             own = os.fstat(file.fileno())
-            # A pipe or a device has no end that is known.
-            content = _read(path, file, own.st_size if stat.S_ISREG(own.st_mode) else LARGEST)
+            if stat.S_ISREG(own.st_mode):
+                is_short = own.st_size <= LONGEST_TEXT
+                content = file.read() if is_short else _read(path, file, own.st_size)
+            else:  # a pipe or a device, whose end is not known
+                content = _read(path, file, LARGEST)
             if file.read(1):
                 raise FileError(
                     f"{path}: more than {LARGEST >> 30} GiB, without an end that is known. Save it as a file"
