@@ -191,8 +191,8 @@ def _sheets(path: Path, content: bytes, chosen: Choice) -> Iterator[Member]:
 
 
 def _title(title: str) -> str:
-    """Return the title of a sheet as one part of a path."""
-    return _place(Path(), re.sub(r"[/\\]", "_", title)).name
+    """Return the title of a sheet as one part of a path, which is not that of a hidden file."""
+    return _place(Path(), re.sub(r"[/\\]", "_", title)).name.lstrip(".") or "_"
 
 
 def _rows(place: Path, sheet: Any) -> list[list[Any]]:

@@ -165,9 +165,7 @@ def read_bytes(path: Path, allowance: Allowance | None = None) -> bytes:
             else:  # a pipe or a device, whose end is not known
                 content = _read(path, file, LARGEST)
             if file.read(1):
-                raise FileError(
-                    f"{path}: more than {LARGEST >> 30} GiB, without an end that is known. Save it as a file"
-                )
+                raise FileError(f"{path}: more than {LARGEST >> 20} MiB, and no end. Save it as a file")
         return unpacked(path, content, allowance)
     except (OSError, ValueError, EOFError, zlib.error) as error:  # a ValueError: a name with a null character
         reason = getattr(error, "strerror", None) or str(error)

@@ -49,6 +49,8 @@ _LONGEST_STEP, _LONGEST_DURATION = 0.5, 7200.0
 # Range of steps of readable records [s], and a bound on accelerations in any unit.
 _STEPS = (1e-9, 1e6)
 _BEYOND_ALL = 1e30
+# Parts of a file that a message names.
+_LISTED = 12
 
 
 class RecordFormat(Enum):
@@ -144,9 +146,14 @@ def read_parts(path: Path, how: FileReading) -> list[Part]:
     parts = list(_parts(file, read_bytes(file, allowance), how, path, allowance))
     named = [part for part in parts if part.path == path or path in part.path.parents]
     if not named:
-        listed = ", ".join(part.path.relative_to(file).as_posix() for part in parts) or "nothing to read"
-        raise FileError(f"{path}: {file.name} has no such part. It has {listed}")
+        raise _no_part(path, file, [part.path for part in parts])
     return named
+
+
+def _no_part(wanted: Path, file: Path, parts: Sequence[Path]) -> FileError:
+    names = [part.relative_to(file).as_posix() for part in parts[:_LISTED]]
+    listed = ", ".join(names) + f" and {len(parts) - _LISTED} more" * (len(parts) > _LISTED)
+    return FileError(f"{wanted}: {file.name} has no such part. It has {listed or 'nothing to read'}")
 
 
 def _parts(path: Path, content: bytes, how: FileReading, wanted: Path, allowance: Allowance) -> Iterator[Part]:
@@ -155,7 +162,11 @@ def _parts(path: Path, content: bytes, how: FileReading, wanted: Path, allowance
     if is_container(content):
 
         def chosen(paths: Iterable[Path]) -> list[Path]:
-            return [one for one in accelerations_among(paths) if one == wanted or _share_a_line(one, wanted)]
+            listed = accelerations_among(paths)
+            found = [one for one in listed if one == wanted or _share_a_line(one, wanted)]
+            if not found:
+                raise _no_part(wanted, path, listed)
+            return found
 
         for place, packed in members(path, content, chosen, allowance):
             try:

@@ -69,7 +69,7 @@ def test_an_archive_is_read_like_a_folder_and_other_files_in_it_are_listed(archi
 def test_a_file_in_an_archive_has_a_path(archive):
     record = sb.read_record(archive / "download" / "RSN1_QUAKE_CLS090.AT2", axis="y")
     assert_allclose(record.samples[:, 1], WAVES[:, 1], rtol=1e-6, atol=1e-6)
-    with pytest.raises(FileError, match=r"other\.AT2: peer\.zip has no such part\. It has nothing to read"):
+    with pytest.raises(FileError, match=r"other\.AT2: peer\.zip has no such part\. It has download/RSN1_"):
         sb.read_record(archive / "other.AT2")
     part = archive / "download" / "RSN1_QUAKE_CLS000.AT2"
     (listed,) = sb.read_records([[part, archive / "download" / "RSN1_QUAKE_CLS090.AT2"]])
