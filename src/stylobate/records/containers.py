@@ -3,6 +3,7 @@
 import io
 import re
 import tarfile
+import warnings
 import zipfile
 import zlib
 from collections.abc import Callable, Iterable, Iterator
@@ -33,10 +34,10 @@ _METHODS = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)
 _LONGEST_NAME = 100
 _UNFIT = re.compile(r"[\x00-\x1f\x7f-\x9f\u2028\u2029\ud800-\udfff]")
 
-# Rows of a sheet in Excel; cells of a sheet, the empty ones before the last of a row included.
-_MOST_ROWS, _MOST_CELLS = 1 << 20, 1 << 24
-# Bytes of all parts of a workbook; a million rows of four numbers have 190 MiB.
-_LARGEST_WORKBOOK = 2 * LONGEST_TEXT
+MOST_ROWS, MOST_CELLS = 1 << 20, 1 << 24
+"""Rows of a sheet in Excel; cells of a sheet, the empty ones before the last of a row included."""
+LARGEST_WORKBOOK = 2 * LONGEST_TEXT
+"""Bytes of all parts of a workbook; a million rows of four numbers have 190 MiB."""
 
 
 def is_container(content: bytes) -> bool:
@@ -44,7 +45,7 @@ def is_container(content: bytes) -> bool:
     return content.startswith(ZIP) or content[_TAR_AT : _TAR_AT + len(_TAR)] == _TAR
 
 
-def members(path: Path, content: bytes, chosen: Choice, allowance: Allowance) -> Iterator[Member]:
+def members(path: Path, content: bytes, chosen: Choice, allowance: Allowance | None = None) -> Iterator[Member]:
     """Yield the files in an archive, in the order of their names, or the sheets of a workbook.
 
     Parameters
@@ -54,7 +55,7 @@ def members(path: Path, content: bytes, chosen: Choice, allowance: Allowance) ->
     chosen
         Function that chooses among the paths of the files; only these are unpacked.
     allowance
-        What the container may unpack to; it counts as open until the last file has been taken.
+        What the container may unpack to; it counts as open until the last file has been taken. None is the whole.
 
     Raises
     ------
@@ -63,6 +64,7 @@ def members(path: Path, content: bytes, chosen: Choice, allowance: Allowance) ->
     UnsupportedError
         If it is a workbook, and openpyxl is not installed.
     """
+    allowance = Allowance() if allowance is None else allowance
     with allowance.inside(path):
         try:
             if not content.startswith(ZIP):
@@ -71,7 +73,7 @@ def members(path: Path, content: bytes, chosen: Choice, allowance: Allowance) ->
             allowance.take_files(path, content.count(_ENTRY))
             with zipfile.ZipFile(io.BytesIO(content)) as archive:
                 entries = archive.infolist()
-                if _is_workbook(archive):
+                if _states_workbook(archive):
                     _require_plain_workbook(path, archive, allowance)
                     yield from _sheets(path, content, chosen)
                 else:
@@ -146,8 +148,18 @@ def _place(path: Path, name: str) -> Path:
     return path.joinpath(*([part for part in parts if part not in ("", ".", "..")] or ["_"]))
 
 
-def _is_workbook(archive: zipfile.ZipFile) -> bool:
-    """Return whether an archive holds the parts of a workbook, and states that it is one."""
+def is_workbook(content: bytes) -> bool:
+    """Return whether a container is a workbook: an archive with its parts that states that it is one."""
+    if not content.startswith(ZIP):
+        return False
+    try:
+        with zipfile.ZipFile(io.BytesIO(content)) as archive:
+            return _states_workbook(archive)
+    except _DAMAGED:
+        return False
+
+
+def _states_workbook(archive: zipfile.ZipFile) -> bool:
     if not {_WORKBOOK, _TYPES} <= set(archive.namelist()):
         return False
     with _open(archive, archive.getinfo(_TYPES)) as stated:
@@ -157,9 +169,9 @@ def _is_workbook(archive: zipfile.ZipFile) -> bool:
 def _require_plain_workbook(path: Path, archive: zipfile.ZipFile, allowance: Allowance) -> None:
     """Refuse a workbook that is too large, or whose parts declare types of their own, as no program writes them."""
     size = sum(one.file_size for one in archive.infolist())
-    if size > _LARGEST_WORKBOOK:
+    if size > LARGEST_WORKBOOK:
         raise FileError(
-            f"{path}: a workbook of more than {_LARGEST_WORKBOOK >> 20} MiB when unpacked. Save the sheet that is "
+            f"{path}: a workbook of more than {LARGEST_WORKBOOK >> 20} MiB when unpacked. Save the sheet that is "
             "needed as CSV"
         )
     allowance.take(path, size)
@@ -177,9 +189,11 @@ def _sheets(path: Path, content: bytes, chosen: Choice) -> Iterator[Member]:
         "sheet as CSV",
     )
     try:
-        book = openpyxl.load_workbook(io.BytesIO(content), read_only=True, data_only=True, keep_links=False)
-        named = {path / _title(sheet.title): sheet for sheet in book.worksheets}
-        sheets = [(one, _rows(one, named[one])) for one in chosen(named)]
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # about parts that hold no cells
+            book = openpyxl.load_workbook(io.BytesIO(content), read_only=True, data_only=True, keep_links=False)
+            named = {path / _title(sheet.title): sheet for sheet in book.worksheets}
+            sheets = [(one, _rows(one, named[one])) for one in chosen(named)]
     except FileError:
         raise
     except Exception as error:  # openpyxl's reader raises exceptions of any type for damaged workbooks
@@ -202,9 +216,9 @@ def _rows(place: Path, sheet: Any) -> list[list[Any]]:
     sheet.reset_dimensions()  # stated by the program that wrote it, perhaps before the last rows were added
     for row in sheet.iter_rows(values_only=True):
         cells += len(row)
-        if len(rows) == _MOST_ROWS or cells > _MOST_CELLS:
+        if len(rows) == MOST_ROWS or cells > MOST_CELLS:
             raise FileError(
-                f"{place}: more than {_MOST_ROWS} rows, or {_MOST_CELLS} cells. Save the rows that are needed as CSV"
+                f"{place}: more than {MOST_ROWS} rows, or {MOST_CELLS} cells. Save the rows that are needed as CSV"
             )
         rows.append(_shown(row))
     return rows

@@ -134,12 +134,12 @@ class Allowance:
 def _read(path: Path, stream: IO[bytes], most: int) -> bytes:
     """Read a stream, up to a little more than `most` bytes; refuse a text that is too long."""
     content = io.BytesIO()
-    longest = most
-    while content.tell() <= longest and (piece := stream.read(_PIECE)):
-        if not content.tell() and not is_binary(piece):
+    size, longest = 0, most
+    while size <= longest and (piece := stream.read(_PIECE)):
+        if not size and not is_binary(piece):
             longest = min(most, LONGEST_TEXT)
-        content.write(piece)
-    if most >= content.tell() > longest:
+        size += content.write(piece)
+    if most >= size > longest:
         raise FileError(
             f"{path}: a text of more than {LONGEST_TEXT >> 20} MiB. Cut it to the record, or save it in a binary "
             "format such as miniSEED"

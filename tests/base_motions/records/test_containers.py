@@ -300,6 +300,29 @@ def test_responses_of_other_stations_and_of_velocities_are_refused(tmp_path):
         sb.read_record(path, response=tmp_path / "missing.xml")
 
 
+@pytest.mark.parametrize("stated", ["INF", "1e400", "NaN", "0", "", "x"])
+def test_a_sensitivity_that_is_no_number_is_refused(tmp_path, stated):
+    path = saved(tmp_path / "raw.mseed", stream(np.round(1000.0 * WAVES), kind="int32"))
+    response = station_xml(tmp_path / "station.xml")
+    text = response.read_text()
+    assert text.count("<Value>1000.0</Value>") == 3
+    response.write_text(text.replace("<Value>1000.0</Value>", f"<Value>{stated}</Value>"))
+    with pytest.raises(
+        FileError, match=r"station\.xml: the sensitivity of IU\.ANMO\.00\.HN. must be a finite number oth"
+    ):
+        sb.read_record(path, response=response)
+
+
+@pytest.mark.parametrize("begin", ["<!DOCTYPE FDSNStationXML>", "<other>", "", "made up"])
+def test_a_response_is_read_from_station_xml_only(tmp_path, begin):
+    path = saved(tmp_path / "raw.mseed", stream(np.round(1000.0 * WAVES), kind="int32"))
+    response = station_xml(tmp_path / "station.xml")
+    first, rest = response.read_text().partition("<FDSNStationXML")[::2]
+    response.write_text(first + begin + "<FDSNStationXML" * begin.startswith("<!") + rest)
+    with pytest.raises(FileError, match=r"station\.xml: no StationXML: it does not begin with FDSNStationXML"):
+        sb.read_record(path, response=response)
+
+
 # Folders
 
 

@@ -8,6 +8,7 @@ import socket
 import tarfile
 import time
 import zipfile
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -261,7 +262,7 @@ def test_a_title_of_a_sheet_is_one_harmless_name(tmp_path):
 
 def test_a_workbook_without_end_is_refused(tmp_path, monkeypatch):
     openpyxl = pytest.importorskip("openpyxl")
-    monkeypatch.setattr(containers, "_MOST_ROWS", 1000)
+    monkeypatch.setattr(containers, "MOST_ROWS", 1000)
     book = openpyxl.Workbook()
     book.active.append([0.0, 0.1])
     book.active.cell(77, 1).value = 0.2
@@ -308,8 +309,21 @@ def test_other_ways_of_packing_are_named_with_their_remedy(tmp_path, begin):
 
 @pytest.mark.posix
 def test_a_pipe_without_end_is_read_up_to_the_limit(tmp_path, monkeypatch):
-    from pathlib import Path
-
     monkeypatch.setattr(contents, "LARGEST", 2 << 20)
     with pytest.raises(FileError, match=r"zero: more than 2 MiB, and no end\. Save it as a file"):
         read_bytes(Path("/dev/zero"))
+
+
+def test_the_page_on_security_states_the_limits_and_formats():
+    page = (Path(sb.__file__).parents[2] / "docs/about/security.md").read_text(encoding="utf-8")
+    limits = [
+        f"{contents.LARGEST >> 30} GiB",
+        f"{contents.LONGEST_TEXT >> 20} MiB",
+        f"{contents.LONGEST_LINE >> 10} KiB",
+    ]
+    limits += [
+        f"{number:_}".replace("_", " ") for number in (contents.MOST_FILES, containers.MOST_ROWS, containers.MOST_CELLS)
+    ]
+    limits += [f"| {contents.DEEPEST} |", f"{containers.LARGEST_WORKBOOK >> 20} MiB"]
+    for one in (*limits, *(form.name for form in FORMATS)):
+        assert one in page, one
