@@ -1,6 +1,10 @@
 """The exception tree, and the checks that raise it."""
 
+import ast
 import math
+import re
+import tomllib
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -18,6 +22,7 @@ from stylobate.errors import (
     UnknownNameError,
     UnlikelyInputWarning,
     UnsupportedError,
+    require_extra,
     require_finite,
     require_not_negative,
     require_positive,
@@ -222,3 +227,42 @@ def test_loaded_results_suggest_names_too(tmp_path):
     loaded = sb.load(run.save(tmp_path / "run.nc"))
     with pytest.raises(UnknownNameError, match=r"did you mean turns\?"):
         loaded.measures["turn"]
+
+
+@pytest.mark.parametrize(
+    ("text", "lacking"),
+    [
+        ("import warnings\nwarnings.warn('of its own code', DeprecationWarning)\nVALUE = 3", False),
+        ("import no_such_library", True),
+        ("raise OSError('cannot load a library of the system')", True),
+    ],
+)
+def test_an_optional_library_is_imported_without_its_warnings_or_named_with_the_remedy(
+    tmp_path, monkeypatch, text, lacking
+):
+    name = f"made_up_{abs(hash(text))}"
+    (tmp_path / f"{name}.py").write_text(text)
+    monkeypatch.syspath_prepend(tmp_path)
+    if not lacking:  # the tests turn warnings into errors
+        assert require_extra(name, "not installed").VALUE == 3
+        return
+    with pytest.raises(UnsupportedError, match=r"^it needs made_up: pip install made_up$"):
+        require_extra(name, "it needs made_up: pip install made_up")
+
+
+def test_no_optional_library_is_imported_in_a_second_way():
+    root = Path(sb.__file__).parents[2]
+    project = tomllib.loads((root / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    extras = [one for listed in project["optional-dependencies"].values() for one in listed]
+    names = {re.split(r"[\[>=<]", one)[0].replace("-", "_") for one in extras} | {"distributed"}
+    mentioned = re.compile(rf"\b(?:import|from) (?:{'|'.join(names)})\b")
+    for path in Path(sb.__file__).parent.rglob("*.py"):
+        text = path.read_text(encoding="utf-8")
+        tree = ast.parse(text) if mentioned.search(text) else ast.Module([], [])
+        for node in ast.walk(tree):
+            if not isinstance(node, ast.Try):
+                continue
+            for one in (inner for part in node.body for inner in ast.walk(part)):
+                modules = [one.module or ""] if isinstance(one, ast.ImportFrom) else []
+                modules += [alias.name for alias in one.names] if isinstance(one, ast.Import) else []
+                assert not {module.split(".")[0] for module in modules} & names, path

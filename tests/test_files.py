@@ -24,7 +24,7 @@ from stylobate.errors import FileError
 from stylobate.files import read_sealed, sealed, write_whole
 from stylobate.orbits.storage import load_orbits
 from stylobate.results import Assessment
-from stylobate.results.storage import write_netcdf
+from stylobate.results.storage import read_dataset, write_netcdf
 
 MODEL = sb.Slender(sb.Column.dimensionless(0.1), damping=0.1)
 CIRCLE = sb.Harmonic.circular(acceleration=0.065, angular_frequency=2.0)
@@ -176,6 +176,56 @@ def test_of_a_file_of_another_program_no_damage_raises_a_foreign_error(tmp_path)
     command = [sys.executable, "-c", READ_DAMAGED, str(tmp_path / "foreign.nc"), str(tmp_path / "damaged.nc")]
     ended = subprocess.run(command, capture_output=True, text=True, check=False)
     assert ended.returncode == 0, ended.stderr
+
+
+def another_file(path):
+    with h5py.File(path, "w") as file:
+        file["tilt"] = np.arange(5.0)
+    return path
+
+
+def link(file, other):
+    file["tilt"] = h5py.ExternalLink(str(other), "/tilt")
+
+
+def soft_link(file, other):
+    del other
+    file["tilt"] = h5py.SoftLink("/other")
+
+
+def virtual(file, other):
+    layout = h5py.VirtualLayout(shape=(5,), dtype=float)
+    layout[:] = h5py.VirtualSource(str(other), "tilt", shape=(5,))
+    file.create_virtual_dataset("tilt", layout)
+
+
+def external(file, other):
+    file.create_dataset("tilt", (5,), float, external=str(other))
+
+
+def immense(file, other):
+    del other
+    file.create_dataset("tilt", (1 << 40,), float, chunks=(1 << 10,))
+
+
+@pytest.mark.parametrize("seal", [sealed, bytes])
+@pytest.mark.parametrize(
+    ("fill", "problem"),
+    [
+        (link, "'tilt' is a link"),
+        (soft_link, "'tilt' is a link"),
+        (virtual, "the values of '/tilt' lie in other files, or need a plugin of HDF5"),
+        (external, "the values of '/tilt' lie in other files, or need a plugin of HDF5"),
+        (immense, r"its data are to take [\d.e+]+ GiB, the file has \d+ bytes"),
+    ],
+)
+def test_a_result_refers_to_no_other_file_and_declares_no_more_than_it_holds(tmp_path, fill, problem, seal):
+    path = tmp_path / "result.nc"
+    with h5py.File(path, "w") as file:
+        fill(file, another_file(tmp_path / "other.h5"))
+    path.write_bytes(seal(path.read_bytes()))
+    with pytest.raises(FileError, match=rf"result\.nc: it is not a netCDF file, or damaged \({problem}\)"):
+        read_dataset(path)
 
 
 def test_a_sealed_file_is_still_netcdf_for_other_programs(kept):

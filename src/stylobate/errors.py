@@ -24,6 +24,7 @@ import warnings
 from collections.abc import Callable, Iterable, Sequence
 from enum import IntEnum
 from functools import cache
+from importlib import import_module
 from typing import Any, NamedTuple
 
 from stylobate import units
@@ -218,6 +219,34 @@ class Outcome(Named, IntEnum):
 
     def __format__(self, spec: str) -> str:
         return format(self.label, spec)
+
+
+def require_extra(module: str, message: str) -> Any:
+    """Import an optional library, without the warnings that its import raises.
+
+    Parameters
+    ----------
+    module
+        Its name, or that of a module of it.
+    message
+        Problem and remedy, if it is not installed, or a library of the system that it needs is not.
+
+    Returns
+    -------
+    module
+        The module.
+
+    Raises
+    ------
+    UnsupportedError
+        With the message.
+    """
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # about the library's own code, which the caller cannot change
+            return import_module(module)
+    except (ImportError, OSError):  # an OSError: a library of the system that cannot be loaded
+        raise UnsupportedError(message) from None
 
 
 def refuse_unknown_arguments(function: Callable[..., Any], names: Iterable[str]) -> None:

@@ -16,7 +16,7 @@ from io import BytesIO, StringIO
 from pathlib import Path
 from typing import Any
 
-from stylobate.errors import FileError, UnsupportedError
+from stylobate.errors import FileError, require_extra
 
 # Parts are named after the beginning of the file's name, the machine, the process, and a number drawn at random.
 _STEM = 40
@@ -32,7 +32,14 @@ _RESTORE = "Restore it from a copy, or compute it again"
 def file_of(path: str | os.PathLike[str]) -> Path:
     """Return the file that holds a path: the path itself, or the archive above it, as in quakes.zip/CLS000.AT2."""
     path = Path(path)
-    return path if path.exists() else next((one for one in path.parents if one.is_file()), path)
+    with suppress(OSError, ValueError):  # a part of an archive may have a name that no file can have
+        if path.exists():
+            return path
+    for one in path.parents:
+        with suppress(OSError, ValueError):
+            if one.is_file():
+                return one
+    return path
 
 
 def sha256_of(path: str | os.PathLike[str]) -> str:
@@ -160,13 +167,12 @@ def write_workbook(path: str | Path, tables: Mapping[str, Iterable[Iterable[Any]
     FileError
         If the file cannot be written.
     """
-    try:
-        from openpyxl import Workbook
-        from openpyxl.cell import WriteOnlyCell
-        from openpyxl.styles import Font
-    except ImportError:
-        remedy = 'install openpyxl: pip install "stylobate[records]"; or write CSV'
-        raise UnsupportedError(f"{path}: to write an Excel workbook, {remedy}") from None
+    remedy = 'install openpyxl: pip install "stylobate[records]"; or write CSV'
+    require_extra("openpyxl", f"{path}: to write an Excel workbook, {remedy}")
+    from openpyxl import Workbook
+    from openpyxl.cell import WriteOnlyCell
+    from openpyxl.styles import Font
+
     book = Workbook(write_only=True)
     for title, rows in tables.items():
         sheet = book.create_sheet(title)

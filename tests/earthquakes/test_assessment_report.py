@@ -674,7 +674,7 @@ def test_a_pdf_has_page_numbers_a_running_title_and_a_bookmark_for_each_section(
     try:
         require_pdf()
     except sb.errors.UnsupportedError as lacking:
-        pytest.skip(str(lacking))
+        pytest.skip(f"{lacking} (got: {lacking.__context__})")  # which names the library of the system
     few = _only(found, "stout", "weak & quiet")
     assessment_report(few, tmp_path, pdf=True)
     reader = pypdf.PdfReader(tmp_path / "report.pdf")

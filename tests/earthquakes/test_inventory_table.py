@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from stylobate.earthquakes import LognormalSpread, NormalSpread, export_inventory, inventory, read_inventory
+from stylobate.earthquakes.inventories.geopackages import read_layer
 from stylobate.errors import ConfigError, FileError, ParameterError, UnsupportedError
 from stylobate.records import sample_record
 
@@ -197,9 +198,12 @@ def test_a_ranking_is_written_in_known_formats_only(tmp_path):
         export_inventory({}, tmp_path / "ranking.csv")
 
 
-def test_a_geopackage_carries_its_geometry_through(tmp_path):
+POINTS = [b"\x01\x01\x00\x00\x00" + np.array([22.0 + place, 38.0]).tobytes() for place in range(2)]
+
+
+def geopackage(path):
+    """Write two objects with GDAL, which is skipped without it."""
     raw = pytest.importorskip("pyogrio.raw")
-    points = [b"\x01\x01\x00\x00\x00" + np.array([22.0 + place, 38.0]).tobytes() for place in range(2)]
     fields = {
         "name": np.array(["amphora", "jug"], dtype=object),
         "radius": np.array([0.0625, 0.08]),
@@ -209,16 +213,21 @@ def test_a_geopackage_carries_its_geometry_through(tmp_path):
         "friction_coefficient": np.array([0.6, 0.45]),
         "room": np.array([12, 7]),
     }
-    path = tmp_path / "objects.gpkg"
     raw.write(
         path,
-        geometry=np.array(points, dtype=object),
+        geometry=np.array(POINTS, dtype=object),
         field_data=list(fields.values()),
         fields=np.array(list(fields), dtype=object),
         geometry_type="Point",
         crs="EPSG:4326",
         driver="GPKG",
     )
+    return raw
+
+
+def test_a_geopackage_carries_its_geometry_through(tmp_path):
+    path = tmp_path / "objects.gpkg"
+    raw, points = geopackage(path), POINTS
     objects = read_inventory(path)
     assert [(one.column["radius"], one.carried) for one in objects] == [(0.0625, {"room": "12"}), (0.08, {"room": "7"})]
     assert [one.geometry for one in objects] == points
@@ -237,9 +246,45 @@ def test_a_geopackage_carries_its_geometry_through(tmp_path):
     assert by_name == {"amphora": points[0], "jug": points[1]}
 
 
-def test_without_its_package_a_geopackage_is_refused_in_one_line(tmp_path, monkeypatch):
+def test_without_its_package_a_geopackage_is_read_and_its_writing_refused_in_one_line(tmp_path, monkeypatch):
+    path = tmp_path / "objects.gpkg"
+    geopackage(path)
     monkeypatch.setitem(sys.modules, "pyogrio", None)
     monkeypatch.setitem(sys.modules, "pyogrio.raw", None)
-    (tmp_path / "objects.gpkg").touch()
-    with pytest.raises(UnsupportedError, match=r"a GeoPackage needs pyogrio: pip install .stylobate\[geo\]."):
-        read_inventory(tmp_path / "objects.gpkg")
+    objects = read_inventory(path)
+    assert len(objects) == 2
+    found = inventory(objects, sample_record(), samples=1, progress=False)
+    with pytest.raises(UnsupportedError, match=r"a GeoPackage is written by pyogrio: pip install .stylobate\[geo\]."):
+        export_inventory(found, tmp_path / "ranking.gpkg")
+
+
+def test_the_rows_of_a_geopackage_are_those_that_gdal_reads(tmp_path):
+    raw = pytest.importorskip("pyogrio.raw")
+    path = tmp_path / "objects.gpkg"
+    geopackage(path)
+    meta, _, geometry, columns = raw.read(path)
+    layer = read_layer(path)
+    assert (layer.crs, list(layer.headings)) == (meta["crs"], list(meta["fields"]))
+    assert [shape for shape, _ in layer.rows] == list(geometry)
+    by_gdal = [tuple(str(cell) for cell in row) for row in zip(*(column.tolist() for column in columns), strict=True)]
+    assert [cells for _, cells in layer.rows] == by_gdal
+    assert read_layer(path / "objects") == layer
+    with pytest.raises(FileError, match=r"objects\.gpkg.other: no such layer\. Choose from objects\."):
+        read_layer(path / "other")
+
+
+def test_what_is_no_geopackage_or_is_open_elsewhere_is_refused_in_one_line(tmp_path):
+    path = tmp_path / "objects.gpkg"
+    geopackage(path)
+    content = path.read_bytes()
+    for other in (b"", b"anything else", b"<also>this</also>", content[:68] + b"\0\0\0\0" + content[72:]):
+        path.write_bytes(other)
+        with pytest.raises(FileError, match=r"objects\.gpkg: no GeoPackage: it begins otherwise\."):
+            read_layer(path)
+    path.write_bytes(content[:3000])
+    with pytest.raises(FileError, match=r"objects\.gpkg: cannot be read \(database disk image is malformed\)"):
+        read_layer(path)
+    path.write_bytes(content)
+    (tmp_path / "objects.gpkg-wal").write_bytes(b"changes")
+    with pytest.raises(FileError, match=r"objects\.gpkg: open in another program, which keeps changes in objects"):
+        read_layer(path)

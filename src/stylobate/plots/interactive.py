@@ -12,7 +12,7 @@ import xarray as xr
 from matplotlib import rcParams
 from matplotlib.colors import to_hex, to_rgb
 
-from stylobate.errors import ParameterError, UnsupportedError
+from stylobate.errors import ParameterError, require_extra
 from stylobate.plots.cells import Look, MapClass, attractor_classes, contact_classes, outcome_classes
 from stylobate.plots.kinds import HasPoints, check_sequence
 from stylobate.plots.labels import axis_label, in_own_units, unit_label, what_varies
@@ -84,12 +84,7 @@ def plot_interactive(
     ParameterError
         If there is no interactive figure for this result.
     """
-    try:
-        import plotly.graph_objects  # noqa: F401  an extra, slow to import
-    except ImportError:
-        raise UnsupportedError(
-            "interactive figures need Plotly. Install it by: pip install stylobate[interactive]"
-        ) from None
+    require_plotly()
     results: Sequence[Any] = [result]
     if isinstance(result, Sequence) and not isinstance(result, str):
         check_sequence(result)
@@ -112,6 +107,12 @@ def plot_interactive(
     dark = np.mean(to_rgb(rcParams["axes.facecolor"])) < np.mean(to_rgb(rcParams["text.color"]))
     figure.update_layout(template="plotly_dark" if dark else "simple_white")
     return figure
+
+
+def require_plotly() -> None:
+    """Import Plotly and the parts of it that figures use, or raise UnsupportedError if it is not installed."""
+    for module in ("plotly.graph_objects", "plotly.subplots"):
+        require_extra(module, "interactive figures need Plotly. Install it by: pip install stylobate[interactive]")
 
 
 def _of_runs(runs: Sequence[Run], names: Sequence[str]) -> "Figure":

@@ -6,10 +6,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from html import escape
 from io import BytesIO
+from typing import Any
 
 from matplotlib.figure import Figure
 
-from stylobate.errors import UnsupportedError
+from stylobate.errors import require_extra
 
 # Dots per inch of embedded figures; the page scales them to its width.
 _RESOLUTION = 160
@@ -171,19 +172,14 @@ def pdf_of(html: str) -> bytes:
     UnsupportedError
         If WeasyPrint, or Pango which it needs, is not installed.
     """
-    require_pdf()
-    from weasyprint import HTML
-
-    written: bytes = HTML(string=html).write_pdf(pdf_tags=True)
+    written: bytes = require_pdf().HTML(string=html).write_pdf(pdf_tags=True)
     return written
 
 
-def require_pdf() -> None:
-    """Raise UnsupportedError if `pdf_of` lacks WeasyPrint or Pango."""
-    try:
-        import weasyprint  # noqa: F401  an extra, slow to import
-    except (ImportError, OSError):  # an OSError: WeasyPrint is installed, but not the library Pango
-        raise UnsupportedError(
-            'a PDF needs WeasyPrint and the library Pango: pip install "stylobate[pdf]", and Pango by the system\'s '
-            "packages; or print the page in a browser"
-        ) from None
+def require_pdf() -> Any:
+    """Return WeasyPrint, or raise UnsupportedError if it or the library Pango is not installed."""
+    return require_extra(
+        "weasyprint",
+        'a PDF needs WeasyPrint and the library Pango: pip install "stylobate[pdf]", and Pango by the system\'s '
+        "packages; or print the page in a browser",
+    )

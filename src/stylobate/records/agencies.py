@@ -7,9 +7,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from stylobate.records.contents import NoRecordError
 from stylobate.records.databases import direction_of_channel
 from stylobate.records.directions import Component, Direction
-from stylobate.records.text_files import NoRecordError, Text, TimeUnit, unit_of, unknown_unit
+from stylobate.records.text_files import Text, TimeUnit, unit_of, unknown_unit
 
 
 class Channel(NamedTuple):

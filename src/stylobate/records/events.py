@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Self
 
 from stylobate.errors import ParameterError, StylobateError, UnlikelyInputWarning
+from stylobate.records.contents import NoRecordError
 from stylobate.records.directions import (
     Component,
     Direction,
@@ -22,7 +23,6 @@ from stylobate.records.directions import (
 )
 from stylobate.records.reading import Part
 from stylobate.records.sources import RecordSource, find_files, is_list_of_files
-from stylobate.records.text_files import NoRecordError
 
 _LONGEST = 3
 # Maximum length of a common part of names that is too short for a name.

@@ -76,8 +76,8 @@ def read_record(
     format
         Format of the file; None detects it.
     response
-        StationXML, or another file of station metadata that ObsPy reads, which converts the counts of a waveform file
-        to accelerations and states the directions of its channels.
+        StationXML, which converts the counts of a waveform file to accelerations and states the directions of its
+        channels.
 
     Raises
     ------

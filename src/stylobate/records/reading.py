@@ -26,24 +26,21 @@ from stylobate.records.agencies import (
     read_geonet,
 )
 from stylobate.records.containers import is_container, members
+from stylobate.records.contents import (
+    Allowance,
+    NoRecordError,
+    as_utf8,
+    is_binary,
+    read_bytes,
+    require_readable,
+    unpacked,
+)
 from stylobate.records.databases import is_asc, is_at2, is_wrapped, read_asc, read_at2
 from stylobate.records.directions import Component, is_one_set, stem_of
 from stylobate.records.sources import accelerations_among, require_path
 from stylobate.records.tables import TextTable, has_rows_of_numbers, read_named_columns, read_table
-from stylobate.records.text_files import (
-    KNOWN,
-    REMARKS,
-    NoRecordError,
-    Text,
-    as_utf8,
-    in_si,
-    is_binary,
-    read_bytes,
-    require_readable,
-    require_unit,
-    unpacked,
-)
-from stylobate.records.waveforms import is_waveform, read_waveform
+from stylobate.records.text_files import KNOWN, REMARKS, Text, in_si, require_unit
+from stylobate.records.waveforms import read_waveform, waveform_format
 
 # Horizontal and vertical peaks of earthquakes are below, except a few close to the fault [g].
 _LARGEST_PEAK = 3.0
@@ -52,6 +49,8 @@ _LONGEST_STEP, _LONGEST_DURATION = 0.5, 7200.0
 # Range of steps of readable records [s], and a bound on accelerations in any unit.
 _STEPS = (1e-9, 1e6)
 _BEYOND_ALL = 1e30
+# Parts of a file that a message names.
+_LISTED = 12
 
 
 class RecordFormat(Enum):
@@ -64,7 +63,7 @@ class RecordFormat(Enum):
     GEONET = "GeoNet, volumes 1 and 2"
     TABLE = "one column of accelerations, or time and up to three accelerations"
     CSV = "named columns"
-    WAVEFORM = "whatever ObsPy reads"
+    WAVEFORM = "a format of waveforms: miniSEED, SAC, K-NET and KiK-net, GSE, SLIST, TSPAIR, Kinemetrics EVT"
 
 
 @dataclass(frozen=True, slots=True)
@@ -143,26 +142,37 @@ def read_parts(path: Path, how: FileReading) -> list[Part]:
         If the file cannot be read, or has no such part.
     """
     file = file_of(path)
-    parts = list(_parts(file, read_bytes(file), how, path))
+    allowance = Allowance()
+    parts = list(_parts(file, read_bytes(file, allowance), how, path, allowance))
     named = [part for part in parts if part.path == path or path in part.path.parents]
     if not named:
-        listed = ", ".join(part.path.relative_to(file).as_posix() for part in parts) or "nothing to read"
-        raise FileError(f"{path}: {file.name} has no such part. It has {listed}")
+        raise _no_part(path, file, [part.path for part in parts])
     return named
 
 
-def _parts(path: Path, content: bytes, how: FileReading, wanted: Path) -> Iterator[Part]:
+def _no_part(wanted: Path, file: Path, parts: Sequence[Path]) -> FileError:
+    names = [part.relative_to(file).as_posix() for part in parts[:_LISTED]]
+    listed = ", ".join(names) + f" and {len(parts) - _LISTED} more" * (len(parts) > _LISTED)
+    return FileError(f"{wanted}: {file.name} has no such part. It has {listed or 'nothing to read'}")
+
+
+def _parts(path: Path, content: bytes, how: FileReading, wanted: Path, allowance: Allowance) -> Iterator[Part]:
     """Yield the parts of a file; of an archive, those that contain `wanted` or lie below it."""
     content = as_utf8(content)
     if is_container(content):
 
         def chosen(paths: Iterable[Path]) -> list[Path]:
-            return [one for one in accelerations_among(paths) if one == wanted or _share_a_line(one, wanted)]
+            listed = accelerations_among(paths)
+            found = [one for one in listed if one == wanted or _share_a_line(one, wanted)]
+            if not found:
+                raise _no_part(wanted, path, listed)
+            return found
 
-        for place, packed in members(path, content, chosen):
+        for place, packed in members(path, content, chosen, allowance):
             try:
+                inner = unpacked(place, packed, allowance)
                 yield from (
-                    replace(part, found=part.path != wanted) for part in _parts(place, unpacked(packed), how, wanted)
+                    replace(part, found=part.path != wanted) for part in _parts(place, inner, how, wanted, allowance)
                 )
             except (StylobateError, OSError, EOFError, zlib.error) as error:
                 fault = error if isinstance(error, StylobateError) else FileError(f"{place}: cannot be read: {error}")
@@ -206,7 +216,7 @@ def _channels(path: Path, content: bytes, how: FileReading) -> Component | list[
     require_readable(path, content)
     if is_binary(content) and how.format in (None, RecordFormat.AT2) and _is_called_at2(path):
         raise FileError(f"{path}: no AT2 file: it is no text, and has no header with NPTS and DT. Download it again")
-    if how.format is RecordFormat.WAVEFORM or (how.format is None and (is_binary(content) or is_waveform(content))):
+    if how.format is RecordFormat.WAVEFORM or (how.format is None and (is_binary(content) or waveform_format(content))):
         return read_waveform(path, content, None if how.response is None else Path(how.response))
     if is_binary(content):
         remedy = "Leave format out, or export the record as text"

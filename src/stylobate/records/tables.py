@@ -15,11 +15,11 @@ import numpy as np
 from stylobate.base_motions.record import AXES
 from stylobate.base_motions.signal_processing import Floats
 from stylobate.errors import FileError
+from stylobate.records.contents import NoRecordError
 from stylobate.records.directions import Component, Directed, Direction, along_axes, is_one_set, split_name
 from stylobate.records.text_files import (
     REMARKS,
     SECOND,
-    NoRecordError,
     Text,
     TimeUnit,
     is_number,
@@ -40,8 +40,9 @@ _TIME_AND_ACCELERATION = 2
 _BETWEEN = re.compile(r"[;,\s]+")
 _LEADING_ZERO = re.compile(r"[-+]?0\d")
 _WITHOUT_POINT = re.compile(r"[-+]?\d*,\d+(?:[EeDd][-+]?\d+)?|[-+]?\d+(?:[EeDd][-+]?\d+)?")
-_BRACKETED = re.compile(r"[\[(][^\])]*[\])]")
-_WORD = re.compile(r"[^\s\[(]+(?:\s*[\[(][^\])]*[\])])?|[\[(][^\])]*[\])]")
+# The innermost brackets: a search for closing ones beyond other opening ones takes long in a line of opening ones.
+_BRACKETED = re.compile(r"[\[(][^\[\]()]*[\])]")
+_WORD = re.compile(rf"[^\s\[(]+(?:\s*{_BRACKETED.pattern})?|{_BRACKETED.pattern}")
 _DIGITS = re.compile(r"[-+]?\.?\d")
 _HAS_LETTER = re.compile(r"[^\W\d_]")
 _WIDE_SPACE = re.compile(r"\s{2,}")
@@ -378,8 +379,10 @@ def _line_of(name: str) -> Hashable:
 
 def _require_distinct(text: Text, line: int, components: Sequence[tuple[str, Hashable]]) -> None:
     """Raise FileError if two columns, each with its name, state one component."""
-    for at, (_, component) in enumerate(components):
-        same = [other for other, its in components[at:] if its == component]
+    names: dict[Hashable, list[str]] = {}
+    for name, component in components:
+        names.setdefault(component, []).append(name)
+    for component, same in names.items():
         if component is not None and len(same) > 1:
             remedy = "Rename or remove one" if len(set(same)) == 1 else "State columns, or rename or remove one"
             raise text.fault(line, f"columns for one component: {', '.join(map(repr, same))}. {remedy}")

@@ -1,9 +1,7 @@
 """Text files of records: decoding, numbers and units; error messages name file and line."""
 
-import gzip
 import math
 import re
-import zlib
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,75 +12,17 @@ import numpy.typing as npt
 
 from stylobate.column import STANDARD_GRAVITY
 from stylobate.errors import FileError, ParameterError
+from stylobate.records.contents import as_utf8, read_bytes, require_lines, require_readable
 
 Floats = npt.NDArray[np.float64]
 
 REMARKS = ("#", "%", "!", "//")
 """Prefixes of comment lines."""
 
-_GZIP = b"\x1f\x8b"
-_UTF_16 = (b"\xff\xfe", b"\xfe\xff")
-# First bytes of archives and documents that may hold records, but not as text.
-_PACKED = {
-    b"Rar!": "a rar archive. Unpack it and read the files in it",
-    b"7z\xbc\xaf": "a 7z archive. Unpack it and read the files in it",
-    b"\xd0\xcf\x11\xe0": "an Excel workbook of the old form. Save it as xlsx, or its sheet as CSV, and read that",
-    b"%PDF": "a PDF document. Save its numbers as text and read that",
-}
+# Characters of a message beside the place: more than any of ours has without words of the file.
+_LONGEST_FAULT = 400
 _WHOLE = re.compile(r"[0-9]{1,12}")
 _DECIMAL_COMMA = re.compile(r"[-+]?\d*[.,]?\d*,\d+([EeDd][-+]?\d+)?")
-
-
-class NoRecordError(FileError):
-    """A file that holds no record of accelerations; in a folder it is left out."""
-
-
-def read_bytes(path: Path) -> bytes:
-    """Read the bytes of a file; decompress gzip.
-
-    Raises
-    ------
-    FileError
-        If it cannot be read.
-    """
-    try:
-        return unpacked(path.read_bytes())
-    except (OSError, EOFError, zlib.error) as error:
-        reason = getattr(error, "strerror", None) or str(error)
-        several = path.is_dir() or "*" in path.name
-        damaged = isinstance(error, (EOFError, zlib.error, gzip.BadGzipFile))
-        remedy = ". Read folders and patterns with read_records" if several else ". Download the file again" * damaged
-        raise FileError(f"{path}: cannot be read: {reason}{remedy}") from error
-
-
-def unpacked(content: bytes) -> bytes:
-    """Return the content of a file, decompressed if it is packed with gzip."""
-    return gzip.decompress(content) if content.startswith(_GZIP) else content
-
-
-def as_utf8(content: bytes) -> bytes:
-    """Return UTF-16 with its mark as UTF-8, and other content unchanged."""
-    return content.decode("utf-16", errors="replace").encode() if content.startswith(_UTF_16) else content
-
-
-def require_readable(path: Path, content: bytes) -> None:
-    """Refuse a file that no reader opens.
-
-    Raises
-    ------
-    NoRecordError
-        If it is empty, or an archive or document that cannot be opened.
-    """
-    if not content.strip():
-        raise NoRecordError(f"{path}: the file is empty. Download or export it again")
-    for begin, what in _PACKED.items():
-        if content.startswith(begin):
-            raise NoRecordError(f"{path}: {what}")
-
-
-def is_binary(content: bytes) -> bool:
-    """Return whether the content has bytes that no text file holds."""
-    return any(byte < 0x20 and byte not in b"\t\n\r\f\x1a" for byte in content[:4096])  # noqa: PLR2004  a space
 
 
 def is_number(token: str) -> bool:
@@ -121,15 +61,29 @@ class Text:
 
     @classmethod
     def of(cls, path: Path, content: bytes) -> "Text":
-        """Decode `content` to lines: UTF-8, UTF-16 with its mark, otherwise Latin-1, with any line ends."""
+        """Decode `content` to lines: UTF-8, UTF-16 with its mark, otherwise Latin-1, with any line ends.
+
+        Raises
+        ------
+        FileError
+            If a line is longer than those of any table.
+        """
+        content = as_utf8(content)
+        require_lines(path, content)
         try:
-            text = as_utf8(content).decode("utf-8-sig")
+            text = content.decode("utf-8-sig")
         except UnicodeDecodeError:
             text = content.decode("latin-1")
         return cls(path, tuple(text.rstrip("\x1a\x00").replace("\r\n", "\n").replace("\r", "\n").split("\n")))
 
     def fault(self, index: int, what: str, kind: type[FileError] = FileError) -> FileError:
-        """Return a FileError that names the file and the line at `index`, the last one if the file ends before."""
+        """Return a FileError that names the file and the line at `index`, the last one if the file ends before.
+
+        Words of the file in the middle of `what` may be long: the message keeps its problem and its remedy.
+        """
+        if len(what) > _LONGEST_FAULT:
+            half = _LONGEST_FAULT // 2
+            what = f"{what[:half]} … {what[-half:]}"
         return kind(f"{self.path}, line {min(index + 1, len(self.lines))}: {what}")
 
     def number(self, index: int, token: str) -> float:

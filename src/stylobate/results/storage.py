@@ -18,6 +18,12 @@ _Data = TypeVar("_Data", xr.Dataset, xr.DataTree)
 OWN_FORMATS = "stylobate "
 """First word of the formats of the package's own files."""
 
+_HDF5 = b"\x89HDF\r\n\x1a\n"
+# Bytes that the values in a file may declare: a small file can declare any size of equal values.
+_LARGEST, _DENSEST = 1 << 30, 4
+# Filters with higher numbers than those of HDF5 itself are loaded from plugins.
+_LAST_OWN_FILTER = 255
+
 _TABLE = f"{OWN_FORMATS}table 1"
 """Format of files of other data, such as the result of a study; what is read does not contain it."""
 
@@ -88,8 +94,7 @@ def _without_a_cluster() -> AbstractContextManager[Any]:
 def _read(open_file: Callable[..., _Data], path: str | Path) -> _Data:
     content, is_sealed = read_sealed(path)
     try:
-        if not is_sealed:
-            _require_readable(content)
+        _require_readable(content, is_sealed=is_sealed)
         with open_file(BytesIO(content), engine="h5netcdf", decode_times=False) as stored:
             data = stored.load()
     except Exception as error:  # HDF5 and the layers above it raise many classes of errors for damaged files
@@ -106,14 +111,43 @@ def _read(open_file: Callable[..., _Data], path: str | Path) -> _Data:
     return data
 
 
-def _require_readable(content: bytes) -> None:
-    """Read a whole HDF5 file that may be damaged; h5py always closes it after an error, h5netcdf does not."""
+def _require_readable(content: bytes, *, is_sealed: bool) -> None:
+    """Refuse what is no HDF5 file, or refers to other files; read one without a checksum whole, as it may be damaged.
 
-    def read(_: str, item: Any) -> None:
-        dict(item.attrs)
+    h5py always closes a file after an error, h5netcdf does not.
+    """
+    if not content.startswith(_HDF5):
+        raise ValueError("it begins otherwise")
+    size = 0
+
+    def look_at(_: str, item: Any) -> None:
+        nonlocal size
+        if isinstance(item, h5py.Group):
+            _require_own_members(item)
         if isinstance(item, h5py.Dataset):
-            item[()]
+            size += _own_size(item)
+            if size > max(_LARGEST, _DENSEST * len(content)):
+                raise ValueError(f"its data are to take {size / _LARGEST:.3g} GiB, the file has {len(content)} bytes")
+        if not is_sealed:
+            dict(item.attrs)
+            if isinstance(item, h5py.Dataset):
+                item[()]
 
     with h5py.File(BytesIO(content), "r") as file:
-        dict(file.attrs)
-        file.visititems(read)
+        look_at("/", file)
+        file.visititems(look_at)
+
+
+def _require_own_members(group: h5py.Group) -> None:
+    for name in group:
+        if not isinstance(group.get(name, getlink=True), h5py.HardLink):
+            raise ValueError(f"{name!r} is a link")  # noqa: TRY004  of a file, not of an argument
+
+
+def _own_size(data: h5py.Dataset) -> int:
+    """Return the size that the values declare [bytes]; refuse values in other files, or that need plugins."""
+    made = data.id.get_create_plist()
+    filters = [made.get_filter(place)[0] for place in range(made.get_nfilters())]
+    if data.is_virtual or data.external or any(number > _LAST_OWN_FILTER for number in filters):
+        raise ValueError(f"the values of {data.name!r} lie in other files, or need a plugin of HDF5")
+    return int(data.nbytes)

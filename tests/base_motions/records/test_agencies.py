@@ -15,8 +15,9 @@ from stylobate.records.agencies import (
     read_csmip,
     read_geonet,
 )
+from stylobate.records.contents import NoRecordError
 from stylobate.records.directions import Direction
-from stylobate.records.text_files import NoRecordError, Text
+from stylobate.records.text_files import Text
 
 PATH = Path("some.file")
 AGAIN = "Download the file again"

@@ -69,7 +69,7 @@ def test_an_archive_is_read_like_a_folder_and_other_files_in_it_are_listed(archi
 def test_a_file_in_an_archive_has_a_path(archive):
     record = sb.read_record(archive / "download" / "RSN1_QUAKE_CLS090.AT2", axis="y")
     assert_allclose(record.samples[:, 1], WAVES[:, 1], rtol=1e-6, atol=1e-6)
-    with pytest.raises(FileError, match=r"other\.AT2: peer\.zip has no such part\. It has nothing to read"):
+    with pytest.raises(FileError, match=r"other\.AT2: peer\.zip has no such part\. It has download/RSN1_"):
         sb.read_record(archive / "other.AT2")
     part = archive / "download" / "RSN1_QUAKE_CLS000.AT2"
     (listed,) = sb.read_records([[part, archive / "download" / "RSN1_QUAKE_CLS090.AT2"]])
@@ -298,6 +298,29 @@ def test_responses_of_other_stations_and_of_velocities_are_refused(tmp_path):
         sb.read_record(other, response=station_xml(tmp_path / "station.xml"))
     with pytest.raises(FileError, match=r"missing\.xml: no response can be read: it is missing"):
         sb.read_record(path, response=tmp_path / "missing.xml")
+
+
+@pytest.mark.parametrize("stated", ["INF", "1e400", "NaN", "0", "", "x"])
+def test_a_sensitivity_that_is_no_number_is_refused(tmp_path, stated):
+    path = saved(tmp_path / "raw.mseed", stream(np.round(1000.0 * WAVES), kind="int32"))
+    response = station_xml(tmp_path / "station.xml")
+    text = response.read_text()
+    assert text.count("<Value>1000.0</Value>") == 3
+    response.write_text(text.replace("<Value>1000.0</Value>", f"<Value>{stated}</Value>"))
+    with pytest.raises(
+        FileError, match=r"station\.xml: the sensitivity of IU\.ANMO\.00\.HN. must be a finite number oth"
+    ):
+        sb.read_record(path, response=response)
+
+
+@pytest.mark.parametrize("begin", ["<!DOCTYPE FDSNStationXML>", "<other>", "", "made up"])
+def test_a_response_is_read_from_station_xml_only(tmp_path, begin):
+    path = saved(tmp_path / "raw.mseed", stream(np.round(1000.0 * WAVES), kind="int32"))
+    response = station_xml(tmp_path / "station.xml")
+    first, rest = response.read_text().partition("<FDSNStationXML")[::2]
+    response.write_text(first + begin + "<FDSNStationXML" * begin.startswith("<!") + rest)
+    with pytest.raises(FileError, match=r"station\.xml: no StationXML: it does not begin with FDSNStationXML"):
+        sb.read_record(path, response=response)
 
 
 # Folders

@@ -1,9 +1,9 @@
 """Files to records: every format, and what is said of broken ones."""
 
-import builtins
 import gzip
 import math
 import re
+import sys
 
 import numpy as np
 import pytest
@@ -356,17 +356,11 @@ def test_a_format_that_is_asked_for_is_the_format(tmp_path):
 
 
 def test_without_obspy_its_formats_name_the_extra(tmp_path, monkeypatch):
-    real = builtins.__import__
-
-    def missing(name, *rest, **more):
-        if name == "obspy":
-            raise ImportError(name)
-        return real(name, *rest, **more)
-
-    monkeypatch.setattr(builtins, "__import__", missing)
+    monkeypatch.setitem(sys.modules, "obspy", None)
+    monkeypatch.setitem(sys.modules, "obspy.io.mseed.core", None)
     path = written(tmp_path, "a.mseed", b"000001D \x00\x01\x02")
     with pytest.raises(
-        UnsupportedError, match=r'a\.mseed: no text\. .* install ObsPy: pip install "stylobate\[records\]"'
+        UnsupportedError, match=r'a\.mseed: a waveform.* install ObsPy: pip install "stylobate\[records\]"'
     ):
         sb.read_record(path, "g")
 
@@ -392,17 +386,21 @@ def test_miniseed_and_sac_are_read_through_obspy(tmp_path):
     [
         ("noise.bin", bytes(range(64))),
         ("first.bin", bytes(range(256)) * 10),
-        ("quality.mseed", b"000001D \x00\x01\x02"),
         ("random.bin", np.random.default_rng(5).bytes(3000)),
+        ("quality.mseed", b"000001D \x00\x01\x02"),
     ],
 )
-def test_a_file_that_obspy_refuses_is_refused_in_our_own_words(tmp_path, name, content):
+def test_a_file_that_is_no_waveform_is_refused_in_our_own_words(tmp_path, name, content):
     path = written(tmp_path, name, content)
     with pytest.raises(FileError) as raised:
         sb.read_record(path, "g")
-    problem = "ObsPy cannot read it: its format is unknown or its content damaged"
-    remedy = "Download the file again, or export the record as text or miniSEED"
-    assert str(raised.value) == f"{path}: {problem}. {remedy}"
+    problem = (
+        "ObsPy cannot read it as miniSEED: its content is damaged. Download the file again, or export the record as "
+        if name == "quality.mseed"
+        else "neither a text nor a waveform of a known format (miniSEED, SAC, Kinemetrics EVT, K-NET, GSE2, GSE1, "
+        "SLIST, TSPAIR). Export the record as "
+    )
+    assert str(raised.value) == f"{path}: {problem}text or miniSEED"
 
 
 KNET = """Origin Time       1996/08/11 03:12:00

@@ -313,3 +313,17 @@ def test_of_processes_that_begin_one_store_at_once_none_dies(resume, undamaged, 
     assert list(tmp_path.iterdir()) == [path]
     assert len(lines) == (0 if resume == "resume" else 2)
     assert all("exists. Continue it with resume=True" in line for line in lines)
+
+
+@pytest.mark.parametrize(("name", "kind"), [("../elsewhere", "<f8"), ("tilt", "|O"), ("", "<f8")])
+def test_a_store_names_arrays_of_numbers_in_its_own_folders(path, name, kind):
+    metadata = json.loads((path / METADATA).read_text())
+    metadata["attributes"]["variables"][name] = [kind, []]
+    (path / METADATA).write_text(json.dumps(metadata))
+    (path.parent / "elsewhere").mkdir()
+    asked = []
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(store, "_digest", lambda *_: asked.append(1))
+        with pytest.raises(FileError, match="is damaged: its metadata or axes are not as they were written"):
+            open_sweep(path)
+    assert asked == []  # no file of such a name is opened

@@ -10,8 +10,8 @@ import numpy as np
 import xarray as xr
 
 from stylobate.earthquakes.fragility.observations import LIMIT_STATE
+from stylobate.earthquakes.inventories.geopackages import geopackage_writer
 from stylobate.earthquakes.inventories.ranking import MATTERS
-from stylobate.earthquakes.inventories.rows import geopackages
 from stylobate.errors import FileError, ParameterError
 from stylobate.files import csv_text, write_whole, write_workbook, written_aside
 from stylobate.parameter_quantities import quantity_of
@@ -168,7 +168,7 @@ def _note(rank: int, c: float, friction: float, sliding: float, undecided: float
 
 
 def _write_geopackage(found: xr.Dataset, target: Path, header: list[str], rows: list[list[Any]]) -> Path:
-    raw = geopackages(target)
+    raw = geopackage_writer(target)
     if "geometry" not in found:
         raise ParameterError(f"path: the objects have no geometry (got {str(target)!r}). Write a .csv or .xlsx.")
     geometry = np.array([bytes.fromhex(one) for one in found["geometry"].to_numpy().tolist()], dtype=object)

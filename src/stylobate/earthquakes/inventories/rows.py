@@ -1,17 +1,18 @@
 """Rows of tables of objects as text: CSV files as spreadsheets write them, workbooks, and GeoPackages."""
 
 import csv
-import math
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, NamedTuple, Self
+from typing import NamedTuple, Self
 
-from stylobate.errors import FileError, UnsupportedError
+from stylobate.earthquakes.inventories.geopackages import read_layer
+from stylobate.errors import FileError
 from stylobate.files import file_of
 from stylobate.records.containers import is_container, members
-from stylobate.records.text_files import Text, read_bytes, require_readable
+from stylobate.records.contents import Allowance, read_bytes, require_readable
+from stylobate.records.text_files import Text
 
 _GEOPACKAGE = ".gpkg"
 _SEPARATORS = ";\t,"
@@ -59,16 +60,17 @@ class ObjectTable:
         FileError
             If the file cannot be read, or has no heading or no row.
         UnsupportedError
-            If a package is missing that reads it.
+            If it is a workbook, and openpyxl is not installed.
         """
         file = file_of(path)
         if file.suffix.lower() == _GEOPACKAGE:
             found = cls._of_geopackage(path)
         else:
-            content = read_bytes(file)
+            allowance = Allowance()
+            content = read_bytes(file, allowance)
             require_readable(file, content)
             if is_container(content):
-                found = cls._of_text(_first(path, file, content), whole=_WHOLE)
+                found = cls._of_text(_first(path, file, content, allowance), whole=_WHOLE)
             else:
                 found = cls._of_text(Text.of(path, content))
         if not found.rows and not found.problems:
@@ -109,46 +111,16 @@ class ObjectTable:
 
     @classmethod
     def _of_geopackage(cls, path: Path) -> Self:
-        """Read the first layer of a GeoPackage, or FILE.gpkg/LAYER."""
-        raw = geopackages(path)
-        file = file_of(path)
-        layer = None if file == path else path.name
-        try:
-            meta, _, geometry, columns = raw.read(file, layer=layer)
-        except Exception as error:  # GDAL raises errors of many kinds
-            raise FileError(f"{path}: cannot be read ({error}). Save it again as GeoPackage.") from error
-        headings = tuple(str(name) for name in meta["fields"])
-        shapes = [None] * (len(columns[0]) if columns else 0) if geometry is None else geometry
+        layer = read_layer(path)
         rows = tuple(
-            Row(
-                f"{path.name}, row {place}",
-                dict(zip(headings, map(_as_text, cells), strict=True)),
-                shape or b"",
-            )
-            for place, (shape, *cells) in enumerate(zip(shapes, *columns, strict=True), start=1)
+            Row(f"{path.name}, row {place}", dict(zip(layer.headings, cells, strict=True)), shape)
+            for place, (shape, cells) in enumerate(layer.rows, start=1)
         )
-        _require_distinct(path, headings)
-        return cls(path, headings, rows, crs=str(meta.get("crs") or ""))
+        _require_distinct(path, layer.headings)
+        return cls(path, layer.headings, rows, crs=layer.crs)
 
 
-def geopackages(path: Path) -> Any:
-    """Return the reader and writer of GeoPackages.
-
-    Raises
-    ------
-    UnsupportedError
-        If pyogrio is not installed.
-    """
-    try:
-        import pyogrio.raw
-    except ImportError:
-        raise UnsupportedError(
-            f'{path}: a GeoPackage needs pyogrio: pip install "stylobate[geo]"; or save the table as CSV.'
-        ) from None
-    return pyogrio.raw
-
-
-def _first(path: Path, file: Path, content: bytes) -> Text:
+def _first(path: Path, file: Path, content: bytes, allowance: Allowance) -> Text:
     """Return the named sheet of a workbook, or file of an archive, or the first one."""
     listed: list[Path] = []
 
@@ -156,17 +128,11 @@ def _first(path: Path, file: Path, content: bytes) -> Text:
         listed.extend(places)
         return listed[:1] if path == file else [one for one in listed if one == path]
 
-    found = next(members(file, content, chosen), None)
+    found = next(members(file, content, chosen, allowance), None)
     if found is None:
         raise FileError(f"{path}: no such sheet. Choose from {', '.join(one.name for one in listed)}.")
     place, text = found
     return Text.of(file if path == file else place, text)
-
-
-def _as_text(value: Any) -> str:
-    if value is None or (isinstance(value, float) and math.isnan(value)):
-        return ""
-    return str(value.item() if hasattr(value, "item") else value).strip()
 
 
 def _require_distinct(path: Path, headings: Sequence[str]) -> None:

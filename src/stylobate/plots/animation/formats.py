@@ -15,7 +15,7 @@ import numpy as np
 from matplotlib.colors import to_rgb
 from PIL import Image
 
-from stylobate.errors import FileError, ParameterError, UnsupportedError
+from stylobate.errors import FileError, ParameterError, UnsupportedError, require_extra
 from stylobate.plots.body import BACKGROUND, CONTACT, CONTACT_POINT, MARK, mixed
 from stylobate.progress import Report, silent
 
@@ -131,15 +131,13 @@ def write_mp4(path: Path, pictures: Iterable[Image.Image], size: tuple[int, int]
 
 def _encoder() -> Any:
     """Return the function that writes frames to ffmpeg."""
+    message = "an MP4 needs ffmpeg, which is not installed: pip install 'stylobate[video]', or write a .gif"
+    library = require_extra("imageio_ffmpeg", message)
     try:
-        import imageio_ffmpeg
-
-        imageio_ffmpeg.get_ffmpeg_exe()
-    except (ImportError, RuntimeError):
-        raise UnsupportedError(
-            "an MP4 needs ffmpeg, which is not installed: pip install 'stylobate[video]', or write a .gif"
-        ) from None
-    return imageio_ffmpeg.write_frames
+        library.get_ffmpeg_exe()
+    except RuntimeError:
+        raise UnsupportedError(message) from None
+    return library.write_frames
 
 
 _STYLE = """

@@ -14,13 +14,13 @@ from itertools import islice
 from pathlib import Path
 from queue import Empty, SimpleQueue
 from time import monotonic
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 from stylobate.errors import (
     MOST_THREADS,
     ParameterError,
     StylobateError,
-    UnsupportedError,
+    require_extra,
     require_positive,
     require_whole,
 )
@@ -293,11 +293,8 @@ def _results(distributed: "ModuleType", future: Any, group: tuple[Task, ...]) ->
 
 
 def _distributed() -> "ModuleType":
-    try:
-        import distributed
-    except ImportError:
-        raise UnsupportedError('Dask needs the package dask.distributed: pip install "stylobate[cluster]"') from None
-    return distributed
+    message = 'Dask needs the package dask.distributed: pip install "stylobate[cluster]"'
+    return cast("ModuleType", require_extra("distributed", message))
 
 
 def executor_from(text: str) -> Threads | Dask:

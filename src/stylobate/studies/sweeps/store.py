@@ -6,6 +6,7 @@ A `KeyedStore` holds wholes under keys; this store is one array that many worker
 import hashlib
 import json
 import logging
+import re
 import shutil
 from collections.abc import Iterator, Mapping
 from importlib.metadata import version
@@ -287,6 +288,21 @@ def _variables(attributes: Mapping[str, Any]) -> tuple[Variable, ...]:
     return tuple(Variable(name, np.dtype(dtype), (), tuple(shape), {}) for name, (dtype, shape) in described)
 
 
+# A folder in the store itself.
+_NAME = re.compile(r"\w[\w.-]*")
+_NUMBERS = "biuf"
+
+
+def _are_own_arrays(attributes: Mapping[str, Any]) -> bool:
+    """Return whether the named arrays are folders of the store and hold numbers, which NumPy reads without objects."""
+    try:
+        types = [np.dtype(dtype).kind for dtype, _ in attributes["variables"].values()]
+        names = [*attributes["variables"], *attributes["coordinates"].split()]
+    except (KeyError, TypeError, ValueError, AttributeError, SyntaxError):  # SyntaxError: of types with commas
+        return False
+    return all(kind in _NUMBERS for kind in types) and all(map(_NAME.fullmatch, names))
+
+
 def _read_attributes(path: Path) -> dict[str, Any]:
     """Return the attributes of the store at `path`, after a check of its metadata and axes."""
     try:
@@ -302,7 +318,7 @@ def _read_attributes(path: Path) -> dict[str, Any]:
             f"{path} is no store of a sweep: its format is {written!r}, not {_FORMAT!r}. Give another folder"
         )
     seal = attributes.pop(_SEAL, None)
-    if seal is None or seal != _digest(path, metadata):
+    if seal is None or not _are_own_arrays(attributes) or seal != _digest(path, metadata):
         raise FileError(f"{path} is damaged: its metadata or axes are not as they were written. Begin another store")
     return attributes
 
