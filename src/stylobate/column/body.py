@@ -216,7 +216,8 @@ class StandingBody(Declared):
 
         Examples
         --------
-        >>> column = Column.solid(radius=0.3, height=3.0, density=2700.0)
+        >>> import stylobate as sb
+        >>> column = sb.Column.solid(radius=0.3, height=3.0, density=2700.0)
         >>> [round(column.housner_damping(amplitude), 3) for amplitude in (0.25, 0.5, 0.75)]
         [0.117, 0.08, 0.064]
         """

@@ -504,7 +504,7 @@ def _density(density: float | None, mass: float | None, volume: float) -> float:
     """Return the density of a solid body that states either its density or its mass."""
     if (density is None) == (mass is None):
         got = "neither" if density is None else f"{density!r} kg/m³ and {mass!r} kg"
-        raise ParameterError(f"density or mass: a solid column needs one of them (got {got}). State one.")
+        raise ParameterError(f"density or mass: a column needs one of them (got {got}). State one.")
     if density is not None:
         return density
     assert mass is not None

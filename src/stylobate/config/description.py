@@ -83,7 +83,7 @@ WANTED = {
     "motion.kind": ': the kind of base motion, such as "stroke" or "circular"; on the command line --motion stroke',
     "motion.velocity": ": velocity of the pulse [m/s]; on the command line --pulse-velocity",
     "profile": f": the kind of profile, {_PROFILES}",
-    **{name: f". State it, or in place of both moments a profile ({_PROFILES})" for name in _MOMENTS},
+    **dict.fromkeys(_MOMENTS, f". State it, or in place of both moments a profile ({_PROFILES})"),
 }
 """Explanation of a missing part, added to its message."""
 WANTED_TOGETHER = {_MOMENTS: f"State profile ({_PROFILES}) to estimate them, or state both."}
@@ -135,9 +135,9 @@ def _lines(problems: Sequence[Any]) -> list[str]:
     missing = {problem["loc"] for problem in problems if problem["type"] == "missing"}
     lines = []
     for problem in problems:
-        *place, name = problem["loc"]
-        pair = next((one for one in WANTED_TOGETHER if name in one and problem["loc"] in missing), None)
-        if pair is None or (*place, *(one for one in pair if one != name)) not in missing:
+        *place, name = problem["loc"] or ("",)
+        pair = next((one for one in WANTED_TOGETHER if name in one), ())
+        if not pair or not all((*place, one) in missing for one in pair):
             lines.append(_line(problem))
         elif name == pair[0]:
             whole = ".".join(_without_tags(problem["loc"]))

@@ -195,8 +195,7 @@ def _column_config(shape: str, make: Callable[..., Column]) -> type[Config]:
 
 
 _BY_SHAPE = {
-    shape: _column_config(shape, make)
-    for shape, make in {**SHAPES, **SHAPES_OF_PROFILES, **SHAPES_IN_FILES}.items()
+    shape: _column_config(shape, make) for shape, make in {**SHAPES, **SHAPES_OF_PROFILES, **SHAPES_IN_FILES}.items()
 }
 
 

@@ -65,7 +65,9 @@ class Corners:
             )
         for name in (_HEIGHT, _RADIUS):
             if name not in found:
-                raise FileError(f"{path}: the column {name} is missing. Write it in the first line, such as {name} [mm].")
+                raise FileError(
+                    f"{path}: the column {name} is missing. Write it in the first line, such as {name} [mm]."
+                )
         inner = found.get(_INNER)
         if _WALL in found:
             inner = tuple(max(0.0, one - wall) for one, wall in zip(found[_RADIUS], found[_WALL], strict=True))

@@ -48,6 +48,8 @@ SLAB_LIT = mixed(SLAB_SIDE, SLAB, 0.4)
 _FLUTES, _FACETS, _HOLLOW = 20, 4, 0.85
 # Corners of the outline of a shaft that has flutes, a cylinder or frustum.
 _PLAIN = 2
+# Facets across the width of a flute on a drawn outline, which has many strips of facets.
+_FACETS_OF_OUTLINE = 2
 # Rings of the facets of a drawn outline; more corners are left out.
 _MOST_RINGS = 48
 MARKED = -0.5 * np.pi
@@ -83,17 +85,17 @@ class FlutedColumn:
     @classmethod
     def of(cls, shape: Shape) -> Self:
         """Return the facets of a body of this `shape`."""
-        count = _FLUTES * _FACETS
         outline = shape.corners
         if len(outline) > _MOST_RINGS:
             kept = np.linspace(0, len(outline) - 1, _MOST_RINGS).round().astype(int)
             outline = tuple(outline[place] for place in kept)
-        width = 2.0 * np.pi / _FLUTES
+        facets = _FACETS if len(outline) == _PLAIN else _FACETS_OF_OUTLINE
+        count, width = _FLUTES * facets, 2.0 * np.pi / _FLUTES
         # Half a flute back: the middle of the first is the mark.
-        corners = MARKED + (np.arange(count) / _FACETS - 0.5) * width
-        flute, place = np.divmod(np.arange(count), _FACETS)
+        corners = MARKED + (np.arange(count) / facets - 0.5) * width
+        flute, place = np.divmod(np.arange(count), facets)
         hollow = _HOLLOW if len(outline) == _PLAIN else -0.5 * width
-        facing = MARKED + flute * width - 2.0 * hollow * ((place + 0.5) / _FACETS - 0.5)
+        facing = MARKED + flute * width - 2.0 * hollow * ((place + 0.5) / facets - 0.5)
         normals = np.stack(
             [
                 np.stack([(high - low) * np.cos(facing), (high - low) * np.sin(facing), np.full(count, a - b)], axis=-1)
@@ -114,7 +116,7 @@ class FlutedColumn:
     @property
     def wedge(self) -> npt.NDArray[np.intp]:
         """Indices of the corners of the marked flute."""
-        return np.arange(_FACETS + 1)
+        return np.arange(self.rings.shape[1] // _FLUTES + 1)
 
 
 def ring(angles: Floats, radius: float, height: float) -> Floats:

@@ -41,7 +41,9 @@ def plot_column(column: Column) -> Figure:
     r, widest, height, centre = shape.radius, shape.largest_radius, shape.height, shape.mass_height
     size = max(height, 2.0 * widest)
     known = column.height is not None
-    axes.add_patch(Polygon(shape.side, facecolor=_FACE, edgecolor=BLACK, linestyle="-" if known else "--", linewidth=1.2))
+    axes.add_patch(
+        Polygon(shape.side, facecolor=_FACE, edgecolor=BLACK, linestyle="-" if known else "--", linewidth=1.2)
+    )
     half = widest + _GROUND * size
     axes.plot([-half, half], [0.0, 0.0], color=GREY, linewidth=2.0)
     axes.plot([r, 0.0], [0.0, centre], color=VERMILION, linewidth=1.2)

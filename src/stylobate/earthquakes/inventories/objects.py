@@ -267,7 +267,9 @@ class PreparedObject:
     def _with_estimated(self, bodies: Draws, drawn: Draws) -> Draws:
         """Multiply the moments of inertia that are estimated for each sample by the errors that were drawn."""
         factors = {
-            name: drawn[name] / getattr(self.model.column, name) for name in self.spreads if name not in self.given.spreads
+            name: drawn[name] / getattr(self.model.column, name)
+            for name in self.spreads
+            if name not in self.given.spreads
         }
         if not factors:
             return bodies
