@@ -267,8 +267,8 @@ class Parameter:
         ParameterError
             If the value is not allowed.
         """
-        if value is None and self.optional:
-            return None
+        if (value is None and self.optional) or (self.annotation is str and isinstance(value, str)):
+            return value
         quantity = self.quantity
         if self.choices:
             if value in self.choices:
