@@ -7,7 +7,7 @@ from tests.lab.browser import moved, new_page, shown
 
 
 @pytest.mark.slow
-def test_a_click_in_the_map_starts_that_motion_and_its_link_restores_it(watched, browser):
+def test_a_click_in_the_map_starts_that_motion_and_its_link_restores_it(watched):
     page = watched.page
     page.get_by_role("tab", name="Overturning map").click()
     plane = "window.stylobate.laboratory.plane('map')"
@@ -26,7 +26,7 @@ def test_a_click_in_the_map_starts_that_motion_and_its_link_restores_it(watched,
     assert motion["acceleration"] == pytest.approx(axes["y"]["values"][1])
     cell = page.evaluate(f"() => {plane}.filled")
     assert cell is not None
-    other = new_page(browser)
+    other = new_page(page.context)
     other.goto(page.evaluate("() => location.href"))
     shown(other)
     assert other.evaluate("() => window.stylobate.state().description.motion") == motion

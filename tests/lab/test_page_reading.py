@@ -4,7 +4,7 @@ import math
 import re
 
 import pytest
-from tests.lab.browser import new_page, open_sections, shown
+from tests.lab.browser import enter, new_page, open_sections, shown
 
 from stylobate.lab.options import presets
 
@@ -127,7 +127,7 @@ MOVED = """() => {
 def test_a_phone_that_is_moved_gives_a_record_and_one_without_a_sensor_says_so(browser, address):
     context = browser.new_context(viewport={"width": 390, "height": 840}, has_touch=True)
     page = new_page(context)
-    page.goto(f"{address}/#case=temple")
+    enter(page, address, "#case=temple")
     shown(page)
     open_sections(page)
     move = page.get_by_role("button", name="Move this phone…")

@@ -24,6 +24,7 @@ from starlette.routing import Mount, Route, Router
 from stylobate.errors import ConfigError, StylobateError
 from stylobate.lab import answers, openapi
 from stylobate.lab.curves import response
+from stylobate.lab.entrance import Entrance
 from stylobate.lab.guards import Guard
 from stylobate.lab.jobs import Jobs, broken
 from stylobate.lab.limits import Limits, RefusedError
@@ -50,7 +51,7 @@ _SMALL, _QUICKLY = 1024, 3
 def create_app(
     *,
     hosts: Collection[str],
-    token: str | None = None,
+    token: str,
     limits: Limits | None = None,
     ready: Callable[[], object] | None = None,
 ) -> Starlette:
@@ -61,14 +62,19 @@ def create_app(
     hosts
         Accepted values of the header Host, such as "127.0.0.1:8642"; requests with others are refused.
     token
-        Token that requests must contain if other machines can reach the application.
+        Token that requests must state: 12 to 128 letters, digits, "-", ".", "_" or "~".
     limits
         Limits on requests.
     ready
         Called when the application can answer requests.
+
+    Raises
+    ------
+    ParameterError
+        If the token is too short, too long, or has other characters.
     """
     bounds = limits or Limits()
-    inner = Router()
+    inner, entrance = Router(), Entrance(token)
 
     @asynccontextmanager
     async def lifespan(app: Starlette) -> AsyncIterator[None]:
@@ -87,10 +93,10 @@ def create_app(
                 ready()
             yield
 
-    return Starlette(
+    app = Starlette(
         routes=[*page_routes(), Mount("/", app=inner)],
         middleware=[
-            Middleware(Guard, hosts=hosts, token=token),
+            Middleware(Guard, hosts=hosts, entrance=entrance),
             Middleware(GZipMiddleware, minimum_size=_SMALL, compresslevel=_QUICKLY),
         ],
         exception_handlers=dict.fromkeys(
@@ -98,6 +104,8 @@ def create_app(
         ),
         lifespan=lifespan,
     )
+    app.state.entrance = entrance
+    return app
 
 
 def end_processes(app: Starlette) -> None:

@@ -132,13 +132,13 @@ export class Laboratory {
     this.#comparing = new Comparing(source, about, {
       changed: (compared) => this.#compare(compared),
       shown: (second) => this.#motion.showSecond(second),
-      lost: () => this.#lose(),
+      lost: (error) => this.#lose(error),
     });
     this.#motion.root.append(this.#comparing.form.root);
     this.clock.onTick((time) => this.#comparing.form.setTime(time));
     this.#problems = new CaseProblems(box, this.#controls, this.#motion);
     this.#response = new ResponseAsking(source, view, this.#scales, {
-      ...{ edited, start, lost: () => this.#lose() },
+      ...{ edited, start, lost: (error) => this.#lose(error) },
       critical: (frequency) => this.#lesson.setCritical(frequency),
     });
     this.#planes = new PlanesAsking(about, view, this.#scales, { edited, jumped, start });
@@ -373,7 +373,7 @@ export class Laboratory {
   }
 
   #fail(error: unknown): void {
-    if (error instanceof Unreachable) return this.#lose();
+    if (error instanceof Unreachable) return this.#lose(error);
     const lines = error instanceof Refused ? error.problems : [String(error)];
     if (lines.some((line) => line.startsWith("motion.upload"))) void this.#restoreRecord();
     else if (this.#answer === null && !this.#problems.ofLink) this.#replaceLink(lines);
@@ -414,16 +414,16 @@ export class Laboratory {
     this.#stay([NOT_HERE]);
   }
 
-  #lose(): void {
+  #lose(error: Unreachable): void {
     this.#asked = "";
-    this.#connection.lose();
+    this.#connection.lose(error);
   }
 
   #job(...[kind, body, report, ended]: Parameters<JobStart>): Job {
     return new Job(this.#source, kind, body, {
       report,
       ended: (last, error) => {
-        if (error instanceof Unreachable) this.#lose();
+        if (error instanceof Unreachable) this.#lose(error);
         ended(last, problemsIn(last, error));
       },
     });

@@ -61,14 +61,14 @@ export type JobStart = (
 export interface AskingHearing {
   readonly edited: (changes: Partial<View>) => void;
   readonly start: JobStart;
-  readonly lost: () => void;
+  readonly lost: (error: Unreachable) => void;
   /** The critical frequency of the case is known [rad/s]; null: it has none. */
   readonly critical: (frequency: number | null) => void;
 }
 
 export class ResponseAsking {
   readonly panel: ResponsePanel;
-  readonly #lost: () => void;
+  readonly #lost: (error: Unreachable) => void;
   readonly #critical: (frequency: number | null) => void;
   readonly #curves: Latest<Part, ScaledCurves>;
   #view: View;
@@ -159,7 +159,7 @@ export class ResponseAsking {
   }
 
   #fail(error: unknown): void {
-    if (error instanceof Unreachable) return this.#lost();
+    if (error instanceof Unreachable) return this.#lost(error);
     this.panel.report(error instanceof Error ? error.message : String(error)); // the last good curves stay
   }
 }

@@ -24,8 +24,15 @@ export class Refused extends Error {
   }
 }
 
-/** No answer at all. */
-export class Unreachable extends Error {}
+/** No answer at all; `locked`: the server was started again, and asks for its new token. */
+export class Unreachable extends Error {
+  readonly locked: boolean;
+
+  constructor(message: string, { locked = false } = {}) {
+    super(message);
+    this.locked = locked;
+  }
+}
 
 /** What a job is asked for: a description, and the branch on which its runs start, if it is a map. */
 export interface JobRequest {
