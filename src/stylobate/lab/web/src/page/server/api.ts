@@ -4,6 +4,7 @@ import type { Value } from "../case/description";
 import { Refused, type Source, type Started, Unreachable } from "./source";
 
 export const server: Source = {
+  offers: () => true,
   about: () => call("GET", "/api/about"),
   alive: async () => {
     await asked("HEAD", "/index.html");
