@@ -196,7 +196,11 @@ def test_an_archive_is_read_by_its_records_and_named_in_the_program(client):
         (lambda one: [archive(one)], "RSN9", "record: not in PEER.zip (got 'RSN9'). Use one of a"),
         (lambda one: [archive(one), one], None, "PEER.zip: an archive beside other files. Upload it alone."),
         (lambda one: [archive()], None, "PEER.zip"),
-        (lambda one: [{**archive(one), "content": archive(one)["content"][:400]}], None, "PEER.zip: cannot be unpacked"),
+        (
+            lambda one: [{**archive(one), "content": archive(one)["content"][:400]}],
+            None,
+            "PEER.zip: cannot be unpacked",
+        ),
     ],
 )
 def test_an_archive_without_such_a_record_is_refused_in_one_line(client, files, record, reason):

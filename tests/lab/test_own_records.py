@@ -115,7 +115,6 @@ def cases(folder):
     yield "strong and long", {"q.txt": in_rows(np.arange(200), 50.0 * SHAKEN)}, {"units": "m/s2"}
     yield "only vertical", {"q_UP.AT2": at2("UP")}, {}
     yield "no acceleration", {"q.txt": in_rows(TIMES, 0.0 * SHAKEN)}, {"units": "g"}
-    yield from archives(pair)
     yield from refusals(pair, table)
 
 
@@ -128,8 +127,9 @@ def zipped(files, method=zipfile.ZIP_DEFLATED):
     return {"PEER.zip": content.getvalue()}
 
 
-def archives(pair):
+def archives():
     """Return the cases of archives."""
+    pair = {"quake_000.AT2": at2(0), "quake_090.AT2": at2(90, 0.5 * SHAKEN)}
     others = {"quake_000.VT2": "velocities", "_SearchResults.csv": "Result", ".hidden": "", "__MACOSX/._q": "x"}
     events = {f"RSN{k}_Q_A{way}.AT2": at2(way, SHAKEN / k) for k in (1, 2) for way in ("000", "090")}
     yield "archive of one event", zipped({**pair, **others}), {}
@@ -218,7 +218,7 @@ def sent(files, options):
 
 
 with TemporaryDirectory() as _folder:
-    CASES = {name: sent(files, options) for name, files, options in cases(Path(_folder))}
+    CASES = {name: sent(files, options) for name, files, options in (*cases(Path(_folder)), *archives())}
 
 
 @pytest.fixture(scope="module")
