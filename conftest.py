@@ -38,6 +38,14 @@ def laboratory() -> Iterator[str]:
         yield address
 
 
+@pytest.fixture(scope="session")
+def token() -> str:
+    """The token of that laboratory."""
+    from tests.lab.browser import TOKEN
+
+    return TOKEN
+
+
 def _pages(patterns: Sequence[str], excludes: Sequence[str] = (), fixtures: Sequence[str] = ()) -> Sybil:
     return Sybil(
         parsers=[PythonCodeBlockParser(doctest_optionflags=ELLIPSIS | NORMALIZE_WHITESPACE), SkipParser()],
@@ -71,5 +79,5 @@ _OF_THE_LABORATORY = "docs/reference/http-api.md"
 
 pytest_collect_file = (
     _pages(["README.md", "docs/*.md", "docs/*/*.md", "docs/*/*/*.md"], excludes=[_OF_THE_LABORATORY])
-    + _pages([_OF_THE_LABORATORY], fixtures=["laboratory"])
+    + _pages([_OF_THE_LABORATORY], fixtures=["laboratory", "token"])
 ).pytest()

@@ -14,6 +14,7 @@ from playwright.sync_api import Browser, Page, sync_playwright
 from saving import STATIC
 
 from stylobate.lab import create_app
+from stylobate.lab.entrance import new_token
 from stylobate.lab.serving import listening, server_of
 
 FOLDER = STATIC / "laboratory"
@@ -22,14 +23,15 @@ DRAWN = ("--no-sandbox", "--use-angle=swiftshader-webgl", "--enable-unsafe-swift
 
 @contextmanager
 def served() -> Iterator[str]:
-    """Serve the laboratory on a free port and give its address."""
+    """Serve the laboratory on a free port and give its address with the token."""
     with listening("127.0.0.1", 0) as place:
         host = f"127.0.0.1:{place.getsockname()[1]}"
-        server = server_of(create_app(hosts={host}))
+        token = new_token()
+        server = server_of(create_app(hosts={host}, token=token))
         thread = threading.Thread(target=server.run, kwargs={"sockets": [place]})
         thread.start()
         try:
-            yield f"http://{host}/"
+            yield f"http://{host}/?token={token}"
         finally:
             server.should_exit = True
             thread.join()

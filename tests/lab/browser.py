@@ -32,6 +32,9 @@ window.cancelAnimationFrame = clearTimeout;
 """
 
 
+TOKEN = "token-of-the-tests"  # noqa: S105
+
+
 def found_browser() -> str:
     """Return the path of the browser; skip, or fail where a browser is required, if the page cannot be tested."""
     path = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
@@ -65,6 +68,11 @@ def new_page(where: Browser | BrowserContext) -> Page:
     page.add_init_script(SEVEN_FRAMES_A_SECOND)
     page.set_default_timeout(120_000.0)
     return page
+
+
+def enter(page: Page, address: str, fragment: str = "") -> None:
+    """Open a laboratory by its token; the browser then has its cookie."""
+    page.goto(f"{address}/?token={TOKEN}{fragment}")
 
 
 class Watched:

@@ -1,7 +1,9 @@
 """What the laboratory answers is what the library computes."""
 
 import base64
+import io
 import math
+import zipfile
 
 import numpy as np
 import pytest
@@ -158,6 +160,56 @@ def shaken(client, told):
     column = {"shape": "solid", "radius": 0.3, "height": 3.0, "density": 2700.0}
     motion = {"kind": "record", "upload": told["upload"], "scale": 0.01}
     return client.post("/api/simulate", json={"column": column, "motion": motion}).json()
+
+
+def archive(*files):
+    """Return a zip archive of files as it is uploaded."""
+    content = io.BytesIO()
+    with zipfile.ZipFile(content, "w", zipfile.ZIP_DEFLATED) as made:
+        for file in files:
+            made.writestr(f"PEER/{file['name']}", base64.b64decode(file["content"]))
+    return {"name": "PEER.zip", "content": base64.b64encode(content.getvalue()).decode()}
+
+
+def test_an_archive_is_read_by_its_records_and_named_in_the_program(client):
+    one, other, third = (
+        at2(f"RSN{number}_Q_A{way}.AT2", f"Quake, 1/2/1990, Here, {way}", scale=scale)
+        for number, way, scale in ((1, "000", 0.5), (1, "090", 0.4), (2, "000", 0.3))
+    )
+    velocities = {**one, "name": "RSN1_Q_A000.VT2"}
+    search = {"name": "_SearchResults.csv", "content": base64.b64encode(b"Result,of,a,search\n").decode()}
+    body = {"files": [archive(one, other, third, velocities, search)]}
+    told = client.post("/api/records", json=body).json()
+    assert told["records"] == ["RSN1_Q_A", "RSN2_Q_A"]
+    assert told["name"] == "RSN1_Q_A"
+    assert told["peaks"] == client.post("/api/records", json={"files": [one, other]}).json()["peaks"]
+    assert "'PEER.zip/PEER/RSN1_Q_A000.AT2'" in shaken(client, told)["python"]
+    second = client.post("/api/records", json={**body, "record": "RSN2_Q_A"}).json()
+    assert second["peaks"]["x"] == pytest.approx(0.3 * 9.80665, rel=1e-3)
+    assert second["upload"] != told["upload"]
+    assert shaken(client, told)["column"]  # the first is still stored
+
+
+@pytest.mark.parametrize(
+    ("files", "record", "reason"),
+    [
+        (lambda one: [archive(one)], "RSN9", "record: not in PEER.zip (got 'RSN9'). Use one of a"),
+        (lambda one: [archive(one), one], None, "PEER.zip: an archive beside other files. Upload it alone."),
+        (lambda one: [archive()], None, "PEER.zip"),
+        (
+            lambda one: [{**archive(one), "content": archive(one)["content"][:400]}],
+            None,
+            "PEER.zip: cannot be unpacked",
+        ),
+    ],
+)
+def test_an_archive_without_such_a_record_is_refused_in_one_line(client, files, record, reason):
+    body = {"files": files(at2("a_000.AT2", "Quake, 1/2/1990, Here, 0")), "record": record}
+    answer = client.post("/api/records", json=body)
+    assert answer.status_code == 422
+    (problem,) = answer.json()["problems"]
+    assert problem.startswith(reason)
+    assert "/tmp" not in problem  # noqa: S108  no folder of this machine is told
 
 
 def test_an_uploaded_record_moves_the_base(client):

@@ -51,14 +51,15 @@ def within(value, least, most):
     }
 
 
-def operations(least, most):
-    document = within(schema(SMALL), least, most)
+def operations(least, most, security):
+    document = {**within(schema(SMALL), least, most), "security": security}
     return {found.ok().label: found.ok() for found in schemathesis.openapi.from_dict(document).get_all_operations()}
 
 
 # What computes: a run, or the orbit on which a start lies.
 COMPUTING = ("POST /api/simulate", "POST /api/start")
-OF_ANY_SIZE, OF_RUNS = operations(LEAST, MOST), operations(LEAST_OF_A_RUN, MOST_OF_A_RUN)
+# The client states the token; tokens that are drawn would ask each endpoint without arguments many times.
+OF_ANY_SIZE, OF_RUNS = operations(LEAST, MOST, []), operations(LEAST_OF_A_RUN, MOST_OF_A_RUN, [])
 
 
 def check(answer):
@@ -81,6 +82,23 @@ def send(client, operation, case):
         place = f"/api/jobs/{answer.json()['id']}"
         for one in (client.get(place), client.delete(place), client.get(f"{place}/file")):
             check(one)
+
+
+def test_tokens_that_the_schema_allows_are_asked_for_and_no_guess_is_right(client):
+    secured = operations(LEAST, MOST, schema(SMALL)["security"])
+
+    @settings(few, max_examples=2)
+    @given(st.data())
+    def sent(data):
+        for operation in secured.values():
+            case = data.draw(operation.as_strategy())
+            shown = case.headers["Authorization"]
+            assert shown.startswith("Bearer ")
+            path = operation.path.replace("{identity}", "none")
+            answer = client.request(operation.method, path, headers={"authorization": shown.rstrip()})
+            assert answer.status_code == 401
+
+    sent()
 
 
 def fuzz(client, operation, examples):

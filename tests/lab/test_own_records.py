@@ -2,9 +2,11 @@
 
 import base64
 import gzip
+import io
 import json
 import shutil
 import subprocess
+import zipfile
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -16,7 +18,7 @@ from stylobate import config
 from stylobate.errors import StylobateError
 from stylobate.lab import tasks
 from stylobate.lab.limits import Limits, RefusedError
-from stylobate.lab.requests import Uploads, problems_of_numbers
+from stylobate.lab.requests import Archive, Uploads, problems_of_numbers
 from stylobate.lab.runs import remarks
 from stylobate.records.reading import write_at2, write_csv
 
@@ -119,6 +121,33 @@ def cases(folder):
     yield from refusals(pair, table)
 
 
+def zipped(files, method=zipfile.ZIP_DEFLATED):
+    """Return a zip archive of files."""
+    content = io.BytesIO()
+    with zipfile.ZipFile(content, "w", method) as archive:
+        for name, text in files.items():
+            archive.writestr(name, text)
+    return {"PEER.zip": content.getvalue()}
+
+
+def archives():
+    """Return the cases of archives."""
+    pair = {"quake_000.AT2": at2(0), "quake_090.AT2": at2(90, 0.5 * SHAKEN)}
+    others = {"quake_000.VT2": "velocities", "_SearchResults.csv": "Result", ".hidden": "", "__MACOSX/._q": "x"}
+    events = {f"RSN{k}_Q_A{way}.AT2": at2(way, SHAKEN / k) for k in (1, 2) for way in ("000", "090")}
+    yield "archive of one event", zipped({**pair, **others}), {}
+    yield "archive without compression", zipped(pair, zipfile.ZIP_STORED), {}
+    yield "archive of one file", zipped({"folder/quake_000.AT2": pair["quake_000.AT2"]}), {}
+    yield "archive of two events", zipped({**events, "read me.txt": "Some words."}), {}
+    yield "archive of two events, the second", zipped(events), {"record": "RSN2_Q_A"}
+    yield "archive with folders", zipped({f"{way}/{name}": text for way in "ab" for name, text in pair.items()}), {}
+    yield "archive of gzip", zipped({"q.txt.gz": gzip.compress(in_rows(TIMES, SHAKEN).encode())}), {"units": "g"}
+    yield "refused: no such record", zipped(events), {"record": "RSN3_Q_A"}
+    yield "refused: no record in an archive", zipped({"read me.txt": "Some words."}), {}
+    yield "refused: an archive cut short", {"PEER.zip": zipped(pair)["PEER.zip"][:-30]}, {}
+    yield "refused: an archive among others", {**zipped(pair), **pair}, {}
+
+
 def refusals(pair, table):
     """Return the cases that are refused."""
     plain = {"units": "g"}
@@ -192,7 +221,7 @@ def sent(files, options):
 
 
 with TemporaryDirectory() as _folder:
-    CASES = {name: sent(files, options) for name, files, options in cases(Path(_folder))}
+    CASES = {name: sent(files, options) for name, files, options in (*cases(Path(_folder)), *archives())}
 
 
 @pytest.fixture(scope="module")
@@ -222,11 +251,18 @@ def answer_of_server(body, folder):
         upload = uploads.add(body)
     except RefusedError as error:
         return {"problems": list(error.problems)}, None
-    place = f"{upload.paths[0].parent}/"
+    place = f"{upload.folder}/"
+    archive = Archive({}, ())
     try:
+        if upload.is_archive:
+            archive = tasks.archive(upload.first_read(), lambda _: None)
+            upload = uploads.choose(upload, archive, body.get("record"))
         received = tasks.record(upload.first_read(), lambda _: None)
+    except RefusedError as error:
+        return {"problems": list(error.problems)}, None
     except StylobateError as error:
         return {"problems": [line.replace(place, "") for line in str(error).splitlines()]}, None
+    received |= {"records": list(archive.records), "warnings": [*archive.warnings, *received["warnings"]]}
     with remarks(upload.motion()):
         return received, config.RecordMotion.parse(upload.motion()).build()
 

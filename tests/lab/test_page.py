@@ -5,7 +5,7 @@ import statistics
 
 import numpy as np
 import pytest
-from tests.lab.browser import in_own_case, moved, new_page, shown
+from tests.lab.browser import enter, in_own_case, moved, new_page, shown
 from tests.lab.conftest import laboratory
 
 import stylobate as sb
@@ -67,14 +67,14 @@ def test_a_moved_slider_moves_motion_and_curves(watched):
     page.wait_for_function(f"() => decodeURIComponent(location.hash).includes('damping:{damping}')")
 
 
-def test_a_link_shows_the_same_again(watched, browser, address):
+def test_a_link_shows_the_same_again(watched):
     page = watched.page
     tilt = "window.stylobate.state().description.tilt[0]"
     before = page.evaluate(f"() => {tilt}")
     moved(page, "acceleration", 0.07)
     # On its branch the column starts elsewhere; the address follows a moment later.
     page.wait_for_function(f"() => {tilt} !== {before} && location.hash.includes(String({tilt}))")
-    other = new_page(browser)
+    other = new_page(page.context)
     other.goto(page.evaluate("() => location.href"))
     shown(other)
     for part in ("state()", "laboratory.answer.outcome", "laboratory.answer.measures"):
@@ -83,11 +83,11 @@ def test_a_link_shows_the_same_again(watched, browser, address):
     other.close()
 
 
-def test_what_is_drawn_over_time_is_chosen_and_kept_in_the_link(watched, browser):
+def test_what_is_drawn_over_time_is_chosen_and_kept_in_the_link(watched):
     page = watched.page
     page.get_by_role("combobox", name="Lower history").select_option("Base acceleration along x")
     page.wait_for_function("() => location.hash.includes('histories=tilt,base_x')")
-    other = new_page(browser)
+    other = new_page(page.context)
     other.goto(page.evaluate("() => location.href"))
     shown(other)
     chosen = "() => [...document.querySelectorAll('.time-chart select')].map(one => one.value)"
@@ -144,7 +144,7 @@ def test_while_another_case_is_computed_the_one_before_is_dimmed(watched):
 
 def test_a_broken_link_is_told_and_the_usual_case_shown(browser, address):
     page = new_page(browser)
-    page.goto(f"{address}/#column=nonsense&motion=circular")
+    enter(page, address, "#column=nonsense&motion=circular")
     shown(page)
     assert page.get_by_role("alert").filter(has_text="nonsense").is_visible()
     assert page.evaluate("() => window.stylobate.laboratory.answer.outcome") == "ROLLING"
@@ -184,7 +184,7 @@ def test_the_keyboard_plays_and_pauses(watched):
 def test_who_wants_no_motion_gets_none_unasked(browser, address):
     context = browser.new_context(reduced_motion="reduce")
     page = new_page(context)
-    page.goto(f"{address}/")
+    enter(page, address)
     shown(page)
     assert page.evaluate("() => window.stylobate.laboratory.clock.playing") is False
     context.close()
@@ -202,7 +202,7 @@ def test_who_wants_no_motion_gets_none_unasked(browser, address):
 def test_nothing_overflows(browser, address, width, scheme):
     context = browser.new_context(viewport={"width": width, "height": 844}, color_scheme=scheme)
     page = new_page(context)
-    page.goto(f"{address}/")
+    enter(page, address)
     shown(page)
     assert page.evaluate("() => document.documentElement.scrollWidth") <= width
     context.close()
@@ -223,7 +223,7 @@ def test_every_control_has_a_name(watched):
 def test_the_page_tells_when_the_server_is_gone_and_recovers(browser):
     page = new_page(browser)
     with laboratory() as address:
-        page.goto(f"{address}/")
+        enter(page, address)
         shown(page)
         in_own_case(page)
     page.get_by_label("Damping, slider").press("ArrowRight")

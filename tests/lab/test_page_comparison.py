@@ -43,10 +43,10 @@ def test_the_second_column_is_drawn_and_judged_as_it_is_computed(page):
     assert page.get_by_role("region", name="Upper history").get_by_text("damping 0.3", exact=True).is_visible()
 
 
-def test_a_comparison_is_in_the_link_and_the_way_back_leads_to_one_column(page, browser):
+def test_a_comparison_is_in_the_link_and_the_way_back_leads_to_one_column(page):
     compared(page, "slenderness")
     page.wait_for_function("() => location.hash.includes('beside=slenderness:0.15')")
-    other = new_page(browser)
+    other = new_page(page.context)
     other.goto(page.evaluate("() => location.href"))
     shown(other)
     other.wait_for_function(f"() => {SECOND} !== null")

@@ -7,7 +7,7 @@ from tests.lab.browser import moved, new_page, shown
 
 
 @pytest.mark.slow
-def test_a_click_in_the_map_starts_that_motion_and_its_link_restores_it(watched, browser):
+def test_a_click_in_the_map_starts_that_motion_and_its_link_restores_it(watched):
     page = watched.page
     page.get_by_role("tab", name="Overturning map").click()
     plane = "window.stylobate.laboratory.plane('map')"
@@ -26,7 +26,7 @@ def test_a_click_in_the_map_starts_that_motion_and_its_link_restores_it(watched,
     assert motion["acceleration"] == pytest.approx(axes["y"]["values"][1])
     cell = page.evaluate(f"() => {plane}.filled")
     assert cell is not None
-    other = new_page(browser)
+    other = new_page(page.context)
     other.goto(page.evaluate("() => location.href"))
     shown(other)
     assert other.evaluate("() => window.stylobate.state().description.motion") == motion
@@ -122,3 +122,26 @@ def test_a_basin_fills_in_unasked_and_holds_the_standing_column(page):
         assert min(values, key=abs) == pytest.approx(0.0, abs=1e-12)
     (left, low), (right, high) = (page.evaluate(f"() => {plane}.clientPlace({cell})") for cell in ([0, 0], [9, 9]))
     assert right - left == pytest.approx(low - high, rel=1e-6)
+
+
+COLUMN = "#column=dimensionless,slenderness:0.1"
+PLANAR = f"{COLUMN}&model=planar_rocking&motion=straight,acceleration:0.2,angular_frequency:4"
+SHAKEN_UP = f"{COLUMN}&model=slender,damping:0.1&motion=vertical,acceleration:0.4,angular_frequency:2"
+
+
+@pytest.mark.parametrize("case", [f"{PLANAR}&tilt=0.02,0", f"{SHAKEN_UP}&tilt=0.02,0.01"], ids=["planar", "vertical"])
+def test_a_basin_that_is_offered_is_computed(page, address, case):
+    page.goto("about:blank")
+    page.goto(f"{address}/{case}")
+    shown(page)
+    assert page.locator(".response").is_visible() is ("straight" in case)  # no card of curves that there are not
+    upper = page.locator(".controls option[value=upper]")
+    assert upper.first.is_disabled()  # a start on a branch would be refused
+    page.get_by_role("tab", name="Basin").click()
+    panel = page.locator(".plane-panel.basin")
+    if panel.get_by_role("button", name="Compute").is_visible():
+        panel.locator("summary").click()
+        panel.get_by_label("cells").select_option("25")
+        panel.get_by_role("button", name="Compute").click()
+    panel.get_by_text("625 runs of").wait_for()
+    assert panel.locator(".problem").is_hidden()

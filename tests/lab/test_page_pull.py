@@ -3,7 +3,7 @@
 import math
 
 import pytest
-from tests.lab.browser import shown
+from tests.lab.browser import enter, shown
 
 DESCRIPTION = "window.stylobate.state().description"
 CURSOR = "() => window.stylobate.stage.canvas.style.cursor"
@@ -50,7 +50,7 @@ def test_a_column_that_is_let_go_starts_from_rest_at_the_tilt_in_the_hand(page):
 
 def test_a_lesson_says_nothing_of_a_case_that_is_not_its_own(page, address):
     page.goto("about:blank")
-    page.goto(f"{address}/#lesson=critical")
+    enter(page, address, "#lesson=critical")
     shown(page)
     said, back = page.locator(".said"), page.get_by_role("button", name="Back to the lesson")
     said.get_by_text("We set it rolling").wait_for()

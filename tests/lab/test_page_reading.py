@@ -1,10 +1,12 @@
 """What the page says of a motion, and how a reader changes the case, in a real browser."""
 
+import io
 import math
 import re
+import zipfile
 
 import pytest
-from tests.lab.browser import new_page, open_sections, shown
+from tests.lab.browser import enter, new_page, open_sections, shown
 
 from stylobate.lab.options import presets
 
@@ -114,6 +116,40 @@ def test_a_record_of_two_stations_or_of_one_component_is_remarked_on(page):
     page.wait_for_function(f"() => {ANSWER}.warnings.every((line) => !line.includes('stations'))")
 
 
+DROP = """([name, bytes]) => {
+    const carried = new DataTransfer();
+    carried.items.add(new File([new Uint8Array(bytes)], name));
+    const drop = new DragEvent("drop", { dataTransfer: carried, bubbles: true, cancelable: true });
+    document.querySelector(".record .own-record").dispatchEvent(drop);
+}"""
+
+
+def test_the_records_of_an_archive_are_choices(page):
+    page.get_by_label("Base motion", exact=True).select_option("record")
+    content = io.BytesIO()
+    with zipfile.ZipFile(content, "w", zipfile.ZIP_DEFLATED) as archive:
+        for number, ways in ((1, ("000", "090")), (2, ("000",))):
+            for way in ways:
+                file = component(f"RSN{number}_Q_A{way}.AT2", f"Quake, 1/2/1990, Place {number}, {way}")
+                archive.writestr(file["name"], file["buffer"])
+    held = [*content.getvalue()]
+    chosen, records = page.locator("input[type=file]"), page.get_by_label("Record in the archive")
+    chosen.set_input_files(files=[{"name": "PEER.zip", "mimeType": "application/zip", "buffer": bytes(held)}])
+    page.locator(".record .hint").get_by_text("RSN1_Q_A: 100 samples").wait_for()
+    assert records.locator("option").all_inner_texts() == ["RSN1_Q_A", "RSN2_Q_A"]
+    page.wait_for_function(f"() => {ANSWER}.python.includes('PEER.zip/RSN1_Q_A090.AT2')")
+    records.select_option("RSN2_Q_A")
+    page.locator(".record .warning").filter(has_text="one horizontal component").wait_for()
+    page.wait_for_function(f"() => {ANSWER}.python.includes('PEER.zip/RSN2_Q_A000.AT2')")
+    page.evaluate(DROP, ["dropped.zip", held])
+    page.wait_for_function(f"() => {ANSWER}.python.includes('dropped.zip/RSN1_Q_A000.AT2')")
+    assert records.input_value() == "RSN1_Q_A"
+    one = component("b_090.AT2", "Quake, 1/2/1990, There, 90")
+    chosen.set_input_files(files=[one])
+    page.wait_for_function(f"() => {ANSWER}.python.includes('b_090.AT2')")
+    assert records.is_hidden()
+
+
 MOVED = """() => {
     const acceleration = (time) => ({ x: 3 * Math.sin(6 * time), y: 0.5, z: 9.8 });
     const begun = performance.now();
@@ -127,7 +163,7 @@ MOVED = """() => {
 def test_a_phone_that_is_moved_gives_a_record_and_one_without_a_sensor_says_so(browser, address):
     context = browser.new_context(viewport={"width": 390, "height": 840}, has_touch=True)
     page = new_page(context)
-    page.goto(f"{address}/#case=temple")
+    enter(page, address, "#case=temple")
     shown(page)
     open_sections(page)
     move = page.get_by_role("button", name="Move this phone…")

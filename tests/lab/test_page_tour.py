@@ -3,7 +3,7 @@
 import re
 
 import pytest
-from tests.lab.browser import new_page, shown
+from tests.lab.browser import enter, new_page, shown
 
 from stylobate.lab.options import lessons
 
@@ -15,7 +15,7 @@ OUTCOME = "window.stylobate.laboratory.answer.outcome"
 def opened(browser, address):
     context = browser.new_context(viewport={"width": 1280, "height": 860})
     page = new_page(context)
-    page.goto(f"{address}/")
+    enter(page, address)
     shown(page)
     yield page
     context.close()
@@ -81,7 +81,7 @@ def test_the_tour_is_closed_and_opened_again(opened):
 def test_on_a_phone_slider_column_and_response_are_seen_without_scrolling(browser, address):
     context = browser.new_context(viewport={"width": 390, "height": 844})
     page = new_page(context)
-    page.goto(f"{address}/")
+    enter(page, address)
     shown(page)
     for name in (".lesson .slider", ".stage canvas", ".plot.amplitude", ".plot.phase"):
         box = page.locator(name).bounding_box()

@@ -5,16 +5,12 @@ import gzip
 import json
 import time
 
-import anyio
-import httpx
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from starlette.responses import PlainTextResponse
 from tests.lab.conftest import client_of, laboratory
 
 from stylobate.lab import Limits, app
-from stylobate.lab.guards import Guard
 from stylobate.lab.limits import RefusedError
 from stylobate.lab.requests import Uploads
 
@@ -62,39 +58,6 @@ def test_a_request_from_another_site_is_refused(client):
 
 def test_a_link_on_another_site_opens_the_page(client):
     assert client.get("/", headers=LINK).status_code in (200, 503)  # 503 where the page is not built
-
-
-TOKEN = "the-token"  # noqa: S105
-
-
-def ask_with_token(path, **headers):
-    """Return the answer of the guard before an application that answers everything."""
-    app = Guard(PlainTextResponse("answered"), hosts={"127.0.0.1:8642"}, token=TOKEN)
-
-    async def get():
-        place = {"transport": httpx.ASGITransport(app), "base_url": "http://127.0.0.1:8642"}
-        async with httpx.AsyncClient(**place) as client:
-            return await client.get(path, headers=headers)
-
-    return anyio.run(get)
-
-
-@pytest.mark.parametrize("path", ["/", "/?token=wrong", "/api/about", "/api/nowhere"])
-@pytest.mark.parametrize("shown", [{}, {"authorization": "Bearer wrong"}, {"cookie": "stylobate-lab-8642=wrong"}])
-def test_where_other_machines_can_reach_it_nothing_is_answered_without_the_token(path, shown):
-    answer = ask_with_token(path, **shown)
-    assert answer.status_code == 401
-    assert "token" in problems_of(answer)[0]
-
-
-def test_the_token_is_taken_from_the_address_the_header_or_the_cookie_that_the_page_sets():
-    opened = ask_with_token(f"/?token={TOKEN}")
-    assert (opened.status_code, opened.headers["location"]) == (303, "/")  # out of the address, and its history
-    cookie, *rules = opened.headers["set-cookie"].split("; ")
-    assert {"HttpOnly", "SameSite=lax"} <= set(rules)
-    assert ask_with_token("/api/about", cookie=cookie).text == "answered"
-    assert ask_with_token("/api/about", authorization=f"Bearer {TOKEN}").text == "answered"
-    assert ask_with_token(f"/api/about?token={TOKEN}").text == "answered"
 
 
 def test_every_answer_allows_nothing_from_elsewhere(client):

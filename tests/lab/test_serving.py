@@ -10,11 +10,15 @@ import time
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack
 from pathlib import Path
+from types import SimpleNamespace
 
 import httpx
 import pytest
 from tests.lab.conformity import conforms
 
+from stylobate.cli.main import run
+from stylobate.lab import app, serving
+from stylobate.lab.entrance import Entrance
 from stylobate.lab.serving import listening, own_names
 
 
@@ -24,17 +28,81 @@ def started(*options):
     return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 
 
+def told_address(process):
+    """Return the address of a laboratory and its token."""
+    return re.search(r"(http://\S+/)\?token=(\w+) ", process.stdout.readline()).groups()
+
+
+def by(token):
+    return {"authorization": f"Bearer {token}"}
+
+
 @pytest.mark.posix
 def test_it_tells_its_address_answers_there_and_ends_on_ctrl_c():
     process = started("--port", "0")
     try:
-        line = process.stdout.readline()
-        address = re.search(r"http://127\.0\.0\.1:\d+/", line)[0]
-        assert httpx.get(f"{address}api/about").status_code == 200
+        address, token = told_address(process)
+        assert re.fullmatch(r"http://127\.0\.0\.1:\d+/", address)
+        assert int(token, 16).bit_length() > 100  # of 128 random bits
+        assert httpx.get(f"{address}api/about", headers=by(token)).status_code == 200
+        assert httpx.get(f"{address}api/about").status_code == 401
+        assert httpx.get(address, params={"token": token}).status_code == 303
+        assert httpx.get(f"{address}api/nowhere?token={token}", headers=by(token)).status_code == 404
     finally:
         os.kill(process.pid, signal.SIGINT)
-        _, told = process.communicate(timeout=30)
+        printed, told = process.communicate(timeout=30)
     assert "Traceback" not in told
+    assert token not in printed + told
+
+
+CHOSEN = "chosen-for-the-class"
+
+
+@pytest.mark.parametrize("options", [(), ("--token", "chosen-for-another")])
+def test_a_chosen_token_is_passed_on_and_not_printed(monkeypatch, capsys, options):
+    passed = {}
+    monkeypatch.setattr(serving, "serve", lambda **given: passed.update(given))
+    monkeypatch.setenv("STYLOBATE_LAB_TOKEN", CHOSEN)
+    assert run(["lab", "--no-browser", *options]) == 0
+    assert (passed["token"], passed["browser"]) == (options[1] if options else CHOSEN, False)
+    passed["started"](f"http://127.0.0.1:8642/?token={passed['token']}")
+    printed = capsys.readouterr().out
+    assert "http://127.0.0.1:8642/ and asks for the token that you chose" in printed
+    assert passed["token"] not in printed
+
+
+def test_an_empty_variable_chooses_no_token(monkeypatch):
+    passed = {}
+    monkeypatch.setattr(serving, "serve", lambda **given: passed.update(given))
+    monkeypatch.setenv("STYLOBATE_LAB_TOKEN", "")
+    assert run(["lab"]) == 0
+    assert (passed["token"], passed["browser"]) == (None, True)
+
+
+@pytest.mark.parametrize("token", ["", "short", "words of a class"])
+def test_a_token_that_is_easily_guessed_or_has_other_characters_is_refused(capsys, token):
+    assert run(["lab", "--port", "0", "--no-browser", "--token", token]) == 2
+    *_, last = capsys.readouterr().err.strip().splitlines()
+    assert last.startswith("stylobate: token: must be 12 to 128 of the characters")
+    assert not token or token not in last
+
+
+def test_the_browser_is_given_an_address_that_is_valid_once(monkeypatch):
+    """Other users of the machine see with which address a browser was started."""
+    shown, opened, made = [], [], {}
+
+    def create(**given):
+        made.update(given)
+        return SimpleNamespace(state=SimpleNamespace(entrance=Entrance(given["token"])))
+
+    monkeypatch.setattr(app, "create_app", create)
+    monkeypatch.setattr(serving, "server_of", lambda _: SimpleNamespace(run=lambda sockets: made["ready"]()))
+    monkeypatch.setattr(serving.webbrowser, "open", opened.append)
+    serving.serve(port=0, started=shown.append)
+    (printed,), (address,) = shown, opened
+    assert printed.endswith(f"/?token={made['token']}")
+    assert address.partition("=")[0] == printed.partition("=")[0]
+    assert made["token"] not in address
 
 
 def stat(pid):
@@ -74,12 +142,12 @@ LONG["model"] = {"kind": "sliding", "friction_coefficient": 0.02, "damping": 0.1
 def test_a_request_to_end_ends_connections_runs_maps_and_their_processes_at_once(slowness):
     process = started("--port", "0")
     with ExitStack() as held, ThreadPoolExecutor() as threads:
-        address = re.search(r"http://127\.0\.0\.1:(\d+)/", process.stdout.readline())
-        client = held.enter_context(httpx.Client(base_url=address[0], timeout=120.0))
+        address, token = told_address(process)
+        client = held.enter_context(httpx.Client(base_url=address, timeout=120.0, headers=by(token)))
         job = {"kind": "map", "description": {**COLUMN, "map": PLANE}}
         jobs = [client.post("api/jobs", json=job).json()["id"] for _ in range(3)]
         for head in (b"GET / HTTP/1.1\r\n", b"POST /api/simulate HTTP/1.1\r\nContent-Length: 900\r\n\r\n{"):
-            place = held.enter_context(socket.create_connection(("127.0.0.1", int(address[1])), timeout=60.0))
+            place = held.enter_context(socket.create_connection(("127.0.0.1", httpx.URL(address).port), timeout=60.0))
             place.sendall(head)
         runs = [threads.submit(client.post, "api/simulate", json=LONG) for _ in range(4)]  # one waits
         while client.get(f"api/jobs/{jobs[0]}").json()["done"] == 0:
@@ -105,11 +173,13 @@ def test_a_request_to_end_ends_connections_runs_maps_and_their_processes_at_once
 def test_at_an_address_for_other_machines_the_token_opens_it_under_the_names_of_this_machine():
     process = started("--port", "0", "--host", "0.0.0.0")  # noqa: S104
     try:
-        address = httpx.URL(re.search(r"http://\S+\?token=\S+", process.stdout.readline())[0])
+        told, token = told_address(process)
+        address = httpx.URL(told)
         assert address.host == own_names()[0]
-        local, token = f"http://127.0.0.1:{address.port}/api/about", address.params
+        local = f"http://127.0.0.1:{address.port}/api/about"
         for name, status in ((address.host, 200), (socket.gethostname(), 200), ("evil.example", 403)):
-            assert httpx.get(local, params=token, headers={"host": f"{name}:{address.port}"}).status_code == status
+            headers = {"host": f"{name}:{address.port}", **by(token)}
+            assert httpx.get(local, headers=headers).status_code == status
         assert httpx.get(local).status_code == 401
     finally:
         os.kill(process.pid, signal.SIGINT)

@@ -1,7 +1,7 @@
 """`stylobate lab`: the laboratory, a page in the browser."""
 
+import os
 import sys
-import webbrowser
 from pathlib import Path
 
 from stylobate.cli.command import command
@@ -10,8 +10,11 @@ from stylobate.cli.terminal import part_lines
 from stylobate.config.options import Option
 from stylobate.errors import ParameterError
 
-_OF_SERVER = {"port": 8642, "host": "127.0.0.1", "allow_host": None, "no_browser": False}
+_OF_SERVER = {"port": 8642, "host": "127.0.0.1", "allow_host": None, "token": None, "no_browser": False}
 """Options of the server with their defaults."""
+
+_VARIABLE = "STYLOBATE_LAB_TOKEN"
+"""Environment variable with a chosen token; an empty one chooses none."""
 
 
 @command(
@@ -23,6 +26,12 @@ _OF_SERVER = {"port": 8642, "host": "127.0.0.1", "allow_host": None, "no_browser
         default=_OF_SERVER["host"],
     ),
     Option("allow_host", "another name by which browsers connect; repeat it", list[str], metavar="NAME"),
+    Option(
+        "token",
+        "token that requests must state, at least 12 characters; by default a random one, new at each start. Other "
+        f"users of this machine can read the options of a command, but not the environment variable {_VARIABLE}",
+        str,
+    ),
     Option("no_browser", "print the address, open no browser", bool, default=False),
     Option("static", "write the laboratory as files into this folder, start no server", Path, metavar="FOLDER"),
 )
@@ -32,7 +41,7 @@ def lab(options: Options) -> None:
     Set column and base motion there, and watch the column stand, rock, roll or overturn.
 
     The server accepts connections of this machine only, unless --host states another address, and loads nothing from
-    the network. Ctrl-C ends the command. Examples:
+    the network. It answers requests with the token of the printed address only. Ctrl-C ends the command. Examples:
 
     stylobate lab --port 9000 --no-browser
 
@@ -47,17 +56,27 @@ def lab(options: Options) -> None:
 
     host = options["host"]
     if host not in LOOPBACK:
-        message = "other machines can reach the laboratory; the token in its address lets them use it"
+        message = "other machines can reach the laboratory; its token lets them use it"
         print(f"stylobate: {message}", file=sys.stderr)
     if not page_is_built():
         print(NO_PAGE, file=sys.stderr)
 
-    def started(address: str) -> None:
-        print(f"The laboratory is at {address} (Ctrl-C ends it)", flush=True)
-        if not options["no_browser"]:
-            webbrowser.open(address)
+    given, variable = options["token"], os.environ.get(_VARIABLE)
+    token = variable or None if given is None else given
 
-    serve(host=host, port=options["port"], allowed_hosts=options["allow_host"] or (), started=started)
+    def started(address: str) -> None:
+        # Logs keep what is printed: a token that was chosen may be valid for longer than this server.
+        shown = address if token is None else f"{address.partition('?')[0]} and asks for the token that you chose"
+        print(f"The laboratory is at {shown} (Ctrl-C ends it)", flush=True)
+
+    serve(
+        host=host,
+        port=options["port"],
+        allowed_hosts=options["allow_host"] or (),
+        token=token,
+        started=started,
+        browser=not options["no_browser"],
+    )
 
 
 def _write_files(options: Options) -> None:

@@ -198,6 +198,7 @@ class UploadedRecord(Answer):
     peaks: Peaks
     provenance: list[str] = Field(description="origin, one line each")
     warnings: list[str] = Field(description="possible mistakes in its files, one line each")
+    records: list[str] = Field(description="names of the records in an archive, of which this is one; else none")
 
 
 class Document(RootModel[dict[str, Any]]):

@@ -6,7 +6,7 @@ See docs/reference/http-api.md.
 import tempfile
 from collections.abc import AsyncIterator, Callable, Collection, Sequence
 from contextlib import AsyncExitStack, asynccontextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -24,6 +24,7 @@ from starlette.routing import Mount, Route, Router
 from stylobate.errors import ConfigError, StylobateError
 from stylobate.lab import answers, openapi
 from stylobate.lab.curves import response
+from stylobate.lab.entrance import Entrance
 from stylobate.lab.guards import Guard
 from stylobate.lab.jobs import Jobs, broken
 from stylobate.lab.limits import Limits, RefusedError
@@ -34,6 +35,7 @@ from stylobate.lab.pool import BusyError, Pool
 from stylobate.lab.requests import (
     BRANCHES,
     JOBS,
+    Archive,
     Description,
     Uploads,
     described,
@@ -50,7 +52,7 @@ _SMALL, _QUICKLY = 1024, 3
 def create_app(
     *,
     hosts: Collection[str],
-    token: str | None = None,
+    token: str,
     limits: Limits | None = None,
     ready: Callable[[], object] | None = None,
 ) -> Starlette:
@@ -61,14 +63,19 @@ def create_app(
     hosts
         Accepted values of the header Host, such as "127.0.0.1:8642"; requests with others are refused.
     token
-        Token that requests must contain if other machines can reach the application.
+        Token that requests must state: 12 to 128 letters, digits, "-", ".", "_" or "~".
     limits
         Limits on requests.
     ready
         Called when the application can answer requests.
+
+    Raises
+    ------
+    ParameterError
+        If the token is too short, too long, or has other characters.
     """
     bounds = limits or Limits()
-    inner = Router()
+    inner, entrance = Router(), Entrance(token)
 
     @asynccontextmanager
     async def lifespan(app: Starlette) -> AsyncIterator[None]:
@@ -87,10 +94,10 @@ def create_app(
                 ready()
             yield
 
-    return Starlette(
+    app = Starlette(
         routes=[*page_routes(), Mount("/", app=inner)],
         middleware=[
-            Middleware(Guard, hosts=hosts, token=token),
+            Middleware(Guard, hosts=hosts, entrance=entrance),
             Middleware(GZipMiddleware, minimum_size=_SMALL, compresslevel=_QUICKLY),
         ],
         exception_handlers=dict.fromkeys(
@@ -98,6 +105,8 @@ def create_app(
         ),
         lifespan=lifespan,
     )
+    app.state.entrance = entrance
+    return app
 
 
 def end_processes(app: Starlette) -> None:
@@ -189,19 +198,25 @@ class Api:
 
     @openapi.endpoint("POST /api/records", answers.UploadedRecord, refusals=openapi.OF_RUNS, body="Record")
     async def upload(self, request: Request) -> Response:
-        """Store the files of a record and report their contents."""
+        """Store the files of a record, or an archive of records, and report the contents of one."""
         body = await json_body(request, self.limits.records)
-        problems = problems_of_numbers({name: body[name] for name in body if name != "files"}, self.limits)
+        problems = problems_of_numbers({name: body[name] for name in body if name not in ("files", "record")}, self.limits)
         if problems:
             raise RefusedError(422, problems)
         upload = await to_thread.run_sync(self.uploads.add, body)
+        archive = Archive({}, ())
         try:
+            if upload.is_archive:
+                archive = await self._run("archive", replace(upload, parts=()).first_read(), request)
+                upload = self.uploads.choose(upload, archive, body.get("record"))
             contents = await self._run("record", upload.first_read(), request)
         except RefusedError as error:
             self.uploads.drop(upload)
-            folder = f"{upload.paths[0].parent}/"
-            raise RefusedError(error.status, [line.replace(folder, "") for line in error.problems]) from None
-        return _answer(answers.UploadedRecord(upload=upload.digest, **contents))
+            problems = [line.replace(f"{upload.folder}/", "") for line in error.problems]
+            raise RefusedError(error.status, problems) from None
+        warnings = [*archive.warnings, *contents.pop("warnings")]
+        records = list(archive.records)
+        return _answer(answers.UploadedRecord(upload=upload.digest, **contents, warnings=warnings, records=records))
 
     @openapi.endpoint("POST /api/jobs", answers.Begun, refusals=(*openapi.OF_BODIES, 429), body="JobConfig", status=202)
     async def begin(self, request: Request) -> Response:

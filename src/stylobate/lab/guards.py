@@ -1,30 +1,14 @@
-"""Access control of the laboratory: only its own pages, in a browser on this machine."""
+"""Access control of the laboratory: only its own pages, and only those who know its token."""
 
-import secrets
-from collections.abc import Collection, Mapping
+from collections.abc import Collection
 
 from starlette.datastructures import MutableHeaders
 from starlette.requests import Request
-from starlette.responses import JSONResponse, RedirectResponse, Response
+from starlette.responses import JSONResponse, Response
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-POLICY: Mapping[str, str] = {
-    "default-src": "'none'",
-    "script-src": "'self'",
-    "style-src": "'self'",
-    "img-src": "'self' data: blob:",
-    "connect-src": "'self'",
-    "base-uri": "'none'",
-    "form-action": "'none'",
-    "frame-ancestors": "'none'",
-}
-"""Content-Security-Policy of the page: it loads from its own server only."""
-
-
-def written_policy(policy: Mapping[str, str]) -> str:
-    """Return a Content-Security-Policy as it is sent."""
-    return "; ".join(f"{name} {sources}" for name, sources in policy.items())
-
+from stylobate.lab.entrance import PAGE, Entrance
+from stylobate.lab.policy import POLICY, written_policy
 
 _HEADERS = {
     "Content-Security-Policy": written_policy(POLICY),
@@ -36,18 +20,11 @@ _HEADERS = {
     "Cache-Control": "no-store",
 }
 
-_PAGE = ("/", "/index.html")
-
-_UNKNOWN = (
-    "token: missing or wrong. Open the address that `stylobate lab` printed, or send the header "
-    "Authorization: Bearer with its token."
-)
-
 
 def _follows_a_link(request: Request) -> bool:
     """Return whether a browser opens the page in its own tab, for a link on any site."""
     headers, navigation = request.headers, {"sec-fetch-mode": "navigate", "sec-fetch-dest": "document"}
-    opens = request.method == "GET" and request.url.path in _PAGE
+    opens = request.method == "GET" and request.url.path in PAGE
     return opens and all(headers.get(name) == value for name, value in navigation.items())
 
 
@@ -63,52 +40,38 @@ class Guard:
         The guarded application.
     hosts
         Accepted values of the header Host, such as "127.0.0.1:8642".
-    token
-        Token that requests must contain in the query, in the cookie derived from it, or as `Authorization: Bearer`.
+    entrance
+        Answers requests that do not state the token.
     """
 
-    def __init__(self, app: ASGIApp, hosts: Collection[str], token: str | None = None) -> None:
+    def __init__(self, app: ASGIApp, hosts: Collection[str], entrance: Entrance) -> None:
         self._app = app
-        self._token = token
+        self._entrance = entrance
         self._hosts = frozenset(host.lower() for host in hosts)
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Answer a request, or pass it to the application."""
-        if scope["type"] != "http":
+        if scope["type"] == "lifespan":
             await self._app(scope, receive, send)
+            return
+        if scope["type"] != "http":  # the laboratory has no web sockets
+            await receive()
+            await send({"type": "websocket.close", "code": 1008})
             return
 
         async def with_headers(message: Message) -> None:
             if message["type"] == "http.response.start":
-                MutableHeaders(scope=message).update(_HEADERS)
+                headers = MutableHeaders(scope=message)
+                headers.update({name: value for name, value in _HEADERS.items() if name not in headers})
             await send(message)
 
         request = Request(scope)
-        answer = self._refusal(request) or self._asked_for_token(request) or self._app
+        answer = self._refusal(request) or self._entrance.answer(request) or self._app
         await answer(scope, receive, with_headers)
 
     def _refusal(self, request: Request) -> Response | None:
         problem = self._problem(request)
         return None if problem is None else JSONResponse({"problems": [problem]}, status_code=403)
-
-    def _asked_for_token(self, request: Request) -> Response | None:
-        """Refuse a request without the token; if the address of the page contains the token, set a cookie."""
-        if self._token is None:
-            return None
-        name = f"stylobate-lab-{(request.scope.get('server') or ('', 0))[1]}"
-        if self._is_token(request.query_params.get("token")):
-            if request.url.path not in _PAGE:
-                return None
-            opened = RedirectResponse(request.url.path, status_code=303)
-            opened.set_cookie(name, self._token, httponly=True, samesite="lax")
-            return opened
-        scheme, _, shown = request.headers.get("authorization", "").partition(" ")
-        if self._is_token(request.cookies.get(name)) or (scheme.lower() == "bearer" and self._is_token(shown)):
-            return None
-        return JSONResponse({"problems": [_UNKNOWN]}, status_code=401)
-
-    def _is_token(self, shown: str | None) -> bool:
-        return self._token is not None and secrets.compare_digest((shown or "").encode(), self._token.encode())
 
     def _problem(self, request: Request) -> str | None:
         headers = request.headers

@@ -79,7 +79,7 @@ EXAMPLES: Mapping[str, Mapping[str, Any]] = {
 _REFUSALS = {
     400: "The body is not JSON, or ended early.",
     403: "A foreign Host or Origin.",
-    401: "The token is missing or wrong; needed if other machines can reach the laboratory.",
+    401: "The token is missing or wrong.",
     404: "The job does not exist (any more), or has no file.",
     413: "The body is too large.",
     415: "The content type of the body is not application/json.",
@@ -161,6 +161,16 @@ def endpoint(place: str, answer: type[BaseModel] | None, **more: Any) -> Callabl
     return declare
 
 
+_SECURITY = {
+    "token": {
+        "type": "http",
+        "scheme": "bearer",
+        "description": "The token in the address that `stylobate lab` prints, or the one that was chosen at its start. "
+        "The page keeps it in a cookie instead.",
+    }
+}
+
+
 def document(endpoints: Iterable[Endpoint], limits: Limits) -> Schema:
     """Return the description of `endpoints` in OpenAPI 3.1."""
     paths: dict[str, Schema] = {}
@@ -176,7 +186,8 @@ def document(endpoints: Iterable[Endpoint], limits: Limits) -> Schema:
             f"are in SI units, angles in rad; their size must be zero or between {SMALLEST:g} and {LARGEST:g}.",
         },
         "paths": paths,
-        "components": {"schemas": {**_requests(limits), **answers.schemas()}},
+        "components": {"schemas": {**_requests(limits), **answers.schemas()}, "securitySchemes": _SECURITY},
+        "security": [{name: []} for name in _SECURITY],
     }
 
 

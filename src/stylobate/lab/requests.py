@@ -11,7 +11,7 @@ import zlib
 from collections import OrderedDict
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from math import isnan, prod
 from pathlib import Path, PurePosixPath, PureWindowsPath
 from typing import Annotated, Any, NoReturn
@@ -103,26 +103,57 @@ class RecordFile(BaseModel, extra="forbid", frozen=True):
 class RecordRequest(BaseModel, extra="forbid", frozen=True):
     """The files of a record: its components."""
 
-    files: list[RecordFile] = Field(min_length=1, max_length=3, description="files of one event")
+    files: list[RecordFile] = Field(min_length=1, max_length=3, description="files of one event, or an archive")
     units: str | None = Field(
         None, description="unit of the acceleration, such as g or cm/s²; null if the file states the unit"
     )
     step: Annotated[float, Field(strict=True)] | None = Field(
         None, description="time step [s]; null if the file states the step"
     )
+    record: Annotated[str, Field(max_length=_LONGEST_NAME)] | None = Field(
+        None, description="name of a record in an archive or workbook; null for the first"
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class Archive:
+    """The records in an archive.
+
+    Attributes
+    ----------
+    records
+        The files of each record, with paths below the archive, by its name.
+    warnings
+        Possible mistakes in its files, one line each.
+    """
+
+    records: Mapping[str, tuple[Path, ...]]
+    warnings: tuple[str, ...]
 
 
 @dataclass(frozen=True, slots=True)
 class Upload:
-    """The files of one event on disk, and the options for reading them."""
+    """The files of one event on disk, and the options for reading them; files in an archive have paths below it."""
 
     digest: str
     paths: tuple[Path, ...]
     reading: Mapping[str, Any]
+    parts: tuple[Path, ...] = ()
+
+    @property
+    def folder(self) -> Path:
+        """Folder of the files."""
+        return self.paths[0].parent
+
+    @property
+    def is_archive(self) -> bool:
+        """Whether the file holds files."""
+        with self.paths[0].open("rb") as file:
+            return is_container(file.read(_PIECE))
 
     def first_read(self) -> dict[str, Any]:
         """Return the plain values for the first reading of the files, which issues all warnings."""
-        paths = [str(path) for path in self.paths]
+        paths = [str(path) for path in self.parts or self.paths]
         return {"kind": "record", "path": paths[0] if len(paths) == 1 else paths, **self.reading}
 
     def motion(self) -> dict[str, Any]:
@@ -131,7 +162,7 @@ class Upload:
 
     def shown(self) -> dict[str, Any]:
         """Return the plain values of the record, with the names of its files."""
-        names = [path.name for path in self.paths]
+        names = [path.relative_to(self.folder).as_posix() for path in self.parts or self.paths]
         return {**self.motion(), "path": names[0] if len(names) == 1 else names}
 
 
@@ -172,8 +203,10 @@ class Uploads:
             raise RefusedError(422, ["files: the names must be different. Rename a file."])
         for name, content in files.items():
             _require_unpacked_size(name, content, self.unpacked)
+            if len(files) > 1 and is_container(content):
+                raise RefusedError(422, [f"{name}: an archive beside other files. Upload it alone."])
         reading = given.model_dump(include={"units", "step"}, exclude_none=True)
-        digest = hashlib.sha256(repr(sorted(reading.items())).encode())
+        digest = hashlib.sha256(repr([*sorted(reading.items()), given.record or ""]).encode())
         for name, content in files.items():
             digest.update(name.encode() + b"\0" + hashlib.sha256(content).digest())
         known = digest.hexdigest()
@@ -186,6 +219,21 @@ class Uploads:
         self._known.move_to_end(known)
         self._make_room()
         return self._known[known]
+
+    def choose(self, upload: Upload, archive: Archive, name: str | None) -> Upload:
+        """Return the upload of a record in an archive, the first one if `name` is None.
+
+        Raises
+        ------
+        RefusedError
+            If the archive has no such record.
+        """
+        if name is not None and name not in archive.records:
+            listed = ", ".join(archive.records)
+            raise RefusedError(422, [f"record: not in {upload.paths[0].name} (got {name!r}). Use one of {listed}."])
+        chosen = replace(upload, parts=archive.records[name or next(iter(archive.records))])
+        self._known[upload.digest] = chosen
+        return chosen
 
     def drop(self, upload: Upload) -> None:
         """Remove an upload and its files."""
@@ -206,9 +254,7 @@ def _line(problem: Any) -> str:
 
 
 def _require_unpacked_size(name: str, content: bytes, most: int) -> None:
-    """Refuse a gzip file of more than `most` bytes when unpacked, without unpacking more than these; and archives."""
-    if is_container(content):
-        raise RefusedError(422, [f"{name}: an archive or a workbook. Upload the files of one event, unpacked."])
+    """Refuse a gzip file of more than `most` bytes when unpacked, without unpacking more than these."""
     if not content.startswith(_GZIP):
         return
     size = 0

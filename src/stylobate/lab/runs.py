@@ -12,6 +12,7 @@ from stylobate import config
 from stylobate.base_motions import Record
 from stylobate.config.snippets import as_python, as_toml
 from stylobate.errors import UnlikelyInputWarning
+from stylobate.files import file_of
 from stylobate.lab.answers import OF_ANY_COLUMN, ColumnNumbers, Described, Measures, Peaks, Run, RunEvent, Series
 from stylobate.lab.requests import Description
 from stylobate.models import Model
@@ -131,6 +132,6 @@ def _folders(values: Any) -> Iterator[str]:
         for name, value in values.items():
             if name == "path":
                 for path in [value] if isinstance(value, str) else value or ():
-                    yield f"{Path(path).parent}/"
+                    yield f"{file_of(Path(path)).parent}/"  # of the archive, for a file in one
             else:
                 yield from _folders(value)

@@ -1,6 +1,5 @@
 """Server of the laboratory on this machine."""
 
-import secrets
 import signal
 import socket
 import threading
@@ -31,26 +30,32 @@ def serve(
     port: int = PORT,
     allowed_hosts: Collection[str] = (),
     limits: Limits | None = None,
-    started: Callable[[str], object] = webbrowser.open,
+    token: str | None = None,
+    started: Callable[[str], object] = print,
+    browser: bool = True,
 ) -> None:
     """Serve the laboratory until it is interrupted.
 
     Parameters
     ----------
     host, port
-        Address to listen on. Port 0 takes any free port. If other machines can reach `host`, requests need the token in
-        the address.
+        Address to listen on. Port 0 takes any free port.
     allowed_hosts
         Names by which browsers reach the laboratory besides `host` and the names of this machine.
     limits
         Limits on requests.
+    token
+        Token that requests must state: 12 to 128 letters, digits, "-", ".", "_" or "~". By default a random one, new at
+        each start.
     started
-        Called with the address once the server answers; opens a browser by default.
+        Called with the address, which contains the token, once the server answers; prints it by default.
+    browser
+        Whether to open the page in the browser, by an address that is valid once.
 
     Raises
     ------
     ParameterError
-        If the port is not a valid port.
+        If the port or the token is not valid.
     FileError
         If the server cannot listen on the port, for example because it is in use.
     """
@@ -59,15 +64,22 @@ def serve(
     with listening(host, port) as place:
         # Heavy imports wait until the socket listens.
         from stylobate.lab.app import create_app
+        from stylobate.lab.entrance import new_token
 
         found = place.getsockname()[1]
-        token = None if host in LOOPBACK else secrets.token_urlsafe(16)
-        own = () if token is None else own_names()
+        own = () if host in LOOPBACK else own_names()
         hosts = {f"{_bracketed(name)}:{found}" for name in (host, *LOOPBACK, *own, *allowed_hosts)}
         name = own[0] if own and host in _ALL else host
-        address = f"http://{_bracketed(name)}:{found}/" + ("" if token is None else f"?token={token}")
-        # The browser's connection waits in the queue of the socket until the server accepts it.
-        app = create_app(hosts=hosts, token=token, limits=limits, ready=lambda: started(address))
+        known = new_token() if token is None else token
+
+        def ready() -> None:
+            # The browser's connection waits in the queue of the socket until the server accepts it.
+            address = f"http://{_bracketed(name)}:{found}/?token="
+            started(address + known)
+            if browser:
+                webbrowser.open(address + app.state.entrance.key())
+
+        app = create_app(hosts=hosts, token=known, limits=limits, ready=ready)
         _end_with_the_terminal()
         server_of(app).run(sockets=[place])
 
@@ -88,6 +100,7 @@ def server_of(app: "Starlette") -> "uvicorn.Server":
         http="h11",
         ws="none",
         log_level="warning",
+        access_log=False,  # it would contain the token of the address
         timeout_graceful_shutdown=1,
     )
     return Server(settings)

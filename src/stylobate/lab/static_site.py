@@ -5,7 +5,6 @@ Both show the page with recorded answers and send no request to another machine.
 
 import base64
 import gzip
-import hashlib
 import json
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
@@ -14,11 +13,11 @@ from pathlib import Path
 from stylobate.errors import FileError
 from stylobate.files import write_whole
 from stylobate.lab import kernels
-from stylobate.lab.guards import POLICY, written_policy
 from stylobate.lab.limits import Limits
 from stylobate.lab.options import about, lessons
 from stylobate.lab.packing import packed
 from stylobate.lab.pages import page_folder, page_is_built
+from stylobate.lab.policy import POLICY, digest_of, written_policy
 from stylobate.lab.recorded import AT_ONCE, Question, answer_to, questions
 from stylobate.progress import Progress, in_parts, report_of, shows_progress
 
@@ -181,8 +180,8 @@ def _single(
     script, worker = (one.replace("</script", r"\x3c/script").replace("<!--", r"\x3c!--") for one in scripts)
     policy = {
         **POLICY,
-        "script-src": f"{_digest(script)} {_WASM}",
-        "style-src": _digest(style),
+        "script-src": f"{digest_of(script)} {_WASM}",
+        "style-src": digest_of(style),
         "img-src": "data: blob:",
         "connect-src": "'none'",
         "worker-src": "blob:",  # made of the script of the workers, an element of the page
@@ -206,10 +205,6 @@ def _single(
 def _policy(policy: Mapping[str, str]) -> str:
     allowed = {name: sources for name, sources in policy.items() if name != _FRAMES}
     return f'<meta http-equiv="Content-Security-Policy" content="{written_policy(allowed)}" />'
-
-
-def _digest(text: str) -> str:
-    return f"'sha256-{base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()}'"
 
 
 def _zipped(content: bytes) -> bytes:

@@ -1,16 +1,20 @@
 """Tasks of worker processes by name."""
 
 import math
+from collections import Counter
 from collections.abc import Callable, Mapping
 from functools import partial
 from importlib import import_module
+from pathlib import Path
 from typing import Any, NamedTuple
 
 from stylobate import config, engine
 from stylobate.config.simulation import Setup
 from stylobate.lab.messages import Emit, Progress
-from stylobate.lab.requests import GRIDS, Description
+from stylobate.lab.requests import GRIDS, Archive, Description
 from stylobate.lab.runs import answered_run, record_contents, remarks
+from stylobate.records.events import find_events
+from stylobate.records.reading import FileReading, read_parts
 
 _USUAL_LENGTH = 12.0
 """Usual duration of an animation [s]; longer if the base oscillates too fast to be visible."""
@@ -57,6 +61,17 @@ def record(values: Mapping[str, Any], emit: Emit) -> dict[str, Any]:
     return {**found, "warnings": remarked}
 
 
+def archive(values: Mapping[str, Any], emit: Emit) -> Archive:
+    """List the records in an archive; those of equal names have the path of their first file."""
+    del emit
+    path, how = Path(values["path"]), FileReading.of(values.get("step"), None, None, None)
+    with remarks(values) as remarked:
+        events = find_events(path, lambda one: read_parts(one, how))
+    count = Counter(event.name for event in events)
+    names = (event.name if count[event.name] == 1 else event.paths[0].relative_to(path).as_posix() for event in events)
+    return Archive({name: event.paths for name, event in zip(names, events, strict=True)}, tuple(remarked))
+
+
 def animation(values: Mapping[str, Any], emit: Emit) -> bytes:
     """Animate a run as a GIF; long runs are shown faster."""
     from stylobate.plots.animation.animation import animate
@@ -85,6 +100,7 @@ def warm_up() -> None:
 _TASKS = {
     "run": "tasks:run",
     "record": "tasks:record",
+    "archive": "tasks:archive",
     "start": "curves:start",
     "exact": "curves:exact_curves",
     "animation": "tasks:animation",

@@ -1,12 +1,14 @@
 /** The answers that the page computes itself, as one of its sources. */
 
-import { type Part, without } from "../page/case/description";
+import { type Part, isPart, without } from "../page/case/description";
+import { isHorizontalHarmonic } from "../page/case/frequency";
 import { offBranch } from "../page/case/starting";
 import type { Described, ResponseCurves, Start } from "../page/server/schema";
-import { type Layer, NotMine } from "../page/server/source";
+import { type Ask, type Layer, NotMine } from "../page/server/source";
 import { columnNumbers, simulated } from "./answer";
 import { caseOf, numberOf, refuseOthers } from "./case";
 import type { Kernels } from "./kernels";
+import { kindOfShaking } from "./shaking";
 import { type OnBranch, startMap } from "./plane";
 import { asPython, asToml } from "./snippets";
 import type { StartWorker } from "./worker-pool";
@@ -17,12 +19,16 @@ const NO_CIRCLE = 1e-12;
 const AVERAGED = "start: averaged branch, approximate; exact orbits of these numbers are not computed here";
 const NONE = "motion has no steady rolling on this branch at this frequency";
 
+/** The program of runs that can start on a branch. */
+const STARTING = "slender_harmonic";
+
 const SENSES = ["anticlockwise", "clockwise"] as const;
 const BRANCHES = ["upper", "lower"] as const;
 
 /** Returns the layer; `startWorker` starts the workers that compute maps. */
 export function computing(kernels: Kernels, startWorker: StartWorker): Layer {
   return {
+    offers: (ask, question) => isPart(question) && offers(kernels, ask, question),
     simulate: (description) => mine(() => simulated(kernels, description)),
     describe: (description) => mine(() => described(kernels, description)),
     steadyStart: (body) => mine(() => steadyStart(kernels, body)),
@@ -35,6 +41,17 @@ export function computing(kernels: Kernels, startWorker: StartWorker): Layer {
         return startMap(kernels, request, from, startWorker);
       }),
   };
+}
+
+/** Returns whether there are programs for a question. */
+function offers(kernels: Kernels, ask: Ask, question: Part): boolean {
+  const asked = ask === "map" ? question["description"] : question;
+  if (!(ask === "map" || ask === "start") || !isPart(asked)) return false;
+  const { model, motion = { kind: "rest" } } = asked;
+  if (!isPart(model) || !isPart(motion)) return false;
+  const program = `${String(model["kind"] ?? "wobbling")}_${kindOfShaking(kernels, motion)}`;
+  const onBranch = ask === "start" || question["start"] !== undefined;
+  return onBranch ? program === STARTING && isHorizontalHarmonic(motion) : program in kernels.described.programs;
 }
 
 /** Asks, and leaves to the next source what no program knows. */
@@ -63,7 +80,7 @@ async function steadyStart(kernels: Kernels, body: Part): Promise<Start> {
 async function branchOf(kernels: Kernels, body: Part): Promise<Start | null> {
   const { branch = "upper", ...given } = body;
   const { column, numbers, program } = await caseOf(kernels, given);
-  if (program !== "slender_harmonic" || numbers["amplitude_z"] !== 0)
+  if (program !== STARTING || numbers["amplitude_z"] !== 0)
     throw new Unknown("only slender columns start on a branch here");
   const scale = 1 / (column["frequency_scale"] ?? NaN);
   const [x, y, vx, vy, off] = await kernels.called("slender_start", [

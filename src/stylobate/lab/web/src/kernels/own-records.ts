@@ -56,8 +56,8 @@ export class OwnRecords {
 
   /** Reads the files of one event. */
   async add(body: Part): Promise<UploadedRecord> {
-    const { received, samples } = await this.#read(body);
-    this.#held.set(received.upload, { samples, reading: readingOf(body) });
+    const { received, samples, paths } = await this.#read(body);
+    this.#held.set(received.upload, { samples, reading: readingOf(body, paths) });
     return received;
   }
 
@@ -78,8 +78,7 @@ export class OwnRecords {
 }
 
 /** Returns the plain values by which Python reads the files of an upload. */
-function readingOf({ files, units = null, step = null }: Part): Part {
-  const names = (files as readonly { readonly name: string }[]).map((file) => file.name);
+function readingOf({ units = null, step = null }: Part, names: readonly string[]): Part {
   const given = { ...(units === null ? {} : { units }), ...(step === null ? {} : { step }) };
   return { kind: "record", path: names.length === 1 ? (names[0] ?? "") : names, ...given, one_component: true };
 }

@@ -34,11 +34,21 @@ const OF_A_RECORD = ["kind", "sample", "upload", "scale", "rotation", "tail"];
 const SLACK = 1e-6;
 
 export async function shakingOf(kernels: Kernels, motion: Part): Promise<Shaking> {
-  if (motion["kind"] === "rest") return RESTING;
-  if (motion["kind"] === "record") return recordOf(kernels, motion);
-  const harmonic = kernels.described.case.some((one) => one.of === `motion_${String(motion["kind"])}`);
-  if (harmonic && !(typeof motion["ramp"] === "number" && motion["ramp"] > 0)) return wavesOf(kernels, motion);
-  return pulseOf(kernels, motion);
+  const kind = kindOfShaking(kernels, motion);
+  if (kind === "rest") return RESTING;
+  if (kind === "linear") return recordOf(kernels, motion);
+  return kind === "harmonic" ? wavesOf(kernels, motion) : pulseOf(kernels, motion);
+}
+
+/** Returns the kind of a base motion, the second part of the name of a program; null for one that is not computed. */
+export function kindOfShaking(kernels: Kernels, motion: Part): string | null {
+  const kind = String(motion["kind"]);
+  if (kind === "rest") return "rest";
+  if (kind === "record") return "linear";
+  const { case: waves, tables } = kernels.described;
+  const [harmonic, other] = [waves, tables.variants].map((known) => known.some((one) => one.of === `motion_${kind}`));
+  const ramped = typeof motion["ramp"] === "number" && motion["ramp"] > 0; // such a motion has a table, too
+  return harmonic && !ramped ? "harmonic" : harmonic || other ? "smooth" : null;
 }
 
 async function wavesOf(kernels: Kernels, motion: Part): Promise<Shaking> {

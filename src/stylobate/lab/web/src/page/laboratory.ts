@@ -34,7 +34,7 @@ import { isPlaneKind, PLANE_KINDS, PLANES, Store, TABS } from "./view/state";
 import { Tabs } from "./frame/tabs";
 import type { ThemeSwitch } from "./frame/theme";
 import type { Branch } from "./case/starting";
-import { standing, startAlike, startOf } from "./case/starting";
+import { branchesOf, standing, startAlike, startOf } from "./case/starting";
 import type { Run, WantedRun } from "./server/run";
 import { run } from "./server/run";
 import { setUnitsOf } from "./frame/units";
@@ -113,6 +113,7 @@ export class Laboratory {
       },
       lesson: (lesson) => this.#open(lesson),
       sendRecord: source.sendRecord,
+      hasBranch: branchesOf(source),
     });
     this.#lesson = new LessonCard(about, {
       changed: (description) => edited({ description }),
@@ -132,16 +133,16 @@ export class Laboratory {
     this.#comparing = new Comparing(source, about, {
       changed: (compared) => this.#compare(compared),
       shown: (second) => this.#motion.showSecond(second),
-      lost: () => this.#lose(),
+      lost: (error) => this.#lose(error),
     });
     this.#motion.root.append(this.#comparing.form.root);
     this.clock.onTick((time) => this.#comparing.form.setTime(time));
     this.#problems = new CaseProblems(box, this.#controls, this.#motion);
     this.#response = new ResponseAsking(source, view, this.#scales, {
-      ...{ edited, start, lost: () => this.#lose() },
+      ...{ edited, start, lost: (error) => this.#lose(error) },
       critical: (frequency) => this.#lesson.setCritical(frequency),
     });
-    this.#planes = new PlanesAsking(about, view, this.#scales, { edited, jumped, start });
+    this.#planes = new PlanesAsking(source, about, view, this.#scales, { edited, jumped, start });
     this.#tabs = this.#newTabs();
     this.#runs = new Latest((wanted, signal) => run(source, wanted, signal), {
       answered: (found, { start }) => this.#take(found, start),
@@ -265,8 +266,6 @@ export class Laboratory {
     this.#controls.show(view.description, this.#scales, view.start, view.lesson);
     this.#lesson.show(view, this.#scales);
     this.#host.classList.toggle("learning", view.lesson !== null);
-    this.#tabs.show(view.tab);
-    this.#planesHost.classList.toggle("mapped", isPlaneKind(view.tab));
     this.#motion.setHistories(view.histories);
     this.#showSpeed(view);
     const jump = this.#fresh;
@@ -275,8 +274,16 @@ export class Laboratory {
     // The range of the response of another column is known with its run.
     if (!jump || this.#scaled === written(view.description.column)) this.#response.show(view, this.#scales, jump);
     this.#planes.show(view, this.#scales);
+    this.#showTabs(view);
+    this.#motion.offerVariations(this.#source.offers("variations", sent(view.description)));
     // Where the case is shown already, as after a step back to another tab, there is no answer to wait for.
     if (this.#shown === written(view.description)) this.#settle();
+  }
+
+  #showTabs({ tab }: View): void {
+    const offered = (name: Tab): boolean => !isPlaneKind(name) || this.#planes.offers(name);
+    this.#tabs.show(tab, offered);
+    this.#planesHost.classList.toggle("mapped", isPlaneKind(tab) && offered(tab));
   }
 
   #ask(view: View): void {
@@ -373,7 +380,7 @@ export class Laboratory {
   }
 
   #fail(error: unknown): void {
-    if (error instanceof Unreachable) return this.#lose();
+    if (error instanceof Unreachable) return this.#lose(error);
     const lines = error instanceof Refused ? error.problems : [String(error)];
     if (lines.some((line) => line.startsWith("motion.upload"))) void this.#restoreRecord();
     else if (this.#answer === null && !this.#problems.ofLink) this.#replaceLink(lines);
@@ -414,16 +421,16 @@ export class Laboratory {
     this.#stay([NOT_HERE]);
   }
 
-  #lose(): void {
+  #lose(error: Unreachable): void {
     this.#asked = "";
-    this.#connection.lose();
+    this.#connection.lose(error);
   }
 
   #job(...[kind, body, report, ended]: Parameters<JobStart>): Job {
     return new Job(this.#source, kind, body, {
       report,
       ended: (last, error) => {
-        if (error instanceof Unreachable) this.#lose();
+        if (error instanceof Unreachable) this.#lose(error);
         ended(last, problemsIn(last, error));
       },
     });

@@ -56,7 +56,7 @@ async function answered(source: Source, connection: Connection): Promise<About> 
       return await source.about();
     } catch (error) {
       if (!(error instanceof Unreachable)) throw error;
-      connection.lose();
+      connection.lose(error);
       await new Promise((resolve) => setTimeout(resolve, 1000));
     }
   }

@@ -1,23 +1,23 @@
-/** The content of a file as text: base64, gzip, and encodings; archives and documents are refused. */
+/** The content of a file as text: gzip, and encodings; archives in archives and documents are refused. */
 
 import { Refused } from "../../page/server/source";
 import { RecordText, notReadHere } from "./text";
 
 /** Size of an unpacked file [bytes] that a record may have at most. */
-const MOST = 32 << 20;
+export const MOST = 32 << 20;
 /** First signs of archives and documents that may hold records, but not as text. */
 const PACKED: readonly (readonly [begin: string, what: string])[] = [
-  ["PK\x03\x04", "an archive or a workbook. Upload the files of one event, unpacked."],
+  ["PK\x03\x04", "an archive beside other files. Upload it alone."],
   ["Rar!", "a rar archive. Unpack it and read the files in it"],
   ["7z\xbc\xaf", "a 7z archive. Unpack it and read the files in it"],
   ["\xd0\xcf\x11\xe0", "an Excel workbook of the old form. Save it as xlsx, or its sheet as CSV, and read that"],
   ["%PDF", "a PDF document. Save its numbers as text and read that"],
 ];
 
-/** Returns the text of a file that is given in base64. */
-export async function textOf(name: string, content: string): Promise<RecordText> {
-  const sent = atob(content);
-  const unzipped = sent.startsWith("\x1f\x8b") ? await unpacked(name, bytesOf(sent)) : null;
+/** Returns the text of a file whose bytes are the letters that are `sent`. */
+export async function textOf(name: string, sent: string): Promise<RecordText> {
+  const damaged = new Refused(422, [`${name}: cannot be read: damaged gzip file. Download the file again`]);
+  const unzipped = sent.startsWith("\x1f\x8b") ? await inflated(name, bytesOf(sent), "gzip", damaged) : null;
   const latin = unzipped === null ? sent : inLatin(unzipped);
   if (!/[^ \t\n\r\v\f]/.test(latin)) {
     throw new Refused(422, [`${name}: the file is empty. Download or export it again`]);
@@ -39,14 +39,19 @@ function binary(name: string): Refused {
   return new Refused(422, [`${name}: ${problem}. Download it again`]);
 }
 
-/** Unpacks a gzip file, to the maximum size. */
-async function unpacked(name: string, bytes: Uint8Array<ArrayBuffer>): Promise<Uint8Array> {
+/** Unpacks a file, to the maximum size. */
+export async function inflated(
+  name: string,
+  bytes: Uint8Array<ArrayBuffer>,
+  format: CompressionFormat,
+  damaged: Refused,
+): Promise<Uint8Array<ArrayBuffer>> {
   const pieces: Uint8Array[] = [];
   let size = 0;
-  const reader = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip")).getReader();
+  const reader = new Blob([bytes]).stream().pipeThrough(new DecompressionStream(format)).getReader();
   for (;;) {
     const { done, value } = await reader.read().catch(() => {
-      throw new Refused(422, [`${name}: cannot be read: damaged gzip file. Download the file again`]);
+      throw damaged;
     });
     if (done) break;
     pieces.push(value);
@@ -70,13 +75,13 @@ function decoded(latin: string, bytes: Uint8Array): string {
   }
 }
 
-function bytesOf(latin: string): Uint8Array<ArrayBuffer> {
+export function bytesOf(latin: string): Uint8Array<ArrayBuffer> {
   const bytes = new Uint8Array(latin.length);
   for (let at = 0; at < latin.length; at += 1) bytes[at] = latin.charCodeAt(at);
   return bytes;
 }
 
-function inLatin(bytes: Uint8Array): string {
+export function inLatin(bytes: Uint8Array): string {
   const pieces: string[] = [];
   // In pieces: a call takes only so many arguments.
   for (let at = 0; at < bytes.length; at += 0x8000) {

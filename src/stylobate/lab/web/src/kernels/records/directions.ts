@@ -2,6 +2,7 @@
 
 import { Refused } from "../../page/server/source";
 import { general } from "../general";
+import { baseOf } from "./archive";
 import { trimmedEnd } from "./python";
 
 /** Direction in which a component is positive. */
@@ -92,6 +93,7 @@ const ENDINGS = new Set([".at2", ".txt", ".csv", ".dat", ".asc", ".acc"]);
 const REMARKS =
   "scaled|filtered|corrected|corr?|uncorrected|matched|processed|proc|raw|resampled|trimmed|accel|acceleration|acc";
 const REMARK = `(?<remark>(?:[-_. ](?:${anyCase(REMARKS)}))*)`;
+const ITS_REMARK = whole(`.*?${REMARK}`);
 const WORDS = anyCase([...NAMES.keys()].sort((one, other) => other.length - one.length).join("|"));
 const APART = String.raw`[-_. ]+(?<apart>${WORDS}|${CHANNEL}|${QUADRANT}|\d{3})`;
 const CAPITALS = "NS|EW|UP|DWN|DOWN|UD|VER|VERT|XTE|YLN|ZUP";
@@ -109,12 +111,19 @@ const UNSURE_TAIL = whole(`(?<event>.+?)${UNSURE}${REMARK}`);
 
 /** Returns the name of a file without the suffixes of its format; suffixes such as `.EW` stay. */
 export function stemOf(file: string): string {
-  const name = file.replace(/\.gz$/, "").replace(/\.zip$/, "");
+  const name = baseOf(file)
+    .replace(/\.gz$/, "")
+    .replace(/\.zip$/, "");
   const [, first = "", ending = ""] = /^(.*)\.([^.]*)$/.exec(name) ?? [];
   if (first === "" || KIK_NET.test(name) || (!/^\d+$/.test(ending) && parsedDirection(ending))) return name;
   let stem = first;
   while (ENDINGS.has(stem.slice(stem.lastIndexOf(".")).toLowerCase())) stem = stem.slice(0, stem.lastIndexOf("."));
   return stem;
+}
+
+/** Returns the words of a name that mark a processed copy; empty without them. */
+export function remarkOf(stem: string): string {
+  return (ITS_REMARK.exec(stem)?.groups?.["remark"] ?? "").toLowerCase();
 }
 
 export interface NameParts {

@@ -2,8 +2,19 @@
 
 import { Refused } from "../../page/server/source";
 import { general } from "../general";
-import { type Directed, type Direction, agree, alongAxes, parsedDirection, splitName, stemOf } from "./directions";
+import {
+  type Directed,
+  type Direction,
+  agree,
+  alongAxes,
+  inWords,
+  parsedDirection,
+  remarkOf,
+  splitName,
+  stemOf,
+} from "./directions";
 import { trimmedEnd, words } from "./python";
+import { baseOf } from "./archive";
 import { type EventRecord, asRecord } from "./reading";
 import type { Component } from "./text";
 
@@ -12,6 +23,8 @@ const SAME_STEP = 1e-9;
 const REMARKABLE = 0.01;
 /** Length of a common part of names that is too short for a name. */
 const SHORTEST_NAME = 3;
+/** The number of a record in the PEER databases. */
+const RECORD_NUMBER = /(?:^|[-_. ])(?:RSN|NGA[-_]no)[-_]?0*(\d+)(?!\d)/i;
 const DATE = /\d{1,4}[-/.]\d{1,2}[-/.]\d{1,4}|\b(?:19|20)\d\d\b/;
 
 /** A file of an event: its component or the refusal to read it. */
@@ -58,6 +71,55 @@ export function joined(files: readonly ReadFile[], units: string | null): EventR
     provenance: [...parts.flatMap(({ record }) => record.provenance), ...trimming(parts, length), origin],
     warnings: [...warnings.flat(), ...lostShaking(event, parts, length)],
   };
+}
+
+/** Groups files of an archive into events, by number, title or name; returns the files of each by its name. */
+export function eventsIn(files: readonly ReadFile[]): ReadonlyMap<string, readonly ReadFile[]> {
+  const groups = groupedBy(keyOf, files).flatMap(copiesIn);
+  const named = groups.map((group) => [commonName(group.map(eventOf)), group] as const);
+  const count = (name: string): number => named.filter(([other]) => other === name).length;
+  const path = (group: readonly ReadFile[]): string => (group[0]?.name ?? "").replace(/^[^/]*\//, "");
+  const sorted = named.sort(([one], [other]) => (one < other ? -1 : Number(one > other)));
+  return new Map(sorted.map(([name, group]) => [count(name) === 1 ? name : path(group), group]));
+}
+
+function groupedBy(key: (file: ReadFile) => string, files: readonly ReadFile[]): readonly (readonly ReadFile[])[] {
+  const groups = new Map<string, ReadFile[]>();
+  for (const file of files) groups.set(key(file), [...(groups.get(key(file)) ?? []), file]);
+  return [...groups.values()];
+}
+
+/** Returns a group, or the copies of one set of components in it, in other folders or with other names. */
+function copiesIn(group: readonly ReadFile[]): readonly (readonly ReadFile[])[] {
+  const direction = (file: ReadFile): string => {
+    const { direction: found } = eventFile(file);
+    return found ? inWords(found) : "";
+  };
+  for (const key of [folderOf, eventOf]) {
+    const copies = groupedBy(key, group);
+    const ways = new Set(copies.map((copy) => copy.map(direction).sort().join("; ")));
+    if (copies.length > 1 && ways.size === 1 && group.every((file) => direction(file) !== "")) {
+      return copies.flatMap(copiesIn);
+    }
+  }
+  return [group];
+}
+
+function folderOf({ name }: ReadFile): string {
+  return name.slice(0, name.lastIndexOf("/"));
+}
+
+function eventOf(file: ReadFile): string {
+  const header = file.content instanceof Refused ? null : file.content.direction;
+  return namedParts(stemOf(file.name), header).event;
+}
+
+function keyOf(file: ReadFile): string {
+  const stem = stemOf(file.name);
+  const title = file.content instanceof Refused ? "" : titleIn(file.content.title);
+  const number = RECORD_NUMBER.exec(stem)?.[1];
+  if (number !== undefined) return `number ${Number(number)}${remarkOf(stem)}`;
+  return title === "" ? `name ${folderOf(file)}/${eventOf(file)}` : `title ${title}/${eventOf(file)}`;
 }
 
 // The event and the direction of each file, by name and header
@@ -129,7 +191,7 @@ function titlesDiffer(event: string, files: readonly EventFile[]): string[] {
 
 function directed({ file, record }: Part, length: number): Directed {
   const samples = (record.axes.x ?? new Float64Array()).subarray(0, length);
-  return { label: file.name, direction: file.direction as Direction, samples };
+  return { label: baseOf(file.name), direction: file.direction as Direction, samples };
 }
 
 function requireOneStep(event: string, parts: readonly Part[]): void {

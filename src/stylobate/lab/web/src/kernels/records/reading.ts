@@ -2,6 +2,7 @@
 
 import { Refused } from "../../page/server/source";
 import { general } from "../general";
+import { baseOf } from "./archive";
 import { isAt2, isWrapped, readAt2 } from "./at2";
 import { readNamedColumns, readTable } from "./columns";
 import { isCalledAt2 } from "./content";
@@ -111,6 +112,6 @@ function unlikelyTimes(file: string, { step, columns, statesTimeUnit }: Componen
 
 /** Returns the name of a file without suffixes. */
 function nameOf(file: string): string {
-  const name = file.replace(/\.gz$/, "");
+  const name = baseOf(file).replace(/\.gz$/, "");
   return name.slice(0, Math.max(0, name.lastIndexOf("."))) || name;
 }

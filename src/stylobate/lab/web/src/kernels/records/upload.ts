@@ -4,9 +4,10 @@ import type { Part, Value } from "../../page/case/description";
 import type { UploadedRecord } from "../../page/server/schema";
 import { Refused } from "../../page/server/source";
 import { general } from "../general";
-import { textOf } from "./content";
+import { baseOf, isZip, membersOf } from "./archive";
+import { inLatin, textOf } from "./content";
 import { AXES } from "./directions";
-import { type ReadFile, joined } from "./joining";
+import { type ReadFile, eventsIn, joined } from "./joining";
 import type { Samples } from "../own-records";
 import { repr } from "./python";
 import { type EventRecord, asRecord, peakOf, readComponent } from "./reading";
@@ -30,6 +31,8 @@ const SEEDS = [
 export interface Upload {
   readonly received: UploadedRecord;
   readonly samples: Samples;
+  /** Names of the files of the record, below that of their archive. */
+  readonly paths: readonly string[];
 }
 
 /** Reads an upload; its argument is that of `Source.sendRecord`. */
@@ -40,11 +43,65 @@ export async function readUpload(body: Part): Promise<Upload> {
   if (new Set(files.map((file) => file.name)).size < files.length) {
     throw new Refused(422, ["files: the names must be different. Rename a file."]);
   }
-  const read: ReadFile[] = [];
-  for (const { name, content } of files) read.push({ name, content: await componentOf(name, content, step) });
+  const wanted = typeof body["record"] === "string" ? body["record"] : null;
+  const { read, records, warnings } = await eventIn(files, step, wanted);
   const record = recordOf(read, units);
-  const upload = identity([repr(units), repr(step), ...files.flatMap(({ name, content }) => [name, content])]);
-  return { received: reported(upload, record), samples: samplesOf(record) };
+  const given = [repr(units), repr(step), ...(wanted === null ? [] : [wanted])];
+  const upload = identity([...given, ...files.flatMap(({ name, content }) => [name, content])]);
+  const received = reported(upload, record);
+  return {
+    received: { ...received, warnings: [...warnings, ...received.warnings], records },
+    samples: samplesOf(record),
+    paths: read.map(({ name }) => name),
+  };
+}
+
+interface EventFiles {
+  readonly read: readonly ReadFile[];
+  /** Names of the records in an archive. */
+  readonly records: string[];
+  readonly warnings: readonly string[];
+}
+
+/** Reads the files of an event: all, or those of the wanted record in an archive, of the first one if none is. */
+async function eventIn(files: readonly SentFile[], step: number | null, wanted: string | null): Promise<EventFiles> {
+  const [first] = files;
+  const sent = first && files.length === 1 ? atob(first.content) : "";
+  const read: ReadFile[] = [];
+  if (!first || !isZip(sent)) {
+    for (const { name, content } of files) read.push({ name, content: await componentOf(name, atob(content), step) });
+    return { read, records: [], warnings: [] };
+  }
+  const others: Refused[] = [];
+  for (const { name, bytes } of await membersOf(first.name, sent)) {
+    const latin = inLatin(bytes);
+    const content = await componentOf(name, latin, step);
+    if (content instanceof Refused && !ROW_OF_NUMBERS.test(latin)) others.push(content);
+    else read.push({ name, content });
+  }
+  const events = eventsIn(read);
+  const [usual] = events.keys();
+  if (usual === undefined) throw others[0] ?? new Refused(422, [`${first.name}: holds no record`]);
+  const chosen = events.get(wanted ?? usual);
+  if (chosen === undefined) {
+    const listed = [...events.keys()].join(", ");
+    const problem = `record: not in ${first.name} (got ${repr(wanted)})`;
+    throw new Refused(422, [`${problem}. Use one of ${listed}.`]);
+  }
+  return { read: chosen, records: [...events.keys()], warnings: leftOut(first.name, others) };
+}
+
+/** A line that has a number and nothing else. */
+const ROW_OF_NUMBERS = /^[ \t]*[-+]?[\d.][-+\d.,;eEdD \t]*\r?$/m;
+
+/** Returns the warning about the files of an archive that hold no record. */
+function leftOut(archive: string, others: readonly Refused[]): string[] {
+  if (others.length === 0) return [];
+  const names = others
+    .map(({ problems }) => baseOf(/^(.*?)(?:, line \d+)?: /.exec(problems[0] ?? "")?.[1] ?? ""))
+    .join(", ");
+  const [hold, are] = others.length > 1 ? ["files hold", "are"] : ["file holds", "is"];
+  return [`${archive}: ${others.length} ${hold} no record and ${are} left out: ${names}`];
 }
 
 function stepOf(given: Value): number | null {
@@ -60,9 +117,9 @@ function stepOf(given: Value): number | null {
 }
 
 /** Reads a file; a refusal waits for the other files, in whose order it is reported. */
-async function componentOf(name: string, content: string, step: number | null): Promise<ReadFile["content"]> {
+async function componentOf(name: string, sent: string, step: number | null): Promise<ReadFile["content"]> {
   try {
-    return readComponent(await textOf(name, content), step);
+    return readComponent(await textOf(name, sent), step);
   } catch (error) {
     if (error instanceof Refused) return error;
     throw error;
@@ -88,7 +145,7 @@ function reported(upload: string, record: EventRecord): UploadedRecord {
     ([, peak]) => peak > 0,
   );
   return {
-    ...{ upload, name, samples: length, step, duration: step * (length - 1), provenance },
+    ...{ upload, name, samples: length, step, duration: step * (length - 1), provenance, records: [] },
     peaks: Object.fromEntries(peaks),
     warnings: [
       ...new Set([

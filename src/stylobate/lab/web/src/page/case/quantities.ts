@@ -4,6 +4,7 @@ import type { About, Parameter } from "./about";
 import { kindNamed } from "./about";
 import type { Description, PartName, Value } from "./description";
 import { isVector, kindOf, PARTS } from "./description";
+import { isPlanar } from "./in-one-plane";
 import { niceAbove, niceBelow, SPREAD } from "./ranges";
 
 const STARTS: Readonly<Record<string, readonly [string, 0 | 1]>> = {
@@ -78,6 +79,11 @@ export function startQuantities(scales: ColumnScales): readonly Quantity[] {
   ];
 }
 
+/** Returns the starts that this case can have: a model that rocks in one plane starts in it. */
+function startsOf(description: Description, scales: ColumnScales): readonly Quantity[] {
+  return startQuantities(scales).filter(({ name }) => !(isPlanar(description) && name.endsWith("_y")));
+}
+
 /** Returns what an overturning map of this case can vary, the motion first. */
 export function mapQuantities(description: Description, about: About, scales: ColumnScales): readonly Quantity[] {
   const found = [...PARTS].reverse().flatMap((part) => {
@@ -90,14 +96,14 @@ export function mapQuantities(description: Description, about: About, scales: Co
   });
   const names = new Set<string>();
   const once = found.filter(({ name }) => !names.has(name) && names.add(name));
-  return [...once, ...startQuantities(scales)];
+  return [...once, ...startsOf(description, scales)];
 }
 
 /** Returns what a basin can vary: starts of one system. */
 export function basinQuantities(description: Description, scales: ColumnScales): readonly Quantity[] {
   const phase = { name: "start_phase", symbol: "φ", unit: "rad", from: 0, to: Number((2 * Math.PI).toPrecision(6)) };
   const harmonic = "angular_frequency" in description.motion || "rpm" in description.motion;
-  return [...startQuantities(scales), ...(harmonic ? [phase] : [])];
+  return [...startsOf(description, scales), ...(harmonic ? [phase] : [])];
 }
 
 function quantityOf(parameter: Parameter): Quantity {

@@ -20,7 +20,7 @@ const TURN = 2 * Math.PI;
 /** Returns the length of the runs as it is sent: periods of each run's own motion, or the duration of the case. */
 export function lengthOf(kind: PlaneKind, description: Description, plane: Plane, scales: ColumnScales): Part {
   const settled = isHorizontalHarmonic(description.motion) ? settledPeriods(description, plane, scales) : null;
-  const periods = GRIDS[kind].starts ? settled : mapPeriods(description, settled);
+  const periods = GRIDS[kind].starts ? (settled ?? basinPeriods(description)) : mapPeriods(description, settled);
   return periods === null ? { duration: description["duration"] ?? null } : { duration: null, periods };
 }
 
@@ -52,6 +52,11 @@ function mapPeriods({ motion, duration }: Description, settled: number | null): 
   if (frequency === null || !(frequency > 0)) return null;
   const own = typeof duration === "number" ? (duration * frequency) / TURN : 0;
   return Math.max(Number(own.toPrecision(DIGITS - 2)), settled ?? STANDS);
+}
+
+/** A base motion with a period may have attractors besides rolling, which runs without a duration could not tell apart. */
+function basinPeriods({ motion }: Description): number | null {
+  return angularFrequency(motion) === null ? null : STANDS;
 }
 
 /** Of a duration; the periods that follow from it are rounded more coarsely, so that they come back the same. */

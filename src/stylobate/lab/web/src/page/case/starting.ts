@@ -1,8 +1,10 @@
 /** Where a run begins: as set, standing, or on a branch of steady rolling that is followed when the case changes. */
 
+import type { Source } from "../server/source";
 import type { Description, Part, Value } from "./description";
 import { isVector, kindOf, written } from "./description";
 import { isHorizontalHarmonic } from "./frequency";
+import { isPlanar } from "./in-one-plane";
 import { OFF_BRANCH, START, TURNING } from "../server/declared";
 
 export const BRANCHES = ["upper", "lower"] as const;
@@ -53,7 +55,13 @@ export function mayTurn(description: Description): boolean {
   return TURNING.includes(kindOf(description, "model"));
 }
 
-/** Returns whether the base moves so that there may be steady rolling to start on. */
-export function hasBranch({ motion }: Description): boolean {
-  return isHorizontalHarmonic(motion);
+/** Whether a case may roll steadily on this branch, so that a run can start there. */
+export type HasBranch = (description: Description, branch: Branch) => boolean;
+
+/** Returns how it is known which branches a case has that a source finds. */
+export function branchesOf({ offers }: Pick<Source, "offers">): HasBranch {
+  return (description, branch) =>
+    isHorizontalHarmonic(description.motion) &&
+    !isPlanar(description) &&
+    offers("start", { ...startedFrom(description), branch });
 }

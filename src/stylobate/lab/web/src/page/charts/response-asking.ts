@@ -61,14 +61,15 @@ export type JobStart = (
 export interface AskingHearing {
   readonly edited: (changes: Partial<View>) => void;
   readonly start: JobStart;
-  readonly lost: () => void;
+  readonly lost: (error: Unreachable) => void;
   /** The critical frequency of the case is known [rad/s]; null: it has none. */
   readonly critical: (frequency: number | null) => void;
 }
 
 export class ResponseAsking {
   readonly panel: ResponsePanel;
-  readonly #lost: () => void;
+  readonly #offers: Source["offers"];
+  readonly #lost: (error: Unreachable) => void;
   readonly #critical: (frequency: number | null) => void;
   readonly #curves: Latest<Part, ScaledCurves>;
   #view: View;
@@ -78,6 +79,7 @@ export class ResponseAsking {
   constructor(source: Source, view: View, scales: ColumnScales, { edited, start, lost, critical }: AskingHearing) {
     this.#view = view;
     this.#scales = scales;
+    this.#offers = source.offers;
     this.#lost = lost;
     this.#critical = critical;
     this.panel = new ResponsePanel({
@@ -139,7 +141,7 @@ export class ResponseAsking {
     const wanted = request === null ? "none" : written(without(request, "angular_frequency_range"));
     if (wanted !== this.#asked.exact) this.panel.forgetExact();
     this.#asked.exact = wanted;
-    this.panel.allowExact(request !== null);
+    this.panel.allowExact(request !== null && this.#offers("exact", { description: request }));
   }
 
   #ask(jump: boolean): void {
@@ -150,7 +152,7 @@ export class ResponseAsking {
     if (body !== null) return this.#curves.want(body, { jump });
     this.#curves.cancel();
     this.#critical(null);
-    this.panel.clear("Response curves need a horizontal harmonic base motion.");
+    this.panel.clear();
   }
 
   #take({ curves, slenderness }: ScaledCurves): void {
@@ -159,7 +161,7 @@ export class ResponseAsking {
   }
 
   #fail(error: unknown): void {
-    if (error instanceof Unreachable) return this.#lost();
+    if (error instanceof Unreachable) return this.#lost(error);
     this.panel.report(error instanceof Error ? error.message : String(error)); // the last good curves stay
   }
 }

@@ -122,7 +122,7 @@ export class ResponsePanel {
   /** Shows curves over their range. */
   show(curves: ResponseCurves, slenderness: number, range: readonly [number, number]): void {
     this.#curves = curves;
-    this.root.classList.remove("none");
+    this.root.hidden = false;
     this.#slenderness = slenderness;
     this.showRange(range);
     this.report(this.#about);
@@ -138,12 +138,10 @@ export class ResponsePanel {
     this.#draw();
   }
 
-  /** Takes the curves away and says why there are none. */
-  clear(reason: string): void {
+  /** Takes the curves away, and the card: the motion of the case has no response. */
+  clear(): void {
     this.#curves = null;
-    this.report(reason);
-    this.root.classList.add("none");
-    this.#draw();
+    this.root.hidden = true;
   }
 
   showRange(range: readonly [number, number]): void {
@@ -178,7 +176,7 @@ export class ResponsePanel {
   }
 
   allowExact(allowed: boolean): void {
-    this.#ask.disabled = !allowed;
+    this.#ask.hidden = !allowed;
   }
 
   redraw(): void {

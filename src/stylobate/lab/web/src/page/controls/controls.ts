@@ -24,7 +24,7 @@ import { angularFrequency, withAngularFrequency } from "../case/frequency";
 import { PLANAR, PlaneTurn, inOnePlane, isPlanar } from "../case/in-one-plane";
 import type { ColumnScales } from "../case/quantities";
 import { atScaleOf } from "../case/scaling";
-import type { Branch } from "../case/starting";
+import type { Branch, HasBranch } from "../case/starting";
 import { button, choice, element, newId } from "../frame/dom";
 import type { Wrong } from "../frame/problems";
 import type { Source } from "../server/source";
@@ -71,6 +71,7 @@ export interface ControlsHearing {
   readonly preset: (preset: Preset) => void;
   readonly lesson: (lesson: Lesson) => void;
   readonly sendRecord: Source["sendRecord"];
+  readonly hasBranch: HasBranch;
 }
 
 export class Controls {
@@ -117,7 +118,7 @@ export class Controls {
     this.#forms.motion.root.insertBefore(this.#record.root, this.#forms.motion.root.lastElementChild);
     this.#forms.motion.root.append(this.#toy);
     this.#forms.model.root.append(this.#turned);
-    this.#start = new StartForm((description, start) => hearing.started(description, start));
+    this.#start = new StartForm(hearing.hasBranch, (description, start) => hearing.started(description, start));
     this.#duration = new NumberField(
       { name: "duration", label: "Duration", symbol: "t", unit: "s", range: null, top: 60, empty: "as needed" },
       (value) => hearing.edited({ ...this.#description, duration: value }),

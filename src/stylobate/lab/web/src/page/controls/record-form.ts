@@ -51,7 +51,11 @@ export class RecordForm {
   readonly #source: HTMLSelectElement;
   readonly #own: HTMLElement;
   readonly #files = element("input", { type: "file", multiple: true });
-  readonly #units = choice(UNITS, { "aria-label": "Unit of the record" }, () => this.#send());
+  /** The records in an archive. */
+  readonly #record = element("select", { "aria-label": "Record in the archive", hidden: true });
+  readonly #units = choice(UNITS, { "aria-label": "Unit of the record" }, () =>
+    this.#send(this.#chosen, this.#record.value),
+  );
   readonly #step = element("input", {
     inputmode: "decimal",
     "aria-label": "Time step of the record [s], if the file states none",
@@ -63,6 +67,8 @@ export class RecordForm {
   readonly #known = new Map<string, Kept>();
   readonly #phone = button(MOVE, { class: "wide", hidden: !canFeel() }, () => void this.#feel());
   #motion: Part = {};
+  /** The files that were chosen last. */
+  #chosen: readonly File[] = [];
   /** Whether files are to be chosen, while the motion is still that of a sample. */
   #choosing = false;
 
@@ -73,16 +79,31 @@ export class RecordForm {
     const samples = about.samples.map((name) => [name, capital(name)] as const);
     this.#source = choice([...samples, [OWN, "Your own files…"]], { id }, (value) => this.#choose(value));
     this.#files.id = fileId;
-    this.#files.addEventListener("change", () => this.#send());
-    const label = element("label", { for: fileId, class: "visually-hidden" }, "Files of the record, one to three");
+    this.#files.addEventListener("change", () => this.#send([...(this.#files.files ?? [])]));
+    this.#record.addEventListener("change", () => this.#send(this.#chosen, this.#record.value));
+    const label = element(
+      "label",
+      { for: fileId, class: "visually-hidden" },
+      "Files of the record: one to three, or a zip archive",
+    );
     const again = button("Choose files…", { class: "wide" }, () => this.#files.click());
-    this.#step.addEventListener("change", () => this.#send());
+    this.#step.addEventListener("change", () => this.#send(this.#chosen, this.#record.value));
     this.#files.classList.add("visually-hidden");
     this.#files.tabIndex = -1; // the button beside it is the one to reach
-    this.#own = element("div", { class: "own-record" }, label, this.#files, again, this.#units, this.#step);
+    this.#own = element(
+      "div",
+      { class: "own-record" },
+      label,
+      this.#files,
+      again,
+      this.#record,
+      this.#units,
+      this.#step,
+    );
     const source = element("div", { class: "field choice" }, element("label", { for: id }, "Record"), this.#source);
     const said = [this.#summary, this.#warnings, this.#problem];
     this.root = element("div", { class: "record" }, source, this.#own, this.#phone, ...said);
+    this.#takeDrops();
   }
 
   show(motion: Part): void {
@@ -98,6 +119,7 @@ export class RecordForm {
     const known = typeof upload === "string" ? this.#known.get(upload) : undefined;
     this.#summary.textContent = known ? summaryOf(known.received) : "";
     this.#summary.hidden = !known;
+    this.#offerRecords(known);
     const lines = (known?.received.warnings ?? []).map(inWordsOfForm);
     this.#warnings.replaceChildren(...lines.map((line) => element("p", { class: "warning" }, sentence(line))));
     if (!own) this.#report(null);
@@ -133,16 +155,37 @@ export class RecordForm {
     this.#problem.hidden = problem === null;
   }
 
-  async #send(): Promise<void> {
-    const files = [...(this.#files.files ?? [])];
+  /** Offers the records of the archive from which the record that is shown was taken. */
+  #offerRecords(known: Kept | undefined): void {
+    const records = known?.received.records ?? [];
+    this.#record.hidden = records.length < 2;
+    this.#record.replaceChildren(...records.map((name) => element("option", { value: name }, name)));
+    const given = known?.body["record"];
+    this.#record.value = typeof given === "string" ? given : (records[0] ?? "");
+  }
+
+  /** Takes files that are dropped on the form. */
+  #takeDrops(): void {
+    this.root.addEventListener("dragover", (event) => event.preventDefault());
+    this.root.addEventListener("drop", (event) => {
+      event.preventDefault();
+      void this.#send([...(event.dataTransfer?.files ?? [])]);
+    });
+  }
+
+  /** Sends the files of an event, or an archive with the name of a record in it. */
+  async #send(files: readonly File[], record = ""): Promise<void> {
     if (files.length === 0) return;
+    if (files !== this.#chosen) this.#record.replaceChildren(); // they were those of another archive
+    this.#chosen = files;
     this.#choosing = typeof this.#motion["upload"] !== "string";
     if (files.length > MOST_FILES) {
       this.#report(`A record has at most ${MOST_FILES} files, one for each direction; ${files.length} were chosen.`);
       return;
     }
     const contents = await Promise.all(files.map(async (file) => ({ name: file.name, content: await base64(file) })));
-    await this.#take({ files: contents, units: this.#units.value || null, step: stepIn(this.#step.value) });
+    const named = record === "" ? {} : { record };
+    await this.#take({ files: contents, units: this.#units.value || null, step: stepIn(this.#step.value), ...named });
   }
 
   /** Takes what a phone feels while it is tilted and shaken as a record. */

@@ -6,7 +6,7 @@ import { capital, words } from "../frame/format";
 import type { ColumnScales } from "../case/quantities";
 import { startQuantities, valueOf, withValue } from "../case/quantities";
 import type { Branch, StartKind } from "../case/starting";
-import { BRANCHES, hasBranch, mayTurn, standing, startKind } from "../case/starting";
+import { BRANCHES, type HasBranch, mayTurn, standing, startKind } from "../case/starting";
 import { niceAbove } from "../case/ranges";
 import type { Wrong } from "../frame/problems";
 import { NumberField } from "./number-field";
@@ -21,12 +21,14 @@ const KINDS: readonly (readonly [StartKind, string])[] = [
 export class StartForm {
   readonly root = element("div", { class: "fields" });
   readonly #changed: (description: Description, branch: Branch | null) => void;
+  readonly #hasBranch: HasBranch;
   readonly #kind: HTMLSelectElement;
   readonly #fields: readonly NumberField[];
   readonly #spin: NumberField;
   #description: Description | null = null;
 
-  constructor(changed: (description: Description, branch: Branch | null) => void) {
+  constructor(hasBranch: HasBranch, changed: (description: Description, branch: Branch | null) => void) {
+    this.#hasBranch = hasBranch;
     this.#changed = changed;
     const id = newId("start");
     this.#kind = choice(KINDS, { id }, (value) => this.#choose(value as StartKind));
@@ -54,8 +56,10 @@ export class StartForm {
 
   show(description: Description, scales: ColumnScales, branch: Branch | null): void {
     this.#description = description;
-    for (const one of this.#kind.options)
-      one.disabled = (BRANCHES as readonly string[]).includes(one.value) && !hasBranch(description);
+    for (const one of this.#kind.options) {
+      const of = BRANCHES.find((name) => name === one.value);
+      one.disabled = of !== undefined && !this.#hasBranch(description, of);
+    }
     this.#kind.value = startKind(description, branch);
     startQuantities(scales).forEach(({ name, from, to }, i) => {
       this.#fields[i]?.setRange(from, to);

@@ -135,6 +135,10 @@ export class ExportMenu {
       element("summary", { class: "button" }, "Export"),
       element("div", { class: "menu-items" }, ...items),
     );
+    this.#menu.addEventListener("toggle", () => {
+      const offered = exported.source.offers("animation", { description: exported.description() });
+      this.#gif.hidden = !offered && this.#job === null;
+    });
     this.#menu.addEventListener("keydown", (event) => {
       if (event.key === "Escape") this.#close();
     });

@@ -40,9 +40,12 @@ export class Tabs<Name extends string> {
     );
   }
 
-  show(name: Name): void {
+  /** Shows a tab, or the first where it is not offered. */
+  show(name: Name, offered: (name: Name) => boolean): void {
+    const shown = offered(name) ? name : this.#tabs[0]?.name;
     for (const one of this.#tabs) {
-      const selected = one.name === name;
+      const selected = one.name === shown;
+      one.tab.hidden = !offered(one.name);
       one.tab.setAttribute("aria-selected", String(selected));
       one.tab.tabIndex = selected ? 0 : -1;
       one.panel.hidden = !selected;
@@ -51,8 +54,9 @@ export class Tabs<Name extends string> {
 
   #key(event: KeyboardEvent, chosen: (name: Name) => void): void {
     const step = event.key === "ArrowRight" ? 1 : event.key === "ArrowLeft" ? -1 : 0;
-    const at = this.#tabs.findIndex((one) => one.tab === document.activeElement);
-    const next = this.#tabs[(at + step + this.#tabs.length) % this.#tabs.length];
+    const tabs = this.#tabs.filter((one) => !one.tab.hidden);
+    const at = tabs.findIndex((one) => one.tab === document.activeElement);
+    const next = tabs[(at + step + tabs.length) % tabs.length];
     if (step === 0 || at < 0 || next === undefined) return;
     event.preventDefault();
     event.stopPropagation();

@@ -24,7 +24,7 @@ export interface ComparingHearing {
   readonly changed: (comparison: Comparison | null) => void;
   /** There is a second run to be shown; null: there is none. */
   readonly shown: (second: Second | null) => void;
-  readonly lost: () => void;
+  readonly lost: (error: Unreachable) => void;
 }
 
 interface Wanted extends WantedRun {
@@ -86,7 +86,7 @@ export class Comparing {
   }
 
   #fail(error: unknown): void {
-    if (error instanceof Unreachable) return this.#hearing.lost();
+    if (error instanceof Unreachable) return this.#hearing.lost(error);
     const lines = error instanceof Refused ? error.problems : [String(error)];
     this.#hearing.shown(null);
     this.form.say(sentence(`No second column: ${inShownUnits(lines.join("; "))}`));

@@ -198,6 +198,10 @@ export class MotionView {
     this.clock.autoplay();
   }
 
+  offerVariations(offered: boolean): void {
+    this.#verdict.offerVariations(offered);
+  }
+
   /** Chooses what is drawn over time; null: what suits the run. */
   setHistories(pair: HistoryPair | null): void {
     this.#curves.choose(pair);

@@ -25,6 +25,11 @@ export class Verdict {
     this.#vary = button("Vary it", { class: "small", title: "Repeat the run with 64 small variations" }, vary);
   }
 
+  /** Offers small variations of the run, or none. */
+  offerVariations(offered: boolean): void {
+    this.#vary.hidden = !offered;
+  }
+
   /** Says which of two columns the outcome is of; null: there is one. */
   setWhich(label: string | null): void {
     this.#which.textContent = label === null ? "" : `${capital(label)}: `;

@@ -6,7 +6,7 @@ import { defaultAxis } from "./planes";
 import type { Quantity } from "../case/quantities";
 import type { Axis, Plane } from "../view/state";
 import type { Description } from "../case/description";
-import { BRANCHES, type Branch, hasBranch } from "../case/starting";
+import { BRANCHES, type Branch, type HasBranch } from "../case/starting";
 import { AxisForm } from "./axis-form";
 
 export interface AxesHearing {
@@ -18,7 +18,7 @@ export interface AxesHearing {
 export class AxesForm {
   readonly root = element("details", { class: "axes" });
   readonly #hearing: AxesHearing;
-  readonly #starts: boolean;
+  readonly #hasBranch: HasBranch | null;
   readonly #summary = element("summary", {});
   readonly #forms: { readonly x: AxisForm; readonly y: AxisForm };
   readonly #cells: HTMLSelectElement;
@@ -28,10 +28,10 @@ export class AxesForm {
   #description: Description | null = null;
   #quantities: readonly Quantity[] = [];
 
-  /** `starts` says whether the initial conditions vary: then they are not those of a branch. */
-  constructor(starts: boolean, hearing: AxesHearing) {
+  /** `hasBranch` is null where the initial conditions vary: then they are not those of a branch. */
+  constructor(hasBranch: HasBranch | null, hearing: AxesHearing) {
     this.#hearing = hearing;
-    this.#starts = starts;
+    this.#hasBranch = hasBranch;
     const form = (place: "x" | "y"): AxisForm =>
       new AxisForm(place, { changed: (axis) => this.#changeAxis(place, axis), judged: hearing.judged });
     this.#forms = { x: form("x"), y: form("y") };
@@ -61,7 +61,7 @@ export class AxesForm {
     this.#forms.y.show(plane.y, quantities);
     this.#offerSize(plane.x.number);
     this.#start.value = plane.start ?? "";
-    this.#startForm.hidden = this.#starts || !hasBranch(description);
+    this.#startForm.hidden = !BRANCHES.some((branch) => this.#hasBranch?.(description, branch));
     const axis = ({ name, from, to }: Axis): string => `${words(name)} ${formatted(from)}…${formatted(to)}`;
     this.#summary.textContent = `${axis(plane.x)} × ${axis(plane.y)}`;
   }

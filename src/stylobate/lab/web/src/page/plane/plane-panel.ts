@@ -9,6 +9,7 @@ import type { Job } from "../server/job";
 import type { Quantity } from "../case/quantities";
 import { type Axis, PLANES, type Plane, type PlaneKind } from "../view/state";
 import type { Description, Part } from "../case/description";
+import type { HasBranch } from "../case/starting";
 import { AxesForm } from "./axes-form";
 import { Cells } from "./cells";
 import { Classes } from "./classes";
@@ -49,14 +50,17 @@ export class PlanePanel {
   #runs = "";
   #length = "";
 
-  constructor(kind: PlaneKind, hearing: PlaneHearing) {
+  constructor(kind: PlaneKind, hasBranch: HasBranch, hearing: PlaneHearing) {
     this.#kind = kind;
     this.#hearing = hearing;
     this.#canvas = new PlaneCanvas(
       (cell) => this.#point(cell),
       (cell) => this.#choose(cell),
     );
-    this.#axesForm = new AxesForm(GRIDS[kind].starts, { axes: hearing.axes, judged: () => this.#showProblems() });
+    this.#axesForm = new AxesForm(GRIDS[kind].starts ? null : hasBranch, {
+      axes: hearing.axes,
+      judged: () => this.#showProblems(),
+    });
     this.#go = button("Compute", { class: "primary small" }, () => this.#pressed());
     const bar = element("div", { class: "plane-bar" }, this.#axesForm.root, this.#progress, this.#go);
     this.root = element(

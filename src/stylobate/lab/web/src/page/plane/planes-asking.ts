@@ -9,7 +9,8 @@ import { isSlender, planeRequest } from "../server/requests";
 import { GRIDS } from "../server/declared";
 import type { JobStart } from "../charts/response-asking";
 import { lengthOf, withLength } from "../case/run-length";
-import { hasBranch } from "../case/starting";
+import { type HasBranch, branchesOf } from "../case/starting";
+import type { JobRequest, Source } from "../server/source";
 import type { Plane, PlaneKind, View } from "../view/state";
 import { PLANE_KINDS, isPlaneKind, ofPlanes } from "../view/state";
 import { PlanePanel } from "./plane-panel";
@@ -26,11 +27,15 @@ export interface PlanesHearing {
 export class PlanesAsking {
   readonly panels: Readonly<Record<PlaneKind, PlanePanel>>;
   readonly #about: About;
+  readonly #offers: Source["offers"];
+  readonly #hasBranch: HasBranch;
   readonly #hearing: PlanesHearing;
   #view: View;
   #scales: ColumnScales;
 
-  constructor(about: About, view: View, scales: ColumnScales, hearing: PlanesHearing) {
+  constructor(source: Pick<Source, "offers">, about: About, view: View, scales: ColumnScales, hearing: PlanesHearing) {
+    this.#offers = source.offers;
+    this.#hasBranch = branchesOf(source);
     this.#about = about;
     this.#view = view;
     this.#scales = scales;
@@ -53,10 +58,16 @@ export class PlanesAsking {
     }
   }
 
+  /** Whether the plane of the case that is shown can be computed. */
+  offers(kind: PlaneKind): boolean {
+    const plane = this.#plane(kind);
+    return plane !== null && this.#offers(kind, { ...this.#request(kind, plane) });
+  }
+
   /** Computes the plane of the tab again that the view says was computed, unless it is all there. */
   refill(): void {
     const { tab, filled } = this.#view;
-    if (filled && isPlaneKind(tab) && !this.panels[tab].current) this.#fill(tab);
+    if (filled && isPlaneKind(tab) && this.offers(tab) && !this.panels[tab].current) this.#fill(tab);
   }
 
   /** Fills a plane that is seen for the first time with few cells, where they take about a second. */
@@ -74,7 +85,7 @@ export class PlanesAsking {
 
   #panel(kind: PlaneKind): PlanePanel {
     const { edited, jumped } = this.#hearing;
-    return new PlanePanel(kind, {
+    return new PlanePanel(kind, this.#hasBranch, {
       axes: (plane) => edited({ [kind]: plane, filled: false }),
       asked: () => {
         edited({ filled: true, tab: kind });
@@ -104,7 +115,8 @@ export class PlanesAsking {
     const quantities = quantitiesOf(kind, description, this.#about, this.#scales);
     const plane = given !== null && belongs(given, quantities) ? given : this.#usual(kind, quantities);
     // Another motion may have no branch to start on.
-    return plane?.start === undefined || hasBranch(description) ? plane : { x: plane.x, y: plane.y };
+    const known = plane?.start === undefined || this.#hasBranch(description, plane.start);
+    return known || plane === null ? plane : { x: plane.x, y: plane.y };
   }
 
   /** Returns the plane that suits the case: with it, the runs of a map follow a branch, each that of its own motion. */
@@ -119,9 +131,13 @@ export class PlanesAsking {
     if (plane === null) return;
     // The axes are kept from now on: those that suit the case would move with the motion that is chosen in them.
     if (this.#view[kind] === null) this.#hearing.edited({ [kind]: plane });
+    const request = this.#request(kind, plane);
+    this.panels[kind].follow((report, ended) => this.#hearing.start(kind, request, report, ended));
+  }
+
+  #request(kind: PlaneKind, plane: Plane): JobRequest {
     const { description } = this.#view;
     const body = planeRequest(kind, description, plane, lengthOf(kind, description, plane, this.#scales));
-    const request = { description: body, ...(plane.start === undefined ? {} : { start: plane.start }) };
-    this.panels[kind].follow((report, ended) => this.#hearing.start(kind, request, report, ended));
+    return { description: body, ...(plane.start === undefined ? {} : { start: plane.start }) };
   }
 }

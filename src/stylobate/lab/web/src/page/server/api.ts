@@ -4,6 +4,7 @@ import type { Value } from "../case/description";
 import { Refused, type Source, type Started, Unreachable } from "./source";
 
 export const server: Source = {
+  offers: () => true,
   about: () => call("GET", "/api/about"),
   alive: async () => {
     await asked("HEAD", "/index.html");
@@ -41,6 +42,7 @@ async function asked(method: string, path: string, body?: Value, signal?: AbortS
   for (let times = 0; ; times += 1) {
     const found = await sent(method, path, body, signal);
     if (found.ok) return found;
+    if (found.status === 401) throw new Unreachable("the server asks for its token", { locked: true });
     const busy = found.status === 429 || found.status === 503;
     if (!busy || times >= TIMES) throw new Refused(found.status, await problemsOf(found));
     await new Promise((resolve) => setTimeout(resolve, PATIENCE));

@@ -29,6 +29,7 @@ export function recorded({ about, answers }: Contents, read: Read): Layer {
     return answer as Answer;
   }
   return {
+    offers: (ask, question) => names.has(keyOf(ask, question)),
     about: () => Promise.resolve(about),
     simulate: (description) => found("simulate", description),
     variations: (description) => found("variations", description),

@@ -569,6 +569,8 @@ export type UploadedRecord = {
   readonly provenance: readonly string[];
   /** possible mistakes in its files, one line each */
   readonly warnings: readonly string[];
+  /** names of the records in an archive, of which this is one; else none */
+  readonly records: readonly string[];
 };
 
 /** Small variations of one case. */

@@ -1,7 +1,7 @@
 /** What the page asks: a server answers, or the files of a page that has none. */
 
 import type { About } from "../case/about";
-import type { Part } from "../case/description";
+import type { Part, Value } from "../case/description";
 import type {
   Described,
   Job as JobReport,
@@ -24,8 +24,15 @@ export class Refused extends Error {
   }
 }
 
-/** No answer at all. */
-export class Unreachable extends Error {}
+/** No answer at all; `locked`: the server was started again, and asks for its new token. */
+export class Unreachable extends Error {
+  readonly locked: boolean;
+
+  constructor(message: string, { locked = false } = {}) {
+    super(message);
+    this.locked = locked;
+  }
+}
 
 /** What a job is asked for: a description, and the branch on which its runs start, if it is a map. */
 export interface JobRequest {
@@ -42,7 +49,12 @@ export interface Started {
   readonly file: () => Promise<Blob>;
 }
 
+/** What is asked at a click, or chosen; the rest is asked for each case. */
+export type Ask = "start" | "variations" | "map" | "basin" | "exact" | "animation";
+
 export interface Source {
+  /** Whether there can be an answer: what has none is not offered. */
+  readonly offers: (ask: Ask, question: Value) => boolean;
   readonly about: () => Promise<About>;
   /** Asks whether there are answers, and nothing else. */
   readonly alive: () => Promise<void>;
@@ -75,6 +87,7 @@ export function layered(layers: readonly Layer[]): Source {
     throw new Refused(422, [`This page has no answer for ${what}. Install stylobate and run “stylobate lab”.`]);
   }
   return {
+    offers: (ask, question) => layers.some((layer) => layer.offers?.(ask, question) ?? false),
     about: () => first("its own options", (layer) => layer.about?.()),
     alive: () => Promise.resolve(),
     simulate: (description, signal) => first(NUMBERS, (layer) => layer.simulate?.(description, signal)),

@@ -27,7 +27,7 @@ export function menuOf(source: Source, motion: MotionView, now: () => Shown): Ex
     caption: () => captionOf(motion, now()),
     description: () => sent(now().view.description),
     described: () => describedIn(source, now()),
-    link: () => `${location.href.replace(/#.*/, "")}#${linkOf({ ...now().view, time: motion.stoppedAt })}`,
+    link: () => `${location.href.replace(/[?#].*/, "")}#${linkOf({ ...now().view, time: motion.stoppedAt })}`,
   });
 }
 
