@@ -91,7 +91,7 @@ print(runs["end_tilt"].values.tobytes().hex(), json.loads(runs.attrs["provenance
 @pytest.fixture(scope="module")
 def results():
     """End tilts and stated arithmetic of an ensemble, by processor, each from a process of its own."""
-    chosen = [one for one in machine.processors() if can_run(one)]
+    chosen = [one for one in (machine.HOST, "x86-64-v2", "x86-64-v3") if can_run(one)]
     started = {
         one: subprocess.Popen(
             [sys.executable, "-c", RUNS], env={**os.environ, machine.VARIABLE: one}, stdout=subprocess.PIPE, text=True
