@@ -7,7 +7,7 @@ BIN    := $(VENV)/bin
 # Without files of bytecode, each process that a test starts compiles all modules again.
 unexport PYTHONDONTWRITEBYTECODE
 .PHONY: help demo lab page static-lab test quick test-system test-all test-python test-lowest uv coverage mutants lint docs figures \
-	sheet bench validation clean
+	sheet digits bench validation clean
 
 help:  ## list the targets
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## /\t/' | expand -t 14
@@ -126,6 +126,9 @@ figures: $(VENV)/.core $(VENV)/.test $(PAGE)  ## all figures and animations of t
 
 sheet: $(VENV)/.core  ## all kinds of figures in light, dark, one column and as a slide into figure-sheet/, to look at
 	$(BIN)/python tools/figure_sheet.py figure-sheet
+
+digits: $(VENV)/.core $(VENV)/.test  ## examples with other tolerances, starts and processors: which printed digits change
+	$(BIN)/python tools/printed_digits.py
 
 bench: $(VENV)/.core $(VENV)/.test  ## the benchmarks, beside the engines that can be installed, into the documentation
 	-$(BIN)/python -m pip install --quiet --group bench

@@ -12,6 +12,7 @@ from typing import Any
 from stylobate.base_motions import BaseMotion, Record
 from stylobate.base_motions.declared import MOTIONS
 from stylobate.column import Column
+from stylobate.compiler.machine import arithmetic
 from stylobate.errors import UnsupportedError
 from stylobate.models import Model
 from stylobate.models.declared import MODELS
@@ -19,12 +20,13 @@ from stylobate.quantities import exact_repr, is_declared, parameters_of
 
 
 def provenance_of_run(model: Model, motion: BaseMotion, **options: Any) -> dict[str, Any]:
-    """Return the provenance of a run as plain values: version, column, model, motion and the arguments `options`.
+    """Return the provenance of a run as plain values: version, processor, column, model, motion, and `options`.
 
     Of a model or a base motion that no description can repeat, it has the `repr`.
     """
     return {
         "version": _version(),
+        "processor": arithmetic(),
         "column": values_of_column(model.column),
         "model": _or_other(values_of_model, model),
         "motion": _or_other(values_of_motion, motion),

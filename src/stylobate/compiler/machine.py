@@ -1,12 +1,15 @@
-"""Machines for which LLVM makes code: this one, and the virtual machine of web browsers.
+"""Machines for which LLVM makes code: this one or an older one of its kind, and the virtual machine of web browsers.
 
 llvmlite is imported when something is compiled or linked.
 """
 
+import os
 import threading
 from dataclasses import dataclass
 from functools import cache
 from typing import TYPE_CHECKING
+
+from stylobate.errors import ParameterError
 
 if TYPE_CHECKING:
     from llvmlite import binding as llvm
@@ -16,6 +19,12 @@ _PASSES, _CODE = 1, 2
 # Maximum size of functions that are inlined. The default of LLVM, 225, takes a tenth longer, and its code is as fast.
 _INLINED = 60
 _BITS = 64
+
+VARIABLE = "STYLOBATE_CPU"
+"""Environment variable with the processor for which code is compiled; a process reads it once."""
+
+HOST = "host"
+"""The processor of this machine, with all that it can do; the default."""
 
 _compiling = threading.Lock()
 
@@ -99,16 +108,87 @@ WEB = Machine(
 """WebAssembly with vectors of 128 bits."""
 
 
+@dataclass(frozen=True, slots=True)
+class _Level:
+    """Level of x86-64: the features that it adds to the level below, and the length of its vector registers [bits]."""
+
+    features: str
+    vector_bits: int
+
+
+# The levels of the System V ABI of x86-64, with LLVM's names of features. Level 3 is the first one that fuses products
+# with sums.
+_LEVELS = {
+    "x86-64-v2": _Level("cx16 sahf popcnt sse3 sse4.1 sse4.2 ssse3", 128),
+    "x86-64-v3": _Level("avx avx2 bmi bmi2 f16c fma lzcnt movbe", 256),
+    "x86-64-v4": _Level("avx512f avx512bw avx512cd avx512dq avx512vl", 512),
+}
+_X86 = "x86_64"
+
+
+def processors() -> list[str]:
+    """Return the names that $STYLOBATE_CPU may have on machines of this architecture."""
+    return [HOST, *_LEVELS] if _architecture() == _X86 else [HOST, "generic"]
+
+
 @cache
 def native() -> Machine:
-    """Return this machine."""
+    """Return the machine for which code is compiled that runs here: this one, or the one that $STYLOBATE_CPU names.
+
+    Raises
+    ------
+    ParameterError
+        If this machine has no processor of that name, or cannot run its code.
+    """
+    return machine_of(os.environ.get(VARIABLE) or HOST)
+
+
+def machine_of(processor: str) -> Machine:
+    """Return the machine of a processor, one of `processors`.
+
+    Raises
+    ------
+    ParameterError
+        If the name is unknown, or this machine cannot run code for that processor.
+    """
     from llvmlite import binding as llvm
 
-    features = llvm.get_host_cpu_features()
-    bits = 512 if features.get("avx512f") else 256 if features.get("avx") else 128
-    # LLVM prefers half registers on processors whose earlier models slowed down with full ones.
-    features["prefer-256-bit"] = False
-    return Machine(llvm.get_default_triple(), llvm.get_host_cpu_name(), features.flatten(), bits)
+    triple, features = llvm.get_default_triple(), llvm.get_host_cpu_features()
+    if processor not in processors():
+        names = ", ".join(processors())
+        raise ParameterError(f"{VARIABLE}: unknown processor (got {processor!r}). Use one of {names}.")
+    if processor == HOST:
+        bits = 512 if features.get("avx512f") else 256 if features.get("avx") else 128
+        # LLVM prefers half registers on processors whose earlier models slowed down with full ones.
+        features["prefer-256-bit"] = False
+        return Machine(triple, llvm.get_host_cpu_name(), features.flatten(), bits)
+    if processor not in _LEVELS:
+        return Machine(triple, processor, "", 128)
+    below = list(_LEVELS)[: list(_LEVELS).index(processor) + 1]
+    missing = [one for level in below for one in _LEVELS[level].features.split() if not features.get(one)]
+    if missing:
+        raise ParameterError(
+            f"{VARIABLE}: this machine cannot run code for that processor (got {processor!r}), because it lacks "
+            f"{', '.join(missing)}. Use {HOST} or a lower level."
+        )
+    return Machine(triple, processor, "-prefer-256-bit", _LEVELS[processor].vector_bits)
+
+
+def arithmetic() -> str:
+    """Return what decides the bits of results: the architecture, and whether products are fused with sums.
+
+    Vector registers of another length change no bit.
+    """
+    machine = native()
+    features = machine.features.split(",")
+    fused = _architecture() != _X86 or machine.processor in ("x86-64-v3", "x86-64-v4") or "+fma" in features
+    return f"{_architecture()} {'with' if fused else 'without'} FMA"
+
+
+def _architecture() -> str:
+    from llvmlite import binding as llvm
+
+    return str(llvm.get_default_triple()).partition("-")[0]
 
 
 def linked(*codes: bytes) -> "llvm.ExecutionEngine":

@@ -288,7 +288,8 @@ def config_of(provenance: Mapping[str, Any]) -> SimulationConfig:
         If descriptions do not support the model or base motion of the run.
     """
     refuse_own_classes(provenance)
-    return SimulationConfig.parse({name: value for name, value in with_places(provenance).items() if name != "version"})
+    stated = {name: one for name, one in with_places(provenance).items() if name not in ("version", "processor")}
+    return SimulationConfig.parse(stated)
 
 
 def refuse_own_classes(provenance: Mapping[str, Any]) -> None:

@@ -134,6 +134,7 @@ _OF_CHANGES = ("motion.digest", "motion.repr")
 # Inputs that follow from others, or that no reader would name a run by.
 _SILENT = (
     "version",
+    "processor",
     "column.transverse_inertia",
     "column.axial_inertia",
     "column.mass",

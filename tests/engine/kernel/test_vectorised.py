@@ -35,6 +35,11 @@ def arithmetic_of(assembly):
     return counts, registers
 
 
+def wide(registers):
+    """Count the uses of registers as long as those of the processor allow, or half as long."""
+    return registers["ymm"] + registers["zmm"] if machine.native().vector_bits > 128 else registers["xmm"]
+
+
 def called_by(assembly):
     """Return the names of what lies outside a compiled function and is called by it."""
     return set(re.findall(r"call\w*\s+\*?([A-Za-z_]\w*)", assembly))
@@ -89,7 +94,7 @@ def test_steps_work_on_all_lanes_at_once(motion, method, planar, model, assembly
     counts, registers = arithmetic_of(assembly_of("step", motion, method, planar, model, after=(NumberKind.INTEGER, 0)))
     assert counts["pd"] > 100
     assert counts["sd"] == 0, counts
-    assert registers["ymm"] + registers["zmm"] > registers["xmm"]
+    assert wide(registers) > registers.total() / 2
 
 
 @pytest.mark.parametrize(
@@ -131,5 +136,5 @@ def test_observation_works_on_all_nodes_at_once(motion, method, planar, assembly
     assembly = assembly_of("observe", motion, method, planar, after=(NumberKind.INTEGER,))
     counts, registers = arithmetic_of(assembly)
     assert counts["pd"] >= INSTRUCTIONS_AT_NODES, counts
-    assert registers["ymm"] + registers["zmm"] >= INSTRUCTIONS_AT_NODES, registers
+    assert wide(registers) >= INSTRUCTIONS_AT_NODES, registers
     assert not called_by(assembly) & MATHEMATICS

@@ -12,6 +12,7 @@ import numpy.typing as npt
 import xarray as xr
 
 from stylobate.base_motions import Record
+from stylobate.compiler.machine import arithmetic
 from stylobate.config.levels import Dissipation
 from stylobate.earthquakes.assessment.inputs import CENTRAL, OTHER_LAW, Inputs, Parts
 from stylobate.earthquakes.assessment.margins import (
@@ -321,7 +322,7 @@ def _setting(inputs: Inputs) -> dict[str, Any]:
         "software": {
             **{name: version(name) for name in _PACKAGES},
             "Python": platform.python_version(),
-            "machine": f"{platform.system()} {platform.machine()}",
+            "machine": f"{platform.system()} {arithmetic()}",
         },
         "columns": {
             name: {

@@ -12,6 +12,7 @@ import numpy.typing as npt
 import xarray as xr
 
 from stylobate.base_motions import BASE_AT_REST, BaseMotion, Record
+from stylobate.compiler.machine import arithmetic
 from stylobate.config.levels import OF_DISSIPATION, Dissipation, at_levels, levels_by_column
 from stylobate.earthquakes.fragility.displacement_limits import (
     LimitState,
@@ -199,6 +200,7 @@ class Inputs:
         chosen = self.columns[column] if model is None else {model.name: model}
         return {
             "version": version("stylobate"),
+            "processor": arithmetic(),
             "layout": _LAYOUT,
             "models": {name: _as_values(model) for name, model in chosen.items()},
             "records": identities(self.records),

@@ -13,6 +13,7 @@ import numpy as np
 import xarray as xr
 
 from stylobate.base_motions import BaseMotion, OneOf
+from stylobate.compiler.machine import arithmetic
 from stylobate.earthquakes.assessment.inputs import identities
 from stylobate.earthquakes.inventories.objects import OF_RUNS, Draws, PreparedObject, name_of_constructor, unquestioned
 from stylobate.earthquakes.study_inputs import tail_of
@@ -79,6 +80,7 @@ class SiteRuns:
         """Return everything on which the runs of an object depend; `motions` are the identities of the records."""
         return {
             "version": version("stylobate"),
+            "processor": arithmetic(),
             "layout": _LAYOUT,
             "model": {"kind": one.model.name, **{name: getattr(one.model, name) for name in one.of_model}},
             "column": {name: getattr(one.model.column, name) for name in OF_RUNS},
