@@ -261,7 +261,7 @@ CHECKS = (
     (r"(GET|POST|DELETE) /", key_problems),
     (r"\[+[a-z]\w*[\w.\" ]*\]+$", key_problems),
     (r"[\w./-]+(/[\w.-]*|\.(py|pyi|ts|md))(:\d+)?$", path_problems),
-    (r"(?![\w.]+:\w|[\w-]+\.(csv|gif|gpkg|html|mp4|mseed|nc|pdf|png|toml|txt|xlsx|zarr)$)[a-zA-Z]", python_problems),
+    (r"(?![\w.]+:\w|[\w-]+\.(csv|gif|gpkg|html|mp4|mseed|nc|pdf|png|toml|txt|xlsx|zarr|zip)$)[a-zA-Z]", python_problems),
 )
 
 
