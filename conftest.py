@@ -53,11 +53,16 @@ def _named_values(document: Document) -> Iterator[Region]:
             yield Region(match.start(), match.end(), (match[1], match[2]), _look_up)
 
 
-def _look_up(example: Example) -> None:
-    """Evaluate what the text names, if its variable exists where the text stands."""
+def _look_up(example: Example) -> str | None:
+    """Evaluate what the text names, if its variable exists where the text stands; return the problem, if any."""
     name, path = example.parsed
-    if name in example.namespace:
+    if name not in example.namespace:
+        return None
+    try:
         eval(name + path, example.namespace)  # noqa: S307  the text of our own page
+    except Exception as error:  # noqa: BLE001  whatever a wrong name raises
+        return f"{name}{path}: {error!r}"
+    return None
 
 
 def _pages(patterns: Sequence[str], excludes: Sequence[str] = (), fixtures: Sequence[str] = ()) -> Sybil:
