@@ -7,10 +7,10 @@ import pytest
 
 pytest.importorskip("sphinx", reason="the tools of the documentation are not installed")
 
-from docutils import nodes  # noqa: E402
-from docutils.utils import new_document  # noqa: E402
-from sphinx.search import WordCollector  # noqa: E402
-from sphinx.search.en import SearchEnglish  # noqa: E402
+from docutils import nodes
+from docutils.utils import new_document
+from sphinx.search import WordCollector
+from sphinx.search.en import SearchEnglish
 
 FILE = Path(__file__).parents[1] / "docs" / "extensions" / "gallery_pages.py"
 

@@ -33,7 +33,8 @@ OUTSIDE = re.compile(
     "DOP853|RockingBC|brentq|consolidated|fast_math|grayscale|implicitfast|impratio|jax|libblas3|liblapack3|pebble"
     "|prop_cycle|resample_poly|solve_ivp|vmap"
 )
-EXAMPLES = re.compile(r"(q|site|quake)_\w+")  # names of files that a reader may have
+# Files that a reader may have, or that a command writes.
+EXAMPLES = re.compile(r"(q|site|quake)_\w+|[\w-]+\.(csv|gif|gpkg|html|mp4|mseed|nc|pdf|png|toml|txt|xlsx|zarr|zip)")
 RECEIVERS = {
     "run": sb.Run,
     "column": sb.Column,
@@ -261,7 +262,7 @@ CHECKS = (
     (r"(GET|POST|DELETE) /", key_problems),
     (r"\[+[a-z]\w*[\w.\" ]*\]+$", key_problems),
     (r"[\w./-]+(/[\w.-]*|\.(py|pyi|ts|md))(:\d+)?$", path_problems),
-    (r"(?![\w.]+:\w|[\w-]+\.(csv|gif|gpkg|html|mp4|mseed|nc|pdf|png|toml|txt|xlsx|zarr|zip)$)[a-zA-Z]", python_problems),
+    (r"(?![\w.]+:\w)[a-zA-Z]", python_problems),
 )
 
 
