@@ -6,8 +6,8 @@ BIN    := $(VENV)/bin
 .DEFAULT_GOAL := help
 # Without files of bytecode, each process that a test starts compiles all modules again.
 unexport PYTHONDONTWRITEBYTECODE
-.PHONY: help demo lab page static-lab test quick test-system test-all test-python test-lowest uv coverage mutants lint docs figures \
-	sheet digits bench validation clean
+.PHONY: help demo lab page static-lab test quick test-system test-all test-python test-lowest uv coverage mutants lint docs site \
+	figures sheet digits bench validation clean
 
 help:  ## list the targets
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## /\t/' | expand -t 14
@@ -119,6 +119,10 @@ LAB := $(if $(shell command -v npm 2>/dev/null),static-lab/index.html)
 docs: $(VENV)/.core $(VENV)/.docs $(LAB)  ## the documentation into docs/_build/html, with the laboratory
 	$(BIN)/sphinx-build --fail-on-warning --keep-going docs docs/_build/html
 
+site: $(VENV)/.core $(VENV)/.docs static-lab/index.html  ## the documentation with the laboratory as one archive that opens from disk
+	$(BIN)/sphinx-build --fail-on-warning --keep-going docs docs/_build/html
+	$(BIN)/python tools/site_archive.py docs/_build/html
+
 FIGURES := $(filter-out %/saving.py %/choose_a_model.py,$(wildcard docs/figures/*.py))
 
 figures: $(VENV)/.core $(VENV)/.test $(PAGE)  ## all figures and animations of the documentation into docs/_static, ten minutes on two cores
@@ -151,4 +155,4 @@ validation: $(VENV)/.core $(VENV)/.validation  ## comparisons with other people'
 	$(BIN)/python -m validation
 
 clean:  ## remove what the targets made
-	rm -rf $(VENV) .venv-* .mutants docs/_build docs/gallery docs/tutorials stylobate-paper static-lab
+	rm -rf $(VENV) .venv-* .mutants docs/_build docs/gallery docs/tutorials stylobate-paper static-lab stylobate-*-docs.zip

@@ -1,6 +1,7 @@
 """The code blocks of README.md and of the documentation run as tests, each file in a folder of its own."""
 
 import os
+import re
 import tempfile
 from collections.abc import Iterator, Mapping, Sequence
 from doctest import ELLIPSIS, NORMALIZE_WHITESPACE
@@ -8,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from sybil import Sybil
+from sybil import Document, Example, Region, Sybil
 from sybil.parsers.myst import PythonCodeBlockParser, SkipParser
 
 # pytest puts a module that it imports first in the place of the function of that name in its package.
@@ -46,9 +47,39 @@ def token() -> str:
     return TOKEN
 
 
+_NAMED = re.compile(r"(?<![`}])`([a-z]\w*)((?:\.[a-z_]\w*|\[\"[^\"`]+\"\])+)`(?!`)")
+_BLOCK = re.compile(r"^(```+|:::+).*?^\1", re.DOTALL | re.MULTILINE)
+
+
+def _named_values(document: Document) -> Iterator[Region]:
+    """Find where the text of a page names attributes or items of the page's own variables: `run.measures["turns"]`."""
+    blocks = [match.span() for match in _BLOCK.finditer(document.text)]
+    code = "\n".join(document.text[begin:end] for begin, end in blocks)
+    for match in _NAMED.finditer(document.text):
+        inside = any(begin <= match.start() < end for begin, end in blocks)
+        if not inside and re.search(rf"^{match[1]}(, \w+)* = ", code, re.MULTILINE):
+            yield Region(match.start(), match.end(), (match[1], match[2]), _look_up)
+
+
+def _look_up(example: Example) -> str | None:
+    """Evaluate what the text names, if its variable exists where the text stands; return the problem, if any."""
+    name, path = example.parsed
+    if name not in example.namespace:
+        return None
+    try:
+        eval(name + path, example.namespace)  # noqa: S307  the text of our own page
+    except Exception as error:  # noqa: BLE001  whatever a wrong name raises
+        return f"{name}{path}: {error!r}"
+    return None
+
+
 def _pages(patterns: Sequence[str], excludes: Sequence[str] = (), fixtures: Sequence[str] = ()) -> Sybil:
     return Sybil(
-        parsers=[PythonCodeBlockParser(doctest_optionflags=ELLIPSIS | NORMALIZE_WHITESPACE), SkipParser()],
+        parsers=[
+            PythonCodeBlockParser(doctest_optionflags=ELLIPSIS | NORMALIZE_WHITESPACE),
+            SkipParser(),
+            _named_values,
+        ],
         patterns=patterns,
         excludes=["docs/_build/*", *excludes],
         setup=_enter_folder,

@@ -33,6 +33,7 @@ extensions = [
     "sphinx_gallery.gen_gallery",
     "sphinxcontrib.bibtex",
     "citations",  # docs/extensions: BibTeX from CITATION.cff
+    "gallery_pages",  # docs/extensions: words of thumbnails; downloads stay out of the search
     "laboratory_links",  # docs/extensions: links that open a case in the laboratory
     "source_links",  # docs/extensions: links from source code back to the reference
     "stylobate_reference",  # docs/extensions: summaries, options of commands and fields of files from declarations

@@ -122,11 +122,20 @@ def test_every_page_of_the_reference_is_in_its_table_of_contents():
     assert [page for page in PAGES if page != "index.md" and page.removesuffix(".md") not in listed] == []
 
 
+COMMAND_PAGES = {page: text for page, text in PAGES.items() if page.startswith("command-")}
+
+
 @pytest.mark.parametrize("name", COMMANDS)
 def test_the_command_line_shows_every_command_under_its_usage(name, extensions):
-    page = PAGES["command-line.md"]
-    assert f"```{{command}} {name}\n" in page
+    (page,) = (text for text in COMMAND_PAGES.values() if f"```{{command}} {name}\n" in text)
     assert f"## `{extensions['declared_options'].title(name)}`\n" in page
+
+
+def test_the_first_page_of_the_command_line_lists_the_pages_of_the_commands():
+    listed = re.findall(r"```\{command-list\} (\S+)\n", PAGES["command-line.md"])
+    assert {f"{page}.md" for page in listed} == {
+        page for page, text in COMMAND_PAGES.items() if "```{command} " in text
+    }
 
 
 def test_every_option_is_shared_or_shown_with_its_command(extensions):
@@ -143,7 +152,7 @@ def test_the_text_about_the_command_line_names_options_that_exist(extensions):
     options = extensions["declared_options"]
     known = {options.row(one).flag for entry in COMMANDS.values() for one in options.options_of(entry.load())}
     known |= {"--help", "--version", "--stiffness"}  # the last one is of a model of the reader's own
-    assert set(re.findall(r"(?<![\w-])--[a-z][a-z-]*", PAGES["command-line.md"])) <= known
+    assert set(re.findall(r"(?<![\w-])--[a-z][a-z-]*", "".join(COMMAND_PAGES.values()))) <= known
 
 
 TABLES = re.findall(r"```\{fields\} (\S+)", PAGES["descriptions.md"])
@@ -180,11 +189,12 @@ def test_examples_of_the_extensions_hold(extensions):
 
 def test_the_doors_of_the_readme_lead_to_pages_that_show_figures_without_being_built():
     readme = (DOCS.parent / "README.md").read_text(encoding="utf-8")
-    doors = re.findall(r"\]\((\S+)\)", readme.partition("## Where to begin")[2].partition("\n## ")[0])
-    assert doors
-    for door in doors:
-        page = DOCS.parent / door
-        assert page.suffix == ".md"
-        images = re.findall(r"!\[[^]]*\]\(([^)]+)\)", page.read_text(encoding="utf-8"))
-        assert images or page.stem == "install"
-        assert all((page.parent / image).is_file() for image in images)
+    rows = re.findall(r"^\| (?!-|You).*$", readme.partition("## Where to begin")[2].partition("\n## ")[0], re.MULTILINE)
+    assert len(rows) == 6
+    for row in rows:
+        pages = [DOCS.parent / door for door in re.findall(r"\]\((\S+\.md)\)", row)]
+        images = [
+            (page, one) for page in pages for one in re.findall(r"!\[[^]]*\]\(([^)]+)\)", page.read_text("utf-8"))
+        ]
+        assert images
+        assert all((page.parent / image).is_file() for page, image in images)

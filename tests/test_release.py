@@ -174,3 +174,23 @@ def test_the_sources_of_a_release_build_the_wheel_of_the_repository(tmp_path, mo
         with zipfile.ZipFile(built) as wheel:
             wheels.append({name: wheel.read(name) for name in wheel.namelist()})
     assert wheels[0] == wheels[1]
+
+
+def test_the_archive_of_the_site_holds_its_pages_and_is_the_same_twice(tmp_path):
+    spec = importlib.util.spec_from_file_location("site_archive", ROOT / "tools" / "site_archive.py")
+    tool = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(tool)
+    site = tmp_path / "html"
+    kept = ("how-to/page.html", "index.html", "laboratory/laboratory.html", "searchindex.js")
+    for name in (*kept, ".doctrees/index.doctree", ".buildinfo"):
+        (site / name).parent.mkdir(parents=True, exist_ok=True)
+        (site / name).write_text(f"content of {name}")
+    first = tool.pack(site, tmp_path, "pages-1.0-docs").read_bytes()
+    (site / "index.html").touch()
+    assert tool.pack(site, tmp_path, "pages-1.0-docs").read_bytes() == first
+    with zipfile.ZipFile(tmp_path / "pages-1.0-docs.zip") as archive:
+        assert archive.namelist() == [f"pages-1.0-docs/{name}" for name in kept]
+        assert archive.read("pages-1.0-docs/index.html") == b"content of index.html"
+    (site / "laboratory/laboratory.html").unlink()
+    with pytest.raises(SystemExit, match="Run make site"):
+        tool.pack(site, tmp_path, "pages-1.0-docs")

@@ -73,7 +73,7 @@ def test_the_pages_state_the_exponents_of_the_laws():
     docs = Path(__file__).parents[1] / "docs"
     if not docs.is_dir():
         pytest.skip("the documentation is not here")
-    settling = (docs / "results" / "validation.md").read_text("utf-8")
+    settling = (docs / "results" / "validation-measurements.md").read_text("utf-8")
     kitchen = (docs / "how-to" / "kitchen-experiments.md").read_text("utf-8")
     for loss in round_.LOSSES:
         numbers = (loss.power, loss.tilt_exponent, loss.rate_exponent)

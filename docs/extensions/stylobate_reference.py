@@ -8,6 +8,7 @@ import re
 import shlex
 import textwrap
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from pathlib import Path
 from typing import Any, ClassVar
 
 import declared_fields
@@ -21,6 +22,8 @@ from sphinx.util.docutils import SphinxDirective
 from stylobate.cli.commands import COMMANDS
 
 _CONSOLE_WIDTH = 80
+# The page of the options that commands share.
+_OPTIONS = "reference/command-options"
 _IN_TEXT = re.compile(r"`([^`]+)`|(--[a-z][a-z-]*)")
 
 Cell = str | nodes.Node | Sequence[nodes.Node]
@@ -210,7 +213,7 @@ def wrapped_command(example: str) -> str:
 def _sharings(sharings: Iterable[declared_options.Sharing]) -> nodes.bullet_list:
     items = []
     for one in sharings:
-        link = nodes.reference("", one.panel, internal=True, refid=panel_id(one.panel))
+        link = page_link(_OPTIONS, panel_id(one.panel), nodes.Text(one.panel))
         words = one.words()
         items.append(
             nodes.list_item(
@@ -255,19 +258,42 @@ class SharedOptions(SphinxDirective):
 
 
 class CommandList(SphinxDirective):
-    """`command-list`: the commands, each with its line of help."""
+    """`command-list`: the commands of a page of the reference, each with its line of help."""
+
+    required_arguments = 1
 
     def run(self) -> list[nodes.Node]:
-        rows = [([_command_link(name)], one.summary) for name, one in COMMANDS.items()]
+        page = f"reference/{self.arguments[0]}"
+        self.env.note_dependency(self.env.doc2path(page))
+        text = Path(self.env.doc2path(page)).read_text(encoding="utf-8")
+        rows = [
+            ([_command_link(page, name)], COMMANDS[name].summary)
+            for name in re.findall(r"^```\{command\} (\w+)$", text, re.MULTILINE)
+        ]
         return [table(("command", "purpose"), rows, (25, 75))]
 
 
-def _command_link(name: str) -> nodes.reference:
-    """Link to the section of a command, whose title is its usage without "[OPTIONS]"."""
-    title = declared_options.title(name)
-    return nodes.reference(
-        "", "", code(name), internal=True, refid=nodes.make_id(title)
-    )
+def _command_link(page: str, name: str) -> nodes.Element:
+    """Link to the section of a command, whose title is its usage without "[OPTIONS]"; the link has its anchor too."""
+    anchor = nodes.make_id(declared_options.title(name))
+    link = page_link(page, anchor, code(name))
+    link["ids"].append(anchor)
+    return link
+
+
+def page_link(page: str, anchor: str, shown: nodes.Node) -> nodes.reference:
+    """Make a link to an anchor of a page, whose address is known when pages are written."""
+    link = nodes.reference("", "", shown, internal=True, refuri=f"#{anchor}")
+    link["page"] = page
+    return link
+
+
+def fill_links(app: Sphinx, document: nodes.document, page: str) -> None:
+    """Put the addresses of the pages into the links."""
+    for link in document.findall(nodes.reference):
+        if "page" in link:
+            address = app.builder.get_relative_uri(page, link["page"])
+            link["refuri"] = address + link["refuri"]
 
 
 class Kinds(SphinxDirective):
@@ -366,4 +392,5 @@ def setup(app: Sphinx) -> dict[str, Any]:
         app.add_directive(name, one)
     connect: Callable[..., Any] = app.connect
     connect("doctree-read", fill_summaries)
+    connect("doctree-resolved", fill_links)
     return {"parallel_read_safe": True, "parallel_write_safe": True}
