@@ -39,6 +39,7 @@ import type { Run, WantedRun } from "./server/run";
 import { run } from "./server/run";
 import { setUnitsOf } from "./frame/units";
 import { LessonCard } from "./tour/lesson-card";
+import { SceneMode } from "./view/scene-mode";
 import { Address, firstView, inWords, viewOfLesson, viewOfLink, viewOfPreset } from "./view/link";
 
 /** Before the first answer: the column of the equations, and its scales. */
@@ -59,6 +60,7 @@ export class Laboratory {
   readonly #planes: PlanesAsking;
   readonly #tabs: Tabs<Tab>;
   readonly #lesson: LessonCard;
+  readonly #scene: SceneMode;
   readonly #host: HTMLElement;
   readonly #planesHost = element("div", { class: "planes" });
   readonly #runs: Latest<WantedRun, Run>;
@@ -109,7 +111,7 @@ export class Laboratory {
       preset: (preset) => {
         this.#given = true;
         const tab = TABS.find((one) => one === preset.view?.["tab"]) ?? this.view.tab;
-        jumped({ ...viewOfPreset(preset), tab });
+        jumped({ ...viewOfPreset(preset), tab, scene: this.view.scene });
       },
       lesson: (lesson) => this.#open(lesson),
       sendRecord: source.sendRecord,
@@ -135,6 +137,11 @@ export class Laboratory {
       lost: () => this.#lose(),
     });
     this.#motion.root.append(this.#comparing.form.root);
+    this.#scene = new SceneMode(host, {
+      set: (scene) => edited({ scene, time: this.view.time }),
+      reset: () => this.#reset(),
+    });
+    this.#motion.addOver(this.#scene.root);
     this.clock.onTick((time) => this.#comparing.form.setTime(time));
     this.#problems = new CaseProblems(box, this.#controls, this.#motion);
     this.#response = new ResponseAsking(source, view, this.#scales, {
@@ -167,7 +174,7 @@ export class Laboratory {
     );
     this.#store.onChange((now) => this.#show(now));
     window.addEventListener("popstate", () => this.#goTo(location.hash));
-    listenToKeys(this.clock, () => this.#motion.toNextEvent());
+    listenToKeys(this.clock, { n: () => this.#motion.toNextEvent(), f: () => this.#scene.toggle() });
     this.#show(view);
     this.#problems.showLink(problem);
   }
@@ -246,7 +253,18 @@ export class Laboratory {
 
   #open(lesson: Lesson): void {
     this.#given = true;
-    this.#jump(viewOfLesson(lesson));
+    this.#jump({ ...viewOfLesson(lesson), scene: this.view.scene });
+  }
+
+  /** Begins a lesson again with its own numbers, and any other case with its motion. */
+  #reset(): void {
+    const lesson = this.#lessonOf(this.view);
+    if (lesson === undefined) this.#motion.begin();
+    else this.#open(lesson);
+  }
+
+  #lessonOf({ lesson }: View): Lesson | undefined {
+    return this.#about.lessons.find((one) => one.id === lesson);
   }
 
   /** Goes to where the address points: a link, or a step back. */
@@ -261,10 +279,12 @@ export class Laboratory {
   }
 
   #show(view: View): void {
-    setUnitsOf(view.description.column["shape"]);
+    setUnitsOf(view.description.column["shape"], view.lesson !== null);
     this.#controls.show(view.description, this.#scales, view.start, view.lesson);
     this.#lesson.show(view, this.#scales);
+    this.#scene.show(view.scene);
     this.#host.classList.toggle("learning", view.lesson !== null);
+    this.#host.classList.toggle("alone", this.#isAlone(view));
     this.#tabs.show(view.tab);
     this.#planesHost.classList.toggle("mapped", isPlaneKind(view.tab));
     this.#motion.setHistories(view.histories);
@@ -273,10 +293,20 @@ export class Laboratory {
     this.#ask(view);
     this.#comparing.show(view, jump);
     // The range of the response of another column is known with its run.
-    if (!jump || this.#scaled === written(view.description.column)) this.#response.show(view, this.#scales, jump);
+    if (!jump || this.#scaled === written(view.description.column)) this.#showResponse(view, jump);
     this.#planes.show(view, this.#scales);
     // Where the case is shown already, as after a step back to another tab, there is no answer to wait for.
     if (this.#shown === written(view.description)) this.#settle();
+  }
+
+  /** Whether a lesson has no curves and no maps beside its motion. */
+  #isAlone(view: View): boolean {
+    const lesson = this.#lessonOf(view);
+    return lesson !== undefined && lesson.curves !== true;
+  }
+
+  #showResponse(view: View, jump: boolean): void {
+    if (!this.#isAlone(view)) this.#response.show(view, this.#scales, jump);
   }
 
   #ask(view: View): void {
@@ -359,7 +389,7 @@ export class Laboratory {
     this.#scaled = written(column);
     this.#scales = found;
     this.#controls.show(this.view.description, found, this.view.start, this.view.lesson);
-    this.#response.show(this.view, found, this.#fresh);
+    this.#showResponse(this.view, this.#fresh);
     this.#planes.show(this.view, found);
   }
 
@@ -388,7 +418,7 @@ export class Laboratory {
   /** Shows why there is no run of the case, and its response all the same. */
   #stay(lines: readonly string[], again = false): void {
     this.#problems.show(lines, { earlier: this.#answer !== null, again });
-    this.#response.show(this.view, this.#scales, this.#fresh);
+    this.#showResponse(this.view, this.#fresh);
   }
 
   /** Asks once more for a case whose run was cancelled. */
