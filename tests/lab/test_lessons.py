@@ -1,5 +1,7 @@
 """The tour: each lesson keeps what it says."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -11,6 +13,7 @@ from stylobate.lab.options import lessons, presets
 
 LESSONS = lessons()
 PLACES = 13
+WORKSHEET = Path(__file__).parents[2] / "docs" / "how-to" / "worksheet.md"
 
 
 def outcome_of(lesson, change):
@@ -66,6 +69,8 @@ def test_slower_shaking_falls_below_the_critical_frequency_and_not_above():
     without = {name: value for name, value in motion.items() if name != "angular_frequency"}
     found = response({**case, "motion": without, "angular_frequency_range": [2.0, 5.0], "points": 50})
     critical = next(one.angular_frequency for one in found.critical if one.angular_frequency is not None)
+    assert "In lesson 4 that is at 0.429 Hz" in WORKSHEET.read_text("utf-8")
+    assert critical / (2.0 * np.pi) == pytest.approx(0.429, abs=5e-4)
     outcomes = [
         outcome_of(lesson, {"motion": {**motion, "angular_frequency": share * critical}})
         for share in (0.86, 0.99, 1.01, 1.4)
@@ -92,6 +97,7 @@ def test_averaging_calls_stable_what_loses_its_stability_where_the_lesson_says()
     found = exact_curves({**case, "angular_frequency_range": [2.9, 3.3]}, lambda _: None)
     loss = max(one.angular_frequency for one in found.bifurcations)
     assert f"below {loss / (2.0 * np.pi):.3f} Hz" in lesson.said["OVERTURNED"]
+    assert f"below {loss / (2.0 * np.pi):.3f} Hz" in WORKSHEET.read_text("utf-8")
 
 
 def test_more_push_can_be_survived():

@@ -47,6 +47,9 @@ const ANY_COLUMN: Part = { shape: "dimensionless", slenderness: 0.1 };
 const ITS_SCALES: ColumnScales = { slenderness: 0.1, frequency_scale: 1 };
 
 export class Laboratory {
+  /** The first motion is shown. */
+  readonly begun: Promise<void>;
+  #begun: () => void = () => undefined;
   readonly #source: Source;
   readonly #about: About;
   readonly #store: Store;
@@ -94,6 +97,7 @@ export class Laboratory {
     theme: ThemeSwitch,
     connection: Connection,
   ) {
+    this.begun = new Promise((resolve) => (this.#begun = resolve));
     this.#source = source;
     this.#about = about;
     this.#host = host;
@@ -352,6 +356,7 @@ export class Laboratory {
     if (this.#fresh || (this.#released && this.#shown === written(this.view.description))) this.#begin();
     if (start !== null) this.#takeStart(found, start);
     this.#settle();
+    this.#begun();
   }
 
   #begin(): void {
