@@ -74,7 +74,7 @@ def test_slower_shaking_is_answered_in_words_when_the_line_is_crossed(opened):
 def test_the_critical_frequency_follows_the_shaking(opened):
     to_lesson(opened, "critical")
     label = opened.locator(".plot.amplitude")
-    opened.wait_for_function("() => document.querySelector('.plot.amplitude').getAttribute('aria-label').includes('0.4289')")
+    opened.locator(".plot.amplitude[aria-label*='0.4289 Hz']").wait_for()
     before = label.get_attribute("aria-label")
     opened.locator("details.section summary").filter(has_text="Base motion").click()
     field = opened.locator(".controls input.number[id^='acceleration']")

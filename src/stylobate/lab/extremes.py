@@ -1,7 +1,7 @@
 """Extremes of the histories of a run between its samples: a chart that has them shows the motion, not its sampling.
 
-A history is |sin t|, say, with ten samples in each hump: the lowest of them drifts from hump to hump, a slow beat that is
-not in the motion. The extremes are values of the run itself, at times that parabolas and kinks of the samples predict.
+Of a history such as |sin t| with ten samples in each hump the lowest sample drifts from hump to hump: a slow beat that
+is not in the motion. The extremes are values of the run itself, at times that parabolas and kinks of samples predict.
 The page does the same for its own runs in `web/src/kernels/extremes.ts`.
 """
 
@@ -116,7 +116,7 @@ def _windows(
 
 
 def _predicted(times: Floats, values: Floats) -> Floats:
-    """Return where maxima may lie: at the vertex of a parabola, or at a kink on either side of the highest value."""
+    """Return the times of possible maxima: the vertex of a parabola, and kinks on both sides of the highest value."""
     rows = np.arange(len(times))[:, np.newaxis]
     highest = np.argmax(np.where(np.isfinite(values), values, -np.inf), axis=1)
     near = np.clip(highest, _BESIDE, times.shape[1] - 1 - _BESIDE)[:, np.newaxis] + np.arange(-_BESIDE, _BESIDE + 1)

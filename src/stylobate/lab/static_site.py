@@ -147,7 +147,7 @@ def _page_file(name: str) -> str:
 
 
 def _listed(files: Mapping[str, bytes]) -> str:
-    """Return the names of the files and a digest of their contents, by which a browser sees that the site has changed."""
+    """Return the names of the files and a digest of their contents: a changed site has another digest."""
     digest = hashlib.sha256()
     for name, content in sorted(files.items()):
         digest.update(f"{name} {len(content)}\n".encode() + content)

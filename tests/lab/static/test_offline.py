@@ -43,15 +43,15 @@ def test_a_changed_site_takes_over_when_its_last_page_is_closed(context, served,
     folder = site / FOLDER
     before = {name: (folder / name).read_bytes() for name in ("main.css", "offline.js")}
     try:
-        (folder / "main.css").write_bytes(before["main.css"] + b"\n.changed { color: red }")
+        (folder / "main.css").write_bytes(before["main.css"] + b"\n.another-site { color: red }")
         (folder / "offline.js").write_bytes(before["offline.js"].replace(b'"version": "', b'"version": "f'))
         page.evaluate("async () => { await (await navigator.serviceWorker.ready).update(); }")
         page.wait_for_function("async () => (await navigator.serviceWorker.ready).waiting !== null")
-        assert "changed" not in page.evaluate("async () => (await fetch('main.css')).text()")
+        assert "another-site" not in page.evaluate("async () => (await fetch('main.css')).text()")
         page.close()
         again = new_page(context)
         again.goto(served)
-        again.wait_for_function("async () => (await (await fetch('main.css')).text()).includes('changed')")
+        again.wait_for_function("async () => (await (await fetch('main.css')).text()).includes('another-site')")
         assert len(again.evaluate("() => caches.keys()")) == 1
     finally:
         for name, content in before.items():

@@ -1,7 +1,7 @@
 /**
  * Extremes of the histories of a run between its samples: a chart that has them shows the motion, not its sampling.
  *
- * The server finds them likewise, in `lab/extremes.py`, where the numbers below are explained.
+ * The server finds them in the same way, in `lab/extremes.py`, where the numbers below are explained.
  */
 
 export type Histories = Readonly<Record<string, ArrayLike<number | null>>>;

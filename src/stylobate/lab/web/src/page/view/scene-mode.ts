@@ -5,7 +5,7 @@ import { button, element } from "../frame/dom";
 export interface SceneHearing {
   /** The scene is to fill the window, or to stand among the panels again. */
   readonly set: (scene: boolean) => void;
-  /** The case is to begin anew. */
+  /** The case is to begin again. */
   readonly reset: () => void;
 }
 
