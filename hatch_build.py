@@ -11,7 +11,10 @@ from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 
 _WEB = "src/stylobate/lab/web"
 _PAGE = "src/stylobate/lab/page"
-_BUNDLES = (f"{_PAGE}/main.js", f"{_PAGE}/worker.js", "src/stylobate/plots/animation/viewer.js")
+_BUNDLES = (
+    *(f"{_PAGE}/{name}.js" for name in ("main", "worker", "offline")),
+    "src/stylobate/plots/animation/viewer.js",
+)
 _PACKED = [f"{_PAGE}/*", "src/stylobate/plots/animation/viewer.js"]
 _WITHOUT = "STYLOBATE_WITHOUT_PAGE"
 

@@ -47,6 +47,8 @@ myst_enable_extensions = [
     "attrs_block",
 ]
 myst_heading_anchors = 3
+# `laboratory:lesson=stands` leads to the laboratory beside the pages: docs/extensions/laboratory_links.py
+myst_url_schemes = ["http", "https", "mailto", "laboratory"]
 myst_html_meta = {
     "description": "Free-standing round columns on shaking bases: simulate whether they stay, rock, roll or overturn.",
 }
@@ -154,7 +156,7 @@ html_css_files = ["page.css"]
 html_copy_source = False
 
 # The laboratory as static files becomes part of the site if it has been written (make static-lab). Without it,
-# or with -D static_laboratory= on the command line, the pages have no links to it.
+# or with -D static_laboratory= on the command line, the pages say how to start it in place of links.
 static_laboratory = (
     "../static-lab" if (_HERE / "../static-lab/index.html").is_file() else ""
 )

@@ -1,5 +1,6 @@
 """Pages of the documentation open their cases in the laboratory."""
 
+import re
 import sys
 from io import StringIO
 from pathlib import Path
@@ -35,6 +36,8 @@ Title
 
 .. laboratory::
    :lesson: critical
+
+Begin with `lesson 1 <laboratory:lesson=stands>`_.
 """
 OF_CODE = (
     "column=dimensionless,slenderness:0.1&amp;model=slender,damping:0.1"
@@ -75,16 +78,29 @@ def test_links_lead_to_the_case_of_the_code_of_a_description_and_of_a_lesson(bui
         (OF_CODE, "Open this case in the laboratory"),
         (OF_TOML, "Watch it"),
         ("lesson=critical", "Open the lesson “The critical frequency” in the laboratory"),
+        ("lesson=stands", "lesson 1"),
     ):
         assert f'href="../laboratory/index.html#{link}">{label}</a>' in page
     assert (tmp_path / "site/laboratory/answers/one.json").is_file()
 
 
-def test_a_site_without_the_laboratory_has_no_links(build, tmp_path):
+def test_a_site_without_the_laboratory_says_how_to_start_it_in_place_of_links(build, tmp_path):
     page, problems = build(PAGE, "")
     assert problems == ""
     assert "index.html#" not in page
+    assert "laboratory:" not in page
+    words = re.sub("<.*?>", "", page)
+    assert words.count("Start the laboratory with stylobate lab and set up this case.") == 2
+    assert "Start the laboratory with stylobate lab and choose the lesson “The critical frequency”." in words
+    assert "Begin with lesson 1 (stylobate lab)." in words
     assert not (tmp_path / "site/laboratory").exists()
+
+
+@pytest.mark.parametrize("link", ["lesson=stand", "lessons=stands"])
+def test_a_link_to_an_unknown_lesson_is_reported(link, build):
+    _, problems = build(f"Title\n=====\n\n`It stands <laboratory:{link}>`_\n", "")
+    assert "laboratory: " in problems
+    assert "unknown" in problems
 
 
 @pytest.mark.parametrize(

@@ -18,7 +18,10 @@ from markdown_it import MarkdownIt
 
 ROOT = Path(__file__).parents[1]
 WEB = "src/stylobate/lab/web"
-BUNDLES = ("stylobate/lab/page/main.js", "stylobate/lab/page/worker.js", "stylobate/plots/animation/viewer.js")
+BUNDLES = (
+    *(f"stylobate/lab/page/{name}.js" for name in ("main", "worker", "offline")),
+    "stylobate/plots/animation/viewer.js",
+)
 
 
 def inline_tokens(text):

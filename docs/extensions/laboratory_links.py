@@ -3,7 +3,8 @@
 `laboratory` takes the case from what is on the page: from the Python block before it, up to the first call of
 `simulate` or with its only model and base motion; from TOML in the directive, in which `start` can be a branch of
 steady rolling; or from the options `case` or `lesson`, a preset or a lesson of the page.
-A site without the static laboratory has no such links.
+A link in the text, `[It stands](laboratory:lesson=stands)`, opens a lesson or a preset, `case=temple`.
+In a site without the static laboratory words take their place that say how to start it.
 """
 
 import shutil
@@ -17,12 +18,14 @@ from docutils import nodes
 from docutils.parsers.rst import directives
 from sphinx.application import Sphinx
 from sphinx.errors import ExtensionError
+from sphinx.util import logging
 from sphinx.util.docutils import SphinxDirective
 from sphinx.util.osutil import relative_uri
 
 import stylobate as sb
 from stylobate.base_motions import BASE_AT_REST
 from stylobate.config.simulation import SimulationConfig
+from stylobate.errors import ParameterError
 from stylobate.lab.links import (
     case_of_objects,
     case_of_provenance,
@@ -33,10 +36,16 @@ from stylobate.lab.links import (
 )
 from stylobate.provenance import provenance_of_run
 
+LOGGER = logging.getLogger(__name__)
+
 FOLDER = "laboratory"
 """Folder of the static laboratory in the site."""
 
+SCHEME = "laboratory:"
+"""Beginning of the links in the text."""
+
 _LABEL = "Open this case in the laboratory"
+_COMMAND = "stylobate lab"
 
 # Browsers run no script of a folder on disk: there the links lead to the page in one file.
 _FROM_DISK = """
@@ -117,24 +126,27 @@ class Laboratory(SphinxDirective):
 
     def run(self) -> list[nodes.Node]:
         try:
-            link, label = self._link()
+            link, label, choice = self._link()
         except Exception as error:  # noqa: BLE001  the code of a page can raise anything
             warning = self.state.document.reporter.warning
             return [warning(f"laboratory: {error}", line=self.lineno)]
-        return [laboratory_link(link=link, label=(*self.arguments, label)[0])]
+        label = (*self.arguments, label)[0]
+        return [laboratory_link(link=link, label=label, choice=choice)]
 
-    def _link(self) -> tuple[str, str]:
+    def _link(self) -> tuple[str, str, str]:
+        """Return the link, its label, and what a reader does in a laboratory without it."""
         for group, identity in self.options.items():
             link, title = link_to_listed(group, identity)
             what = "the lesson " if group == "lesson" else ""
-            return link, f"Open {what}“{title}” in the laboratory"
+            label = f"Open {what}“{title}” in the laboratory"
+            return link, label, f"choose {what or 'the preset '}“{title}”"
         content = "\n".join(self.content)
         values = case_of_toml(content) if content else case_of_code(self._code())
         if not is_answered_in_the_page(values):
             raise ValueError(
                 f"the page cannot answer this case without a server: {values}"
             )
-        return link_to(values), _LABEL
+        return link_to(values), _LABEL, "set up this case"
 
     def _code(self) -> str:
         blocks = [
@@ -166,21 +178,46 @@ def _add_script(app: Sphinx) -> None:
 
 
 def _put_links(app: Sphinx, document: nodes.document, page: str) -> None:
-    """Put a link in the place of each, or nothing."""
-    present = _folder(app) is not None
-    for place in list(document.findall(laboratory_link)):
-        if not present:
-            place.parent.remove(place)
-            continue
+    """Put a link in the place of each, or words that say how to start the laboratory."""
+    address = None
+    if _folder(app) is not None:
         address = relative_uri(app.builder.get_target_uri(page), f"{FOLDER}/index.html")
-        link = nodes.reference(
-            "",
-            place["label"],
-            refuri=f"{address}#{place['link']}",
-            internal=True,
-            classes=["laboratory-link"],
-        )
-        place.replace_self(nodes.paragraph("", "", link))
+    for place in list(document.findall(laboratory_link)):
+        place.replace_self(_button(place, address))
+    for link in list(document.findall(nodes.reference)):
+        if link.get("refuri", "").startswith(SCHEME):
+            _lead(link, address)
+
+
+def _button(place: laboratory_link, address: str | None) -> nodes.paragraph:
+    if address is None:
+        before, after = "Start the laboratory with ", f" and {place['choice']}."
+        command = nodes.literal("", _COMMAND)
+        return nodes.paragraph("", before, command, nodes.Text(after))
+    link = nodes.reference(
+        "",
+        place["label"],
+        refuri=f"{address}#{place['link']}",
+        internal=True,
+        classes=["laboratory-link"],
+    )
+    return nodes.paragraph("", "", link)
+
+
+def _lead(link: nodes.reference, address: str | None) -> None:
+    """Let a link in the text lead to its lesson or preset."""
+    group, _, identity = link["refuri"].removeprefix(SCHEME).partition("=")
+    try:
+        found, _ = link_to_listed(group, identity)
+    except ParameterError as error:
+        LOGGER.warning("laboratory: %s", error, location=link)
+        return
+    if address is None:
+        words = [*link.children, nodes.Text(" ("), nodes.literal("", _COMMAND)]
+        link.replace_self([*words, nodes.Text(")")])
+        return
+    link["refuri"], link["internal"] = f"{address}#{found}", True
+    link["classes"].append("laboratory-link")
 
 
 def _copy(app: Sphinx, error: Exception | None) -> None:

@@ -1,5 +1,8 @@
 """Links that open a case in the page."""
 
+import re
+from pathlib import Path
+
 import pytest
 
 import stylobate as sb
@@ -119,3 +122,23 @@ def test_presets_and_lessons_have_links_with_their_titles():
             assert link_to_listed(group, one.identity) == (f"{group}={one.identity}", one.title)
     with pytest.raises(ParameterError, match="did you mean temple"):
         link_to_listed("case", "tempel")
+
+
+DOCS = Path(__file__).parents[2] / "docs"
+SOURCES = [path for path in DOCS.rglob("*") if path.suffix in (".md", ".rst") and "_build" not in path.parts]
+NO_CODE = re.compile(r"^(`{3,}|~{3,}|:{3,}).*?^\1|`[^`\n]+`", re.DOTALL | re.MULTILINE)
+
+
+@pytest.mark.skipif(not SOURCES, reason="the documentation is not here")
+def test_no_page_of_the_documentation_links_a_server_of_its_reader():
+    texts = {path: NO_CODE.sub("", path.read_text(encoding="utf-8")) for path in SOURCES}
+    assert [path.name for path, text in texts.items() if re.search(r"127\.0\.0\.1|localhost", text)] == []
+
+
+@pytest.mark.skipif(not SOURCES, reason="the documentation is not here")
+def test_the_worksheet_links_every_lesson_in_its_order():
+    text = (DOCS / "how-to/worksheet.md").read_text(encoding="utf-8")
+    found = re.findall(r"^\| \[(\d) (.*?)\]\(laboratory:(\w+)=(\w+)\)", text, re.MULTILINE)
+    wanted = [(str(place), one.title) for place, one in enumerate(lessons(), 1)]
+    assert [(place, title) for place, title, *_ in found] == wanted
+    assert [link_to_listed(group, identity)[1] for *_, group, identity in found] == [title for _, title in wanted]

@@ -11,6 +11,7 @@ from tests.lab.conftest import laboratory
 import stylobate as sb
 from stylobate.config import SimulationConfig
 from stylobate.lab.options import presets
+from stylobate.records.reading import write_at2
 from stylobate.results.run_rows import measure_rows
 
 PRESETS = {preset.identity: preset for preset in presets()}
@@ -22,6 +23,17 @@ def test_it_loads_without_an_error_and_without_a_request_to_elsewhere(watched):
     assert watched.said == []
     assert watched.page.evaluate("() => window.stylobate.laboratory.answer.outcome") == "ROLLING"
     assert watched.page.get_by_text("once round in each of the last 10 periods").is_visible()
+
+
+def test_a_record_is_uploaded_from_any_case_by_a_button(page, tmp_path):
+    file = write_at2(sb.sample_record().trimmed(end=5.0), tmp_path / "own.AT2", axis="x")
+    page.get_by_label("Preset").select_option("vase")
+    page.locator(".record").wait_for(state="hidden")
+    with page.expect_file_chooser() as chosen:
+        page.get_by_role("button", name="Upload a record…").click()
+    chosen.value.set_files(file)
+    page.wait_for_function("() => window.stylobate.state().description.motion.kind === 'record'")
+    assert page.locator(".record .hint").is_visible()
 
 
 @pytest.mark.slow

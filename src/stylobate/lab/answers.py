@@ -142,12 +142,12 @@ class Choice(Answer):
 
 
 class LessonControl(Answer):
-    """The only control of a lesson: a number with a range, or some choices."""
+    """The control of a lesson: a number with a range, some choices, or both."""
 
-    number: str | None = Field(None, description="name of the number; null for choices")
+    number: str | None = Field(None, description="name of the number; null for choices alone")
     first: float | None = Field(None, alias="from", description="lower end of the range")
     last: float | None = Field(None, alias="to", description="upper end of the range")
-    options: list[Choice] | None = Field(None, description="choices instead of a number")
+    options: list[Choice] | None = Field(None, description="choices")
 
 
 class Lesson(Answer):
@@ -157,7 +157,7 @@ class Lesson(Answer):
     title: str
     question: str
     task: str = Field(description="what to do")
-    opens: bool = Field(False, alias="first", description="whether the page opens with it")
+    curves: bool = Field(False, description="whether the page shows frequency response and maps beside the motion")
     control: LessonControl
     said: dict[str, str] = Field(
         description="text for each outcome; {critical} stands for the critical frequency of the case"
@@ -293,6 +293,9 @@ class Series(Answer, extra="allow"):
         None, description="displacement of the centre of the footprint since the start [m]"
     )
     slip_speed: Numbers | None = Field(None, description="slip speed of the contact on the plane [m/s]")
+    extremes: dict[str, Pairs] = Field(
+        description="time [s] and value of extremes between the samples, by history; of vectors as displacement_x"
+    )
 
 
 class DrawnPlane(Answer, extra="allow"):

@@ -87,9 +87,12 @@ def link_to_listed(group: str, identity: str) -> tuple[str, str]:
     Raises
     ------
     ParameterError
-        If the page has no such preset or lesson.
+        If the page has no such group, preset or lesson.
     """
-    titles = {one.identity: one.title for one in (presets() if group == "case" else lessons())}
+    listed = {"case": presets, "lesson": lessons}
+    if group not in listed:
+        raise ParameterError(f"group: unknown group (got {group!r}). Use case or lesson.")
+    titles = {one.identity: one.title for one in listed[group]()}
     if identity not in titles:
         remedy = did_you_mean(identity, titles) or f"Use one of {', '.join(titles)}."
         raise ParameterError(f"{group}: unknown {group} (got {identity!r}). {remedy}")

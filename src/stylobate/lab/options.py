@@ -120,7 +120,7 @@ def presets() -> list[answers.Preset]:
 
 
 def lessons() -> list[answers.Lesson]:
-    """Return the lessons of the tour, from `lessons.toml` beside this file; the page opens with the one marked so."""
+    """Return the lessons of the tour, from `lessons.toml` beside this file; the page opens with the first."""
     return [answers.Lesson(**{"view": {}, **one}) for one in _listed("lesson")]
 
 

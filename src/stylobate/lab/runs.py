@@ -4,7 +4,7 @@ import warnings
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -14,11 +14,15 @@ from stylobate.config.snippets import as_python, as_toml
 from stylobate.errors import UnlikelyInputWarning
 from stylobate.files import file_of
 from stylobate.lab.answers import OF_ANY_COLUMN, ColumnNumbers, Described, Measures, Peaks, Run, RunEvent, Series
+from stylobate.lab.extremes import Floats, Histories, extremes
 from stylobate.lab.requests import Description
 from stylobate.models import Model
 from stylobate.plots.animation.motion import drawn_motion
 from stylobate.results import Run as FinishedRun
 from stylobate.results.run_rows import column_rows, damping_rows, measure_rows
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 _HISTORIES = (
     *("time", "base_acceleration", "amplitude", "azimuth", "rolling_rate", "spin"),
@@ -26,8 +30,13 @@ _HISTORIES = (
 )
 
 
-def answered_run(run: FinishedRun, model: Model, given: Description, remarked: Iterable[str] = ()) -> Run:
-    """Convert a run to the answer: outcome, histories and motion to draw."""
+def answered_run(
+    run: FinishedRun, model: Model, given: Description, remarked: Iterable[str] = (), *, frequency: float
+) -> Run:
+    """Convert a run to the answer: outcome, histories and motion to draw.
+
+    `frequency` is the highest angular frequency of the motion [rad/s], by which extremes between samples are found.
+    """
     return Run(
         **snippets(given),
         column=column_numbers(model),
@@ -47,7 +56,7 @@ def answered_run(run: FinishedRun, model: Model, given: Description, remarked: I
         ],
         thresholds=dict(run.thresholds),
         drawn=drawn_motion(run),
-        series=_series(run, model),
+        series=_series(run, model, frequency),
     )
 
 
@@ -72,17 +81,39 @@ def column_numbers(model: Model) -> ColumnNumbers:
     return ColumnNumbers({**found, "uplift_acceleration": column.slenderness * column.gravity})
 
 
-def _series(run: FinishedRun, model: Model) -> Series:
+def _series(run: FinishedRun, model: Model, frequency: float) -> Series:
     """Return the histories for the page: numbers over time, and displacements along the plane from the start."""
-    data = run.data
+    first = run.data["footprint"][0].to_numpy() if "footprint" in run.data else None
+    found = _histories(run.data, model, first)
+
+    def between(time: Floats) -> Histories:
+        return _components(_histories(run.sample(time), model, first))
+
+    return Series(**found, extremes=extremes(between, found["time"], frequency))
+
+
+def _histories(data: "xr.Dataset", model: Model, first: Floats | None) -> dict[str, Any]:
     histories: dict[str, Any] = {name: data[name].to_numpy() for name in _HISTORIES if name in data}
     if "normal_force" in data:
-        histories["normal_force"] = data["normal_force"] / (model.column.mass * model.column.gravity)
-    if "footprint" in data:
-        histories["displacement"] = data["footprint"] - data["footprint"][0]
+        histories["normal_force"] = data["normal_force"].to_numpy() / (model.column.mass * model.column.gravity)
+    if first is not None:
+        histories["displacement"] = data["footprint"].to_numpy() - first
     if "slip_velocity" in data:
         histories["slip_speed"] = np.hypot(*data["slip_velocity"].transpose("axis", "time").to_numpy())
-    return Series(**histories)
+    return histories
+
+
+_NOT_CHARTED = ("time", "azimuth", "contact")
+
+
+def _components(histories: Histories) -> dict[str, Floats]:
+    """Return each history that a chart shows; one of vectors has a component for each axis."""
+    return {
+        name if column is None else f"{name}_{'xyz'[column]}": values if column is None else values[:, column]
+        for name, values in histories.items()
+        if name not in _NOT_CHARTED
+        for column in ([None] if values.ndim == 1 else range(values.shape[1]))
+    }
 
 
 def record_contents(record: Record) -> dict[str, Any]:

@@ -33,6 +33,9 @@ _PROGRAMS = "programs"
 _WORKER = "worker"
 """Name of the script of the workers that compute maps, and of its element."""
 
+_OFFLINE = "offline.js"
+"""Script of the service worker by which the folder works without a connection."""
+
 _SCRIPT, _STYLE, _HEAD = (
     '<script type="module" src="main.js"></script>',
     '<link rel="stylesheet" href="main.css" />',
@@ -108,10 +111,13 @@ def write(folder: Path, *, progress: Progress = None) -> Sizes:
         report(one.name, done, len(asked))
         answers[one.name] = packed(answer_to(one))
     programs = kernels.files()
-    page, style, script, worker = map(_page_file, ("index.html", "main.css", "main.js", f"{_WORKER}.js"))
+    page, style, script, worker, offline = map(
+        _page_file, ("index.html", "main.css", "main.js", f"{_WORKER}.js", _OFFLINE)
+    )
     contents = _contents(asked)
-    opening = next(one for one in lessons() if one.opens)
-    first = [f"{_CONTENTS}/{ask}-{opening.identity}.json" for ask in AT_ONCE]
+    opening = lessons()[0]
+    at_once = [ask for ask in AT_ONCE if opening.curves or ask != "response"]
+    first = [f"{_CONTENTS}/{ask}-{opening.identity}.json" for ask in at_once]
     first += [f"{_PROGRAMS}/{name}" for name in kernels.files_of(opening.description)]
     files = {
         "main.css": style.encode(),
@@ -122,6 +128,7 @@ def write(folder: Path, *, progress: Progress = None) -> Sizes:
     }
     first = [name for name in first if name in files]
     files["index.html"] = _for_server(page, contents, first).encode()
+    files[_OFFLINE] = f"const offline = {_listed(files)};\n{offline}".encode()
     single = _single(page, style, (script, worker), contents, answers, programs).encode()
     for name, content in {**files, SINGLE_FILE: single}.items():
         write_whole(folder / name, content)
@@ -136,6 +143,14 @@ def write(folder: Path, *, progress: Progress = None) -> Sizes:
 
 def _page_file(name: str) -> str:
     return (page_folder() / name).read_text(encoding="utf-8")
+
+
+def _listed(files: Mapping[str, bytes]) -> str:
+    """Return the names of the files and a digest of their contents: a changed site has another digest."""
+    digest = hashlib.sha256()
+    for name, content in sorted(files.items()):
+        digest.update(f"{name} {len(content)}\n".encode() + content)
+    return json.dumps({"version": digest.hexdigest()[:16], "files": sorted(files)})
 
 
 def _contents(asked: Iterable[Question]) -> str:
@@ -160,7 +175,7 @@ def _for_server(page: str, contents: str, first: Iterable[str]) -> str:
     return _replaced(
         page,
         {
-            _HEAD: "\n    ".join([_HEAD, _policy(policy)]),
+            _HEAD: "\n    ".join([_HEAD, _policy(policy), f'<meta name="offline" content="{_OFFLINE}" />']),
             _SCRIPT: "\n    ".join([_SCRIPT, *ahead, contents]),
             _WAITING: _FROM_DISK,
         },

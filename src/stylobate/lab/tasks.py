@@ -38,7 +38,12 @@ def run(given: Description, emit: Emit) -> bytes:
     with remarks(given.values) as remarked:
         setup = config.SimulationConfig.parse(given.values).build()
     found = engine.simulate(setup.model, setup.motion, **{**setup.options, "samples": _enough(setup)})
-    return answered_run(found, setup.model, given, remarked).as_json()
+    return answered_run(found, setup.model, given, remarked, frequency=_frequency(setup)).as_json()
+
+
+def _frequency(setup: Setup) -> float:
+    """Return the highest angular frequency of base and column [rad/s]."""
+    return max(setup.motion.highest_frequency, setup.model.column.frequency_scale)
 
 
 def _enough(setup: Setup) -> int:
@@ -48,8 +53,7 @@ def _enough(setup: Setup) -> int:
         return stated
     if setup.options["duration"] is None:
         return SAMPLES.most
-    frequency = max(setup.motion.highest_frequency, setup.model.column.frequency_scale)
-    swings = setup.options["duration"] * frequency / (2.0 * math.pi)
+    swings = setup.options["duration"] * _frequency(setup) / (2.0 * math.pi)
     return int(min(max(SAMPLES.per_period * swings, SAMPLES.fewest), SAMPLES.most))
 
 

@@ -1,5 +1,6 @@
 """The files of the laboratory for a web server: what is recorded, and what is written."""
 
+import json
 import re
 
 import pytest
@@ -73,6 +74,7 @@ PAGE = {
     "main.css": "body { color: red }",
     "main.js": 'const end = "</script><!-- ";',
     "worker.js": 'const end = "</script>";',
+    "offline.js": "const known = offline.files;",
 }
 
 
@@ -94,6 +96,23 @@ def test_the_same_files_are_written_each_time(tmp_path):
     assert sizes.single == len(single)
     held = len(contents(single.decode())["answers"]) + len(kernels.ALWAYS)
     assert single.count(b"</script>") == 1 + held + 2
+
+
+@pytest.mark.usefixtures("one_case")
+def test_the_worker_that_works_offline_knows_all_files_and_whether_one_has_changed(tmp_path, monkeypatch):
+    def written(name):
+        static_site.write(tmp_path / name, progress=False)
+        line = (tmp_path / name / "offline.js").read_text(encoding="utf-8").partition("\n")[0]
+        return json.loads(line.removeprefix("const offline = ").removesuffix(";"))
+
+    first = written("first")
+    found = {path.relative_to(tmp_path / "first").as_posix() for path in (tmp_path / "first").rglob("*.*")}
+    assert {*first["files"], "offline.js", static_site.SINGLE_FILE} == found
+    monkeypatch.setitem(PAGE, "main.css", "body { color: blue }")
+    second = written("second")
+    assert second["files"] == first["files"]
+    assert second["version"] != first["version"]
+    assert 'name="offline"' not in (tmp_path / "first" / static_site.SINGLE_FILE).read_text(encoding="utf-8")
 
 
 @pytest.mark.usefixtures("one_case")

@@ -313,7 +313,7 @@ class Sample(FromZero):
 
 
 def sampled(entries: Row, model: Any, base: Base, row: Row, given: Given, out: Row) -> None:
-    """Set the samples of a run at equal steps from its start to its end.
+    """Set the samples of a run at given times.
 
     Parameters
     ----------
@@ -324,16 +324,15 @@ def sampled(entries: Row, model: Any, base: Base, row: Row, given: Given, out: R
     row, given
         Row of the run after its end, and its start.
     out
-        A row for each sample, with the columns of `Sample`.
+        A row for each sample, with the columns of `Sample`; the times stand in it and do not fall.
     """
     scale, end = model.time_scale, row[LOG + Log.TIME]
-    step = end * scale / (len(out) - 1)
     carried, here, course = np.zeros(3), np.zeros(3), np.zeros(COURSE)
     base.begin(course)
     carried[0], carried[1], carried[2] = given.twist, given.position_x, given.position_y
     at = 0
     for k in range(len(out)):
-        time = end * scale if k == len(out) - 1 else k * step
+        time = out[k, Sample.TIME]
         tau = min(time / scale, end)
         while at + 1 < len(entries) and entries[at + 1, Trace.START] <= tau:
             length = entries[at + 1, Trace.START] - entries[at, Trace.START]

@@ -97,11 +97,22 @@ async function workerBundle() {
   };
 }
 
+// What lets the page as static files work without a connection.
+async function offlineBundle() {
+  return {
+    ...common,
+    entryPoints: { offline: "src/offline/offline.ts" },
+    outdir: page,
+    format: "iife",
+    banner: { js: stamp },
+  };
+}
+
 const bundles = [];
 if (wanted("viewer")) bundles.push(await viewerBundle());
 if (wanted("page")) {
   await mkdir(page, { recursive: true });
-  bundles.push(await pageBundle(), await workerBundle());
+  bundles.push(await pageBundle(), await workerBundle(), await offlineBundle());
 }
 for (const bundle of bundles) {
   if (watch) await (await context(bundle)).watch();

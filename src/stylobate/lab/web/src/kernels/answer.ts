@@ -4,11 +4,12 @@ import type { Part } from "../page/case/description";
 import type { DrawnMotion, Run, RunEvent, Series } from "../page/server/schema";
 import { type Case, caseOf, numberOf } from "./case";
 import { demandsOf } from "./demands";
+import { extremesOf, type Histories } from "./extremes";
 import { filled, general } from "./general";
 import { Refused } from "../page/server/source";
 import type { Kernels, Numbers } from "./kernels";
 import { asPython, asToml } from "./snippets";
-import type { Finished, Program } from "./program";
+import { evenly, type Finished, type Program } from "./program";
 
 /** A base motion has ended if less than this fraction of it is left. */
 const NO_TIME = 1e-12;
@@ -85,7 +86,10 @@ function answered(found: Computed, description: Part): Run {
   const loads = program.demands(finished.stretches, limit);
   const demands = demandsOf(kernels, loads, limit, log(found, "capacity", "setup"));
   const measures = { ...measuresOf(found, scale, events), ...demands.measures };
-  const samples = new Samples(kernels, program.samples(finished.stretches, sampleCount(found, description)));
+  const end = log(found, "time") * scale;
+  const sampled = (times: readonly number[]): Samples =>
+    new Samples(kernels, program.samples(finished.stretches, times));
+  const samples = sampled(evenly(end, sampleCount(found, description)));
   const decidedAt = log(found, "decided") * scale;
   return {
     toml: asToml(kernels.own.shown(description)),
@@ -115,7 +119,14 @@ function answered(found: Computed, description: Part): Run {
       decided_at: decidedAt,
       title: `${outcome.label}: ${reason.split(";")[0]}`,
     }),
-    series: seriesOf(found, samples),
+    series: {
+      ...seriesOf(found, samples),
+      extremes: extremesOf(
+        (times) => components(seriesOf(found, sampled(times), samples.pairs("footprint")[0])),
+        samples.column("time"),
+        frequencyOf(found),
+      ),
+    },
   };
 }
 
@@ -324,12 +335,16 @@ function sampleCount(found: Computed, description: Part): number {
   const own = found.numbers[found.program.described.names.indexOf("duration")];
   const duration = ends ? own : description["duration"];
   if (typeof duration !== "number") return most;
-  const frequency = Math.max(found.asked.shaking.frequency, found.asked.column["frequency_scale"] ?? NaN);
-  const wanted = (per_period * duration * frequency) / (2 * Math.PI);
+  const wanted = (per_period * duration * frequencyOf(found)) / (2 * Math.PI);
   return Math.trunc(Math.min(Math.max(wanted, fewest), most));
 }
 
-function seriesOf(found: Computed, samples: Samples): Series {
+/** Returns the highest angular frequency of base and column [rad/s]. */
+function frequencyOf({ asked }: Computed): number {
+  return Math.max(asked.shaking.frequency, asked.column["frequency_scale"] ?? NaN);
+}
+
+function seriesOf(found: Computed, samples: Samples, start = samples.pairs("footprint")[0]): Series {
   const described = found.kernels.described.programs[found.asked.program];
   const tilts = samples.pairs("tilt");
   const rates = samples.pairs("tilt_rate");
@@ -352,14 +367,33 @@ function seriesOf(found: Computed, samples: Samples): Series {
           normal_force: samples.known("normal"),
         }
       : {}),
-    ...(described?.carries ? { displacement: displaced(samples.pairs("footprint")) } : {}),
+    ...(described?.carries ? { displacement: displaced(samples.pairs("footprint"), start) } : {}),
+    extremes: {},
   };
 }
 
-function displaced(places: readonly (readonly [number, number])[]): [number, number][] {
-  const [x, y] = places[0] ?? [0, 0];
+function displaced(
+  places: readonly (readonly [number, number])[],
+  [x, y]: readonly [number, number] = [0, 0],
+): [number, number][] {
   return places.map(([a, b]) => [a - x, b - y]);
 }
+
+/** Returns each history that a chart shows by name; one of vectors has a component for each axis. */
+function components({ time: _, azimuth: __, extremes: ___, ...charted }: Series): Histories {
+  return Object.fromEntries(
+    Object.entries(charted as Readonly<Record<string, Column | readonly Column[]>>).flatMap(([name, values]) => {
+      const [first] = values;
+      if (!Array.isArray(first)) return [[name, values as Column]];
+      return first.map((____, axis) => [
+        `${name}_${"xyz"[axis]}`,
+        (values as Column[]).map((one) => one[axis] ?? null),
+      ]);
+    }),
+  );
+}
+
+type Column = readonly (number | null)[];
 
 // The motion to draw
 

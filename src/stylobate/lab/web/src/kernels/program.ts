@@ -211,15 +211,18 @@ export class Program {
     return verdicts;
   }
 
-  /** Returns samples of the last run at equal steps: `many` rows with the columns `sample`. */
-  samples(stretches: Float64Array, many: number): Float64Array {
+  /** Returns samples of the last run at times that do not fall: rows with the columns `sample`. */
+  samples(stretches: Float64Array, times: readonly number[]): Float64Array {
     const { row: width, trace_width: wide } = this.described;
     const at = this.#at;
-    const columns = this.#common.sizes.sample;
+    const [columns, many] = [this.#common.sizes.sample, times.length];
+    const column = this.#column("sample", "time");
     const { free } = this.#held;
     const out = free + LINE * Math.ceil((WIDTH * stretches.length) / LINE);
     this.#room(out + WIDTH * columns * many);
     this.#array(free, stretches.length).set(stretches);
+    const rows = this.#array(out, columns * many);
+    times.forEach((time, k) => (rows[k * columns + column] = time));
     const entries = BigInt(stretches.length / wide);
     this.#of("sampled", free, entries, at.row, BigInt(width), out, BigInt(many));
     return this.#array(out, columns * many).slice();
@@ -339,4 +342,9 @@ export function joined(parts: readonly Float64Array[]): Float64Array {
     place += part.length;
   }
   return whole;
+}
+
+/** Returns so many times at equal steps from 0 to `end`. */
+export function evenly(end: number, many: number): readonly number[] {
+  return Array.from({ length: many }, (_, k) => (k === many - 1 ? end : (k * end) / (many - 1)));
 }

@@ -39,6 +39,7 @@ import type { Run, WantedRun } from "./server/run";
 import { run } from "./server/run";
 import { setUnitsOf } from "./frame/units";
 import { LessonCard } from "./tour/lesson-card";
+import { SceneMode } from "./view/scene-mode";
 import { Address, firstView, inWords, viewOfLesson, viewOfLink, viewOfPreset } from "./view/link";
 
 /** Before the first answer: the column of the equations, and its scales. */
@@ -46,6 +47,9 @@ const ANY_COLUMN: Part = { shape: "dimensionless", slenderness: 0.1 };
 const ITS_SCALES: ColumnScales = { slenderness: 0.1, frequency_scale: 1 };
 
 export class Laboratory {
+  /** The first motion is shown. */
+  readonly begun: Promise<void>;
+  #begun: () => void = () => undefined;
   readonly #source: Source;
   readonly #about: About;
   readonly #store: Store;
@@ -59,6 +63,7 @@ export class Laboratory {
   readonly #planes: PlanesAsking;
   readonly #tabs: Tabs<Tab>;
   readonly #lesson: LessonCard;
+  readonly #scene: SceneMode;
   readonly #host: HTMLElement;
   readonly #planesHost = element("div", { class: "planes" });
   readonly #runs: Latest<WantedRun, Run>;
@@ -92,6 +97,7 @@ export class Laboratory {
     theme: ThemeSwitch,
     connection: Connection,
   ) {
+    this.begun = new Promise((resolve) => (this.#begun = resolve));
     this.#source = source;
     this.#about = about;
     this.#host = host;
@@ -109,7 +115,7 @@ export class Laboratory {
       preset: (preset) => {
         this.#given = true;
         const tab = TABS.find((one) => one === preset.view?.["tab"]) ?? this.view.tab;
-        jumped({ ...viewOfPreset(preset), tab });
+        jumped({ ...viewOfPreset(preset), tab, scene: this.view.scene });
       },
       lesson: (lesson) => this.#open(lesson),
       sendRecord: source.sendRecord,
@@ -136,6 +142,11 @@ export class Laboratory {
       lost: (error) => this.#lose(error),
     });
     this.#motion.root.append(this.#comparing.form.root);
+    this.#scene = new SceneMode(host, {
+      set: (scene) => edited({ scene, time: this.view.time }),
+      reset: () => this.#reset(),
+    });
+    this.#motion.addOver(this.#scene.root);
     this.clock.onTick((time) => this.#comparing.form.setTime(time));
     this.#problems = new CaseProblems(box, this.#controls, this.#motion);
     this.#response = new ResponseAsking(source, view, this.#scales, {
@@ -168,7 +179,7 @@ export class Laboratory {
     );
     this.#store.onChange((now) => this.#show(now));
     window.addEventListener("popstate", () => this.#goTo(location.hash));
-    listenToKeys(this.clock, () => this.#motion.toNextEvent());
+    listenToKeys(this.clock, { n: () => this.#motion.toNextEvent(), f: () => this.#scene.toggle() });
     this.#show(view);
     this.#problems.showLink(problem);
   }
@@ -247,7 +258,18 @@ export class Laboratory {
 
   #open(lesson: Lesson): void {
     this.#given = true;
-    this.#jump(viewOfLesson(lesson));
+    this.#jump({ ...viewOfLesson(lesson), scene: this.view.scene });
+  }
+
+  /** Begins a lesson again with its own numbers, and any other case with its motion. */
+  #reset(): void {
+    const lesson = this.#lessonOf(this.view);
+    if (lesson === undefined) this.#motion.begin();
+    else this.#open(lesson);
+  }
+
+  #lessonOf({ lesson }: View): Lesson | undefined {
+    return this.#about.lessons.find((one) => one.id === lesson);
   }
 
   /** Goes to where the address points: a link, or a step back. */
@@ -262,17 +284,19 @@ export class Laboratory {
   }
 
   #show(view: View): void {
-    setUnitsOf(view.description.column["shape"]);
+    setUnitsOf(view.description.column["shape"], view.lesson !== null);
     this.#controls.show(view.description, this.#scales, view.start, view.lesson);
     this.#lesson.show(view, this.#scales);
+    this.#scene.show(view.scene);
     this.#host.classList.toggle("learning", view.lesson !== null);
+    this.#host.classList.toggle("alone", this.#isAlone(view));
     this.#motion.setHistories(view.histories);
     this.#showSpeed(view);
     const jump = this.#fresh;
     this.#ask(view);
     this.#comparing.show(view, jump);
     // The range of the response of another column is known with its run.
-    if (!jump || this.#scaled === written(view.description.column)) this.#response.show(view, this.#scales, jump);
+    if (!jump || this.#scaled === written(view.description.column)) this.#showResponse(view, jump);
     this.#planes.show(view, this.#scales);
     this.#showTabs(view);
     this.#motion.offerVariations(this.#source.offers("variations", sent(view.description)));
@@ -284,6 +308,16 @@ export class Laboratory {
     const offered = (name: Tab): boolean => !isPlaneKind(name) || this.#planes.offers(name);
     this.#tabs.show(tab, offered);
     this.#planesHost.classList.toggle("mapped", isPlaneKind(tab) && offered(tab));
+  }
+
+  /** Whether a lesson has no curves and no maps beside its motion. */
+  #isAlone(view: View): boolean {
+    const lesson = this.#lessonOf(view);
+    return lesson !== undefined && lesson.curves !== true;
+  }
+
+  #showResponse(view: View, jump: boolean): void {
+    if (!this.#isAlone(view)) this.#response.show(view, this.#scales, jump);
   }
 
   #ask(view: View): void {
@@ -329,6 +363,7 @@ export class Laboratory {
     if (this.#fresh || (this.#released && this.#shown === written(this.view.description))) this.#begin();
     if (start !== null) this.#takeStart(found, start);
     this.#settle();
+    this.#begun();
   }
 
   #begin(): void {
@@ -366,7 +401,7 @@ export class Laboratory {
     this.#scaled = written(column);
     this.#scales = found;
     this.#controls.show(this.view.description, found, this.view.start, this.view.lesson);
-    this.#response.show(this.view, found, this.#fresh);
+    this.#showResponse(this.view, this.#fresh);
     this.#planes.show(this.view, found);
   }
 
@@ -395,7 +430,7 @@ export class Laboratory {
   /** Shows why there is no run of the case, and its response all the same. */
   #stay(lines: readonly string[], again = false): void {
     this.#problems.show(lines, { earlier: this.#answer !== null, again });
-    this.#response.show(this.view, this.#scales, this.#fresh);
+    this.#showResponse(this.view, this.#fresh);
   }
 
   /** Asks once more for a case whose run was cancelled. */

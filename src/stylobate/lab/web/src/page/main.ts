@@ -46,8 +46,20 @@ async function begin(): Promise<void> {
   const shown = laboratory;
   const skip = button("Skip to the motion", { class: "skip" }, () => shown.stage?.canvas.focus());
   document.body.prepend(skip);
+  void shown.begun.then(workOffline);
   window.stylobate = { stage: shown.stage, laboratory: shown, source, state: () => shown.view };
 }
+
+/** Installs what lets the page work without a connection, where it is made of files for a web server. */
+function workOffline(): void {
+  const script = document.querySelector<HTMLMetaElement>("meta[name=offline]")?.content;
+  if (script === undefined || !location.protocol.startsWith("http") || !("serviceWorker" in navigator)) return;
+  // It loads all files of the page: not before the first motion is seen. Without it the page needs its connection.
+  setTimeout(() => void navigator.serviceWorker.register(script).catch(() => undefined), SEEN);
+}
+
+/** After so long the first motion is seen [ms]. */
+const SEEN = 1000;
 
 /** Asks what there is, until the server answers. */
 async function answered(source: Source, connection: Connection): Promise<About> {

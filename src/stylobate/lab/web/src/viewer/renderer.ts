@@ -3,13 +3,31 @@
 import { WebGLRenderer } from "three";
 
 const SOFTWARE = /swiftshader|llvmpipe|softpipe|software|basic render/i;
-const FINEST = 2; // pixels of the picture for one of the page, each way, at most
-
-/** A renderer, and how fine its pictures are while things move and while they stand. */
+/** A renderer, and how fine a picture of so many pixels of the page is, while things move and while they stand. */
 export interface Drawing {
   readonly renderer: WebGLRenderer;
+  readonly fineness: (pixels: number) => Fineness;
+}
+
+/** Pixels of the picture for one of the page, each way. */
+export interface Fineness {
   readonly moving: number;
   readonly still: number;
+}
+
+/** As fine as the screens of phones are: finer ones are not told apart by eye. */
+const FINEST = 3;
+/** Pixels of a picture at most: those of a large screen of double density, which graphics cards fill with ease. */
+const MOST = 8e6;
+/** Pixels that a processor fills while things move: those of a phone's picture at double density. */
+const MOST_BY_PROCESSOR = 4e5;
+/** A processor draws no smooth edges: a standing picture has them by this fineness. */
+const SMOOTH = 2;
+
+export function finenessOf(pixels: number, screen: number, software: boolean): Fineness {
+  const within = (most: number): number => Math.max(1, Math.min(screen, FINEST, Math.sqrt(most / pixels)));
+  const still = within(MOST);
+  return software ? { moving: within(MOST_BY_PROCESSOR), still: Math.max(SMOOTH, still) } : { moving: still, still };
 }
 
 /** Where the processor draws, each pixel costs: edges are smooth in pictures that stand only. */
@@ -23,8 +41,7 @@ export function newDrawing(): Drawing {
     );
   }
   const renderer = new WebGLRenderer({ canvas, context });
-  const fine = Math.min(devicePixelRatio, FINEST);
-  return software ? { renderer, moving: 1, still: FINEST } : { renderer, moving: fine, still: fine };
+  return { renderer, fineness: (pixels) => finenessOf(pixels, devicePixelRatio, software) };
 }
 
 function isSoftware(): boolean {

@@ -11,7 +11,7 @@ import { momentAt, placeOf } from "./moment";
 import { noteElement, noteOn, paintNote } from "./note";
 import { paletteOf, preferredTheme, type Theme } from "./palette";
 import { Pull, type PullHearing } from "./pull";
-import { newDrawing } from "./renderer";
+import { type Fineness, newDrawing } from "./renderer";
 import { ShakingScene } from "./shaking-scene";
 
 export interface StageOptions {
@@ -161,14 +161,15 @@ export class Stage {
     if (clientWidth === 0 || clientHeight === 0) return;
     this.#drawing.renderer.setSize(clientWidth, clientHeight);
     this.#look.resize(clientWidth, clientHeight);
-    this.#draw(this.#drawing.moving); // at once: a canvas that changes its size is empty
+    this.#draw(this.#fineness.moving); // at once: a canvas that changes its size is empty
     this.#settle();
   }
 
   /** Return the picture as it stands, with what is written on it. */
   async png(): Promise<Blob> {
     const drawn = this.#showing();
-    this.#draw(this.#drawing.still);
+    const { still } = this.#fineness;
+    this.#draw(still);
     const copy = document.createElement("canvas");
     copy.width = this.canvas.width;
     copy.height = this.canvas.height;
@@ -176,12 +177,7 @@ export class Stage {
     if (context === null)
       throw new Error("This browser cannot save the canvas as a picture. Take a screenshot instead");
     context.drawImage(this.canvas, 0, 0);
-    paintNote(
-      context,
-      noteOn(drawn.motion, drawn.extent.spacing, this.#unit),
-      paletteOf(this.#theme).ink,
-      this.#drawing.still,
-    );
+    paintNote(context, noteOn(drawn.motion, drawn.extent.spacing, this.#unit), paletteOf(this.#theme).ink, still);
     this.#labels.paint(context);
     return new Promise((done, failed) => {
       copy.toBlob(
@@ -223,6 +219,10 @@ export class Stage {
     this.setTime(this.#time);
   }
 
+  get #fineness(): Fineness {
+    return this.#drawing.fineness(this.#frame.clientWidth * this.#frame.clientHeight);
+  }
+
   #showing(): ShakingScene {
     if (this.#drawn === null) throw new Error("nothing is shown yet: call show(motion) first");
     return this.#drawn;
@@ -237,14 +237,14 @@ export class Stage {
     this.#waiting ??= requestAnimationFrame((now) => {
       this.#waiting = null;
       this.#frames.add(now);
-      this.#draw(this.#drawing.moving);
+      this.#draw(this.#fineness.moving);
       this.#settle();
     });
   }
 
   /** Draw finely once nothing changes any more. */
   #settle(): void {
-    const { moving, still } = this.#drawing;
+    const { moving, still } = this.#fineness;
     if (this.#settling !== null) clearTimeout(this.#settling);
     this.#settling = moving === still ? null : window.setTimeout(() => this.#draw(still), STILL);
   }

@@ -2,7 +2,7 @@
 
 import { readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
-import { type Common, type Described, Program } from "../../src/kernels/program";
+import { type Common, type Described, evenly, Program } from "../../src/kernels/program";
 
 interface Asked {
   readonly common: Common;
@@ -30,7 +30,9 @@ let spent = 0;
 for (let k = 0; k < asked.cases; k += 1) {
   const begun = performance.now();
   const found = program.run(every.slice(k * width, (k + 1) * width));
-  const samples = program.samples(found.stretches, asked.samples);
+  const { log, setup } = common.columns;
+  const end = (found.row[log["time"] ?? NaN] ?? NaN) * (found.row[setup["time_scale"] ?? NaN] ?? NaN);
+  const samples = program.samples(found.stretches, evenly(end, asked.samples));
   spent += performance.now() - begun;
   for (const [name, numbers] of Object.entries({ ...found, samples, planar: Float64Array.of(found.planar ? 1 : 0) })) {
     writeFileSync(join(folder, `${name}${k}`), numbers as Float64Array);

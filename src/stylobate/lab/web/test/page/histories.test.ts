@@ -15,6 +15,7 @@ const STILL: Series = {
     [0, -1, 0],
     [0, 0.5, 0],
   ],
+  extremes: {},
 };
 
 function run(series: Partial<Series>, frequency: number | null = null): RunShown {
@@ -94,4 +95,29 @@ test("a peak that lies between the samples and beyond the plot is reported off t
   const demand = historyOf("friction_demand", peaked);
   assert.ok(demand.limits[1] < 0.607);
   assert.equal(demand.note, "largest 0.607, off the scale");
+});
+
+test("extremes between the samples are drawn at their times, of vectors those of the component", () => {
+  const extremes = {
+    friction_demand: [[0.5, 0]],
+    base_acceleration_y: [[1.5, 0.75]],
+    base_acceleration_x: [[1.2, 9]],
+  } as const;
+  const found = run({ friction_demand: [0.1, 0.2, 0.1], extremes });
+  const demand = historyOf("friction_demand", found);
+  assert.deepEqual(
+    [demand.time, demand.values],
+    [
+      [0, 0.5, 1, 2],
+      [0.1, 0, 0.2, 0.1],
+    ],
+  );
+  const base = historyOf("base_y", found);
+  assert.deepEqual(
+    [base.time, base.values],
+    [
+      [0, 1, 1.5, 2],
+      [1, -1, 0.75, 0.5],
+    ],
+  );
 });

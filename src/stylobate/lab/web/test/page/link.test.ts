@@ -31,10 +31,23 @@ test("a link brings back the view it was made of", () => {
     speed: 0.25,
     start: "lower",
     time: 12.5,
+    scene: true,
     histories: ["base_x", "tilt"],
   };
   assert.deepEqual(again(view), view);
   assert.deepEqual(again(VIEW), VIEW);
+});
+
+test("a lesson or a preset can be handed out with its scene alone", () => {
+  const [preset] = ABOUT.presets;
+  assert.ok(preset !== undefined);
+  const lesson = { ...preset, question: "", task: "", said: {}, control: {} };
+  const about = { ...ABOUT, lessons: [lesson] };
+  for (const link of [`lesson=${lesson.id}`, `case=${preset.id}`]) {
+    assert.deepEqual(viewFrom(`#${link}&view=scene`, about), { ...viewFrom(`#${link}`, about), scene: true });
+    assert.equal(viewFrom(`#${link}`, about).scene, false);
+  }
+  assert.throws(() => viewFrom(`#lesson=${lesson.id}&view=chart`, about), BrokenLink);
 });
 
 test("a preset alone is a link", () => {

@@ -8,8 +8,8 @@ export interface Envelope {
   readonly high: readonly number[];
 }
 
-/** A swing that is narrower cannot be seen [px]. */
-const NARROWEST = 2.5;
+/** Up and down a swing has two lines of 1.5 px: one that is narrower cannot be seen [px]. */
+const NARROWEST = 4;
 
 /** Swings, at least, of which the band has the lowest and the highest value at one place. */
 const SWINGS = 1.5;

@@ -1,7 +1,7 @@
 /** The frequency of the motion that is shown, as a line across the response that is drawn along by hand or keys. */
 
 import { element } from "../frame/dom";
-import { withUnit } from "../frame/format";
+import { frequencyText } from "../frame/format";
 import { rounded } from "../case/ranges";
 
 /** The part of the range that an arrow key moves the marker by, and a page key or an arrow with shift. */
@@ -51,7 +51,7 @@ export class FrequencyMarker {
     this.#value = frequency;
     const { left, range } = this.#extent();
     const { side } = placeOf(frequency, range);
-    const value = withUnit(frequency, "rad/s", 4);
+    const value = frequencyText(frequency);
     const text = side === "inside" ? value : `${value}, ${side} the range that is shown`;
     this.root.style.transform = `translateX(${(left + this.#place()).toFixed(1)}px)`;
     this.root.dataset["side"] = side;

@@ -3,9 +3,13 @@
 import type { Variations } from "../server/schema";
 import { element } from "../frame/dom";
 import { axisLabel } from "../frame/format";
+import { tiltScaling } from "../frame/units";
 import type { HistoryName, HistoryPair, RunShown, SecondRun } from "./history-kinds";
 import { chosenHistories, historyOf, offeredHistories, secondHistory } from "./history-kinds";
 import { TimeChart } from "./time-chart";
+
+/** Up to where the axis reaches for the tilts of small variations, in units of c. */
+const HIGHEST = 1.5;
 
 export interface HistoriesHearing {
   readonly seek: (time: number) => void;
@@ -66,13 +70,14 @@ export class Histories {
     const { time } = run.answer.series;
     const end = Math.max(time.at(-1) ?? 0, this.#second?.run.answer.series.time.at(-1) ?? 0);
     const [offered, [above, below]] = [offeredHistories(run), chosenHistories(run, this.#wanted)];
-    const cloud = this.#cloud && { ...this.#cloud, unit: run.answer.column.slenderness };
+    const c = run.answer.column.slenderness;
+    const cloud = this.#cloud && { ...this.#cloud, factor: tiltScaling(c).factor, top: HIGHEST * c };
     for (const [chart, name] of [
       [this.#above, above],
       [this.#below, below],
     ] as const) {
       const history = historyOf(name, run);
-      chart.show(time, history, offered, {
+      chart.show(history, offered, {
         cloud: name === "tilt" ? cloud : null,
         second: secondHistory(history, this.#second),
         end,

@@ -3,7 +3,7 @@
 import type { Run as Answer, Series } from "../server/schema";
 import type { Numbers } from "./plot-looks";
 import { formatted, unitWritten, withUnit } from "../frame/format";
-import { isDimensionless } from "../frame/units";
+import { isDimensionless, isTaught, tiltScaling } from "../frame/units";
 
 /** A level that a quantity is held against. */
 export interface Level {
@@ -17,6 +17,8 @@ export interface History {
   /** Name of the axis, with its unit. */
   readonly label: string;
   readonly colour: string;
+  /** Times of its values [s]: those of the samples, and of the extremes between them. */
+  readonly time: readonly number[];
   readonly values: Numbers;
   readonly level: Level | null;
   /** What of it is drawn; the rest is cut off. */
@@ -69,9 +71,8 @@ export interface SecondRun {
   readonly labels: readonly [string, string];
 }
 
-/** The same quantity of a second run, over its own time. */
+/** The same quantity of a second run. */
 export interface SecondHistory {
-  readonly time: readonly number[];
   readonly history: History;
   readonly labels: readonly [string, string];
 }
@@ -81,7 +82,7 @@ export function secondHistory(first: History, second: SecondRun | null): SecondH
   if (second === null || first.name.startsWith("base_") || !offeredHistories(second.run).includes(first.name))
     return null;
   const history = historyOf(first.name, second.run);
-  return history.label === first.label ? { time: second.run.answer.series.time, history, labels: second.labels } : null;
+  return history.label === first.label ? { history, labels: second.labels } : null;
 }
 
 /** Returns the quantities of a run; of the base, the directions in which it moves. */
@@ -116,14 +117,34 @@ function usualAbove({ series, column }: Answer): HistoryName {
 }
 
 /** Returns a quantity of a run, ready to be drawn. */
-export function historyOf(name: HistoryName, { answer, frequency }: RunShown): History {
-  const { series, column, drawn } = answer;
+export function historyOf(name: HistoryName, run: RunShown): History {
+  const { time, values } = withExtremes(name, run.answer.series);
+  return { ...shaped(name, values, run), time };
+}
+
+/** Returns the samples of a quantity with the extremes between them: so a chart shows no beat that is not there. */
+function withExtremes(
+  name: HistoryName,
+  series: Series,
+): { readonly time: readonly number[]; readonly values: Numbers } {
   const { values: source, place } = SOURCES[name];
   const found = series[source] ?? [];
   const values = place === null ? (found as Numbers) : along(found as readonly Numbers[], place);
+  const extremes = series.extremes[place === null ? source : `${source}_${"xyz"[place]}`] ?? [];
+  if (extremes.length === 0) return { time: series.time, values };
+  const points = series.time.map((time, k): readonly [number, number | null] => [time, values[k] ?? null]);
+  const all = [...points, ...extremes].sort((one, other) => one[0] - other[0]);
+  return { time: all.map(([time]) => time), values: all.map(([, value]) => value) };
+}
+
+/** A history before it has its times. */
+type Shaped = Omit<History, "time">;
+
+function shaped(name: HistoryName, values: Numbers, { answer, frequency }: RunShown): Shaped {
+  const { column, drawn } = answer;
   switch (name) {
     case "tilt":
-      return tilt(scaled(values, 1 / column.slenderness));
+      return tilt(values, column.slenderness);
     case "rolling_rate":
       return rollingRate(values, frequency);
     case "friction_demand":
@@ -164,17 +185,19 @@ const SOURCES: Readonly<Record<HistoryName, { readonly values: keyof Series; rea
   base_z: { values: "base_acceleration", place: 2 },
 };
 
-function tilt(values: Numbers): History {
-  const largest = largestOf(values);
+function tilt(values: Numbers, slenderness: number): Shaped {
+  const { unit, factor } = tiltScaling(slenderness);
+  const [shown, edge] = [scaled(values, factor), slenderness * factor];
+  const largest = largestOf(shown);
   return {
-    ...{ name: "tilt", label: "|θ|/c", colour: "blue", values },
-    note: `largest ${formatted(largest)} c${largest > FARTHEST ? OFF : ""}`,
-    level: largest > 0.7 ? { value: 1, label: "|θ| = c" } : null,
-    limits: [0, Math.min(largest, FARTHEST)],
+    ...{ name: "tilt", label: isTaught() ? "tilt [°]" : "|θ|/c", colour: "blue", values: shown },
+    note: `largest ${formatted(largest)}${unit}${largest > FARTHEST * edge ? OFF : ""}`,
+    level: largest > 0.7 * edge ? { value: edge, label: isTaught() ? "balance" : "|θ| = c" } : null,
+    limits: [0, Math.min(largest, FARTHEST * edge)],
   };
 }
 
-function rollingRate(values: Numbers, frequency: number | null): History {
+function rollingRate(values: Numbers, frequency: number | null): Shaped {
   const made = signed("rolling_rate", "purple", "β̇", "rad/s", values);
   if (frequency === null) return made;
   const backwards = quantile(values, 0.5) < 0;
@@ -188,7 +211,7 @@ function demand(
   values: Numbers,
   coefficient: number | null,
   measured: number | null | undefined,
-): History {
+): Shaped {
   const largest = largestOf(values);
   // What is measured of a run is found between its samples too, where the contact bears most for a moment.
   const peak = measured === null ? Infinity : Math.max(measured ?? 0, largest);
@@ -204,7 +227,7 @@ function demand(
 }
 
 /** A quantity of either sign; what it does in rare instants is cut off where it would hide the rest. */
-function signed(name: HistoryName, colour: string, label: string, unit: string, values: Numbers): History {
+function signed(name: HistoryName, colour: string, label: string, unit: string, values: Numbers): Shaped {
   const [least, largest] = [-largestOf(scaled(values, -1)), largestOf(values)];
   const usual = 1.5 * quantile(values.map(magnitude), 0.99);
   const note = least < 0 ? `${formatted(least)} to ${withUnit(largest, unit)}` : `largest ${withUnit(largest, unit)}`;
@@ -215,7 +238,7 @@ function signed(name: HistoryName, colour: string, label: string, unit: string, 
 }
 
 /** A length, in the unit in which its numbers are short. */
-function length(name: HistoryName, label: string, values: Numbers): History {
+function length(name: HistoryName, label: string, values: Numbers): Shaped {
   const fine = !isDimensionless() && largestOf(values.map(magnitude)) < 0.1;
   const made = signed(name, "blue", label, fine ? "mm" : "m", fine ? scaled(values, 1000) : values);
   return { ...made, note: `${made.note}, at the end ${formatted(made.values.at(-1))}` };

@@ -2,6 +2,7 @@
 
 import type uPlot from "uplot";
 import { themeColour } from "../frame/dom";
+import { ticks } from "../case/ranges";
 import { formatted } from "../frame/format";
 
 /** Values along a curve; null where it has a gap. */
@@ -28,12 +29,27 @@ export function axis(label: Label, looks: uPlot.Axis = {}): uPlot.Axis {
   };
 }
 
-export function across(label: Label): uPlot.Axis {
-  return axis(label, { size: label === "" ? 20 : 22, space: 50 });
+/** How many of the unit that an axis shows are one of the unit of its numbers. */
+type Factor = () => number;
+const SAME: Factor = () => 1;
+
+/** Returns looks of an axis whose ticks stand at round numbers of the unit that it shows. */
+function inUnit(factor: Factor): uPlot.Axis {
+  return {
+    splits: (_, __, from, to, step) => {
+      const unit = factor();
+      return ticks(from * unit, to * unit, Math.max(1, Math.floor((to - from) / step))).map((one) => one / unit);
+    },
+    values: (_, splits) => splits.map((value) => formatted(value * factor(), 6)),
+  };
 }
 
-export function upright(label: Label): uPlot.Axis {
-  return axis(label, { size: AXIS_WIDTH - 16, space: 17 });
+export function across(label: Label, factor: Factor = SAME): uPlot.Axis {
+  return axis(label, { size: label === "" ? 20 : 22, space: 50, ...(factor === SAME ? {} : inUnit(factor)) });
+}
+
+export function upright(label: Label, factor: Factor = SAME): uPlot.Axis {
+  return axis(label, { size: AXIS_WIDTH - 16, space: 17, ...(factor === SAME ? {} : inUnit(factor)) });
 }
 
 /** What uPlot would add and the page does without: zooming by dragging, its own legend and marks. */

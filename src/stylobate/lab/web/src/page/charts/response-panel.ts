@@ -3,8 +3,18 @@
 import { button, element, newId, onResize } from "../frame/dom";
 import { Elapsed } from "../frame/elapsed";
 import { enlarging } from "../frame/enlarging";
-import { axisLabel, capital, counted, formatted, plain, readNumber, unitWritten, words } from "../frame/format";
-import { inShownUnits, joined } from "../frame/units";
+import {
+  axisLabel,
+  capital,
+  counted,
+  formatted,
+  frequencyText,
+  plain,
+  readNumber,
+  unitWritten,
+  words,
+} from "../frame/format";
+import { frequencyScaling, inShownUnits, isTaught, joined } from "../frame/units";
 import type { ExactOrbits, Job as JobReport, ResponseCurves } from "../server/schema";
 import type { Job } from "../server/job";
 import { type Extent, FrequencyMarker } from "./frequency-marker";
@@ -23,15 +33,16 @@ function aboutCurves(curves: ResponseCurves, own: boolean): string {
 /** Returns how many families of exact orbits there are, and where they bifurcate, which a glossary explains. */
 function aboutExact(exact: ExactOrbits): string {
   const families = counted(exact.families.length, "family", "families");
+  const { unit, factor } = frequencyScaling();
   const kinds = [...new Set(exact.bifurcations.map((one) => one.kind))];
   const found = kinds.map((kind) => {
     const places = exact.bifurcations.filter((one) => one.kind === kind).map((one) => one.angular_frequency);
     return `${words(kind)} at ${places
       .sort((a, b) => a - b)
-      .map((one) => formatted(one, 4))
+      .map((one) => formatted(one * factor, 4))
       .join(", ")}`;
   });
-  return `${families} of exact orbits; ${found.length > 0 ? joined(found.join("; "), "rad/s") : "no bifurcation in the range"}. Click a dot to start on that orbit.`;
+  return `${families} of exact orbits; ${found.length > 0 ? joined(found.join("; "), unit) : "no bifurcation in the range"}. Click a dot to start on that orbit.`;
 }
 
 /** Returns the frequencies that are written differently: both senses of rolling may have the same one. */
@@ -99,13 +110,16 @@ export class ResponsePanel {
       footer,
       this.#note,
     );
-    this.#amplitude = new ResponsePlot("amplitude", this.#amplitudeHost, ["", "|θ|/c"], () =>
-      this.#marker.show(this.#frequency),
+    const frequencies = (): string =>
+      isTaught() ? axisLabel("frequency", "Hz") : axisLabel("angular frequency", "rad/s");
+    // A lesson has no phases: there the axis of the amplitudes stands alone.
+    this.#amplitude = new ResponsePlot(
+      "amplitude",
+      this.#amplitudeHost,
+      [() => (isTaught() ? frequencies() : ""), () => (isTaught() ? "tilt [°]" : "|θ|/c")],
+      () => this.#marker.show(this.#frequency),
     );
-    this.#phase = new ResponsePlot("phase", this.#phaseHost, [
-      () => axisLabel("angular frequency", "rad/s"),
-      "ψ [rad]",
-    ]);
+    this.#phase = new ResponsePlot("phase", this.#phaseHost, [frequencies, "ψ [rad]"]);
     this.#plots.addEventListener("pointerdown", (event) => this.#chooseOrbit(event), { capture: true });
     this.#marker = new FrequencyMarker(this.#plots, () => this.#extent(), hearing.frequency);
     for (const [host, { plot }] of [
@@ -260,11 +274,11 @@ export class ResponsePanel {
       new Set(lines.filter((one) => one.amplitude.some((value) => value !== null)).map((one) => one.sense)),
       picture.critical.some((one) => this.#range[0] < one && one < this.#range[1]),
     );
-    const critical = picture.critical.map((one) => formatted(one, 4)).join(", ");
+    const critical = picture.critical.map((one) => frequencyText(one)).join(", ") || "no frequency";
     const summary =
       lines.length === 0
         ? "no curves"
-        : `${[...new Set(lines.map((one) => one.sense))].join(" and ")}; stable from ${joined(critical || "no frequency", "rad/s")} on`;
+        : `${[...new Set(lines.map((one) => one.sense))].join(" and ")}; stable from ${critical} on`;
     this.#amplitudeHost.setAttribute("aria-label", `Amplitude of steady rolling over angular frequency: ${summary}`);
     this.#phaseHost.setAttribute("aria-label", "Phase of steady rolling over angular frequency");
   }
@@ -274,9 +288,10 @@ export class ResponsePanel {
     const items = [...senses].map((sense) => [
       "line",
       sense === "clockwise" ? "vermilion" : "blue",
-      `${how}, ${sense}`,
+      isTaught() ? how : `${how}, ${sense}`,
     ]);
-    if (senses.size > 0) items.push(["thin", "muted", "unstable"], ["dotted", "muted", "backbone"]);
+    if (senses.size > 0) items.push(["thin", "muted", "unstable"]);
+    if (senses.size > 0 && !isTaught()) items.push(["dotted", "muted", "backbone"]);
     if (critical) items.push(["upright", "muted", "critical frequency"]);
     if (this.#exact !== null)
       items.push(["dot", "green", "exact"], ["ring", "green", "exact, unstable"], ["diamond", "purple", "bifurcation"]);

@@ -5,8 +5,8 @@ import type { Pair } from "../../viewer/index";
 import type { ExactOrbits, OrbitFamily } from "../server/schema";
 import type { Numbers } from "./plot-looks";
 import { themeColour } from "../frame/dom";
-import { formatted } from "../frame/format";
-import { joined } from "../frame/units";
+import { formatted, frequencyText } from "../frame/format";
+import { frequencyScaling, isTaught, tiltScaling } from "../frame/units";
 import type { Label } from "./plot-looks";
 import { across, PLAIN, upright } from "./plot-looks";
 import type { ResponseLine } from "./response-lines";
@@ -65,7 +65,7 @@ export class ResponsePlot {
           x: { time: false, range: () => [...(this.#picture?.range ?? [0, 1])] },
           y: { range: (_, low, high) => this.#limits(low, high) },
         },
-        axes: [across(labels[0]), upright(labels[1])],
+        axes: [across(labels[0], () => frequencyScaling().factor), upright(labels[1], () => this.#tiltUnit())],
         series: [{}, ...lines, this.#backboneLooks()],
         hooks: { drawAxes: [(plot) => this.#drawCritical(plot)], draw: [(plot) => this.#drawExact(plot), drawn] },
         cursor: { show: false },
@@ -79,8 +79,14 @@ export class ResponsePlot {
     this.#picture = picture;
     const empty = picture.frequency.map(() => null);
     const lines = Array.from({ length: MOST_LINES }, (_, i) => picture.lines[i]?.[this.#quantity] ?? empty);
-    const backbone = this.#quantity === "amplitude" ? picture.backbone : empty;
+    const backbone = this.#quantity === "amplitude" && !isTaught() ? picture.backbone : empty;
     this.plot.setData([picture.frequency as number[], ...([...lines, backbone] as (number | null)[][])]);
+  }
+
+  /** Returns how many of the unit of tilts are shown for one c, in which they are drawn. */
+  #tiltUnit(): number {
+    const c = this.#picture?.slenderness ?? 1;
+    return this.#quantity === "phase" ? 1 : c * tiltScaling(c).factor;
   }
 
   /** Takes the frequency at which the marker stands, and writes labels that it would cross on their other side. */
@@ -102,7 +108,7 @@ export class ResponsePlot {
     return (this.#picture?.critical ?? []).flatMap((frequency) => {
       const x = this.plot.valToPos(frequency, "x", true);
       if (!(x >= from && x <= to)) return [];
-      const value = joined(formatted(frequency, 4), "rad/s");
+      const value = frequencyText(frequency);
       const texts = [`critical ${value}`, value].map((text) => ({ text, width: ctx.measureText(text).width }));
       return [{ x, ...labelBeside(x, texts, [from, to], marked, LABEL_GAP * uPlot.pxRatio) }];
     });

@@ -15,8 +15,11 @@ export interface TimeChartHearing {
   readonly chosen: (name: HistoryName) => void;
 }
 
-/** Tilts of many runs, in units of c, those that overturn in another colour. */
-export type Cloud = Pick<Variations, "times" | "tilts" | "outcomes"> & { readonly unit: number };
+/** Tilts of many runs [rad], those that overturn in another colour; drawn times a factor, up to a tilt [rad]. */
+export type Cloud = Pick<Variations, "times" | "tilts" | "outcomes"> & {
+  readonly factor: number;
+  readonly top: number;
+};
 
 /** What is drawn with a history: small variations of its run, and the same quantity of a second run. */
 export interface Company {
@@ -33,9 +36,6 @@ const [ALONE, FIRST] = [1.5, 2.25];
 const BAND = 0.3;
 
 const LINEAR = uPlot.paths.linear!();
-
-/** Up to where the axis reaches for a cloud, in units of c. */
-const NO_HIGHER = 1.5;
 
 /** Opacity of one line of a cloud. */
 const THIN = 0.25;
@@ -75,18 +75,13 @@ export class TimeChart {
     this.#plot.over.addEventListener("click", (event) => this.#clicked(event));
     onResize(this.#host, (width, height) => {
       this.#plot.setSize({ width, height });
-      if (this.#history !== null) this.#draw(Array.from(this.#plot.data[0]), this.#history);
+      if (this.#history !== null) this.#draw(this.#history);
       this.setTime(this.#time);
     });
   }
 
   /** Shows a history, one of those that are offered, in its company. */
-  show(
-    time: readonly number[],
-    history: History,
-    offered: readonly HistoryName[],
-    { cloud, second, end }: Company,
-  ): void {
+  show(history: History, offered: readonly HistoryName[], { cloud, second, end }: Company): void {
     this.#history = history;
     this.#end = end;
     this.#cloud = cloud;
@@ -95,7 +90,7 @@ export class TimeChart {
     this.#showLegend();
     this.#offer(offered);
     this.#kind.value = history.name;
-    this.#draw(time, history);
+    this.#draw(history);
     this.setTime(this.#time);
   }
 
@@ -110,18 +105,18 @@ export class TimeChart {
   }
 
   /** Draws the run, as a band where its swings lie too close together at the width of the plot. */
-  #draw(time: readonly number[], history: History): void {
+  #draw(history: History): void {
     const width = this.#plot.over.clientWidth;
     const end = this.#span(null)[1];
     const bandOf = (times: readonly number[], values: Numbers): Envelope | null =>
       envelopeOf(times, values, (width * ((times.at(-1) ?? 0) - (times[0] ?? 0))) / end);
     this.#bands = {
-      first: bandOf(time, history.values),
-      second: this.#second && bandOf(this.#second.time, this.#second.history.values),
+      first: bandOf(history.time, history.values),
+      second: this.#second && bandOf(this.#second.history.time, this.#second.history.values),
     };
     this.#note.textContent = this.#largest;
     this.#host.setAttribute("aria-label", `${HISTORIES[history.name]}: ${this.#largest}`);
-    this.#plot.setData([time as number[], history.values as number[]]);
+    this.#plot.setData([history.time as number[], history.values as number[]]);
   }
 
   #showLegend(): void {
@@ -203,8 +198,8 @@ export class TimeChart {
   /** Returns the largest tilt of the cloud, as far as columns come back from it. */
   #cloudTop(): number {
     if (this.#cloud === null) return 0;
-    const { tilts, unit } = this.#cloud;
-    return Math.min(Math.max(...tilts.flatMap((one) => one.map((value) => (value ?? 0) / unit))), NO_HIGHER);
+    const { tilts, factor, top } = this.#cloud;
+    return Math.min(Math.max(...tilts.flatMap((one) => one.map((value) => value ?? 0))), top) * factor;
   }
 
   /** Shows the value below the pointer. */
@@ -218,7 +213,7 @@ export class TimeChart {
 
   #drawCloud(plot: uPlot): void {
     if (this.#cloud === null) return;
-    const { times, tilts, outcomes, unit } = this.#cloud;
+    const { times, tilts, outcomes, factor } = this.#cloud;
     const { ctx, bbox } = plot;
     ctx.save();
     ctx.beginPath();
@@ -232,7 +227,7 @@ export class TimeChart {
       tilt.forEach((value, k) => {
         const time = times[i]?.[k];
         if (value === null || time === null || time === undefined) return;
-        ctx.lineTo(plot.valToPos(time, "x", true), plot.valToPos(value / unit, "y", true));
+        ctx.lineTo(plot.valToPos(time, "x", true), plot.valToPos(value * factor, "y", true));
       });
       ctx.stroke();
     });
@@ -264,7 +259,7 @@ export class TimeChart {
   /** Draws the second run dashed, over the bold line of the first. */
   #drawSecond(plot: uPlot): void {
     if (this.#second === null) return;
-    const { time, history } = this.#second;
+    const { history } = this.#second;
     const { ctx, bbox } = plot;
     ctx.save();
     ctx.beginPath();
@@ -276,7 +271,7 @@ export class TimeChart {
     const band = this.#bands.second;
     const lines =
       band === null
-        ? [[time, history.values] as const]
+        ? [[history.time, history.values] as const]
         : [[band.time, band.low] as const, [band.time, band.high] as const];
     for (const [times, values] of lines) {
       trace(plot, times, values);

@@ -134,6 +134,9 @@ export class Controls {
         element("div", { class: "preset-head" }, element("label", { for: id }, "Preset"), this.#changed),
         this.#presets,
         this.#presetText,
+        button("Upload a record…", { class: "wide", title: "Shake the column with files of your own" }, () =>
+          this.#record.upload(),
+        ),
       ),
       problems,
       this.#motionSection,

@@ -110,7 +110,7 @@ export class RecordForm {
     const { kind, sample: before } = this.#motion;
     if (motion["kind"] !== kind || motion["sample"] !== before) this.#choosing = false;
     this.#motion = motion;
-    this.root.hidden = motion["kind"] !== "record";
+    this.root.hidden = motion["kind"] !== "record" && !this.#choosing;
     if (this.root.hidden) return;
     const { sample, upload } = motion;
     const own = this.#choosing || typeof sample !== "string";
@@ -137,6 +137,13 @@ export class RecordForm {
     const section = this.root.closest("details");
     if (section !== null) section.open = true;
     this.#report(NOT_HERE);
+  }
+
+  /** Asks for files, whatever the base motion is. */
+  upload(): void {
+    const section = this.root.closest("details");
+    if (section !== null) section.open = true;
+    this.#choose(OWN);
   }
 
   #choose(value: string): void {

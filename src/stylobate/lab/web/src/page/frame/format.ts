@@ -1,6 +1,6 @@
 /** Numbers and units as they are read. */
 
-import { joined, shownUnit } from "./units";
+import { frequencyScaling, joined, shownUnit } from "./units";
 
 const MINUS = "\u2212";
 const RAISED: Readonly<Record<string, string>> = { "2": "²", "3": "³", "4": "⁴" };
@@ -27,6 +27,12 @@ export function formatted(value: number | null | undefined, digits = 3): string 
 
 export function withUnit(value: number | null | undefined, unit: string, digits = 3): string {
   return unit === "" || unit === "1" ? formatted(value, digits) : joined(formatted(value, digits), siWritten(unit));
+}
+
+/** Returns a frequency of the base motion [rad/s] as it is shown. */
+export function frequencyText(value: number, digits = 4): string {
+  const { unit, factor } = frequencyScaling();
+  return withUnit(value * factor, unit, digits);
 }
 
 /** Returns a unit as it is shown: "m s-2" as m/s², or g for a dimensionless column. */

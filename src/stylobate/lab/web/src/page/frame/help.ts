@@ -119,7 +119,7 @@ export class Help {
       element(
         "p",
         {},
-        "Space: play and pause. Arrow keys: step. N: next event. In a number field, up and down change the number.",
+        "Space: play and pause. Arrow keys: step. N: next event. F: the scene alone. In a number field, up and down change the number.",
       ),
       element("div", { class: "dialog-bar" }, close),
     );

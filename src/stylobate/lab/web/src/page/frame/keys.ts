@@ -1,4 +1,4 @@
-/** Keys of the whole page: space plays, arrows and N go through the time; what has the focus comes first. */
+/** Keys of the whole page: space plays, arrows go through the time, letters do more; what has the focus comes first. */
 
 import type { Clock } from "../../viewer/index";
 
@@ -10,7 +10,8 @@ const MOVED = "input, select, textarea, canvas, pre, [role=tab], [role=slider]";
 /** The parts of a run that an arrow goes, and with shift. */
 const [STEP, STRIDE] = [1 / 200, 1 / 20];
 
-export function listenToKeys(clock: Clock, nextEvent: () => void): void {
+/** Lets keys move the clock, and each of `letters` do what it stands for. */
+export function listenToKeys(clock: Clock, letters: Readonly<Record<string, () => void>>): void {
   document.addEventListener("keydown", (event) => {
     const { target } = event;
     const taken = event.defaultPrevented || event.ctrlKey || event.metaKey || event.altKey;
@@ -19,7 +20,7 @@ export function listenToKeys(clock: Clock, nextEvent: () => void): void {
       event.preventDefault();
       clock.toggle();
     }
-    if (event.key === "n" && target.closest(WRITTEN) === null) nextEvent();
+    if (target.closest(WRITTEN) === null) letters[event.key]?.();
     const direction = event.key === "ArrowRight" ? 1 : event.key === "ArrowLeft" ? -1 : 0;
     if (direction === 0 || target.closest(MOVED) !== null) return;
     event.preventDefault();

@@ -188,6 +188,11 @@ export class MotionView {
     this.clock.seek(time);
   }
 
+  /** Adds what stands over the picture. */
+  addOver(over: HTMLElement): void {
+    this.#host.append(over);
+  }
+
   toNextEvent(): void {
     this.#transport.toNextEvent();
   }

@@ -259,8 +259,8 @@ export type Lesson = {
   readonly question: string;
   /** what to do */
   readonly task: string;
-  /** whether the page opens with it */
-  readonly first?: boolean;
+  /** whether the page shows frequency response and maps beside the motion */
+  readonly curves?: boolean;
   readonly control: LessonControl;
   /** text for each outcome; {critical} stands for the critical frequency of the case */
   readonly said: Readonly<Record<string, string>>;
@@ -270,15 +270,15 @@ export type Lesson = {
   readonly view: Readonly<Record<string, unknown>>;
 };
 
-/** The only control of a lesson: a number with a range, or some choices. */
+/** The control of a lesson: a number with a range, some choices, or both. */
 export type LessonControl = {
-  /** name of the number; null for choices */
+  /** name of the number; null for choices alone */
   readonly number?: string;
   /** lower end of the range */
   readonly from?: number;
   /** upper end of the range */
   readonly to?: number;
-  /** choices instead of a number */
+  /** choices */
   readonly options?: readonly Choice[];
 };
 
@@ -537,6 +537,8 @@ export type Series = {
   readonly displacement?: readonly (readonly (number | null)[])[];
   /** slip speed of the contact on the plane [m/s] */
   readonly slip_speed?: readonly (number | null)[];
+  /** time [s] and value of extremes between the samples, by history; of vectors as displacement_x */
+  readonly extremes: Readonly<Record<string, readonly (readonly [number, number])[]>>;
   readonly [name: string]: unknown;
 };
 

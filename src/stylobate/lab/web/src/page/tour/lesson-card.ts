@@ -5,7 +5,8 @@ import { type Description, isPart, written } from "../case/description";
 import { mapQuantities, valueOf, withValue, type ColumnScales, type Quantity } from "../case/quantities";
 import { NumberField } from "../controls/number-field";
 import { button, element, newId } from "../frame/dom";
-import { capital, withUnit, words } from "../frame/format";
+import { capital, frequencyText, words } from "../frame/format";
+import { frequencyScaling } from "../frame/units";
 import { START } from "../server/declared";
 import type { View } from "../view/state";
 
@@ -36,7 +37,7 @@ export class LessonCard {
   readonly #next: HTMLButtonElement;
   readonly #nextTitle = element("span", { class: "next-title" });
   #lesson: Lesson | null = null;
-  #shown: Control | null = null;
+  #shown: readonly Control[] = [];
   #description: Description | null = null;
   #outcome: string | null = null;
   #critical: number | null = null;
@@ -58,7 +59,7 @@ export class LessonCard {
     this.#next.append(this.#nextTitle);
     const close = button(
       "×",
-      { class: "icon", "aria-label": "Close the tour", title: "Close the tour" },
+      { class: "icon close-tour", "aria-label": "Close the tour", title: "Close the tour" },
       hearing.closed,
     );
     this.root.append(
@@ -75,7 +76,7 @@ export class LessonCard {
     this.#description = description;
     this.root.hidden = lesson === null;
     if (lesson !== this.#lesson) this.#begin(lesson, scales);
-    this.#shown?.show(description);
+    for (const one of this.#shown) one.show(description);
     this.#own = lesson === null || isOf(lesson, description, start);
     this.#restore.hidden = this.#own;
     this.#say();
@@ -115,8 +116,8 @@ export class LessonCard {
     this.#task.textContent = lesson.task;
     const next = lessons[(place + 1) % lessons.length];
     this.#nextTitle.textContent = next === undefined ? "" : `: ${next.title}`;
-    this.#shown = this.#controlOf(lesson, scales);
-    this.#control.replaceChildren(...(this.#shown === null ? [] : [this.#shown.root]));
+    this.#shown = this.#controlsOf(lesson, scales);
+    this.#control.replaceChildren(...this.#shown.map((one) => one.root));
   }
 
   #goOn(): void {
@@ -125,19 +126,24 @@ export class LessonCard {
     if (next !== undefined) this.#hearing.gone(next);
   }
 
-  #controlOf({ control, description }: Lesson, scales: ColumnScales): Control | null {
-    if (control.options) return this.#choices(control.options);
+  #controlsOf({ control, description }: Lesson, scales: ColumnScales): readonly Control[] {
     const quantity = mapQuantities(description, this.#about, scales).find((one) => one.name === control.number);
-    return quantity === undefined ? null : this.#number(quantity, control.from ?? 0, control.to ?? 1);
+    return [
+      ...(quantity === undefined ? [] : [this.#number(quantity, control.from ?? 0, control.to ?? 1)]),
+      ...(control.options ? [this.#choices(control.options)] : []),
+    ];
   }
 
-  #number({ name, symbol, unit }: Quantity, from: number, to: number): Control {
-    const looks = { name, label: capital(words(name)), symbol, unit, range: [from, to] as const };
-    const field = new NumberField(looks, (value) => {
+  #number({ name, unit: kept }: Quantity, from: number, to: number): Control {
+    const { unit, factor } = name === "angular_frequency" ? frequencyScaling() : { unit: kept, factor: 1 };
+    const label = unit === "Hz" ? "Frequency" : capital(words(name));
+    const range = [from, to].map((one) => rounded(one * factor)) as [number, number];
+    const field = new NumberField({ name, label, symbol: "", unit, range }, (value) => {
       if (value !== null && this.#description !== null)
-        this.#hearing.changed(withValue(this.#description, name, value));
+        this.#hearing.changed(withValue(this.#description, name, rounded(value / factor)));
     });
-    return { root: field.root, show: (description) => field.show(valueOf(description, name) ?? null) };
+    const shown = (value: number | undefined): number | null => (value === undefined ? null : rounded(value * factor));
+    return { root: field.root, show: (description) => field.show(shown(valueOf(description, name))) };
   }
 
   #choices(options: NonNullable<Lesson["control"]["options"]>): Control {
@@ -164,12 +170,17 @@ export class LessonCard {
     const own = this.#outcome === null ? undefined : this.#lesson?.said[this.#outcome];
     const text = this.#own ? own : CHANGED;
     if (text === undefined) return;
-    const critical = this.#critical === null ? "" : ` ${withUnit(this.#critical, "rad/s", 4)}`;
+    const critical = this.#critical === null ? "" : ` ${frequencyText(this.#critical, 3)}`;
     // What “Vary it” was asked for is answered: the question gives way to the answer.
     const said = this.#varied === "" ? text : `${text.replace(/ ?Vary it: [^?]*\?/, "")} ${this.#varied}`;
     const line = said.replaceAll(/ ?\{critical\}/g, critical);
     if (line !== this.#said.textContent) this.#said.textContent = line;
   }
+}
+
+/** Returns a number without the digits in which another unit would differ. */
+function rounded(value: number): number {
+  return Number(value.toPrecision(6));
 }
 
 /** What a lesson says of a case that is not its own. */

@@ -4,7 +4,7 @@
  * `column=dimensionless,slenderness:0.1&motion=circular,acceleration:0.065,angular_frequency:1.8&tilt=0.02,0`
  *
  * A part is its kind and its numbers; a vector in it is written `0.1/0.2`, what has parts of its own as JSON after `~`.
- * `lesson=critical` alone is a lesson, `case=temple` a preset.
+ * `lesson=critical` alone is a lesson, `case=temple` a preset; with `view=scene` the scene fills the window.
  */
 
 import { type About, type Lesson, type Preset, kindNamed } from "../case/about";
@@ -21,7 +21,18 @@ import {
 import { comparisonRead, comparisonWritten, DIFFERENCES } from "../case/comparison";
 import { BRANCHES } from "../case/starting";
 import { RUN } from "../server/declared";
-import { type Axis, PLANE_KINDS, type Plane, TABS, type View, historiesFrom, isRange, ofPlanes, viewOf } from "./state";
+import {
+  type Axis,
+  PLANE_KINDS,
+  type Plane,
+  TABS,
+  type View,
+  historiesFrom,
+  isRange,
+  isScene,
+  ofPlanes,
+  viewOf,
+} from "./state";
 
 /** A link that cannot be read; the message says why in one line. */
 export class BrokenLink extends Error {}
@@ -44,6 +55,7 @@ export function linkOf(view: View): string {
   if (view.start !== null) items.push(`start=${view.start}`);
   if (view.compared !== null) items.push(`beside=${comparisonWritten(view.compared)}`);
   if (view.lesson !== null) items.push(`lesson=${view.lesson}`);
+  if (view.scene) items.push("view=scene");
   if (view.time !== null) items.push(`time=${view.time}`);
   if (view.speed !== null) items.push(`speed=${view.speed}`);
   return items.join("&");
@@ -62,8 +74,9 @@ export function viewFrom(link: string, about: About): View {
   }
   const { column, model, motion } = values;
   const lesson = about.lessons.find((one) => one.id === looks["lesson"]);
-  if (lesson !== undefined && Object.keys(values).length === 0) return viewOfLesson(lesson);
-  if (looks["case"] !== undefined) return viewOfCase(String(looks["case"]), about);
+  if (lesson !== undefined && Object.keys(values).length === 0)
+    return { ...viewOfLesson(lesson), scene: isScene(looks) };
+  if (looks["case"] !== undefined) return { ...viewOfCase(String(looks["case"]), about), scene: isScene(looks) };
   if (!isPart(column)) throw new BrokenLink("column is missing");
   const description: Description = {
     ...values,
@@ -99,6 +112,10 @@ const LOOKS: Readonly<Record<string, (text: string) => Value>> = {
   beside: (text) => {
     if (comparisonRead(text) === null)
       throw new BrokenLink(`beside must be one of ${DIFFERENCES.join(", ")} with its value, got ${text}`);
+    return text;
+  },
+  view: (text) => {
+    if (text !== "scene") throw new BrokenLink(`view must be scene, got ${text}`);
     return text;
   },
   lesson: (text) => text,
@@ -247,7 +264,7 @@ export function viewOfLesson(lesson: Lesson): View {
 
 /** Returns the view with which the page opens: a question. */
 export function firstView(about: About): View {
-  const opening = about.lessons.find((one) => one.first === true) ?? about.lessons[0];
+  const [opening] = about.lessons;
   if (opening === undefined) throw new Error("the server has no lessons");
   return viewOfLesson(opening);
 }

@@ -63,6 +63,8 @@ export interface View extends Readonly<Record<PlaneKind, Plane | null>> {
   readonly compared: Comparison | null;
   /** The lesson of the tour that is open; null: none. */
   readonly lesson: string | null;
+  /** Whether the scene fills the window. */
+  readonly scene: boolean;
   /** Where the clock is stopped at first [s]; null: it runs. */
   readonly time: number | null;
   /** Speed of the clock, seconds of the motion in a second; null: chosen to suit the motion. */
@@ -89,9 +91,14 @@ export function viewOf(description: Description, looks: Readonly<Record<string, 
     start: BRANCHES.find((one) => one === looks["start"]) ?? null,
     compared: comparisonRead(looks["beside"]),
     lesson: typeof looks["lesson"] === "string" ? looks["lesson"] : null,
+    scene: isScene(looks),
     time: timeIn(looks["time"]),
     speed: typeof speed === "number" && speed > 0 ? speed : null,
   };
+}
+
+export function isScene(looks: Readonly<Record<string, Value>>): boolean {
+  return looks["view"] === "scene";
 }
 
 export function isRange(value: Value | undefined): value is readonly [number, number] {
