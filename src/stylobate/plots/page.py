@@ -10,6 +10,7 @@ from io import BytesIO
 from matplotlib.figure import Figure
 
 from stylobate.errors import UnsupportedError
+from stylobate.text import printable
 
 # Dots per inch of embedded figures; the page scales them to its width.
 _RESOLUTION = 160
@@ -93,7 +94,7 @@ def page(
     body = "".join(_section(i, section) for i, section in enumerate(sections))
     lead = "".join(map(_part, introduction))
     named = f'<meta name="author" content="{escape(author)}">' if author else ""
-    return (
+    return printable(
         '<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8">'
         f'<meta name="viewport" content="width=device-width, initial-scale=1">{named}'
         f"<title>{escape(title)}</title><style>{_STYLE}{style}</style></head>"

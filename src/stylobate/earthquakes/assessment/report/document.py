@@ -17,6 +17,7 @@ from stylobate.files import csv_text, write_whole, write_workbook
 from stylobate.plots.page import PageTable, page, pdf_of, png_of, style_text
 from stylobate.progress import Progress, Report, report_of, shows_progress
 from stylobate.results.assessment import Assessment
+from stylobate.text import printable
 
 # Tables of a dozen columns fit a wide screen; a narrow screen scrolls tables and figures. Pages of paper have a running
 # title and numbers; tables break between rows.
@@ -88,7 +89,7 @@ def assessment_report(
                 stale.unlink()
         for name, picture in pictures.items():
             write_whole(target / "figures" / f"{name}.png", picture.drawn)
-        write_whole(target / "summary.txt", summary_text(assessment, heads))
+        write_whole(target / "summary.txt", printable(summary_text(assessment, heads)))
         report = target / "report.html"
         write_whole(report, text)
         if pdf:
