@@ -1,6 +1,7 @@
 """A self-contained web page of text, figures and tables: one file, nothing fetched."""
 
 import base64
+import logging
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -10,6 +11,7 @@ from io import BytesIO
 from matplotlib.figure import Figure
 
 from stylobate.errors import UnsupportedError
+from stylobate.plots.result_figure import remark_on_glyphs
 from stylobate.text import printable
 
 # Dots per inch of embedded figures; the page scales them to its width.
@@ -27,6 +29,7 @@ figcaption { font-size: .92rem; color: #333; }
 .wide { overflow-x: auto; }
 table { border-collapse: collapse; width: 100%; font-size: .92rem; }
 th, td { text-align: left; vertical-align: top; padding: .4rem .6rem; border-bottom: 1px solid #ddd; }
+body { overflow-wrap: break-word; } th.long, td.long { overflow-wrap: anywhere; min-width: 2.3cm; }
 thead th { border-bottom: 2px solid #666; }
 .verdict { font-weight: 600; white-space: nowrap; }
 nav a { margin-right: 1rem; }
@@ -158,10 +161,20 @@ def _picture(picture: Picture) -> str:
 
 
 def _table(table: PageTable) -> str:
-    head = "".join(f"<th>{escape(name)}</th>" for name in table.header)
-    rows = "".join("<tr>" + "".join(f"<td>{_text(cell)}</td>" for cell in row) + "</tr>" for row in table.rows)
+    head = "".join(f"<th{_kind(name)}>{escape(name)}</th>" for name in table.header)
+    rows = "".join(
+        "<tr>" + "".join(f"<td{_kind(cell)}>{_text(cell)}</td>" for cell in row) + "</tr>" for row in table.rows
+    )
     kind = "wide many" if len(table.header) >= _MANY_COLUMNS else "wide"
     return f'<div class="{kind}"><table><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table></div>'
+
+
+# A cell with a longer word, such as a name without blanks, breaks anywhere.
+_LONG_WORD = re.compile(r"\S{19}")
+
+
+def _kind(cell: str) -> str:
+    return ' class="long"' if _LONG_WORD.search(cell) else ""
 
 
 def pdf_of(html: str) -> bytes:
@@ -175,7 +188,21 @@ def pdf_of(html: str) -> bytes:
     require_pdf()
     from weasyprint import HTML
 
-    written: bytes = HTML(string=html).write_pdf(pdf_tags=True)
+    missing: dict[str, None] = {}
+
+    def noticed(record: logging.LogRecord) -> bool:
+        if is_glyph := "glyph" in str(record.msg) and bool(record.args):
+            missing[str(record.args[0])] = None  # type: ignore[index]
+        return not is_glyph
+
+    log = logging.getLogger("weasyprint")
+    log.addFilter(noticed)
+    try:
+        written: bytes = HTML(string=html).write_pdf(pdf_tags=True)
+    finally:
+        log.removeFilter(noticed)
+    if missing:
+        remark_on_glyphs(missing, "Install a font that has them, such as Noto Sans CJK")
     return written
 
 
