@@ -14,6 +14,7 @@
 
     Interrupted (KeyboardInterrupt)    Ctrl-C in the middle of many runs; carries what had been computed
     UnlikelyInputWarning (UserWarning)          input that is possible, but is more likely a mistake
+    EndedEarlyWarning (UserWarning)             a run that ended before its numbers were known: they are NaN
 
 Misuse raises an exception. A physical result, numerical failure included, is an `Outcome`.
 """
@@ -28,7 +29,7 @@ from importlib import import_module
 from typing import Any, NamedTuple
 
 from stylobate import units
-from stylobate.text import did_you_mean
+from stylobate.text import UNPRINTABLE, did_you_mean
 
 SMALLEST, LARGEST = 1e-30, 1e15
 """Limits for the size of a number other than zero: numbers of columns are far inside, and no product overflows."""
@@ -126,6 +127,10 @@ class Interrupted(KeyboardInterrupt):
 
 class UnlikelyInputWarning(UserWarning):
     """Input that is possible but unlikely; the message names it and the remedy."""
+
+
+class EndedEarlyWarning(UserWarning):
+    """A run that ended before its numbers were known, so that they are NaN; the message names outcome and time."""
 
 
 class Named:
@@ -323,6 +328,20 @@ def require_whole(name: str, value: int, *, least: int, most: Most = MOST_NUMBER
     if number > most.number:
         raise ParameterError(f"{name}: too large (got {value!r}). Give at most {most.number}: {most.reason}.")
     return int(value)
+
+
+def require_name(where: str, name: str) -> str:
+    """Return a name, or raise ParameterError unless it is a text that is not blank and can be printed."""
+    if not isinstance(name, str) or not name.strip():
+        raise ParameterError(f"{where}: must be a text that is not empty (got {name!r}). State a name.")
+    return require_printable(where, name)
+
+
+def require_printable(where: str, text: str) -> str:
+    """Return `text`, or raise ParameterError if it holds a character that cannot be printed, such as a control."""
+    if found := UNPRINTABLE.search(text):
+        raise ParameterError(f"{where}: holds a character that cannot be printed (got {found[0]!r}). Remove it.")
+    return text
 
 
 def sizes(unit: str) -> tuple[float, float]:

@@ -1,6 +1,7 @@
 """Atomic writing of files, and checksums that detect damage."""
 
 import csv
+import datetime as dt
 import hashlib
 import math
 import os
@@ -9,6 +10,7 @@ import re
 import secrets
 import shutil
 import stat
+import zipfile
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from functools import lru_cache
@@ -17,6 +19,7 @@ from pathlib import Path
 from typing import Any
 
 from stylobate.errors import FileError, require_extra
+from stylobate.text import printable
 
 # Parts are named after the beginning of the file's name, the machine, the process, and a number drawn at random.
 _STEM = 40
@@ -148,17 +151,48 @@ def _is_alive(process: int) -> bool:
     return False
 
 
+# Text from which spreadsheet programs read a formula, behind any number of marks: one of these signs, of normal or full
+# width, also after blanks, or a tab or line end.
+_FORMULA = re.compile("(?P<marks>'*)(?:\\s*[-=+@\uff0d\uff1d\uff0b\uff20]|[\\t\\n])")
+_NUMBER = re.compile(r"[-+]?(?:\d+(?:[.,]\d+)*|[.,]\d+)(?:[eE][-+]?\d+)?(?:\s?%)?|[-+]?inf|-")
+_MARK = "'"
+
+
 def csv_text(header: Iterable[str], rows: Iterable[Iterable[Any]]) -> str:
-    """Format a table as the text of a CSV file."""
+    """Format a table as the text of a CSV file.
+
+    Text that spreadsheet programs would read as a formula is marked with an apostrophe in front; numbers such as -0.5,
+    also as text, are not. `unmarked` takes the mark off again. Characters that cannot be printed are replaced.
+    """
     text = StringIO(newline="")
     writer = csv.writer(text)
-    writer.writerow(header)
-    writer.writerows(rows)
+    writer.writerow(map(_marked, header))
+    writer.writerows(map(_marked, row) for row in rows)
     return text.getvalue()
+
+
+def _marked(value: Any) -> Any:
+    """Return a cell of a CSV file: text with a mark in front of what begins a formula."""
+    if isinstance(value, (int, float)) or value is None:
+        return value
+    text = printable(str(value))
+    return _MARK + text if _FORMULA.match(text) and not _NUMBER.fullmatch(text) else text
+
+
+def unmarked(cell: str) -> str:
+    """Return a cell of a CSV file without the mark that `csv_text` set.
+
+    >>> unmarked("'=2+2"), unmarked("'s-Hertogenbosch"), unmarked("-0.5")
+    ('=2+2', "'s-Hertogenbosch", '-0.5')
+    """
+    found = _FORMULA.match(cell)
+    return cell.removeprefix(_MARK) if found and found["marks"] else cell
 
 
 def write_workbook(path: str | Path, tables: Mapping[str, Iterable[Iterable[Any]]]) -> Path:
     """Write an Excel workbook with one sheet for each table of rows, the first of which is bold and stays in sight.
+
+    Text is stored as text, also if it begins like a formula. The same tables give the same bytes.
 
     Raises
     ------
@@ -167,31 +201,55 @@ def write_workbook(path: str | Path, tables: Mapping[str, Iterable[Iterable[Any]
     FileError
         If the file cannot be written.
     """
-    remedy = 'install openpyxl: pip install "stylobate[records]"; or write CSV'
+    remedy = 'install openpyxl: pip install "stylobate[excel]"; or write CSV'
     require_extra("openpyxl", f"{path}: to write an Excel workbook, {remedy}")
     from openpyxl import Workbook
     from openpyxl.cell import WriteOnlyCell
     from openpyxl.styles import Font
+    from openpyxl.writer.excel import ExcelWriter
 
     book = Workbook(write_only=True)
+    book.properties.created = book.properties.modified = _WRITTEN
     for title, rows in tables.items():
         sheet = book.create_sheet(title)
         sheet.freeze_panes = "A2"
         for place, row in enumerate(rows):
             cells = [WriteOnlyCell(sheet, value=_in_cell(value)) for value in row]
+            for cell in cells:
+                if isinstance(cell.value, str):  # openpyxl takes "=…" for a formula and "#N/A" for an error
+                    cell.data_type = "s"
+                    cell.quotePrefix = bool(_FORMULA.match(cell.value))
             for cell in cells if place == 0 else ():
                 cell.font = Font(bold=True)
             sheet.append(cells)
     content = BytesIO()
-    book.save(content)
+    ExcelWriter(book, _Undated(content, "w", zipfile.ZIP_DEFLATED)).save()  # Workbook.save states the time
     return write_whole(path, content.getvalue())
+
+
+_WRITTEN = dt.datetime(1980, 1, 1)  # noqa: DTZ001  the first date of a zip archive, which has no zone
+"""The date that workbooks state, so that the same tables give the same bytes."""
+
+
+class _Undated(zipfile.ZipFile):
+    """A zip archive whose members have no date of their own."""
+
+    def writestr(self, name: Any, data: Any, *rest: Any, **more: Any) -> None:
+        """Write a member."""
+        del rest, more
+        super().writestr(zipfile.ZipInfo(str(name), _WRITTEN.timetuple()[:6]), data, zipfile.ZIP_DEFLATED)
+
+    def write(self, filename: Any, arcname: Any = None, *rest: Any, **more: Any) -> None:
+        """Write a file as a member."""
+        del rest, more
+        self.writestr(arcname or filename, Path(filename).read_bytes())
 
 
 def _in_cell(value: Any) -> Any:
     """Return a value as a cell holds it: a number that is not finite as an empty cell."""
     if isinstance(value, float) and not math.isfinite(value):
         return None
-    return value if isinstance(value, (int, float, str, bool)) or value is None else str(value)
+    return value if isinstance(value, (int, float, bool)) or value is None else printable(str(value))
 
 
 def sealed(content: bytes | memoryview) -> bytes:

@@ -1,4 +1,4 @@
-"""Counts, numbers, units and misspelt names in text."""
+"""Counts, numbers, units and misspelt names in text, and characters that cannot be printed."""
 
 import re
 from collections.abc import Iterable
@@ -6,6 +6,20 @@ from difflib import get_close_matches
 
 _LIKENESS = 0.7
 _EXPONENTS = str.maketrans("0123456789", "⁰¹²³⁴⁵⁶⁷⁸⁹")
+# Controls, marks that reorder the text around them, halves of surrogate pairs, and characters that XML 1.0 excludes.
+UNPRINTABLE = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069\ud800-\udfff\ufffe\uffff]")
+_LINE_ENDS = re.compile("\r\n?|[\x0b\x0c\x85]")  # a form feed or a vertical tab ends a line within a cell
+
+
+def printable(text: str) -> str:
+    r"""Return `text` as it is written into tables, pages, figures and terminals.
+
+    Each kind of line end becomes a newline; a character that cannot be printed becomes U+FFFD.
+
+    >>> printable("amphora\x07 of\x0bAthens")
+    'amphora� of\nAthens'
+    """
+    return UNPRINTABLE.sub("\N{REPLACEMENT CHARACTER}", _LINE_ENDS.sub("\n", text))
 
 
 def plural(number: int, noun: str) -> str:

@@ -53,7 +53,7 @@ def of_nrml(path):
 
 def test_nrml_states_mean_and_deviation_of_the_lognormal_curve(found, tmp_path):
     names, function, space = of_nrml(export_fragility(found, tmp_path / "f.xml", name="my statue"))
-    assert names == ["tilt_0_1_alpha", "overturning"]
+    assert names == ["tilt_0-dot-1_-alpha-", "overturning"]
     assert function.attrib == {"id": "my_statue", "format": "continuous", "shape": "logncdf"}
     imls = function.find("n:imls", space).attrib
     assert imls["imt"] == "PGA"

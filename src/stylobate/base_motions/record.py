@@ -31,7 +31,7 @@ from stylobate.errors import (
     require_positive,
 )
 from stylobate.files import file_of, sha256_of
-from stylobate.text import four_digits
+from stylobate.text import four_digits, printable
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -145,6 +145,7 @@ class Record(BaseMotion):
         object.__setattr__(self, "samples", samples)
         object.__setattr__(self, "step", require_positive("step", self.step, "s"))
         object.__setattr__(self, "start", require_finite("start", self.start, "s"))
+        object.__setattr__(self, "name", printable(self.name))  # as a file of another program may state it
         object.__setattr__(self, "provenance", tuple(self.provenance))
         velocity, displacement = integrals(samples, self.step)
         object.__setattr__(self, "_velocity", velocity)

@@ -1,7 +1,6 @@
 """`stylobate assess`: columns under a folder of records, with a self-contained report."""
 
 import shlex
-import sys
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import replace
@@ -16,7 +15,7 @@ from stylobate.cli.command import Positional, command
 from stylobate.cli.options import Options
 from stylobate.cli.output import NETCDF, check_place, print_json, print_table
 from stylobate.cli.record_sources import RECORD_SOURCES, with_record_sources
-from stylobate.cli.terminal import INTERRUPTED, log_lines, part_lines
+from stylobate.cli.terminal import INTERRUPTED, log_lines, part_lines, remark, say
 from stylobate.config.options import COMPUTING, JSON, Group, Option
 from stylobate.errors import FileError, Interrupted
 from stylobate.files import file_of, sha256_of
@@ -80,7 +79,7 @@ def assess(options: Options) -> None:
         store, threads = options["store"] or target / "store", options["threads"]
         options.refuse_unused()
         setup = _described(values, file, target, _command(options, file))
-    print(f"stylobate: writing into {target}", file=sys.stderr)
+    remark(f"writing into {target}")
     with _locked(target):
         result = _loaded(source) if setup is None else _computed(setup, store, threads)
         lines = part_lines()
@@ -93,8 +92,8 @@ def assess(options: Options) -> None:
         shown = [summary.header.index(name) for name in _SHOWN if name in summary.header]
         rows = [[row[place] for place in shown] for row in summary.rows]
         print_table(str(result.setting["title"]), rows, [summary.header[place] for place in shown])
-        print((target / "summary.txt").read_text(encoding="utf-8").partition("\n")[2])
-        print(f"report: {report.with_suffix('.pdf') if pdf else report}")
+        say((target / "summary.txt").read_text(encoding="utf-8").partition("\n")[2])
+        say(f"report: {report.with_suffix('.pdf') if pdf else report}")
 
 
 @contextmanager
@@ -164,9 +163,7 @@ def _computed(setup: "AssessmentSetup", store: Path, threads: int | None) -> "As
                 progress=part_lines(),
             )
     except (Interrupted, KeyboardInterrupt):
-        print(
-            f"stylobate: the computed parts are kept in {store}; the same command continues from them", file=sys.stderr
-        )
+        remark(f"the computed parts are kept in {store}; the same command continues from them")
         raise click.exceptions.Exit(INTERRUPTED) from None
 
 

@@ -25,7 +25,7 @@ from stylobate.config.options import (
     Option,
     run_numbers,
 )
-from stylobate.errors import FileError, ParameterError
+from stylobate.errors import FileError, ParameterError, require_name
 from stylobate.run_arguments import SharedByRuns
 
 if TYPE_CHECKING:
@@ -134,7 +134,7 @@ def fragility(options: Options) -> None:
     check_writable(options["runs_figure"])
     if options["export"] is not None:
         _check_export(options["export"])
-        options.use("object")
+        require_name("--object", options["object"] or "column")
     saved = open_kind(options["source"], "fragility", ("incremental dynamic analysis", "slip analysis"))
     values = _overlay(_described(options) if saved is None else _description(saved, options["source"]), options)
     description = FragilityConfig.parse(values)

@@ -1,6 +1,5 @@
 """`stylobate inventory`: many objects of one table, ranked by how probably they overturn."""
 
-import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -12,7 +11,7 @@ from stylobate.cli.options import Options
 from stylobate.cli.output import NETCDF, check_place, check_writable, print_json, save_plot
 from stylobate.cli.record_sources import RECORD_SOURCES, with_record_sources
 from stylobate.cli.study import executor_of, show
-from stylobate.cli.terminal import INTERRUPTED, log_lines
+from stylobate.cli.terminal import INTERRUPTED, log_lines, remark, say
 from stylobate.config.options import COMPUTING, FIGURE, JSON, Group, Option
 from stylobate.errors import FileError, Interrupted, ParameterError, UnsupportedError
 from stylobate.files import file_of
@@ -90,7 +89,7 @@ def inventory(options: Options) -> None:
         return
     show(table_of_ranking(found))
     if folder is not None:
-        print(f"ranking: {folder / 'ranking.csv'}")
+        say(f"ranking: {folder / 'ranking.csv'}")
 
 
 def _check_output(output: Path | None) -> None:
@@ -116,12 +115,12 @@ def _computed(source: Path, folder: Path, options: Options) -> "xr.Dataset":
     options.refuse_unused()
     setup = description.build()
     check_place(folder / "ranking.csv" if folder.exists() else folder)
-    print(f"stylobate: writing into {folder}", file=sys.stderr)
+    remark(f"writing into {folder}")
     try:
         with log_lines(quiet=0.0):
             return earthquakes.inventory(setup.objects, setup.sites, **setup.options, store=store, executor=executor)
     except (Interrupted, KeyboardInterrupt):
-        print(f"stylobate: computed objects are kept in {store}; the same command continues", file=sys.stderr)
+        remark(f"computed objects are kept in {store}; the same command continues")
         raise click.exceptions.Exit(INTERRUPTED) from None
 
 
@@ -146,5 +145,5 @@ def _write_folder(found: "xr.Dataset", folder: Path) -> None:
         try:
             earthquakes.export_inventory(found, folder / f"ranking{ending}")
         except UnsupportedError as error:
-            print(f"stylobate: {error}", file=sys.stderr)
+            remark(str(error))
     save_plot(found, folder / "ranking.png")

@@ -12,8 +12,9 @@ from functools import partial
 from typing import Any
 
 from stylobate.cli.commands import COMMANDS
-from stylobate.cli.terminal import INTERRUPTED, interrupted_by_signals, log_lines
-from stylobate.errors import ConfigError, ModelError, StylobateError, UnlikelyInputWarning
+from stylobate.cli.terminal import INTERRUPTED, NOT_READ, interrupted_by_signals, log_lines, remark
+from stylobate.errors import ConfigError, EndedEarlyWarning, ModelError, StylobateError, UnlikelyInputWarning
+from stylobate.text import printable
 
 _BAD_INPUT = 2
 _WIDEST = 80
@@ -30,8 +31,12 @@ def main() -> None:
     with interrupted_by_signals():
         try:
             status = run(sys.argv[1:])
+            sys.stdout.flush()
         except KeyboardInterrupt:  # before or after the command itself
             status = INTERRUPTED
+        except BrokenPipeError:  # nobody reads the output any more, as behind `| head`
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # for what Python writes at its end
+            status = NOT_READ
     gc.freeze()  # or Python searches all objects once more before it ends, for several tenths of a second
     sys.exit(status)
 
@@ -39,7 +44,8 @@ def main() -> None:
 def run(arguments: Sequence[str]) -> int:
     """Run one command and return its exit status."""
     with warnings.catch_warnings():
-        warnings.simplefilter("always", UnlikelyInputWarning)
+        for kind in (UnlikelyInputWarning, EndedEarlyWarning):
+            warnings.simplefilter("always", kind)
         warnings.showwarning = partial(_show_warning, set())
         with log_lines():
             return _run(arguments)
@@ -52,7 +58,7 @@ def _show_warning(shown: set[str], message: Warning | str, *rest: Any, **more: A
     key = about.partition(":")[0] if unlikely else about
     if key not in shown:
         shown.add(key)
-        print(f"stylobate: warning: {message}", file=sys.stderr)
+        remark(f"warning: {message}")
 
 
 def _run(arguments: Sequence[str]) -> int:
@@ -91,6 +97,8 @@ def _run_command(name: str, arguments: Sequence[str]) -> int:
         return _report(error.problems)
     except StylobateError as error:
         return _report([str(error)])
+    except BrokenPipeError:
+        raise
     except OSError as error:  # a file name that the system rejects, or a disk failure
         reason = error.strerror or str(error)
         return _report(
@@ -99,14 +107,13 @@ def _run_command(name: str, arguments: Sequence[str]) -> int:
     except (KeyboardInterrupt, click.Abort):
         status = INTERRUPTED
     if status == INTERRUPTED:
-        print("stylobate: interrupted", file=sys.stderr)
+        remark("interrupted")
     return int(status or 0)
 
 
 def _report(problems: Sequence[str]) -> int:
     for problem in problems:
-        line = problem.replace("\n", "\\n")  # names may contain line ends
-        print(f"stylobate: {line}", file=sys.stderr)
+        remark(printable(problem).replace("\n", "\\n"))  # names may contain line ends
     return _BAD_INPUT
 
 

@@ -17,6 +17,7 @@ from unicodedata import combining, east_asian_width
 from stylobate.errors import FileError, ParameterError, require_positive
 from stylobate.files import write_whole
 from stylobate.results.tables import TABLES
+from stylobate.text import UNPRINTABLE, printable
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -30,29 +31,38 @@ FIGURES = (".png", ".pdf", ".svg", PAGE)
 """Endings of figures."""
 
 _PLAIN_WIDTH = 120
+# Words of up to so many characters, such as names of records, are not broken while other columns can be folded.
+_WHOLE_WORD = 24
 # The lines of tables where the terminal or the file has no Unicode.
 _ASCII = str.maketrans("┏━┳┓┃┡╇┩┌─┬┐│└┴┘", "+-++|++++-++|+++")
 
 
 def print_json(values: Any) -> None:
     """Print `values` as JSON; a number that is not finite becomes null."""
-    print(json.dumps(_finite(values), indent=2, ensure_ascii=False))
+    text = json.dumps(_finite(values), indent=2, ensure_ascii=False)
+    print(UNPRINTABLE.sub(lambda one: f"\\u{ord(one[0]):04x}", text))
 
 
 def print_table(title: str, rows: Sequence[Sequence[str]], header: Sequence[str] | None = None) -> None:
     """Print `rows` as a table with the width of the terminal; a table with a header has its title below."""
     width = shutil.get_terminal_size().columns if sys.stdout.isatty() else _PLAIN_WIDTH
-    lines = [*table_lines(rows, header, width), *([] if header is None else [title])]
+    cells = [list(map(printable, row)) for row in rows]
+    heads = None if header is None else list(map(printable, header))
+    lines = [*table_lines(cells, heads, width), *([] if header is None else [printable(title)])]
     unicode = (sys.stdout.encoding or "utf").lower().startswith("utf")
     print("\n".join(lines if unicode else (line.translate(_ASCII) for line in lines)))
 
 
 def table_lines(rows: Sequence[Sequence[str]], header: Sequence[str] | None, width: int) -> list[str]:
-    """Return the lines of a table of at most `width` characters; its widest columns are folded."""
+    """Return the lines of a table of at most `width` characters; the widest columns are folded, at blanks first."""
     columns = [*zip(*([] if header is None else [header]), *rows, strict=True)]
     widths = [max(1, *(_width(line) for cell in column for line in cell.split("\n"))) for column in columns]
+    words = [max(1, *(_width(word) for cell in column for word in cell.split())) for column in columns]
+    words = [min(one, _WHOLE_WORD) for one in words]
     while sum(widths) > max(width - 3 * len(widths) - 1, len(widths)):
-        widths[widths.index(max(widths))] -= 1
+        loose = [one if one > word else 0 for one, word in zip(widths, words, strict=True)]
+        widest = loose if any(loose) else widths
+        widths[widest.index(max(widest))] -= 1
 
     def rule(left: str, line: str, between: str, right: str) -> str:
         return left + between.join(line * (one + 2) for one in widths) + right

@@ -8,6 +8,7 @@ from stylobate import config, earthquakes
 from stylobate.cli.command import Positional, command
 from stylobate.cli.options import Options, read_source
 from stylobate.cli.output import check_place, check_writable, print_json, print_table, save_figure
+from stylobate.cli.terminal import say
 from stylobate.column import STANDARD_GRAVITY
 from stylobate.config.options import FIGURE, JSON, ONE_COMPONENT, RESPONSE, SAMPLE, STEP, UNITS, Group, Option
 from stylobate.errors import FileError, ParameterError, require_positive
@@ -123,9 +124,9 @@ def records(options: Options) -> None:
         lines = [[_written(value) for value in _in_g(one)] for one in horizontal.values()]
         print_table("horizontal motion", lines, _horizontal_header(period))
     for name, group in rows.items():
-        print(f"{name}: {'; '.join(f'{row.axis} {row.origin}' for row in group)}")
+        say(f"{name}: {'; '.join(f'{row.axis} {row.origin}' for row in group)}")
     for note in notes:
-        print(note)
+        say(note)
 
 
 def _values(sources: Sequence[str], options: Options) -> dict[str, Any]:

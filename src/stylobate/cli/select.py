@@ -7,6 +7,7 @@ from stylobate import config
 from stylobate.cli.command import Positional, command
 from stylobate.cli.options import Options
 from stylobate.cli.output import check_place, check_writable, print_json, print_table, save_plot
+from stylobate.cli.terminal import say
 from stylobate.column import STANDARD_GRAVITY
 from stylobate.config.options import FIGURE, JSON, ONE_COMPONENT, RESPONSE, SAMPLE, STEP, UNITS, Group, Option
 from stylobate.config.snippets import as_toml
@@ -111,7 +112,7 @@ def select(options: Options) -> None:
     ]
     print_table(f"{plural(number, 'record')} of {len(cells)} chosen", cells, list(_COLUMNS))
     least, largest = found.attrs["least_ratio"], found.attrs["largest_ratio"]
-    print(f"mean of the chosen spectra over the target: {least:.3g} to {largest:.3g}, {found.attrs['component']}")
+    say(f"mean of the chosen spectra over the target: {least:.3g} to {largest:.3g}, {found.attrs['component']}")
 
 
 def _rows(found: "xr.Dataset") -> "Iterable[tuple[str, float, float, bool]]":

@@ -4,7 +4,6 @@
 """
 
 import inspect
-import sys
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -24,7 +23,7 @@ from stylobate.cli.output import (
     provenance_of,
     study_summary,
 )
-from stylobate.cli.terminal import INTERRUPTED
+from stylobate.cli.terminal import INTERRUPTED, remark, say
 from stylobate.config.study import Analysis, Study, declared_numbers, own_options, study_of
 from stylobate.errors import FileError, Interrupted, ParameterError, StylobateError
 from stylobate.kinds import loaded
@@ -120,8 +119,8 @@ def show(*tables: "ResultTable") -> None:
     for table in tables:
         if table.header:
             print_table(table.title, table.rows, table.header)
-        for remark in table.remarks:
-            print(remark)
+        for line in table.remarks:
+            say(line)
 
 
 def with_own_options(values: dict[str, Any], function: Callable[..., Any], options: Options) -> None:
@@ -281,7 +280,7 @@ def computed(study: Callable[..., "xr.Dataset"], setup: "Setup", options: Option
         result = study(setup.model, setup.motion, **setup.options, store=store, executor=executor, resume=resume)
     except Interrupted as stop:
         if stop.partial is None or (store is None and not (stop.partial["outcome"] >= 0).any()):
-            print("stylobate: no run is complete, and nothing is written", file=sys.stderr)
+            remark("no run is complete, and nothing is written")
             raise click.exceptions.Exit(INTERRUPTED) from None
         return stop.partial, False
     except StylobateError as error:
@@ -311,7 +310,7 @@ def end(result: "xr.Dataset", options: Options, *, complete: bool) -> None:
         return
     store = _store(options)
     remedy = f"{store} continues with --resume" if store else "with --output NAME.zarr, --resume could continue"
-    print(f"stylobate: {int(result['computed'])} of {result['outcome'].size} runs are done; {remedy}", file=sys.stderr)
+    remark(f"{int(result['computed'])} of {result['outcome'].size} runs are done; {remedy}")
     raise click.exceptions.Exit(INTERRUPTED)
 
 

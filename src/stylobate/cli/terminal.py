@@ -11,10 +11,24 @@ from contextlib import contextmanager
 from types import FrameType
 from typing import Any
 
+from stylobate.text import printable
+
 INTERRUPTED = 130
 """Exit status of a program that Ctrl-C ended."""
+NOT_READ = 141
+"""Exit status of a program whose output is no longer read: 128 and the number of SIGPIPE."""
 
 _IMPORTING = "<frozen importlib"
+
+
+def say(text: str) -> None:
+    """Print `text` on stdout; what a terminal would obey, such as an escape in a name, is replaced."""
+    print(printable(text))
+
+
+def remark(text: str) -> None:
+    """Print a line of the program itself on stderr; what a terminal would obey is replaced."""
+    print(f"stylobate: {printable(text)}", file=sys.stderr, flush=True)
 
 
 @contextmanager
@@ -64,7 +78,7 @@ def part_lines() -> Callable[[str, int, int], None] | None:
     def advance(what: str, done: int, total: int) -> None:
         nonlocal last
         if what != last:
-            print(f"stylobate: {what} ({100 * done // max(total, 1)} % done)", file=sys.stderr)
+            remark(f"{what} ({100 * done // max(total, 1)} % done)")
         last = what
 
     return advance
@@ -78,7 +92,7 @@ def section_lines() -> Callable[[str, int, int, float], None] | None:
 
     def advance(heading: str, done: int, total: int, fraction: float) -> None:
         moments.append((time.monotonic(), fraction))
-        print(f"stylobate: {done}/{total}{remaining(moments)}{heading and ': '}{heading}", file=sys.stderr)
+        remark(f"{done}/{total}{remaining(moments)}{heading and ': '}{heading}")
 
     return advance
 
@@ -127,4 +141,4 @@ class _Lines(logging.Handler):
         if record.levelno < logging.WARNING and now - self._last < self._quiet:
             return
         self._last = now
-        print(f"stylobate: {record.getMessage()}", file=sys.stderr, flush=True)
+        remark(record.getMessage())

@@ -7,7 +7,7 @@ from typing import TypeAlias
 
 from stylobate.base_motions import BaseMotion
 from stylobate.column import Column
-from stylobate.errors import ParameterError, UnlikelyInputWarning, require_not_negative
+from stylobate.errors import ParameterError, UnlikelyInputWarning, require_not_negative, require_printable
 from stylobate.run_arguments import FREE_TAIL
 
 Records: TypeAlias = BaseMotion | Sequence[BaseMotion] | Mapping[str, BaseMotion]
@@ -35,6 +35,7 @@ def named_records(records: Records) -> dict[str, BaseMotion]:
         raise ParameterError("records must hold at least one base motion, got none")
     named: dict[str, BaseMotion] = {}
     for name, motion in pairs:
+        require_printable("records: the name", name)
         _require_ending(name, motion)
         if name in named:
             raise ParameterError(f"records must differ in name, got {name!r} twice; give a mapping of names to records")

@@ -15,7 +15,7 @@ from stylobate.models.declared import column_quantities, model_quantities
 from stylobate.quantities import Quantity
 from stylobate.results import Run
 from stylobate.run_arguments import run_numbers
-from stylobate.text import unit_in_text
+from stylobate.text import printable, unit_in_text
 
 # SI units in units of a column with m = g = ω0 = 1, as TeX.
 _OWN_UNITS = {
@@ -95,7 +95,7 @@ def in_own_units(result: _Result) -> _Result:
 
 def literal(name: str) -> str:
     """Return a name that Matplotlib prints as it is; it typesets the text between two dollar signs as TeX."""
-    return _DOLLAR.sub(r"\\$", name)
+    return _DOLLAR.sub(r"\\$", printable(name))
 
 
 def with_literal_names(data: xr.Dataset) -> xr.Dataset:
@@ -103,7 +103,7 @@ def with_literal_names(data: xr.Dataset) -> xr.Dataset:
     named = {name: one for name, one in data.coords.items() if one.ndim == 1 and one.dtype.kind in "OU"}
     names = {name: [str(each) for each in one.to_numpy()] for name, one in named.items()}
     return data.assign_coords(
-        {name: named[name].copy(data=list(map(literal, some))) for name, some in names.items() if "$" in "".join(some)}
+        {name: named[name].copy(data=own) for name, some in names.items() if (own := list(map(literal, some))) != some}
     )
 
 

@@ -1,6 +1,7 @@
 """A self-contained web page of text, figures and tables: one file, nothing fetched."""
 
 import base64
+import logging
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -11,6 +12,8 @@ from typing import Any
 from matplotlib.figure import Figure
 
 from stylobate.errors import require_extra
+from stylobate.plots.result_figure import remark_on_glyphs
+from stylobate.text import printable
 
 # Dots per inch of embedded figures; the page scales them to its width.
 _RESOLUTION = 160
@@ -27,6 +30,7 @@ figcaption { font-size: .92rem; color: #333; }
 .wide { overflow-x: auto; }
 table { border-collapse: collapse; width: 100%; font-size: .92rem; }
 th, td { text-align: left; vertical-align: top; padding: .4rem .6rem; border-bottom: 1px solid #ddd; }
+body { overflow-wrap: break-word; } th.long, td.long { overflow-wrap: anywhere; min-width: 2.3cm; }
 thead th { border-bottom: 2px solid #666; }
 .verdict { font-weight: 600; white-space: nowrap; }
 nav a { margin-right: 1rem; }
@@ -94,7 +98,7 @@ def page(
     body = "".join(_section(i, section) for i, section in enumerate(sections))
     lead = "".join(map(_part, introduction))
     named = f'<meta name="author" content="{escape(author)}">' if author else ""
-    return (
+    return printable(
         '<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8">'
         f'<meta name="viewport" content="width=device-width, initial-scale=1">{named}'
         f"<title>{escape(title)}</title><style>{_STYLE}{style}</style></head>"
@@ -158,10 +162,20 @@ def _picture(picture: Picture) -> str:
 
 
 def _table(table: PageTable) -> str:
-    head = "".join(f"<th>{escape(name)}</th>" for name in table.header)
-    rows = "".join("<tr>" + "".join(f"<td>{_text(cell)}</td>" for cell in row) + "</tr>" for row in table.rows)
+    head = "".join(f"<th{_kind(name)}>{escape(name)}</th>" for name in table.header)
+    rows = "".join(
+        "<tr>" + "".join(f"<td{_kind(cell)}>{_text(cell)}</td>" for cell in row) + "</tr>" for row in table.rows
+    )
     kind = "wide many" if len(table.header) >= _MANY_COLUMNS else "wide"
     return f'<div class="{kind}"><table><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table></div>'
+
+
+# A cell with a longer word, such as a name without blanks, breaks anywhere.
+_LONG_WORD = re.compile(r"\S{19}")
+
+
+def _kind(cell: str) -> str:
+    return ' class="long"' if _LONG_WORD.search(cell) else ""
 
 
 def pdf_of(html: str) -> bytes:
@@ -172,7 +186,22 @@ def pdf_of(html: str) -> bytes:
     UnsupportedError
         If WeasyPrint, or Pango which it needs, is not installed.
     """
-    written: bytes = require_pdf().HTML(string=html).write_pdf(pdf_tags=True)
+    library = require_pdf()
+    missing: dict[str, None] = {}
+
+    def noticed(record: logging.LogRecord) -> bool:
+        if is_glyph := "glyph" in str(record.msg) and bool(record.args):
+            missing[str(record.args[0])] = None  # type: ignore[index]
+        return not is_glyph
+
+    log = logging.getLogger("weasyprint")
+    log.addFilter(noticed)
+    try:
+        written: bytes = library.HTML(string=html).write_pdf(pdf_tags=True)
+    finally:
+        log.removeFilter(noticed)
+    if missing:
+        remark_on_glyphs(missing, "Install a font that has them, such as Noto Sans CJK")
     return written
 
 

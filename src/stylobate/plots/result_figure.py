@@ -26,10 +26,10 @@ from matplotlib.colorbar import Colorbar
 from matplotlib.figure import Figure
 from matplotlib.legend import Legend
 from matplotlib.text import Text
-from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator
+from matplotlib.ticker import FixedLocator, FuncFormatter, LogLocator, MaxNLocator
 from matplotlib.transforms import Bbox, ScaledTranslation
 
-from stylobate.errors import ParameterError
+from stylobate.errors import ParameterError, UnlikelyInputWarning
 
 # A title may reach this far over its panel [widths], a label of an axis this far.
 _TITLE, _LABEL = 1.12, 1.04
@@ -45,6 +45,12 @@ _DECADES = 1.5
 # Points between two of a curve at which it may lie below a legend.
 _BETWEEN = 8
 _TYPESET = re.compile(r"\$[^$]*\$")
+# Words of more characters, such as names without blanks, are broken where room is missing, and in legends; names of an
+# axis are shortened, since each has one line.
+_WORD, _WHOLE_WORD = 20, 32
+# A broken word keeps this part of the room.
+_WITHIN = 0.85
+_JOINT = re.compile(r"[^_./\-]+[_./\-]*|[_./\-]+")
 
 
 def fit_words(figure: Figure, panels: Sequence[Axes], drawn: Iterable[Artist], smallest: float) -> None:
@@ -59,14 +65,23 @@ def fit_words(figure: Figure, panels: Sequence[Axes], drawn: Iterable[Artist], s
     smallest
         Smallest size of text [points].
     """
+    whole = dict[Text, str]()
     for one in drawn:
         if isinstance(one, Text) and float(one.get_fontsize()) < smallest:
             one.set_fontsize(smallest)
+        if isinstance(one, Text) and max(map(len, one.get_text().split()), default=0) > _WHOLE_WORD:
+            whole[one] = one.get_text()
+            one.set_text(_broken(one.get_text(), _WHOLE_WORD))
     for axes in panels:
         _in_millimetres(axes)
+        for axis in (axes.xaxis, axes.yaxis):
+            _shorten_names(axis)
     for text in figure.texts if len(panels) == len(figure.axes) else ():
         _wrap(text, figure.bbox.width - text.get_window_extent().x0)
     _lay_out(figure)
+    entries = {text for one in figure.findobj(Legend) for text in cast("Legend", one).get_texts()}
+    for text in whole.keys() - entries:
+        text.set_text(whole[text])
     for axes in panels:
         _fit_words(axes)
     _lay_out(figure)
@@ -127,14 +142,19 @@ def _fit_words(axes: Axes) -> None:
         words = axes.get_title(loc=place)
         for text in axes.findobj(Text) if words else ():
             if isinstance(text, Text) and text.get_text() == words:
-                _wrap(text, _TITLE * panel.width if place != "right" else panel.x1)
+                beyond = axes.figure.bbox.x1 - panel.x0 if place == "left" else math.inf
+                _wrap(text, min(_TITLE * panel.width, beyond) if place != "right" else panel.x1)
     _wrap(axes.xaxis.label, _LABEL * panel.width)
     _wrap(axes.yaxis.label, _LABEL * panel.height)
 
 
 def _wrap(text: Text, room: float) -> None:
-    """Break a text into as few lines of similar length as fit into `room` [pixels], between words."""
-    words = text.get_text()
+    """Break a text into as few lines of similar length as fit into `room` [pixels], between words if possible."""
+    words, length = text.get_text(), _length(text)
+    if length <= room:
+        return
+    most = int(max(map(len, words.splitlines())) * _WITHIN * room / length)
+    text.set_text(words := _broken(words, max(_CHARACTERS, most)))
     if _length(text) <= room or " " not in words:
         return
     # A formula stays whole.
@@ -150,6 +170,27 @@ def _wrap(text: Text, room: float) -> None:
     text.set_text("\n".join(_lines(kept, most)).replace("\0", " "))
 
 
+def _broken(text: str, most: int) -> str:
+    """Break long words into lines of at most `most` characters; a formula stays whole."""
+    if "$" in text:
+        return text
+    parts = re.split(r"(\s+)", text)
+    return "".join(one if len(one) <= max(_WORD, most) else "\n".join(_pieces(one, most)) for one in parts)
+
+
+def _pieces(word: str, most: int) -> list[str]:
+    """Cut a word into pieces of at most `most` characters, after one of _ . / - if possible."""
+    found = [""]
+    for part in _JOINT.findall(word):
+        cut = [part[at : at + most] for at in range(0, len(part), most)]
+        for one in cut:
+            if len(found[-1]) + len(one) <= most:
+                found[-1] += one
+            else:
+                found.append(one)
+    return [one for one in found if one]
+
+
 def _lines(words: str, most: int) -> list[str]:
     return [part for line in words.splitlines() for part in textwrap.wrap(line, most, break_long_words=False)]
 
@@ -157,6 +198,20 @@ def _lines(words: str, most: int) -> list[str]:
 def _length(text: Text) -> float:
     box = text.get_window_extent()
     return float(box.height if text.get_rotation() == 90.0 else box.width)  # noqa: PLR2004  degrees
+
+
+def _shorten_names(axis: Axis) -> None:
+    """Leave the middle out of long names at an axis."""
+    if isinstance(axis.get_major_locator(), FixedLocator):
+        names = [label.get_text() for label in axis.get_majorticklabels()]
+        words = [max(name.split(), key=len, default="") for name in names]
+        if max(map(len, words), default=0) > _WHOLE_WORD:
+            axis.set_ticklabels([name.replace(word, _short(word)) for name, word in zip(names, words, strict=True)])
+
+
+def _short(word: str) -> str:
+    end = _WHOLE_WORD // 3
+    return word if len(word) <= _WHOLE_WORD or "$" in word else f"{word[: 2 * end]}…{word[-end:]}"
 
 
 def _in_millimetres(axes: Axes) -> None:
@@ -312,6 +367,29 @@ def _checked(size: Any) -> tuple[float, float | None]:
     return sides
 
 
+_MISSING = re.compile(r"Glyph (\d+) .* missing from (?:current )?font")
+
+
+@contextmanager
+def missing_glyphs() -> Iterator[dict[str, None]]:
+    """Yield the characters of what is drawn in this context that the fonts lack, in place of many warnings."""
+    found = dict[str, None]()
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        yield found
+    for one in caught:
+        if glyph := _MISSING.match(str(one.message)):
+            found[chr(int(glyph[1]))] = None
+        else:
+            warnings.warn_explicit(one.message, one.category, one.filename, one.lineno)
+
+
+def remark_on_glyphs(missing: Iterable[str], remedy: str) -> None:
+    """Warn of characters that are drawn as boxes, because the fonts lack them."""
+    message = f"fonts: boxes are drawn for characters that they lack (got {', '.join(missing)}). {remedy}."
+    warnings.warn(message, UnlikelyInputWarning, stacklevel=3)
+
+
 class ResultFigure(Figure):
     """A Matplotlib figure of a result, drawn without pyplot: it is never shown twice and need not be closed.
 
@@ -336,8 +414,10 @@ class ResultFigure(Figure):
         """Save the figure as `Figure.savefig` does; texts in PDF and SVG stay texts unless the user set otherwise."""
         theirs, factory = cast("dict[Any, Any]", rcParams), cast("dict[Any, Any]", rcParamsDefault)
         kept: Any = {name: value for name, value in _SAVED.items() if theirs[name] == factory[name]}
-        with rc_context(kept):
+        with rc_context(kept), missing_glyphs() as missing:
             super().savefig(*args, **options)
+        if missing:
+            remark_on_glyphs(missing, 'Name a font that has them in matplotlib.rcParams["font.family"]')
 
     def _repr_png_(self) -> tuple[bytes, dict[str, int]]:
         buffer = BytesIO()

@@ -30,6 +30,7 @@ from stylobate.plots.result_figure import (
     asked_for,
     enlarged,
     fit_words,
+    missing_glyphs,
     thin_out_ticks,
     usual_font,
 )
@@ -93,7 +94,7 @@ def styled(draw: Callable[P, Figure]) -> Callable[P, Figure]:
         present = set() if caller is None else {*caller.findobj()}
         token = _DRAWING.set(True)
         try:
-            with _settings():
+            with _settings(), missing_glyphs():  # the file of the figure remarks on them
                 results: Any = [in_own_units(one) for one in args]
                 shown: Any = [with_literal_names(one) if isinstance(one, xr.Dataset) else one for one in results]
                 figure = draw(*shown, **kwargs)

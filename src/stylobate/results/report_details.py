@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
-from stylobate.errors import ParameterError, require_not_negative, require_positive
+from stylobate.errors import ParameterError, require_not_negative, require_positive, require_printable
 
 _ENDS = 2
 
@@ -36,6 +36,7 @@ class DesignSpectrum:
     damping: float = 0.05
 
     def __post_init__(self) -> None:
+        require_printable("design_spectrum: the name", self.name)
         if len(self.period) < _ENDS or len(self.period) != len(self.acceleration):
             raise ParameterError(
                 "design_spectrum: at least two points are needed, each with a period and an acceleration "
@@ -93,6 +94,11 @@ class ReportDetails:
 
     def __post_init__(self) -> None:
         require_positive("spectral_period", self.spectral_period, "s")
+        for name, text in (("author", self.author), ("project", self.project), ("date", self.date)):
+            require_printable(name, text)
+        for name, texts in (("about_columns", self.about_columns), ("about_records", self.about_records)):
+            for text in texts.values():
+                require_printable(name, text)
 
     def values(self) -> dict[str, Any]:
         """Return the details as plain values that JSON can hold."""

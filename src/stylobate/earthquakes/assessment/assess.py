@@ -51,7 +51,7 @@ from stylobate.earthquakes.fragility.displacement_limits import LimitStates
 from stylobate.earthquakes.fragility.observations import LIMIT_STATE
 from stylobate.earthquakes.intensities import Intensity, IntensityMeasure
 from stylobate.earthquakes.study_inputs import Records, remark_on
-from stylobate.errors import LARGEST_SEED, require_not_negative, require_positive, require_whole
+from stylobate.errors import LARGEST_SEED, require_not_negative, require_positive, require_printable, require_whole
 from stylobate.models import Model
 from stylobate.progress import Progress, in_parts, report_of, shows_progress
 from stylobate.provenance import provenance_of_run
@@ -217,6 +217,8 @@ def assess(
     """
     require_no_limits(options)
     details = details or ReportDetails()
+    for text in (title, *notes):
+        require_printable("title or notes: a text", text)
     inputs = Inputs.of(
         columns,
         records,

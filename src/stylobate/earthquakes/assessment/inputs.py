@@ -23,7 +23,7 @@ from stylobate.earthquakes.fragility.displacement_limits import (
 from stylobate.earthquakes.study_inputs import Records, named_records
 from stylobate.earthquakes.verdict_study import has_other_contact_law, with_other_contact_law
 from stylobate.engine.parameters import changed_model, model_names
-from stylobate.errors import ParameterError, require_not_negative, require_positive
+from stylobate.errors import ParameterError, require_name, require_not_negative, require_positive
 from stylobate.models import Model
 from stylobate.progress import Report
 from stylobate.provenance import provenance_of_run
@@ -121,6 +121,8 @@ class Inputs:
         """Check the arguments of an assessment; raise ParameterError for an invalid one."""
         if not isinstance(columns, Mapping) or not columns:
             raise ParameterError(f"columns must map names to models, at least one, got {columns!r}")
+        for name in columns:
+            require_name("columns: the name", name)
         levels = _checked_dissipation(dissipation, columns)
         stated = _rising("scales", scales, least=1)
         scan = _rising("margin_scales", margin_scales, least=2)

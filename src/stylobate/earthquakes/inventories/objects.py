@@ -16,12 +16,19 @@ from stylobate.config.parts import ColumnConfig, ModelConfig
 from stylobate.earthquakes.fragility import HazardCurve
 from stylobate.earthquakes.property_spreads import Spread, inertia_spreads, shares_of
 from stylobate.earthquakes.study_inputs import Records
-from stylobate.errors import ConfigError, ParameterError, UnlikelyInputWarning, require_positive
+from stylobate.errors import (
+    ConfigError,
+    ParameterError,
+    UnlikelyInputWarning,
+    require_name,
+    require_positive,
+    require_printable,
+)
 from stylobate.models import Model
 from stylobate.models.declared import MODELS
 from stylobate.quantities import Quantity, parameters_of, unchecked
 from stylobate.studies.sweeps.designs import Floats
-from stylobate.text import did_you_mean
+from stylobate.text import did_you_mean, printable
 
 Draws: TypeAlias = Mapping[str, Floats]
 """Numbers of column and model of the runs by name, each of shape (runs,)."""
@@ -84,6 +91,10 @@ class InventoryObject:
     crs: str = ""
     where: str = ""
 
+    def __post_init__(self) -> None:
+        cells = {printable(heading): printable(str(cell)) for heading, cell in self.carried.items()}
+        object.__setattr__(self, "carried", cells)  # a control character in it does not matter to the runs
+
     @property
     def place(self) -> str:
         """Place of the row, or the name, for messages."""
@@ -98,6 +109,8 @@ class InventoryObject:
             With one line for each invalid number; each begins with the place of the row.
         """
         try:
+            require_name("name", self.name)
+            require_printable("site", self.site)
             described = _Parts.parse({"column": dict(self.column), "model": {"kind": kind, **self.model}})
             stated = described.column.numbers()
             model = described.model.build(described.column.build())

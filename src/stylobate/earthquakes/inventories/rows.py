@@ -9,7 +9,7 @@ from typing import NamedTuple, Self
 
 from stylobate.earthquakes.inventories.geopackages import read_layer
 from stylobate.errors import FileError
-from stylobate.files import file_of
+from stylobate.files import file_of, unmarked
 from stylobate.records.containers import is_container, members
 from stylobate.records.contents import Allowance, read_bytes, require_readable
 from stylobate.records.text_files import Text
@@ -86,14 +86,15 @@ class ObjectTable:
             raise FileError(f"{text.path}: no headings. Write the names of the columns in the first line.")
         separator = max(_SEPARATORS, key=lines[begin].count)
         reader = csv.reader([f"{line}\n" for line in lines[begin:]], delimiter=separator)
-        headings = [heading.strip() for heading in next(reader)]
+        read = unmarked if whole is None else str
+        headings = [read(heading.strip()) for heading in next(reader)]
         while headings and not headings[-1]:
             headings.pop()
         rows: list[Row] = []
         problems: list[str] = []
         for cells in reader:
             place = f"{text.path.name}, row {begin + reader.line_num}"
-            plain = [one.replace("\N{NO-BREAK SPACE}", " ").strip() for one in cells]
+            plain = [read(one.replace("\N{NO-BREAK SPACE}", " ").strip()) for one in cells]
             if whole is not None:
                 plain = [one.removesuffix(".0") if whole.fullmatch(one) else one for one in plain]
             if not any(plain):

@@ -17,6 +17,7 @@ from stylobate.files import csv_text, write_whole, write_workbook
 from stylobate.plots.page import PageTable, page, pdf_of, png_of, style_text
 from stylobate.progress import Progress, Report, report_of, shows_progress
 from stylobate.results.assessment import Assessment
+from stylobate.text import printable
 
 # Tables of a dozen columns fit a wide screen; a narrow screen scrolls tables and figures. Pages of paper have a running
 # title and numbers; tables break between rows.
@@ -24,8 +25,8 @@ _STYLE = """
 .wide + .wide { margin-top: 1.4rem; } nav a { display: inline-block; }
 body > .wide td:nth-child(-n+2) { font-weight: 600; } ul { padding-left: 1.2rem; }
 @page { size: A4; margin: 17mm 15mm 17mm;
-  @top-left { content: TITLE; font: 8pt sans-serif; color: #555; }
-  @top-right { content: NAMED; font: 8pt sans-serif; color: #555; }
+  @top-left { content: TITLE; font: 8pt sans-serif; color: #555; overflow-wrap: anywhere; }
+  @top-right { content: NAMED; font: 8pt sans-serif; color: #555; overflow-wrap: anywhere; }
   @bottom-right { content: "Page " counter(page) " of " counter(pages); font: 8pt sans-serif; color: #555; } }
 @page :first { @top-left { content: none; } @top-right { content: none; } }
 @media screen { body { max-width: 68rem; } .wide table { font-size: .84rem; line-height: 1.4; }
@@ -36,7 +37,7 @@ body > .wide td:nth-child(-n+2) { font-weight: 600; } ul { padding-left: 1.2rem;
   h2 { margin: 1rem 0 .3rem; font-size: 12pt; } p { margin: .35rem 0; orphans: 3; widows: 3; }
   ul { margin: .4rem 0; padding-left: 1rem; } table { font-size: 7.6pt; line-height: 1.25; }
   th, td { padding: .1rem .3rem; overflow-wrap: break-word; }
-  .many td:nth-child(2) { overflow-wrap: anywhere; min-width: 2.3cm; } body > figure img { max-height: 8.6cm; }
+  body > figure img { max-height: 8.6cm; }
   .many table { font-size: 6.8pt; } .wide + .wide { margin-top: .6rem; } figure { margin: .5rem 0; }
   figure img { width: 100%; max-height: 10cm; object-fit: contain; } figcaption { font-size: 8pt; }
   section:first-of-type { break-before: BREAK; } }
@@ -88,7 +89,7 @@ def assessment_report(
                 stale.unlink()
         for name, picture in pictures.items():
             write_whole(target / "figures" / f"{name}.png", picture.drawn)
-        write_whole(target / "summary.txt", summary_text(assessment, heads))
+        write_whole(target / "summary.txt", printable(summary_text(assessment, heads)))
         report = target / "report.html"
         write_whole(report, text)
         if pdf:
@@ -101,6 +102,12 @@ def assessment_report(
     return report
 
 
+def report_style(title: str, named: str, *, breaks: str = "auto") -> str:
+    """Return the style of a report with its running heads, and with a page break or none before its first section."""
+    style = _STYLE.replace("BREAK", breaks)
+    return style.replace("TITLE", style_text(title)).replace("NAMED", style_text(named))
+
+
 def _page(assessment: Assessment, tables: Mapping[str, PageTable], pictures: Pictures) -> str:
     """Return the page of an assessment, with its running title for paper."""
     title, details = str(assessment.setting["title"]), assessment.setting.get("details", {})
@@ -109,8 +116,7 @@ def _page(assessment: Assessment, tables: Mapping[str, PageTable], pictures: Pic
         words for words in (str(details.get("project", "")), author, str(details.get("date", ""))) if words
     )
     alone = assessment.data["columns"].sizes["column"] <= OBJECTS  # the answer to many flows over a page
-    style = _STYLE.replace("BREAK", "page" if alone else "auto")
-    style = style.replace("TITLE", style_text(title)).replace("NAMED", style_text(named))
+    style = report_style(title, named, breaks="page" if alone else "auto")
     sections = report_sections(assessment, tables, pictures)
     return page(title, first_page(assessment, pictures), sections, style=style, author=author)
 
