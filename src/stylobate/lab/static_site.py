@@ -5,6 +5,7 @@ Both show the page with recorded answers and send no request to another machine.
 
 import base64
 import gzip
+import hashlib
 import json
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
