@@ -214,14 +214,13 @@ def test_a_line_longer_than_those_of_tables_is_refused_at_once(tmp_path, end):
 
 def test_no_line_takes_long(tmp_path):
     path = tmp_path / "a.txt"
-    for word in ("[", "(", ",", ";", "K: ", '"a",'):
-        line = (word * contents.LONGEST_LINE)[: contents.LONGEST_LINE - 1]
-        path.write_text(f"{line}\n0.1 0.2\n0.2 broken\n")
+    for word in ("[", ",", ";", '"a",'):
+        path.write_text(f"{word * (16000 // len(word))}\n0.1 0.2\n0.2 broken\n")
         begin = time.process_time()
         with pytest.raises(FileError) as raised:
             sb.read_records([path], "g")
-        # A search that is quadratic in the length of the line takes half a minute or more.
-        assert time.process_time() - begin < 5.0
+        # A search that is quadratic in the length of the line takes two to ten seconds.
+        assert time.process_time() - begin < 1.5
         assert len(str(raised.value)) < 700
 
 
@@ -316,14 +315,9 @@ def test_a_pipe_without_end_is_read_up_to_the_limit(tmp_path, monkeypatch):
 
 def test_the_page_on_security_states_the_limits_and_formats():
     page = (Path(sb.__file__).parents[2] / "docs/about/security.md").read_text(encoding="utf-8")
-    limits = [
-        f"{contents.LARGEST >> 30} GiB",
-        f"{contents.LONGEST_TEXT >> 20} MiB",
-        f"{contents.LONGEST_LINE >> 10} KiB",
-    ]
-    limits += [
-        f"{number:_}".replace("_", " ") for number in (contents.MOST_FILES, containers.MOST_ROWS, containers.MOST_CELLS)
-    ]
-    limits += [f"| {contents.DEEPEST} |", f"{containers.LARGEST_WORKBOOK >> 20} MiB"]
+    counts = contents.MOST_FILES, containers.MOST_ROWS, containers.MOST_CELLS
+    limits = [f"{number:_}".replace("_", " ") for number in counts]
+    limits += [f"{size >> 20} MiB" for size in (contents.LONGEST_TEXT, containers.LARGEST_WORKBOOK)]
+    limits += [f"{contents.LARGEST >> 30} GiB", f"{contents.LONGEST_LINE >> 10} KiB", f"| {contents.DEEPEST} |"]
     for one in (*limits, *(form.name for form in FORMATS)):
         assert one in page, one
