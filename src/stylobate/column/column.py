@@ -262,8 +262,8 @@ class Column(StandingBody):
         max_radius
             Largest radius [m], such as that of the belly. It makes the moment about the axis far surer.
         inertia_spread
-            Standard deviation of the logarithm of the transverse moment of inertia; by default 0.1. Verdicts,
-            assessments and inventories vary both moments by their spreads; 0 states that they are certain.
+            Relative standard deviation of the transverse moment of inertia; by default 0.1. Verdicts, assessments and
+            inventories vary both moments by their spreads; 0 states that they are certain.
 
         Raises
         ------
@@ -323,7 +323,7 @@ class Column(StandingBody):
             Heights of the corners from the base up [m]; the first is that of the floor. Two corners at one height are
             a step.
         radii
-            Outer radii there [m]; the first is that of the foot, on which the body stands.
+            Outer radii there [m]. The body stands on the largest one at the floor.
         inner_radii
             Inner radii there [m], 0 where the body is solid. In its place a hollow body may state `wall_thickness`.
         wall_thickness
@@ -357,7 +357,7 @@ class Column(StandingBody):
         body = joined([*solid, *hollow]).raised(-z[0])
         density = _density(density, mass, body.mass)
         return cls(
-            radius=outer[0],
+            radius=max(one for height, one in zip(z, outer, strict=True) if height == z[0]),
             mass_height=body.mass_height,
             mass=density * body.mass,
             transverse_inertia=density * body.transverse_inertia,
