@@ -108,7 +108,7 @@ def _problem(request: Request, in_address: bool) -> str:
         return "token: the one in this address is not valid."
     if _name(request) in request.cookies:
         return "token: the laboratory was started again and has a new one."
-    return "token: missing or wrong."
+    return "token: wrong." if "authorization" in request.headers else "token: missing."
 
 
 def _refusal(request: Request) -> Response:
