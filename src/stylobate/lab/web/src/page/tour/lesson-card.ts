@@ -109,8 +109,10 @@ export class LessonCard {
     const { lessons } = this.#about;
     const place = lessons.indexOf(lesson);
     this.#steps.forEach((step, i) => {
-      if (i === place) step.setAttribute("aria-current", "step");
-      else step.removeAttribute("aria-current");
+      if (i === place) {
+        step.setAttribute("aria-current", "step");
+        step.parentElement!.parentElement!.scrollLeft = step.offsetLeft - 2 * step.offsetWidth;
+      } else step.removeAttribute("aria-current");
     });
     this.#question.textContent = lesson.question;
     this.#task.textContent = lesson.task;
