@@ -9,7 +9,6 @@ from tests.lab.static.cases import BLOCK, EL_CENTRO, FOLDER, LESSONS, MAP, conte
 
 from stylobate.lab import kernels
 
-
 PARTS = 20
 
 
