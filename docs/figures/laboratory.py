@@ -91,7 +91,7 @@ def temple(browser: Browser, address: str) -> None:
     enter(page, "1")
     page.get_by_text("It falls.").wait_for()
     page.get_by_role("button", name="Vary it").click()
-    page.get_by_text("64 small variations").wait_for()
+    page.get_by_text("64 small variations, ").wait_for()
     to(page, 9.4)
     keep(page, "dark.png")
 

@@ -36,6 +36,8 @@ def test_a_lesson_is_written_in_metres_hertz_and_degrees_without_symbols(opened)
         text = opened.locator(", ".join(panels)).all_inner_texts()
         assert not re.search("ω₀|rad/s|ψ|θ|backbone|both senses", "".join(text)), lesson.identity
         assert opened.locator(".response").is_visible() == lesson.curves
+        for field in opened.locator(".lesson input.number").all():
+            assert len(field.input_value()) <= 4
     to_lesson(opened, "critical")
     opened.get_by_role("button", name="Close the tour").click()
     opened.locator(".response .phase").wait_for()
