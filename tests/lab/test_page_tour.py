@@ -32,9 +32,13 @@ def test_a_lesson_is_written_in_metres_hertz_and_degrees_without_symbols(opened)
         opened.evaluate(f"() => {{ location.hash = '#lesson={lesson.identity}'; }}")
         opened.get_by_role("heading", name=lesson.question).wait_for()
         opened.wait_for_function("() => document.querySelector('.said').textContent !== ''")
-        text = opened.locator(".lesson, .show, .times, .response").all_inner_texts()
+        panels = (f"{name}:visible" for name in (".lesson", ".show", ".times", ".response"))
+        text = opened.locator(", ".join(panels)).all_inner_texts()
         assert not re.search("ω₀|rad/s|ψ|θ|backbone|both senses", "".join(text)), lesson.identity
         assert opened.locator(".response").is_visible() == lesson.curves
+        for field in opened.locator(".lesson input.number").all():
+            assert len(field.input_value()) <= 4
+    to_lesson(opened, "critical")
     opened.get_by_role("button", name="Close the tour").click()
     opened.locator(".response .phase").wait_for()
 

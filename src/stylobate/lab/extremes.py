@@ -128,7 +128,9 @@ def _predicted(times: Floats, values: Floats) -> Floats:
         left = (v[2] - v[1] + slopes[0] * t[1] - slopes[2] * t[2]) / (slopes[0] - slopes[2])
         right = (v[3] - v[2] + slopes[1] * t[2] - slopes[3] * t[3]) / (slopes[1] - slopes[3])
     found = np.stack([vertex, left, right], axis=1)
-    return np.where(np.isfinite(found), np.clip(found, t[1][:, np.newaxis], t[3][:, np.newaxis]), t[2][:, np.newaxis])
+    first, middle, last = (t[place][:, np.newaxis] for place in (1, 2, 3))
+    times_of_maxima: Floats = np.where(np.isfinite(found), np.clip(found, first, last), middle)
+    return times_of_maxima
 
 
 def _seen(time: Floats, samples: Floats, at: Floats, values: Floats, signs: Floats) -> list[tuple[float, float]]:

@@ -2,6 +2,7 @@
 
 import json
 import threading
+from contextlib import contextmanager
 from functools import partial
 from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
 
@@ -41,15 +42,24 @@ def site(written):
     return written[0]
 
 
+@contextmanager
+def serving(folder):
+    """Serve the files of a folder, and give the address."""
+    with ThreadingHTTPServer(("127.0.0.1", 0), partial(Quiet, directory=str(folder))) as server:
+        thread = threading.Thread(target=server.serve_forever)
+        thread.start()
+        try:
+            yield f"http://127.0.0.1:{server.server_port}/"
+        finally:
+            server.shutdown()
+            thread.join()
+
+
 @pytest.fixture(scope="session")
 def served(site):
     """Serve the files below a folder of a web server, and give the address."""
-    with ThreadingHTTPServer(("127.0.0.1", 0), partial(Quiet, directory=str(site))) as server:
-        thread = threading.Thread(target=server.serve_forever)
-        thread.start()
-        yield f"http://127.0.0.1:{server.server_port}/{FOLDER}/"
-        server.shutdown()
-        thread.join()
+    with serving(site) as address:
+        yield f"{address}{FOLDER}/"
 
 
 @pytest.fixture(params=["folder", "one file"])

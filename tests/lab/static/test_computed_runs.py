@@ -9,6 +9,19 @@ from tests.lab.static.cases import BLOCK, EL_CENTRO, FOLDER, LESSONS, MAP, conte
 
 from stylobate.lab import kernels
 
+PARTS = 20
+
+
+def assert_same_envelope(one, other, end):
+    """Compare the highest and the lowest extreme in each part of a run."""
+    (at, values), (other_at, other_values) = np.array(one).T, np.array(other).T
+    height = max(values.max(), 0.0) - min(values.min(), 0.0)
+    for place in range(PARTS):
+        inside, there = (np.floor(PARTS * time / end) == place for time in (at, other_at))
+        if inside.sum() > 4 and there.sum() > 4:
+            for of in (np.max, np.min):
+                assert of(values[inside]) == pytest.approx(of(other_values[there]), abs=5e-3 * height)
+
 
 def test_the_answers_are_those_of_the_server(served, site, browser, client):
     page = new_page(browser)
@@ -45,6 +58,8 @@ def test_computed_answers_are_those_of_the_server(lesson, served, browser, clien
     for name in ("amplitude", "base_acceleration", "friction_demand", "normal_force"):
         known = np.array(answer["series"][name], dtype=float)
         np.testing.assert_allclose(np.array(shown_here["series"][name], dtype=float), known, rtol=1e-5, atol=2e-6)
+    for name, here in shown_here["series"]["extremes"].items():
+        assert_same_envelope(here, answer["series"]["extremes"][name], shown_here["drawn"]["time"][-1])
     for name in set(shown_here["measures"]) - {"steps"}:
         known = answer["measures"][name]
         loads = name in ("peak_friction_demand", "peak_pivoting_demand", "minimum_normal_force")

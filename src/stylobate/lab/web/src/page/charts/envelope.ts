@@ -9,7 +9,7 @@ export interface Envelope {
 }
 
 /** Up and down a swing has two lines of 1.5 px: one that is narrower cannot be seen [px]. */
-const NARROWEST = 4;
+const NARROWEST = 3;
 
 /** Swings, at least, of which the band has the lowest and the highest value at one place. */
 const SWINGS = 1.5;

@@ -109,8 +109,10 @@ export class LessonCard {
     const { lessons } = this.#about;
     const place = lessons.indexOf(lesson);
     this.#steps.forEach((step, i) => {
-      if (i === place) step.setAttribute("aria-current", "step");
-      else step.removeAttribute("aria-current");
+      if (i === place) {
+        step.setAttribute("aria-current", "step");
+        step.parentElement!.parentElement!.scrollLeft = step.offsetLeft - 2 * step.offsetWidth;
+      } else step.removeAttribute("aria-current");
     });
     this.#question.textContent = lesson.question;
     this.#task.textContent = lesson.task;
@@ -137,12 +139,13 @@ export class LessonCard {
   #number({ name, unit: kept }: Quantity, from: number, to: number): Control {
     const { unit, factor } = name === "angular_frequency" ? frequencyScaling() : { unit: kept, factor: 1 };
     const label = unit === "Hz" ? "Frequency" : capital(words(name));
-    const range = [from, to].map((one) => rounded(one * factor)) as [number, number];
+    const range = [from, to].map((one) => rounded(one * factor, SHOWN)) as [number, number];
     const field = new NumberField({ name, label, symbol: "", unit, range }, (value) => {
       if (value !== null && this.#description !== null)
-        this.#hearing.changed(withValue(this.#description, name, rounded(value / factor)));
+        this.#hearing.changed(withValue(this.#description, name, rounded(value / factor, KEPT)));
     });
-    const shown = (value: number | undefined): number | null => (value === undefined ? null : rounded(value * factor));
+    const shown = (value: number | undefined): number | null =>
+      value === undefined ? null : rounded(value * factor, SHOWN);
     return { root: field.root, show: (description) => field.show(shown(valueOf(description, name))) };
   }
 
@@ -178,9 +181,11 @@ export class LessonCard {
   }
 }
 
-/** Returns a number without the digits in which another unit would differ. */
-function rounded(value: number): number {
-  return Number(value.toPrecision(6));
+/** Digits of a number as it is shown, and as it is kept in another unit: what is kept is shown as it was written. */
+const [SHOWN, KEPT] = [5, 6];
+
+function rounded(value: number, digits: number): number {
+  return Number(value.toPrecision(digits));
 }
 
 /** What a lesson says of a case that is not its own. */
