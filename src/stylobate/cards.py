@@ -5,8 +5,6 @@ from collections.abc import Iterable, Sequence
 from html import escape
 from typing import NamedTuple
 
-from stylobate.text import printable
-
 # Colours are those of the notebook, light or dark; names and lines are paler.
 _CARD = "border-collapse:collapse;color:inherit;background:none;font-size:inherit;margin:0.3em 0"
 _TITLE = "caption-side:top;text-align:left;font-weight:bold;color:inherit;padding:0 0 0.3em"
@@ -41,10 +39,10 @@ def card(title: str, sections: Iterable[CardSection], folded: CardSection | None
     body = "".join(map(_section, (one for one in sections if one.rows)))
     table = f'<table style="{_CARD}"><caption style="{_TITLE}">{escape(title)}</caption>{body}</table>'
     if folded is None or not folded.rows:
-        return printable(table)
+        return table
     rows = _section(folded._replace(heading=""))
     summary = f'<summary style="{_PALE}">{escape(folded.heading)}</summary>'
-    return printable(f'{table}<details>{summary}<table style="{_CARD}">{rows}</table></details>')
+    return f'{table}<details>{summary}<table style="{_CARD}">{rows}</table></details>'
 
 
 def _section(section: CardSection) -> str:

@@ -14,6 +14,7 @@
 
     Interrupted (KeyboardInterrupt)    Ctrl-C in the middle of many runs; carries what had been computed
     UnlikelyInputWarning (UserWarning)          input that is possible, but is more likely a mistake
+    EndedEarlyWarning (UserWarning)             a run that ended before its numbers were known: they are NaN
 
 Misuse raises an exception. A physical result, numerical failure included, is an `Outcome`.
 """
@@ -125,6 +126,10 @@ class Interrupted(KeyboardInterrupt):
 
 class UnlikelyInputWarning(UserWarning):
     """Input that is possible but unlikely; the message names it and the remedy."""
+
+
+class EndedEarlyWarning(UserWarning):
+    """A run that ended before its numbers were known, so that they are NaN; the message names outcome and time."""
 
 
 class Named:

@@ -2,7 +2,10 @@
 
 import gc
 import importlib
+import os
 import signal
+import subprocess
+import sys
 
 import pytest
 
@@ -21,3 +24,15 @@ def test_a_request_to_end_interrupts_the_command(monkeypatch):
     finally:
         gc.unfreeze()
         signal.signal(signal.SIGTERM, before)
+
+
+@pytest.mark.posix
+@pytest.mark.parametrize("arguments", [["--version"], ["simulate", "--help"]])
+def test_a_command_ends_silently_when_nobody_reads_its_output(arguments):
+    read, write = os.pipe()
+    os.close(read)
+    ended = subprocess.run(
+        [sys.executable, "-m", "stylobate", *arguments], stdout=write, stderr=subprocess.PIPE, check=False
+    )
+    os.close(write)
+    assert (ended.returncode, ended.stderr) == (128 + signal.SIGPIPE, b"")

@@ -139,7 +139,7 @@ def test_saved_runs_are_fitted_anew_and_repeated(folder, capsys, saved, monkeypa
     monkeypatch.chdir(folder)
     assert run(["fragility", "study.toml", "--output", "runs.nc"]) == 0
     table = capsys.readouterr().out
-    assert "damping: Housner's impacts lose as η = 0.12, 0.08, 0.064 at a peak tilt of ¼, ½, ¾ α_c" in table
+    assert "damping of Housner's impacts: η = 0.12, 0.08, 0.064 at a peak tilt of ¼, ½, ¾ α_c" in table
     for words in ("overturning", "in 50 years", "4 records × 3 property samples × 4 scales", "runs counted first"):
         assert words in table
     assert run(["fragility", "runs.nc", "--counting", "as computed", "--resamples", "0", "--json"]) == 0

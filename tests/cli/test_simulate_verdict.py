@@ -38,7 +38,7 @@ def test_the_table_has_the_verdict_the_model_and_the_yardstick_of_its_damping(ca
     found = sb.verdict(MODEL, pulse(acceleration), runs=60)
     assert rows["verdict"] == str(found)
     assert rows["model"] == "wobbling, damping 0.08"
-    assert rows["Housner's impacts lose as"].startswith("η = 0.12, 0.08, 0.064")
+    assert rows["damping of Housner's impacts"].startswith("η = 0.12, 0.08, 0.064")
     assert ("decided most by" in rows) == bool(found.deciding)
     undecided = found.word is sb.results.VerdictWord.UNDECIDED
     assert undecided == (acceleration == 2.35)

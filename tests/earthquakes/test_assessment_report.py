@@ -33,7 +33,7 @@ from stylobate.earthquakes.assessment.report.findings import column_findings, su
 from stylobate.earthquakes.assessment.report.sections import document_table, first_page, not_covered, report_sections
 from stylobate.earthquakes.assessment.report.sketch import objects_figure
 from stylobate.earthquakes.assessment.report.tables import drifting
-from stylobate.earthquakes.assessment.report.wording import at_most, intervals, least_scale
+from stylobate.earthquakes.assessment.report.wording import at_least, at_most, intervals, least_scale
 from stylobate.earthquakes.figures.overturning_intervals import UNDECIDED
 from stylobate.plots.page import PageList, require_pdf
 from stylobate.results import DesignSpectrum, ReportDetails
@@ -208,6 +208,10 @@ def test_verdicts_promise_nothing(found, folder):
     summary = (folder / "summary.txt").read_text(encoding="utf-8")
     heads = [document_table(found), verdict_table(found), answer_table(found, 1.0)]
     assert summary == summary_text(found, heads)
+    answers = heads[-1]
+    for row in answers.rows:  # each number stands behind its heading
+        (line,) = (one for one in summary.splitlines() if one.startswith(f"{row[0]}: {row[1]}; "))
+        assert all(f"{name} {cell}" in line for name, cell in zip(answers.header[2:], row[2:], strict=True))
     assert "did not overturn" in summary
     words = summary + " ".join(
         cell for table in assessment_tables(found).values() for row in table.rows for cell in row
@@ -719,7 +723,8 @@ def test_bounds_are_rounded_up_in_every_table_and_sentence(found):
         exact = float(scales.sel(column=cells["column"], record=cells["record"], case=cells["case"]))
         if not cells["smallest overturning scale, at most"].startswith("> "):
             assert exact <= float(cells["smallest overturning scale, at most"]) * (1.0 + 1e-12) < exact * 1.002
-    assert [at_most(0.77251), at_most(0.7725), at_most(0.77251, 3), at_most(2.0)] == ["0.7726", "0.7725", "0.773", "2"]
+    assert [at_most(0.77251), at_most(0.772), at_most(0.0999), at_most(2.0)] == ["0.773", "0.772", "0.0999", "2"]
+    assert [at_least(0.77251), at_least(0.772), at_least(1.999), at_least(2.0)] == ["0.772", "0.772", "1.99", "2"]
 
 
 def test_a_record_without_a_vertical_component_is_not_said_to_have_one(found):

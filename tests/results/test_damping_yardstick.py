@@ -41,6 +41,6 @@ def test_levels_lie_below_the_yardstick_above_it_or_among_its_values(given, side
 
 
 def test_the_rows_of_a_run_show_its_damping_beside_that_of_housner():
-    yardstick = ("Housner's impacts lose as", "η = 0.12, 0.08, 0.064 at a peak tilt of ¼, ½, ¾ α_c")
+    yardstick = ("damping of Housner's impacts", "η = 0.12, 0.08, 0.064 at a peak tilt of ¼, ½, ¾ α_c")
     assert damping_rows(COLUMN, 0.02) == [("damping", "η = 0.02"), yardstick]
     assert damping_rows(COLUMN, None) == [yardstick]

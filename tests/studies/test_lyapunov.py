@@ -1,10 +1,12 @@
 """Lyapunov exponents: those of orbits are their multipliers', their sum is the rate at which volumes shrink."""
 
+import re
+
 import numpy as np
 import pytest
 
 import stylobate as sb
-from stylobate.errors import ParameterError, UnsupportedError
+from stylobate.errors import EndedEarlyWarning, ParameterError, UnsupportedError
 
 ETA = 0.1
 MODEL = sb.Slender(sb.Column.dimensionless(0.1), damping=ETA)
@@ -114,7 +116,12 @@ def test_on_the_unstable_steady_rolling_the_largest_is_the_real_part_of_its_eige
 
 
 def test_a_motion_that_overturns_tells_so_and_has_none():
-    found = sb.studies.lyapunov_exponents(MODEL, circular(0.9), tilt=(0.08, 0.0), periods=50, skip=0)
+    with pytest.warns(EndedEarlyWarning, match="overturned between t = .* exponents are NaN") as caught:
+        found = sb.studies.lyapunov_exponents(MODEL, circular(0.9), tilt=(0.08, 0.0), periods=50, skip=0)
+    start, end = map(float, re.findall(r"[\d.]+(?= s)", str(caught[0].message)))
+    run = sb.simulate(MODEL, circular(0.9), tilt=(0.08, 0.0), duration=50.0 * circular(0.9).period)
+    assert 0.999 * start < run.decided_at  # the column is past its point of no return before it falls
+    assert end - start == pytest.approx(circular(0.9).period, rel=1e-3)
     assert found.attrs["ending"] == "overturned"
     assert found["periods_counted"] < 50
     assert found["lyapunov_exponent"].isnull().all()

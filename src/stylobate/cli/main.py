@@ -13,7 +13,7 @@ from typing import Any
 
 from stylobate.cli.commands import COMMANDS
 from stylobate.cli.terminal import INTERRUPTED, NOT_READ, interrupted_by_signals, log_lines, remark
-from stylobate.errors import ConfigError, ModelError, StylobateError, UnlikelyInputWarning
+from stylobate.errors import ConfigError, EndedEarlyWarning, ModelError, StylobateError, UnlikelyInputWarning
 from stylobate.text import printable
 
 _BAD_INPUT = 2
@@ -44,7 +44,8 @@ def main() -> None:
 def run(arguments: Sequence[str]) -> int:
     """Run one command and return its exit status."""
     with warnings.catch_warnings():
-        warnings.simplefilter("always", UnlikelyInputWarning)
+        for kind in (UnlikelyInputWarning, EndedEarlyWarning):
+            warnings.simplefilter("always", kind)
         warnings.showwarning = partial(_show_warning, set())
         with log_lines():
             return _run(arguments)

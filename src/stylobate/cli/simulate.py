@@ -101,8 +101,8 @@ class VerdictOfCase:
         from stylobate.earthquakes.verdict_study import undamped
         from stylobate.results.verdict import LABELS, percent
 
-        laws = ", ".join(f"{name} {percent(share)}" for name, share in verdict.share_by_model.items())
-        rows = [*model, ("verdict", str(verdict)), ("by contact law", f"{laws} overturn")]
+        laws = ", ".join(f"{percent(share)} with {name}" for name, share in verdict.share_by_model.items())
+        rows = [*model, ("verdict", str(verdict)), ("overturn by contact law", laws)]
         if remark := undamped(self.setup.model, (self.arguments or {}).get("variations") or {}):
             rows.append(("warning", remark))
         if verdict.deciding:

@@ -224,8 +224,9 @@ def _speed(case: xr.Dataset) -> str:
         return known.name.lower()
     speed, low, high = (1000.0 * float(case[name]) for name in ("speed", "speed_low", "speed_high"))
     azimuth = math.degrees(float(case["direction"]))
-    towards = f", towards {azimuth:.0f}°" if speed > 0.0 else ""
-    return f"{speed:.1f} mm/s, {low:.1f} to {high:.1f}{towards}"
+    towards = f" towards {azimuth:.0f}°" if speed > 0.0 else ""
+    interval = f" ({low:.1f} to {high:.1f} mm/s)" if f"{low:.1f}" != f"{high:.1f}" else ""
+    return f"{speed:.1f} mm/s{towards}{interval}"
 
 
 def _range(case: xr.Dataset) -> str:

@@ -120,12 +120,18 @@ def _row(one: "xr.Dataset", names: list[str], meanings: list[str]) -> dict[str, 
 
 
 def _speed(row: Mapping[str, Any], unit: Practical) -> str:
-    """Write the speed with the half-width of its interval, or the reason why there is none."""
+    """Write the speed, with the half-width of its interval where its digits show it, or why there is none."""
     if row["transport"] in ("ACCELERATES", "ENDED"):
         return str(row["transport"]).lower()
     half = row["speed_high"] - row["transport_speed"]
     wide = " (unsettled)" if row["transport"] == "UNSETTLED" else ""
-    return f"{unit.factor * row['transport_speed']:.4g} ± {unit.factor * half:.2g}{wide}"
+    speed = f"{unit.factor * row['transport_speed']:.4g}"
+    shown = half > _DIGITS * abs(row["transport_speed"])
+    return f"{speed} ± {unit.factor * half:.2g}{wide}" if shown else f"{speed}{wide}"
+
+
+# Half a step of the last of four digits, relative to the number.
+_DIGITS = 5e-5
 
 
 def _or_zero(speed: float) -> float:

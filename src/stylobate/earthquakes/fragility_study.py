@@ -360,7 +360,7 @@ def table_of_fits(
     remarks = [
         f"{percent} intervals: {fits.attrs['intervals']}; runs counted {fits.attrs['counting']}",
         *(
-            [f"damping: Housner's impacts lose as {yardstick_text(fits.attrs['housner_damping'])}"]
+            [f"damping of Housner's impacts: {yardstick_text(fits.attrs['housner_damping'])}"]
             if "housner_damping" in fits.attrs
             else ["slip of a column that slides before it rocks; damping has no effect"]
         ),
@@ -380,6 +380,14 @@ def table_of_fits(
 _BRACKETED = {"m s-2": " [m/s²]", "m s-1": " [m/s]"}
 
 
+def _between(row: Mapping[str, Any]) -> str:
+    """Write the interval of a median without estimate: empty if it has no ends."""
+    low, high = row["median_low"], row["median_high"]
+    if math.isfinite(low) and math.isfinite(high):
+        return f"between {_short(low)} and {_short(high)}"
+    return f"{_short(low)} to {_short(high)}"
+
+
 def _cells(row: Mapping[str, Any], *, in_g: bool) -> list[str]:
     fitted = row["status"] == "fitted"
     median, dispersion = (
@@ -388,7 +396,9 @@ def _cells(row: Mapping[str, Any], *, in_g: bool) -> list[str]:
     unknown = f", {row['runs_not_known']} not known" if row["runs_not_known"] else ""
     cells = [
         row["name"],
-        f"{_short(row['median'])}, {median}" if fitted else f"{row['status']}: {median}",
+        f"{_short(row['median'])}, {median}"
+        if fitted
+        else f"{row['status']}{', ' * (row['status'] == 'separated')}{_between(row)}",
         *([_short(row["median"] / STANDARD_GRAVITY) if fitted else ""] if in_g else ()),
         f"{_short(row['dispersion'])}, {dispersion}" if fitted else "",
         f"{row['runs_reached']} of {row['runs']}{unknown}",

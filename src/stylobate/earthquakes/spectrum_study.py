@@ -102,7 +102,7 @@ def _least(row: Mapping[str, Any]) -> float:
 def _interval(interval: Mapping[str, Any]) -> str:
     sure = "?" if interval["uncertain_below"] or interval["uncertain_above"] else ""
     low = "" if math.isfinite(interval["safe_below"]) else "below "
-    high = f"to {interval['interval_to']:.4g}" if math.isfinite(interval["safe_above"]) else "on"
+    high = f"to {interval['interval_to']:.4g}" if math.isfinite(interval["safe_above"]) else "and beyond"
     return f"{low}{interval['interval_from']:.4g} {high}{sure}"
 
 

@@ -33,6 +33,7 @@ from stylobate.engine.ensembles.runs import (
 from stylobate.engine.forcing import check_motion
 from stylobate.engine.parameters import changed_model, check_names, in_declared_units, own_numbers, split
 from stylobate.engine.starts import Turning, refuse_friction, require_nouns
+from stylobate.engine.verdict import duration_of_runs
 from stylobate.errors import (
     MOST_THREADS,
     Interrupted,
@@ -79,7 +80,7 @@ def simulate_ensemble(
     position: ArrayLike = (0.0, 0.0),
     velocity: ArrayLike = (0.0, 0.0, 0.0),
     clearance: ArrayLike = 0.0,
-    duration: ArrayLike,
+    duration: "ArrayLike | None" = None,
     friction_coefficient: "ArrayLike | None" = None,
     parameters: Mapping[str, ArrayLike] | None = None,
     threads: int | None = None,
@@ -109,7 +110,9 @@ def simulate_ensemble(
         as for `tilt`; (3,) or (n, 3) for `velocity`, or a DataArray with a dimension "component". Of models whose
         contact neither slips nor opens, twist and position change no result of an ensemble.
     duration
-        Duration of the runs [s]: a number, shape (n,), or a DataArray.
+        Duration of the runs [s]: a number, shape (n,), or a DataArray. If all base motions end, such as records or
+        pulses, the default is that of the longest one and a free-vibration tail of 20/p, where p is
+        `model.column.frequency_parameter`.
     friction_coefficient
         Friction coefficient of the contact, shapes as for `duration`: the result says which runs need more friction.
         Models that can slip have a number of their own.
@@ -146,7 +149,8 @@ def simulate_ensemble(
     ------
     ParameterError
         If an argument is out of range, two arguments have different lengths along a dimension, or two parameters
-        contradict each other: slenderness changes the radius, size the lengths.
+        contradict each other: slenderness changes the radius, size the lengths. If `duration` is missing and the base
+        is at rest or its motion does not end.
     UnsupportedError
         If the model cannot be compiled, or the motion lacks a number that is varied.
     Interrupted
@@ -168,7 +172,10 @@ def simulate_ensemble(
     own = own_numbers(model, moved)
     changes = in_declared_units(changes, own)
     tilt, tilt_rate = as_numbers("tilt", tilt, "rad"), as_numbers("tilt_rate", tilt_rate, "rad/s")
-    spin, duration = as_numbers("spin", spin, "rad/s"), as_numbers("duration", duration, "s")
+    spin = as_numbers("spin", spin, "rad/s")
+    if duration is None:
+        duration = duration_of_runs(model, moved, _ends(changes))
+    duration = as_numbers("duration", duration, "s")
     refuse_friction(model, friction_coefficient)
     orbits = as_orbits(run["known_orbits"])
     options = _options(model, run, with_orbits=bool(orbits), with_friction=friction_coefficient is not None)
@@ -213,6 +220,12 @@ def _named(parameters: Mapping[str, ArrayLike] | None) -> dict[str, ArrayLike]:
     if parameters is not None and not isinstance(parameters, Mapping):
         raise ParameterError(f'parameters must name what differs, such as {{"acceleration": […]}}, got {parameters!r}')
     return dict(parameters or {})
+
+
+def _ends(parameters: Mapping[str, ArrayLike]) -> dict[str, tuple[float, float]]:
+    """Return the smallest and largest value of each parameter; those without numbers are refused later."""
+    arrays = {name: np.asarray(values, dtype=float) for name, values in parameters.items()}
+    return {name: (float(array.min()), float(array.max())) for name, array in arrays.items() if array.size}
 
 
 def _options(model: Model, run: Mapping[str, Any], *, with_orbits: bool, with_friction: bool) -> EnsembleOptions:

@@ -1,15 +1,20 @@
 """Outcome of a run: duration and survival, rules for the last periods, and doubt."""
 
 import math
+from collections.abc import Mapping
 from dataclasses import asdict
+from itertools import product
 
 import numpy as np
 import numpy.typing as npt
 
 from stylobate.base_motions import BaseMotion
+from stylobate.base_motions.combined import members_of
+from stylobate.base_motions.declared import numbers_of_motion
 from stylobate.elementwise import cos, sin
 from stylobate.engine.ensembles.late import RETURNS_BEFORE, Ground, Late, Rules
 from stylobate.engine.kernel.columns import LAGS, SLACK
+from stylobate.engine.parameters import changed_motion
 from stylobate.engine.trajectory import Trajectory
 from stylobate.errors import Outcome, ParameterError, require_positive
 from stylobate.models import Model
@@ -42,6 +47,33 @@ def duration_of(duration: float | None, model: Model, motion: BaseMotion, rules:
         what = "a base at rest" if motion.duration == 0.0 else "a base motion that never ends and has no period"
         raise ParameterError(f"duration must be given, in s, with {what}, such as duration=60.0; got None")
     return duration_with_tail(motion.duration, model.column.frequency_parameter)
+
+
+def duration_of_runs(model: Model, motion: BaseMotion, ends: Mapping[str, tuple[float, float]]) -> float:
+    """Return the duration of runs that state none [s]: the longest of their base motions, and 20/p of `model`.
+
+    Parameters
+    ----------
+    model, motion
+        Model and base motion of the runs.
+    ends
+        Smallest and largest value of each number that varies between the runs.
+
+    Raises
+    ------
+    ParameterError
+        If the base is at rest, or a base motion does not end.
+    """
+    longest = 0.0
+    for one in members_of(motion):
+        lasting = {**numbers_of_motion(one), "delay": None}
+        varied = {name: pair for name, pair in ends.items() if name.removeprefix("motion.") in lasting}
+        for corner in product(*varied.values()):
+            longest = max(longest, changed_motion(one, dict(zip(varied, corner, strict=True))).duration)
+    if not 0.0 < longest < math.inf:
+        what = "a base at rest" if longest == 0.0 else "a base motion that does not end"
+        raise ParameterError(f"duration: missing for {what} (got None). State it in s, such as duration=60.0.")
+    return duration_with_tail(longest, model.column.frequency_parameter)
 
 
 def survival(model: Model, motion: BaseMotion, trajectory: Trajectory) -> tuple[Outcome, str]:

@@ -30,7 +30,7 @@ def column_rows(column: "Column", capacity: float) -> Rows:
 def damping_rows(column: "Column", damping: float | None) -> Rows:
     """Return the rows of the damping of a run, if its model has any, and of Housner's damping of its column."""
     own = [] if damping is None else [("damping", f"η = {damping:.4g}")]
-    return [*own, ("Housner's impacts lose as", yardstick_text(damping_yardstick(column).values()))]
+    return [*own, ("damping of Housner's impacts", yardstick_text(damping_yardstick(column).values()))]
 
 
 def outcome_of(run: Any) -> str:
@@ -63,7 +63,7 @@ def _motion_rows(run: Any) -> Rows:
     measures = run.measures
     rows = [("peak tilt", f"{measures['peak_tilt']:.6g} rad, {measures['peak_tilt_over_c']:.4g} c")]
     if measures["peak_tilt"] > 0.0:
-        rows.append(("reached at", f"{measures['time_of_peak_tilt']:.4f} s"))
+        rows.append(("time of the peak tilt", f"{measures['time_of_peak_tilt']:.4f} s"))
         rows.append(("turns of the contact point", f"{measures['turns']:.3f}"))
     if "mean_rolling_rate" in measures:
         rows.append(("mean rolling rate", f"{measures['mean_rolling_rate']:.6g} rad/s"))

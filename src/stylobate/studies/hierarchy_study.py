@@ -247,10 +247,21 @@ def _tables(result: "xr.Dataset") -> list[ResultTable]:
     warned = zip(shown["model"].to_numpy(), shown["warnings"].to_numpy(), strict=True)
     remarks += [f"{model}: {line}" for model, line in warned if line]
     distance = f"distance: maximum deviation of the tilt vector from {result.attrs['reference']}"
-    return [ResultTable(f"tilts over c; late: the last fifth of the run; {distance}", header, rows, remarks)]
+    demand = "friction and pivoting: required coefficients; normal force: its minimum over the weight"
+    return [ResultTable(f"tilts over c; late: the last fifth of the run; {demand}; {distance}", header, rows, remarks)]
 
 
-_HEADER = ("model", "outcome", "peak tilt", "late mean", "spin rad/s", "friction", "pivoting", "min N", "distance")
+_HEADER = (
+    "model",
+    "outcome",
+    "peak tilt",
+    "late mean",
+    "spin [rad/s]",
+    "friction",
+    "pivoting",
+    "normal force",
+    "distance",
+)
 
 
 def _row(at: "xr.Dataset", c: float) -> list[str]:

@@ -49,7 +49,14 @@ class Computing(TypedDict, total=False):
 class Lengths(TypedDict, total=False):
     """How long runs last."""
 
-    duration: Annotated[float | None, Argument(None, "Duration of each run [s].")]
+    duration: Annotated[
+        float | None,
+        Argument(
+            None,
+            "Duration of each run [s]. If all base motions end, the default is that of the longest one and a "
+            "free-vibration tail of 20/p, where p is `model.column.frequency_parameter`.",
+        ),
+    ]
     periods: Annotated[
         float | None, Argument(None, "Duration of each run in periods of the base motion, in place of `duration`.")
     ]

@@ -206,8 +206,9 @@ def table_of_ranking(found: xr.Dataset) -> ResultTable:
     state, scale = str(found.attrs["limit_state"]), as_recorded(found)
     percent = f"{100.0 * float(found.attrs['confidence']):g} %"
     by_rate = found.attrs["ranked_by"] == "annual_rate"
-    header = ["rank", "object", "site", *(["per year", percent] if by_rate else [])]
-    header += ["probability", percent, "peak tilt/α_c", "84 %", "note"]
+    interval = f"{percent} interval"
+    header = ["rank", "object", "site", *(["per year", interval] if by_rate else [])]
+    header += ["probability", interval, "median peak tilt/α_c", "84 % quantile", "note"]
     shown = found.isel(object=slice(_SHOWN), scale=scale).sel({LIMIT_STATE: state})
     notes = notes_of(found.isel(object=slice(_SHOWN)))
     rows = [_line(shown.isel(object=place), notes[place], by_rate=by_rate) for place in range(shown.sizes["object"])]

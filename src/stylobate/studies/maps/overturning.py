@@ -52,6 +52,8 @@ def _table(result: "xr.Dataset") -> ResultTable:
     title = number_of_runs(result, f" over {' and '.join(map(str, result['outcome'].dims))}")
     uncertain = int(result["uncertain"].sum())
     remarks = [f"{uncertain} numerically uncertain: rounding could alter them"] if uncertain else []
+    if {Outcome.AT_REST.label, Outcome.SURVIVED.label} <= {row[0] for row in rows}:
+        remarks.append("columns at rest and those that survived stand: the latter still move, but cannot overturn")
     if "class_name" in result:
         remarks = [f"{one}, count outcomes with `upright`" for one in remarks] + knife_edge_remarks(result)
     return ResultTable("; ".join([title, *remarks]), ("outcome", "runs", "share"), rows)

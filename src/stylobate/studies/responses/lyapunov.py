@@ -1,6 +1,7 @@
 """Lyapunov exponents of a motion under a periodic base motion."""
 
 import json
+import warnings
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,7 +11,15 @@ import xarray as xr
 from stylobate.base_motions import BaseMotion
 from stylobate.engine.flow.integration import FlowStatus
 from stylobate.engine.flow.periodic import PeriodicSystem, plane_of
-from stylobate.errors import Interrupted, ParameterError, as_numbers, require_positive, require_vector, require_whole
+from stylobate.errors import (
+    EndedEarlyWarning,
+    Interrupted,
+    ParameterError,
+    as_numbers,
+    require_positive,
+    require_vector,
+    require_whole,
+)
 from stylobate.models import Model
 from stylobate.orbits.orbit import require_subject
 from stylobate.progress import Progress, report_of, shows_progress
@@ -23,7 +32,7 @@ _ENDINGS = {
     FlowStatus.DONE: "reached the end",
     FlowStatus.LOST: "passed through the vertical",
     FlowStatus.GONE: "overturned",
-    FlowStatus.FAILED: "the integration failed",
+    FlowStatus.FAILED: "could not be followed further: the integration failed",
 }
 _LEAST_BLOCKS = 2
 
@@ -76,6 +85,11 @@ def lyapunov_exponents(
         `error` [1/s] and `per_period_error`, see below. Over `period` (counted) and `exponent`: `running` [1/s], the
         estimate from the periods so far. `periods_counted` is less than `periods` if the motion ended early; then the
         exponents are NaN, and `attrs["ending"]` states why. `attrs["periods_skipped"]` counts the periods skipped.
+
+    Warns
+    -----
+    EndedEarlyWarning
+        If the motion ended early; the message names outcome and time.
 
     Raises
     ------
@@ -144,6 +158,15 @@ def lyapunov_exponents(
         raise Interrupted(
             f"stopped after {len(growths)} of {plural(periods, 'period')}; `partial` has the estimates from these",
             found,
+        )
+    if frame.status is not FlowStatus.DONE:
+        done = skipped + len(growths)
+        warnings.warn(
+            f"lyapunov_exponents: the column {_ENDINGS[frame.status]} between t = {done * motion.period:.4g} s and "
+            f"{(done + 1) * motion.period:.4g} s, so that the exponents are NaN (got {done} of "
+            f"{plural(skip + periods, 'period')}). Start on a motion that lasts.",
+            EndedEarlyWarning,
+            stacklevel=3,
         )
     return found
 

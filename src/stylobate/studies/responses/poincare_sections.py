@@ -1,6 +1,7 @@
 """Poincaré sections: states of columns once per period of the base motion."""
 
 import json
+import warnings
 from typing import Unpack
 
 import numpy as np
@@ -9,11 +10,13 @@ import xarray as xr
 from stylobate.base_motions import BaseMotion
 from stylobate.engine import simulate_ensemble
 from stylobate.engine.ensembles.runs import ArrayLike
-from stylobate.errors import ParameterError, UnsupportedError, require_whole
+from stylobate.errors import EndedEarlyWarning, Outcome, ParameterError, UnsupportedError, require_whole
 from stylobate.models import Model
 from stylobate.orbits.orbit import require_subject
 from stylobate.progress import Progress, shows_progress
+from stylobate.results.outcomes import NOT_COMPUTED
 from stylobate.run_arguments import Accuracy
+from stylobate.text import plural
 
 _FOLLOWED = ("outcome", "decided_at", "uncertain")
 
@@ -59,6 +62,11 @@ def poincare_section(
         periods since t = 0, from `skip` to `periods`: `section_tilt` [rad] and `section_tilt_rate` [rad/s] along
         `axis`, NaN after a column has overturned or come to rest for good. For each run also `outcome`, `decided_at`
         [s], `uncertain`.
+
+    Warns
+    -----
+    EndedEarlyWarning
+        If columns overturned, or their runs ended early in another way; the message names outcome and time.
 
     Raises
     ------
@@ -107,9 +115,27 @@ def poincare_section(
     section["period"].attrs = {"long_name": "periods of the base motion since t = 0", "units": "1"}
     section["section_tilt"].attrs["long_name"] = "tilt vector once per period"
     section["section_tilt_rate"].attrs["long_name"] = "rate of the tilt vector once per period"
+    remark_on_ends(runs, "poincare_section", "Their states are NaN afterwards. Start on a motion that lasts")
     given = json.loads(runs.attrs["provenance"])
     provenance = {**given, "periods": periods, "skip": skip}
     return section.assign_attrs(kind="Poincaré section", provenance=json.dumps(provenance))
+
+
+_LASTING = {Outcome.AT_REST, Outcome.ROCKING, Outcome.ROLLING, Outcome.MODULATED, Outcome.STILL_MOVING}
+_LASTING |= {Outcome.SURVIVED, Outcome.SLID, Outcome.PERIODIC, Outcome.APERIODIC}
+
+
+def remark_on_ends(runs: xr.Dataset, where: str, remedy: str) -> None:
+    """Warn of runs that ended early: how many had each outcome, and when the first one ended [s]."""
+    outcomes, times = runs["outcome"].to_numpy().ravel(), runs["end_time"].to_numpy().ravel()
+    parts = []
+    for code in np.unique(outcomes[~np.isin(outcomes, [*_LASTING, NOT_COMPUTED])]):
+        of = outcomes == code
+        when = f"{'at' if of.sum() == 1 else 'the first at'} t = {times[of].min():.4g} s"
+        parts.append(f"{of.sum()} {Outcome(int(code)).label}, {when}")
+    if parts:
+        message = f"{where}: runs ended early (got {'; '.join(parts)}, of {plural(outcomes.size, 'run')}). {remedy}."
+        warnings.warn(message, EndedEarlyWarning, stacklevel=4)
 
 
 # Maximum steps per period; a column that rocks near rest needs many.

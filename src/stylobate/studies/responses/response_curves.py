@@ -104,7 +104,7 @@ _ROWS = 17
 def _cell(at: "xr.Dataset") -> str:
     if not np.isfinite(at["amplitude"]):
         return "none"
-    return f"{float(at['amplitude']):.5f} {float(at['phase']):+.4f}{' *' if bool(at['stable']) else ''}"
+    return f"{float(at['amplitude']):.5f}, {float(at['phase']):+.4f}{' *' if bool(at['stable']) else ''}"
 
 
 RESPONSE = Analysis(

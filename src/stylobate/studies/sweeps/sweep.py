@@ -10,6 +10,7 @@ import numpy.typing as npt
 from stylobate.base_motions import BASE_AT_REST, BaseMotion
 from stylobate.base_motions.declared import is_pulse
 from stylobate.engine.parameters import own_numbers
+from stylobate.engine.verdict import duration_of_runs
 from stylobate.errors import ParameterError, require_positive, require_vector
 from stylobate.kinds import names_code
 from stylobate.models import Model
@@ -19,7 +20,7 @@ from stylobate.results.random_numbers import Rng
 from stylobate.run_arguments import RunOptions, defaults_of
 from stylobate.studies.known_rolling import require_closed_form
 from stylobate.studies.sweeps.chunks import Blocks, Layout, Recipe, bytes_on_disk, layout_of
-from stylobate.studies.sweeps.designs import OF_A_RUN, Box, Design, Grid, Points, check_quantities
+from stylobate.studies.sweeps.designs import OF_A_RUN, Box, Design, Grid, Points, check_quantities, whole
 from stylobate.studies.sweeps.fingerprint import identity_of
 
 
@@ -37,7 +38,8 @@ class Sweep:
     design
         Values of the quantities that vary.
     duration
-        Duration of each run [s].
+        Duration of each run [s]. If all base motions end, such as records or pulses, the default is that of the longest
+        one and a free-vibration tail of 20/p, where p is `model.column.frequency_parameter`.
     periods
         Duration of each run in periods of its base motion, instead of `duration`.
     options
@@ -214,7 +216,10 @@ class Sweep:
         given = [name for name in ("duration", "periods") if getattr(self, name) is not None]
         if "duration" in self.design.names:
             given.append("duration among what varies")
-        if len(given) != 1:
+        if not given and (self.motion.ends or 0.0 < self.motion.duration < math.inf):
+            duration = duration_of_runs(self.model, self.motion, _ends(self.design))
+            object.__setattr__(self, "duration", duration)
+        elif len(given) != 1:
             got = " and ".join(given) or "none of them"
             raise ParameterError(f"a sweep needs one of duration [s], periods, or a duration that varies; got {got}")
         if self.duration is not None:
@@ -224,3 +229,11 @@ class Sweep:
             varied = "angular_frequency" in self.design.names and not is_pulse(self.motion)
             if not varied and self.motion.period is None:
                 raise ParameterError(f"periods needs a periodic base motion; give duration [s] for {self.motion!r}")
+
+
+def _ends(design: Design) -> dict[str, tuple[float, float]]:
+    """Return the smallest and largest value of each quantity that varies."""
+    if isinstance(design, Box):
+        return dict(design.bounds)
+    values = design.coordinates(whole(design))
+    return {name: (float(one.min()), float(one.max())) for name, one in values.items() if one.size}

@@ -69,13 +69,22 @@ def column_findings(assessment: Assessment, name: str) -> PageTable:
 
 def summary_text(assessment: Assessment, heads: Sequence[PageTable]) -> str:
     """Write the summary as plain text: the tables `heads`, the findings on each column, and a guide to them."""
-    blocks = ["\n".join(": ".join(row) for row in table.rows) for table in heads]
+    blocks = ["\n".join(_line(table.header, row) for row in table.rows) for table in heads]
     for name in labels(assessment.data["columns"], "column"):
         findings = column_findings(assessment, name)
         blocks.append("\n".join([findings.header[0], *(": ".join(row) for row in findings.rows)]))
     return (
         "\n\n".join([str(assessment.setting["title"]), *blocks, f"How to read this: {how_to_read(assessment)}"]) + "\n"
     )
+
+
+def _line(header: Sequence[str], row: Sequence[str]) -> str:
+    """Write a row as a line: its subject, and the other cells, each with its heading unless it is a verdict."""
+    first, *cells = row
+    if len(cells) == 1 or header[-1] == "in one line":
+        return f"{first}: {'. '.join(cells)}"
+    labelled = [cell if name == "verdict" else f"{name} {cell}" for name, cell in zip(header[1:], cells, strict=True)]
+    return f"{first}: {'; '.join(labelled)}"
 
 
 def _tilt(assessment: Assessment, name: str, scale: float) -> str:

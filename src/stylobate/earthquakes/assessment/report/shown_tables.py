@@ -134,7 +134,7 @@ def _smallest(assessment: Assessment, margins: xr.Dataset, record: str, case: st
     least, decided = (float(margins[name].sel(case=case)) for name in ("least_overturning", "decided_to"))
     if math.isnan(least):
         return f"> {number(decided)}" if math.isfinite(decided) else UNDECIDED
-    return at_most(least, 3)
+    return at_most(least)
 
 
 def _at_scale(assessment: Assessment, record: str, scale: float) -> tuple[str, str, str]:

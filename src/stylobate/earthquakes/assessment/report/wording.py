@@ -1,7 +1,7 @@
 """Words, numbers and displacements of an assessment report: verdicts without promises, three significant digits."""
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from itertools import product
 
 import numpy as np
@@ -35,16 +35,33 @@ def number(value: float, digits: int = 3) -> str:
     return f"{value:.{digits}g}"
 
 
-def at_most(value: float, digits: int = 4) -> str:
-    """Format an upper bound with `digits` significant digits, rounded up; a dash for NaN.
+# Digits of a scale that a bisection bounds, by default to within 0.5 %.
+_OF_A_BOUND = 3
 
-    >>> at_most(0.77251), at_most(0.7725)
-    ('0.7726', '0.7725')
+
+def at_most(value: float) -> str:
+    """Format an upper bound with three significant digits, rounded up; a dash for NaN.
+
+    >>> at_most(0.77251), at_most(0.7725), at_most(0.772)
+    ('0.773', '0.773', '0.772')
     """
+    return _rounded(value, lambda parts: math.ceil(parts * (1.0 - _ROUNDING)))
+
+
+def at_least(value: float) -> str:
+    """Format a lower bound with three significant digits, rounded down; a dash for NaN.
+
+    >>> at_least(0.77251), at_least(0.772)
+    ('0.772', '0.772')
+    """
+    return _rounded(value, lambda parts: math.floor(parts * (1.0 + _ROUNDING)))
+
+
+def _rounded(value: float, rounding: Callable[[float], int]) -> str:
     if not math.isfinite(value) or value <= 0.0:
-        return number(value, digits)
-    step = 10.0 ** (math.floor(math.log10(value)) + 1 - digits)
-    return number(math.ceil(value / step * (1.0 - _ROUNDING)) * step, digits)
+        return number(value)
+    step = 10.0 ** (math.floor(math.log10(value)) + 1 - _OF_A_BOUND)
+    return number(rounding(value / step) * step, _OF_A_BOUND)
 
 
 def tilt(value: float) -> str:
@@ -60,7 +77,7 @@ def least_scale(margins: xr.Dataset) -> str:
         return f"none up to {number(float(margins['margin_scale'][-1]))}"
     found, below = float(margins["least_overturning"]), float(margins["largest_below"])
     if not math.isnan(below):
-        return f"at most {at_most(found)} (not at {number(below, 4)})"
+        return f"at most {at_most(found)} (not at {at_least(below)})"
     if bool(margins["undecided_below"][0]):
         return f"at most {at_most(found)} (not decided just below)"
     return f"at most {at_most(found)}"

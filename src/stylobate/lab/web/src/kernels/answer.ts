@@ -265,7 +265,7 @@ function summaryOf(
     ["peak tilt", `${general(peak, 6)} rad, ${general(measures.peak_tilt_over_c ?? NaN, 4)} c`],
   ];
   if (peak > 0) {
-    rows.push(["reached at", `${(measures.time_of_peak_tilt ?? NaN).toFixed(4)} s`]);
+    rows.push(["time of the peak tilt", `${(measures.time_of_peak_tilt ?? NaN).toFixed(4)} s`]);
     rows.push(["turns of the contact point", (measures.turns ?? NaN).toFixed(3)]);
   }
   const rate = (measures as Readonly<Record<string, number | null | undefined>>)["mean_rolling_rate"];
