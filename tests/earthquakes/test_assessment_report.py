@@ -208,6 +208,10 @@ def test_verdicts_promise_nothing(found, folder):
     summary = (folder / "summary.txt").read_text(encoding="utf-8")
     heads = [document_table(found), verdict_table(found), answer_table(found, 1.0)]
     assert summary == summary_text(found, heads)
+    answers = heads[-1]
+    for row in answers.rows:  # each number stands behind its heading
+        (line,) = (one for one in summary.splitlines() if one.startswith(f"{row[0]}: {row[1]}; "))
+        assert all(f"{name} {cell}" in line for name, cell in zip(answers.header[2:], row[2:], strict=True))
     assert "did not overturn" in summary
     words = summary + " ".join(
         cell for table in assessment_tables(found).values() for row in table.rows for cell in row

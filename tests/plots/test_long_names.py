@@ -10,6 +10,7 @@ import stylobate as sb
 from stylobate.earthquakes.assessment.report.document import report_style
 from stylobate.errors import UnlikelyInputWarning, UnsupportedError
 from stylobate.plots.page import PageList, PageSection, PageTable, page, pdf_of, require_pdf
+from stylobate.plots.result_figure import heading
 from stylobate.plots.style import new_figure, styled
 
 NAMES = ["NM_Inv.2019-0456_marble_column_drum_northeast_stoa", "marble" * 12 + "abc", "N" * 115]
@@ -46,10 +47,11 @@ def test_no_text_of_a_report_lies_beyond_its_page(columns):
 
 @styled
 def panels(names, along):
-    figure = new_figure(4.0)
+    figure = new_figure(7.0)
     for axes, name in zip(figure.subplots(1, len(names), sharey=True), names, strict=True):
         axes.plot([0.0, 1.0], label=name)
         axes.set_title(name)
+    heading(figure, " under ".join(names))
     figure.axes[0].set_yticks(range(len(along)), along)
     figure.legend(loc="outside lower center")
     return figure
@@ -62,7 +64,7 @@ def test_long_names_overlap_nothing_in_a_figure():
     for one, other in combinations([text.get_window_extent() for text in titles], 2):
         assert not one.overlaps(other)
     assert ["".join(text.get_text().split()) for text in titles] == NAMES  # broken, and not cut
-    for text in (*titles, *figure.legends[0].get_texts(), figure.axes[0].yaxis.get_ticklabels()[-1]):
+    for text in (*titles, *figure.texts, *figure.legends[0].get_texts(), figure.axes[0].yaxis.get_ticklabels()[-1]):
         box = text.get_window_extent()
         assert figure.bbox.x0 <= box.x0 < box.x1 <= figure.bbox.x1
     assert all(axes.get_window_extent().width > 0.1 * figure.bbox.width for axes in figure.axes)

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import stylobate as sb
+from stylobate.config.study import study_of
 from stylobate.errors import Outcome, ParameterError
 
 MODEL = sb.Slender(sb.Column.dimensionless(0.1), damping=0.1)
@@ -57,3 +58,12 @@ def test_a_map_of_nothing_is_refused():
     over = {"acceleration": [], "damping": [0.1]}
     with pytest.raises(ParameterError, match=r"^over\['acceleration'\] must have at least one value, got none$"):
         sb.studies.overturning_map(MODEL, CIRCULAR, over=over, duration=1.0)
+
+
+def test_the_table_of_a_map_says_that_columns_at_rest_and_survivors_both_stand():
+    pulse = sb.Pulse.one_sine(acceleration=0.11, angular_frequency=2.0)
+    over = {"acceleration": [0.01, 0.11], "damping": [0.1]}
+    found = sb.studies.overturning_map(MODEL, pulse, over=over, duration=4.0)
+    table = study_of(sb.studies.overturning_map).table(found)
+    assert {row[0] for row in table.rows} == {"at rest", "survived"}
+    assert "columns at rest and those that survived stand" in table.title

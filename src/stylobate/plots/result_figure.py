@@ -69,8 +69,9 @@ def fit_words(figure: Figure, panels: Sequence[Axes], drawn: Iterable[Artist], s
     for one in drawn:
         if isinstance(one, Text) and float(one.get_fontsize()) < smallest:
             one.set_fontsize(smallest)
-        if isinstance(one, Text) and max(map(len, one.get_text().split()), default=0) > _WHOLE_WORD:
-            whole[one] = one.get_text()
+        words = one.get_text().split() if isinstance(one, Text) and one not in figure.texts else ()
+        if isinstance(one, Text) and max(map(len, words), default=0) > _WHOLE_WORD:
+            whole[one] = one.get_text()  # a layout with the whole word would leave its panel no room
             one.set_text(_broken(one.get_text(), _WHOLE_WORD))
     for axes in panels:
         _in_millimetres(axes)

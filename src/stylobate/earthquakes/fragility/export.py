@@ -129,7 +129,7 @@ def _states(fits: xr.Dataset) -> list[_State]:
 _CODES = {" ": "_", "_": "{0}{0}", ".": "{0}dot{0}", ",": "{0}comma{0}", "-": "{0}dash{0}", "α": "{0}alpha{0}"}
 _LETTER = re.compile(r"(?P<case>SMALL|CAPITAL)? ?LETTER (?:\w+ )*?(?P<letter>[A-Z]+)(?: WITH .*)?$")
 _LONGEST = 75
-"""Largest number of characters of an identifier in NRML (OpenQuake Engine 3.26, names of limit states)."""
+"""Largest number of characters of an identifier (`MAX_ID_LENGTH` of `openquake.hazardlib.valid`)."""
 _DIGEST = 16
 
 

@@ -18,6 +18,7 @@ from PIL import Image
 from stylobate.errors import FileError, ParameterError, UnsupportedError, require_extra
 from stylobate.plots.body import BACKGROUND, CONTACT, CONTACT_POINT, MARK, mixed
 from stylobate.progress import Report, silent
+from stylobate.text import printable
 
 # Number of colours that all frames share.
 _COLOURS = 96
@@ -162,7 +163,7 @@ def page_of(motion: Mapping[str, Any]) -> str:
     UnsupportedError
         If the viewer was not built.
     """
-    viewer, title = _viewer(), escape(str(motion["title"]))
+    viewer, title = _viewer(), escape(printable(str(motion["title"])))
     numbers = json.dumps(motion, ensure_ascii=False, separators=(",", ":"), allow_nan=False).replace("<", "\\u003c")
     policy = (
         f"default-src 'none'; script-src {_hash(viewer)} {_hash(_START)}; style-src {_hash(_STYLE)}; "
