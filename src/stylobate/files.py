@@ -165,7 +165,7 @@ def write_workbook(path: str | Path, tables: Mapping[str, Iterable[Iterable[Any]
         from openpyxl.cell import WriteOnlyCell
         from openpyxl.styles import Font
     except ImportError:
-        remedy = 'install openpyxl: pip install "stylobate[records]"; or write CSV'
+        remedy = 'install openpyxl: pip install "stylobate[excel]"; or write CSV'
         raise UnsupportedError(f"{path}: to write an Excel workbook, {remedy}") from None
     book = Workbook(write_only=True)
     for title, rows in tables.items():

@@ -1,6 +1,7 @@
 """Files that hold files: zip and tar archives, and workbooks, of which each sheet is a table of text."""
 
 import io
+import re
 import tarfile
 import zipfile
 import zlib
@@ -9,6 +10,7 @@ from pathlib import Path, PurePosixPath
 from typing import Any, NamedTuple
 
 from stylobate.errors import FileError, UnsupportedError
+from stylobate.text import shortened
 
 Member = tuple[Path, bytes]
 """A file in a container: its path, below that of the container, and its content."""
@@ -20,6 +22,7 @@ ZIP = b"PK\x03\x04"
 """First bytes of zip archives and workbooks."""
 
 _WORKBOOK = "xl/workbook.xml"
+_FORMULA = re.compile(rb"<(\w+:)?f[\s/>]")
 _TAR, _TAR_AT = b"ustar", 257
 # More than any record has: an archive that unpacks to more is refused before it is unpacked [bytes].
 _LARGEST = 1 << 30
@@ -48,7 +51,7 @@ def members(path: Path, content: bytes, chosen: Choice) -> Iterator[Member]:
         If it is a workbook, and openpyxl is not installed.
     """
     try:
-        if _is_workbook(content):
+        if is_workbook(content):
             yield from _sheets(path, content, chosen)
         elif content.startswith(ZIP):
             with zipfile.ZipFile(io.BytesIO(content)) as archive:
@@ -94,7 +97,8 @@ def _read(archive: tarfile.TarFile, member: tarfile.TarInfo) -> bytes:
     return b"" if file is None else file.read()
 
 
-def _is_workbook(content: bytes) -> bool:
+def is_workbook(content: bytes) -> bool:
+    """Return whether a container is an Excel workbook."""
     if not content.startswith(ZIP):
         return False
     try:
@@ -110,19 +114,51 @@ def _sheets(path: Path, content: bytes, chosen: Choice) -> Iterator[Member]:
         import openpyxl
     except ImportError:
         raise UnsupportedError(
-            f'{path}: an Excel workbook. To read it, install openpyxl: pip install "stylobate[records]"; or save its '
+            f'{path}: an Excel workbook. To read it, install openpyxl: pip install "stylobate[excel]"; or save its '
             "sheet as CSV"
         ) from None
     try:
         book = openpyxl.load_workbook(io.BytesIO(content), read_only=True, data_only=True)
         named = {path / sheet.title: sheet for sheet in book.worksheets}
-        sheets = [(one, [list(row) for row in named[one].iter_rows(values_only=True)]) for one in chosen(named)]
+        sheets = [(one, _rows(named[one])) for one in chosen(named)]
+        formulas = [(one, _uncomputed(content, named[one])) for one, _ in sheets]
     except Exception as error:  # openpyxl's reader raises exceptions of any type for damaged workbooks
         raise FileError(f"{path}: openpyxl cannot read it: its content is damaged. Save it again in Excel") from error
+    for place, cells in formulas:
+        if cells:
+            raise FileError(
+                f"{place}: formulas were never computed (got {shortened(cells)}). "
+                "Open the workbook in a spreadsheet program, and save it again"
+            )
     for place, rows in sheets:
         margin = min((_first(row) for row in rows if _first(row) < len(row)), default=0)
         lines = [";".join(_written(value) for value in _shown(row[margin:])) for row in rows]
         yield place, "\n".join(lines).encode()
+
+
+def _rows(sheet: Any) -> list[list[Any]]:
+    """Return the values of a sheet; its stated size may be out of date."""
+    sheet.reset_dimensions()
+    return [list(row) for row in sheet.iter_rows(values_only=True)]
+
+
+def _uncomputed(content: bytes, sheet: Any) -> list[str]:
+    """Return the cells whose formula has no value: programs other than spreadsheets write such cells."""
+    from openpyxl.xml.functions import iterparse
+
+    with zipfile.ZipFile(io.BytesIO(content)) as archive:
+        text = archive.read(sheet._worksheet_path)  # noqa: SLF001  openpyxl has no name for the file of a sheet
+    found = []
+    for _, element in iterparse(io.BytesIO(text)) if _FORMULA.search(text) else ():
+        kind = element.tag.rpartition("}")[2]
+        if kind == "c":
+            parts = {one.tag.rpartition("}")[2]: one.text for one in element}
+            # Of a formula that gives the empty text, the value is empty too.
+            empty = "f" in parts and not parts.get("v") and element.get("t") != "str"
+            found += [element.get("r", "?")] if empty else []
+        if kind == "row":
+            element.clear()  # a large sheet would take memory
+    return found
 
 
 def _first(row: list[Any]) -> int:
