@@ -12,13 +12,12 @@ from functools import cache
 
 _LISTED = {
     "name": (
-        "object, item, title, object name, designation, inventory number, inventory no, inv no, accession number, "
-        "accession no, catalogue number, catalogue no, object number, object no, object id, id, "
-        "Objekt, Bezeichnung, Titel, Inventarnummer, Inventar Nr, Inv Nr, oggetto, nome, titolo, numero inventario, "
-        "objet, nom, titre, numéro d'inventaire"
+        "object, item, title, object name, designation, inventory number, inv no, accession number, catalogue number, "
+        "object number, object id, id, Objekt, Bezeichnung, Titel, Inventarnummer, Inventar Nr, oggetto, nome, titolo, "
+        "numero inventario, objet, nom, titre, numéro d'inventaire"
     ),
     "radius": (
-        "foot radius, base radius, bottom radius, radius of the foot, radius at the base, r foot, r base, "
+        "foot radius, base radius, bottom radius, r foot, r base, "
         "Fußradius, Standradius, raggio, raggio base, rayon, rayon base, rayon pied"
     ),
     "diameter": (
@@ -31,8 +30,8 @@ _LISTED = {
     "mass": "weight, total mass, total weight, Gewicht, Masse, Gesamtgewicht, peso, massa, poids",
     "density": "ρ, rho, mass density, Dichte, densità, densité, masse volumique",
     "mass_height": (
-        "centre of mass, height of the centre of mass, centre of mass height, CoM, CoM height, CoM h, "
-        "centre of gravity, height of the centre of gravity, centre of gravity height, CoG, CoG height, "
+        "centre of mass, height of the centre of mass, CoM, CoM height, CoM h, "
+        "centre of gravity, height of the centre of gravity, CoG, CoG height, "
         "centroid, centroid height, Schwerpunkt, Schwerpunkthöhe, Höhe Schwerpunkt, baricentro, altezza baricentro, "
         "centre de gravité, hauteur du centre de gravité"
     ),
@@ -41,7 +40,7 @@ _LISTED = {
     "top_radius": "upper radius",
     "top_diameter": "upper diameter, top Ø",
     "friction_coefficient": (
-        "friction, coefficient of friction, friction factor, friction coeff, coeff of friction, µ, mu, CoF, "
+        "friction, friction factor, µ, mu, CoF, "
         "Reibung, Reibungskoeffizient, Reibbeiwert, Reibungszahl, attrito, coefficiente di attrito, frottement, "
         "coefficient de frottement"
     ),

@@ -25,8 +25,8 @@ _SPREADS = ({"spread"}, {"standard", "deviation"})
 # Words of an uncertainty that may be a bound, or two standard deviations.
 _UNCERTAIN = {"±", "uncertainty", "tolerance", "error", "accuracy", "deviation", "std", "sd", "sigma", "spread"}
 _BRACKETED = re.compile(r"[\[(]([^\])]*)[\])]")
-# A unit behind a comma, a stroke, "in" or a blank.
-_LAST = re.compile(r"(?P<words>.+?)(?:\s*[,/:]\s*|[\s_]+)(?:in\s+)?(?P<unit>\S+)")
+# Between the words and the unit: a comma, a stroke, "in" or a blank.
+_BETWEEN = re.compile(r"\s*[,/:]\s*|[\s_]+(?:in\s+)?")
 # Headings of museums have many words that are somewhat like the name of a number.
 _LIKENESS = 0.8
 
@@ -74,12 +74,11 @@ class Heading:
         found = cls._named(words, known)
         if found is not None:
             return replace(found, text=text, unit=unit)
-        last = None if unit else _LAST.fullmatch(text.strip())
-        unit = spelled(last["unit"]) if last else ""
-        found = cls._named(last["words"], known) if last and unit else None
-        if found is None or not _fits(unit, found):
-            return None
-        return replace(found, text=text, unit=unit)
+        for before, last in () if unit else _last_units(text):
+            found = cls._named(before, known)
+            if found is not None and found.name not in WORDS and not replace(found, unit=last).problem_of_unit():
+                return replace(found, text=text, unit=last)
+        return None
 
     @classmethod
     def _named(cls, text: str, known: Mapping[str, Quantity]) -> "Heading | None":
@@ -105,10 +104,6 @@ class Heading:
         except UnitError as error:
             return f"{error}. Correct the unit."
         return ""
-
-
-def _fits(unit: str, heading: Heading) -> bool:
-    return heading.name not in WORDS and not replace(heading, unit=unit).problem_of_unit()
 
 
 def _split(text: str) -> tuple[str, str]:
@@ -149,12 +144,14 @@ def suggestions(text: str, model: str) -> tuple[str, ...]:
 
 def count_of_known(cells: Iterable[str]) -> int:
     """Count the cells that are headings in any table of objects, to find the row of headings."""
-    return len({name for one in cells if (name := meant_by(_split(one)[0]) or meant_by(_before_unit(one)))})
+    words = ((_split(one)[0], *(before for before, _ in _last_units(one))) for one in cells)
+    return len({name for one in words for part in one if (name := meant_by(part))})
 
 
-def _before_unit(text: str) -> str:
-    found = _LAST.fullmatch(text)
-    return found["words"] if found and spelled(found["unit"]) else text
+def _last_units(text: str) -> list[tuple[str, str]]:
+    """Return the ways to split a heading into words and a unit without brackets."""
+    ends = ((text[: one.start()], spelled(text[one.end() :])) for one in _BETWEEN.finditer(text.strip()))
+    return [(words, unit) for words, unit in ends if unit]
 
 
 @cache

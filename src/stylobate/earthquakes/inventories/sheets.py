@@ -28,5 +28,5 @@ def beside(content: bytes, title: str | None) -> Beside:
         book = openpyxl.load_workbook(io.BytesIO(content))
     read = book.worksheets[0] if title is None else book[title]
     merged = [Merged(one.coord, range(one.min_row, one.max_row + 1)) for one in read.merged_cells.ranges]
-    others = [one.title for one in book.worksheets if one is not read and one.calculate_dimension() != "A1:A1"]
+    others = [one.title for one in book.worksheets if one is not read and any(map(any, one.iter_rows(values_only=True)))]
     return Beside(tuple(sorted(merged, key=lambda one: one.rows.start)), tuple(others))

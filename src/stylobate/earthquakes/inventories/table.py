@@ -171,6 +171,10 @@ class _Columns:
             if not names_meant or (held & set(names_meant) and not misspelt(text, model)):
                 continue
             meant |= set(names_meant)
+            if f"{FRICTION}{SPREAD}" in names_meant:
+                remedy = f"Remove the column, or name it in {_carry(text)}."
+                faults.add_heading(text, f"the friction coefficient has no uncertainty here. {remedy}")
+                continue
             bracket = unread_bracket(text, model)
             what = f"neither a unit nor a known word (got {bracket!r})" if bracket else "unknown column"
             faults.add_heading(
@@ -334,7 +338,8 @@ class _Reading:
         """Collect the faults of the numbers together; beside wrong cells only what is missing."""
         if not self._sized:
             return
-        usable = {name: one for name, one in found.spreads.items() if name not in wrong}
+        unstated = {*wrong, *map(_number, self.columns.meant), *set(_NEEDED).difference(found.model)}
+        usable = {name: one for name, one in found.spreads.items() if name not in unstated}
         try:
             with unquestioned():  # the study questions the numbers
                 replace(found, spreads=usable).prepared(self.model)
