@@ -1,5 +1,7 @@
 """Words of users for the numbers of a column: each has one meaning, in any writing."""
 
+from pathlib import Path
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -27,6 +29,12 @@ def test_no_alias_says_twice_what_another_one_says():
     for name, aliases in ALIASES.items():
         keys = [frozenset(words_of(one)) - {"of", "the"} for one in (name, *aliases)]
         assert len(set(keys)) == len(keys), name
+
+
+def test_the_guide_lists_all_aliases():
+    guide = (Path(__file__).parents[1] / "docs" / "how-to" / "inventory.md").read_text(encoding="utf-8")
+    for name, aliases in ALIASES.items():
+        assert not aliases or f"| `{name}` | {', '.join(aliases)} |" in guide, name
 
 
 def test_an_ambiguous_word_is_never_read_and_lists_its_meanings():

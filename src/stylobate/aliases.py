@@ -11,10 +11,11 @@ from collections.abc import Iterable, Mapping
 from functools import cache
 
 _LISTED = {
+    # Numbers of an inventory last: a table with both has its names in the other column.
     "name": (
-        "object, item, title, object name, designation, inventory number, inv no, accession number, catalogue number, "
-        "object number, object id, id, Objekt, Bezeichnung, Titel, Inventarnummer, Inventar Nr, oggetto, nome, titolo, "
-        "numero inventario, objet, nom, titre, numéro d'inventaire"
+        "object, item, title, object name, designation, Objekt, Bezeichnung, Titel, oggetto, nome, titolo, objet, nom, "
+        "titre, inventory number, inv no, accession number, catalogue number, object number, object id, id, "
+        "Inventarnummer, Inventar Nr, numero inventario, numéro d'inventaire"
     ),
     "radius": (
         "foot radius, base radius, bottom radius, r foot, r base, "
@@ -44,7 +45,7 @@ _LISTED = {
         "Reibung, Reibungskoeffizient, Reibbeiwert, Reibungszahl, attrito, coefficiente di attrito, frottement, "
         "coefficient de frottement"
     ),
-    "damping": "η, eta, damping parameter",
+    "damping": "η, eta, damping parameter, Dämpfung, smorzamento, amortissement",
     "site": "",
     "shape": "",
 }
@@ -112,6 +113,17 @@ def meant_by(text: str) -> str | None:
     return _BY_KEY.get(_key(words_of(text)))
 
 
+def order_of(text: str) -> int:
+    """Return the place of a text among the aliases of its name; 0 for the name itself.
+
+    >>> order_of("name"), order_of("Object"), order_of("object, name of the")
+    (0, 1, 4)
+    """
+    name = meant_by(text)
+    same = [_key(words_of(one)) for one in (name, *ALIASES[name])] if name else []
+    return same.index(_key(words_of(text))) if name else 0
+
+
 def may_mean(text: str) -> tuple[str, ...]:
     """Return the names that a text that is no alias may mean: by an ambiguous word, or by an alias in longer words.
 
@@ -123,7 +135,7 @@ def may_mean(text: str) -> tuple[str, ...]:
     if key in _UNSURE:
         return _UNSURE[key]
     numbers = {one: name for one, name in _BY_KEY.items() if name in _NUMBERS}
-    within = {one: name for one, name in numbers.items() if one < key and _is_telling(one)}
+    within = {one: name for one, name in numbers.items() if one < key and _is_long(one)}
     if not within:
         within = {
             one: name
@@ -137,7 +149,7 @@ def may_mean(text: str) -> tuple[str, ...]:
 _NUMBERS = frozenset(_LISTED) - {"name", "site", "shape"}
 
 
-def _is_telling(key: frozenset[str]) -> bool:
+def _is_long(key: frozenset[str]) -> bool:
     return "ø" in key or any(len(word) >= _LONG_ENOUGH for word in key)
 
 

@@ -106,7 +106,7 @@ def test_bad_rows_are_all_listed_with_row_column_value_and_remedy(tmp_path):
         "objects.csv, row 5, damping: must be a number or 'housner', got 'hausner'. Correct the cell.",
         "objects.csv, row 6, radius_spread [mm]: must be in mm, cm, m, in or ft, got 1 kg",
         "objects.csv, row 7, height_spread: height_spread is relative and must be below 2, got '30'",
-        "objects.csv, row 8, friction_coefficient: the cell is empty. Fill it, or state friction_coefficient in defaults",
+        "objects.csv, row 8, friction_coefficient: the cell is empty. Fill it, or state friction_coefficient",
         "objects.csv, row 9: 11 cells, but 9 headings. Write decimal points",
         "objects.csv, row 10, height [cm]: the cell is empty. Fill it, or state height in defaults",
     ]
@@ -136,7 +136,10 @@ def test_a_heading_like_a_known_name_is_refused_and_carried_on_request(tmp_path)
             "objects.csv, heading 'radius [kg]': must be in mm, cm, m, in or ft, got 1 kg",
         ),
         (("name", "name [m]"), "objects.csv, heading 'name [m]': holds words, which have no unit."),
-        (("room", "Radius (cm)"), "objects.csv: two columns hold radius (got 'radius [mm]', 'Radius (cm)'). Remove one, or name it in carry"),
+        (
+            ("room", "Radius (cm)"),
+            "objects.csv: two columns hold radius (got 'radius [mm]', 'Radius (cm)'). Remove one, or name it in carry",
+        ),
         (
             ("friction_coefficient", "comment"),
             "objects.csv: the column friction_coefficient is missing. Add it, or state",
@@ -167,7 +170,9 @@ def test_a_decimal_comma_beside_points_is_refused(tmp_path):
 
 
 def test_commas_of_a_column_are_decimal_beside_points_in_other_columns_unless_they_may_separate_thousands(tmp_path):
-    mixed = read_inventory(table(tmp_path, GERMAN.replace("0,05", "0.05").replace("0,45", "0.45").replace("0,6", "0.6")))
+    mixed = read_inventory(
+        table(tmp_path, GERMAN.replace("0,05", "0.05").replace("0,45", "0.45").replace("0,6", "0.6"))
+    )
     assert numbers(mixed) == numbers(read_inventory(table(tmp_path, GERMAN)))
     (line,) = problems(table(tmp_path, GERMAN.replace("2100", "2,100").replace("0,05", "0.05")))
     assert "rows 2, 3, Density: a comma that is decimal or separates thousands (got '2,100')" in line

@@ -20,7 +20,7 @@ class Beside(NamedTuple):
 
 
 def beside(content: bytes, title: str | None) -> Beside:
-    """Return what a workbook, whose sheet of this title (by default the first) has been read, holds beside it."""
+    """List merged cells of the sheet of this title, by default the first, and the other sheets of the workbook."""
     import openpyxl
 
     with warnings.catch_warnings():
@@ -28,5 +28,7 @@ def beside(content: bytes, title: str | None) -> Beside:
         book = openpyxl.load_workbook(io.BytesIO(content))
     read = book.worksheets[0] if title is None else book[title]
     merged = [Merged(one.coord, range(one.min_row, one.max_row + 1)) for one in read.merged_cells.ranges]
-    others = [one.title for one in book.worksheets if one is not read and any(map(any, one.iter_rows(values_only=True)))]
+    others = [
+        one.title for one in book.worksheets if one is not read and any(map(any, one.iter_rows(values_only=True)))
+    ]
     return Beside(tuple(sorted(merged, key=lambda one: one.rows.start)), tuple(others))

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from stylobate.aliases import ALIASES, meant_by, words_of
+from stylobate.aliases import meant_by, order_of, words_of
 from stylobate.config.parts import DIAMETERS
 from stylobate.earthquakes.inventories.faults import Faults
 from stylobate.earthquakes.inventories.headings import (
@@ -122,7 +122,7 @@ def read_inventory(
     table = ObjectTable.read(Path(path))
     faults = Faults(table.path.name)
     columns = _Columns.of(table, model, carry, faults)
-    given = _defaults(defaults or {}, model, faults)
+    given = _Defaults.of(defaults or {}, model, faults)
     reading = _Reading(table, model, columns, given, _doubts_on_commas(table, columns.known), faults)
     reading.require_columns()
     objects = [reading.object_of(row) for row in reading.rows_of_objects()]
@@ -158,9 +158,13 @@ class _Columns:
         """Read the headings, and collect their faults."""
         for problem in table.problems:
             faults.add(problem)
+        for text in carry:
+            if text not in table.headings:
+                remedy = did_you_mean(text, table.headings) or f"Use one of {shortened(map(repr, table.headings))}."
+                faults.add_line(f"carry: no such heading in {table.path.name} (got {text!r}); {remedy}")
         read = {text: None if text in carry else Heading.read(text, model) for text in table.headings if text}
         names = [one for one in read.values() if one is not None and one.name == "name"]
-        first = min(names, key=_rank_of_name, default=None)
+        first = min(names, key=lambda one: order_of(one.text), default=None)
         known = {text: one for text, one in read.items() if one is not None and (one.name != "name" or one is first)}
         held = {one.full_name for one in known.values()}
         meant: set[str] = set()
@@ -187,12 +191,6 @@ class _Columns:
         return cls(known, tuple(text for text in read if text not in known), frozenset(meant), frozenset(ill))
 
 
-def _rank_of_name(heading: Heading) -> int:
-    """Order the headings of names: the name itself, then its aliases in their order."""
-    words = [frozenset(words_of(one)) for one in ("name", *ALIASES["name"])]
-    return words.index(frozenset(words_of(heading.text))) if heading.is_alias else -1
-
-
 def _refuse_doubled(known: Iterable[Heading], faults: Faults) -> None:
     by_name: dict[str, list[str]] = {}
     for one in known:
@@ -214,22 +212,34 @@ def _state(name: str, quantity: Quantity) -> str:
     return f"{filling}, or state {name} in defaults (on the command line --default {name}={word or 'NUMBER'})."
 
 
-def _defaults(defaults: Mapping[str, Any], model: str, faults: Faults) -> dict[str, Any]:
-    """Check the defaults like cells, by their names."""
-    known = quantities(model)
-    found: dict[str, Any] = {}
-    for given, value in defaults.items():
-        name = given if given in known else meant_by(given) or given
-        if name not in known and name not in WORDS:
-            remedy = did_you_mean(given, {*known, *WORDS}) or "remove it."
-            faults.add_line(f"defaults: unknown (got {given!r}); {remedy}")
-            continue
-        heading = Heading(given, name, known.get(name, Quantity()))
-        try:
-            found[name] = _value(str(value), heading)
-        except (ParameterError, UnitError) as error:
-            faults.add_line(f"defaults.{given}: {error}. Correct it.")
-    return found
+@dataclass(frozen=True, slots=True)
+class _Defaults:
+    """Values for empty cells and missing columns by name, and the names of those with a fault."""
+
+    values: Mapping[str, Any]
+    wrong: frozenset[str]
+
+    @classmethod
+    def of(cls, defaults: Mapping[str, Any], model: str, faults: Faults) -> "_Defaults":
+        """Read the defaults like cells, by any of their names, and collect their faults."""
+        known = quantities(model)
+        found: dict[str, Any] = {}
+        wrong: set[str] = set()
+        for given, value in defaults.items():
+            name = given if given in known else meant_by(given) or given
+            if name not in known and name not in WORDS:
+                remedy = did_you_mean(given, {*known, *WORDS}) or "remove it."
+                faults.add_line(f"defaults: unknown (got {given!r}); {remedy}")
+                continue
+            text = str(value)
+            is_decimal = _DECIMAL_COMMA.fullmatch(text) and not _THOUSANDS.fullmatch(text)
+            try:
+                heading = Heading(given, name, known.get(name, Quantity()))
+                found[name] = _value(text.replace(",", ".") if is_decimal and name in known else text, heading)
+            except (ParameterError, UnitError) as error:
+                faults.add_line(f"defaults.{given}: {error}. Correct it.")
+                wrong.add(_number(name))
+        return cls(found, frozenset(wrong))
 
 
 @dataclass(slots=True)
@@ -239,14 +249,14 @@ class _Reading:
     table: ObjectTable
     model: str
     columns: _Columns
-    given: Mapping[str, Any]
+    given: _Defaults
     doubts: Mapping[str, str]
     faults: Faults
 
     @property
     def _held(self) -> set[str]:
         """The names of the columns and defaults."""
-        return {*self.given, *(one.name for one in self.columns.known.values() if not one.is_spread)}
+        return {*self.given.values, *(one.name for one in self.columns.known.values() if not one.is_spread)}
 
     @property
     def _sized(self) -> bool:
@@ -258,7 +268,7 @@ class _Reading:
         known, held = quantities(self.model), self._held
         sizes = () if held & _SHAPED else _SIZES
         for group in (*((name,) for name in _NEEDED if name in known or name in WORDS), *sizes):
-            if not {*held, *self.columns.meant} & set(group):
+            if not {*held, *self.columns.meant, *self.given.wrong} & set(group):
                 self._add_missing(*group)
 
     def _add_missing(self, *names: str) -> None:
@@ -313,7 +323,8 @@ class _Reading:
                 wrong.add(heading.number)
         stated = {*map(_number, values), *wrong}
         stated |= set(_EITHER) if stated & set(_EITHER) else set()
-        values |= {name: value for name, value in self.given.items() if _number(name) not in stated}
+        values |= {name: value for name, value in self.given.values.items() if _number(name) not in stated}
+        wrong |= self.given.wrong - stated
         for name in _NEEDED:
             if name not in values and name not in wrong:
                 self._add_empty(row, name)
