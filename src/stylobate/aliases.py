@@ -52,7 +52,7 @@ _LISTED = {
 _AMBIGUOUS = {
     ("radius", "diameter"): (
         "foot, base, width, breadth, depth, size, dimension, dimensions, length, Fuß, Breite, Tiefe, Größe, piede, "
-        "larghezza, profondità, pied, largeur, profondeur, r foot or base"
+        "larghezza, profondità, pied, largeur, profondeur"
     ),
     ("height", "mass_height"): "h, z",
     ("diameter",): "d",

@@ -216,8 +216,12 @@ def _records(
     path: Path, lines: Sequence[str], start: int, separator: str, *, of_sheet: bool
 ) -> Iterator[tuple[int, list[str]]]:
     """Yield the number and the cells of each row."""
-    quoting = csv.QUOTE_NONE if of_sheet else csv.QUOTE_MINIMAL
-    reader = csv.reader(lines[start:], delimiter=separator, quoting=quoting)
+    below = lines[start:]
+    reader = (
+        csv.reader(below, delimiter=separator, quoting=csv.QUOTE_NONE)
+        if of_sheet
+        else csv.reader(below, delimiter=separator)
+    )
     try:
         for cells in reader:
             plain = [" ".join(one.split()) for one in cells]
