@@ -86,7 +86,15 @@ def test_a_heading_that_only_resembles_a_number_is_refused_with_what_it_may_mean
 
 def test_usual_columns_of_museums_are_carried_through(tmp_path):
     others = "Room Material Location Type Notes Origin Provenance Showcase Shelf Value Condition Culture Lender Date"
-    others = [*others.split(), "Description", "Insurance value", "Base material", "Height of plinth (cm)", "Inv. photo"]
+    others = [
+        *others.split(),
+        "Description",
+        "Insurance value",
+        "Base material",
+        "Height of plinth (cm)",
+        "Max. radius (cm)",
+        "Inv. photo",
+    ]
     head, *rows = MUSEUM.splitlines()
     text = "\n".join([";".join([head, *others]), *(";".join([row, *"x" * len(others)]) for row in rows)])
     assert set(read_inventory(table(tmp_path, text))[0].carried) == {"Inventory no.", "Remarks", *others}
@@ -264,3 +272,11 @@ def test_a_default_without_a_value_is_refused():
 
 def test_numbers_of_a_table_are_those_of_column_and_model():
     assert set(ALIASES) - {"name", "site", "shape"} <= set(quantities("wobbling"))
+
+
+def test_a_wrong_uncertainty_hides_no_other_fault_of_its_row(tmp_path):
+    text = "name,radius,height,density,damping,damping_spread,friction\na,0.1,1,2000,,x,0.5\n"
+    assert [line.split(":")[0] for line in problems(table(tmp_path, text))] == [
+        "objects.csv, row 2, damping",
+        "objects.csv, row 2, damping_spread",
+    ]

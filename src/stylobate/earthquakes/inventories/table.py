@@ -166,14 +166,16 @@ class _Columns:
         names = [one for one in read.values() if one is not None and one.name == "name"]
         first = min(names, key=lambda one: order_of(one.text), default=None)
         known = {text: one for text, one in read.items() if one is not None and (one.name != "name" or one is first)}
-        held = {one.full_name for one in known.values()}
+        held = {_held_by(one.full_name) for one in known.values()}
         meant: set[str] = set()
         for text, one in read.items():
             if one is not None or text in carry:
                 continue
-            names_meant = misspelt(text, model) or suggestions(text, model)
-            if not names_meant or (held & set(names_meant) and not misspelt(text, model)):
-                continue
+            names_meant = misspelt(text, model)
+            if not names_meant:
+                names_meant = suggestions(text, model)
+                if not names_meant or held & set(map(_held_by, names_meant)):
+                    continue
             meant |= set(names_meant)
             if f"{FRICTION}{SPREAD}" in names_meant:
                 remedy = f"Remove the column, or name it in {_carry(text)}."
@@ -295,7 +297,7 @@ class _Reading:
             got = shortened(map(repr, cells))
             return f"units in a row of their own (got {got}). Write each in its heading, and remove the row."
         filled = [one for one in row.cells.values() if one]
-        if last and set(words_of(filled[0])[:1]) & _TOTALS:
+        if last and filled and set(words_of(filled[0])[:1]) & _TOTALS:
             return f"a sum, and no object (got {filled[0]!r}). Remove the row."
         if len(filled) == 1 and len(numbers) > 1:
             return f"one cell only, and no object (got {filled[0]!r}). Remove the row, or fill its cells."
@@ -309,7 +311,7 @@ class _Reading:
         for text, heading in self.columns.known.items():
             cell = row.cells[text]
             if not cell or text in self.columns.ill:
-                wrong |= {heading.number} if cell else set()
+                wrong |= {heading.number} if cell and not heading.is_spread else set()
                 continue
             try:
                 plain = self._plain(cell, heading)
@@ -320,7 +322,7 @@ class _Reading:
                     values[heading.name] = _value(plain, heading)
             except (ParameterError, UnitError) as error:
                 self.faults.add_cell(row.number, text, f"{error}. Correct the cell.")
-                wrong.add(heading.number)
+                wrong |= set() if heading.is_spread else {heading.number}
         stated = {*map(_number, values), *wrong}
         stated |= set(_EITHER) if stated & set(_EITHER) else set()
         values |= {name: value for name, value in self.given.values.items() if _number(name) not in stated}
@@ -423,6 +425,12 @@ def _doubts_on_commas(table: ObjectTable, known: Mapping[str, Heading]) -> dict[
 
 def _number(name: str) -> str:
     return DIAMETERS.get(name, name)
+
+
+def _held_by(name: str) -> str:
+    """Return the name of the number that a column of this name holds, with its end for an uncertainty."""
+    number = name.removesuffix(SPREAD)
+    return f"{_number(number)}{name[len(number) :]}"
 
 
 def _has_point(cell: str) -> bool:
