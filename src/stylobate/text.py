@@ -1,8 +1,10 @@
 """Counts, numbers, units and misspelt names in text, and characters that cannot be printed."""
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from difflib import get_close_matches
+
+from stylobate.aliases import may_mean, meant_by, spellings_of
 
 _LIKENESS = 0.7
 _EXPONENTS = str.maketrans("0123456789", "⁰¹²³⁴⁵⁶⁷⁸⁹")
@@ -35,6 +37,27 @@ def plural(number: int, noun: str) -> str:
     return f"{number} {noun}" if number == 1 else f"{number} {noun}s"
 
 
+def shortened(parts: Iterable[object], most: int = 6) -> str:
+    """List parts between commas, at most so many, and the number of the others.
+
+    >>> shortened([1, 2, 3]), shortened(range(2, 220), most=4)
+    ('1, 2, 3', '2, 3, 4, 5 and 214 more')
+    """
+    words = list(map(str, parts))
+    more = f" and {len(words) - most} more" if len(words) > most else ""
+    return ", ".join(words[:most]) + more
+
+
+def headings_in_words(read_as: Mapping[str, str]) -> str:
+    """State what the headings of a table were taken as; empty without any.
+
+    >>> headings_in_words({"Weight (kg)": "mass", "Ø": "diameter"})
+    "read 'Weight (kg)' as mass, 'Ø' as diameter"
+    """
+    pairs = ", ".join(f"{heading!r} as {name}" for heading, name in read_as.items())
+    return f"read {pairs}" if pairs else ""
+
+
 def four_digits(number: float) -> str:
     """Format a number with four significant digits, up to a million without exponent.
 
@@ -58,10 +81,27 @@ def unit_in_text(units: str) -> str:
 
 
 def did_you_mean(name: str, known: Iterable[str]) -> str:
-    """Return a question that suggests the most similar of the `known` names; empty without a similar name.
+    """Return a question that suggests the most similar of the `known` names, or those that an alias means.
 
-    >>> did_you_mean("dampign", ["damping", "restitution"])
-    'did you mean damping?'
+    Empty without a similar name.
+
+    >>> did_you_mean("dampign", ["damping", "restitution"]), did_you_mean("weight", ["height", "mass"])
+    ('did you mean damping?', 'did you mean mass?')
     """
-    found = get_close_matches(name, sorted(known), n=1, cutoff=_LIKENESS)
-    return f"did you mean {found[0]}?" if found else ""
+    found = similar(name, known)
+    return f"did you mean {' or '.join(found)}?" if found else ""
+
+
+def similar(name: str, known: Iterable[str], likeness: float = _LIKENESS) -> tuple[str, ...]:
+    """Return the `known` names that a name means as an alias, or else the most similar one; empty without any.
+
+    >>> similar("wieght", ["height", "mass"]), similar("width", ["radius", "diameter"])
+    (('mass',), ('radius', 'diameter'))
+    """
+    names = sorted(known)
+    exact = meant_by(name)
+    if exact in names and exact != name:
+        return (exact,)
+    spellings = {spelling: one for one in names for spelling in reversed(spellings_of(one))}
+    close = get_close_matches(name, sorted(spellings), n=1, cutoff=likeness)
+    return tuple(spellings[one] for one in close) or tuple(one for one in may_mean(name) if one in names)

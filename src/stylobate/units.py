@@ -60,6 +60,7 @@ _UNITS = {
     "1": Unit(Fraction(1), _NONE),
 }
 _OTHER_NAMES = {"°": "deg", "degrees": "deg", "rev": "turn", "cycle": "turn", "g_0": "g0", "g_n": "g0"}
+_OTHER_NAMES |= {"inch": "in", "inches": "in", "feet": "ft", "lbs": "lb", "kgs": "kg"}
 _OF_ACCELERATIONS = {"g": "g0", "mg": "mg0", "gal": "Gal"}
 """Names in a text that states an acceleration; elsewhere g is the gram."""
 
@@ -168,6 +169,16 @@ def is_angle(unit: str) -> bool:
 def size_of(unit: str) -> Unit | None:
     """Return size and dimension of a declared unit; None for an unknown unit."""
     return _unit(_COUNTING_TURNS.get(unit, unit))
+
+
+def spelled(text: str) -> str:
+    """Return a unit as this module knows it from the heading of a table, such as "KG" or "in."; "" if it is no unit.
+
+    >>> spelled("KG"), spelled("in."), spelled("m/s²"), spelled("approx."), spelled("kg/m3")
+    ('kg', 'in', 'm/s²', '', 'kg/m3')
+    """
+    plain = text.strip()
+    return next((one for one in (plain, plain.rstrip("."), plain.lower().rstrip(".")) if one and _unit(one)), "")
 
 
 def listed(unit: str) -> str:

@@ -127,7 +127,7 @@ def test_a_pdf_is_written_on_demand_and_refused_before_the_work_without_its_libr
 @pytest.mark.usefixtures("one_figure")
 def test_a_table_of_objects_and_a_folder_of_records_need_no_study(study, tmp_path, monkeypatch, capsys):
     table = tmp_path / "objects.csv"
-    table.write_text("name,radius,height,density,damping,friction_coefficient,room\ntank,0.2,2,2700,0.1,0.6,12\n")
+    table.write_text("name,radius,height,Dichte,damping,friction_coefficient,room\ntank,0.2,2,2700,,0.6,12\n")
     given = []
 
     def computed(columns, records, **options):
@@ -137,15 +137,19 @@ def test_a_table_of_objects_and_a_folder_of_records_need_no_study(study, tmp_pat
     monkeypatch.setattr(earthquakes, "assess", computed)
     monkeypatch.chdir(tmp_path)
     more = ["--units", "g", "--step", "0.02", "--title", "Room 12", "--store", "kept"]
+    more += ["--default", "damping=0.1"]
     assert run(["assess", "objects.csv", "--records", "quakes", *more]) == 130
     ((columns, records, options),) = given
     assert (set(columns), set(records), options["title"]) == ({"tank"}, {"strong", "weak"}, "Room 12")
     assert str(options["store"]) == "kept"
     details = options["details"]
-    assert details.command == "stylobate assess objects.csv --records quakes --units g --step 0.02"
+    assert (
+        details.command == "stylobate assess objects.csv --records quakes --units g --step 0.02 --default damping=0.1"
+    )
+    assert options["dissipation"]["tank"]["central"] == {"damping": 0.1}
     assert details.table_sha256 == hashlib.sha256(table.read_bytes()).hexdigest()
     assert details.about_columns == {"tank": "room 12"}
-    capsys.readouterr()
+    assert "stylobate: objects.csv: read 'Dichte' as density" in capsys.readouterr().err
 
 
 def test_an_interrupted_assessment_says_how_to_go_on(study, tmp_path, capsys, monkeypatch):

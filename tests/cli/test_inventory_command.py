@@ -152,5 +152,7 @@ def test_each_bad_row_has_a_line(folder, capsys):
     (folder / "objects.csv").write_text(text, encoding="utf-8")
     assert run(["inventory", "study.toml"]) == 2
     lines = capsys.readouterr().err.splitlines()
-    assert [line.partition(":")[2].partition(",")[0].strip() for line in lines] == ["objects.csv"] * 3
-    assert [line.partition("row ")[2].partition(",")[0] for line in lines] == ["2", "3", "4"]
+    assert [line.partition("objects.csv, ")[2].partition(":")[0] for line in lines] == [
+        "rows 2, 4, radius [mm]",
+        "row 3, friction_coefficient",
+    ]

@@ -7,7 +7,7 @@ import pytest
 
 from stylobate.earthquakes import LognormalSpread, NormalSpread, export_inventory, inventory, read_inventory
 from stylobate.earthquakes.inventories.geopackages import read_layer
-from stylobate.errors import ConfigError, FileError, ParameterError, UnsupportedError
+from stylobate.errors import ConfigError, FileError, ParameterError, UnlikelyInputWarning, UnsupportedError
 from stylobate.records import sample_record
 
 HEAD = "name,radius [mm],radius_spread [mm],height [cm],height_spread,density,damping,friction_coefficient,room"
@@ -69,7 +69,8 @@ def test_a_workbook_holds_the_same_objects(tmp_path):
     other.append(["name", "radius"])
     book.save(tmp_path / "objects.xlsx")
     plain = numbers(read_inventory(table(tmp_path, PLAIN)))
-    assert numbers(read_inventory(tmp_path / "objects.xlsx")) == plain
+    with pytest.warns(UnlikelyInputWarning, match=r"only its first sheet is read \(others are 'other'\)"):
+        assert numbers(read_inventory(tmp_path / "objects.xlsx")) == plain
     assert numbers(read_inventory(tmp_path / "objects.xlsx" / "store")) == plain
     with pytest.raises(FileError, match=r"no such sheet. Choose from store, other"):
         read_inventory(tmp_path / "objects.xlsx" / "stroe")
@@ -101,14 +102,14 @@ def test_bad_rows_are_all_listed_with_row_column_value_and_remedy(tmp_path):
     ]
     found = problems(table(tmp_path, "\n".join(rows)))
     expected = [
-        "objects.csv, row 9: 11 cells, but 9 headings. Write decimal points",
         "objects.csv, row 2, radius [mm]: radius must be positive, got -0.0625 m. Correct the cell.",
-        "objects.csv, row 3, height [cm]: must be a number, with or without a unit, got 'x cm'. Correct the cell.",
+        "objects.csv, row 3, height [cm]: must be a number, with or without a unit, got 'x'. Correct the cell.",
         "objects.csv, row 5, damping: must be a number or 'housner', got 'hausner'. Correct the cell.",
         "objects.csv, row 6, radius_spread [mm]: must be in mm, cm, m, in or ft, got 1 kg",
         "objects.csv, row 7, height_spread: height_spread is relative and must be below 2, got '30'",
-        "objects.csv, row 8, friction_coefficient: the cell is empty. Fill it.",
-        "objects.csv, row 10: height is missing",
+        "objects.csv, row 8, friction_coefficient: the cell is empty. Fill it, or state friction_coefficient",
+        "objects.csv, row 9: 11 cells, but 9 headings. Write decimal points",
+        "objects.csv, row 10, height [cm]: the cell is empty. Fill it, or state height in defaults",
     ]
     assert len(found) == len(expected), found
     for line, begin in zip(found, expected, strict=True):
@@ -122,10 +123,10 @@ def test_a_model_that_slides_or_is_planar_is_refused(tmp_path):
 
 
 def test_a_heading_like_a_known_name_is_refused_and_carried_on_request(tmp_path):
-    path = table(tmp_path, PLAIN.replace("room", "weight"))
+    path = table(tmp_path, PLAIN.replace("room", "hieght"))
     (line,) = problems(path)
-    assert line.startswith("objects.csv, heading 'weight': unknown column; did you mean height? Rename it")
-    assert read_inventory(path, carry=["weight"])[0].carried == {"weight": "12"}
+    assert line.startswith("objects.csv, heading 'hieght': unknown column; did you mean height? Rename it")
+    assert read_inventory(path, carry=["hieght"])[0].carried == {"hieght": "12"}
 
 
 @pytest.mark.parametrize(
@@ -136,12 +137,18 @@ def test_a_heading_like_a_known_name_is_refused_and_carried_on_request(tmp_path)
             "objects.csv, heading 'radius [kg]': must be in mm, cm, m, in or ft, got 1 kg",
         ),
         (("name", "name [m]"), "objects.csv, heading 'name [m]': holds words, which have no unit."),
-        (("room", "Radius (cm)"), "objects.csv: two columns hold radius. Remove one."),
+        (
+            ("room", "Radius (cm)"),
+            "objects.csv: two columns hold radius (got 'radius [mm]', 'Radius (cm)'). Remove one, or name it in carry",
+        ),
         (
             ("friction_coefficient", "comment"),
             "objects.csv: the column friction_coefficient is missing. Add it, or state",
         ),
-        (("damping,", "comment,"), "objects.csv: the column damping is missing. Add it, or state damping in defaults."),
+        (
+            ("damping,", "comment,"),
+            "objects.csv: the column damping is missing. Write the word housner or a measured value, or state damping",
+        ),
     ],
 )
 def test_wrong_headings_are_named(tmp_path, change, line):
@@ -159,16 +166,22 @@ def test_defaults_fill_missing_columns_and_empty_cells(tmp_path):
 
 
 def test_a_decimal_comma_beside_points_is_refused(tmp_path):
-    text = GERMAN.replace("0,05", "0.05")
-    found = problems(table(tmp_path, text))
-    assert (
-        "objects.csv, row 2, Radius [mm]: a decimal comma beside decimal points in other cells (got '62,5')" in found[0]
+    (line,) = problems(table(tmp_path, GERMAN.replace("80;", "80.5;")))
+    assert "objects.csv, row 2, Radius [mm]: a decimal comma beside decimal points in other cells (got '62,5')" in line
+
+
+def test_commas_of_a_column_are_decimal_beside_points_in_other_columns_unless_they_may_separate_thousands(tmp_path):
+    mixed = read_inventory(
+        table(tmp_path, GERMAN.replace("0,05", "0.05").replace("0,45", "0.45").replace("0,6", "0.6"))
     )
+    assert numbers(mixed) == numbers(read_inventory(table(tmp_path, GERMAN)))
+    (line,) = problems(table(tmp_path, GERMAN.replace("2100", "2,100").replace("0,05", "0.05")))
+    assert "rows 2, 3, Density: a comma that is decimal or separates thousands (got '2,100')" in line
 
 
 @pytest.mark.parametrize(
     ("text", "line"),
-    [("", "the file is empty"), (HEAD, "the table has no rows"), (f"{HEAD},room\na\n", "two columns have the heading")],
+    [("", "the file is empty"), (HEAD, "the table has no rows"), ("# a remark\n", "no headings")],
 )
 def test_a_file_without_objects_is_refused(tmp_path, text, line):
     with pytest.raises(FileError, match=line):

@@ -12,6 +12,7 @@ import click
 
 from stylobate import config, earthquakes, studies
 from stylobate.cli.command import Positional, command
+from stylobate.cli.object_tables import OBJECT_TABLE, with_object_table
 from stylobate.cli.options import Options
 from stylobate.cli.output import NETCDF, check_place, print_json, print_table
 from stylobate.cli.record_sources import RECORD_SOURCES, with_record_sources
@@ -19,6 +20,7 @@ from stylobate.cli.terminal import INTERRUPTED, log_lines, part_lines, remark, s
 from stylobate.config.options import COMPUTING, JSON, Group, Option
 from stylobate.errors import FileError, Interrupted
 from stylobate.files import file_of, sha256_of
+from stylobate.text import headings_in_words
 
 if TYPE_CHECKING:
     from stylobate.earthquakes.config.assess import AssessmentSetup
@@ -39,6 +41,7 @@ _SHOWN = ("column", "scale", "did not overturn it", "overturned it", "not decide
     ),
     groups=(
         Group.of("Records", *RECORD_SOURCES),
+        Group.of("Table of objects", *OBJECT_TABLE),
         Group.of("Report", *(Option(name, f"{name} of the report", str) for name in _HEAD)),
         COMPUTING.reduced_to("threads"),
         Group.of("Output", JSON),
@@ -75,11 +78,13 @@ def assess(options: Options) -> None:
         options.refuse_unused(f"to show {source}, for which it computes nothing")
     else:
         values = config.read_config(source) if source.suffix == _TOML else {"columns": str(source)}
-        values = {**with_record_sources(values, options), **options.pick(*_HEAD)}
+        values = {**with_object_table(with_record_sources(values, options), options), **options.pick(*_HEAD)}
         store, threads = options["store"] or target / "store", options["threads"]
         options.refuse_unused()
         setup = _described(values, file, target, _command(options, file))
     remark(f"writing into {target}")
+    if setup is not None and (read_as := headings_in_words(setup.options["details"].table_read_as)):
+        remark(f"{setup.options['details'].table_file}: {read_as}")
     with _locked(target):
         result = _loaded(source) if setup is None else _computed(setup, store, threads)
         lines = part_lines()
@@ -132,7 +137,7 @@ def _loaded(source: Path) -> "Assessment":
 def _command(options: Options, source: Path) -> str:
     """Return the command that repeats the computation, with the options that change its result."""
     words = ["stylobate", "assess", source.name]
-    for option in RECORD_SOURCES:
+    for option in (*RECORD_SOURCES, *OBJECT_TABLE):
         value = options[option.name]
         given = value if isinstance(value, (list, tuple)) else [value]
         for one in given:

@@ -11,6 +11,7 @@ from click.core import ParameterSource
 
 from stylobate.cli.options import Options
 from stylobate.config.options import PARTS, Chosen, Group, Option, as_kind, joined, numbers_in
+from stylobate.text import similar
 from stylobate.units import has_unit
 
 
@@ -182,6 +183,8 @@ class _Program(click.Command):
 
 def usage_error(error: click.ClickException, program: click.Command | None) -> str:
     """Write one line for a mistake in the options; for an option with several values, the line states these values."""
+    if isinstance(error, click.NoSuchOption) and (flags := _similar(error.option_name, program)):
+        return f"No such option {error.option_name!r}. Did you mean {' or '.join(map(repr, flags))}?"
     message = error.format_message()
     option = getattr(error, "param", None)
     if option is None:  # an error about too few values names the option alone
@@ -194,3 +197,13 @@ def usage_error(error: click.ClickException, program: click.Command | None) -> s
     if "requires" in message:
         return f"{option.opts[0]} must be followed by {wanted}; got fewer"
     return f"{option.opts[0]} must be followed by {wanted}; {wanted.split()[-1]} must be a whole number"
+
+
+def _similar(flag: str, program: click.Command | None) -> list[str]:
+    """Return the option of the most similar name, or the options that an alias means."""
+    flags = {_plain(one): one for option in getattr(program, "params", ()) for one in option.opts}
+    return [flags[one] for one in similar(_plain(flag), flags)]
+
+
+def _plain(flag: str) -> str:
+    return flag.lstrip("-").replace("-", "_")

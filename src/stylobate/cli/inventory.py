@@ -7,6 +7,7 @@ import click
 
 from stylobate import config, earthquakes, studies
 from stylobate.cli.command import Positional, command
+from stylobate.cli.object_tables import OBJECT_TABLE, with_object_table
 from stylobate.cli.options import Options
 from stylobate.cli.output import NETCDF, check_place, check_writable, print_json, save_plot
 from stylobate.cli.record_sources import RECORD_SOURCES, with_record_sources
@@ -31,6 +32,7 @@ _TOML = ".toml"
         Group.of(
             "Inventory",
             *RECORD_SOURCES,
+            *OBJECT_TABLE,
             Option(
                 "property_samples", "number of samples of the uncertain numbers for each record; 20 by default", int
             ),
@@ -132,7 +134,7 @@ def _values(source: Path, options: Options) -> dict[str, Any]:
     values = config.read_config(source) if source.suffix == _TOML else {"objects": str(source)}
     stated = options.pick("property_samples", "limit_state", "seed", "confidence")
     values |= {_RENAMED.get(name, name): value for name, value in stated.items()}
-    return with_record_sources(values, options)
+    return with_object_table(with_record_sources(values, options), options)
 
 
 def _write_folder(found: "xr.Dataset", folder: Path) -> None:

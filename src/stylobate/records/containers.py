@@ -12,6 +12,7 @@ from typing import IO, Any, NamedTuple
 
 from stylobate.errors import FileError, require_extra
 from stylobate.records.contents import DECLARES_TYPES, LONGEST_TEXT, Allowance, xml_root
+from stylobate.text import shortened
 
 Member = tuple[Path, bytes]
 """A file in a container: its path, below that of the container, and its content."""
@@ -27,6 +28,7 @@ _ENTRY = b"PK\x01\x02"
 
 _WORKBOOK, _TYPES = "xl/workbook.xml", "[Content_Types].xml"
 _TYPE_OF_WORKBOOK = re.compile(rb'"application/vnd\.(?:openxmlformats-[^"]*|ms-excel[^"]*)\.main\+xml"')
+_FORMULA = re.compile(rb"<(\w+:)?f[\s/>]")
 _TAR, _TAR_AT = b"ustar", 257
 # Zip archives of records are stored or deflated. The other methods may ask for gigabytes before they unpack a byte.
 _METHODS = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)
@@ -185,26 +187,33 @@ def _sheets(path: Path, content: bytes, chosen: Choice) -> Iterator[Member]:
     """Yield the sheets of a workbook as text, one line for each row, fields between semicolons."""
     openpyxl = require_extra(
         "openpyxl",
-        f'{path}: an Excel workbook. To read it, install openpyxl: pip install "stylobate[records]"; or save its '
+        f'{path}: an Excel workbook. To read it, install openpyxl: pip install "stylobate[excel]"; or save its '
         "sheet as CSV",
     )
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # about parts that hold no cells
             book = openpyxl.load_workbook(io.BytesIO(content), read_only=True, data_only=True, keep_links=False)
-            named = {path / _title(sheet.title): sheet for sheet in book.worksheets}
+            named = {path / sheet_name(sheet.title): sheet for sheet in book.worksheets}
             sheets = [(one, _rows(one, named[one])) for one in chosen(named)]
+            formulas = [(one, _uncomputed(content, named[one])) for one, _ in sheets]
     except FileError:
         raise
     except Exception as error:  # openpyxl's reader raises exceptions of any type for damaged workbooks
         raise FileError(f"{path}: openpyxl cannot read it: its content is damaged. Save it again in Excel") from error
+    for place, cells in formulas:
+        if cells:
+            raise FileError(
+                f"{place}: formulas were never computed (got {shortened(cells)}). "
+                "Open the workbook in a spreadsheet program, and save it again"
+            )
     for place, rows in sheets:
         margin = min((_first(row) for row in rows if _first(row) < len(row)), default=0)
         lines = [";".join(_written(value) for value in row[margin:]) for row in rows]
         yield place, "\n".join(lines).encode(errors="replace")
 
 
-def _title(title: str) -> str:
+def sheet_name(title: str) -> str:
     """Return the title of a sheet as one part of a path, which is not that of a hidden file."""
     return _place(Path(), re.sub(r"[/\\]", "_", title)).name.lstrip(".") or "_"
 
@@ -222,6 +231,25 @@ def _rows(place: Path, sheet: Any) -> list[list[Any]]:
             )
         rows.append(_shown(row))
     return rows
+
+
+def _uncomputed(content: bytes, sheet: Any) -> list[str]:
+    """Return the cells whose formula has no value: programs other than spreadsheets write such cells."""
+    from openpyxl.xml.functions import iterparse
+
+    with zipfile.ZipFile(io.BytesIO(content)) as archive:
+        text = archive.read(sheet._worksheet_path)  # noqa: SLF001  openpyxl has no name for the file of a sheet
+    found = []
+    for _, element in iterparse(io.BytesIO(text)) if _FORMULA.search(text) else ():
+        kind = element.tag.rpartition("}")[2]
+        if kind == "c":
+            parts = {one.tag.rpartition("}")[2]: one.text for one in element}
+            # Of a formula that gives the empty text, the value is empty too.
+            empty = "f" in parts and not parts.get("v") and element.get("t") != "str"
+            found += [element.get("r", "?")] if empty else []
+        if kind == "row":
+            element.clear()  # a large sheet would take memory
+    return found
 
 
 def _first(row: list[Any]) -> int:

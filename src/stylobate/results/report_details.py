@@ -69,6 +69,8 @@ class ReportDetails:
         Command that repeats the assessment; `stylobate assess` fills it in.
     table_file, table_sha256
         Name of the table of objects and its SHA-256, if the columns come from one.
+    table_read_as
+        Headings of this table that are aliases, and of which names they are.
     about_columns
         Inventory number, place or material of a column, by its name.
     about_records
@@ -87,6 +89,7 @@ class ReportDetails:
     command: str = ""
     table_file: str = ""
     table_sha256: str = ""
+    table_read_as: Mapping[str, str] = field(default_factory=dict)
     about_columns: Mapping[str, str] = field(default_factory=dict)
     about_records: Mapping[str, str] = field(default_factory=dict)
     design_spectrum: DesignSpectrum | None = None
@@ -102,5 +105,5 @@ class ReportDetails:
 
     def values(self) -> dict[str, Any]:
         """Return the details as plain values that JSON can hold."""
-        about = {"about_records": dict(self.about_records), "about_columns": dict(self.about_columns)}
-        return {**asdict(self), **about}
+        names = ("about_records", "about_columns", "table_read_as")
+        return {**asdict(self), **{name: dict(getattr(self, name)) for name in names}}

@@ -165,7 +165,7 @@ def test_several_sheets_are_several_records(tmp_path):
 def test_without_openpyxl_a_workbook_names_the_extra(tmp_path, monkeypatch):
     path = workbook(tmp_path / "book.xlsx", {"a": ROWS})
     monkeypatch.setitem(__import__("sys").modules, "openpyxl", None)
-    with pytest.raises(UnsupportedError, match=r'install openpyxl: pip install "stylobate\[records\]"; or save its'):
+    with pytest.raises(UnsupportedError, match=r'install openpyxl: pip install "stylobate\[excel\]"; or save its'):
         sb.read_record(path)
 
 

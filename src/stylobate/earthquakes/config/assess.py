@@ -21,7 +21,7 @@ from stylobate.config.parts import DEFAULT_MODEL, ColumnConfig, ModelConfig, des
 from stylobate.config.record_collection import RecordsConfig
 from stylobate.earthquakes.config.hazard import Hazard
 from stylobate.earthquakes.config.limit_states import LimitStateConfig, built_limit_states
-from stylobate.earthquakes.config.object_table import described_by_table
+from stylobate.earthquakes.config.object_table import TableChoice, described_by_table
 from stylobate.earthquakes.fragility import HazardCurve
 from stylobate.earthquakes.fragility.displacement_limits import LimitStates
 from stylobate.earthquakes.fragility_study import site_hazard
@@ -195,6 +195,10 @@ class AssessConfig(Config):
         Columns by name: tables as `column`. Or a path of a table of objects (CSV, Excel, GeoPackage), as for an
         inventory: it then states friction coefficients and, if `dissipation` does not, the central damping, of which
         the low and the high level are half and twice.
+    carry
+        Headings of columns of the table of objects to carry through although they are or resemble a known name.
+    defaults
+        Values for empty cells and missing columns of the table of objects, by name.
     model
         Model of all columns.
     dissipation
@@ -248,6 +252,8 @@ class AssessConfig(Config):
         Text on each column, by its name, for the report.
     table
         Path of the table of objects that `columns` named.
+    read_as
+        Headings of this table that are aliases, and of which names they are.
     about_records
         Text on each record, by its name, for the report.
     hazard
@@ -264,6 +270,8 @@ class AssessConfig(Config):
 
     title: str = "Columns under records"
     columns: dict[str, ColumnConfig]
+    carry: tuple[str, ...] = ()
+    defaults: dict[str, float | str] = Field(default_factory=dict)
     model: ModelConfig = described_model(DEFAULT_MODEL)
     dissipation: dict[str, Annotated[dict[str, Any], BeforeValidator(_as_level)]]
     friction_coefficient: Annotated[float | dict[str, float], BeforeValidator(_as_friction)]
@@ -294,6 +302,7 @@ class AssessConfig(Config):
     date: dt.date | None = None
     about_columns: dict[str, str] = Field(default_factory=dict)
     table: str = ""
+    read_as: dict[str, str] = Field(default_factory=dict)
     about_records: dict[str, str] = Field(default_factory=dict)
     hazard: Hazard | None = None
     years: float = 50.0
@@ -311,7 +320,13 @@ class AssessConfig(Config):
             With one line for each mistake; if the dissipation is missing, a line shows how to state it.
         """
         problems: list[str] = []
-        given = described_by_table(values) if isinstance(values.get("columns"), str) else dict(values)
+        of_table = isinstance(values.get("columns"), str)
+        given = described_by_table(values) if of_table else dict(values)
+        problems += [
+            f"{name}: belongs to a table of objects, and the columns come from none. Remove it."
+            for name in TableChoice.model_fields
+            if name in values and not (of_table or values.get("table"))
+        ]
         for name, remedy in _NEEDED.items():
             if name not in given:
                 problems.append(f"{name} is missing: {remedy}")
@@ -379,6 +394,7 @@ class AssessConfig(Config):
                 about_columns=self.about_columns,
                 table_file=file_of(Path(self.table)).name if self.table else "",
                 table_sha256=sha256_of(file_of(Path(self.table))) if self.table else "",
+                table_read_as=self.read_as,
                 design_spectrum=None if given is None else given.build(),
                 spectral_period=self.spectral_period,
             )

@@ -74,7 +74,7 @@ class InventoryConfig(Config):
     objects
         Table of the objects: a CSV file, a workbook or a GeoPackage.
     carry
-        Headings of columns of the table to carry through although they resemble a known name.
+        Headings of columns of the table to carry through although they are or resemble a known name.
     defaults
         Values for empty cells and missing columns of the table, by name.
     model

@@ -1,12 +1,16 @@
 """Columns of an assessment from a table of objects: their shapes, frictions, and levels of damping around theirs."""
 
+import warnings
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from pydantic import Field
+
+from stylobate.config.description import Config
 from stylobate.config.levels import LEVELS
 from stylobate.earthquakes.inventories.objects import InventoryObject, PreparedObject
 from stylobate.earthquakes.inventories.table import read_inventory
-from stylobate.errors import ConfigError
+from stylobate.errors import ConfigError, UnlikelyInputWarning
 
 _HOUSNER = "housner"
 _FACTORS = dict(zip(LEVELS, (0.5, 1.0, 2.0), strict=True))
@@ -16,7 +20,8 @@ def described_by_table(values: Mapping[str, Any]) -> dict[str, Any]:
     """Replace a path in `columns` by the columns of this table, with their frictions and levels of damping.
 
     Friction and dissipation of the study, if it states them, are kept. Otherwise the damping of the table is the
-    central level, half and twice of it are the low and the high one.
+    central level, half and twice of it are the low and the high one. What the table holds beside the objects, such as
+    other sheets, is a note of the study.
 
     Raises
     ------
@@ -30,7 +35,14 @@ def described_by_table(values: Mapping[str, Any]) -> dict[str, Any]:
     stated: dict[str, Any] = {"damping": _HOUSNER} if "dissipation" in values else {}
     friction = values.get("friction_coefficient")
     stated |= {} if friction is None else {"friction_coefficient": 1.0 if isinstance(friction, Mapping) else friction}
-    objects = read_inventory(values["columns"], model=kind, defaults=stated)
+    choice = TableChoice.parse({name: values[name] for name in TableChoice.model_fields if name in values})
+    with warnings.catch_warnings(record=True) as remarks:
+        warnings.simplefilter("always", UnlikelyInputWarning)
+        objects = read_inventory(
+            values["columns"], model=kind, defaults={**stated, **choice.defaults}, carry=choice.carry
+        )
+    for remark in remarks:
+        warnings.warn(remark.message, remark.category, stacklevel=2)
     _require_one_site(objects)
     problems: list[str] = []
     prepared = [one for one in (_prepared(each, kind, problems) for each in objects) if one is not None]
@@ -43,9 +55,27 @@ def described_by_table(values: Mapping[str, Any]) -> dict[str, Any]:
         "dissipation": {one.given.name: _levels(one) for one in prepared},
         "about_columns": {one.given.name: about for one in prepared if (about := _about(one.given))},
         "table": str(values["columns"]),
+        "read_as": dict(objects[0].read_as),
     }
     kept = {name: value for name, value in values.items() if name != "columns"}
+    if remarks and isinstance(stated_notes := values.get("notes", ()), (list, tuple)):
+        kept["notes"] = (*stated_notes, *(f"Warning: {one.message}" for one in remarks))
     return {**own, **kept}
+
+
+class TableChoice(Config):
+    """What a description states beside a table of objects.
+
+    Parameters
+    ----------
+    carry
+        Headings of columns of the table to carry through although they are or resemble a known name.
+    defaults
+        Values for empty cells and missing columns of the table, by name.
+    """
+
+    carry: tuple[str, ...] = ()
+    defaults: dict[str, float | str] = Field(default_factory=dict)
 
 
 def _prepared(given: InventoryObject, kind: str, problems: list[str]) -> PreparedObject | None:

@@ -16,7 +16,7 @@ from stylobate.errors import FileError, ParameterError
 from stylobate.files import csv_text, write_whole, write_workbook, written_aside
 from stylobate.parameter_quantities import quantity_of
 from stylobate.results.tables import ResultTable
-from stylobate.text import plural
+from stylobate.text import headings_in_words, plural
 
 ENDINGS = (".csv", ".xlsx", ".gpkg")
 """Endings of the files of a ranking."""
@@ -228,6 +228,8 @@ def table_of_ranking(found: xr.Dataset) -> ResultTable:
             f"{plural(withheld, 'object')} without rank: runs that are not known change the probability by more than "
             f"{MATTERS:g}"
         )
+    if read_as := headings_in_words(json.loads(str(found.attrs["provenance"]))["inventory"].get("headings", {})):
+        remarks.append(read_as)
     if "carried" in found:
         remarks.append(f"columns carried through: {', '.join(found['column'].to_numpy().tolist())}")
     if total > _SHOWN:

@@ -74,6 +74,8 @@ class InventoryObject:
         Name of the site; may be left out if there is one site.
     carried
         Further cells of the row by the names of their columns, which the ranking repeats.
+    read_as
+        Headings of the table that are aliases, with the names of which they are, such as {"Weight (kg)": "mass"}.
     geometry, crs
         Geometry as well-known binary, and its coordinate reference system; empty without one.
     where
@@ -87,6 +89,7 @@ class InventoryObject:
     spreads: Mapping[str, Spread] = field(default_factory=dict)
     site: str = ""
     carried: Mapping[str, str] = field(default_factory=dict)
+    read_as: Mapping[str, str] = field(default_factory=dict)
     geometry: bytes = b""
     crs: str = ""
     where: str = ""

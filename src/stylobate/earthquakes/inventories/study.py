@@ -222,6 +222,8 @@ def inventory(
         "model": model,
         "options": {name: repr(value) for name, value in options.items() if value is not None},
     }
+    read_as = {heading: name for one in objects for heading, name in one.read_as.items()}
+    setting |= {"headings": read_as} if read_as else {}
     return found.assign_attrs(
         confidence=evaluation.confidence,
         model=model,

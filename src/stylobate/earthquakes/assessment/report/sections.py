@@ -27,7 +27,7 @@ from stylobate.earthquakes.assessment.report.wording import (
 from stylobate.plots.page import PageList, PageSection, PageTable, Part, Picture
 from stylobate.results.assessment import Assessment
 from stylobate.results.verdict import few_records
-from stylobate.text import plural
+from stylobate.text import headings_in_words, plural
 
 
 def document_table(assessment: Assessment) -> PageTable:
@@ -85,6 +85,7 @@ def _assumed(assessment: Assessment) -> list[str]:
     one_sided = [f"{name} {sides.sel(column=name).item()}" for name in labels(sides, "column")]
     one_sided = [words for words in one_sided if words.endswith((" below", " above"))]
     flag = f" All levels lie on one side of Housner's impacts: {listed(one_sided, 'and')} them." if one_sided else ""
+    headings = headings_in_words(setting.get("details", {}).get("table_read_as", {}))
     return [
         "Body: rigid, in one piece, on a flat circular base on level rigid ground, upright and at rest at the start. "
         "The "
@@ -92,6 +93,7 @@ def _assumed(assessment: Assessment) -> list[str]:
         *_estimated(assessment),
         f"Contact: {_laws(assessment)}; friction coefficient as stated: {frictions}.{_of_other_law(assessment)}",
         f"Damping ({', '.join(levels)}): {stated}. Not measured, see the section on damping.{flag}",
+        *([f"Table of objects: {headings}."] if headings else []),
         f"Records: scaled by {scales(setting['scales'])}, with a vertical component where they have one, then "
         f"{_followed(assessment)}.",
         *(f"Stated by the author: {note}" for note in map(str, setting["notes"]) if not note.startswith("Warning: ")),
@@ -348,10 +350,12 @@ def _rules(assessment: Assessment, tables: Mapping[str, PageTable]) -> list[Part
 
 def _assumptions(assessment: Assessment) -> PageTable:
     notes = [
-        ("records, as read" if note.startswith("Warning: ") else "stated by the author", note)
+        ("inputs, as read" if note.startswith("Warning: ") else "stated by the author", note)
         for note in map(str, assessment.setting["notes"])
     ]
-    return PageTable(("subject", "what is assumed"), [*ASSUMPTIONS, *notes])
+    read_as = headings_in_words(assessment.setting.get("details", {}).get("table_read_as", {}))
+    headings = [("table of objects", f"The headings of the table: {read_as}.")] if read_as else []
+    return PageTable(("subject", "what is assumed"), [*ASSUMPTIONS, *headings, *notes])
 
 
 def not_covered(assessment: Assessment) -> PageTable:
