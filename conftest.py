@@ -39,7 +39,7 @@ def laboratory() -> Iterator[str]:
         yield address
 
 
-_NAMED = re.compile(r"(?<![`}])`([a-z]\w*)((?:\.[a-z_]\w*|\[\"[^\"`]+\"\])+)`(?!`)")
+_NAMED = re.compile(r"(?<![`}])`(?!\w+\.(?:csv|html|nc|toml|zarr)`)([a-z]\w*)((?:\.[a-z_]\w*|\[\"[^\"`]+\"\])+)`(?!`)")
 _BLOCK = re.compile(r"^(```+|:::+).*?^\1", re.DOTALL | re.MULTILINE)
 
 
