@@ -6,7 +6,8 @@ BIN    := $(VENV)/bin
 .DEFAULT_GOAL := help
 # Without files of bytecode, each process that a test starts compiles all modules again.
 unexport PYTHONDONTWRITEBYTECODE
-.PHONY: help demo lab page static-lab test test-all test-python test-lowest uv coverage mutants lint docs site figures sheet bench validation clean
+.PHONY: help demo lab page static-lab test quick test-system test-all test-python test-lowest uv coverage mutants lint docs site figures \
+	sheet bench validation clean
 
 help:  ## list the targets
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## /\t/' | expand -t 14
@@ -18,11 +19,19 @@ $(BIN)/python:
 	@$(PYTHON) -c 'import venv, ensurepip' 2>/dev/null \
 		|| { echo "Python's venv module is missing: install it (on Debian or Ubuntu: apt install python3-venv) and run make again"; exit 1; }
 	@$(PYTHON) -m venv $(VENV)
-	@$(BIN)/python -m pip install --quiet --upgrade 'pip>=25.1'
+
+# An environment made by hand may be of an older Python, without pip (uv makes such), or with a pip that knows no groups.
+$(VENV)/.pip: | $(BIN)/python
+	@$(BIN)/python -c 'import sys; sys.exit(sys.version_info < (3, 11))' \
+		|| { echo "$(VENV) has a Python older than 3.11: remove the folder and run make again"; exit 1; }
+	@$(BIN)/python -m pip --version >/dev/null 2>&1 || $(BIN)/python -m ensurepip >/dev/null
+	@$(BIN)/python -c 'import sys, pip; sys.exit(tuple(map(int, pip.__version__.split(".")[:2])) < (25, 1))' \
+		|| $(BIN)/python -m pip install --quiet --upgrade 'pip>=25.1'
+	@touch $@
 
 # One stamp for each set of dependencies, renewed when pyproject.toml changes. Python compiles a module when it is first
 # imported; pip would compile all of them, for half a minute.
-$(VENV)/.core: pyproject.toml | $(BIN)/python
+$(VENV)/.core: pyproject.toml | $(VENV)/.pip
 	$(BIN)/python -m pip install --quiet --no-compile --editable .
 	@touch $@
 
@@ -52,10 +61,19 @@ static-lab: $(VENV)/.core $(PAGE)  ## the laboratory as files for any web server
 static-lab/index.html: $(PAGE) | $(VENV)/.core
 	$(BIN)/stylobate lab --static static-lab
 
-test: $(VENV)/.core $(VENV)/.test  ## the tests; those of the page need `make page` and chromium, else they are skipped
+test: $(VENV)/.core $(VENV)/.test  ## the tests that need Python alone, five minutes on two cores
 	$(BIN)/python -m pytest -n auto
 
-test-all: $(VENV)/.core $(VENV)/.test  ## the tests, the slow ones included
+quick: $(VENV)/.core $(VENV)/.test $(VENV)/.lint  ## style, wording and the tests next to what has changed, below 90 seconds
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/python tools/wording.py
+	$(BIN)/python tools/quick_tests.py
+
+test-system: $(VENV)/.core $(VENV)/.test  ## the tests that need Chromium, Node or Pango of the system; the page needs `make page`
+	$(BIN)/python -m pytest -n auto -m "system and not slow"
+
+test-all: $(VENV)/.core $(VENV)/.test  ## all tests, the slow ones included
 	$(BIN)/python -m pytest -n auto -m ""
 
 # uv makes an environment of its own for another interpreter, which it fetches if need be, and for the lowest versions.

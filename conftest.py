@@ -84,12 +84,18 @@ _LONG = ("docs/how-to/bifurcation-studies.md", "docs/results/earthquakes.md")
 """Pages whose programs take a minute and more: they run with the slow tests."""
 
 
+_OF_A_BROWSER = {"browser", "written"}
+"""Fixtures that start the browser of the system, or write the files that a browser is shown."""
+
+
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Mark the programs of long pages as slow, before slow tests are left out."""
+    """Mark the programs of long pages as slow, and tests in a browser, before such tests are left out."""
     for item in items:
         if item.path.is_relative_to(item.config.rootpath) and item.path.as_posix().endswith(_LONG):
             item.add_marker(pytest.mark.slow)
+        if _OF_A_BROWSER.intersection(getattr(item, "fixturenames", ())):
+            item.add_marker(pytest.mark.system)
 
 
 _OF_THE_LABORATORY = "docs/reference/http-api.md"

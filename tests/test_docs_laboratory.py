@@ -10,6 +10,8 @@ application = pytest.importorskip("sphinx.application", reason="the tools of the
 
 from sphinx.util.docutils import docutils_namespace  # noqa: E402
 
+pytestmark = pytest.mark.system
+
 EXTENSIONS = Path(__file__).parents[1] / "docs" / "extensions"
 PAGE = """
 Title

@@ -9,8 +9,6 @@ import pytest
 from nbclient import NotebookClient
 
 TUTORIALS = sorted((Path(__file__).parents[1] / "examples" / "tutorials").glob("plot_*.py"))
-# The quickest one is run in every check.
-_QUICK = "plot_1"
 
 
 def cells(program):
@@ -25,11 +23,8 @@ def shows_a_figure(cell):
     return last.startswith(("sb.plot", "sb.animate")) or ".plot_" in last.split("(")[0] or "plt.subplots" in cell
 
 
-@pytest.mark.parametrize(
-    "tutorial",
-    [pytest.param(one, marks=() if one.name.startswith(_QUICK) else pytest.mark.slow) for one in TUTORIALS],
-    ids=lambda one: one.stem,
-)
+@pytest.mark.slow  # the documentation runs them too, as programs
+@pytest.mark.parametrize("tutorial", TUTORIALS, ids=lambda one: one.stem)
 def test_a_tutorial_runs_as_a_notebook_with_its_pictures(tutorial, tmp_path):
     notebook = nbformat.v4.new_notebook()
     notebook.cells = [nbformat.v4.new_code_cell(cell) for cell in cells(tutorial.read_text(encoding="utf-8"))]

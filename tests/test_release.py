@@ -143,6 +143,7 @@ def test_an_editable_installation_needs_no_bundles(tree, change):
     assert str(tree / "src").encode() in b"".join(wheel_of(tree, "editable").values())
 
 
+@pytest.mark.system
 @pytest.mark.skipif(shutil.which("node") is None, reason="Node is not here")
 def test_node_and_python_compute_the_same_digest_of_the_sources():
     spec = importlib.util.spec_from_file_location("hatch_build", ROOT / "hatch_build.py")

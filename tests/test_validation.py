@@ -13,6 +13,7 @@ from validation.objects import MeasuredObject
 import stylobate as sb
 
 
+@pytest.mark.slow
 def test_runs_have_the_closed_forms_of_verification_problems():
     found = list(problems.findings())
     assert len(found) == 9

@@ -1,5 +1,6 @@
 """The walk through the code leads where the page says: the command passes each stop, in this order."""
 
+import ast
 import json
 import os
 import re
@@ -7,6 +8,9 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
+SOURCE = Path(__file__).parents[1] / "src" / "stylobate"
 PAGE = Path(__file__).parents[1] / "docs" / "about" / "walk.md"
 
 # Records the first call of each function of the package, in plain Python.
@@ -40,6 +44,15 @@ def command(figure):
     return [figure if word == "map.png" else word for word in words]
 
 
+def test_the_page_has_ten_stops_and_each_is_a_function_of_its_file():
+    assert len(stops()) == 10
+    for file, name in stops():
+        tree = ast.parse((SOURCE / file).read_text(encoding="utf-8"))
+        for part in name.split("."):
+            (tree,) = (one for one in tree.body if getattr(one, "name", None) == part)
+
+
+@pytest.mark.slow  # a map by plain Python
 def test_a_map_passes_the_ten_stops_in_their_order(tmp_path):
     figure = tmp_path / "map.png"
     ended = subprocess.run(
@@ -53,6 +66,5 @@ def test_a_map_passes_the_ten_stops_in_their_order(tmp_path):
     order = {tuple(one): place for place, one in enumerate(passed)}
     assert status == 0
     assert figure.stat().st_size > 0
-    assert len(stops()) == 10
     assert [stop for stop in stops() if stop not in order] == []
     assert sorted(stops(), key=order.get) == stops()

@@ -102,6 +102,7 @@ def here(kernel, arrays):
     return copies[0]
 
 
+@pytest.mark.system
 @pytest.mark.skipif(shutil.which("node") is None, reason="needs Node")
 @pytest.mark.parametrize(
     ("model", "duration"),

@@ -23,7 +23,10 @@ from stylobate.records.reading import write_at2, write_csv
 WEB = Path(sb.__file__).parent / "lab" / "web"
 BUNDLER = WEB / "node_modules" / ".bin" / "esbuild"
 
-pytestmark = pytest.mark.skipif(shutil.which("node") is None or not BUNDLER.exists(), reason="needs Node and esbuild")
+pytestmark = [
+    pytest.mark.system,
+    pytest.mark.skipif(shutil.which("node") is None or not BUNDLER.exists(), reason="needs Node and esbuild"),
+]
 
 TIMES = np.arange(0.0, 4.0, 0.02)
 SHAKEN = 2.0 * np.exp(-TIMES) * np.sin(9.0 * TIMES + 0.3)

@@ -21,7 +21,10 @@ COMMON = programs.described()
 VERDICT, SAMPLE, LOG = (COMMON["columns"][name] for name in ("verdict", "sample", "log"))
 SAMPLES = 301
 
-pytestmark = pytest.mark.skipif(shutil.which("node") is None or not BUNDLER.exists(), reason="needs Node and esbuild")
+pytestmark = [
+    pytest.mark.system,
+    pytest.mark.skipif(shutil.which("node") is None or not BUNDLER.exists(), reason="needs Node and esbuild"),
+]
 
 
 @pytest.fixture(scope="module")

@@ -165,6 +165,7 @@ def test_a_scheduler_that_does_not_answer_is_named(points):
         run_sweep(points, executor=Dask(address="tcp://127.0.0.1:1", wait=0.5))
 
 
+@pytest.mark.slow
 def test_workers_compute_the_objects_of_an_inventory_as_threads_do(client, monkeypatch, tmp_path):
     monkeypatch.setattr("stylobate.earthquakes.inventories.runs._BLOCK_OF_WORKER", 8)
     objects = [

@@ -59,6 +59,7 @@ def changed_package(folder, *, version=None):
         (metadata / "METADATA").write_text(f"Metadata-Version: 2.1\nName: stylobate\nVersion: {version}\n")
 
 
+@pytest.mark.slow
 def test_a_worker_with_another_version_and_source_refuses_every_task(points, client, tmp_path):
     changed_package(tmp_path, version="0.0.9")
     theirs, here = source_digest(tmp_path / "stylobate")[:8], package_identity()
@@ -70,7 +71,7 @@ def test_a_worker_with_another_version_and_source_refuses_every_task(points, cli
         run_sweep(points, executor=Dask(client=client))
 
 
-@pytest.mark.parametrize("missing", ["package", "module"])
+@pytest.mark.parametrize("missing", ["package", pytest.param("module", marks=pytest.mark.slow)])
 def test_a_worker_without_the_package_is_reported_within_ten_seconds(points, client, tmp_path, missing):
     if missing == "package":
         text = "raise ModuleNotFoundError(\"No module named 'stylobate'\", name='stylobate')\n"

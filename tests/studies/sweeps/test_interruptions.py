@@ -83,7 +83,7 @@ class KilledError(BaseException):
     """The process ends here."""
 
 
-@pytest.mark.parametrize("begun", [False, True])
+@pytest.mark.parametrize("begun", [False, pytest.param(True, marks=pytest.mark.slow)])
 def test_a_writer_killed_at_any_write_leaves_a_store_that_goes_on(grid, tmp_path, undisturbed, monkeypatch, begun):
     path, left, write = tmp_path / "sweep.zarr", 0, Shard._write
     run_sweep(grid, store=path, chunk_size=5)

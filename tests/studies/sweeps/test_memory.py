@@ -39,7 +39,8 @@ def peak_of_many_runs(rows, *arguments):
 
 
 @pytest.mark.posix
-@pytest.mark.parametrize("rows", [300, pytest.param(1000, marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("rows", [300, 1000])
 def test_a_large_map_needs_its_results_and_little_more(rows):
     grown, results = peak_of_many_runs(rows)
     assert grown < results + 0.1 * rows < 0.5 * rows  # MiB

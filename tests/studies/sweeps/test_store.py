@@ -213,6 +213,7 @@ def test_a_selection_is_that_of_the_arrays_in_memory(random, path, key, assert_s
     assert_same_arrays(sb.load(path).chunk(run=2).isel(key).load(), whole.isel(key))
 
 
+@pytest.mark.slow
 def test_a_store_is_written_and_read_without_zarr(path):
     program = (
         "import sys; import stylobate as sb; from stylobate.studies.sweeps import Sweep, run_sweep; "
