@@ -47,7 +47,7 @@ def token() -> str:
     return TOKEN
 
 
-_NAMED = re.compile(r"(?<![`}])`([a-z]\w*)((?:\.[a-z_]\w*|\[\"[^\"`]+\"\])+)`(?!`)")
+_NAMED = re.compile(r"(?<![`}])`(?!\w+\.(?:csv|html|nc|toml|zarr)`)([a-z]\w*)((?:\.[a-z_]\w*|\[\"[^\"`]+\"\])+)`(?!`)")
 _BLOCK = re.compile(r"^(```+|:::+).*?^\1", re.DOTALL | re.MULTILINE)
 
 
