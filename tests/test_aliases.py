@@ -8,15 +8,15 @@ from hypothesis import strategies as st
 
 from stylobate.aliases import ALIASES, AMBIGUOUS, may_mean, meant_by, words_of
 from stylobate.cli.main import run
-from stylobate.config.parts import DIAMETERS
-from stylobate.models.declared import column_quantities, model_quantities
+from stylobate.earthquakes.inventories.headings import column_numbers
+from stylobate.models.declared import model_quantities
 from stylobate.text import did_you_mean
 
 LISTED = [(alias, name) for name, aliases in ALIASES.items() for alias in (name, *aliases)]
 
 
 def test_aliases_are_of_declared_numbers_and_of_the_words_of_a_table():
-    assert set(ALIASES) <= {*column_quantities(), *model_quantities(), *DIAMETERS, "name", "site", "shape"}
+    assert set(ALIASES) <= {*column_numbers(), *model_quantities(), "name", "site", "shape", "profile"}
 
 
 @given(st.sampled_from(LISTED), st.sampled_from((str.upper, str.title, str.lower)), st.sampled_from("_-. "))

@@ -40,6 +40,11 @@ _LISTED = {
     "inner_diameter": "inside diameter, internal diameter, inner Ø, Innendurchmesser",
     "top_radius": "upper radius",
     "top_diameter": "upper diameter, top Ø",
+    "max_radius": "maximum radius, largest radius, greatest radius, größter Radius, raggio massimo, rayon maximal",
+    "max_diameter": (
+        "max Ø, maximum diameter, maximum Ø, max diam, largest diameter, largest Ø, greatest diameter, "
+        "größter Durchmesser, Durchmesser max, diametro massimo, diamètre maximal, diamètre max"
+    ),
     "friction_coefficient": (
         "friction, friction factor, µ, mu, CoF, "
         "Reibung, Reibungskoeffizient, Reibbeiwert, Reibungszahl, attrito, coefficiente di attrito, frottement, "
@@ -48,6 +53,7 @@ _LISTED = {
     "damping": "η, eta, damping parameter, Dämpfung, smorzamento, amortissement",
     "site": "",
     "shape": "",
+    "profile": "",
 }
 _AMBIGUOUS = {
     ("radius", "diameter"): (
@@ -146,7 +152,7 @@ def may_mean(text: str) -> tuple[str, ...]:
     return tuple(dict.fromkeys(name for one, name in within.items() if _length(one) == most))
 
 
-_NUMBERS = frozenset(_LISTED) - {"name", "site", "shape"}
+_NUMBERS = frozenset(_LISTED) - {"name", "site", "shape", "profile"}
 
 
 def _is_long(key: frozenset[str]) -> bool:

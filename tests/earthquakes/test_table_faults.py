@@ -271,7 +271,7 @@ def test_a_default_without_a_value_is_refused():
 
 
 def test_numbers_of_a_table_are_those_of_column_and_model():
-    assert set(ALIASES) - {"name", "site", "shape"} <= set(quantities("wobbling"))
+    assert set(ALIASES) - {"name", "site", "shape", "profile"} <= set(quantities("wobbling"))
 
 
 def test_a_wrong_uncertainty_hides_no_other_fault_of_its_row(tmp_path):

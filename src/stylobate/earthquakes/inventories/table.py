@@ -45,6 +45,8 @@ _EITHER = ("density", "mass")
 """Numbers of which a default does not join the other one."""
 _SHAPED = {"shape", "slenderness", "profile"}
 """Columns that imply other numbers than these."""
+_ESTIMATES, _OF_ESTIMATES = {"profile", "mass_height"}, {"max_radius", "max_diameter"}
+"""Columns without which the others, which many tables have, are of no use: they are then carried through."""
 _LARGEST_SPREAD = 2.0
 """A standard deviation of a logarithm above this has most likely another unit."""
 
@@ -124,7 +126,7 @@ def read_inventory(
     require_model(model)
     table = ObjectTable.read(Path(path))
     faults = Faults(table.path.name)
-    columns = _Columns.of(table, model, carry, faults)
+    columns = _Columns.of(table, model, carry, defaults or {}, faults)
     given = _Defaults.of(defaults or {}, model, faults)
     reading = _Reading(table, model, columns, given, _doubts_on_commas(table, columns.known), faults)
     reading.require_columns()
@@ -157,7 +159,9 @@ class _Columns:
     ill: frozenset[str]
 
     @classmethod
-    def of(cls, table: ObjectTable, model: str, carry: Collection[str], faults: Faults) -> "_Columns":
+    def of(
+        cls, table: ObjectTable, model: str, carry: Collection[str], defaults: Collection[str], faults: Faults
+    ) -> "_Columns":
         """Read the headings, and collect their faults."""
         for problem in table.problems:
             faults.add(problem)
@@ -169,6 +173,8 @@ class _Columns:
         names = [one for one in read.values() if one is not None and one.name == "name"]
         first = min(names, key=lambda one: order_of(one.text), default=None)
         known = {text: one for text, one in read.items() if one is not None and (one.name != "name" or one is first)}
+        if not _ESTIMATES & {*defaults, *(one.name for one in known.values())}:
+            known = {text: one for text, one in known.items() if one.name not in _OF_ESTIMATES}
         held = {_held_by(one.full_name) for one in known.values()}
         meant: set[str] = set()
         for text, one in read.items():
