@@ -13,7 +13,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import IO
+from typing import Protocol
 from xml.parsers import expat
 
 from stylobate.errors import FileError
@@ -51,6 +51,13 @@ _PIECE, _HEAD = 1 << 20, 1 << 12
 
 class NoRecordError(FileError):
     """A file that holds no record of accelerations; in a folder it is left out."""
+
+
+class Stream(Protocol):
+    """A stream of bytes: a file, a file in an archive, or what gzip unpacks."""
+
+    def read(self, size: int, /) -> bytes:
+        """Return at most `size` bytes; none at the end."""
 
 
 @dataclass(slots=True)
@@ -118,7 +125,7 @@ class Allowance:
         finally:
             self.depth += 1
 
-    def read(self, path: Path, stream: IO[bytes]) -> bytes:
+    def read(self, path: Path, stream: Stream) -> bytes:
         """Read a stream of unpacked bytes piece by piece and count them.
 
         Raises
@@ -131,7 +138,7 @@ class Allowance:
         return content
 
 
-def _read(path: Path, stream: IO[bytes], most: int) -> bytes:
+def _read(path: Path, stream: Stream, most: int) -> bytes:
     """Read a stream, up to a little more than `most` bytes; refuse a text that is too long."""
     content = io.BytesIO()
     size, longest = 0, most
@@ -244,7 +251,7 @@ class _FoundError(Exception):
     """The name of the first element, or `DECLARES_TYPES`; ends the parsing."""
 
 
-def xml_root(stream: IO[bytes]) -> str:
+def xml_root(stream: Stream) -> str:
     """Return the namespace and name of the first element of an XML document; empty if it is not one.
 
     Nothing behind the beginning of the first element is read, and no declared entity is expanded.
