@@ -200,7 +200,7 @@ class Api:
     async def upload(self, request: Request) -> Response:
         """Store the files of a record, or an archive of records, and report the contents of one."""
         body = await json_body(request, self.limits.records)
-        numbers = {name: one for name, one in body.items() if name not in ("files", "record")}
+        numbers = {name: value for name, value in body.items() if name not in ("files", "record")}
         problems = problems_of_numbers(numbers, self.limits)
         if problems:
             raise RefusedError(422, problems)
