@@ -6,7 +6,7 @@ BIN    := $(VENV)/bin
 .DEFAULT_GOAL := help
 # Without files of bytecode, each process that a test starts compiles all modules again.
 unexport PYTHONDONTWRITEBYTECODE
-.PHONY: help demo lab page static-lab test test-all test-python test-lowest uv coverage mutants lint docs figures sheet digits bench validation clean
+.PHONY: help demo lab page static-lab test test-all test-python test-lowest uv coverage mutants lint docs figures sheet bench validation clean
 
 help:  ## list the targets
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## /\t/' | expand -t 14
@@ -109,6 +109,7 @@ figures: $(VENV)/.core $(VENV)/.test $(PAGE)  ## all figures and animations of t
 sheet: $(VENV)/.core  ## all kinds of figures in light, dark, one column and as a slide into figure-sheet/, to look at
 	$(BIN)/python tools/figure_sheet.py figure-sheet
 
+.PHONY: digits
 digits: $(VENV)/.core $(VENV)/.test  ## examples with other tolerances, starts and processors: which printed digits change
 	$(BIN)/python tools/printed_digits.py
 
