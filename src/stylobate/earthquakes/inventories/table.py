@@ -170,11 +170,7 @@ class _Columns:
                 remedy = did_you_mean(text, table.headings) or f"Use one of {shortened(map(repr, table.headings))}."
                 faults.add_line(f"carry: no such heading in {table.path.name} (got {text!r}); {remedy}")
         read = {text: None if text in carry else Heading.read(text, model) for text in table.headings if text}
-        names = [one for one in read.values() if one is not None and one.name == "name"]
-        first = min(names, key=lambda one: order_of(one.text), default=None)
-        known = {text: one for text, one in read.items() if one is not None and (one.name != "name" or one is first)}
-        if not _ESTIMATES & {*defaults, *(one.name for one in known.values())}:
-            known = {text: one for text, one in known.items() if one.name not in _OF_ESTIMATES}
+        known = _used({text: one for text, one in read.items() if one is not None}, defaults)
         held = {_held_by(one.full_name) for one in known.values()}
         meant: set[str] = set()
         for text, one in read.items():
@@ -200,6 +196,16 @@ class _Columns:
             faults.add_heading(text, problem)
         _refuse_doubled(known.values(), faults)
         return cls(known, tuple(text for text in read if text not in known), frozenset(meant), frozenset(ill))
+
+
+def _used(understood: Mapping[str, Heading], defaults: Collection[str]) -> dict[str, Heading]:
+    """Leave out further names of the objects, and columns of estimates where nothing is estimated."""
+    names = [one for one in understood.values() if one.name == "name"]
+    first = min(names, key=lambda one: order_of(one.text), default=None)
+    known = {text: one for text, one in understood.items() if one.name != "name" or one is first}
+    if _ESTIMATES & {*defaults, *(one.name for one in known.values())}:
+        return known
+    return {text: one for text, one in known.items() if one.name not in _OF_ESTIMATES}
 
 
 def _refuse_doubled(known: Iterable[Heading], faults: Faults) -> None:
