@@ -131,7 +131,6 @@ figures: $(VENV)/.core $(VENV)/.test $(PAGE)  ## all figures and animations of t
 sheet: $(VENV)/.core  ## all kinds of figures in light, dark, one column and as a slide into figure-sheet/, to look at
 	$(BIN)/python tools/figure_sheet.py figure-sheet
 
-.PHONY: digits
 digits: $(VENV)/.core $(VENV)/.test  ## examples with other tolerances, starts and processors: which printed digits change
 	$(BIN)/python tools/printed_digits.py
 
