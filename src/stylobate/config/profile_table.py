@@ -47,8 +47,9 @@ class Corners:
             If the file cannot be read, or lacks a column.
         """
         # Imported here: a command line without a table needs no reader.
+        from stylobate.records.contents import read_bytes
         from stylobate.records.tables import NAME_AND_UNIT, TextTable
-        from stylobate.records.text_files import Text, read_bytes
+        from stylobate.records.text_files import Text
 
         table = TextTable.of(Text.of(path, read_bytes(path)), named=True)
         found: dict[str, tuple[float, ...]] = {}

@@ -89,10 +89,9 @@ def link_to_listed(group: str, identity: str) -> tuple[str, str]:
     ParameterError
         If the page has no such group, preset or lesson.
     """
-    listed = {"case": presets, "lesson": lessons}
-    if group not in listed:
+    if group not in ("case", "lesson"):
         raise ParameterError(f"group: unknown group (got {group!r}). Use case or lesson.")
-    titles = {one.identity: one.title for one in listed[group]()}
+    titles = {one.identity: one.title for one in (presets() if group == "case" else lessons())}
     if identity not in titles:
         remedy = did_you_mean(identity, titles) or f"Use one of {', '.join(titles)}."
         raise ParameterError(f"{group}: unknown {group} (got {identity!r}). {remedy}")
