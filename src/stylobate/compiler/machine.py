@@ -175,7 +175,7 @@ def machine_of(processor: str) -> Machine:
 
 
 def arithmetic() -> str:
-    """Return the arithmetic that decides the bits of results: the architecture, and whether it has fused products.
+    """Return the arithmetic on which bits of results depend: the architecture, and whether it fuses products with sums.
 
     Vector registers of another length change no bit.
     """
