@@ -228,10 +228,10 @@ _WRITTEN = dt.datetime(1980, 1, 1)  # noqa: DTZ001  the first date of a zip arch
 class _Undated(zipfile.ZipFile):
     """A zip archive whose members have no date of their own."""
 
-    def writestr(self, name: Any, data: Any, *rest: Any, **more: Any) -> None:
+    def writestr(self, zinfo_or_arcname: Any, data: Any, *rest: Any, **more: Any) -> None:
         """Write a member."""
         del rest, more
-        super().writestr(zipfile.ZipInfo(str(name), _WRITTEN.timetuple()[:6]), data, zipfile.ZIP_DEFLATED)
+        super().writestr(zipfile.ZipInfo(str(zinfo_or_arcname), _WRITTEN.timetuple()[:6]), data, zipfile.ZIP_DEFLATED)
 
     def write(self, filename: Any, arcname: Any = None, *rest: Any, **more: Any) -> None:
         """Write a file as a member."""

@@ -80,7 +80,7 @@ def fit_words(figure: Figure, panels: Sequence[Axes], drawn: Iterable[Artist], s
     for text in figure.texts if len(panels) == len(figure.axes) else ():
         _wrap(text, figure.bbox.width - text.get_window_extent().x0)
     _lay_out(figure)
-    entries = {text for one in figure.findobj(Legend) for text in cast("Legend", one).get_texts()}
+    entries = {text for one in figure.findobj(Legend) for text in one.get_texts()}
     for text in whole.keys() - entries:
         text.set_text(whole[text])
     for axes in panels:
