@@ -148,7 +148,7 @@ def test_a_density_that_no_material_has_is_questioned(stated, remedy):
 def test_a_solid_cylinder_has_either_a_density_or_a_mass(stated, got):
     with pytest.raises(ParameterError) as caught:
         sb.Column.solid(radius=0.03, height=0.2, **stated)
-    assert str(caught.value) == f"density or mass: a solid column needs one of them (got {got}). State one."
+    assert str(caught.value) == f"density or mass: a column needs one of them (got {got}). State one."
 
 
 @pytest.mark.parametrize("name", [*GIVEN, "height", "gravity"])

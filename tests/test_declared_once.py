@@ -25,13 +25,14 @@ KINDS = {*MODELS, *MOTIONS, *SHAPES}
 # Names in one display, or in one signature, from which they are a list of names; and the share of names in a display.
 LEAST, LEAST_OF_A_SIGNATURE, SHARE = 3, 12, 0.8
 
-REGISTRIES = {"base_motions/declared.py", "models/declared.py", "column.py"}
+REGISTRIES = {"base_motions/declared.py", "models/declared.py", "column/shapes.py"}
 """Here kinds are registered: a name and the place of what makes one."""
 
 WRITTEN = {"lab/web/src/page/server/declared.ts"}
 """Files that tools/page_types.py writes from the declarations; a test checks them."""
 
 REMAINING: dict[str, int] = {
+    "column/body.py": 1,  # numbers that change with the size
     "engine/ensemble.py": 1,  # arguments of `simulate_ensemble` by name
     "engine/ensembles/runs.py": 1,  # numbers of a column that are masses
     "engine/parameters.py": 1,  # numbers of a column, and two by which it scales

@@ -195,7 +195,7 @@ def test_a_prism_of_many_sides_is_a_cylinder():
     ("stated", "message"),
     [
         ({"sides": 2, "density": 1e3}, "sides must be a whole number of at least 3, got 2"),
-        ({"sides": 4}, "density or mass: a solid column needs one of them (got neither). State one."),
+        ({"sides": 4}, "density or mass: a column needs one of them (got neither). State one."),
         ({"sides": 4, "density": 1e3, "circle": "mean"}, "circle must be 'inscribed' or 'circumscribed', got 'mean'"),
     ],
 )

@@ -15,7 +15,7 @@ from . import (
     theory,
 )
 from .base_motions import BaseMotion, Harmonic, MachineRun, OneOf, Pulse, Record, SineSweep
-from .column import Column
+from .column import Column, Profile
 from .earthquakes import calibrate, verdict
 from .engine import EventFunction, simulate, simulate_ensemble, with_parameters
 from .errors import Interrupted, Outcome
@@ -43,6 +43,7 @@ __all__ = [
     "Outcome",
     "OutcomeRules",
     "PlanarRocking",
+    "Profile",
     "Pulse",
     "Quantity",
     "Record",

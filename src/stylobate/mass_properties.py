@@ -1,7 +1,8 @@
-"""Mass, centre and inertia of rigid bodies that a column is made of: joined coaxial bodies and regular prisms."""
+"""Mass, centre and inertia of rigid bodies that a column is made of: joined, revolved and prismatic bodies."""
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator, Sequence
+from itertools import pairwise
 from typing import NamedTuple
 
 
@@ -63,3 +64,52 @@ def prism(sides: int, side: float, height: float, density: float) -> MassPropert
     mass = density * height * 0.5 * sides * side * a
     spread = (corner * corner + 2.0 * a * a) / 12.0
     return MassProperties(mass, height / 2.0, mass * (spread + height * height / 12.0), 2.0 * mass * spread)
+
+
+class Frustum(NamedTuple):
+    """A slice of a body of revolution between two heights [m], with the radii at both [m]."""
+
+    bottom: float
+    top: float
+    radius: float
+    top_radius: float
+
+    def of_density(self, density: float) -> MassProperties:
+        """Compute the mass properties exactly; a negative `density` takes the slice out of a body.
+
+        Notes
+        -----
+        With R linear from a to b over the height L of the slice, ∫ R² zⁿ dz and ∫ R⁴ dz are polynomials:
+
+            m = π ρ L (a² + ab + b²)/3,  I_a = (π ρ L/2) (a⁴ + a³b + a²b² + ab³ + b⁴)/5.
+        """
+        a, b, length = self.radius, self.top_radius, self.top - self.bottom
+        area = (a * a + a * b + b * b) / 3.0
+        first = (a * a + 2.0 * a * b + 3.0 * b * b) / 12.0
+        second = (a * a + 3.0 * a * b + 6.0 * b * b) / 30.0
+        line_density, share = density * math.pi * length, first / area
+        axial = line_density * (a**4 + a**3 * b + a * a * b * b + a * b**3 + b**4) / 10.0
+        about_centre = line_density * length * length * (second - first * share)
+        height = self.bottom + length * share
+        return MassProperties(line_density * area, height, axial / 2.0 + about_centre, axial)
+
+
+def frustums(heights: Sequence[float], radii: Sequence[float], *, above: float = -math.inf) -> Iterator[Frustum]:
+    """Yield the slices of the body that an outline encloses, without those below a height `above` [m].
+
+    Parameters
+    ----------
+    heights
+        Heights of the corners of the outline, not falling [m]; two corners at one height are a step.
+    radii
+        Radii there [m]. The outline encloses nothing where it is negative.
+    """
+    for (bottom, a), (top, b) in pairwise(zip(heights, radii, strict=True)):
+        if top <= max(bottom, above):
+            continue
+        rise = (b - a) / (top - bottom)
+        ends = sorted({max(bottom, above), top, *([bottom - a / rise] if a * b < 0.0 else [])})
+        for low, high in pairwise(one for one in ends if one >= above):
+            first, last = (b if at == top else a + rise * (at - bottom) for at in (low, high))
+            if first + last > 0.0:
+                yield Frustum(low, high, max(first, 0.0), max(last, 0.0))

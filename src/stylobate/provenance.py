@@ -4,6 +4,7 @@ The values are those of the objects' own declared numbers; `stylobate.config` re
 """
 
 from collections.abc import Callable, Mapping
+from dataclasses import asdict
 from enum import Enum
 from functools import cache
 from typing import Any
@@ -32,8 +33,10 @@ def provenance_of_run(model: Model, motion: BaseMotion, **options: Any) -> dict[
 
 
 def values_of_column(column: Column) -> dict[str, Any]:
-    """Return a column by its mass and inertia."""
-    return {"shape": "given", **_plain({name: getattr(column, name) for name in parameters_of(Column)})}
+    """Return a column by its mass and inertia, with its profile if it has one."""
+    own = column.profile
+    profile = {} if own is None else {"profile": _plain(asdict(own))}
+    return {"shape": "given", **_plain({name: getattr(column, name) for name in parameters_of(Column)}), **profile}
 
 
 def values_of_model(model: Model) -> dict[str, Any]:

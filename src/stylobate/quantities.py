@@ -270,6 +270,8 @@ class Parameter:
         if value is None and self.optional:
             return None
         quantity = self.quantity
+        if self.annotation is str:
+            return str(value)
         if self.choices:
             if value in self.choices:
                 return self.choices[self.choices.index(value)]

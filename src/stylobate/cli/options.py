@@ -119,6 +119,8 @@ class Options(Mapping[str, Any]):
 
 # The keys that choose a kind.
 _TAGS = ("shape", "kind")
+# The numbers that may be names of files.
+_FILES = ("profile",)
 
 
 def read_source(options: Options, source: Path | None = None) -> dict[str, Any]:
@@ -230,7 +232,8 @@ def _numbers(
             continue
         if kind is None or kind in option.kinds or not known:
             value = options.pick(name)[name]
-            numbers[option.number] = value.replace("-", "_") if option.type is str else value
+            is_word = option.type is str and option.number not in _FILES
+            numbers[option.number] = value.replace("-", "_") if is_word else value
             names.append(name)
         elif name not in fields:
             problems.append(options.refusal_by_kind(option, part.noun, kind))
@@ -245,7 +248,7 @@ def _column(values: dict[str, Any], options: Options, problems: list[str]) -> li
     if not stated:
         return []
     table = values.get("column")
-    implied = implied_shape([one.number for one in stated])
+    implied = implied_shape({one.number: options.by_name[one.name] for one in stated})
     shape = options["shape"]
     if shape is None and isinstance(table, Mapping):
         shape = table.get("shape", implied_shape(table) or "solid")

@@ -6,6 +6,7 @@ from typing import Annotated, Any, ClassVar, Self, TypeVar, get_args, get_origin
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 
+from stylobate.column import PROFILES
 from stylobate.errors import ConfigError, ParameterError
 from stylobate.quantities import Quantity
 from stylobate.text import did_you_mean
@@ -75,12 +76,18 @@ MetresPerSquareSecond = Annotated[float, Quantity(unit="m/s²")]
 _UNION_FIELDS = ("column", "model", "motion")
 # Fields that are tables of such descriptions, by names that the user chooses.
 _UNION_TABLES = ("columns",)
+_MOMENTS = ("transverse_inertia", "axial_inertia")
+_PROFILES = ", ".join(PROFILES)
 WANTED = {
     "duration": ": length of a run [s], such as 60; optional only under a base motion that ends or has a period",
     "motion.kind": ': the kind of base motion, such as "stroke" or "circular"; on the command line --motion stroke',
     "motion.velocity": ": velocity of the pulse [m/s]; on the command line --pulse-velocity",
+    "profile": f": the kind of profile, {_PROFILES}",
+    **dict.fromkeys(_MOMENTS, f". State it, or in place of both moments a profile ({_PROFILES})"),
 }
 """Explanation of a missing part, added to its message."""
+WANTED_TOGETHER = {_MOMENTS: f"State profile ({_PROFILES}) to estimate them, or state both."}
+"""Remedy for two numbers that are missing together."""
 
 
 class Config(BaseModel):
@@ -104,7 +111,7 @@ class Config(BaseModel):
         try:
             return cls.model_validate(values)
         except ValidationError as error:
-            raise ConfigError(with_suggestions(cls, [_line(problem) for problem in error.errors()])) from None
+            raise ConfigError(with_suggestions(cls, _lines(error.errors()))) from None
 
     def values(self) -> dict[str, Any]:
         """Return the description as plain values for JSON and TOML, without keys that are None."""
@@ -123,6 +130,21 @@ def built(name: str, build: Callable[[], _T], problems: list[str]) -> _T | None:
     return None
 
 
+def _lines(problems: Sequence[Any]) -> list[str]:
+    """Write one line for each mistake; numbers that need each other share one if both are missing."""
+    missing = {problem["loc"] for problem in problems if problem["type"] == "missing"}
+    lines = []
+    for problem in problems:
+        *place, name = problem["loc"] or ("",)
+        pair = next((one for one in WANTED_TOGETHER if name in one), ())
+        if not pair or not all((*place, one) in missing for one in pair):
+            lines.append(_line(problem))
+        elif name == pair[0]:
+            whole = ".".join(_without_tags(problem["loc"]))
+            lines.append(f"{whole} and {pair[1]} are missing. {WANTED_TOGETHER[pair]}")
+    return lines
+
+
 def _line(problem: Any) -> str:
     name = ".".join(_without_tags(problem["loc"])) or "the description"
     given = problem.get("input")
@@ -130,7 +152,7 @@ def _line(problem: Any) -> str:
     tag = str(context.get("discriminator", "")).strip("'")
     match problem["type"]:
         case "missing":
-            return f"{name} is missing{WANTED.get(name, '')}"
+            return f"{name} is missing{WANTED.get(name) or WANTED.get(problem['loc'][-1], '')}"
         case "extra_forbidden":
             return _unknown(name, problem["loc"])
         case "union_tag_invalid":

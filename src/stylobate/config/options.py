@@ -190,7 +190,7 @@ def type_of(parameter: Parameter) -> Any:
     """Determine the type of the values of an option from its declaration."""
     if parameter.quantity.components > 1:
         return tuple[(float,) * parameter.quantity.components]  # type: ignore[misc]
-    if any(isinstance(choice, str) for choice in parameter.choices):
+    if parameter.annotation is str or any(isinstance(choice, str) for choice in parameter.choices):
         return str
     return int if parameter.whole else float
 
@@ -370,7 +370,7 @@ kinds_in_files = partial(_motions_by, "composite_kinds")
 """Returns the kinds of base motion that combine others: no options state their numbers."""
 
 PARTS = {
-    "column": Part("column", "shape", "shape", "column shape", "stylobate.column:SHAPES"),
+    "column": Part("column", "shape", "shape", "column shape", "stylobate.column:SHAPES_WITH_OPTIONS"),
     "model": Part("model", "kind", "model", "model", "stylobate.models.declared:MODELS"),
     "motion": Part("motion", "kind", "motion", "base motion", f"{_MOTIONS}:MOTIONS"),
 }

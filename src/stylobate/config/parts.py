@@ -3,6 +3,7 @@
 import inspect
 from collections.abc import Callable, Iterable, Mapping
 from functools import partial
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeVar, Union
 
 from pydantic import BeforeValidator, Field, SerializeAsAny, TypeAdapter, ValidationError, WrapValidator, create_model
@@ -10,8 +11,9 @@ from pydantic_core import PydanticCustomError
 
 from stylobate.base_motions import BaseMotion, Record
 from stylobate.base_motions.declared import MOTIONS
-from stylobate.column import SHAPES, SHAPES_IN_FILES, Column
-from stylobate.config.description import Config
+from stylobate.column import SHAPES, SHAPES_IN_FILES, SHAPES_OF_PROFILES, Column, Profile
+from stylobate.config.description import Config, Metres
+from stylobate.config.profile_table import Corners, is_table
 from stylobate.config.records import RecordMotion
 from stylobate.errors import ParameterError
 from stylobate.kinds import Place, with_places
@@ -112,10 +114,63 @@ class DescribedColumn(Config):
 
     shape: str
 
+    @property
+    def constructor(self) -> Callable[..., Column]:
+        """The constructor, which takes the numbers."""
+        return self.make
+
+    def numbers(self) -> dict[str, Any]:
+        """Return the arguments of the constructor."""
+        return self.model_dump(exclude={"shape"})
+
     def build(self) -> Column:
         """Return the column."""
-        column: Column = self.make(**self.model_dump(exclude={"shape"}))
-        return column
+        return self.constructor(**self.numbers())
+
+
+class ProfileConfig(Config):
+    """The profile of a column that is stated by its mass and inertia, as results keep it."""
+
+    name: str = ""
+    heights: tuple[float, ...] = ()
+    radii: tuple[float, ...] = ()
+    transverse_spread: float = 0.0
+    axial_spread: float = 0.0
+
+
+class ColumnOfInertia(DescribedColumn):
+    """A column by its mass and inertia, with its profile if results know it."""
+
+    profile: ProfileConfig | None = None
+
+    def numbers(self) -> dict[str, Any]:
+        """Return the arguments of the constructor."""
+        own = self.profile
+        numbers = self.model_dump(exclude={"shape", "profile"})
+        return numbers if own is None else {**numbers, "profile": Profile(**own.model_dump())}
+
+
+class ColumnOfProfile(DescribedColumn):
+    """A column by the corners of its profile, from a file or listed, and numbers."""
+
+    heights: tuple[Metres, ...] = ()
+    radii: tuple[Metres, ...] = ()
+    inner_radii: tuple[Metres, ...] | None = None
+    profile: str = ""
+
+    @property
+    def constructor(self) -> Callable[..., Column]:
+        """The constructor with its corners; raise FileError if the file of the profile cannot be read."""
+        if self.heights or self.radii:
+            return Corners(self.heights, self.radii, self.inner_radii).constructor(self.profile)
+        if not self.profile:
+            raise ParameterError("profile: missing. Name the file of its table, or list heights and radii.")
+        path = Path(self.profile)
+        return Corners.read(path).constructor(path.name)
+
+    def numbers(self) -> dict[str, Any]:
+        """Return the arguments that the constructor still needs."""
+        return self.model_dump(exclude={"shape", "heights", "radii", "inner_radii", "profile"})
 
 
 class ColumnOfColumns(DescribedColumn):
@@ -133,22 +188,40 @@ class ColumnOfColumns(DescribedColumn):
 
 def _column_config(shape: str, make: Callable[..., Column]) -> type[Config]:
     """Return the description class of a shape; one that is made of columns describes them too."""
-    base = ColumnOfColumns if "parts" in inspect.signature(make).parameters else DescribedColumn
+    named = inspect.signature(make).parameters
+    bases = {"parts": ColumnOfColumns, "radii": ColumnOfProfile, "transverse_inertia": ColumnOfInertia}
+    base = next((one for name, one in bases.items() if name in named), DescribedColumn)
     return config_of_kind(base, "shape", shape, make)
 
 
-_BY_SHAPE = {shape: _column_config(shape, make) for shape, make in {**SHAPES, **SHAPES_IN_FILES}.items()}
+_BY_SHAPE = {
+    shape: _column_config(shape, make) for shape, make in {**SHAPES, **SHAPES_OF_PROFILES, **SHAPES_IN_FILES}.items()
+}
 
 
-def implied_shape(names: Iterable[str]) -> str | None:
-    """Return the shape to which one of these `names` belongs exclusively, or None; shapes of files come first."""
-    given = set(names)
+def implied_shape(numbers: Mapping[str, Any]) -> str | None:
+    """Return the shape to which a name of these `numbers` belongs exclusively, or None; shapes of files come first.
+
+    A profile implies one of its shapes: a file is drawn, and a kind is estimated.
+    """
+    given = set(numbers)
+    if isinstance(profile := numbers.get("profile"), str):
+        return "profile" if is_table(profile) or given & _CORNERS else "estimated"
+    for shape, make in SHAPES_OF_PROFILES.items():
+        others = {name for other in _OTHERS for name in _names_of(other)}
+        others |= {name for other in SHAPES_OF_PROFILES.values() if other is not make for name in _names_of(other)}
+        if given & (_names_of(make) - others):
+            return shape
     for shapes, among in ((SHAPES_IN_FILES, {**SHAPES, **SHAPES_IN_FILES}), (SHAPES, SHAPES)):
         for shape, make in shapes.items():
             others = {name for other in among.values() if other is not make for name in _names_of(other)}
             if given & (_names_of(make) - others):
                 return shape
     return None
+
+
+_OTHERS = (*SHAPES.values(), *SHAPES_IN_FILES.values())
+_CORNERS = {"heights", "radii"}
 
 
 def _names_of(make: Callable[..., Column]) -> set[str]:
@@ -173,7 +246,12 @@ def _with_shape(described: Any) -> Any:
     return {"shape": implied_shape(numbers) or "solid", **numbers}
 
 
-DIAMETERS = {"diameter": "radius", "inner_diameter": "inner_radius", "top_diameter": "top_radius"}
+DIAMETERS = {
+    "diameter": "radius",
+    "inner_diameter": "inner_radius",
+    "top_diameter": "top_radius",
+    "max_diameter": "max_radius",
+}
 """Lengths that files may state in place of radii."""
 
 

@@ -10,6 +10,7 @@ from pydantic import Field
 from stylobate.base_motions import Record
 from stylobate.base_motions.record import RecordOrigin
 from stylobate.config.description import Config, Hertz, MetresPerSquareSecond, Radians, Seconds
+from stylobate.config.profile_table import is_table
 from stylobate.errors import FileError, ParameterError
 from stylobate.files import file_of, sha256_of
 
@@ -401,7 +402,7 @@ class RecordMotion(Reading):
 
 
 def anchored(values: Any, folder: Path) -> Any:
-    """Make the paths of records, hazard curves and tables in plain values relative to `folder`.
+    """Make the paths of records, hazard curves, profiles and tables in plain values relative to `folder`.
 
     Parameters
     ----------
@@ -418,6 +419,8 @@ def anchored(values: Any, folder: Path) -> Any:
     found = {
         name: _from(value, folder) if name in of_files else anchored(value, folder) for name, value in values.items()
     }
+    if isinstance(profile := values.get("profile"), str) and is_table(profile):
+        found["profile"] = _from(profile, folder)
     if "records" in values:
         found["records"] = _source_from(values["records"], folder)
     for name in ("objects", "columns"):  # a table of objects

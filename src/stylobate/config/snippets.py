@@ -1,12 +1,15 @@
 """Write a description as TOML, and as the equivalent Python program."""
 
 from collections.abc import Callable, Iterable, Mapping
+from dataclasses import asdict
+from pathlib import Path
 from typing import Any
 
 import tomlkit
 
 import stylobate as sb
 from stylobate.base_motions.declared import MOTIONS
+from stylobate.config.profile_table import Corners
 from stylobate.config.simulation import SimulationConfig
 from stylobate.kinds import Kinds
 from stylobate.models.declared import MODELS
@@ -59,10 +62,25 @@ def as_python(description: SimulationConfig) -> str:
 
 def _column(column: Any) -> str:
     """Return the Python expression of a described column."""
-    numbers = _keywords(column.model_dump(exclude={"shape", "parts"}, exclude_defaults=True))
+    own = column.model_dump(exclude={"shape", "parts"}, exclude_defaults=True)
+    if isinstance(own.get("profile"), dict):
+        own["profile"] = _Code(f"sb.Profile({_keywords(own['profile'])})")
+    if column.shape == "profile" and "heights" not in own:
+        own = {**asdict(Corners.read(Path(own["profile"]))), **own, "profile": Path(own["profile"]).name}
+    numbers = _keywords(own)
     maker = "" if column.make is sb.Column else f".{column.make.__name__}"
     parts = [f"[{', '.join(_column(one) for one in column.parts)}]"] if hasattr(column, "parts") else []
     return f"sb.Column{maker}({_joined([*parts, numbers])})"
+
+
+class _Code:
+    """Text that is written as it is, in place of the `repr` of a value."""
+
+    def __init__(self, text: str) -> None:
+        self._text = text
+
+    def __repr__(self) -> str:
+        return self._text
 
 
 def _of_model(make: Callable[..., Any], numbers: Mapping[str, Any]) -> Iterable[str]:

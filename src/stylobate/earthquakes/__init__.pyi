@@ -28,6 +28,7 @@ from .property_spreads import (
     LogUniformSpread,
     NormalSpread,
     UniformSpread,
+    inertia_spreads,
     property_samples,
 )
 from .record_selection import select_records
@@ -67,6 +68,7 @@ __all__ = [
     "fit_fragility",
     "fragility_of_runs",
     "incremental_dynamic_analysis",
+    "inertia_spreads",
     "inventory",
     "limit_states",
     "lognormal_fragility",

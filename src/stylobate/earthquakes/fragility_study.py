@@ -20,7 +20,7 @@ from stylobate.earthquakes.fragility.empirical_rate import compared_with_target
 from stylobate.earthquakes.fragility.fit import fragility_of_runs
 from stylobate.earthquakes.incremental import incremental_dynamic_analysis
 from stylobate.earthquakes.intensities import Intensity, IntensityMeasure, SpectralAcceleration
-from stylobate.earthquakes.property_spreads import Spread, property_samples
+from stylobate.earthquakes.property_spreads import Spread, inertia_spreads, property_samples
 from stylobate.earthquakes.slip_study import KIND as SLIP_ANALYSIS
 from stylobate.earthquakes.slip_study import slip_analysis
 from stylobate.earthquakes.study_inputs import remark_on
@@ -51,7 +51,7 @@ class FragilityStudy:
     scales, rotations, vertical, tail, intensity, component
         As for `incremental_dynamic_analysis`.
     spreads, samples
-        Distributions of properties, and the number of samples drawn; none without spreads.
+        Distributions of properties, and the number of samples drawn; estimated moments of inertia have theirs.
     seed
         Seed of all random numbers.
     counting, confidence, resamples
@@ -128,10 +128,11 @@ class FragilityStudy:
     def runs(self, **run: Unpack[Computing]) -> xr.Dataset:
         """Run the incremental dynamic analysis, with the samples of the properties; arguments as in `run_sweep`."""
         remark_on({"column": self.model.column}, self.records)
-        samples = None
-        if self.spreads:
+        samples, own = None, inertia_spreads(self.model.column)
+        if self.samples:
             rng = self._stream(_OF_SAMPLES)
-            samples = property_samples(self.model, self.spreads, count=self.samples, rng=rng)
+            spreads = {**self.spreads, **{name: one for name, one in own.items() if name not in self.spreads}}
+            samples = property_samples(self.model, spreads, count=self.samples, rng=rng)
         if self.limit_states and isinstance(self.model, Sliding):
             return self._slips(self.model, samples, run)
         found = incremental_dynamic_analysis(

@@ -11,6 +11,7 @@ import numpy as np
 from scipy.special import ndtr, ndtri
 
 from stylobate.base_motions import BASE_AT_REST
+from stylobate.column import Column
 from stylobate.engine.parameters import COLUMN_NAMES, check_names, model_names, present_value
 from stylobate.errors import ParameterError, require_not_negative, require_positive, require_whole
 from stylobate.models import Model
@@ -139,6 +140,56 @@ class Choice:
         return np.asarray(np.array(self.among)[places], dtype=np.float64)
 
 
+# Standard deviations at which an estimated moment of inertia is truncated, and the share of the way that remains to a
+# moment that no body has.
+_ENDS, _ROOM = 3.0, 0.9
+
+
+def inertia_spreads(column: Column) -> dict[str, Spread]:
+    """Return the distributions of the moments of inertia of a column; none if they are not estimated.
+
+    Parameters
+    ----------
+    column
+        The column, such as one of `Column.estimated`.
+
+    Returns
+    -------
+    dict
+        Truncated normal distributions of `transverse_inertia` and `axial_inertia`, for `verdict`, `property_samples`
+        and others. All their values are those of a body of revolution.
+
+    Examples
+    --------
+    >>> import stylobate as sb
+    >>> vase = sb.Column.estimated(radius=0.05, height=0.3, mass_height=0.15, mass=1.2, profile="vase")
+    >>> list(inertia_spreads(vase))
+    ['transverse_inertia', 'axial_inertia']
+    """
+    own = column.profile
+    if own is None or not own.is_estimated:
+        return {}
+    across, along = column.transverse_inertia, column.axial_inertia
+    # I_a ≤ 2 I_t, and with the height of the body I_t − I_a/2 ≤ m h (H − h): each takes half of the room.
+    most = min(along * (1.0 + _ENDS * own.axial_spread), along + 0.5 * _ROOM * (2.0 * across - along))
+    least = along * max(0.0, 1.0 - _ENDS * own.axial_spread)
+    low, high = max(across * (1.0 - _ENDS * own.transverse_spread), 0.5 * most), math.inf
+    if column.height is not None:
+        room = column.mass * column.mass_height * (column.height - column.mass_height) + 0.5 * along - across
+        least = max(least, along - 0.5 * _ROOM * room)
+        high = across + 0.5 * _ROOM * room
+    high = min(high, across * (1.0 + _ENDS * own.transverse_spread))
+    bounds = {
+        "transverse_inertia": (own.transverse_spread * across, low, high),
+        "axial_inertia": (own.axial_spread * along, least, most),
+    }
+    return {
+        name: NormalSpread(deviation, least=least, most=most)
+        for name, (deviation, least, most) in bounds.items()
+        if deviation > 0.0 and least < most
+    }
+
+
 def property_samples(model: Model, spreads: Mapping[str, Spread], *, count: int, rng: Rng) -> dict[str, Floats]:
     """Draw independent samples of uncertain properties, for the argument `parameters`.
 
@@ -254,8 +305,12 @@ _NEUTRAL: Mapping[str, float] = {
 }
 
 
-def chosen_variations(changes: Mapping[str, Spread | None] | None) -> dict[str, Spread]:
+def chosen_variations(
+    changes: Mapping[str, Spread | None] | None, own: Mapping[str, Spread] = MappingProxyType({})
+) -> dict[str, Spread]:
     """Return the default variations with these changes: another distribution, or None to leave a variation out.
+
+    Variations of the case at hand, `own`, are defaults too.
 
     Raises
     ------
@@ -272,7 +327,7 @@ def chosen_variations(changes: Mapping[str, Spread | None] | None) -> dict[str, 
                 f"variations[{name!r}]: must be a distribution or None (got {spread!r}). Pass one such as "
                 "LognormalSpread(0.05)."
             )
-    return {name: spread for name, spread in {**VARIATIONS, **(changes or {})}.items() if spread is not None}
+    return {name: spread for name, spread in {**VARIATIONS, **own, **(changes or {})}.items() if spread is not None}
 
 
 def check_variations(models: tuple[Model, ...], variations: Mapping[str, Spread]) -> None:

@@ -24,6 +24,7 @@ from stylobate.earthquakes.property_spreads import (
     check_variations,
     chosen_variations,
     drawn,
+    inertia_spreads,
     scaled_dissipation,
     shares_of,
 )
@@ -103,8 +104,8 @@ def verdict(
         A base motion that ends, such as a record or a pulse.
     variations
         Changes to the default variations scale, clock, lowpass, rotation, slope_x, slope_y, start_x, start_y, size,
-        slenderness, dissipation and tolerance: a distribution for one of them or for any parameter of column or model,
-        such as `{"damping": LogUniformSpread(0.03, 0.1)}`; None leaves a variation out, also "contact_law".
+        slenderness, dissipation and tolerance, and for a column with estimated moments of inertia transverse_inertia
+        and axial_inertia: a distribution for one of them or for any parameter of column or model, such as `{"damping": LogUniformSpread(0.03, 0.1)}`; None leaves a variation out, also "contact_law".
         "dissipation" does not change parameters that are stated here.
     runs
         Number of variations.
@@ -166,10 +167,11 @@ def verdict(
     _check_motion(motion)
     _check_options(options)
     one_law = isinstance(variations, Mapping) and variations.get(CONTACT_LAW, "") is None
+    laws = contact_laws([models] if one_law and isinstance(models, Model) else models)
     case = _Case(
-        models=contact_laws([models] if one_law and isinstance(models, Model) else models),
+        models=laws,
         motion=motion,
-        variations=chosen_variations(variations),
+        variations=chosen_variations(variations, inertia_spreads(laws[0].column)),
         runs=require_whole("runs", runs, least=2, most=MOST_RUNS),
         seed=require_whole("seed", seed, least=0, most=LARGEST_SEED),
         confidence=require_confidence(confidence),
@@ -498,7 +500,7 @@ class _Case:
             "verdict": {
                 "models": [{name: one[name] for name in ("column", "model")} for one in described],
                 "variations": {
-                    **dict.fromkeys(VARIATIONS, False),
+                    **dict.fromkeys((*VARIATIONS, *inertia_spreads(self.models[0].column)), False),
                     **{name: described_spread(spread) for name, spread in self.variations.items()},
                 },
                 "runs": self.runs,

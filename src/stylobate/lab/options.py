@@ -54,9 +54,14 @@ def _kinds(descriptions: Iterable[type[Config]], tag: str) -> Iterator[dict[str,
     for description in descriptions:
         summary = (description.__doc__ or "").partition("\n")[0]
         fields = sorted(description.model_fields.items(), key=lambda item: not item[1].is_required())
-        parameters = [_parameter(name, field) for name, field in fields if name != tag]
+        parameters = [_parameter(name, field) for name, field in fields if name != tag and not _is_table(field)]
         for kind in get_args(description.model_fields[tag].annotation):
             yield {"kind": kind, "name": kind.replace("_", " "), "about": summary, "parameters": parameters}
+
+
+def _is_table(field: Any) -> bool:
+    """Return whether a field holds an optional description, such as the profile of a column that results keep."""
+    return any(isinstance(one, type) and issubclass(one, Config) for one in get_args(field.annotation))
 
 
 def _parameter(name: str, field: Any) -> answers.Parameter:

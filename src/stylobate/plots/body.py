@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Self
 
 import numpy as np
@@ -45,6 +46,12 @@ SLAB_LIT = mixed(SLAB_SIDE, SLAB, 0.4)
 
 # A Doric column has 20 flutes; facets across each, and angle from the normal of a flute's middle to its edge [rad].
 _FLUTES, _FACETS, _HOLLOW = 20, 4, 0.85
+# Corners of the outline of a shaft that has flutes, a cylinder or frustum.
+_PLAIN = 2
+# Facets across the width of a flute on a drawn outline, which has many strips of facets.
+_FACETS_OF_OUTLINE = 2
+# Rings of the facets of a drawn outline; more corners are left out.
+_MOST_RINGS = 48
 MARKED = -0.5 * np.pi
 """Azimuth of the marked flute from the body's x [rad]: without twist the flute faces the viewer."""
 
@@ -58,43 +65,58 @@ _BESIDE, _HIGH = math.radians(-62.0), math.radians(48.0)
 class FlutedColumn:
     """Facets of a shaft in its own frame, the origin at the centre of its base, z along its axis.
 
+    A body with a drawn profile has no flutes, only the mark.
+
     Attributes
     ----------
-    bottom, top
-        Corners of the facets on the two rims, shape (n, 3) [m]; facet i lies between corners i and i + 1.
+    rings
+        Corners of the facets on each ring from the base up, shape (k, n, 3) [m]; facet i of a strip lies between
+        corners i and i + 1 of two rings.
     normals
-        Unit normals that shade the facets, those of a hollow flute although the body is convex, shape (n, 3).
+        Unit normals that shade the facets, shape (k − 1, n, 3); those of a hollow flute although the body is convex.
     colours
-        Red, green and blue of each facet without light, shape (n, 3).
+        Red, green and blue of each facet of a strip without light, shape (n, 3).
     """
 
-    bottom: Floats
-    top: Floats
+    rings: Floats
     normals: Floats
     colours: Floats
 
     @classmethod
     def of(cls, shape: Shape) -> Self:
         """Return the facets of a body of this `shape`."""
-        count = _FLUTES * _FACETS
-        width = 2.0 * np.pi / _FLUTES
+        outline = shape.corners
+        if len(outline) > _MOST_RINGS:
+            kept = np.linspace(0, len(outline) - 1, _MOST_RINGS).round().astype(int)
+            outline = tuple(outline[place] for place in kept)
+        facets = _FACETS if len(outline) == _PLAIN else _FACETS_OF_OUTLINE
+        count, width = _FLUTES * facets, 2.0 * np.pi / _FLUTES
         # Half a flute back: the middle of the first is the mark.
-        corners = MARKED + (np.arange(count) / _FACETS - 0.5) * width
-        flute, place = np.divmod(np.arange(count), _FACETS)
-        facing = MARKED + flute * width - 2.0 * _HOLLOW * ((place + 0.5) / _FACETS - 0.5)
-        rise = np.full(count, (shape.radius - shape.top_radius) / shape.height)
-        normals = np.stack([np.cos(facing), np.sin(facing), rise], axis=-1)
+        corners = MARKED + (np.arange(count) / facets - 0.5) * width
+        flute, place = np.divmod(np.arange(count), facets)
+        hollow = _HOLLOW if len(outline) == _PLAIN else -0.5 * width
+        facing = MARKED + flute * width - 2.0 * hollow * ((place + 0.5) / facets - 0.5)
+        normals = np.stack(
+            [
+                np.stack([(high - low) * np.cos(facing), (high - low) * np.sin(facing), np.full(count, a - b)], axis=-1)
+                for (low, a), (high, b) in pairwise(outline)
+            ]
+        )
         return cls(
-            bottom=ring(corners, shape.radius, 0.0),
-            top=ring(corners, shape.top_radius, shape.height),
+            rings=np.stack([ring(corners, radius, height) for height, radius in outline]),
             normals=normals / np.linalg.norm(normals, axis=-1, keepdims=True),
             colours=np.where((flute == 0)[:, None], to_rgb(MARK), to_rgb(STONE)),
         )
 
     @property
+    def bottom(self) -> Floats:
+        """Corners on the rim of the base, shape (n, 3) [m]."""
+        return np.asarray(self.rings[0])
+
+    @property
     def wedge(self) -> npt.NDArray[np.intp]:
         """Indices of the corners of the marked flute."""
-        return np.arange(_FACETS + 1)
+        return np.arange(self.rings.shape[1] // _FLUTES + 1)
 
 
 def ring(angles: Floats, radius: float, height: float) -> Floats:
@@ -140,14 +162,21 @@ class ColumnArtists:
         """The artists, in the order in which they cover each other."""
         return self._shaft, self._face, self._wedge
 
-    def place(self, frame: Floats, centre: Floats) -> tuple[Floats, Floats]:
-        """Place the column by the matrix of its axes and the centre of its base; return its projected rims."""
+    def place(self, frame: Floats, centre: Floats) -> list[Floats]:
+        """Place the column by the matrix of its axes and the centre of its base; return its projected rings."""
         body, project = self.body, self._view.project
-        bottom, top = (project(rim @ frame.T + centre) for rim in (body.bottom, body.top))
-        facets = np.stack([bottom, np.roll(bottom, -1, axis=0), np.roll(top, -1, axis=0), top], axis=1)
+        placed = [rim @ frame.T + centre for rim in body.rings]
+        rims = [project(rim) for rim in placed]
+        bottom, top = rims[0], rims[-1]
+        strips = [np.stack([a, np.roll(a, -1, axis=0), np.roll(b, -1, axis=0), b], axis=1) for a, b in pairwise(rims)]
+        colours = [lit(body.colours, normals @ frame.T, self._light) for normals in body.normals]
+        facets, colours = np.concatenate(strips), np.concatenate(colours)
         across, up = facets[:, 1] - facets[:, 0], facets[:, 3] - facets[:, 0]
-        seen = across[:, 0] * up[:, 1] - across[:, 1] * up[:, 0] > 0.0
-        colours = self._mixed(lit(body.colours, body.normals @ frame.T, self._light)[seen])
+        seen = np.flatnonzero(across[:, 0] * up[:, 1] - across[:, 1] * up[:, 0] > 0.0)
+        if len(strips) > 1:  # parts of a body that is not convex cover each other: the nearest last
+            depth = np.concatenate([(a + b) @ self._view.eye for a, b in pairwise(placed)])
+            seen = seen[np.argsort(depth[seen], kind="stable")]
+        colours = self._mixed(colours[seen])
         self._shaft.set(verts=list(facets[seen]), facecolor=colours, edgecolor=colours)
         faces = [(rim, outward) for rim, outward in ((bottom, -frame[:, 2]), (top, frame[:, 2]))]
         shown = [(rim, outward) for rim, outward in faces if outward @ self._view.eye > 0.0]
@@ -157,7 +186,7 @@ class ColumnArtists:
             stone, mark = self._mixed(lit(np.stack([_rgb(STONE), _rgb(MARK)]), outward[None], self._light))
             self._face.set(xy=rim, facecolor=stone)
             self._wedge.set(xy=np.concatenate([rim.mean(axis=0)[None], rim[body.wedge]]), facecolor=mark)
-        return bottom, top
+        return rims
 
     def _mixed(self, colours: Floats) -> Floats:
         return colours if self._strength == 1.0 else self._background + self._strength * (colours - self._background)

@@ -38,12 +38,13 @@ def plot_column(column: Column) -> Figure:
     shape = Shape.of_column(asdict(column))
     figure = new_figure(_HEIGHT)
     axes = figure.subplots()
-    r, top, height, centre = shape.radius, shape.top_radius, shape.height, shape.mass_height
-    size = max(height, 2.0 * max(r, top))
+    r, widest, height, centre = shape.radius, shape.largest_radius, shape.height, shape.mass_height
+    size = max(height, 2.0 * widest)
     known = column.height is not None
-    side = [(-r, 0.0), (r, 0.0), (top, height), (-top, height)]
-    axes.add_patch(Polygon(side, facecolor=_FACE, edgecolor=BLACK, linestyle="-" if known else "--", linewidth=1.2))
-    half = max(r, top) + _GROUND * size
+    axes.add_patch(
+        Polygon(shape.side, facecolor=_FACE, edgecolor=BLACK, linestyle="-" if known else "--", linewidth=1.2)
+    )
+    half = widest + _GROUND * size
     axes.plot([-half, half], [0.0, 0.0], color=GREY, linewidth=2.0)
     axes.plot([r, 0.0], [0.0, centre], color=VERMILION, linewidth=1.2)
     axes.plot([0.0], [centre], marker="o", color=VERMILION, markersize=5)

@@ -29,6 +29,8 @@ class Shape:
         Height of the centre of mass [m].
     slenderness
         c.
+    corners
+        Heights and radii of the outline from the base up [m].
     """
 
     radius: Radius
@@ -36,6 +38,7 @@ class Shape:
     height: Height
     mass_height: MassHeight
     slenderness: Slenderness
+    corners: tuple[tuple[float, float], ...]
 
     @classmethod
     def of(cls, run: Run) -> Self:
@@ -44,18 +47,33 @@ class Shape:
 
     @classmethod
     def of_column(cls, column: Mapping[str, Any]) -> Self:
-        """Return the shape of a column with these fields: a frustum if its inertia is that of a solid one, else a tube.
+        """Return the shape of a column with these fields: its profile, else a frustum if its inertia is that of one.
 
-        A tube is drawn as a cylinder.
+        Others, such as a tube, are drawn as a cylinder.
         """
         radius, mass_height = float(column["radius"]), float(column["mass_height"])
+        top, height = _top_radius(column), float(column.get("height") or 2.0 * mass_height)
+        profile = column.get("profile") or {}
+        drawn = tuple(dict.fromkeys(zip(profile.get("heights", ()), profile.get("radii", ()), strict=True)))
         return cls(
             radius=radius,
-            top_radius=_top_radius(column),
-            height=float(column.get("height") or 2.0 * mass_height),
+            top_radius=top,
+            height=height,
             mass_height=mass_height,
             slenderness=radius / mass_height,
+            corners=drawn or ((0.0, radius), (height, top)),
         )
+
+    @property
+    def largest_radius(self) -> float:
+        """Largest radius of the outline [m]."""
+        return max(radius for _, radius in self.corners)
+
+    @property
+    def side(self) -> npt.NDArray[np.float64]:
+        """The outline seen from the side: corners x, z of a closed polygon, shape (n, 2) [m]."""
+        right = [(radius, height) for height, radius in self.corners]
+        return np.array([*right, *((-x, z) for x, z in right[::-1])])
 
 
 def _top_radius(column: Mapping[str, Any]) -> float:

@@ -15,14 +15,17 @@ Rows = list[tuple[str, str]]
 
 
 def column_rows(column: "Column", capacity: float) -> Rows:
-    """Return the rows of the column: slenderness, frequency scale, mass, and the acceleration that uplifts or moves it.
+    """Return the rows of the column: its numbers, estimated inertia, and the acceleration that uplifts or moves it.
 
     `capacity` is the `rest_capacity` of the model. A column that slides first does not uplift at c g.
     """
     onset = "slides above" if capacity < column.slenderness else "uplifts above"
     least = min(capacity, column.slenderness) * column.gravity
+    own = column.profile
+    estimated = [("profile", f"{own.name}, {own.spread_in_words}")] if own is not None and own.is_estimated else []
     return [
         ("column", f"c = {column.slenderness:.5g}, ω0 = {column.frequency_scale:.5g} rad/s, mass {column.mass:.6g} kg"),
+        *estimated,
         (onset, f"{least:.5g} m/s² of horizontal acceleration"),
     ]
 

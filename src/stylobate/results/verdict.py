@@ -103,6 +103,8 @@ LABELS: Mapping[str, str] = MappingProxyType(
         "rotation": "direction of the record",
         "slope_x": "slope of the base along x",
         "slope_y": "slope of the base along y",
+        "transverse_inertia": "moment of inertia across the axis",
+        "axial_inertia": "moment of inertia about the axis",
         "start_x": "disturbance along x",
         "start_y": "disturbance along y",
         "tolerance": "tolerance",

@@ -16,6 +16,7 @@ from stylobate.earthquakes.config.hazard import Hazard, HazardPoints
 from stylobate.earthquakes.config.limit_states import LimitStateConfig, built_limit_states
 from stylobate.earthquakes.config.verdict import AnySpread
 from stylobate.earthquakes.fragility.displacement_limits import LimitState
+from stylobate.earthquakes.property_spreads import inertia_spreads
 from stylobate.errors import (
     LARGEST_SEED,
     ConfigError,
@@ -72,7 +73,7 @@ class Fragility(Config):
     tail
         Free-vibration time after a record [s]; 20/`column.frequency_parameter` by default.
     samples
-        Number of samples of the uncertain properties.
+        Number of samples of the uncertain properties, estimated moments of inertia among them.
     spreads
         Distribution of each uncertain property, by its name: tables as below.
     seed
@@ -197,7 +198,7 @@ class FragilityConfig(ManyRuns):
         ]
         if self.tilt_limit is not None:
             problems.append("tilt_limit must be left out: a run stopped there may or may not overturn")
-        if bool(table.samples) != bool(table.spreads):
+        if bool(table.samples) != bool(table.spreads) and not (table.samples and self._is_estimated()):
             problems.append("fragility.samples and fragility.spreads need each other. Give both or neither.")
         checks = {
             "samples": lambda: require_whole("samples", table.samples, least=0),
@@ -211,6 +212,11 @@ class FragilityConfig(ManyRuns):
         for name, check in checks.items():
             built(f"fragility.{name}", check, problems)
         return problems
+
+    def _is_estimated(self) -> bool:
+        """Return whether moments of inertia of the column are estimated, so that samples need no stated spread."""
+        column = built("column", self.column.build, [])
+        return column is not None and bool(inertia_spreads(column))
 
 
 def _points(hazard: Hazard, problems: list[str]) -> HazardPoints | None:

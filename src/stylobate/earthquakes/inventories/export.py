@@ -147,10 +147,13 @@ def _cell(value: Any) -> Any:
 
 
 def notes_of(found: xr.Dataset) -> list[str]:
-    """Return a note on each object: why its number is withheld, or that some of its runs would slip."""
+    """Return a note on each object: why its number is withheld, that some runs would slip, or an estimated inertia."""
     names = ("rank", "slenderness", "friction_coefficient", *_SHARES)
     own = found.isel(scale=as_recorded(found))
-    return list(map(_note, *(own[name].to_numpy().tolist() for name in names)))
+    notes = map(_note, *(own[name].to_numpy().tolist() for name in names))
+    objects = json.loads(str(found.attrs["provenance"]))["objects"]
+    estimated = [objects[name].get("estimated", "") for name in found["object"].to_numpy().tolist()]
+    return ["; ".join(filter(None, both)) for both in zip(notes, estimated, strict=True)]
 
 
 def _note(rank: int, c: float, friction: float, sliding: float, undecided: float, slip: float) -> str:

@@ -4,21 +4,22 @@ import warnings
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
+from functools import partial
 from itertools import product
 from typing import Any, TypeAlias
 
 import numpy as np
 
-from stylobate.column import SHAPES, Column
+from stylobate.column import Column
 from stylobate.config.description import Config
 from stylobate.config.parts import ColumnConfig, ModelConfig
 from stylobate.earthquakes.fragility import HazardCurve
-from stylobate.earthquakes.property_spreads import Spread, shares_of
+from stylobate.earthquakes.property_spreads import Spread, inertia_spreads, shares_of
 from stylobate.earthquakes.study_inputs import Records
 from stylobate.errors import ConfigError, ParameterError, UnlikelyInputWarning, require_positive
 from stylobate.models import Model
 from stylobate.models.declared import MODELS
-from stylobate.quantities import Quantity, parameters_of
+from stylobate.quantities import Quantity, parameters_of, unchecked
 from stylobate.studies.sweeps.designs import Floats
 from stylobate.text import did_you_mean
 
@@ -98,14 +99,15 @@ class InventoryObject:
         """
         try:
             described = _Parts.parse({"column": dict(self.column), "model": {"kind": kind, **self.model}})
-            stated = described.column.model_dump(exclude={"shape"})
+            stated = described.column.numbers()
             model = described.model.build(described.column.build())
             friction = require_positive("friction_coefficient", self.friction_coefficient)
             prepared = PreparedObject(
                 given=self,
                 model=model,
-                make=SHAPES[described.column.shape],
-                numbers={name: float(value) for name, value in stated.items() if value is not None},
+                shape=described.column.shape,
+                make=described.column.constructor,
+                numbers={name: value for name, value in stated.items() if value is not None},
                 friction=friction,
             )
             prepared.check_names()
@@ -141,10 +143,12 @@ class PreparedObject:
         The object as given.
     model
         The nominal model.
+    shape
+        Shape of its column, as in files.
     make
         Constructor of its column.
     numbers
-        Arguments of the constructor.
+        Arguments of the constructor: numbers, and the kind of a profile.
     friction
         Friction coefficient.
     site
@@ -153,8 +157,9 @@ class PreparedObject:
 
     given: InventoryObject
     model: Model
+    shape: str
     make: Callable[..., Column]
-    numbers: Mapping[str, float]
+    numbers: Mapping[str, Any]
     friction: float
     site: str = ""
 
@@ -168,12 +173,23 @@ class PreparedObject:
         """The numbers of the model that the object states."""
         return tuple(self.given.model)
 
+    @property
+    def spreads(self) -> Mapping[str, Spread]:
+        """Distribution of each uncertain number: those given, and those of estimated moments of inertia."""
+        return {**inertia_spreads(self.model.column), **self.given.spreads}
+
+    @property
+    def estimated(self) -> str:
+        """Note on estimated moments of inertia; empty for stated or computed ones."""
+        own = self.model.column.profile
+        return f"{own.spread_in_words} ({own.name})" if own is not None and own.is_estimated else ""
+
     def check_names(self) -> None:
         """Raise ParameterError for a word of the model, or a spread of an unknown number or that is no distribution."""
         for name in self.of_model:
             if not isinstance(getattr(self.model, name), (int, float)):
                 raise ParameterError(f"{name}: must be a number (got {getattr(self.model, name)!r}). Leave it out.")
-        known = {*self.numbers, *self.of_model}
+        known = {*(name for name, one in self.numbers.items() if not isinstance(one, str)), *self.of_model}
         for name, spread in self.given.spreads.items():
             if name not in known:
                 remedy = did_you_mean(name, known) or f"Use {', '.join(sorted(known))}."
@@ -185,10 +201,11 @@ class PreparedObject:
 
     def samples(self, runs: int, seed: int) -> dict[str, Floats]:
         """Draw the uncertain numbers, each of shape (runs,); empty without spreads."""
-        nominal = {**self.numbers, **{name: getattr(self.model, name) for name in self.of_model}}
+        estimated = {name: getattr(self.model.column, name) for name in self.spreads if name not in self.given.spreads}
+        nominal = {**estimated, **self.numbers, **{name: getattr(self.model, name) for name in self.of_model}}
         return {
             name: spread.draw(nominal[name], shares_of(f"{self.name}: {name}", runs=runs, seed=seed))
-            for name, spread in self.given.spreads.items()
+            for name, spread in self.spreads.items()
         }
 
     def check_samples(self, runs: int, seed: int) -> None:
@@ -209,7 +226,7 @@ class PreparedObject:
             if lengths and not all(self._fits(one) for one in corners):
                 self.draws(runs, seed)
         except (ParameterError, ArithmeticError) as error:
-            names = " and ".join(f"{name}_spread" for name in drawn)
+            names = " and ".join(f"{name}_spread" for name in self.given.spreads)
             line = f"{self.given.place}: {names}: a sample is impossible ({error}). Reduce the spread."
             raise ConfigError([line]) from None
 
@@ -241,10 +258,26 @@ class PreparedObject:
                 columns = [self._column(dict(zip(of_column, row, strict=True))) for row in rows]
             table = np.array([[getattr(column, name) for name in own] for column in columns])
         else:
-            table = np.tile([getattr(self.model.column, name) for name in own], (runs, 1))
+            table = np.tile([float(getattr(self.model.column, name)) for name in own], (runs, 1))
         fixed = {name: np.full(runs, getattr(self.model, name), dtype=float) for name in self.of_model}
         sampled = {name: values for name, values in drawn.items() if name in self.of_model}
-        return {**dict(zip(own, table.T.copy(), strict=True)), **fixed, **sampled}
+        bodies = dict(zip(own, table.T.copy(), strict=True))
+        return {**self._with_estimated(bodies, drawn), **fixed, **sampled}
+
+    def _with_estimated(self, bodies: Draws, drawn: Draws) -> Draws:
+        """Multiply the moments of inertia that are estimated for each sample by the errors that were drawn."""
+        factors = {
+            name: drawn[name] / getattr(self.model.column, name)
+            for name in self.spreads
+            if name not in self.given.spreads
+        }
+        if not factors:
+            return bodies
+        changed = {**bodies, **{name: bodies[name] * factor for name, factor in factors.items()}}
+        # The room between both moments differs between samples of other numbers.
+        changed["axial_inertia"] = np.minimum(changed["axial_inertia"], 2.0 * changed["transverse_inertia"])
+        of_columns = unchecked(self.model.column, **{name: changed[name] for name in OF_RUNS})
+        return {**changed, "frequency_parameter": np.asarray(of_columns.frequency_parameter)}
 
     @property
     def base(self) -> Model:
@@ -269,6 +302,11 @@ def require_model(kind: str) -> None:
         raise ParameterError(
             f"model: must be three-dimensional with permanent contact (got {kind!r}). Use {', '.join(known)}."
         )
+
+
+def name_of_constructor(make: Callable[..., Column]) -> str:
+    """Return the name of a constructor, with the arguments that it already has, such as the corners of a profile."""
+    return f"{make.func.__qualname__} {make.args} {make.keywords}" if isinstance(make, partial) else make.__qualname__
 
 
 def _quantity(model: Model, name: str) -> Quantity:

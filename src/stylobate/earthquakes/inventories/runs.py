@@ -14,7 +14,7 @@ import xarray as xr
 
 from stylobate.base_motions import BaseMotion, OneOf
 from stylobate.earthquakes.assessment.inputs import identities
-from stylobate.earthquakes.inventories.objects import OF_RUNS, Draws, PreparedObject, unquestioned
+from stylobate.earthquakes.inventories.objects import OF_RUNS, Draws, PreparedObject, name_of_constructor, unquestioned
 from stylobate.earthquakes.study_inputs import tail_of
 from stylobate.engine import simulate_ensemble
 from stylobate.models import Model
@@ -69,7 +69,7 @@ class SiteRuns:
 
     def samples_of(self, one: PreparedObject) -> int:
         """Return the number of samples of an object: 1 if all its numbers are certain."""
-        return self.samples if one.given.spreads else 1
+        return self.samples if one.spreads else 1
 
     def runs_of(self, one: PreparedObject) -> int:
         """Return the number of runs of an object."""
@@ -83,8 +83,8 @@ class SiteRuns:
             "model": {"kind": one.model.name, **{name: getattr(one.model, name) for name in one.of_model}},
             "column": {name: getattr(one.model.column, name) for name in OF_RUNS},
             "numbers": dict(one.numbers),
-            "make": one.make.__qualname__,
-            "spreads": {name: repr(spread) for name, spread in one.given.spreads.items()},
+            "make": name_of_constructor(one.make),
+            "spreads": {name: repr(spread) for name, spread in one.spreads.items()},
             "records": motions,
             "scales": self.scales,
             "samples": self.samples_of(one),

@@ -366,11 +366,12 @@ def _provenance(
         "objects": {
             name: {
                 "column": dict(one.numbers),
-                "shape": one.make.__name__,
+                "shape": one.shape,
+                "estimated": one.estimated,
                 "model": {"kind": one.model.name, **{number: getattr(one.model, number) for number in one.of_model}},
                 "friction_coefficient": one.friction,
                 "site": one.site,
-                "spreads": {number: described_spread(spread) for number, spread in one.given.spreads.items()},
+                "spreads": {number: described_spread(spread) for number, spread in one.spreads.items()},
             }
             for name, one in sorted(objects.items())
         },

@@ -12,7 +12,9 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+from stylobate.column import SHAPES_OF_PROFILES
 from stylobate.config.parts import DIAMETERS
+from stylobate.config.profile_table import is_table
 from stylobate.earthquakes.inventories.objects import InventoryObject, require_model, unquestioned
 from stylobate.earthquakes.inventories.rows import ObjectTable, Row
 from stylobate.earthquakes.property_spreads import LognormalSpread, NormalSpread, Spread
@@ -24,7 +26,7 @@ from stylobate.text import did_you_mean
 from stylobate.units import UnitError, is_number, read, split
 
 _OF_FRICTION = Quantity(symbol="μ", text="friction coefficient of the contact", gt=0.0)
-_WORDS = ("name", "site", "shape")
+_WORDS = ("name", "site", "shape", "profile")
 """Columns of words."""
 _FRICTION = "friction_coefficient"
 _NEEDED = ("name", _FRICTION)
@@ -64,6 +66,8 @@ def read_inventory(
     * `name`, needed, and `site`.
     * The numbers of a column as in description files: `radius` or `diameter`, `height`, `density` or `mass`,
       `inner_radius`, `mass_height` …, and `shape` if they do not imply it.
+    * `profile`: the kind of profile from which moments of inertia are estimated, such as amphora, or the file of a drawn
+      profile, relative to the table.
     * The numbers of the model, such as `damping`, where the word housner is Housner's damping of the column.
     * `friction_coefficient`, needed.
     * The uncertainty of numbers of column and model, such as `radius_spread` or `damping_spread`. Without a unit or in
@@ -122,7 +126,7 @@ def read_inventory(
     problems = list(table.problems)
     objects = []
     for row in table.rows:
-        one = _object(row, known, others, given, table.crs, problems, commas=commas)
+        one = _object(row, known, others, given, table, problems, commas=commas)
         if one is None:
             continue
         try:
@@ -142,9 +146,15 @@ def _quantities(model: str) -> dict[str, Quantity]:
     of_model = {
         name: one.quantity for name, one in parameters_of(MODELS[model]).items() if not one.choices and name != "column"
     }
-    of_column = dict(column_quantities())
+    of_column = {**column_quantities(), **_of_profiles()}
     diameters = {name: of_column[radius] for name, radius in DIAMETERS.items()}
     return {**of_column, **diameters, **of_model, _FRICTION: _OF_FRICTION}
+
+
+def _of_profiles() -> dict[str, Quantity]:
+    """Return the quantity of each further number of a column that is described by its profile."""
+    own = {name: one for make in SHAPES_OF_PROFILES.values() for name, one in parameters_of(make).items()}
+    return {name: one.quantity for name, one in own.items() if name not in _WORDS}
 
 
 def _headings(table: ObjectTable, model: str, carry: Collection[str]) -> tuple[dict[str, Heading], tuple[str, ...]]:
@@ -165,9 +175,9 @@ def _headings(table: ObjectTable, model: str, carry: Collection[str]) -> tuple[d
                 "or name it in carry to carry it through."
             )
         else:
-            number = name.removesuffix(SPREAD)
+            number = name if name in quantities else name.removesuffix(SPREAD)
             quantity = quantities.get(number, Quantity())
-            known[text] = Heading(text, number, quantity, unit.strip(), is_spread=name.endswith(SPREAD))
+            known[text] = Heading(text, number, quantity, unit.strip(), is_spread=number != name)
             problems += _problem_of_unit(table, known[text])
     doubled = [(one.name, one.is_spread) for one in known.values()]
     problems += [
@@ -226,7 +236,7 @@ def _object(
     known: Mapping[str, Heading],
     others: Sequence[str],
     given: Mapping[str, Any],
-    crs: str,
+    table: ObjectTable,
     problems: list[str],
     *,
     commas: bool,
@@ -253,19 +263,24 @@ def _object(
             problems.append(f"{row.place}, {name}: the cell is empty. Fill it.")
     if len(problems) > before:
         return None
-    of_column = (*column_quantities(), *DIAMETERS, "shape")
+    of_column = (*column_quantities(), *_of_profiles(), *DIAMETERS, "shape", "profile")
     return InventoryObject(
         name=str(values["name"]),
-        column={name: value for name, value in values.items() if name in of_column},
+        column={name: _placed(name, value, table.path.parent) for name, value in values.items() if name in of_column},
         model={name: one for name, one in values.items() if name not in (*of_column, *_WORDS, _FRICTION)},
         friction_coefficient=values[_FRICTION],
         spreads=spreads,
         site=str(values.get("site", "")),
         carried={text: row.cells[text] for text in others},
         geometry=row.geometry,
-        crs=crs,
+        crs=table.crs,
         where=row.place,
     )
+
+
+def _placed(name: str, value: Any, folder: Path) -> Any:
+    """Return the value of a cell; the file of a profile is relative to the folder of the table."""
+    return str(folder / value) if name == "profile" and is_table(value) else value
 
 
 def _plain(cell: str, *, commas: bool) -> str:

@@ -105,7 +105,7 @@ class Scene:
         around = np.linspace(0.0, 2.0 * np.pi, 24, endpoint=False)
         rings = [
             np.stack([radius * np.cos(around), radius * np.sin(around), np.full(around.size, height)], axis=-1)
-            for radius, height in ((shape.radius, 0.0), (shape.top_radius, shape.height))
+            for height, radius in shape.corners
         ]
         columns = np.concatenate(rings) @ np.swapaxes(poses, -1, -2) + (base + motion.centre[chosen])[:, None]
         slabs = np.concatenate([self.slab(0.0), self.slab(-self.thickness)]) + base[:, None]
@@ -409,7 +409,7 @@ class Drawing:
         self._sides.set(verts=sides, facecolor=colours)
         self._top.set_xy(project(upper))
         self._lines.set(segments=list(project(scene.lines() @ scene.turned.T + base)))
-        rims = np.concatenate([self.column.bottom, self.column.top]) @ frame.T + centre
+        rims = np.concatenate(self.column.rings) @ frame.T + centre
         height = (rims - base) @ scene.normal
         cast = rims - (height / (self._light @ scene.normal))[:, None] * self._light
         self._shade.set_xy(hull(project(cast)))

@@ -137,7 +137,7 @@ class DrawnMotion:
     def as_dict(self) -> dict[str, Any]:
         """Return the motion as plain numbers, lists and text for JSON."""
         return {
-            "column": asdict(self.shape),
+            "column": {name: one for name, one in asdict(self.shape).items() if name != "corners"},
             "plane": {"incline": self.incline, "incline_direction": self.incline_direction},
             "time": _plain(self.time),
             "tilt": _plain(self.tilt),

@@ -89,6 +89,7 @@ def _assumed(assessment: Assessment) -> list[str]:
         "Body: rigid, in one piece, on a flat circular base on level rigid ground, upright and at rest at the start. "
         "The "
         "radius is that of the foot, which may be narrower than the belly.",
+        *_estimated(assessment),
         f"Contact: {_laws(assessment)}; friction coefficient as stated: {frictions}.{_of_other_law(assessment)}",
         f"Damping ({', '.join(levels)}): {stated}. Not measured, see the section on damping.{flag}",
         f"Records: scaled by {scales(setting['scales'])}, with a vertical component where they have one, then "
@@ -96,6 +97,22 @@ def _assumed(assessment: Assessment) -> list[str]:
         *(f"Stated by the author: {note}" for note in map(str, setting["notes"]) if not note.startswith("Warning: ")),
         *(note for note in map(str, setting["notes"]) if note.startswith("Warning: ")),
     ]
+
+
+def _estimated(assessment: Assessment) -> list[str]:
+    """State of which objects the moments of inertia are estimated, from which profile and how surely; none for none."""
+    found: dict[str, list[str]] = {}
+    for name, one in assessment.setting["columns"].items():
+        own = one["column"].get("profile", {})
+        spread = own.get("transverse_spread", 0.0), own.get("axial_spread", 0.0)
+        if max(spread) > 0.0:
+            words = f"{own['name']}, ±{100.0 * spread[0]:.3g} %, about the axis ±{100.0 * spread[1]:.3g} %"
+            found.setdefault(words, []).append(name)
+    if not found:
+        return []
+    objects = "; ".join(f"{listed(tuple(names), 'and')} (profile {words})" for words, names in found.items())
+    varied = "the small variations vary them" if assessment.setting["variations"] else "nothing varies them here"
+    return [f"Moments of inertia: estimated from a kind of profile for {objects}; {varied}."]
 
 
 def _by_object(words: Mapping[str, str]) -> str:
@@ -214,9 +231,10 @@ def _record_text(assessment: Assessment) -> str:
 def _outcome_text(assessment: Assessment) -> str:
     runs = assessment.setting["variations"]
     laws = ", and the contact law" if assessment.setting["contact_laws"] else ""
+    inertia = ", estimated moments of inertia" if _estimated(assessment) else ""
     varied = (
         f"Each verdict was repeated {runs} times with everything varied at once: scale, clock, low-pass and direction "
-        "of the record; size and slenderness of the column; dissipation from the lowest to the highest stated level; a "
+        f"of the record; size{inertia} and slenderness of the column; dissipation from the lowest to the highest stated level; a "
         f"base out of level by a tenth of a degree; a small disturbance at the start; the tolerance{laws}. The table "
         "states the share that overturned the column, and what decided most. Below 5 % with its whole interval the "
         "column stands, above 95 % it overturns, between it is undecided."

@@ -52,7 +52,7 @@ def objects_figure(assessment: Assessment, columns: Sequence[str], names: Sequen
     grid = figure.subplots(3, len(columns), squeeze=False, height_ratios=(2.2, 0.75, 0.9), sharey="row")
     every = [Shape.of_column(one["column"]) for one in assessment.setting["columns"].values()]
     tallest = max(shape.height for shape in every)
-    widest = max(2.0 * max(shape.radius, shape.top_radius) for shape in every)
+    widest = max(2.0 * shape.largest_radius for shape in every)
     for place, (column, shape) in enumerate(zip(columns, shapes, strict=True)):
         run = assessment.data["histories"].sel(column=column, run="stated")
         slides = slides_at(assessment, column, float(run["scale"]))
@@ -70,15 +70,14 @@ def objects_figure(assessment: Assessment, columns: Sequence[str], names: Sequen
 
 def _sketch(axes: Axes, shape: Shape, run: xr.Dataset, *, slides: bool) -> None:
     """Draw the side of a body, its centre of mass, and its outline at the peak tilt unless it slides first."""
-    r, top, height = shape.radius, shape.top_radius, shape.height
-    side = np.array([(-r, 0.0), (r, 0.0), (top, height), (-top, height)])
+    r, height, side = shape.radius, shape.height, shape.side
     axes.add_patch(Polygon(side, facecolor=_FACE, edgecolor=BLACK, linewidth=1.1))
     axes.plot([0.0], [shape.mass_height], marker="o", color=BLACK, markersize=3.0)
     ratio = float(run["peak_tilt_ratio"])
     fallen = math.isinf(ratio)
     if not slides and (fallen or ratio >= SMALLEST_TILT):
-        # A column that overturned lies on the line from its base rim to its top rim.
-        lying = 0.5 * math.pi + math.atan2(top - r, height)
+        # A column that overturned lies on its base rim and the corner of the outline that touches first.
+        lying = 0.5 * math.pi - max(math.atan2(x - r, z) for z, x in shape.corners if z > 0.0)
         angle = lying if fallen else ratio * math.atan(shape.slenderness)
         outline = _turned(side, r, angle)
         axes.add_patch(Polygon(outline, fill=False, edgecolor=VERMILION, linewidth=1.0, linestyle="--"))
