@@ -1,6 +1,7 @@
 """Columns by their profile: exact integrals of drawn ones, and estimates from a kind against drawn ones."""
 
 import math
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -36,7 +37,7 @@ def integrated(heights, radii, inner, floor, density):
             hollow = max(hollow, 0.0) if z >= floor else 0.0
             return moment(z) * (outer**power - hollow**power) * 2.0 * math.pi / power * density
 
-        pieces = [(low, high) for low, high in zip(breaks[:-1], breaks[1:], strict=True) if high > low]
+        pieces = [(low, high) for low, high in pairwise(breaks) if high > low]
         return sum(quad(ring, *piece, args=piece, epsabs=0.0, epsrel=1e-11)[0] for piece in pieces)
 
     mass = total(2, lambda _: 1.0)
@@ -267,11 +268,11 @@ def test_the_line_of_a_column_states_that_its_inertia_is_estimated():
 
 
 def test_numbers_that_do_not_suit_a_kind_are_refused():
-    with pytest.raises(ParameterError, match="profile must be 'cylinder' or 'cone' or .*, got 'amfora'"):
+    with pytest.raises(ParameterError, match=r"profile must be 'cylinder' or 'cone' or .*, got 'amfora'"):
         sb.Column.estimated(**{**AMPHORA, "profile": "amfora"})
     with pytest.raises(ParameterError, match="mass_height must lie inside the body"):
         sb.Column.estimated(**{**AMPHORA, "mass_height": 0.95})
-    with pytest.raises(ParameterError, match="max_radius: must be at least the radius of the base, 0.11 m"):
+    with pytest.raises(ParameterError, match=r"max_radius: must be at least the radius of the base, 0\.11 m"):
         sb.Column.estimated(**AMPHORA, max_radius=0.1)
     with pytest.raises(ParameterError, match="max_radius: the foot is it, for the profile cylinder"):
         sb.Column.estimated(**{**AMPHORA, "profile": "cylinder"}, max_radius=0.2)

@@ -11,7 +11,7 @@ from typing import Annotated, Any, Literal, Union, get_args, get_origin
 from pydantic import BaseModel
 from pydantic_core import PydanticUndefined
 
-from stylobate.column import SHAPES, SHAPES_IN_FILES
+from stylobate.column import SHAPES_IN_FILES, SHAPES_WITH_OPTIONS
 from stylobate.config import study_config
 from stylobate.kinds import loaded
 from stylobate.models.declared import MODELS
@@ -19,7 +19,7 @@ from stylobate.quantities import Parameter, parameters_of
 from stylobate.run_arguments import run_numbers
 
 PARTS: Mapping[str, Callable[[], Mapping[str, Callable[..., Any]]]] = {
-    "column": lambda: {**SHAPES, **SHAPES_IN_FILES},
+    "column": lambda: {**SHAPES_WITH_OPTIONS, **SHAPES_IN_FILES},
     "model": lambda: MODELS,
     "motion": lambda: loaded("stylobate.base_motions.declared:MOTIONS"),
 }

@@ -267,11 +267,9 @@ class Parameter:
         ParameterError
             If the value is not allowed.
         """
-        if value is None and self.optional:
-            return None
+        if (value is None and self.optional) or (self.annotation is str and isinstance(value, str)):
+            return value
         quantity = self.quantity
-        if self.annotation is str:
-            return str(value)
         if self.choices:
             if value in self.choices:
                 return self.choices[self.choices.index(value)]

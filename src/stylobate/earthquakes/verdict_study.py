@@ -104,8 +104,9 @@ def verdict(
         A base motion that ends, such as a record or a pulse.
     variations
         Changes to the default variations scale, clock, lowpass, rotation, slope_x, slope_y, start_x, start_y, size,
-        slenderness, dissipation and tolerance, and for a column with estimated moments of inertia transverse_inertia
-        and axial_inertia: a distribution for one of them or for any parameter of column or model, such as `{"damping": LogUniformSpread(0.03, 0.1)}`; None leaves a variation out, also "contact_law".
+        slenderness, dissipation and tolerance, and of estimated moments of inertia transverse_inertia and
+        axial_inertia: a distribution for one of them or for any parameter of column or model, such as `{"damping":
+        LogUniformSpread(0.03, 0.1)}`; None leaves a variation out, also "contact_law".
         "dissipation" does not change parameters that are stated here.
     runs
         Number of variations.

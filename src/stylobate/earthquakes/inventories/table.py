@@ -66,8 +66,8 @@ def read_inventory(
     * `name`, needed, and `site`.
     * The numbers of a column as in description files: `radius` or `diameter`, `height`, `density` or `mass`,
       `inner_radius`, `mass_height` …, and `shape` if they do not imply it.
-    * `profile`: the kind of profile from which moments of inertia are estimated, such as amphora, or the file of a drawn
-      profile, relative to the table.
+    * `profile`: the kind of profile from which moments of inertia are estimated, such as amphora, or the file of a
+      drawn profile, relative to the table.
     * The numbers of the model, such as `damping`, where the word housner is Housner's damping of the column.
     * `friction_coefficient`, needed.
     * The uncertainty of numbers of column and model, such as `radius_spread` or `damping_spread`. Without a unit or in

@@ -234,10 +234,10 @@ def _outcome_text(assessment: Assessment) -> str:
     inertia = ", estimated moments of inertia" if _estimated(assessment) else ""
     varied = (
         f"Each verdict was repeated {runs} times with everything varied at once: scale, clock, low-pass and direction "
-        f"of the record; size{inertia} and slenderness of the column; dissipation from the lowest to the highest stated level; a "
-        f"base out of level by a tenth of a degree; a small disturbance at the start; the tolerance{laws}. The table "
-        "states the share that overturned the column, and what decided most. Below 5 % with its whole interval the "
-        "column stands, above 95 % it overturns, between it is undecided."
+        f"of the record; size{inertia} and slenderness of the column; dissipation from the lowest to the highest "
+        "stated level; a base out of level by a tenth of a degree; a small disturbance at the start; the "
+        f"tolerance{laws}. The table states the share that overturned the column, and what decided most. Below 5 % "
+        "with its whole interval the column stands, above 95 % it overturns, between it is undecided."
         if runs
         else "No verdict was repeated under small variations (variations = 0), so it is not known which verdicts are "
         "repeatable."

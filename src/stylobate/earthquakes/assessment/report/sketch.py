@@ -76,10 +76,8 @@ def _sketch(axes: Axes, shape: Shape, run: xr.Dataset, *, slides: bool) -> None:
     ratio = float(run["peak_tilt_ratio"])
     fallen = math.isinf(ratio)
     if not slides and (fallen or ratio >= SMALLEST_TILT):
-        # A column that overturned lies on its base rim and the corner of the outline that touches first.
-        lying = 0.5 * math.pi - max(math.atan2(x - r, z) for z, x in shape.corners if z > 0.0)
-        angle = lying if fallen else ratio * math.atan(shape.slenderness)
-        outline = _turned(side, r, angle)
+        angle = lying_angle(shape) if fallen else ratio * math.atan(shape.slenderness)
+        outline = turned(side, r, angle)
         axes.add_patch(Polygon(outline, fill=False, edgecolor=VERMILION, linewidth=1.0, linestyle="--"))
     axes.set_xlabel(
         f"2r = {number(2.0 * r)} m, height {number(height)} m\n{_outcome(run, ratio, slides=slides)}",
@@ -88,7 +86,12 @@ def _sketch(axes: Axes, shape: Shape, run: xr.Dataset, *, slides: bool) -> None:
     )
 
 
-def _turned(points: Floats, radius: float, angle: float) -> Floats:
+def lying_angle(shape: Shape) -> float:
+    """Return the tilt at which a body lies on its base rim and the corner of its outline that touches first [rad]."""
+    return 0.5 * math.pi - max(math.atan2(radius - shape.radius, height) for height, radius in shape.corners[1:])
+
+
+def turned(points: Floats, radius: float, angle: float) -> Floats:
     """Turn points clockwise by `angle` about the right end of the base."""
     cosine, sine = math.cos(angle), math.sin(angle)
     x, z = points[:, 0] - radius, points[:, 1]
