@@ -29,10 +29,10 @@ def test_a_body_that_overturned_lies_on_the_ground(name):
 
 def test_the_outline_is_that_of_the_profile():
     shape = Shape.of_column(asdict(COLUMNS["amphora"]))
-    assert shape.corners[0] == (0.0, 0.11)
+    assert shape.corners[0] == pytest.approx((0.0, 0.11))
     assert shape.corners[-1][0] == pytest.approx(0.95)
-    assert shape.largest_radius == 0.2
-    assert shape.side[:, 0].min() == -0.2
+    assert shape.largest_radius == pytest.approx(0.2)
+    assert shape.side[:, 0].min() == pytest.approx(-0.2)
 
 
 def test_the_facets_of_an_outline_lie_on_its_rings_and_face_outwards():
@@ -42,9 +42,10 @@ def test_the_facets_of_an_outline_lie_on_its_rings_and_face_outwards():
         [radius for _, radius in shape.corners]
     )
     for low, high, normals in zip(body.rings[:-1], body.rings[1:], body.normals, strict=True):
+        # The normals are those of a round body, not of its flat facets: 40 of them turn by 9° each.
         across, up = np.roll(low, -1, axis=0) - low, high - low
         outward = np.cross(across, up)
-        assert outward / np.linalg.norm(outward, axis=1, keepdims=True) == pytest.approx(normals, abs=1e-9)
+        assert outward / np.linalg.norm(outward, axis=1, keepdims=True) == pytest.approx(normals, abs=2e-3)
 
 
 def test_an_outline_of_many_corners_keeps_its_ends():

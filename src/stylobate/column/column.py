@@ -323,7 +323,7 @@ class Column(StandingBody):
             Heights of the corners from the base up [m]; the first is that of the floor. Two corners at one height are
             a step.
         radii
-            Outer radii there [m]; the first is that of the foot, on which the body stands.
+            Outer radii there [m]. The body stands on the largest one at the floor.
         inner_radii
             Inner radii there [m], 0 where the body is solid. In its place a hollow body may state `wall_thickness`.
         wall_thickness
@@ -357,7 +357,7 @@ class Column(StandingBody):
         body = joined([*solid, *hollow]).raised(-z[0])
         density = _density(density, mass, body.mass)
         return cls(
-            radius=outer[0],
+            radius=max(one for height, one in zip(z, outer, strict=True) if height == z[0]),
             mass_height=body.mass_height,
             mass=density * body.mass,
             transverse_inertia=density * body.transverse_inertia,

@@ -224,19 +224,20 @@ def estimate(
 
 def _fitted(name: str, kind: ProfileKind, radius: float, max_radius: float | None) -> npt.NDArray[np.float64]:
     """Return the radii of a kind with a stated foot; with a largest radius the outline below it is bent to the foot."""
-    drawn = np.array(kind.radii)
+    relative: npt.NDArray[np.float64] = np.array(kind.radii)
     if max_radius is None:
-        return drawn * (radius / drawn[0])
-    widest = kind.heights[int(np.argmax(drawn))]
+        return np.asarray(relative * (radius / relative[0]))
+    widest = kind.heights[int(np.argmax(relative))]
     if max_radius < radius or (widest == 0.0 and not math.isclose(max_radius, radius)):
         problem = f"must be at least the radius of the base, {radius!r} m" if max_radius < radius else "the foot is it"
         raise ParameterError(
             f"max_radius: {problem}, for the profile {name} (got {max_radius!r} m). Correct it, or leave it out."
         )
     if widest == 0.0:
-        return drawn * radius
-    bent = drawn + (radius / max_radius - drawn[0]) * np.clip(1.0 - np.array(kind.heights) / widest, 0.0, None)
-    return np.maximum(bent, min(_THINNEST, radius / max_radius)) * max_radius
+        return np.asarray(relative * radius)
+    below = np.clip(1.0 - np.array(kind.heights) / widest, 0.0, None)
+    bent = relative + (radius / max_radius - relative[0]) * below
+    return np.asarray(np.maximum(bent, min(_THINNEST, radius / max_radius)) * max_radius)
 
 
 def drawn(

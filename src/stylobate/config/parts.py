@@ -189,8 +189,12 @@ class ColumnOfColumns(DescribedColumn):
 def _column_config(shape: str, make: Callable[..., Column]) -> type[Config]:
     """Return the description class of a shape; one that is made of columns describes them too."""
     named = inspect.signature(make).parameters
-    bases = {"parts": ColumnOfColumns, "radii": ColumnOfProfile, "transverse_inertia": ColumnOfInertia}
-    base = next((one for name, one in bases.items() if name in named), DescribedColumn)
+    bases: dict[str, type[DescribedColumn]] = {
+        "parts": ColumnOfColumns,
+        "radii": ColumnOfProfile,
+        "transverse_inertia": ColumnOfInertia,
+    }
+    base: type[DescribedColumn] = next((one for name, one in bases.items() if name in named), DescribedColumn)
     return config_of_kind(base, "shape", shape, make)
 
 

@@ -209,7 +209,7 @@ def changed_model(model: Model, values: Mapping[str, float]) -> Model:
 
 
 def _changed_column(column: Column, values: Mapping[str, float]) -> Column:
-    own = {name: value for name, value in values.items() if name not in ("slenderness", "size")}
+    own: dict[str, Any] = {name: value for name, value in values.items() if name not in ("slenderness", "size")}
     column = replace(column, **own)
     if "slenderness" in values:
         column = column.with_slenderness(values["slenderness"])

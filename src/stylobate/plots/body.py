@@ -169,14 +169,14 @@ class ColumnArtists:
         rims = [project(rim) for rim in placed]
         bottom, top = rims[0], rims[-1]
         strips = [np.stack([a, np.roll(a, -1, axis=0), np.roll(b, -1, axis=0), b], axis=1) for a, b in pairwise(rims)]
-        colours = [lit(body.colours, normals @ frame.T, self._light) for normals in body.normals]
-        facets, colours = np.concatenate(strips), np.concatenate(colours)
+        shades = [lit(body.colours, normals @ frame.T, self._light) for normals in body.normals]
+        facets = np.concatenate(strips)
         across, up = facets[:, 1] - facets[:, 0], facets[:, 3] - facets[:, 0]
         seen = np.flatnonzero(across[:, 0] * up[:, 1] - across[:, 1] * up[:, 0] > 0.0)
         if len(strips) > 1:  # parts of a body that is not convex cover each other: the nearest last
             depth = np.concatenate([(a + b) @ self._view.eye for a, b in pairwise(placed)])
             seen = seen[np.argsort(depth[seen], kind="stable")]
-        colours = self._mixed(colours[seen])
+        colours = self._mixed(np.concatenate(shades)[seen])
         self._shaft.set(verts=list(facets[seen]), facecolor=colours, edgecolor=colours)
         faces = [(rim, outward) for rim, outward in ((bottom, -frame[:, 2]), (top, frame[:, 2]))]
         shown = [(rim, outward) for rim, outward in faces if outward @ self._view.eye > 0.0]

@@ -88,7 +88,7 @@ def _sketch(axes: Axes, shape: Shape, run: xr.Dataset, *, slides: bool) -> None:
 
 def lying_angle(shape: Shape) -> float:
     """Return the tilt at which a body lies on its base rim and the corner of its outline that touches first [rad]."""
-    return 0.5 * math.pi - max(math.atan2(radius - shape.radius, height) for height, radius in shape.corners[1:])
+    return 0.5 * math.pi - max(math.atan2(radius - shape.radius, z) for z, radius in shape.corners if z > 0.0)
 
 
 def turned(points: Floats, radius: float, angle: float) -> Floats:
