@@ -276,6 +276,8 @@ def test_numbers_that_do_not_suit_a_kind_are_refused():
         sb.Column.estimated(**AMPHORA, max_radius=0.1)
     with pytest.raises(ParameterError, match="max_radius: the foot is it, for the profile cylinder"):
         sb.Column.estimated(**{**AMPHORA, "profile": "cylinder"}, max_radius=0.2)
+    with pytest.raises(ParameterError, match="mass_height: lies too close to an end of the body"):
+        sb.Column.estimated(**{**AMPHORA, "mass_height": 1e-4})
     with pytest.warns(UnlikelyInputWarning, match="mass_height: 0.15 m is unlikely for the profile amphora"):
         sb.Column.estimated(**{**AMPHORA, "mass_height": 0.15})
 

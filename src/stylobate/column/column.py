@@ -262,8 +262,8 @@ class Column(StandingBody):
         max_radius
             Largest radius [m], such as that of the belly. It makes the moment about the axis far surer.
         inertia_spread
-            Standard deviation of the logarithm of the transverse moment of inertia; by default 0.1. Verdicts,
-            assessments and inventories vary both moments by their spreads; 0 states that they are certain.
+            Relative standard deviation of the transverse moment of inertia; by default 0.1. Verdicts, assessments and
+            inventories vary both moments by their spreads; 0 states that they are certain.
 
         Raises
         ------

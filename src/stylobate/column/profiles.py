@@ -19,16 +19,16 @@ from stylobate.quantities import Quantity, question_input
 
 ProfileName = Annotated[
     Literal["cylinder", "cone", "vase", "amphora", "bottle", "statue", "bust"],
-    Quantity(text="kind of profile from which moments of inertia are estimated"),
+    Quantity(text="file of a drawn profile, or kind from which moments of inertia are estimated"),
 ]
 ProfileLabel = Annotated[str, Quantity(text="kind of profile, or file with its table")]
 MaxRadius = Annotated[float, Quantity(symbol="r_max", unit="m", text="largest radius of the body", gt=0.0)]
 InertiaSpread = Annotated[
-    float, Quantity(text="standard deviation of the logarithm of the transverse moment of inertia", ge=0.0, lt=1.0)
+    float, Quantity(text="relative standard deviation of the transverse moment of inertia", ge=0.0, lt=1.0)
 ]
 
 TRANSVERSE_SPREAD = 0.10
-"""Standard deviation of the logarithm of an estimated moment of inertia about a horizontal axis."""
+"""Relative standard deviation of an estimated moment of inertia about a horizontal axis."""
 AXIAL_SPREAD, AXIAL_SPREAD_OF_MAX_RADIUS = 0.35, 0.12
 """The same about the axis, without and with a stated largest radius."""
 
@@ -44,7 +44,7 @@ class Profile:
     heights, radii
         Corners of the outline from the base up [m]; empty if it is not known.
     transverse_spread, axial_spread
-        Standard deviations of the logarithms of both moments of inertia; 0 for moments that are not estimated.
+        Relative standard deviations of both moments of inertia; 0 for moments that are not estimated.
     """
 
     name: str = ""
@@ -136,6 +136,8 @@ PROFILES: Mapping[str, ProfileKind] = MappingProxyType(
 _SLICES = 64
 # Bisections of the exponent by which the mass is moved, from ±_STEEPEST to rounding.
 _BISECTIONS, _STEEPEST = 64, 200.0
+# Relative error of the centre of mass: that of the last bisection, or far larger if no slice lies beyond the centre.
+_CENTRED = 1e-9
 # Ratio of the densities at top and base, as its logarithm, beyond which a body is hardly one of the kind.
 _UNLIKELY = 4.0
 # Corners of the shortest profile.
@@ -166,7 +168,7 @@ def estimate(
     max_radius
         Largest radius [m]; by default the foot of the kind decides.
     spread
-        Standard deviation of the logarithm of the transverse moment; None for that of the estimates.
+        Relative standard deviation of the transverse moment; None for that of the estimates.
 
     Raises
     ------
@@ -203,6 +205,11 @@ def estimate(
         steepness = 0.5 * (low + high)
         mass = weight * np.exp(steepness * (z - share))
         low, high = (steepness, high) if float(mass @ z) < share * float(mass.sum()) else (low, steepness)
+    if not math.isclose(float(mass @ z), share * float(mass.sum()), rel_tol=_CENTRED):
+        raise ParameterError(
+            f"mass_height: lies too close to an end of the body of height {height!r} m (got {mass_height!r} m). "
+            "Check it."
+        )
     if abs(steepness) > _UNLIKELY:
         own = height * float(weight @ z) / float(weight.sum())
         question_input(
