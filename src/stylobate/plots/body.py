@@ -114,6 +114,11 @@ class FlutedColumn:
         return np.asarray(self.rings[0])
 
     @property
+    def top(self) -> Floats:
+        """Corners on the rim of the top, shape (n, 3) [m]."""
+        return np.asarray(self.rings[-1])
+
+    @property
     def wedge(self) -> npt.NDArray[np.intp]:
         """Indices of the corners of the marked flute."""
         return np.arange(self.rings.shape[1] // _FLUTES + 1)

@@ -30,7 +30,7 @@ class Shape:
     slenderness
         c.
     corners
-        Heights and radii of the outline from the base up [m].
+        Heights and radii of the outline from the base up [m]; by default those of base and top.
     """
 
     radius: Radius
@@ -38,7 +38,12 @@ class Shape:
     height: Height
     mass_height: MassHeight
     slenderness: Slenderness
-    corners: tuple[tuple[float, float], ...]
+    corners: tuple[tuple[float, float], ...] = ()
+
+    def __post_init__(self) -> None:
+        """Complete the outline."""
+        if not self.corners:
+            object.__setattr__(self, "corners", ((0.0, self.radius), (self.height, self.top_radius)))
 
     @classmethod
     def of(cls, run: Run) -> Self:
@@ -61,7 +66,7 @@ class Shape:
             height=height,
             mass_height=mass_height,
             slenderness=radius / mass_height,
-            corners=drawn or ((0.0, radius), (height, top)),
+            corners=drawn,
         )
 
     @property

@@ -105,7 +105,7 @@ def test_facets_close_the_shaft_and_the_mark_faces_the_viewer():
     np.testing.assert_allclose(np.linalg.norm(column.normals, axis=-1), 1.0)
     # Over a flute its hollows cancel: the mean normal is that of its middle.
     marked = np.isclose(column.colours, to_rgb(body.MARK)).all(axis=1)
-    mean = column.normals[marked].mean(axis=0)
+    mean = column.normals[0, marked].mean(axis=0)
     assert math.atan2(mean[1], mean[0]) == pytest.approx(MARKED)
     ends = np.arctan2(*column.bottom[column.wedge][:, 1::-1].T)
     assert ends.min() < MARKED < ends.max()
