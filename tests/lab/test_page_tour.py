@@ -144,7 +144,7 @@ def test_on_a_phone_slider_column_and_tilt_are_seen_without_scrolling_and_a_fing
 
 def test_a_link_shows_the_scene_alone_and_charts_where_they_are_asked_for(phone, address):
     phone.goto("about:blank")
-    phone.goto(f"{address}/#lesson=rocks&view=scene")
+    enter(phone, address, "#lesson=rocks&view=scene")
     shown(phone)
     found = boxes(phone, (".lesson .slider", ".stage canvas", ".transport", ".verdict"))
     assert found[".stage canvas"]["height"] > 0.3 * 844
