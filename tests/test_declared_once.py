@@ -9,7 +9,7 @@ import pytest
 
 import stylobate
 from stylobate.base_motions.declared import MOTIONS, motion_quantities
-from stylobate.column import SHAPES
+from stylobate.column.shapes import SHAPES
 from stylobate.models.declared import MODELS, column_quantities, model_quantities
 from stylobate.run_arguments import run_numbers
 

@@ -8,8 +8,8 @@ import pytest
 from scipy.integrate import quad
 
 import stylobate as sb
-from stylobate.column import PROFILES, SHAPES_OF_PROFILES
-from stylobate.column.profiles import AXIAL_SPREAD, AXIAL_SPREAD_OF_MAX_RADIUS, TRANSVERSE_SPREAD
+from stylobate.column.profiles import AXIAL_SPREAD, AXIAL_SPREAD_OF_MAX_RADIUS, PROFILES, TRANSVERSE_SPREAD
+from stylobate.column.shapes import SHAPES_OF_PROFILES
 from stylobate.errors import ParameterError, UnlikelyInputWarning
 from stylobate.mass_properties import frustums
 from stylobate.quantities import parameters_of

@@ -30,7 +30,7 @@ PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").g
 PAGES += [*sorted((ROOT / "docs").glob("[!_]*/*.md")), *sorted((ROOT / "docs").glob("about/decisions/*.md"))]
 # Words of other packages and programs, which pages name without importing them.
 OUTSIDE = re.compile(
-    "DOP853|RockingBC|brentq|consolidated|fast_math|grayscale|implicitfast|impratio|jax|libblas3|liblapack3|pebble"
+    "DOP853|RockingBC|Strict|brentq|consolidated|fast_math|grayscale|implicitfast|impratio|jax|libblas3|liblapack3|pebble"
     "|prop_cycle|resample_poly|solve_ivp|vmap"
 )
 # Files that a reader may have, or that a command writes.
@@ -310,7 +310,7 @@ def test_commands_of_pages_have_the_options_that_they_use():
         "make mutants HOUSE=models",
         "python -m validation guesses",
         "python tools/words.py",
-        'pip install ".[excel]"',
+        'pip install ".[spreadsheets]"',
         "STYLOBATE_QUIET=1",
         "GET /api/weather",
         "tests/records",

@@ -18,7 +18,7 @@ from stylobate import config, theory, units
 from stylobate.base_motions import Record
 from stylobate.base_motions.declared import MOTIONS
 from stylobate.cli.main import run as run_command
-from stylobate.column import SHAPES
+from stylobate.column.shapes import SHAPES
 from stylobate.errors import ParameterError, UnlikelyInputWarning, as_float
 from stylobate.models.declared import MODELS
 from stylobate.parameter_quantities import _QUANTITIES as VARIED

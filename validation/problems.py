@@ -7,7 +7,7 @@ import numpy as np
 from numpy.polynomial import Polynomial
 
 import stylobate as sb
-from stylobate.column import STANDARD_GRAVITY
+from stylobate.column.numbers import STANDARD_GRAVITY
 
 from .cylinders import frequency_parameter
 from .finding import Finding, Kind

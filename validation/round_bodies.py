@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 import stylobate as sb
-from stylobate.column import STANDARD_GRAVITY
+from stylobate.column.numbers import STANDARD_GRAVITY
 from stylobate.plots.style import BLACK, BLUE, DASHES, GREEN, ORANGE, PURPLE, VERMILION, new_figure, styled
 
 from .finding import FOLDER, Finding, Kind

@@ -11,7 +11,7 @@ from typing import Annotated, Any, Literal, Union, get_args, get_origin
 from pydantic import BaseModel
 from pydantic_core import PydanticUndefined
 
-from stylobate.column import SHAPES_IN_FILES, SHAPES_WITH_OPTIONS
+from stylobate.column.shapes import SHAPES_IN_FILES, SHAPES_WITH_OPTIONS
 from stylobate.config import study_config
 from stylobate.kinds import loaded
 from stylobate.models.declared import MODELS

@@ -8,7 +8,7 @@ import pytest
 
 import stylobate as sb
 from stylobate.cli.main import run
-from stylobate.column import STANDARD_GRAVITY
+from stylobate.column.numbers import STANDARD_GRAVITY
 from stylobate.records import intensity_measures, intensity_table
 
 READING = ["--units", "g", "--step", "0.01"]

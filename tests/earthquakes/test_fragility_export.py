@@ -11,7 +11,7 @@ import scipy
 import xarray as xr
 from scipy.stats import lognorm, norm
 
-from stylobate.column import STANDARD_GRAVITY
+from stylobate.column.numbers import STANDARD_GRAVITY
 from stylobate.earthquakes import export_fragility, fit_fragility, lognormal_fragility
 from stylobate.errors import ParameterError
 

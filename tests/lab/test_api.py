@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import stylobate as sb
-from stylobate.column import SHAPES
+from stylobate.column.shapes import SHAPES
 from stylobate.config import SimulationConfig, study_config
 from stylobate.lab.options import presets
 from stylobate.lab.tasks import speed_of_pictures

@@ -9,7 +9,7 @@ from stylobate.cli.command import Positional, command
 from stylobate.cli.options import Options, read_source
 from stylobate.cli.output import check_place, check_writable, print_json, print_table, save_figure
 from stylobate.cli.terminal import say
-from stylobate.column import STANDARD_GRAVITY
+from stylobate.column.numbers import STANDARD_GRAVITY
 from stylobate.config.options import FIGURE, JSON, ONE_COMPONENT, RESPONSE, SAMPLE, STEP, UNITS, Group, Option
 from stylobate.errors import FileError, ParameterError, require_positive
 from stylobate.files import csv_text, write_whole, write_workbook

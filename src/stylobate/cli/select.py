@@ -8,7 +8,7 @@ from stylobate.cli.command import Positional, command
 from stylobate.cli.options import Options
 from stylobate.cli.output import check_place, check_writable, print_json, print_table, save_plot
 from stylobate.cli.terminal import say
-from stylobate.column import STANDARD_GRAVITY
+from stylobate.column.numbers import STANDARD_GRAVITY
 from stylobate.config.options import FIGURE, JSON, ONE_COMPONENT, RESPONSE, SAMPLE, STEP, UNITS, Group, Option
 from stylobate.config.snippets import as_toml
 from stylobate.errors import ParameterError

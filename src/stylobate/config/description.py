@@ -6,7 +6,7 @@ from typing import Annotated, Any, ClassVar, Self, TypeVar, get_args, get_origin
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 
-from stylobate.column import PROFILES
+from stylobate.column.profiles import PROFILES
 from stylobate.errors import ConfigError, ParameterError
 from stylobate.quantities import Quantity
 from stylobate.text import did_you_mean

@@ -370,7 +370,7 @@ kinds_in_files = partial(_motions_by, "composite_kinds")
 """Returns the kinds of base motion that combine others: no options state their numbers."""
 
 PARTS = {
-    "column": Part("column", "shape", "shape", "column shape", "stylobate.column:SHAPES_WITH_OPTIONS"),
+    "column": Part("column", "shape", "shape", "column shape", "stylobate.column.shapes:SHAPES_WITH_OPTIONS"),
     "model": Part("model", "kind", "model", "model", "stylobate.models.declared:MODELS"),
     "motion": Part("motion", "kind", "motion", "base motion", f"{_MOTIONS}:MOTIONS"),
 }

@@ -11,7 +11,8 @@ from pydantic_core import PydanticCustomError
 
 from stylobate.base_motions import BaseMotion, Record
 from stylobate.base_motions.declared import MOTIONS
-from stylobate.column import SHAPES, SHAPES_IN_FILES, SHAPES_OF_PROFILES, Column, Profile
+from stylobate.column import Column, Profile
+from stylobate.column.shapes import SHAPES, SHAPES_IN_FILES, SHAPES_OF_PROFILES
 from stylobate.config.description import Config, Metres
 from stylobate.config.profile_table import Corners, is_table
 from stylobate.config.records import RecordMotion

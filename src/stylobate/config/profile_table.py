@@ -5,7 +5,8 @@ from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
-from stylobate.column import PROFILES, Column
+from stylobate.column import Column
+from stylobate.column.profiles import PROFILES
 from stylobate.errors import FileError, ParameterError
 from stylobate.text import did_you_mean
 from stylobate.units import UnitError, read

@@ -10,7 +10,7 @@ import numpy as np
 import xarray as xr
 
 from stylobate.base_motions import BaseMotion
-from stylobate.column import STANDARD_GRAVITY
+from stylobate.column.numbers import STANDARD_GRAVITY
 from stylobate.earthquakes.config.fragility import FragilitySetup
 from stylobate.earthquakes.config.hazard import HazardPoints
 from stylobate.earthquakes.fragility import Counting, HazardCurve, annual_rate, dispersion_parts, empirical_rate

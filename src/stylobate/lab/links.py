@@ -11,7 +11,8 @@ from typing import Any
 from urllib.parse import quote
 
 from stylobate.base_motions import BaseMotion, Harmonic
-from stylobate.column import SHAPES, Column
+from stylobate.column import Column
+from stylobate.column.shapes import SHAPES
 from stylobate.config.parts import STEADY_MODEL
 from stylobate.config.simulation import SimulationConfig, config_of
 from stylobate.errors import ConfigError, ParameterError, StylobateError, UnsupportedError

@@ -10,7 +10,7 @@ from typing import Any, get_args
 from pydantic_core import PydanticUndefined
 
 from stylobate.base_motions.declared import composite_kinds, motion_quantities
-from stylobate.column import SHAPES
+from stylobate.column.shapes import SHAPES
 from stylobate.config.description import Config
 from stylobate.config.parts import DESCRIBED_MODELS, ColumnConfig, MotionConfig, moves
 from stylobate.engine.parameters import COLUMN_NAMES, MOTION_NAMES

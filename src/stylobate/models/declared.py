@@ -4,7 +4,8 @@ from collections.abc import Callable, Mapping
 from functools import cache
 from typing import Annotated
 
-from stylobate.column import SHAPES, Column
+from stylobate.column import Column
+from stylobate.column.shapes import SHAPES
 from stylobate.kinds import Kinds
 from stylobate.quantities import QUARTER_TURN, Quantity, parameters_of
 

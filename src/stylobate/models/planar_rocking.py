@@ -8,7 +8,8 @@ from typing import ClassVar, Self
 import numpy as np
 import numpy.typing as npt
 
-from stylobate.column import STANDARD_GRAVITY, Column
+from stylobate.column import Column
+from stylobate.column.numbers import STANDARD_GRAVITY
 from stylobate.errors import require_positive
 from stylobate.models import finite_tilt
 from stylobate.models.contact import contact_outputs, path_outputs

@@ -8,7 +8,7 @@ from typing import Any, Self
 import numpy as np
 import numpy.typing as npt
 
-from stylobate.column import Height, MassHeight, Radius, Slenderness, TopRadius
+from stylobate.column.numbers import Height, MassHeight, Radius, Slenderness, TopRadius
 from stylobate.results import Run
 
 # Relative tolerance of the axial inertia of a frustum with the same centre of mass.

@@ -10,7 +10,8 @@ import numpy as np
 from stylobate.base_motions.base import ACCELERATION, DISPLACEMENT, VELOCITY
 from stylobate.base_motions.record import AXES, Record
 from stylobate.base_motions.signal_processing import Floats, energy
-from stylobate.column import STANDARD_GRAVITY, Column
+from stylobate.column import Column
+from stylobate.column.numbers import STANDARD_GRAVITY
 from stylobate.errors import ParameterError
 
 if TYPE_CHECKING:

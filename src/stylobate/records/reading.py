@@ -13,7 +13,7 @@ import numpy as np
 
 from stylobate.base_motions.record import AXES, Record
 from stylobate.base_motions.signal_processing import Floats
-from stylobate.column import STANDARD_GRAVITY
+from stylobate.column.numbers import STANDARD_GRAVITY
 from stylobate.errors import FileError, ParameterError, StylobateError, UnlikelyInputWarning, require_positive
 from stylobate.files import file_of, write_whole
 from stylobate.records.agencies import (

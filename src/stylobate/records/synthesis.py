@@ -25,7 +25,7 @@ from scipy.special import gammaincinv, gammaln
 from stylobate.base_motions.oscillator import oscillator_response
 from stylobate.base_motions.record import AXES, Record
 from stylobate.base_motions.signal_processing import Floats, samples_within_limit
-from stylobate.column import STANDARD_GRAVITY
+from stylobate.column.numbers import STANDARD_GRAVITY
 from stylobate.errors import ParameterError, require_finite, require_positive, require_whole
 
 Density = Callable[[Floats], Floats]

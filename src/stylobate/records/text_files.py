@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from stylobate.column import STANDARD_GRAVITY
+from stylobate.column.numbers import STANDARD_GRAVITY
 from stylobate.errors import FileError, ParameterError
 from stylobate.records.contents import as_utf8, read_bytes, require_lines, require_readable
 

@@ -7,7 +7,7 @@ import pytest
 from scipy.integrate import quad
 
 import stylobate as sb
-from stylobate.column import STANDARD_GRAVITY
+from stylobate.column.numbers import STANDARD_GRAVITY
 from stylobate.records import intensity_measures, rocking_measures
 from stylobate.records.intensities import arias_intensity, cumulative_absolute_velocity, significant_duration
 

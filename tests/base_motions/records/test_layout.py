@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import stylobate as sb
-from stylobate.column import STANDARD_GRAVITY
+from stylobate.column.numbers import STANDARD_GRAVITY
 from stylobate.errors import FileError, UnlikelyInputWarning
 from stylobate.records import RecordFormat
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import stylobate as sb
-from stylobate.column import STANDARD_GRAVITY
+from stylobate.column.numbers import STANDARD_GRAVITY
 from stylobate.errors import FileError, ParameterError, UnlikelyInputWarning, UnsupportedError
 from stylobate.records import RecordFormat, write_at2, write_csv
 

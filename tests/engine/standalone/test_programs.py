@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import stylobate as sb
-from stylobate.column import SHAPES
+from stylobate.column.shapes import SHAPES
 from stylobate.engine.standalone import programs
 from stylobate.engine.standalone.programs import CaseProgram, RunProgram, Shaking
 from stylobate.models.declared import MODELS

@@ -21,7 +21,7 @@ from xml.etree import ElementTree as ET
 import numpy as np
 import xarray as xr
 
-from stylobate.column import STANDARD_GRAVITY
+from stylobate.column.numbers import STANDARD_GRAVITY
 from stylobate.earthquakes.fragility.likelihood import FitStatus
 from stylobate.earthquakes.fragility.observations import LIMIT_STATE
 from stylobate.earthquakes.intensities import Intensity, SpectralAcceleration, quantity_named

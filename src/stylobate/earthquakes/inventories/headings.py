@@ -7,7 +7,7 @@ from difflib import get_close_matches
 from functools import cache
 
 from stylobate.aliases import may_mean, meant_by, words_of
-from stylobate.column import SHAPES_OF_PROFILES
+from stylobate.column.shapes import SHAPES_OF_PROFILES
 from stylobate.config.parts import DIAMETERS
 from stylobate.models.declared import MODELS, column_quantities
 from stylobate.quantities import Quantity, parameters_of

@@ -19,7 +19,8 @@ from stylobate.base_motions.harmonic import Harmonic
 from stylobate.base_motions.pulses import Pulse
 from stylobate.base_motions.record import Record
 from stylobate.base_motions.sweeps import SineSweep
-from stylobate.column import SHAPES, Column
+from stylobate.column import Column
+from stylobate.column.shapes import SHAPES
 from stylobate.compiler import mathematics
 from stylobate.compiler.machine import WEB, Machine
 from stylobate.compiler.sources import CompileError, written_module

@@ -13,7 +13,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import FuncFormatter, NullFormatter
 
-from stylobate.column import STANDARD_GRAVITY
+from stylobate.column.numbers import STANDARD_GRAVITY
 from stylobate.earthquakes.assessment.inputs import CENTRAL, OTHER_LAW
 from stylobate.earthquakes.assessment.report.column_verdict import recorded_scale, rises, slides_at
 from stylobate.earthquakes.assessment.report.sketch import OBJECTS, objects_figure

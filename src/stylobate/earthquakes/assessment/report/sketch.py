@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
 
-from stylobate.column import STANDARD_GRAVITY
+from stylobate.column.numbers import STANDARD_GRAVITY
 from stylobate.earthquakes.assessment.report.column_verdict import slides_at
 from stylobate.earthquakes.assessment.report.wording import SMALLEST_TILT, number
 from stylobate.earthquakes.figures.overturning_intervals import undecided_label, undecided_reasons

@@ -7,7 +7,7 @@ from itertools import product
 import numpy as np
 import xarray as xr
 
-from stylobate.column import STANDARD_GRAVITY
+from stylobate.column.numbers import STANDARD_GRAVITY
 from stylobate.earthquakes.figures.overturning_intervals import undecided_reasons
 from stylobate.results.assessment import Assessment
 from stylobate.results.verdict import percent
