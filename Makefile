@@ -6,7 +6,7 @@ BIN    := $(VENV)/bin
 .DEFAULT_GOAL := help
 # Without files of bytecode, each process that a test starts compiles all modules again.
 unexport PYTHONDONTWRITEBYTECODE
-.PHONY: help demo lab page static-lab test quick test-system test-all test-python test-lowest uv coverage mutants lint docs site \
+.PHONY: help demo lab page static-lab test quick test-rest test-all test-python test-lowest uv coverage mutants lint docs site \
 	figures sheet digits bench validation clean
 
 help:  ## list the targets
@@ -70,8 +70,8 @@ quick: $(VENV)/.core $(VENV)/.test $(VENV)/.lint  ## style, wording and the test
 	$(BIN)/python tools/wording.py
 	$(BIN)/python tools/quick_tests.py
 
-test-system: $(VENV)/.core $(VENV)/.test  ## the tests that need Chromium, Node or Pango of the system; the page needs `make page`
-	$(BIN)/python -m pytest -n auto -m "system and not slow"
+test-rest: $(VENV)/.core $(VENV)/.test  ## longer tests, and those of Chromium, Node and Pango; the page needs `make page`
+	$(BIN)/python -m pytest -n auto -m "(long or system) and not slow"
 
 test-all: $(VENV)/.core $(VENV)/.test  ## all tests, the slow ones included
 	$(BIN)/python -m pytest -n auto -m ""

@@ -88,8 +88,13 @@ def _pages(patterns: Sequence[str], excludes: Sequence[str] = (), fixtures: Sequ
     )
 
 
-_LONG = ("docs/how-to/bifurcation-studies.md", "docs/results/earthquakes.md")
+_OF_MINUTES = ("docs/how-to/bifurcation-studies.md", "docs/results/earthquakes.md")
 """Pages whose programs take a minute and more: they run with the slow tests."""
+
+_OF_SECONDS = tuple(
+    f"docs/how-to/{name}.md" for name in ("casks", "conveyors", "did-it-survive", "kitchen-experiments", "square-bases")
+)
+"""Pages whose programs take five seconds and more: they run with the long tests."""
 
 
 _OF_A_BROWSER = {"browser", "written"}
@@ -98,10 +103,13 @@ _OF_A_BROWSER = {"browser", "written"}
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Mark the programs of long pages as slow, and tests in a browser, before such tests are left out."""
+    """Mark the programs of some pages as slow or long, and tests in a browser, before such tests are left out."""
     for item in items:
-        if item.path.is_relative_to(item.config.rootpath) and item.path.as_posix().endswith(_LONG):
+        page = item.path.as_posix() if item.path.is_relative_to(item.config.rootpath) else ""
+        if page.endswith(_OF_MINUTES):
             item.add_marker(pytest.mark.slow)
+        if page.endswith(_OF_SECONDS):
+            item.add_marker(pytest.mark.long)
         if _OF_A_BROWSER.intersection(getattr(item, "fixturenames", ())):
             item.add_marker(pytest.mark.system)
 

@@ -221,6 +221,7 @@ def bottle(radius, height, mass, stroke, frequency, angle, tilt, duration):
     return sb.simulate(model, motion, tilt=tilt, duration=duration)
 
 
+@pytest.mark.long
 def test_the_same_run_to_the_bit_from_text_pint_and_si(tmp_path):
     plain = bottle(0.03, 0.2, 0.5, 0.0012, 50.0, 25.0 * math.pi / 180.0, (0.01, 0.0), 0.2)
     quantities = bottle(

@@ -72,6 +72,7 @@ def rewritten(clone, number, change):
     savemat(path, {"data": table})
 
 
+@pytest.mark.long
 def test_the_small_set_has_cylinders_that_stand_uplift_and_overturn(tables):
     ratios = np.concatenate([table[:, 3] for table in tables.values()])
     assert min((ratios == 0.0).sum(), ((ratios > 0.0) & (ratios < 1.0)).sum(), (ratios == 1.0).sum()) >= 3

@@ -73,6 +73,7 @@ def one_figure():
         yield
 
 
+@pytest.mark.long
 @pytest.mark.usefixtures("one_figure")
 def test_a_study_gives_a_report_that_is_kept_and_shown_again(study, tmp_path, capsys, monkeypatch):
     folder = tmp_path / "out"

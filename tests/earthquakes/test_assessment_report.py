@@ -673,6 +673,7 @@ def test_a_sketch_turns_about_the_rim_and_an_overturned_body_lies_on_the_ground(
                 assert outline[:, 1].min() >= -1e-12
 
 
+@pytest.mark.system
 def test_a_pdf_has_page_numbers_a_running_title_and_a_bookmark_for_each_section(found, tmp_path):
     pypdf = pytest.importorskip("pypdf")
     try:

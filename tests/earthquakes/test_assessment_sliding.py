@@ -19,6 +19,8 @@ from stylobate.earthquakes.assessment.report.sliding_tables import (
 from stylobate.earthquakes.fragility.empirical_rate import compared_with_target
 from stylobate.errors import ParameterError
 
+pytestmark = pytest.mark.long
+
 FRICTION, VARIATIONS, WIDTH = 0.15, 60, 1e-3
 STOUT = sb.Column.solid(radius=0.5, height=3.0, density=2700.0)
 SLIM = sb.Column.solid(radius=0.2, height=4.0, density=2700.0)

@@ -253,6 +253,7 @@ def slid(case):
     )
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("case", SLIDING)
 def test_a_run_that_slips_agrees_with_an_independent_integration(case):
     model, motion, tilt, rate, turning, duration, kinds = SLIDING[case]

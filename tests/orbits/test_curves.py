@@ -36,12 +36,14 @@ def test_the_neimark_sacker_curve_is_the_critical_frequency_of_theory_wherever_i
     np.testing.assert_array_equal(curve.points["supercritical"], 1)
 
 
+@pytest.mark.long
 def test_the_curve_over_friction_too(modulating):
     curve = bifurcation_curve(modulating, "damping", bounds=((0.8, 4.0), (0.05, 0.5)))
     for frequency, damping in [point.values for point in curve.path][::4]:
         assert frequency == pytest.approx(float(sb.theory.critical_frequency(0.065, c=C, eta=damping)), abs=2e-9)
 
 
+@pytest.mark.long
 def test_the_fold_curve_is_where_the_two_branches_of_rolling_meet():
     eta = 0.3
     model = sb.Slender(sb.Column.dimensionless(C), damping=eta)
@@ -56,6 +58,7 @@ def test_the_fold_curve_is_where_the_two_branches_of_rolling_meet():
     np.testing.assert_array_equal(curve.points["supercritical"], -1)
 
 
+@pytest.mark.long
 def test_the_pitchfork_curve_meets_what_is_located_at_other_amplitudes():
     at = {}
     for a1 in (0.04, 0.13):

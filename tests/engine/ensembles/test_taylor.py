@@ -516,6 +516,7 @@ def test_states_in_another_order_are_followed(outcome_in):
     np.testing.assert_allclose(data["end_tilt"][0], expected, rtol=0.0, atol=1e-11)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("kind", "advised"), [(sb.Slender, False), (sb.SlenderRolling, False), (sb.Wobbling, True)])
 def test_series_are_advised_against_where_they_are_slower(kind, advised, caplog):
     sb.simulate_ensemble(kind(COLUMN, damping=ETA), CIRCLE, tilt=(0.05, 0.0), duration=0.1, method="taylor")

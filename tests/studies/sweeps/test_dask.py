@@ -160,6 +160,7 @@ def test_a_lost_scheduler_is_told_and_the_store_goes_on(grid, tmp_path, assert_s
     assert_same_arrays(run_sweep(grid, store=path, resume=True), undisturbed(grid))
 
 
+@pytest.mark.long
 def test_a_scheduler_that_does_not_answer_is_named(points):
     with pytest.raises(StylobateError, match=r"no Dask scheduler answers at tcp://127\.0\.0\.1:1"):
         run_sweep(points, executor=Dask(address="tcp://127.0.0.1:1", wait=0.5))
