@@ -79,7 +79,7 @@ def test_a_study_gives_a_report_that_is_kept_and_shown_again(study, tmp_path, ca
     folder = tmp_path / "out"
     assert run(["assess", str(study), "--folder", str(folder)]) == 0
     told = capsys.readouterr()
-    assert "tank: NOT shown safe: Overturned at the recorded level under 1 of 2 records (strong)." in told.out
+    assert "tank: NOT shown safe. Overturned at the recorded level under 1 of 2 records (strong)." in told.out
     assert f"study.toml, SHA-256 {hashlib.sha256(study.read_bytes()).hexdigest()}" in told.out
     assert "tank: verdicts" in told.err
     assert "stylobate: drawing figures" in told.err

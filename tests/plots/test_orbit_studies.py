@@ -5,6 +5,7 @@ import pytest
 from matplotlib.colors import to_hex
 
 import stylobate as sb
+from stylobate.errors import EndedEarlyWarning
 from stylobate.errors import Outcome
 from stylobate.plots.style import BLUE, STABLE_WIDTH, VERMILION
 from stylobate.results.outcomes import NOT_COMPUTED
@@ -94,7 +95,8 @@ def test_exponents_are_drawn_as_they_settle_with_their_errors_in_the_legend():
 
 def test_exponents_of_a_motion_that_ended_are_not_told():
     slow = sb.Harmonic.circular(acceleration=0.065, angular_frequency=0.9)
-    found = sb.studies.lyapunov_exponents(MODEL, slow, tilt=(0.08, 0.0), periods=50, skip=0)
+    with pytest.warns(EndedEarlyWarning, match="overturned"):
+        found = sb.studies.lyapunov_exponents(MODEL, slow, tilt=(0.08, 0.0), periods=50, skip=0)
     figure = sb.plot(found)
     assert figure.axes[0].get_title(loc="left").startswith("overturned after")
     assert all(name.endswith("undecided") for name in texts(figure.legends[0]))
@@ -103,7 +105,8 @@ def test_exponents_of_a_motion_that_ended_are_not_told():
 
 def test_a_section_without_points_says_so():
     slow = sb.Harmonic.circular(acceleration=0.065, angular_frequency=0.9)
-    found = sb.studies.poincare_section(MODEL, slow, tilt=(0.08, 0.0), periods=60, skip=40)
+    with pytest.warns(EndedEarlyWarning, match="1 overturned"):
+        found = sb.studies.poincare_section(MODEL, slow, tilt=(0.08, 0.0), periods=60, skip=40)
     figure = sb.plot(found)
     assert [[text.get_text() for text in axes.texts] for axes in figure.axes] == [
         ["no points: the motion ended before"],
@@ -116,9 +119,11 @@ def test_the_periods_that_were_skipped_count_until_a_motion_ends(skip):
     # It rolls for a few periods before it leaves.
     slow = sb.Harmonic.circular(acceleration=0.065, angular_frequency=1.3)
     start = sb.studies.steady_start(MODEL, slow)
-    found = sb.studies.lyapunov_exponents(
-        MODEL, slow, tilt=np.multiply(1.001, start["tilt"]), tilt_rate=start["tilt_rate"], periods=80, skip=skip
-    )
+    tilt = np.multiply(1.001, start["tilt"])
+    with pytest.warns(EndedEarlyWarning, match="overturned"):
+        found = sb.studies.lyapunov_exponents(
+            MODEL, slow, tilt=tilt, tilt_rate=start["tilt_rate"], periods=80, skip=skip
+        )
     lasted = int(found["periods_counted"]) + found.attrs["periods_skipped"]
     assert lasted > 3
     assert found.attrs["periods_skipped"] == skip

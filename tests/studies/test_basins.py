@@ -159,7 +159,7 @@ def test_bad_input_is_named(change, message):
         ({"acceleration": [0.1], "damping": [0.1]}, "along must name one"),
         ({"acceleration": []}, "at least one value"),
         ({"tilt_x": [0.1]}, "along and over must differ"),
-        ({"weight": [0.1]}, "^along: weight is not known here; known are tilt_x, .*duration, .*damping"),
+        ({"loudness": [0.1]}, "^along: loudness is not known here; known are tilt_x, .*duration, .*damping"),
     ],
 )
 def test_a_parameter_to_go_along_is_one(along, message):

@@ -118,7 +118,7 @@ class ObjectTable:
         of_sheet = merged is not None
         separator, at = _layout(text.path, lines, start, of_sheet=of_sheet)
         records = list(_records(text.path, lines, start, separator, of_sheet=of_sheet))
-        headings = next(cells for number, cells in records if number == at)
+        headings = [" ".join(one.split()) for one in next(cells for number, cells in records if number == at)]
         while headings and not headings[-1]:
             headings.pop()
         _warn_of_titles(text.path, [(number, cells) for number, cells in records if number < at])
@@ -190,7 +190,8 @@ def _records(
     )
     try:
         for cells in reader:
-            plain = [" ".join(one.split()) for one in map(str if of_sheet else unmarked, cells)]
+            plain = [one.replace("\N{NO-BREAK SPACE}", " ").strip() for one in cells]
+            plain = plain if of_sheet else list(map(unmarked, plain))
             if of_sheet:
                 plain = [one.removesuffix(".0") if _WHOLE.fullmatch(one) else one for one in plain]
             yield start + reader.line_num, plain
