@@ -5,8 +5,7 @@ import pytest
 from matplotlib.colors import to_hex
 
 import stylobate as sb
-from stylobate.errors import EndedEarlyWarning
-from stylobate.errors import Outcome
+from stylobate.errors import EndedEarlyWarning, Outcome
 from stylobate.plots.style import BLUE, STABLE_WIDTH, VERMILION
 from stylobate.results.outcomes import NOT_COMPUTED
 
