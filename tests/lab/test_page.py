@@ -10,7 +10,7 @@ from tests.lab.conftest import laboratory
 
 import stylobate as sb
 from stylobate.config import SimulationConfig
-from stylobate.lab.options import presets
+from stylobate.lab.options import lessons, presets
 from stylobate.records.reading import write_at2
 from stylobate.results.run_rows import measure_rows
 
@@ -154,12 +154,13 @@ def test_while_another_case_is_computed_the_one_before_is_dimmed(watched):
     page.wait_for_function(f"() => ({picture})() === 1")
 
 
-def test_a_broken_link_is_told_and_the_usual_case_shown(browser, address):
+def test_a_broken_link_is_told_and_the_first_lesson_shown(browser, address):
     page = new_page(browser)
     enter(page, address, "#column=nonsense&motion=circular")
     shown(page)
     assert page.get_by_role("alert").filter(has_text="nonsense").is_visible()
-    assert page.evaluate("() => window.stylobate.laboratory.answer.outcome") == "ROLLING"
+    assert page.get_by_role("heading", name=lessons()[0].question).is_visible()
+    assert page.evaluate("() => window.stylobate.laboratory.answer.outcome") == "AT_REST"
     page.close()
 
 

@@ -28,7 +28,8 @@ def test_an_uncertain_run_of_each_model_is_json(kind, start):
     setup = SimulationConfig.parse(values).build()
     run = sb.simulate(setup.model, setup.motion, **setup.options)
     assert run.uncertain is True
-    answer = answered_run(run, setup.model, Description(values, values))
+    frequency = setup.model.column.frequency_scale
+    answer = answered_run(run, setup.model, Description(values, values), frequency=frequency)
     assert json.loads(answer.as_json())["uncertain"] is True
     for values in (run.measures, run.thresholds):
         assert {type(value) for value in values.values()} <= {float, int, bool}

@@ -52,24 +52,26 @@ STYLE = "async () => (await fetch('main.css')).text()"
 
 
 def test_a_changed_site_takes_over_when_its_last_page_is_closed(context, tmp_path):
-    written(tmp_path, b"old {}")
-    with serving(tmp_path) as address:
+    site = tmp_path / "site"
+    site.mkdir()
+    written(site, b"old {}")
+    (tmp_path / "index.html").write_text("<!doctype html><title>beside the site</title>", encoding="utf-8")
+    with serving(tmp_path) as root:
+        address = f"{root}site/"
         page = new_page(context)
         page.goto(address)
         page.evaluate("async () => { await navigator.serviceWorker.register('offline.js'); }")
         page.wait_for_function("() => navigator.serviceWorker.controller !== null")
-        written(tmp_path, b"new {}")
+        written(site, b"new {}")
         assert page.evaluate(STYLE) == "old {}"
         page.evaluate("async () => { await (await navigator.serviceWorker.ready).update(); }")
         page.wait_for_function("async () => (await navigator.serviceWorker.ready).waiting !== null")
         page.reload()
         assert page.evaluate(STYLE) == "old {}"  # no page has files of two sites
+        beside = new_page(context)  # no page of the site, whose old worker ends soon after its last page
+        beside.goto(root)
         page.close()
-        for _ in range(50):  # the old worker ends soon after its last page
-            again = new_page(context)
-            again.goto(address)
-            found = again.evaluate(STYLE), len(again.evaluate("() => caches.keys()"))
-            again.close()
-            if found[0] == "new {}":
-                break
-        assert found == ("new {}", 1)
+        beside.wait_for_function("async () => !(await navigator.serviceWorker.getRegistration('site/')).waiting")
+        beside.wait_for_function("async () => (await caches.keys()).length === 1")
+        beside.goto(address)
+        assert beside.evaluate(STYLE) == "new {}"
