@@ -1,6 +1,6 @@
 """Waveform files that ObsPy reads, such as miniSEED and SAC: the channels of stations, in m/s² by their responses.
 
-ObsPy is never asked to find out what a file is: some of its readers run code, or open other files that content names.
+ObsPy is never asked to find out what a file is: not all of its readers are made for files of strangers.
 The first bytes decide, and the reader of that format gets the content, not a path.
 """
 
