@@ -20,6 +20,7 @@ from stylobate.lab import tasks
 from stylobate.lab.limits import Limits, RefusedError
 from stylobate.lab.requests import Archive, Uploads, problems_of_numbers
 from stylobate.lab.runs import remarks
+from stylobate.records.contents import _PACKED, LONGEST_LINE
 from stylobate.records.reading import write_at2, write_csv
 
 WEB = Path(sb.__file__).parent / "lab" / "web"
@@ -181,6 +182,15 @@ def refusals(pair, table):
         "a zip archive": b"PK\x03\x04 and more",
         "a workbook": b"PK\x03\x04 xl/workbook",
         "a PDF": b"%PDF-1.4",
+        "a long line": "0.1\n" + "0.1 " * (LONGEST_LINE // 4) + " 0.1\n0.1\n",
+        "a long line of UTF-16": ("0.1\n" + "\xb5" * (LONGEST_LINE // 2 + 1) + "\n0.1\n").encode("utf-16"),
+        "a line almost as long": "0.1\n" + "0.1 " * (LONGEST_LINE // 4 - 1) + "\n0.1\n",
+        "a long word": f"0.1\n{'7x' * 5000}\n0.2\n",
+        "many opening brackets": f"{'[' * 16000}\n0.1 0.2\n0.2 broken\n",
+        "many blanks in a name": f"a{' ' * 16000}b,x\n0.1,0.2\n0.2,broken\n",
+        "many blanks behind a count": f"200{' ' * 16000}b\n0.1\n0.2\n",
+        "many counts": f"{'NPTS=' * 3200}\n0.1\n0.2\n",
+        **{f"packed, {begin[:3]!r}": begin + bytes(50) for begin in _PACKED},
     }
     for name, content in wrong.items():
         yield f"refused: {name}", {"q.txt": content}, {**plain, **({"step": 0.01} if "of a column" in name else {})}

@@ -6,12 +6,13 @@ from stylobate.records.directions import Component, Direction
 from stylobate.records.text_files import SECOND, Text, is_number, time_unit_of, unit_of, unknown_unit
 
 # AT2: four lines of header, then the accelerations, several per line. The fourth line is
-# `NPTS=   4000, DT=   .0050 SEC` in newer files and `4000    0.0050    NPTS, DT` in older ones.
+# `NPTS=   4000, DT=   .0050 SEC` in newer files and `4000    0.0050    NPTS, DT` in older ones. Neither pattern has two
+# parts that the same characters fit: the time of a search would grow with the square of the length of a line.
 _NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[EeDd][-+]?\d+)?"
 _NEW = re.compile(
-    rf"NPTS\s*=\s*(?P<count>\S+?)\s*,\s*DT\s*=\s*(?P<step>{_NUMBER})?\s*(?P<clock>[^\W\d_]*)", re.IGNORECASE
+    rf"NPTS\s*=\s*(?P<count>[^\s=]+?)\s*,\s*DT\s*=\s*(?P<step>{_NUMBER})?\s*(?P<clock>[^\W\d_]*)", re.IGNORECASE
 )
-_OLD = re.compile(rf"\s*(?P<count>\d+)\s+(?P<step>{_NUMBER})?\s*(?P<clock>)NPTS\s*,\s*DT", re.IGNORECASE)
+_OLD = re.compile(rf"\s*(?P<count>\d+)\s+(?:(?P<step>{_NUMBER})\s*)?(?P<clock>)NPTS\s*,\s*DT", re.IGNORECASE)
 _UNITS = re.compile(r"UNITS?\s+OF\s+(?P<unit>[^\s,.;]+)", re.IGNORECASE)
 _OTHERS = re.compile(r"^\s*(VELOCITY|DISPLACEMENT)\b", re.IGNORECASE)
 # The line with the count is the fourth; an additional blank or comment line is tolerated.

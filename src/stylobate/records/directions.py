@@ -159,6 +159,9 @@ _NUMBERED = re.compile(rf".+?(?:[-_. ]|(?<!\d{{3}}))\d{{3}}{_REMARK}")
 _FIELD = re.compile(rf"(?P<event>.+[-_. ])(?P<apart>{CHANNEL})(?P<remark>[-_. ].+)")
 # K-NET and KiK-net: AKT0239608110312.EW, …EW1 below and …EW2 on the ground.
 _KIK_NET = re.compile(r"(?P<event>.+)\.(?P<apart>NS|EW|UD)(?P<remark>[12])")
+# Characters of the name of a file at most, on usual systems: a longer text, in an archive or above a column, names no
+# direction. The time of these patterns grows with the third power of the length of a name.
+_LONGEST_NAME = 255
 _NUMBER = re.compile(r"(?:^|[-_. ])(?:RSN|NGA[-_]no)[-_]?0*(\d+)(?!\d)", re.IGNORECASE)
 
 
@@ -196,7 +199,7 @@ def split_name(stem: str, *, unsure: bool = False) -> tuple[str, Direction | Non
     ['ALH', 'site', 'quake', 'PAE_scaled', 'El Centro']
     """
     patterns = (_KIK_NET, _TAIL, _HEAD, _FIELD, *((_UNSURE_TAIL,) if unsure else ()))
-    for pattern in patterns:
+    for pattern in patterns if len(stem) <= _LONGEST_NAME else ():
         if found := pattern.fullmatch(stem):
             parts = found.groupdict()
             direction = Direction.parse(parts.get("apart") or parts["joined"])
@@ -212,7 +215,7 @@ def is_numbered(stem: str) -> bool:
     >>> [is_numbered(stem) for stem in ("CLS090", "quake_050_scaled", "q_N10E", "quake_20160117", "TAB-L1")]
     [True, True, False, False, False]
     """
-    return _NUMBERED.fullmatch(stem) is not None
+    return len(stem) <= _LONGEST_NAME and _NUMBERED.fullmatch(stem) is not None
 
 
 def remark_of(stem: str) -> str:
@@ -221,7 +224,7 @@ def remark_of(stem: str) -> str:
     >>> remark_of("CLS090_scaled"), remark_of("CLS090_Filtered-raw"), remark_of("CLS090")
     ('_scaled', '_filtered-raw', '')
     """
-    found = _ITS_REMARK.fullmatch(stem)
+    found = _ITS_REMARK.fullmatch(stem) if len(stem) <= _LONGEST_NAME else None
     return found["remark"].lower() if found else ""
 
 

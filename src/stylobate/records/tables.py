@@ -47,8 +47,8 @@ _DIGITS = re.compile(r"[-+]?\.?\d")
 _HAS_LETTER = re.compile(r"[^\W\d_]")
 _WIDE_SPACE = re.compile(r"\s{2,}")
 _RULE = re.compile(r"[-=_+|\s]+")
-NAME_AND_UNIT = re.compile(r"\s*(?P<name>[^\[(]*?)\s*(?:[\[(](?P<unit>[^\])]*)[\])])?\s*")
-"""The name of a column, and its unit in brackets."""
+NAME_AND_UNIT = re.compile(r"(?P<name>[^\[(]*)(?:[\[(](?P<unit>[^\])]*)[\])]\s*)?")
+"""The name of a column with the blanks around it, and its unit in brackets; no two parts fit the same blanks."""
 _WRITE_POINTS = "Write decimal points, or put semicolons between the columns"
 
 Line = tuple[int, str]

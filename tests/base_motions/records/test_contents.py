@@ -214,11 +214,14 @@ def test_a_line_longer_than_those_of_tables_is_refused_at_once(tmp_path, end):
 
 def test_no_line_takes_long(tmp_path):
     path = tmp_path / "a.txt"
-    for word in ("[", ",", ";", '"a",'):
-        path.write_text(f"{word * (16000 // len(word))}\n0.1 0.2\n0.2 broken\n")
+    lines = [word * (16000 // len(word)) for word in ("[", ",", ";", '"a",', "NPTS=")]
+    for line in (*lines, f"a{' ' * 16000}b,x", f"200{' ' * 16000}b"):
+        path.write_text(f"{line}\n0.1 0.2\n0.2 broken\n")
         begin = time.process_time()
         with pytest.raises(FileError) as raised:
             sb.read_records([path], "g")
+        with pytest.raises(FileError):
+            sb.read_record(path, "g")
         # A search that is quadratic in the length of the line takes two to ten seconds.
         assert time.process_time() - begin < 1.5
         assert len(str(raised.value)) < 700

@@ -8,10 +8,10 @@ import { SECOND, inSeconds, timeUnitOf, unitOf, unknownUnit } from "./units";
 // The fourth line is `NPTS=   4000, DT=   .0050 SEC` in newer files and `4000    0.0050    NPTS, DT` in older ones.
 const NUMBER = String.raw`[-+]?(?:\d+\.?\d*|\.\d+)(?:[EeDd][-+]?\d+)?`;
 const NEW = new RegExp(
-  String.raw`NPTS\s*=\s*(?<count>\S+?)\s*,\s*DT\s*=\s*(?<step>${NUMBER})?\s*(?<clock>\p{L}*)`,
+  String.raw`NPTS\s*=\s*(?<count>[^\s=]+?)\s*,\s*DT\s*=\s*(?<step>${NUMBER})?\s*(?<clock>\p{L}*)`,
   "iu",
 );
-const OLD = new RegExp(String.raw`^\s*(?<count>\d+)\s+(?<step>${NUMBER})?\s*(?<clock>)NPTS\s*,\s*DT`, "i");
+const OLD = new RegExp(String.raw`^\s*(?<count>\d+)\s+(?:(?<step>${NUMBER})\s*)?(?<clock>)NPTS\s*,\s*DT`, "i");
 const UNITS = /UNITS?\s+OF\s+([^\s,.;]+)/i;
 const OTHERS = /^\s*(VELOCITY|DISPLACEMENT)\b/i;
 /** Number of lines among which the line with the count is looked for. */

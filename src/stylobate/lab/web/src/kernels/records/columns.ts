@@ -81,7 +81,7 @@ export function readNamedColumns(
   header: readonly string[],
   step: number | null,
 ): Component {
-  const parts = header.map((name) => /^\s*([^[(]*?)\s*(?:[[(]([^\])]*)[\])])?\s*$/.exec(name));
+  const parts = header.map((name) => /^([^[(]*)(?:[[(]([^\])]*)[\])]\s*)?$/.exec(name));
   const names = parts.map((found) => found?.[1]?.trim() ?? "");
   const units = parts.map((found) => found?.[2] ?? null);
   const chosen = chosenAmong(text, namesAt, names);

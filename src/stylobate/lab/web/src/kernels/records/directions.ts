@@ -107,6 +107,8 @@ const IN_NAMES = [
   whole(`(?<apart>${anyCase("NS|EW|UD|UP|N-S|E-W|U-D|DWN|VER|VERT|H1|H2")})[-_. ]+(?<event>.+)`),
   whole(`(?<event>.+[-_. ])(?<apart>${CHANNEL})(?<remark>[-_. ].+)`),
 ] as const;
+/** Length of the name of a file at most, on usual systems: a longer text names no direction, after a long search. */
+const LONGEST_NAME = 255;
 const UNSURE_TAIL = whole(`(?<event>.+?)${UNSURE}${REMARK}`);
 
 /** Returns the name of a file without the suffixes of its format; suffixes such as `.EW` stay. */
@@ -123,6 +125,7 @@ export function stemOf(file: string): string {
 
 /** Returns the words of a name that mark a processed copy; empty without them. */
 export function remarkOf(stem: string): string {
+  if (stem.length > LONGEST_NAME) return "";
   return (ITS_REMARK.exec(stem)?.groups?.["remark"] ?? "").toLowerCase();
 }
 
@@ -137,7 +140,8 @@ export interface NameParts {
  * letter, or digits after many digits, also count, as in PRPCS, PRPCW.
  */
 export function splitName(stem: string, unsure = false): NameParts {
-  for (const pattern of unsure ? [...IN_NAMES, UNSURE_TAIL] : IN_NAMES) {
+  const patterns = unsure ? [...IN_NAMES, UNSURE_TAIL] : IN_NAMES;
+  for (const pattern of stem.length > LONGEST_NAME ? [] : patterns) {
     const found = pattern.exec(stem)?.groups;
     if (!found) continue;
     const direction = parsedDirection(found["apart"] ?? found["joined"] ?? "");

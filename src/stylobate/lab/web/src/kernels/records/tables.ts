@@ -9,9 +9,10 @@ export const TIMES = ["time", "t", "zeit", "temps", "tempo", "tiempo"];
 
 const LEADING_ZERO = /^[-+]?0\d/;
 const WITHOUT_POINT = /^(?:[-+]?\d*,\d+(?:[EeDd][-+]?\d+)?|[-+]?\d+(?:[EeDd][-+]?\d+)?)$/;
-const BRACKETED = /[[(]([^\])]*)[\])]/;
-const ALL_BRACKETED = /^[[(][^\])]*[\])]$/;
-const WORD = /[^\s[(]+(?:\s*[[(][^\])]*[\])])?|[[(][^\])]*[\])]/g;
+// The innermost brackets: a search for closing ones beyond other opening ones takes long in a line of opening ones.
+const BRACKETED = /[[(]([^[\]()]*)[\])]/;
+const ALL_BRACKETED = /^[[(][^[\]()]*[\])]$/;
+const WORD = /[^\s[(]+(?:\s*[[(][^[\]()]*[\])])?|[[(][^[\]()]*[\])]/g;
 const STARTS_WITH_DIGIT = /^[-+]?\.?\d/;
 const RULE = /^[-=_+|\s]+$/;
 const WRITE_POINTS = "Write decimal points, or put semicolons between the columns";

@@ -2,7 +2,7 @@
 
 import { Refused } from "../../page/server/source";
 import { type Direction } from "./directions";
-import { floatOf, isNumber, repr, words } from "./python";
+import { floatOf, isNumber, repr, trimmedEnd, words } from "./python";
 
 /** Accelerations of a file, in its unit. */
 export interface Component {
@@ -26,6 +26,8 @@ export type Row = readonly [at: number, fields: readonly string[]];
 /** Prefixes of comment lines. */
 export const REMARKS = ["#", "%", "!", "//"] as const;
 
+/** Characters of a message beside the place: more than any of ours has without words of the file. */
+const LONGEST_FAULT = 400;
 const WHOLE = /^[0-9]{1,12}$/;
 const DECIMAL_COMMA = /^[-+]?\d*[.,]?\d*,\d+([EeDd][-+]?\d+)?$/;
 
@@ -41,15 +43,17 @@ export class RecordText {
 
   constructor(name: string, content: string) {
     this.name = name;
-    this.lines = content
-      .replace(/[\x1a\0]+$/, "")
-      .replace(/\r\n?/g, "\n")
-      .split("\n");
+    this.lines = trimmedEnd(content, "\x1a\0").replace(/\r\n?/g, "\n").split("\n");
   }
 
-  /** Returns a refusal with the name of the file and the line at `index`. */
+  /**
+   * Returns a refusal with the name of the file and the line at `index`. Words of the file in the middle of `what` may be
+   * long: the message keeps its problem and its remedy.
+   */
   fault(index: number, what: string): Refused {
-    return new Refused(422, [`${this.name}, line ${index + 1}: ${what}`]);
+    const half = LONGEST_FAULT / 2;
+    const short = what.length > LONGEST_FAULT ? `${what.slice(0, half)} … ${what.slice(-half)}` : what;
+    return new Refused(422, [`${this.name}, line ${Math.min(index + 1, this.lines.length)}: ${short}`]);
   }
 
   /** Parses a token of the line at `index` as a finite number. */
