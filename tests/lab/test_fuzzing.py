@@ -112,12 +112,12 @@ def fuzz(client, operation, examples):
 
 @pytest.mark.parametrize("label", [label for label in OF_ANY_SIZE if label not in COMPUTING])
 def test_what_the_schema_allows_is_answered_as_it_says(client, label):
-    fuzz(client, OF_ANY_SIZE[label], 50)
+    fuzz(client, OF_ANY_SIZE[label], 20)
 
 
 @pytest.mark.parametrize("label", COMPUTING)
 def test_runs_that_the_schema_allows_are_answered_as_it_says(client, label):
-    fuzz(client, OF_RUNS[label], 40)
+    fuzz(client, OF_RUNS[label], 15)
 
 
 @pytest.mark.slow
@@ -206,7 +206,7 @@ def send_near_misses(client, examples):
 
 
 def test_near_misses_are_answered_as_described(client):
-    send_near_misses(client, 150)
+    send_near_misses(client, 60)
 
 
 @pytest.mark.slow
