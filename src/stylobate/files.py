@@ -189,6 +189,12 @@ def unmarked(cell: str) -> str:
     return cell.removeprefix(_MARK) if found and found["marks"] else cell
 
 
+def require_workbooks(path: str | Path) -> None:
+    """Raise UnsupportedError if openpyxl, which writes Excel workbooks, is not installed."""
+    remedy = 'install openpyxl: pip install "stylobate[excel]"; or write CSV'
+    require_extra("openpyxl", f"{path}: to write an Excel workbook, {remedy}")
+
+
 def write_workbook(path: str | Path, tables: Mapping[str, Iterable[Iterable[Any]]]) -> Path:
     """Write an Excel workbook with one sheet for each table of rows, the first of which is bold and stays in sight.
 
@@ -201,8 +207,7 @@ def write_workbook(path: str | Path, tables: Mapping[str, Iterable[Iterable[Any]
     FileError
         If the file cannot be written.
     """
-    remedy = 'install openpyxl: pip install "stylobate[excel]"; or write CSV'
-    require_extra("openpyxl", f"{path}: to write an Excel workbook, {remedy}")
+    require_workbooks(path)
     from openpyxl import Workbook
     from openpyxl.cell import WriteOnlyCell
     from openpyxl.styles import Font

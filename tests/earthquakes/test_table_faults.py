@@ -1,6 +1,7 @@
 """Tables of objects with users' words and faults: all headings are understood or refused, all faults listed at once."""
 
 import re
+import warnings
 import zipfile
 
 import pytest
@@ -13,6 +14,8 @@ from stylobate.earthquakes import read_inventory
 from stylobate.earthquakes.config.assess import AssessConfig
 from stylobate.earthquakes.inventories.headings import Heading, quantities
 from stylobate.errors import ConfigError, FileError, ParameterError, UnlikelyInputWarning
+
+pytestmark = pytest.mark.filterwarnings("ignore:.*taken as solid cylinders")
 
 MUSEUM = """Inventory no.;Object;Ø (cm);Height (cm);Weight (kg);Friction;Damping;Remarks
 A-1;amphora;22,5;95;14,2;0,5;housner;chipped, rim
@@ -82,6 +85,22 @@ def test_a_heading_that_only_resembles_a_number_is_refused_with_what_it_may_mean
     lines = problems(table(tmp_path, f"{heading};damping;friction\n1;0,1;0,5\n"))
     assert any(f"heading {heading!r}: unknown column; did you mean {meant}?" in line for line in lines), lines
     assert not any(f"{meant} is missing" in line for line in lines)
+
+
+def test_weighed_objects_without_a_centre_of_mass_are_taken_as_cylinders_with_a_warning(tmp_path):
+    rows = [line.split(";") for line in MUSEUM.splitlines()]
+    more = {
+        "": [[], ["rows 2, 3, 4"]],
+        "shape": [["shape", "solid", "", "solid"], ["row 3"]],
+        "mass_height [cm];profile": [["mass_height [cm];profile", *["15;vase"] * 3], []],
+    }
+    for cells, named in more.values():
+        text = "\n".join(";".join([*row, *cells[place : place + 1]]) for place, row in enumerate(rows))
+        with warnings.catch_warnings(record=True) as found:
+            warnings.simplefilter("always")
+            read_inventory(table(tmp_path, text))
+        texts = [str(one.message) for one in found if "solid cylinders" in str(one.message)]
+        assert [one.partition(", ")[2].partition(":")[0] for one in texts] == named
 
 
 def test_usual_columns_of_museums_are_carried_through(tmp_path):
@@ -255,7 +274,8 @@ def test_what_is_left_out_of_a_table_is_a_note_of_the_assessment(tmp_path):
     path = table(tmp_path, f"Vases\n{MUSEUM}")
     with pytest.warns(UnlikelyInputWarning, match="row 1: 'Vases'"):
         found = AssessConfig.parse({"columns": str(path), "records": "quakes", "notes": ["In room 12."]})
-    assert [one.partition(":")[0] for one in found.notes] == ["In room 12.", "Warning"]
+    assert [one.partition(":")[0] for one in found.notes] == ["In room 12.", "Warning", "Warning"]
+    assert "solid cylinders" in found.notes[-1]
 
 
 def test_a_default_without_a_value_is_refused():

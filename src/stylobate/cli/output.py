@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 from unicodedata import combining, east_asian_width
 
 from stylobate.errors import FileError, ParameterError, require_positive
-from stylobate.files import write_whole
+from stylobate.files import require_workbooks, write_whole
 from stylobate.results.tables import TABLES
 from stylobate.text import UNPRINTABLE, printable
 
@@ -177,7 +177,12 @@ def check_animation(path: Path, speed: float | None) -> None:
 
 
 def check_place(path: Path) -> None:
-    """Raise FileError if the path is a folder, or its parent folder is missing or not writable."""
+    """Raise FileError if the path is a folder, or its parent folder is missing or not writable.
+
+    Before anything is computed for a workbook, the package that writes it is required.
+    """
+    if path.suffix.lower() == ".xlsx":
+        require_workbooks(path)
     folder = path.parent
     if path.is_dir() or not folder.is_dir() or not os.access(path if path.exists() else folder, os.W_OK):
         reason = "it is a folder" if path.is_dir() else f"{folder} is not a writable folder"

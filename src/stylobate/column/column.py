@@ -289,6 +289,8 @@ class Column(StandingBody):
             max_radius=max_radius,
             spread=inertia_spread,
         )
+        outline = found.profile
+        _question_density(mass, math.fsum(one.of_density(1.0).mass for one in frustums(outline.heights, outline.radii)))
         return cls(
             radius=radius,
             mass_height=mass_height,
@@ -508,6 +510,11 @@ def _density(density: float | None, mass: float | None, volume: float) -> float:
     if density is not None:
         return density
     assert mass is not None
+    return _question_density(mass, volume)
+
+
+def _question_density(mass: float, volume: float) -> float:
+    """Return the mean density of a body, and question one that no solid or hollow body of this outline has."""
     density = mass / volume
     if not LIGHTEST <= density <= DENSEST:
         question_input(

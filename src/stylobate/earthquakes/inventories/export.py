@@ -204,6 +204,19 @@ def _field(values: Iterable[Any]) -> Any:
     return np.array(numbers)
 
 
+def _ties_in_words(found: xr.Dataset) -> str:
+    """Return a line on the largest number of objects that share a rank; empty without a shared rank."""
+    ranks = found["rank"].to_numpy()
+    shared, counts = np.unique(ranks[ranks > 0], return_counts=True)
+    if not (counts > 1).any():
+        return ""
+    most = int(np.argmax(counts))
+    return (
+        f"{counts[most]} objects share rank {shared[most]}: these records do not separate them; use more records, or "
+        "compare their smallest overturning scales by stylobate assess"
+    )
+
+
 def table_of_ranking(found: xr.Dataset) -> ResultTable:
     """Make a table of the first objects of a ranking, with remarks, for a terminal."""
     state, scale = str(found.attrs["limit_state"]), as_recorded(found)
@@ -228,6 +241,8 @@ def table_of_ranking(found: xr.Dataset) -> ResultTable:
             f"{plural(withheld, 'object')} without rank: runs that are not known change the probability by more than "
             f"{MATTERS:g}"
         )
+    if tied := _ties_in_words(found):
+        remarks.append(tied)
     if read_as := headings_in_words(json.loads(str(found.attrs["provenance"]))["inventory"].get("headings", {})):
         remarks.append(read_as)
     if "carried" in found:

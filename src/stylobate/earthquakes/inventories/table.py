@@ -7,6 +7,7 @@ over headings, columns and cells collects all faults.
 
 import math
 import re
+import warnings
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -31,7 +32,7 @@ from stylobate.earthquakes.inventories.headings import (
 from stylobate.earthquakes.inventories.objects import InventoryObject, require_model, unquestioned
 from stylobate.earthquakes.inventories.rows import ObjectTable, Row
 from stylobate.earthquakes.property_spreads import LognormalSpread, NormalSpread, Spread
-from stylobate.errors import ConfigError, ParameterError
+from stylobate.errors import ConfigError, ParameterError, UnlikelyInputWarning
 from stylobate.quantities import Quantity
 from stylobate.text import did_you_mean, shortened
 from stylobate.units import UnitError, is_number, read, spelled, split
@@ -45,6 +46,8 @@ _EITHER = ("density", "mass")
 """Numbers of which a default does not join the other one."""
 _SHAPED = {"shape", "slenderness", "profile"}
 """Columns that imply other numbers than these."""
+_SHAPING = {"shape", "profile", "mass_height", "inner_radius", "inner_diameter", "top_radius", "top_diameter"}
+"""Numbers and words by which an object is not a solid cylinder, or is meant to be one."""
 _ESTIMATES, _OF_ESTIMATES = {"profile", "mass_height"}, {"max_radius", "max_diameter"}
 """Columns without which the others, which many tables have, are of no use: they are then carried through."""
 _LARGEST_SPREAD = 2.0
@@ -134,6 +137,7 @@ def read_inventory(
     reading.require_distinct(objects)
     if faults:
         raise ConfigError(faults.lines())
+    reading.warn_of_cylinders(objects)
     return tuple(objects)
 
 
@@ -411,6 +415,20 @@ class _Reading:
         if doubt := self.doubts[heading.text]:
             raise ParameterError(f"{doubt} (got {cell!r})")
         return cell.replace(",", ".")
+
+    def warn_of_cylinders(self, objects: Iterable[InventoryObject]) -> None:
+        """Warn of objects that are weighed but have no centre of mass: most stand less firmly than a solid cylinder."""
+        rows = [
+            one.where.rpartition(" ")[2] for one in objects if "mass" in one.column and not _SHAPING & set(one.column)
+        ]
+        if rows:
+            warnings.warn(
+                f"{self.table.path.name}, {'row' if len(rows) == 1 else 'rows'} {shortened(rows)}: without a centre of "
+                "mass these objects are taken as solid cylinders, although a vessel or a statue may overturn earlier. "
+                "State mass_height and profile, or the shape solid.",
+                UnlikelyInputWarning,
+                stacklevel=3,
+            )
 
     def require_distinct(self, objects: Iterable[InventoryObject]) -> None:
         """Collect names that several objects have."""
