@@ -17,7 +17,7 @@ trap 'rm -rf "$folder"' EXIT
 cd "$folder"
 python3 -m venv venv
 venv/bin/pip install --quiet --disable-pip-version-check obspy==1.5.1 numpy==2.4.6 "setuptools==80.9.0"
-venv/bin/python -W error::UserWarning:obspy.io - <<'PYTHON'
+venv/bin/python -W error::UserWarning - <<'PYTHON'
 import numpy as np
 from obspy import Trace, read
 

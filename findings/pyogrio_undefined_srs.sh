@@ -6,7 +6,7 @@
 #   has one of these if its coordinates are metres of a museum plan and its frame has no CRS.
 # Seen: the layer and the header of each geometry have 99999, a new row "Undefined SRS" of the
 #   organization "GDAL" in gpkg_spatial_ref_sys. A program that tests for -1 or 0 takes the layer for
-#   georeferenced. pyogrio itself reads None.
+#   georeferenced. pyogrio itself reads None. Writing warns that the layer has no CRS.
 # Output:
 #   layer      99999
 #   geometry   99999
