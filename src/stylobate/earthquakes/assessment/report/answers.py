@@ -90,8 +90,8 @@ def overturning_probability(assessment: Assessment, column: str, scale: float) -
 
 def answer_table(assessment: Assessment, scale: float) -> PageTable:
     """Tabulate the answer on each column: class, probability at `scale`, smallest overturning scale, annual rate."""
-    slip = ", or slip" if sliding_columns(assessment) else ""
-    header = ["object", "verdict", f"probability of overturning ({100.0 * CONFIDENCE:g} % interval){slip}"]
+    slip = " or slip" if sliding_columns(assessment) else ""
+    header = ["object", "verdict", f"probability of overturning{slip} ({100.0 * CONFIDENCE:g} % interval)"]
     header.append("smallest scale that overturned it, at most")
     rated = "rates" in assessment.data
     years = assessment.setting.get("years", 50.0)

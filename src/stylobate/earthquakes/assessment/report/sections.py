@@ -382,7 +382,7 @@ def _repeat(assessment: Assessment) -> PageList:
             *([f"Table of objects: {table}, SHA-256 {details['table_sha256']}"] if table else []),
             f"Versions: {', '.join(f'{name} {value}' for name, value in versions.items())}",
             f"Options: {', '.join(f'{name} {value}' for name, value in options.items())}",
-            "Files beside this report: tables/*.csv and tables.xlsx with every table, figures/*.png, summary.txt, "
-            "and assessment.nc with all numbers, from which stylobate assess writes this report again.",
+            "Files beside this report: tables/*.csv with every table, tables.xlsx where openpyxl is installed, "
+            "figures/*.png, summary.txt, and assessment.nc with all numbers, from which stylobate assess writes this report again.",
         ]
     )
