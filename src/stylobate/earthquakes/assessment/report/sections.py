@@ -383,6 +383,7 @@ def _repeat(assessment: Assessment) -> PageList:
             f"Versions: {', '.join(f'{name} {value}' for name, value in versions.items())}",
             f"Options: {', '.join(f'{name} {value}' for name, value in options.items())}",
             "Files beside this report: tables/*.csv with every table, tables.xlsx where openpyxl is installed, "
-            "figures/*.png, summary.txt, and assessment.nc with all numbers, from which stylobate assess writes this report again.",
+            "figures/*.png, summary.txt, and assessment.nc with all numbers, from which stylobate assess writes this "
+            "report again.",
         ]
     )
