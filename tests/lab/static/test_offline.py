@@ -1,5 +1,8 @@
 """The folder of the laboratory on a web server, without a connection once it has been loaded."""
 
+import os
+import time
+
 import pytest
 from tests.lab.browser import new_page, shown
 from tests.lab.static.cases import LESSONS, refusals
@@ -39,13 +42,14 @@ def test_all_lessons_run_without_a_connection(context, served):
     assert page.get_by_role("heading", name=LESSONS[2].question).is_visible()
 
 
-def written(folder, style):
-    """Write a small site with the worker of the page."""
+def written(folder, style, *, age=0.0):
+    """Write a small site with the worker of the page, `age` seconds ago: a server states the time in whole seconds."""
     files = {"index.html": b"<!doctype html><title>site</title>", "main.css": style}
     worker = (page_folder() / "offline.js").read_text(encoding="utf-8")
     files["offline.js"] = f"const offline = {static_site._listed(files)};\n{worker}".encode()
     for name, content in files.items():
         (folder / name).write_bytes(content)
+        os.utime(folder / name, (time.time() - age,) * 2)
 
 
 STYLE = "async () => (await fetch('main.css')).text()"
@@ -54,7 +58,7 @@ STYLE = "async () => (await fetch('main.css')).text()"
 def test_a_changed_site_takes_over_when_its_last_page_is_closed(context, tmp_path):
     site = tmp_path / "site"
     site.mkdir()
-    written(site, b"old {}")
+    written(site, b"old {}", age=60.0)
     (tmp_path / "index.html").write_text("<!doctype html><title>beside the site</title>", encoding="utf-8")
     with serving(tmp_path) as root:
         address = f"{root}site/"
