@@ -92,7 +92,8 @@ _OF_MINUTES = ("docs/how-to/bifurcation-studies.md", "docs/results/earthquakes.m
 """Pages whose programs take a minute and more: they run with the slow tests."""
 
 _OF_SECONDS = tuple(
-    f"docs/how-to/{name}.md" for name in ("casks", "conveyors", "did-it-survive", "kitchen-experiments", "square-bases")
+    f"docs/how-to/{name}.md"
+    for name in ("casks", "conveyors", "did-it-survive", "fragility", "kitchen-experiments", "orbits", "square-bases")
 )
 """Pages whose programs take five seconds and more: they run with the long tests."""
 

@@ -16,6 +16,8 @@ from stylobate.cli.simulate import VerdictOfCase
 from stylobate.config.options import kinds_in_files
 from stylobate.config.parts import MotionConfig
 
+pytestmark = pytest.mark.long
+
 
 def words(text):
     return tuple(text.split())

@@ -40,6 +40,8 @@ from stylobate.results import DesignSpectrum, ReportDetails
 
 from .two_columns import BODIES, DISSIPATION, made_record, section
 
+pytestmark = pytest.mark.long
+
 DETAILS = ReportDetails(
     author="N. Author",
     project="site 7",

@@ -8,6 +8,8 @@ import pytest
 import stylobate as sb
 from stylobate.earthquakes.calibration import calibrate, reliability, scores
 
+pytestmark = pytest.mark.long
+
 BLOCK = sb.PlanarRocking.block(width=0.4, height=2.4, density=2700.0)
 RANGES = {"slenderness": (0.08, 0.3), "restitution": (0.7, 1.0)}
 PULSES = [
@@ -34,7 +36,6 @@ def learnt(known):
     return calibrate(BLOCK, PULSES, known, ranges=RANGES, count=96, samples=200, tail=4.0, rng=1, progress=False)
 
 
-@pytest.mark.long
 def test_the_numbers_of_the_object_lie_in_their_intervals(learnt):
     mean = learnt.numbers()["mean"]
     low, middle, high = mean.sel(number="slenderness").values
@@ -78,7 +79,6 @@ def test_a_held_out_probability_does_not_know_the_outcome_of_its_test(learnt, kn
     np.testing.assert_array_equal(changed.held_out(folds=4, repeats=1, rng=3)[0, part], usual[0, part])
 
 
-@pytest.mark.long
 def test_a_held_out_probability_does_not_know_the_outcomes_of_its_group(learnt, known):
     group = np.repeat(["short", "medium", "long"], 20)
     usual = learnt.held_out(folds=3, repeats=1, groups=group, rng=3)[0]

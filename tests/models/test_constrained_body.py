@@ -12,6 +12,8 @@ import stylobate as sb
 
 from .constrained_body import UP, ConstrainedBody
 
+pytestmark = pytest.mark.long
+
 HOLDS = ("free", "wobbling", "rubber")
 STOUT = sb.Column(
     mass=1.0, radius=0.2, mass_height=1.0, transverse_inertia=1.03 / 3.0, axial_inertia=0.02, gravity=1.0

@@ -18,6 +18,8 @@ from .sliding_events import follow
 from .sliding_starts import place_and_motion, place_and_motion_told, random_start
 from .sliding_track import Limits
 
+pytestmark = pytest.mark.long
+
 RTOL = 1e-10
 # Slip begins with, and ends at, some STILL; that and errors of steps grow at most as fast as the column falls, e^τ.
 # Slip that fades slower than FADES [h ω0²] is none of these cases; so the times of events are known to this less well.

@@ -10,6 +10,8 @@ from stylobate.paper.analyses.setting import paper_model
 from stylobate.paper.report import _PICTURES
 from stylobate.results.findings import PaperCheck, PaperSection
 
+pytestmark = pytest.mark.long
+
 LINE = sb.Harmonic.straight(acceleration=0.13, angular_frequency=3.0)
 # It takes seconds to compute; tests of plots draw it from another column.
 ELSEWHERE = "stability-boundary"

@@ -22,6 +22,8 @@ from stylobate.plots.kinds import _FIGURES, figure_for
 from stylobate.plots.labels import what_varies
 from stylobate.plots.style import AS_DRAWN, BLUE
 
+pytestmark = pytest.mark.long
+
 ROOT = Path(__file__).parents[2]
 STONE = sb.Column.solid(radius=0.35, height=5.2, density=2700.0)
 MODEL = sb.Wobbling(STONE, damping=0.05)

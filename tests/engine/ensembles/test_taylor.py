@@ -12,6 +12,8 @@ from stylobate.base_motions import BaseMotion
 from stylobate.engine import ensemble
 from stylobate.errors import ParameterError, UnsupportedError
 
+pytestmark = pytest.mark.long
+
 C, ETA = 0.1, 0.1
 COLUMN = sb.Column.dimensionless(C)
 MODEL = sb.Slender(COLUMN, damping=ETA)
@@ -516,7 +518,6 @@ def test_states_in_another_order_are_followed(outcome_in):
     np.testing.assert_allclose(data["end_tilt"][0], expected, rtol=0.0, atol=1e-11)
 
 
-@pytest.mark.long
 @pytest.mark.parametrize(("kind", "advised"), [(sb.Slender, False), (sb.SlenderRolling, False), (sb.Wobbling, True)])
 def test_series_are_advised_against_where_they_are_slower(kind, advised, caplog):
     sb.simulate_ensemble(kind(COLUMN, damping=ETA), CIRCLE, tilt=(0.05, 0.0), duration=0.1, method="taylor")
