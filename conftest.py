@@ -93,7 +93,17 @@ _OF_MINUTES = ("docs/how-to/bifurcation-studies.md", "docs/results/earthquakes.m
 
 _OF_SECONDS = tuple(
     f"docs/how-to/{name}.md"
-    for name in ("casks", "conveyors", "did-it-survive", "fragility", "kitchen-experiments", "orbits", "square-bases")
+    for name in (
+        "assess",
+        "calibrate",
+        "casks",
+        "conveyors",
+        "did-it-survive",
+        "fragility",
+        "kitchen-experiments",
+        "orbits",
+        "square-bases",
+    )
 )
 """Pages whose programs take five seconds and more: they run with the long tests."""
 

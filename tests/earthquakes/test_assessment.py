@@ -25,6 +25,8 @@ from stylobate.results import Assessment
 from stylobate.results.verdict import word_of
 from stylobate.studies.proportions import fraction_interval
 
+pytestmark = pytest.mark.long
+
 DISSIPATION = {"low": {"damping": 0.01}, "central": {"damping": 0.05}, "high": {"damping": 0.1}}
 
 
@@ -124,7 +126,6 @@ def test_the_margin_parts_scales_that_overturn_from_those_that_do_not(found):
     assert found.data["summary"]["governing"].sel(column="slim").item() == "strong"
 
 
-@pytest.mark.long
 def test_the_order_of_records_and_columns_changes_no_number(found):
     other = assessed(columns=("stout", "slim"), records=RECORDS[::-1], **FULL)
     for name, data in found.data.items():
@@ -275,7 +276,6 @@ def overturned(column, motion, scales, vertical=True):
     return runs["reached"].sel(limit_state="overturning").values
 
 
-@pytest.mark.long
 def test_the_band_share_is_the_share_of_overturning_runs_at_41_scales_within_ten_percent():
     assessment = assessed(columns=("slim",), records=[RISING, RECORDS[1]], scales=[0.5, 1.3], contact_laws=True)
     shares = assessment.data["margins"]["band_share"].sel(column="slim")
@@ -429,7 +429,6 @@ def test_variations_disagree_near_the_margin_and_agree_far_from_it(found):
     assert list(close.data["summary"]["undecided_word"].sel(column="slim").values) == [0, 1, 0]
 
 
-@pytest.mark.long
 def test_the_rest_threshold_is_an_option_of_all_runs():
     # Two bursts: what is left of the first when the second comes is forgotten, or not, by the threshold.
     time = 0.02 * np.arange(401)
@@ -630,7 +629,6 @@ def test_a_record_drifts_where_one_of_its_components_does():
     assert [bool(drifts(one)) for one in (leaning, straight)] == [True, False]
 
 
-@pytest.mark.long
 def test_many_records_give_a_fragility_and_few_give_none(found):
     assert "fragility" not in found.data
     many = [record(f"record {place}", 2.0 + 0.6 * place, 1.0 + 0.1 * place) for place in range(4)]

@@ -12,6 +12,8 @@ from stylobate.earthquakes.assessment.report.tables import assessment_tables
 from stylobate.earthquakes.config.assess import AssessConfig
 from stylobate.errors import ConfigError
 
+pytestmark = pytest.mark.long
+
 BODY = sb.Column.solid(radius=0.2, height=2.0, density=2700.0)
 DISSIPATION = {level: {"damping": eta} for level, eta in (("low", 0.02), ("central", 0.05), ("high", 0.1))}
 SCALES = np.geomspace(0.4, 4.0, 12)

@@ -11,6 +11,8 @@ from stylobate.errors import ParameterError
 from stylobate.records import response_spectra
 from stylobate.results.report_details import DesignSpectrum
 
+pytestmark = pytest.mark.long
+
 TARGET = DesignSpectrum(period=(0.05, 0.15, 0.5, 2.5), acceleration=(4.0, 9.0, 9.0, 1.8))
 
 

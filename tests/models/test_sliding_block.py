@@ -11,6 +11,8 @@ from stylobate import theory
 from stylobate.models.sliding.balance import even
 from stylobate.theory import BlockPhase, FirstMotion
 
+pytestmark = pytest.mark.long
+
 # c above μ: it never tips. m = g = ω0 = 1, h = κ.
 SQUAT = sb.Column.dimensionless(slenderness=0.8, inertia_ratio=0.5, axial_ratio=0.5)
 FREQUENCY = 2.0

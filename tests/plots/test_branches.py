@@ -7,6 +7,8 @@ import stylobate as sb
 from stylobate.errors import ParameterError
 from stylobate.plots.style import STABLE_WIDTH
 
+pytestmark = pytest.mark.long
+
 MODEL = sb.Slender(sb.Column.dimensionless(slenderness=0.1), damping=0.1)
 LINE = sb.Harmonic.straight(acceleration=0.13, angular_frequency=1.65)
 

@@ -10,6 +10,8 @@ import stylobate as sb
 from stylobate.errors import NoOrbitError, ParameterError
 from stylobate.orbits import StepControl
 
+pytestmark = pytest.mark.long
+
 C = ETA = 0.1
 MODEL = sb.Slender(sb.Column.dimensionless(C), damping=ETA)
 LINE = sb.Harmonic.straight(acceleration=0.13, angular_frequency=3.0)

@@ -10,6 +10,8 @@ import stylobate as sb
 from stylobate import theory
 from stylobate.errors import Outcome, ParameterError, UnsupportedError
 
+pytestmark = pytest.mark.long
+
 MODEL = sb.Slender(sb.Column.dimensionless(0.1), damping=0.1)
 MOTION = sb.Harmonic.circular(acceleration=0.065, angular_frequency=1.8)
 UPPER = theory.steady_rolling(1.8, 0.065, c=0.1, eta=0.1).upper
