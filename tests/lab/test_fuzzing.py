@@ -20,7 +20,7 @@ SMALL = Limits(body=20_000, cells=200, points=100, duration=5.0, steps=1000, run
 LEAST_OF_A_RUN, MOST_OF_A_RUN = 1e-2, 1e2
 
 # Numbers of any size are sent; the page shows the warnings about them.
-pytestmark = pytest.mark.filterwarnings("ignore::stylobate.errors.UnlikelyInputWarning")
+pytestmark = [pytest.mark.long, pytest.mark.filterwarnings("ignore::stylobate.errors.UnlikelyInputWarning")]
 
 few = settings(
     derandomize=True,
