@@ -7,18 +7,23 @@ from tests.lab.browser import enter, shown
 
 DESCRIPTION = "window.stylobate.state().description"
 CURSOR = "() => window.stylobate.stage.canvas.style.cursor"
+DRAWN = "() => new Promise((drawn) => requestAnimationFrame(() => requestAnimationFrame(drawn)))"
 
 
 def on_the_column(page) -> tuple[float, float]:
     """Pause, and move the pointer to where the picture says that the column can be pulled."""
     page.evaluate("() => { window.stylobate.laboratory.clock.pause(); window.stylobate.laboratory.clock.seek(0); }")
+    page.evaluate(DRAWN)
     box = page.locator(".stage canvas").bounding_box()
     y = box["y"] + 0.3 * box["height"]
     for step in range(-20, 21):
         x = box["x"] + 0.5 * box["width"] + 4.0 * step
         page.mouse.move(x, y)
         if page.evaluate(CURSOR) == "grab":
-            return x + 4.0, y
+            page.mouse.move(x + 4.0, y)
+            page.evaluate(DRAWN)  # the view may still have been turning
+            if page.evaluate(CURSOR) == "grab":
+                return x + 4.0, y
     pytest.fail("the pointer found no column")
 
 
