@@ -61,7 +61,7 @@ static-lab: $(VENV)/.core $(PAGE)  ## the laboratory as files for any web server
 static-lab/index.html: $(PAGE) | $(VENV)/.core
 	$(BIN)/stylobate lab --static static-lab
 
-test: $(VENV)/.core $(VENV)/.test  ## the tests that need Python alone, five minutes on two cores
+test: $(VENV)/.core $(VENV)/.test  ## the tests that need Python alone, six minutes on two cores
 	$(BIN)/python -m pytest -n auto
 
 quick: $(VENV)/.core $(VENV)/.test $(VENV)/.lint  ## style, wording and the tests next to what has changed, below 90 seconds
