@@ -34,7 +34,7 @@ def main() -> None:
             sys.stdout.flush()
         except KeyboardInterrupt:  # before or after the command itself
             status = INTERRUPTED
-        except BrokenPipeError:  # nobody reads the output any more, as behind `| head`
+        except BrokenPipeError:  # the output is no longer read, as behind `| head`
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # for what Python writes at its end
             status = NOT_READ
     gc.freeze()  # or Python searches all objects once more before it ends, for several tenths of a second
